@@ -1,0 +1,321 @@
+/*
+ * goe - Ground Obstacle Estimator
+ *
+ * From one camera's view of a static ground obstacle (a building, a truck, a chimney) and the aircraft's own motion:
+ * where the obstacle is, how big it is, how it stands, each with its one-sigma.
+ *
+ * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
+ *
+ * Source of the method: P. Bauer, "Position, Size and Orientation Estimation of Ground Obstacles in Sense and Avoid",
+ * IFAC ACA 2019. "(1)" to "(8)" below and in the .c files are the equations of that paper.
+ *
+ * THIS HEADER IS THE MANUAL. The .c files hold reasons and equation numbers only.
+ *
+ * ---------------------------------------------------------------------------------------------------------------------
+ * Frames
+ *
+ *   earth       north, east, down (NED), metres, local, origin anywhere
+ *   body        forward, right, down (FRD); attitude = Hamilton quaternion (w, x, y, z) that turns body into NED
+ *   camera      x right, y down, z along the optical axis; pixel (u, v) = (right, down) from the top left corner
+ *   trajectory  "T": X right, Y down, Z forward along the intended flight direction, ALWAYS LEVEL, also on a glide slope;
+ *               its origin moves with the camera
+ *
+ *   seen from above, north up; the aircraft flies along Z, an obstacle on its left has X < 0
+ *
+ *                              far corner
+ *                      ______________                  orientation: angle of the SIDE edge (length L) from Z,
+ *                     /             /                               clockwise seen from above, -90 < b <= 90 degrees
+ *                    /             / side              width W:     the FRONT edge
+ *                   /  front      /  (length L)        length L:    the SIDE edge
+ *                  /_____________/                     reference point:
+ *                        ^   near corner                 disc model  the centre of the disc
+ *                        |                               line model  the middle of the front edge
+ *            reference point (X0, Z0)
+ *                        .
+ *                          .          Z forward
+ *                            .        ^
+ *                              .      |
+ *                                .    |
+ *                                  .  o-----> X right
+ *                                   camera
+ *
+ *   Worked example (tests/c/test_readme.c flies it): the aircraft is at north 0, east 0, heading north; a chimney of
+ *   6 m diameter stands at north 200, east -30. Then Z0 = 200 m, X0 = -30 m, width = 6 m.
+ *   After 50 m of flight: Z = 150 m, X = -30 m, and X0, Z0 stay as they were.
+ *
+ * ---------------------------------------------------------------------------------------------------------------------
+ * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 1 KiB at the default window), and all there
+ *             is: no heap, no hidden statics, no recursion. One estimator follows one obstacle; several obstacles take
+ *             several estimators, which share nothing.
+ * Threads     Every function touches only what its arguments point at. Two threads may work on two estimators; one
+ *             estimator needs the caller's lock.
+ * Arithmetic  float only; of the C library sqrtf, fabsf, memcpy and memset. Compiled with its own flags (see README)
+ *             the results are bit-identical on every IEEE 754 target; goe_self_check() tells at run time whether they are.
+ *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity.
+ * Safety      Every output is finite. Input that is not finite is refused by its exponent bits, so also under -ffast-math.
+ *             No argument leads to a trap, an endless loop or a write outside the estimator.
+ * Failure     A call that returns a negative status changed nothing in the estimator but its counters, unless the
+ *             status says "image taken" below. The last good estimate is kept and marked stale.
+ */
+#ifndef GOE_H
+#define GOE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Compile-time limits may come from a header of the firmware's own: -DGOE_CONFIG_HEADER='"my_goe_config.h"'. */
+#ifdef GOE_CONFIG_HEADER
+#include GOE_CONFIG_HEADER
+#endif
+
+/* Largest window that goe_settings_t.window may ask for, in image points; 3 to 64. Each point costs 40 bytes of state.
+ * All translation units of a program must agree; goe_init() refuses an estimator of another size. */
+#ifndef GOE_WINDOW_MAX
+#define GOE_WINDOW_MAX 8
+#endif
+
+#if defined(__GNUC__) || defined(__clang__)
+#define GOE_NODISCARD __attribute__((warn_unused_result))
+#else
+#define GOE_NODISCARD
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---------------------------------------------------------------------------------------------------------- status -- */
+
+/* What became of one image, or of a call. 0: nominal. Positive: the image was good, but gave less than a whole new
+ * solution. Negative: no new solution. "Image taken": the image was stored although the status is negative, because the
+ * next images build on it; otherwise it was refused whole. */
+typedef enum {
+    GOE_OK = 0,             /* solved from this image and the window before it */
+    GOE_PARTIAL = 1,        /* solved, but a part of the image was refused or could not be used: see the counters */
+    GOE_COLLECTING = 2,     /* image taken; fewer points than the window, no solution yet */
+    GOE_HELD = 3,           /* image taken; it adds no point to the reported model, whose older solution stands */
+    GOE_NOTHING_SEEN = 4,   /* image taken for its pose; no feature is marked as seen. Not a fault: nothing is in view */
+    /* a feature of an image that was taken; no new solution */
+    GOE_BEHIND_CAMERA = -1, /* a ray points backwards or sideways: third component in T <= 0.05 of its norm */
+    GOE_LENS_FAILED = -2,   /* the lens model cannot be inverted at a pixel: it lies outside the model's valid field */
+    GOE_SWAPPED = -3,       /* left is not left of right, or base corners are not in image order, after alignment */
+    GOE_EDGE_ON = -4,       /* the front edge is seen from its end or from behind; as GOE_PARTIAL: no length from this
+                               image, the side edge points at the camera */
+    GOE_NO_EDGE = -5,       /* line model forced and no line point: the front edge is too short or no edge has a
+                               measurable orientation (10 px and 2 px gates), as when the obstacle is met head-on */
+    GOE_BAD_HEIGHT = -6,    /* camera's height above ground <= 0; told as GOE_PARTIAL: no obstacle height from this image */
+    /* the solution; image taken */
+    GOE_NO_BASELINE = -7,   /* the camera moved too little over the window: goe_settings_t.min_baseline_m */
+    GOE_NO_PARALLAX = -8,   /* the image does not grow as it must (1/W <= 0, or lost in rounding): not a static obstacle
+                               ahead, or far too noisy */
+    GOE_PASSED = -9,        /* the solution lies abeam or behind: Z <= 0 somewhere in the window */
+    /* an image that was refused whole */
+    GOE_NOT_FINITE = -10,   /* a NaN or an infinity in the pose or in a seen feature */
+    GOE_OUT_OF_RANGE = -11, /* a number outside the range stated at its field */
+    GOE_BAD_TIME = -12,     /* time unknown, repeated or running backwards */
+    GOE_BAD_ATTITUDE = -13, /* the quaternion's norm is off 1 by more than 1 % (a zero quaternion among them) */
+    /* a call */
+    GOE_BAD_SETTINGS = -14, /* goe_init: a setting is outside its range; bad_field names it */
+    GOE_BAD_ARGUMENT = -15, /* a null pointer, or an estimator of another size than the library's (GOE_WINDOW_MAX) */
+    GOE_NOT_INITIALISED = -16 /* goe_init has not succeeded on this estimator */
+} goe_status_t;
+
+/* goe_estimator_t.causes counts every fault, for the flight log: causes[-status] for GOE_BEHIND_CAMERA to
+ * GOE_BAD_ATTITUDE; causes[0] the tracks that a filter reset of unknown size ended. Counters saturate. */
+#define GOE_CAUSES 14
+
+/* -------------------------------------------------------------------------------------------------------- settings -- */
+
+/* The projection model that is reported. */
+typedef enum {
+    GOE_MODEL_NONE = 0, /* estimate only: nothing solved yet. As a setting: refused */
+    GOE_MODEL_AUTO = 1, /* setting only: disc until line_points line points exist, the line from then on */
+    GOE_MODEL_DISC = 2, /* (2): an upright cylinder, or the circle that stands for anything else */
+    GOE_MODEL_LINE = 3  /* (3): the front edge of a box; needs base corners */
+} goe_model_t;
+
+/* Pinhole camera with Brown-Conrady lens, in OpenCV's conventions, and how it sits on the aircraft.
+ * Mounting: the un-mounted camera looks along body x with image x = body y and image y = body z; it is turned by yaw
+ * about z, then pitch about the new y, then roll about the newest x. A camera that looks left has a negative yaw. */
+typedef struct {
+    float fx_px, fy_px;                          /* focal lengths, 1 to 1e5; no default: must be set */
+    float cx_px, cy_px;                          /* principal point, -1e5 to 1e5; no default: must be set */
+    float k1, k2, p1, p2, k3;                    /* lens distortion, each -100 to 100; default 0 */
+    float mount_yaw_deg, mount_pitch_deg, mount_roll_deg; /* -360 to 360; default 0 */
+    float offset_m[3];                           /* camera relative to the pose's reference point, body FRD, +-1e4; 0 */
+} goe_camera_t;
+
+typedef struct {
+    goe_camera_t camera;
+    goe_model_t model;         /* auto, disc or line; default auto */
+    bool heading_auto;         /* default true: T's Z axis = the vehicle's yaw at the track's first image */
+    float heading_deg;         /* otherwise this: clockwise from north, -360 to 360; default 0 */
+    int window;                /* points in the window of (5), also of the sliding means; 3 to GOE_WINDOW_MAX; paper: 8 */
+    int line_points;           /* auto: line points before the line is reported; 1 to 1000; paper: 8 */
+    float edge_min_px;         /* an edge counts if its ends are farther apart in the raw image; 0 to 1e4; paper: 10 */
+    float orientation_min_px;  /* ... and has an orientation if they differ by more in aligned y; 0 to 1e4; paper: 2 */
+    float side_min_px;         /* length is skipped while an end of the side edge is nearer to x' = 0; 0.1 to 1e4;
+                                  paper: 10 */
+    int orientation_memory;    /* images that the low-pass of the orientation remembers; 1 to 1000; paper: 20 */
+    float min_baseline_m;      /* root of the summed squared spread of the flown baseline; 1e-3 to 1e4; default 0.1 */
+} goe_settings_t;
+
+/* ----------------------------------------------------------------------------------------------------------- input -- */
+
+#define GOE_TIME_UNKNOWN INT64_MIN
+
+/* Where the aircraft was AT THE TIME OF EXPOSURE, not when the image arrived.
+ * A jump of the autopilot's own filter is not motion. Whenever the filter resets, increment reset_count; give the
+ * position it jumped by since the image before (new minus old; the sum, if it jumped more than once) when it is known.
+ * Known: compensated, the track goes on. Unknown: the track starts anew with this image. */
+typedef struct {
+    int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
+    float position_ned_m[3]; /* vehicle's reference point, each +-1e6 */
+    float height_m;          /* camera above the ground at the obstacle, +-1e5; <= 0: no obstacle height */
+    float attitude[4];       /* w, x, y, z; body FRD to NED; normalised here, refused if its norm is off by over 1 % */
+    uint8_t reset_count;     /* the filter's reset counter, any start, wraps */
+    bool reset_delta_known;  /* read only when reset_count changed */
+    float reset_delta_ned_m[3]; /* each +-1e6; read only when reset_count changed and reset_delta_known */
+} goe_pose_t;
+
+/* An image point. u_px and v_px are read only if seen; each +-1e5. */
+typedef struct {
+    float u_px, v_px;
+    bool seen;
+} goe_pixel_t;
+
+/* One image of one obstacle. Any subset of the features may be seen.
+ * Disc: left and right. Line: two or three base corners. Height: top, and a solution of either model. */
+typedef struct {
+    goe_pose_t pose;
+    goe_pixel_t left, right; /* leftmost and rightmost point of the silhouette; of a bounding box: the side's middle */
+    goe_pixel_t top;         /* highest point; of a bounding box: the top side's middle */
+    goe_pixel_t base_left, base_near, base_right; /* visible corners of the base on the ground, in image order;
+                                base_near lies between two visible faces, and is not seen when one face alone is */
+} goe_image_t;
+
+/* ---------------------------------------------------------------------------------------------------------- output -- */
+
+/* Which quantities of an estimate hold an answer. A quantity without its bit is 0 and means nothing. */
+#define GOE_HAS_POSITION 0x01u    /* x0, z0, x, z, width, residual, baseline */
+#define GOE_HAS_LENGTH 0x02u      /* length: line model, side edge seen from aside */
+#define GOE_HAS_HEIGHT 0x04u      /* height */
+#define GOE_HAS_ORIENTATION 0x08u /* orientation, other_side, both axes */
+#define GOE_HAS_CENTER 0x10u      /* center: disc; or line with length */
+
+/* One-sigma of each quantity, from the residuals of the fits; units as the quantity. A sigma is only as good as the
+ * assumption that errors are independent from image to image: constant errors of attitude or altitude are not in it. */
+typedef struct {
+    float x0_m, z0_m, x_m, z_m, width_m, length_m, height_m, orientation_deg, center_north_m, center_east_m;
+} goe_sigma_t;
+
+typedef struct {
+    goe_model_t model;     /* none (nothing solved), disc or line: the model behind x0 to width and the centre */
+    unsigned valid;        /* GOE_HAS_... */
+    bool fresh;            /* solved from the latest image; false: stale, the last good answer */
+    int points;            /* image points in the solution's window; 0 if none */
+    float age_s;           /* since the image of the last solution; 0 if fresh or none; at most 4000 */
+    float x0_m, z0_m;      /* reference point at the track's first image, T axes */
+    float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale */
+    float width_m;         /* disc: diameter; line: length of the front edge */
+    float length_m;        /* of the side edge */
+    float height_m;        /* top above ground */
+    float orientation_deg; /* side edge (length axis) from Z, clockwise seen from above, -90 < b <= 90, filtered */
+    float orientation_raw_deg; /* the same from the latest image that measured it alone */
+    float other_side_deg;  /* front edge (width axis), same convention */
+    float length_axis[2];  /* unit vector (X, Z) along the side edge */
+    float width_axis[2];   /* unit vector (X, Z) along the front edge, to the right of length_axis */
+    float center_north_m, center_east_m; /* middle of the base, NED as of the latest pose */
+    float residual;        /* root mean square residual of (5), in the rows' own unit m/S */
+    float baseline_m;      /* root of the summed squared spread of the camera's path over the window */
+    goe_sigma_t sigma;
+} goe_estimate_t;
+
+/* ----------------------------------------------------------------------------------------------------------- state -- */
+
+/* The estimator is transparent so that it can be placed and counted; its fields are private to the library,
+ * except causes, which may be read. */
+
+typedef struct { /* what one image gives to one model */
+    float dx_m, dz_m; /* camera since the track's first image, T axes */
+    float xi, zeta;   /* rows of (5), turned back into T */
+} goe_window_point_t;
+
+typedef struct {
+    goe_window_point_t point[GOE_WINDOW_MAX]; /* ring of the newest */
+    int16_t next, count;                      /* count: points that ever came, saturating */
+} goe_window_t;
+
+typedef struct { /* sliding mean */
+    float value[GOE_WINDOW_MAX];
+    int16_t next, count;
+} goe_mean_t;
+
+typedef struct {
+    float filtered_deg, raw_deg;
+    float variance_deg2; /* of one image's orientation about the filtered one */
+    int count;           /* saturates at orientation_memory */
+} goe_orientation_t;
+
+typedef struct {
+    uint32_t ready; /* tells an initialised estimator from any other memory */
+    goe_settings_t settings;
+    float camera_to_body[9];
+    bool started; /* a first image was taken; the fields below hold */
+    uint8_t reset_count;
+    float heading_cos, heading_sin;
+    float origin_ned_m[3]; /* camera at the track's first image, moved along with compensated resets */
+    float dx_m, dz_m;      /* camera since then, T axes */
+    int64_t time_us, solved_time_us;
+    goe_window_t disc, line;
+    goe_mean_t length, height;
+    goe_orientation_t orientation;
+    goe_estimate_t estimate;
+    uint32_t causes[GOE_CAUSES];
+} goe_estimator_t;
+
+/* ------------------------------------------------------------------------------------------------------- functions -- */
+
+/* Sets every field of *settings: the paper's values, no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are
+ * 0 and must be set by the caller. A null pointer is ignored. */
+void goe_settings_default(goe_settings_t *settings);
+
+/* Checks *settings, copies them and starts with an empty track and zeroed counters.
+ *   estimator_size  sizeof(goe_estimator_t) as the caller's compiler sees it
+ *   bad_field       where to put the name of the first bad setting ("camera.fx_px", ...); null if not wanted.
+ *                   Set to null unless GOE_BAD_SETTINGS is returned.
+ * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS; on failure the estimator is left as it was. */
+GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
+                                    const char **bad_field);
+
+/* Takes one image and tells the estimate after it.
+ *   estimate  always written, unless a pointer is null or the estimator is not initialised: then left as it was
+ * Returns GOE_OK, a positive status, or one of GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE, GOE_BAD_ARGUMENT,
+ * GOE_NOT_INITIALISED. If several faults meet in one image all are counted and the first one met is returned.
+ * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
+ * Cost: bounded; no loop runs longer than GOE_WINDOW_MAX or 20. */
+goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
+
+/* Forgets the track: windows, orientation, estimate. Keeps settings and counters. For another obstacle, or a new view of
+ * the same one. Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED. */
+goe_status_t goe_reset(goe_estimator_t *estimator);
+
+/* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number. */
+const char *goe_status_text(goe_status_t status);
+
+/* What the library's own arithmetic does on this machine, as it was compiled: 0 if it is the IEEE 754 single precision
+ * arithmetic that bit identity rests on, otherwise a sum of GOE_SELF_... */
+unsigned goe_self_check(void);
+#define GOE_SELF_CONTRACTED 0x01u   /* a*b + c is rounded once (fused): compile with -ffp-contract=off */
+#define GOE_SELF_REASSOCIATED 0x02u /* sums or products are reordered: -ffast-math, -fassociative-math */
+#define GOE_SELF_RECIPROCAL 0x04u   /* a/b is computed as a*(1/b): -freciprocal-math */
+#define GOE_SELF_FLUSHED 0x08u      /* subnormal numbers become zero: FPSCR.FZ, FTZ/DAZ, -ffast-math at link time */
+#define GOE_SELF_EXCESS 0x10u       /* intermediate results carry more than float's precision: x87 */
+#define GOE_SELF_ROUNDING 0x20u     /* not round-to-nearest-even, or sqrtf is not correctly rounded */
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* GOE_H */

@@ -1,0 +1,17 @@
+/* Angles without a C library: the same bits on every target. SPDX-License-Identifier: MIT */
+#ifndef GOE_ANGLE_H
+#define GOE_ANGLE_H
+
+#define GOE_DEG_PER_RAD 57.2957795f
+#define GOE_RAD_PER_DEG 0.0174532925f
+
+/* Arctangent of y/x in radians, -pi/2 to pi/2, for x >= 0 and not both zero. Error at most 2e-7 rad. */
+float goe_arctan_rad(float y, float x);
+
+/* Sine and cosine of an angle in degrees, |deg| <= 1e6. Error at most 2e-7 for |deg| <= 720. */
+void goe_sincos_deg(float deg, float *sine, float *cosine);
+
+/* The angle of the same undirected line in (-90, 90] degrees, for |deg| <= 270. */
+float goe_fold_deg(float deg);
+
+#endif

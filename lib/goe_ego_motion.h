@@ -1,0 +1,15 @@
+/* Own motion: from the vehicle's pose to the trajectory frame T. SPDX-License-Identifier: MIT */
+#ifndef GOE_EGO_MOTION_H
+#define GOE_EGO_MOTION_H
+
+#include "goe.h"
+
+/* Takes the pose of an image: fixes T and its origin at the track's first image, compensates a reset of known delta,
+ * and sets dx_m, dz_m (displacement of the camera since the first image, T axes).
+ * camera_to_trajectory: rotation of this image's rays into T. */
+void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, float camera_to_trajectory[9]);
+
+/* Whether the autopilot's filter jumped by an unknown amount since the image before. */
+bool goe_ego_motion_lost(const goe_estimator_t *estimator, const goe_pose_t *pose);
+
+#endif

@@ -1,0 +1,28 @@
+/* The faults met in one image: each is counted, the first is told. SPDX-License-Identifier: MIT */
+#ifndef GOE_FAULT_H
+#define GOE_FAULT_H
+
+#include "goe.h"
+
+typedef struct {
+    uint32_t *causes;   /* the estimator's counters */
+    goe_status_t first; /* GOE_OK: none yet */
+} goe_faults_t;
+
+static inline void goe_count_cause(uint32_t causes[GOE_CAUSES], goe_status_t fault) {
+    uint32_t *counter = &causes[-(int)fault];
+    *counter += *counter < UINT32_MAX ? 1u : 0u;
+}
+
+/* fault: GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE; GOE_OK is ignored. */
+static inline void goe_fault_note(goe_faults_t *faults, goe_status_t fault) {
+    if (fault == GOE_OK) {
+        return;
+    }
+    goe_count_cause(faults->causes, fault);
+    if (faults->first == GOE_OK) {
+        faults->first = fault;
+    }
+}
+
+#endif

@@ -1,0 +1,63 @@
+/* Intake. SPDX-License-Identifier: MIT */
+#include "goe_intake.h"
+
+#include "goe_scalar.h"
+
+#define POSITION_LIMIT_M 1.0e6f
+#define HEIGHT_LIMIT_M 1.0e5f
+#define PIXEL_LIMIT_PX 1.0e5f
+#define ATTITUDE_LIMIT 2.0f       /* per element; a norm near 1 is asked for later */
+#define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
+#define NORM2_MAX (1.01f * 1.01f)
+
+static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+
+static uint32_t largest_of(const float *values, int count) {
+    uint32_t largest = 0u;
+    for (int i = 0; i < count; i++) {
+        largest = larger(largest, goe_magnitude(values[i]));
+    }
+    return largest;
+}
+
+static uint32_t largest_pixel(uint32_t largest, const goe_pixel_t *pixel) {
+    if (!pixel->seen) {
+        return largest;
+    }
+    return larger(largest, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px)));
+}
+
+static goe_status_t check_numbers(const goe_image_t *image) {
+    const goe_pose_t *pose = &image->pose;
+    const uint32_t height = goe_magnitude(pose->height_m);
+    const uint32_t attitude = largest_of(pose->attitude, 4);
+    uint32_t position = largest_of(pose->position_ned_m, 3);
+    if (pose->reset_delta_known) {
+        position = larger(position, largest_of(pose->reset_delta_ned_m, 3));
+    }
+    uint32_t pixel = largest_pixel(0u, &image->left);
+    pixel = largest_pixel(pixel, &image->right);
+    pixel = largest_pixel(pixel, &image->top);
+    pixel = largest_pixel(pixel, &image->base_left);
+    pixel = largest_pixel(pixel, &image->base_near);
+    pixel = largest_pixel(pixel, &image->base_right);
+    if (larger(larger(height, attitude), larger(position, pixel)) >= GOE_INFINITY_BITS) {
+        return GOE_NOT_FINITE;
+    }
+    const bool within = height <= goe_magnitude(HEIGHT_LIMIT_M) && attitude <= goe_magnitude(ATTITUDE_LIMIT) &&
+                        position <= goe_magnitude(POSITION_LIMIT_M) && pixel <= goe_magnitude(PIXEL_LIMIT_PX);
+    return within ? GOE_OK : GOE_OUT_OF_RANGE;
+}
+
+goe_status_t goe_intake_check(const goe_image_t *image, int64_t last_time_us) {
+    const float *q = image->pose.attitude;
+    const goe_status_t status = check_numbers(image);
+    if (status != GOE_OK) {
+        return status;
+    }
+    if (image->pose.time_us <= last_time_us) { /* GOE_TIME_UNKNOWN is the smallest of all times */
+        return GOE_BAD_TIME;
+    }
+    const float norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return norm2 < NORM2_MIN || norm2 > NORM2_MAX ? GOE_BAD_ATTITUDE : GOE_OK;
+}

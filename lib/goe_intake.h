@@ -1,0 +1,11 @@
+/* What is refused before anything is computed. SPDX-License-Identifier: MIT */
+#ifndef GOE_INTAKE_H
+#define GOE_INTAKE_H
+
+#include "goe.h"
+
+/* GOE_OK, or why the whole image is refused: GOE_NOT_FINITE, GOE_OUT_OF_RANGE, GOE_BAD_TIME, GOE_BAD_ATTITUDE.
+ * last_time_us: of the image taken before, GOE_TIME_UNKNOWN if none. */
+goe_status_t goe_intake_check(const goe_image_t *image, int64_t last_time_us);
+
+#endif

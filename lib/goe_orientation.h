@@ -1,0 +1,20 @@
+/* Orientation of the obstacle: which edge is its side, and the low-pass. SPDX-License-Identifier: MIT */
+#ifndef GOE_ORIENTATION_H
+#define GOE_ORIENTATION_H
+
+#include "goe_edge.h"
+
+typedef struct {
+    bool measured;           /* some edge of this image has a heading; otherwise there is neither front nor side */
+    const goe_edge_t *front; /* null if not visible */
+    const goe_edge_t *side;  /* null if not visible */
+    bool side_is_right;      /* the side edge lies right of the front edge */
+} goe_faces_t;
+
+/* Tells front from side and, if an edge has a heading, takes it into the low-pass. memory: images, >= 1. */
+goe_faces_t goe_orientation_update(goe_orientation_t *orientation, const goe_edges_t *edges, int memory);
+
+/* One-sigma of the filtered orientation, degrees. */
+float goe_orientation_sigma_deg(const goe_orientation_t *orientation);
+
+#endif

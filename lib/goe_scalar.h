@@ -1,0 +1,24 @@
+/* Magnitudes of floats, judged by their bits. SPDX-License-Identifier: MIT */
+#ifndef GOE_SCALAR_H
+#define GOE_SCALAR_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#define GOE_INFINITY_BITS 0x7F800000u /* any magnitude from here on is an infinity or a NaN */
+
+/* Bits of |x|. They order as the magnitudes do, and unlike isfinite() or a comparison with NaN the compiler cannot
+ * assume their meaning away under -ffast-math. */
+static inline uint32_t goe_magnitude(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits & 0x7FFFFFFFu;
+}
+
+/* |x| <= limit; false for NaN and infinity. */
+static inline bool goe_within(float x, float limit) { return goe_magnitude(x) <= goe_magnitude(limit); }
+
+static inline float goe_larger(float a, float b) { return a > b ? a : b; }
+
+#endif

@@ -1,0 +1,84 @@
+/* Self-check of the arithmetic. SPDX-License-Identifier: MIT
+ *
+ * Operands are read through volatile so that the compiler cannot evaluate the expressions itself, and then used as plain
+ * floats so that it may transform them just as it transforms the rest of the library. */
+#include <math.h>
+
+#include "goe.h"
+#include "goe_scalar.h"
+
+static uint32_t bits_of(float a) {
+    uint32_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    return bits;
+}
+
+static bool same(float a, uint32_t bits) { return bits_of(a) == bits; }
+
+/* (1 + 2^-12)^2 - (1 + 2^-11) is 2^-24 exactly, and 0 if the product is rounded first. */
+static bool contracts(void) {
+    volatile float given_a = 1.000244140625f;
+    volatile float given_b = 1.00048828125f;
+    const float a = given_a;
+    const float b = given_b;
+    return !same(a * a - b, 0u);
+}
+
+/* (2^25 + 1) - 2^25 is 0 in floats and 1 if reordered. */
+static bool reassociates(void) {
+    volatile float given_large = 33554432.0f;
+    volatile float given_one = 1.0f;
+    const float large = given_large;
+    const float one = given_one;
+    return !same((large + one) - large, 0u);
+}
+
+/* 5/d, 7/d and 11/d with one divisor invite the compiler to compute 1/d once; with d = 41 all three quotients come out
+ * differently. Bits are joined by |, not ||: a compiler that may skip a division does not merge it with the others. */
+static bool reciprocates(void) {
+    volatile float given_five = 5.0f;
+    volatile float given_seven = 7.0f;
+    volatile float given_eleven = 11.0f;
+    volatile float given_divisor = 41.0f;
+    const float divisor = given_divisor;
+    const float first = given_five / divisor;
+    const float second = given_seven / divisor;
+    const float third = given_eleven / divisor;
+    const uint32_t off =
+        (bits_of(first) ^ 0x3DF9C190u) | (bits_of(second) ^ 0x3E2ED44Bu) | (bits_of(third) ^ 0x3E895DA9u);
+    return off != 0u;
+}
+
+static bool flushes(void) {
+    volatile float smallest_normal = 1.17549435e-38f;
+    volatile float half = 0.5f;
+    const float subnormal = smallest_normal * half;
+    return !same(subnormal, 0x00400000u) || !same(subnormal / half, 0x00800000u);
+}
+
+/* 1e38 * 10 overflows float but not a wider register; 1 + 2^-24 rounds back to 1 in float. */
+static bool exceeds(void) {
+    volatile float given_large = 1.0e38f;
+    volatile float given_ten = 10.0f;
+    volatile float given_half_ulp = 5.9604645e-08f;
+    const float large = given_large;
+    const float ten = given_ten;
+    const float half_ulp = given_half_ulp;
+    return goe_magnitude((large * ten) / ten) < GOE_INFINITY_BITS || !same((1.0f + half_ulp) + half_ulp, 0x3F800000u);
+}
+
+/* Ties go to even: 1 + 2^-24 down, 1 + 3 2^-24 up, the same below zero; sqrt(2) to the nearest. */
+static bool misrounds(void) {
+    volatile float given_tie_down = 5.9604645e-08f;
+    volatile float given_tie_up = 1.7881393e-07f;
+    volatile float given_two = 2.0f;
+    const float up = given_tie_up;
+    return !same(1.0f + given_tie_down, 0x3F800000u) || !same(1.0f + up, 0x3F800002u) ||
+           !same(-1.0f - up, 0xBF800002u) || !same(sqrtf(given_two), 0x3FB504F3u);
+}
+
+unsigned goe_self_check(void) {
+    return (contracts() ? GOE_SELF_CONTRACTED : 0u) | (reassociates() ? GOE_SELF_REASSOCIATED : 0u) |
+           (reciprocates() ? GOE_SELF_RECIPROCAL : 0u) | (flushes() ? GOE_SELF_FLUSHED : 0u) |
+           (exceeds() ? GOE_SELF_EXCESS : 0u) | (misrounds() ? GOE_SELF_ROUNDING : 0u);
+}
