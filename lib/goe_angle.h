@@ -11,7 +11,7 @@ float goe_arctan_rad(float y, float x);
 /* Sine and cosine of an angle in degrees, |deg| <= 1e6. Error at most 2e-7 for |deg| <= 720. */
 void goe_sincos_deg(float deg, float *sine, float *cosine);
 
-/* The angle of the same undirected line in (-90, 90] degrees, for |deg| <= 270. */
+/* The angle of the same undirected line in (-90, 90] degrees, for -270 < deg <= 270. */
 float goe_fold_deg(float deg);
 
 #endif

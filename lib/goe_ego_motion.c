@@ -9,12 +9,12 @@
 
 #define LEVEL_NOSE_MIN 1.0e-3f /* horizontal part of the nose's unit vector below which it has no heading */
 
-static bool was_reset(const goe_estimator_t *estimator, const goe_pose_t *pose) {
+bool goe_ego_motion_reset(const goe_estimator_t *estimator, const goe_pose_t *pose) {
     return estimator->started && pose->reset_count != estimator->reset_count;
 }
 
 bool goe_ego_motion_lost(const goe_estimator_t *estimator, const goe_pose_t *pose) {
-    return was_reset(estimator, pose) && !pose->reset_delta_known;
+    return goe_ego_motion_reset(estimator, pose) && !pose->reset_delta_known;
 }
 
 /* T's Z axis in (north, east): the set heading, or where the nose points. */
@@ -65,7 +65,7 @@ void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, f
         fix_heading(estimator, body_to_ned);
         memcpy(estimator->origin_ned_m, position, sizeof position);
         estimator->started = true;
-    } else if (was_reset(estimator, pose)) {
+    } else if (goe_ego_motion_reset(estimator, pose)) {
         for (int i = 0; i < 3; i++) {
             estimator->origin_ned_m[i] += pose->reset_delta_ned_m[i];
         }

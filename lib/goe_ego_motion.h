@@ -9,7 +9,8 @@
  * camera_to_trajectory: rotation of this image's rays into T. */
 void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, float camera_to_trajectory[9]);
 
-/* Whether the autopilot's filter jumped by an unknown amount since the image before. */
+/* Whether the autopilot's filter jumped since the image before; the same by an unknown amount. */
+bool goe_ego_motion_reset(const goe_estimator_t *estimator, const goe_pose_t *pose);
 bool goe_ego_motion_lost(const goe_estimator_t *estimator, const goe_pose_t *pose);
 
 #endif

@@ -353,7 +353,7 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
     if (estimator->ready != READY) {
         return GOE_NOT_INITIALISED;
     }
-    goe_status_t status = goe_intake_check(image, estimator->time_us);
+    goe_status_t status = goe_intake_check(estimator, image);
     if (status == GOE_OK) {
         status = take_image(estimator, image);
         *estimate = estimator->estimate;

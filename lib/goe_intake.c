@@ -1,12 +1,13 @@
 /* Intake. SPDX-License-Identifier: MIT */
 #include "goe_intake.h"
 
+#include "goe_ego_motion.h"
 #include "goe_scalar.h"
 
 #define POSITION_LIMIT_M 1.0e6f
 #define HEIGHT_LIMIT_M 1.0e5f
 #define PIXEL_LIMIT_PX 1.0e5f
-#define ATTITUDE_LIMIT 2.0f       /* per element; a norm near 1 is asked for later */
+#define ATTITUDE_LIMIT 2.0f       /* per element: keeps the squares finite */
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
@@ -27,12 +28,11 @@ static uint32_t largest_pixel(uint32_t largest, const goe_pixel_t *pixel) {
     return larger(largest, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px)));
 }
 
-static goe_status_t check_numbers(const goe_image_t *image) {
+static goe_status_t check_numbers(const goe_image_t *image, bool reset) {
     const goe_pose_t *pose = &image->pose;
     const uint32_t height = goe_magnitude(pose->height_m);
-    const uint32_t attitude = largest_of(pose->attitude, 4);
     uint32_t position = largest_of(pose->position_ned_m, 3);
-    if (pose->reset_delta_known) {
+    if (reset && pose->reset_delta_known) {
         position = larger(position, largest_of(pose->reset_delta_ned_m, 3));
     }
     uint32_t pixel = largest_pixel(0u, &image->left);
@@ -41,23 +41,29 @@ static goe_status_t check_numbers(const goe_image_t *image) {
     pixel = largest_pixel(pixel, &image->base_left);
     pixel = largest_pixel(pixel, &image->base_near);
     pixel = largest_pixel(pixel, &image->base_right);
-    if (larger(larger(height, attitude), larger(position, pixel)) >= GOE_INFINITY_BITS) {
+    if (larger(larger(height, largest_of(pose->attitude, 4)), larger(position, pixel)) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
-    const bool within = height <= goe_magnitude(HEIGHT_LIMIT_M) && attitude <= goe_magnitude(ATTITUDE_LIMIT) &&
-                        position <= goe_magnitude(POSITION_LIMIT_M) && pixel <= goe_magnitude(PIXEL_LIMIT_PX);
+    const bool within = height <= goe_magnitude(HEIGHT_LIMIT_M) && position <= goe_magnitude(POSITION_LIMIT_M) &&
+                        pixel <= goe_magnitude(PIXEL_LIMIT_PX);
     return within ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
-goe_status_t goe_intake_check(const goe_image_t *image, int64_t last_time_us) {
-    const float *q = image->pose.attitude;
-    const goe_status_t status = check_numbers(image);
+static bool is_unit(const float q[4]) {
+    if (largest_of(q, 4) > goe_magnitude(ATTITUDE_LIMIT)) {
+        return false;
+    }
+    const float norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return norm2 >= NORM2_MIN && norm2 <= NORM2_MAX;
+}
+
+goe_status_t goe_intake_check(const goe_estimator_t *estimator, const goe_image_t *image) {
+    const goe_status_t status = check_numbers(image, goe_ego_motion_reset(estimator, &image->pose));
     if (status != GOE_OK) {
         return status;
     }
-    if (image->pose.time_us <= last_time_us) { /* GOE_TIME_UNKNOWN is the smallest of all times */
+    if (image->pose.time_us <= estimator->time_us) { /* GOE_TIME_UNKNOWN is the smallest of all times */
         return GOE_BAD_TIME;
     }
-    const float norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    return norm2 < NORM2_MIN || norm2 > NORM2_MAX ? GOE_BAD_ATTITUDE : GOE_OK;
+    return is_unit(image->pose.attitude) ? GOE_OK : GOE_BAD_ATTITUDE;
 }

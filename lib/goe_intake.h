@@ -4,8 +4,7 @@
 
 #include "goe.h"
 
-/* GOE_OK, or why the whole image is refused: GOE_NOT_FINITE, GOE_OUT_OF_RANGE, GOE_BAD_TIME, GOE_BAD_ATTITUDE.
- * last_time_us: of the image taken before, GOE_TIME_UNKNOWN if none. */
-goe_status_t goe_intake_check(const goe_image_t *image, int64_t last_time_us);
+/* GOE_OK, or why the whole image is refused: GOE_NOT_FINITE, GOE_OUT_OF_RANGE, GOE_BAD_TIME, GOE_BAD_ATTITUDE. */
+goe_status_t goe_intake_check(const goe_estimator_t *estimator, const goe_image_t *image);
 
 #endif
