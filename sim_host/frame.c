@@ -1,0 +1,52 @@
+/* One row of frames.csv: one obstacle in one image. SPDX-License-Identifier: MIT */
+#include "frame.h"
+
+#include <math.h>
+
+#include "number_text.h"
+
+#define US_PER_S 1.0e6
+#define TIME_LIMIT_US 9.2e18 /* just inside 64 bits */
+
+const char *const frame_value_name[FRAME_VALUES] = {
+    "n_m",         "e_m",         "d_m",         "agl_m",       "qw",           "qx",          "qy",
+    "qz",          "left_u",      "left_v",      "right_u",     "right_v",      "top_u",       "top_v",
+    "base_left_u", "base_left_v", "base_near_u", "base_near_v", "base_right_u", "base_right_v"};
+
+static int64_t time_to_us(double time_s) {
+    const double time_us = time_s * US_PER_S;
+    return fabs(time_us) < TIME_LIMIT_US ? (int64_t)llrint(time_us) : GOE_TIME_UNKNOWN; /* NaN is not less either */
+}
+
+static float pose_value(const frame_t *frame, frame_value_t name) {
+    return frame->given[name] ? number_to_float(frame->value[name]) : NAN;
+}
+
+static goe_pixel_t image_point(const frame_t *frame, frame_value_t name_u) {
+    const frame_value_t name_v = (frame_value_t)(name_u + 1);
+    goe_pixel_t point = {0.0f, 0.0f, frame->given[name_u] && frame->given[name_v]};
+    if (point.seen) {
+        point.u_px = number_to_float(frame->value[name_u]);
+        point.v_px = number_to_float(frame->value[name_v]);
+    }
+    return point;
+}
+
+void frame_to_image(const frame_t *frame, goe_image_t *image) {
+    const goe_image_t empty = {0};
+    *image = empty;
+    image->pose.time_us = time_to_us(frame->time_s);
+    for (int i = 0; i < 3; i++) {
+        image->pose.position_ned_m[i] = pose_value(frame, (frame_value_t)(FRAME_N_M + i));
+    }
+    for (int i = 0; i < 4; i++) {
+        image->pose.attitude[i] = pose_value(frame, (frame_value_t)(FRAME_QW + i));
+    }
+    image->pose.height_m = frame->given[FRAME_AGL_M] ? pose_value(frame, FRAME_AGL_M) : -pose_value(frame, FRAME_D_M);
+    image->left = image_point(frame, FRAME_LEFT_U);
+    image->right = image_point(frame, FRAME_RIGHT_U);
+    image->top = image_point(frame, FRAME_TOP_U);
+    image->base_left = image_point(frame, FRAME_BASE_LEFT_U);
+    image->base_near = image_point(frame, FRAME_BASE_NEAR_U);
+    image->base_right = image_point(frame, FRAME_BASE_RIGHT_U);
+}

@@ -1,0 +1,54 @@
+/* One row of frames.csv: one obstacle in one image. SPDX-License-Identifier: MIT */
+#ifndef FRAME_H
+#define FRAME_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "goe.h"
+
+#define FRAME_TIME_NAME "t_s"
+#define FRAME_ID_NAME "id"
+#define FRAME_TIME_TEXT_MAX 63
+
+/* The measured columns. Image points are pairs: u, then v. */
+typedef enum {
+    FRAME_N_M,
+    FRAME_E_M,
+    FRAME_D_M,
+    FRAME_AGL_M,
+    FRAME_QW,
+    FRAME_QX,
+    FRAME_QY,
+    FRAME_QZ,
+    FRAME_LEFT_U,
+    FRAME_LEFT_V,
+    FRAME_RIGHT_U,
+    FRAME_RIGHT_V,
+    FRAME_TOP_U,
+    FRAME_TOP_V,
+    FRAME_BASE_LEFT_U,
+    FRAME_BASE_LEFT_V,
+    FRAME_BASE_NEAR_U,
+    FRAME_BASE_NEAR_V,
+    FRAME_BASE_RIGHT_U,
+    FRAME_BASE_RIGHT_V,
+    FRAME_VALUES
+} frame_value_t;
+
+extern const char *const frame_value_name[FRAME_VALUES]; /* as in the header line */
+
+typedef struct {
+    char time_text[FRAME_TIME_TEXT_MAX + 1]; /* t_s as it was read */
+    double time_s;
+    int64_t id;
+    double value[FRAME_VALUES]; /* units as the column's name says; not finite if the log says so */
+    bool given[FRAME_VALUES];   /* false: the field is empty or the column absent; value means nothing */
+} frame_t;
+
+/* What the library is shown. An image point is seen if both coordinates are given. A missing pose value becomes NaN and
+ * a time that is not finite or does not fit microseconds GOE_TIME_UNKNOWN, both of which the library refuses.
+ * agl_m not given: -d_m. */
+void frame_to_image(const frame_t *frame, goe_image_t *image);
+
+#endif

@@ -1,0 +1,24 @@
+/* Reads frames.csv row by row in constant memory. SPDX-License-Identifier: MIT */
+#ifndef FRAME_READER_H
+#define FRAME_READER_H
+
+#include "frame.h"
+#include "input_error.h"
+
+typedef struct frame_reader frame_reader_t;
+
+typedef enum {
+    FRAME_READER_ROW,  /* *frame holds the next row */
+    FRAME_READER_END,  /* no more rows */
+    FRAME_READER_ERROR /* *error says what is wrong and where; so will every further call */
+} frame_reader_result_t;
+
+/* Opens the file and checks its header line. Null on failure: *error says why. */
+frame_reader_t *frame_reader_open(const char *path, input_error_t *error);
+
+frame_reader_result_t frame_reader_next(frame_reader_t *reader, frame_t *frame, input_error_t *error);
+
+/* Null is ignored. */
+void frame_reader_close(frame_reader_t *reader);
+
+#endif

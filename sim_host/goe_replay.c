@@ -1,0 +1,313 @@
+/* goe_replay: runs the library over a recorded observation log. SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <popt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "camera_file.h"
+#include "estimate_writer.h"
+#include "frame.h"
+#include "frame_reader.h"
+#include "goe.h"
+#include "input_error.h"
+#include "output_file.h"
+#include "track_table.h"
+
+#ifndef GOE_VERSION
+#define GOE_VERSION "development"
+#endif
+
+#define PROGRAM "goe_replay"
+#define WINDOW_MIN 3
+
+enum { EXIT_DONE = 0, EXIT_NO_ESTIMATE = 1, EXIT_BAD_INPUT = 2 };
+
+/* --------------------------------------------------------------------------------------------------------- options -- */
+
+typedef struct {
+    char *method, *model, *out;
+    char *camera, *frames; /* after parse_options(): the paths to read */
+    int window;            /* 0: the library's default */
+    int help, version;
+} options_t;
+
+static void free_options(options_t *options) {
+    free(options->method);
+    free(options->model);
+    free(options->out);
+    free(options->camera);
+    free(options->frames);
+}
+
+/* Bad usage. */
+static bool complain(const char *subject, const char *reason) {
+    (void)fprintf(stderr, PROGRAM ": %s: %s (see " PROGRAM " --help)\n", subject, reason);
+    return false;
+}
+
+/* Anything else that stops the program, besides faults in the input. */
+static bool give_up(const char *subject, const char *reason) {
+    (void)fprintf(stderr, PROGRAM ": %s: %s\n", subject, reason);
+    return false;
+}
+
+static bool check_method(const char *method) {
+    if (method == NULL || strcmp(method, "window") == 0) {
+        return true;
+    }
+    return complain(method, strcmp(method, "refined") == 0 ? "this version has no refined method, only --method window"
+                                                           : "--method must be window or refined");
+}
+
+static bool parse_model(const char *text, goe_model_t *model) {
+    if (text == NULL || strcmp(text, "auto") == 0) {
+        *model = GOE_MODEL_AUTO;
+    } else if (strcmp(text, "disc") == 0) {
+        *model = GOE_MODEL_DISC;
+    } else if (strcmp(text, "line") == 0) {
+        *model = GOE_MODEL_LINE;
+    } else {
+        return complain(text, "--model must be auto, disc or line");
+    }
+    return true;
+}
+
+static bool check_window(const options_t *options) {
+    char reason[64];
+    if (options->window >= WINDOW_MIN && options->window <= GOE_WINDOW_MAX) {
+        return true;
+    }
+    (void)snprintf(reason, sizeof reason, "must be %d to %d", WINDOW_MIN, GOE_WINDOW_MAX);
+    return complain("--window", reason);
+}
+
+/* directory/name in place of a path that was not given singly. */
+static bool default_path(char **path, const char *directory, const char *name, const char *option) {
+    if (*path != NULL) {
+        return true;
+    }
+    if (directory == NULL) {
+        return complain(option, "missing: name the log's folder, or both --camera and --frames");
+    }
+    const size_t room = strlen(directory) + strlen(name) + 2u;
+    *path = malloc(room);
+    if (*path == NULL) {
+        return give_up(directory, "out of memory");
+    }
+    const char *slash = *directory != '\0' && directory[strlen(directory) - 1u] == '/' ? "" : "/";
+    (void)snprintf(*path, room, "%s%s%s", directory, slash, name);
+    return true;
+}
+
+static bool parse_arguments(poptContext context, options_t *options) {
+    const int result = poptGetNextOpt(context);
+    if (result < -1) {
+        return complain(poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(result));
+    }
+    if (options->help || options->version) {
+        return true;
+    }
+    const char *directory = poptGetArg(context);
+    const char *surplus = poptPeekArg(context);
+    if (surplus != NULL) {
+        return complain(surplus, "one folder at a time");
+    }
+    return default_path(&options->camera, directory, "camera.ini", "--camera") &&
+           default_path(&options->frames, directory, "frames.csv", "--frames");
+}
+
+static bool apply_options(const options_t *options, goe_settings_t *settings) {
+    if (!check_method(options->method) || !parse_model(options->model, &settings->model)) {
+        return false;
+    }
+    settings->window = options->window;
+    return check_window(options);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ help -- */
+
+static void print_help(poptContext context) {
+    poptPrintHelp(context, stdout, 0);
+    (void)puts(
+        "\nDIR holds camera.ini and frames.csv. One row comes out for each row of frames.csv; a quantity that is not\n"
+        "known is empty. The fields are named in the first line: metres, degrees, each quantity followed by its\n"
+        "one-sigma (..._sd_...).\n"
+        "\nExit status: 0 done; 1 the log was read but no row gave an estimate; 2 bad usage or bad input, then\n"
+        "nothing is written to FILE.");
+}
+
+/* ---------------------------------------------------------------------------------------------------------- replay -- */
+
+#define STATUS_FIRST GOE_NOT_INITIALISED
+#define STATUS_LAST GOE_NOTHING_SEEN
+#define STATUSES ((int)STATUS_LAST - (int)STATUS_FIRST + 1)
+
+typedef struct {
+    unsigned long rows[STATUSES]; /* by status */
+    unsigned long estimates;      /* rows with a solution, stale ones included */
+} tally_t;
+
+static void count_row(tally_t *tally, goe_status_t status, const goe_estimate_t *estimate) {
+    tally->rows[(int)status - (int)STATUS_FIRST]++;
+    tally->estimates += (estimate->valid & GOE_HAS_POSITION) != 0 ? 1u : 0u;
+}
+
+static void explain_no_estimate(const char *path, const tally_t *tally) {
+    const char *separator = "";
+    (void)fprintf(stderr, PROGRAM ": %s: no row gave an estimate (", path);
+    for (int i = 0; i < STATUSES; i++) {
+        if (tally->rows[i] != 0) {
+            (void)fprintf(stderr, "%s%s: %lu", separator, goe_status_text((goe_status_t)(i + (int)STATUS_FIRST)),
+                          tally->rows[i]);
+            separator = ", ";
+        }
+    }
+    (void)fprintf(stderr, "%s)\n", *separator == '\0' ? "there are no rows" : "");
+}
+
+static bool print_error(const input_error_t *error) {
+    (void)fprintf(stderr, "%s\n", error->text);
+    return false;
+}
+
+static bool write_failed(const options_t *options) {
+    (void)fprintf(stderr, PROGRAM ": %s: cannot be written: %s\n",
+                  options->out != NULL ? options->out : "standard output", strerror(errno));
+    return false;
+}
+
+/* Row by row, until the end or the first fault. */
+static bool replay_rows(const options_t *options, frame_reader_t *reader, track_table_t *tracks, FILE *stream,
+                        tally_t *tally) {
+    frame_t frame;
+    goe_image_t image;
+    goe_estimate_t estimate;
+    input_error_t error;
+    frame_reader_result_t result = FRAME_READER_END;
+    (void)memset(&estimate, 0, sizeof estimate);
+    if (!estimate_write_header(stream)) {
+        return write_failed(options);
+    }
+    while ((result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
+        goe_estimator_t *estimator = track_table_get(tracks, frame.id);
+        if (estimator == NULL) {
+            return give_up(options->frames, "out of memory for another track");
+        }
+        frame_to_image(&frame, &image);
+        const goe_status_t status = goe_update(estimator, &image, &estimate);
+        count_row(tally, status, &estimate);
+        if (!estimate_write_row(stream, frame.time_text, frame.id, status, &estimate)) {
+            return write_failed(options);
+        }
+    }
+    return result == FRAME_READER_END || print_error(&error);
+}
+
+static bool same_file(const char *a, const char *b) {
+    struct stat status_a, status_b;
+    return stat(a, &status_a) == 0 && stat(b, &status_b) == 0 && S_ISREG(status_a.st_mode) &&
+           status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
+}
+
+static bool replay_to_output(const options_t *options, frame_reader_t *reader, track_table_t *tracks, tally_t *tally) {
+    output_file_t output;
+    if (options->out != NULL &&
+        (same_file(options->out, options->frames) || same_file(options->out, options->camera))) {
+        return give_up(options->out, "the output would replace the log");
+    }
+    if (!output_file_open(&output, options->out)) {
+        return write_failed(options);
+    }
+    if (!replay_rows(options, reader, tracks, output.stream, tally)) {
+        output_file_discard(&output);
+        return false;
+    }
+    return output_file_commit(&output) || write_failed(options);
+}
+
+static bool replay_with(const options_t *options, const goe_settings_t *settings, frame_reader_t *reader,
+                        tally_t *tally) {
+    const char *bad_field = NULL;
+    track_table_t *tracks = track_table_new(settings, &bad_field);
+    if (tracks == NULL) {
+        return give_up(options->camera, bad_field != NULL ? bad_field : "out of memory");
+    }
+    const bool done = replay_to_output(options, reader, tracks, tally);
+    track_table_free(tracks);
+    return done;
+}
+
+static int replay(const options_t *options) {
+    goe_settings_t settings;
+    camera_image_size_t size; /* checked; the library has no use for it */
+    input_error_t error;
+    tally_t tally = {{0}, 0};
+    goe_settings_default(&settings);
+    if (!apply_options(options, &settings)) {
+        return EXIT_BAD_INPUT;
+    }
+    frame_reader_t *reader =
+        camera_file_read(options->camera, &settings, &size, &error) ? frame_reader_open(options->frames, &error) : NULL;
+    if (reader == NULL) {
+        (void)print_error(&error);
+        return EXIT_BAD_INPUT;
+    }
+    const bool done = replay_with(options, &settings, reader, &tally);
+    frame_reader_close(reader);
+    if (!done) {
+        return EXIT_BAD_INPUT;
+    }
+    if (tally.estimates == 0) {
+        explain_no_estimate(options->frames, &tally);
+        return EXIT_NO_ESTIMATE;
+    }
+    return EXIT_DONE;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ main -- */
+
+static int run(poptContext context, options_t *options) {
+    if (!parse_arguments(context, options)) {
+        return EXIT_BAD_INPUT;
+    }
+    if (!options->help && !options->version) {
+        return replay(options);
+    }
+    if (options->help) {
+        print_help(context);
+    } else {
+        (void)puts(PROGRAM " " GOE_VERSION);
+    }
+    return fflush(stdout) == 0 ? EXIT_DONE : EXIT_BAD_INPUT;
+}
+
+int main(int argc, char **argv) {
+    goe_settings_t defaults;
+    goe_settings_default(&defaults);
+    options_t options = {.window = defaults.window};
+    const struct poptOption table[] = {
+        {"method", 0, POPT_ARG_STRING, &options.method, 0, "how to estimate: the paper's sliding window", "window"},
+        {"model", 0, POPT_ARG_STRING, &options.model, 0, "what stands for the obstacle; auto by default",
+         "auto|disc|line"},
+        {"window", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &options.window, 0, "image points in the window", "N"},
+        {"out", 'o', POPT_ARG_STRING, &options.out, 0, "where to write the estimates; standard output by default",
+         "FILE"},
+        {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},
+        {"frames", 0, POPT_ARG_STRING, &options.frames, 0, "in place of DIR/frames.csv", "FILE"},
+        {"help", 'h', POPT_ARG_NONE, &options.help, 0, "print this and exit", NULL},
+        {"version", 0, POPT_ARG_NONE, &options.version, 0, "print the version and exit", NULL},
+        POPT_TABLEEND};
+    const char **arguments = (void *)argv; /* popt reads them only */
+    poptContext context = poptGetContext(PROGRAM, argc, arguments, table, 0);
+    if (context == NULL) {
+        (void)give_up("options", "out of memory");
+        return EXIT_BAD_INPUT;
+    }
+    poptSetOtherOptionHelp(context, "[OPTION...] DIR");
+    const int status = run(context, &options);
+    (void)poptFreeContext(context);
+    free_options(&options);
+    return status;
+}

@@ -1,0 +1,37 @@
+/* What is wrong with an input file, and where. SPDX-License-Identifier: MIT */
+#include "input_error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define ELLIPSIS "..."
+
+void input_error_set(input_error_t *error, const char *file, unsigned long line, const char *column, const char *format,
+                     ...) {
+    char reason[256];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    if (line == 0) {
+        (void)snprintf(error->text, sizeof error->text, "%s: %s", file, reason);
+    } else if (column == NULL) {
+        (void)snprintf(error->text, sizeof error->text, "%s:%lu: %s", file, line, reason);
+    } else {
+        const excerpt_t name = excerpt_of(column, strlen(column));
+        (void)snprintf(error->text, sizeof error->text, "%s:%lu: %s: %s", file, line, name.text, reason);
+    }
+}
+
+excerpt_t excerpt_of(const char *text, size_t length) {
+    excerpt_t excerpt;
+    const size_t room = sizeof excerpt.text - sizeof ELLIPSIS;
+    const size_t kept = length < room ? length : room;
+    for (size_t i = 0; i < kept; i++) {
+        const unsigned char c = (unsigned char)text[i];
+        excerpt.text[i] = c >= 0x20u && c < 0x7fu ? text[i] : '?';
+    }
+    (void)memcpy(excerpt.text + kept, length > kept ? ELLIPSIS : "", length > kept ? sizeof ELLIPSIS : 1u);
+    return excerpt;
+}

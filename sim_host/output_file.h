@@ -1,0 +1,24 @@
+/* A file that appears whole or not at all. SPDX-License-Identifier: MIT */
+#ifndef OUTPUT_FILE_H
+#define OUTPUT_FILE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct {
+    FILE *stream;    /* write here */
+    char *target;    /* null: standard output, a device or a pipe, which cannot be replaced and is streamed to */
+    char *temporary; /* beside the target; removed when the program is interrupted */
+} output_file_t;
+
+/* path null: standard output. A regular file is left as it is until output_file_commit(). One output at a time.
+ * False on failure: errno says why. */
+bool output_file_open(output_file_t *output, const char *path);
+
+/* All is written: the file takes its place. False on failure, then nothing is left behind: errno says why. */
+bool output_file_commit(output_file_t *output);
+
+/* Drops what was written. */
+void output_file_discard(output_file_t *output);
+
+#endif

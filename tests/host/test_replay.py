@@ -1,0 +1,672 @@
+"""goe_replay as a user calls it: what comes out, and what happens with bad logs, bad options and bad disks.
+
+The program is $GOE_REPLAY, by default build/sim_host/goe_replay of this checkout.
+"""
+
+import csv
+import io
+import math
+import os
+import signal
+import struct
+import subprocess
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Optional
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("GOE_REPLAY", str(ROOT / "build" / "sim_host" / "goe_replay"))
+
+# A path that the caller named must exist: without the program the tests fail then.
+pytestmark = pytest.mark.skipif(
+    "GOE_REPLAY" not in os.environ and not Path(PROGRAM).exists(), reason=f"{PROGRAM} is not built"
+)
+
+HEADER = (
+    "t_s,id,status,model,n_used,x0_m,x0_sd_m,z0_m,z0_sd_m,x_m,x_sd_m,z_m,z_sd_m,width_m,width_sd_m,"
+    "length_m,length_sd_m,height_m,height_sd_m,orientation_deg,orientation_sd_deg,"
+    "center_n_m,center_n_sd_m,center_e_m,center_e_sd_m"
+)
+POSE = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz"]
+POINTS = ["left", "right", "top", "base_left", "base_near", "base_right"]
+COLUMNS = POSE + [f"{point}_{axis}" for point in POINTS for axis in "uv"]
+CAMERA = """# a wide lens
+camera.width = 1920
+camera.height = 1080
+camera.fx = 1000   # px
+camera.fy = 1000
+camera.cx = 960
+camera.cy = 540
+"""
+ALTITUDE_M = 50.0
+Row = dict[str, Any]
+
+# ------------------------------------------------------------------------------------------------------------- logs
+
+
+def pixel(north_m: float, east_m: float, down_m: float) -> tuple[float, float]:
+    """Image of a point (relative to a camera that looks north, level) in px."""
+    return 960.0 + 1000.0 * east_m / north_m, 540.0 + 1000.0 * down_m / north_m
+
+
+def pose_row(t_s: float, n_m: float, track: int = 1) -> Row:
+    """A row without image points: northwards at ALTITUDE_M."""
+    row: Row = {column: "" for column in COLUMNS}
+    row.update(t_s=f"{t_s:.2f}", id=track, n_m=n_m, e_m=0.0, d_m=-ALTITUDE_M, agl_m=ALTITUDE_M)
+    row.update(qw=1.0, qx=0.0, qy=0.0, qz=0.0)
+    return row
+
+
+def put(row: Row, point: str, at: tuple[float, float]) -> None:
+    row[point + "_u"], row[point + "_v"] = (f"{value:.9g}" for value in at)
+
+
+def chimney(frames: int = 20, track: int = 1, north_m: float = 200.0, east_m: float = -30.0) -> list[Row]:
+    """A chimney of 6 m diameter and 20 m height, seen from a straight flight at 15 m a second."""
+    rows = []
+    for k in range(frames):
+        n_m = 1.5 * k
+        row = pose_row(0.1 * k, n_m, track)
+        ahead, bearing = north_m - n_m, math.atan2(east_m, north_m - n_m)
+        half = math.asin(3.0 / math.hypot(ahead, east_m))
+        v_px = pixel(ahead, east_m, 40.0)[1]
+        put(row, "left", (960.0 + 1000.0 * math.tan(bearing - half), v_px))
+        put(row, "right", (960.0 + 1000.0 * math.tan(bearing + half), v_px))
+        put(row, "top", pixel(ahead, east_m, ALTITUDE_M - 20.0))
+        rows.append(row)
+    return rows
+
+
+def box(frames: int = 40) -> list[Row]:
+    """A box of 20 m (front) x 12 m (side), its side turned 25 degrees clockwise from north; base corners only."""
+    turn = math.radians(25.0)
+    front, side = (-math.sin(turn), math.cos(turn)), (math.cos(turn), math.sin(turn))  # (north, east) unit vectors
+    near = (260.0, -45.0)
+    left = (near[0] - 20.0 * front[0], near[1] - 20.0 * front[1])
+    right = (near[0] + 12.0 * side[0], near[1] + 12.0 * side[1])
+    rows = []
+    for k in range(frames):
+        row = pose_row(0.1 * k, 2.0 * k)
+        for point, (n_m, e_m) in (("base_left", left), ("base_near", near), ("base_right", right)):
+            put(row, point, pixel(n_m - 2.0 * k, e_m, ALTITUDE_M))
+        rows.append(row)
+    return rows
+
+
+def table(rows: Sequence[Row], columns: Sequence[str] = COLUMNS) -> str:
+    lines = [",".join(columns)] + [",".join(str(row.get(column, "")) for column in columns) for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def write_log(folder: Path, frames: "str | bytes", camera: "str | bytes" = CAMERA) -> Path:
+    folder.mkdir(exist_ok=True)
+    for name, content in (("frames.csv", frames), ("camera.ini", camera)):
+        (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    return folder
+
+
+# -------------------------------------------------------------------------------------------------------------- calls
+
+
+def call(*arguments: "str | Path", check: Optional[int] = 0) -> "subprocess.CompletedProcess[str]":
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120, check=False)
+    if check is not None:
+        assert done.returncode == check, (done.returncode, done.stderr)
+    return done
+
+
+def replay(folder: Path, *options: "str | Path", check: int = 0) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(call(*options, folder, check=check).stdout)))
+
+
+def number(row: dict[str, str], column: str) -> float:
+    assert row[column] != "", f"{column} is empty"
+    return float(row[column])
+
+
+@pytest.fixture(name="log")
+def chimney_log(tmp_path: Path) -> Path:
+    return write_log(tmp_path / "log", table(chimney()))
+
+
+# ------------------------------------------------------------------------------------------------------------- output
+
+
+def test_header_is_the_contract(log: Path) -> None:
+    assert call(log).stdout.splitlines()[0] == HEADER
+
+
+def test_one_row_per_row_with_time_as_it_was_read(tmp_path: Path) -> None:
+    rows = chimney(4)
+    for row, text in zip(rows, ["0", "1.0e-1", "0.2000", "+.3"]):
+        row["t_s"] = text
+    out = replay(write_log(tmp_path, table(rows)), check=1)
+    assert [row["t_s"] for row in out] == ["0", "1.0e-1", "0.2000", "+.3"]
+    assert {row["id"] for row in out} == {"1"}
+
+
+def test_chimney_is_found(log: Path) -> None:
+    out = replay(log)
+    assert [row["status"] for row in out] == ["collecting"] * 7 + ["ok"] * 13
+    assert [row["n_used"] for row in out] == ["0"] * 7 + ["8"] * 13
+    assert [row["model"] for row in out] == ["none"] * 7 + ["disc"] * 13
+    last = out[-1]
+    # (2) is exact for the position; its size row is off by r^2 X^2 / (Z^2 d^2) < 1e-5 here. Text has 9 digits.
+    assert number(last, "x0_m") == pytest.approx(-30.0, rel=2e-3)
+    assert number(last, "z0_m") == pytest.approx(200.0, rel=2e-3)
+    assert number(last, "z_m") == pytest.approx(200.0 - 1.5 * 19, rel=2e-3)
+    assert number(last, "width_m") == pytest.approx(6.0, rel=2e-3)
+    assert number(last, "height_m") == pytest.approx(20.0, rel=5e-3)
+    assert number(last, "center_n_m") == pytest.approx(200.0, rel=2e-3)
+    assert number(last, "center_e_m") == pytest.approx(-30.0, rel=2e-3)
+    assert last["length_m"] == last["length_sd_m"] == last["orientation_deg"] == last["orientation_sd_deg"] == ""
+
+
+def test_box_is_found(tmp_path: Path) -> None:
+    last = replay(write_log(tmp_path, table(box())))[-1]
+    assert (last["status"], last["model"]) == ("ok", "line")
+    assert number(last, "width_m") == pytest.approx(20.0, rel=2e-3)
+    assert number(last, "length_m") == pytest.approx(12.0, rel=5e-3)
+    assert number(last, "orientation_deg") == pytest.approx(25.0, abs=0.05)
+    assert number(last, "orientation_sd_deg") < 0.05
+    assert last["height_m"] == ""
+
+
+def test_forced_model(tmp_path: Path) -> None:
+    folder = write_log(tmp_path, table(box()))
+    assert replay(folder, "--model", "line")[-1]["model"] == "line"
+    assert {row["model"] for row in replay(folder, "--model=disc", check=1)} == {"none"}
+
+
+def test_window(log: Path) -> None:
+    for window in (3, 8, 13):
+        out = replay(log, "--window", str(window))
+        assert [row["status"] for row in out].index("ok") == window - 1
+        assert out[-1]["n_used"] == str(window)
+
+
+def test_window_64(tmp_path: Path) -> None:
+    out = replay(write_log(tmp_path, table(chimney(70))), "--window=64")
+    assert [row["status"] for row in out].index("ok") == 63
+
+
+def test_numbers_are_floats_with_nine_digits(tmp_path: Path) -> None:
+    """Each number is the shortest %.9g text of one float, as a C library prints it."""
+    numbers = 0
+    for name, rows in (("chimney", chimney()), ("box", box())):
+        for row in replay(write_log(tmp_path / name, table(rows))):
+            for text in list(row.values())[5:]:
+                if text:
+                    nearest = struct.unpack("f", struct.pack("f", float(text)))[0]
+                    assert text == f"{nearest:.9g}"
+                    numbers += 1
+    assert numbers > 500
+
+
+def test_every_quantity_is_followed_by_its_sigma(log: Path) -> None:
+    for row in replay(log):
+        texts = list(row.values())[5:]
+        assert [text == "" for text in texts[0::2]] == [text == "" for text in texts[1::2]]
+
+
+def test_interleaved_tracks_do_not_touch_each_other(tmp_path: Path) -> None:
+    ids = (7, -1, 9223372036854775807, -9223372036854775808, 0)
+    tracks = [chimney(track=track, east_m=-30.0 - 5.0 * i) for i, track in enumerate(ids)]
+    together = replay(write_log(tmp_path / "all", table([row for rows in zip(*tracks) for row in rows])))
+    for track, rows in zip(ids, tracks):
+        alone = replay(write_log(tmp_path / "one", table(rows)))
+        assert [row for row in together if row["id"] == str(track)] == alone
+        assert alone[-1]["status"] == "ok"
+
+
+def test_many_tracks(tmp_path: Path) -> None:
+    rows = [pose_row(0.1 * k, 1.0 * k, track=(7919 * i) % 5003 - 2500) for k in range(2) for i in range(5003)]
+    out = replay(write_log(tmp_path, table(rows)), check=1)
+    assert [row["status"] for row in out] == ["nothing_seen"] * len(rows)
+
+
+# ------------------------------------------------------------------------------------------------------- file formats
+
+
+def variants() -> list[tuple[str, bytes]]:
+    rows = chimney()
+    plain = table(rows)
+    shuffled = ["note", *sorted(COLUMNS, key=lambda name: name[::-1]), "score", ""]
+    for row in rows:
+        row.update(note='"a ""quoted"", note"', score="not a number")
+    return [
+        ("other order and unknown columns", table(rows, shuffled).encode()),
+        ("CRLF", plain.replace("\n", "\r\n").encode()),
+        ("byte order mark", b"\xef\xbb\xbf" + plain.encode()),
+        ("byte order mark and CRLF", b"\xef\xbb\xbf" + plain.replace("\n", "\r\n").encode()),
+        ("quoted fields", "\n".join('"' + line.replace(",", '","') + '"' for line in plain.splitlines()).encode()),
+        ("blanks around fields", plain.replace(",", " ,\t").encode()),
+        ("no line break at the end", plain.rstrip("\n").encode()),
+        ("blank lines", ("\n \n" + plain.replace("\n", "\n\n")).encode()),
+        ("no base corners", table(rows, [name for name in COLUMNS if not name.startswith("base")]).encode()),
+        ("line break in quotes", table([{**row, "note": '"two\nlines"'} for row in rows], [*COLUMNS, "note"]).encode()),
+    ]
+
+
+@pytest.mark.parametrize("frames", [pytest.param(content, id=name) for name, content in variants()])
+def test_same_log_written_otherwise(tmp_path: Path, log: Path, frames: bytes) -> None:
+    assert call(write_log(tmp_path / "other", frames)).stdout == call(log).stdout
+
+
+def test_camera_file_written_otherwise(tmp_path: Path, log: Path) -> None:
+    lines = CAMERA.splitlines()[1:]
+    camera = "\ufeff" + "\r\n".join("   " + line.replace(" = ", "=") for line in reversed(lines))
+    camera += "\r\n\r\n  # " + "a long comment " * 100 + "; [x]: \r\ntrajectory.heading_deg = auto # the yaw"
+    other = write_log(tmp_path / "other", table(chimney()), camera)
+    assert call(other).stdout == call(log).stdout
+
+
+def test_heading_setting(tmp_path: Path) -> None:
+    other = write_log(tmp_path, table(chimney()), CAMERA + "trajectory.heading_deg = -20\n")
+    last = replay(other)[-1]
+    turn = math.radians(-20.0)
+    assert number(last, "x0_m") == pytest.approx(-30.0 * math.cos(turn) - 200.0 * math.sin(turn), rel=1e-2)
+    assert number(last, "z0_m") == pytest.approx(200.0 * math.cos(turn) - 30.0 * math.sin(turn), rel=1e-2)
+    assert number(last, "center_n_m") == pytest.approx(200.0, rel=1e-2)
+
+
+def test_files_named_singly(tmp_path: Path, log: Path) -> None:
+    want = call(log).stdout
+    assert call("--camera", log / "camera.ini", "--frames", log / "frames.csv").stdout == want
+    moved = tmp_path / "elsewhere.csv"
+    (log / "frames.csv").rename(moved)
+    assert call("--frames", moved, log).stdout == want
+    assert call("--frames", moved, f"{log}/").stdout == want
+
+
+@pytest.mark.parametrize("how", ["empty", "absent"])
+def test_height_above_ground_falls_back_to_altitude(tmp_path: Path, log: Path, how: str) -> None:
+    rows = [{**row, "agl_m": ""} for row in chimney()]
+    columns = [name for name in COLUMNS if how == "empty" or name != "agl_m"]
+    assert call(write_log(tmp_path / "other", table(rows, columns))).stdout == call(log).stdout
+
+
+def test_height_above_ground_is_used(tmp_path: Path, log: Path) -> None:
+    other = replay(write_log(tmp_path / "other", table([{**row, "agl_m": 60.0} for row in chimney()])))
+    assert number(other[-1], "height_m") == pytest.approx(number(replay(log)[-1], "height_m") + 10.0, abs=1e-4)
+
+
+# --------------------------------------------------------------------------------------- bad measurements: a status
+
+
+@pytest.mark.parametrize("empty", ["left_u", "left_v"])
+def test_half_a_point_is_not_seen(tmp_path: Path, empty: str) -> None:
+    rows = chimney()
+    rows[15][empty] = ""
+    out = replay(write_log(tmp_path, table(rows)))
+    assert (out[15]["status"], out[15]["z0_m"]) == ("held", out[14]["z0_m"])
+    assert out[16]["status"] == "ok"
+
+
+@pytest.mark.parametrize("column", ["n_m", "agl_m", "qw", "left_u", "right_v", "top_u"])
+@pytest.mark.parametrize("text", ["nan", "inf", "-inf", "NaN", "1e60", "-1e999"])
+def test_number_that_is_not_finite(tmp_path: Path, column: str, text: str) -> None:
+    rows = chimney()
+    rows[15][column] = text
+    out = replay(write_log(tmp_path, table(rows)))
+    assert out[15]["status"] == "not_finite"
+    assert (out[15]["model"], out[15]["z0_m"]) == ("disc", out[14]["z0_m"])
+    assert out[16]["status"] == "ok"
+
+
+@pytest.mark.parametrize("column", ["n_m", "e_m", "d_m", "qw", "qx", "qy", "qz"])
+def test_missing_pose(tmp_path: Path, column: str) -> None:
+    rows = chimney()
+    rows[15][column] = ""
+    out = replay(write_log(tmp_path, table(rows)))
+    assert (out[15]["status"], out[16]["status"]) == ("not_finite", "ok")
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "-1e30", "1e300", "9.3e12", "1.40", "0.3", "-5"])
+def test_bad_time(tmp_path: Path, text: str) -> None:
+    rows = chimney()
+    rows[15]["t_s"] = text
+    out = replay(write_log(tmp_path, table(rows)))
+    assert (out[15]["t_s"], out[15]["status"]) == (text, "bad_time")
+    assert out[16]["status"] == "ok"
+
+
+@pytest.mark.parametrize("q", ["0.98", "0", "1.02"])
+def test_bad_attitude(tmp_path: Path, q: str) -> None:
+    rows = chimney()
+    rows[15]["qw"] = q
+    out = replay(write_log(tmp_path, table(rows)))
+    assert (out[15]["status"], out[16]["status"]) == ("bad_attitude", "ok")
+
+
+# -------------------------------------------------------------------------------------------------- bad input: exit 2
+
+
+def edited(row: int, **changes: Any) -> str:
+    rows = chimney()
+    rows[row].update(changes)
+    return table(rows)
+
+
+def edited_line(line: int, old: str, new: str) -> str:
+    lines = table(chimney()).splitlines()
+    assert old in lines[line - 1]
+    lines[line - 1] = lines[line - 1].replace(old, new)
+    return "\n".join(lines) + "\n"
+
+
+def with_columns(drop: str = "", add: str = "") -> str:
+    return table(chimney(), [name for name in COLUMNS if name != drop] + ([add] if add else []))
+
+
+BAD_FRAMES = [
+    ("empty file", "", 1, "t_s", "missing column"),
+    ("blank file", "\n\n \r\n", 1, "t_s", "missing column"),
+    *[(f"no {name}", with_columns(drop=name), 1, name, "missing column") for name in POSE if name != "agl_m"],
+    *[(f"no {p}_{a}", with_columns(drop=f"{p}_{a}"), 1, f"{p}_{a}", "missing column") for p in POINTS for a in "uv"],
+    ("column twice", with_columns(add="left_u"), 1, "left_u", "twice"),
+    ("header after blank lines", "\n\n" + with_columns(drop="qz"), 3, "qz", "missing column"),
+    ("text", edited(4, left_u="12 px"), 6, "left_u", "'12 px' is not a number"),
+    ("decimal comma in quotes", edited(4, n_m='"1,5"'), 6, "n_m", "'1,5' is not a number"),
+    ("hexadecimal", edited(4, qw="0x1"), 6, "qw", "'0x1' is not a number"),
+    ("nan with text", edited(4, qw="nan(1)"), 6, "qw", "not a number"),
+    ("control characters", edited(4, qw="\x1b[31m1"), 6, "qw", "'?[31m1' is not a number"),
+    ("endless text", edited(4, qw="x" * 5000), 6, "qw", "xxx...' is not a number"),
+    ("NUL", edited(4, qw="1\0"), 6, "qw", "not a number"),
+    ("no time", edited(4, t_s=""), 6, "t_s", "not a number"),
+    ("text for a time", edited(4, t_s="noon"), 6, "t_s", "not a number"),
+    ("endless time", edited(4, t_s="0." + "3" * 70), 6, "t_s", "longer than 63 characters"),
+    ("no id", edited(4, id=""), 6, "id", "not an integer"),
+    ("fraction for an id", edited(4, id="1.0"), 6, "id", "not an integer"),
+    ("huge id", edited(4, id="9223372036854775808"), 6, "id", "not an integer"),
+    (
+        "too few fields",
+        table(chimney()).replace("\n0.40,1,", "\n0.40,"),
+        6,
+        "base_right_v",
+        "21 fields, the header has",
+    ),
+    ("too many fields", table(chimney()).replace("\n0.40,1,", "\n0.40,1,1,"), 6, "base_right_v", "23 fields"),
+    ("cut off", table(chimney())[:-60], 21, "", "the row ends before this column"),
+    ("quote inside a field", edited(4, qx='0"0'), 6, "qx", "quote"),
+    ("quote not closed", edited(4, qx='"0'), 6, "qx", "quote"),
+    (
+        "line counted through quotes",
+        table([{**r, "note": '"a\nb"'} for r in chimney()], [*COLUMNS, "note"]) + "x\n",
+        42,
+        "id",
+        "the row ends before this column",
+    ),
+    ("CRLF", edited(4, left_u="?").replace("\n", "\r\n"), 6, "left_u", "'?' is not a number"),
+    ("CR alone", table(chimney()).replace("\n", "\r"), 1, "", ""),
+    ("semicolons", table(chimney()).replace(",", ";"), 1, "t_s", "missing column"),
+]
+
+
+@pytest.mark.parametrize(
+    ("frames", "line", "column", "reason"), [pytest.param(*case[1:], id=case[0]) for case in BAD_FRAMES]
+)
+def test_bad_frames(tmp_path: Path, frames: str, line: int, column: str, reason: str) -> None:
+    folder = write_log(tmp_path / "log", frames)
+    out = tmp_path / "out.csv"
+    message = call("--out", out, folder, check=2).stderr
+    assert message.startswith(f"{folder}/frames.csv:{line}: {column}")
+    assert reason in message
+    assert message.count("\n") == 1 and len(message) < 500 and message.rstrip("\n").isprintable()
+    assert [path.name for path in tmp_path.iterdir()] == ["log"]
+
+
+def camera_with(key: str, value: Optional[str]) -> str:
+    lines = [line for line in CAMERA.splitlines() if not line.startswith(key + " ")]
+    return "\n".join(lines + ([f"{key} = {value}"] if value is not None else [])) + "\n"
+
+
+BAD_CAMERA = [
+    ("empty file", "", 1, "camera.width: missing key"),
+    *[
+        (f"no {key}", camera_with(f"camera.{key}", None), 6, f"camera.{key}: missing key")
+        for key in ("width", "height", "fx", "fy", "cx", "cy")
+    ],
+    ("unknown key", CAMERA + "camera.k4 = 0\n", 8, "camera.k4: unknown key"),
+    ("key twice", CAMERA + "camera.fx = 1000\n", 8, "camera.fx: the key appears twice, first in line 4"),
+    ("unit", camera_with("camera.fx", "1000 px"), 7, "camera.fx: '1000 px' is not a number"),
+    ("no value", camera_with("camera.fx", ""), 7, "camera.fx: '' is not a number"),
+    ("auto where it is not allowed", camera_with("camera.fx", "auto"), 7, "camera.fx: 'auto' is not a number"),
+    ("nan", camera_with("camera.k1", "nan"), 8, "camera.k1: out of range"),
+    ("huge", camera_with("camera.k1", "1e99"), 8, "camera.k1: out of range"),
+    ("zero focal length", camera_with("camera.fy", "0"), 7, "camera.fy: out of range"),
+    ("image without size", camera_with("camera.height", "0"), 7, "camera.height: out of range"),
+    ("lever arm", camera_with("camera.offset_z_m", "20000"), 8, "camera.offset_z_m: out of range"),
+    ("heading", camera_with("trajectory.heading_deg", "north"), 8, "trajectory.heading_deg: 'north' is not a number"),
+    ("heading out of range", camera_with("trajectory.heading_deg", "361"), 8, "trajectory.heading_deg: out of range"),
+    ("no equals sign", CAMERA + "camera.k1 0.1\n", 8, "'camera.k1 0.1' is not of the form"),
+    ("no key", CAMERA + "= 0.1\n", 8, "'= 0.1' is not of the form"),
+    ("colon", CAMERA + "camera.k1: 0.1\n", 8, "unexpected ':'"),
+    ("section", "[camera]\n" + CAMERA, 1, "unexpected '['"),
+    ("semicolon comment", CAMERA + "; camera.k1 = 0.1\n", 8, "unexpected ';'"),
+    ("indented line is no continuation", CAMERA + "  1001\n", 8, "'1001' is not of the form"),
+    ("long line", CAMERA + "camera.k1 = 0." + "0" * 5000 + "\n", 8, "the line is longer than"),
+    ("NUL", CAMERA + "camera.k1 = 0\0\n", 8, "the line holds a NUL byte"),
+]
+
+
+@pytest.mark.parametrize(("camera", "line", "reason"), [pytest.param(*case[1:], id=case[0]) for case in BAD_CAMERA])
+def test_bad_camera(tmp_path: Path, camera: str, line: int, reason: str) -> None:
+    folder = write_log(tmp_path, table(chimney()), camera)
+    message = call(folder, check=2).stderr
+    assert message.startswith(f"{folder}/camera.ini:{line}: {reason}")
+    assert message.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ["camera.ini", "frames.csv"])
+def test_missing_file_and_folder_in_its_place(log: Path, name: str) -> None:
+    (log / name).unlink()
+    assert call(log, check=2).stderr == f"{log}/{name}: cannot be opened: No such file or directory\n"
+    (log / name).mkdir()
+    assert call(log, check=2).stderr == f"{log}/{name}: cannot be read: Is a directory\n"
+
+
+BAD_USAGE = [
+    (["--window", "2"], "--window: must be 3 to 64"),
+    (["--window", "65"], "--window: must be 3 to 64"),
+    (["--window=-8"], "--window: must be 3 to 64"),
+    (["--window", "x"], "x: invalid numeric value"),
+    (["--window"], "--window: missing argument"),
+    (["--model", "box"], "box: --model must be auto, disc or line"),
+    (["--model", ""], "--model must be auto, disc or line"),
+    (["--method", "magic"], "magic: --method must be window or refined"),
+    (["--wat"], "--wat: unknown option"),
+    (["another"], "another: one folder at a time"),
+]
+
+
+@pytest.mark.parametrize(("options", "reason"), BAD_USAGE)
+def test_bad_usage(log: Path, options: list[str], reason: str) -> None:
+    done = call(log, *options, check=2)
+    assert done.stdout == ""
+    assert reason in done.stderr and done.stderr.startswith("goe_replay: ")
+
+
+def test_refined_is_refused_while_there_is_none(log: Path) -> None:
+    done = call("--method", "refined", log, check=2)
+    assert "no refined method" in done.stderr and done.stdout == ""
+    assert call("--method", "window", log).stdout == call(log).stdout
+
+
+def test_no_arguments() -> None:
+    assert "name the log's folder" in call(check=2).stderr
+
+
+def test_help_and_version() -> None:
+    text = call("--help").stdout
+    for option in ("--method", "--model", "--window", "--out", "--camera", "--frames", "--version"):
+        assert option in text
+    assert call("--version").stdout.startswith("goe_replay ")
+
+
+# ------------------------------------------------------------------------------------------------ exit 1: no estimate
+
+
+def test_header_alone(tmp_path: Path) -> None:
+    out = tmp_path / "out.csv"
+    done = call("--out", out, write_log(tmp_path / "log", table([])), check=1)
+    assert out.read_text() == HEADER + "\n"
+    assert "there are no rows" in done.stderr
+
+
+def test_no_row_gave_an_estimate(tmp_path: Path) -> None:
+    done = call(write_log(tmp_path, table(chimney(7))), check=1)
+    assert len(done.stdout.splitlines()) == 8
+    assert "no row gave an estimate (collecting: 7)" in done.stderr
+
+
+# ------------------------------------------------------------------------------------------------------------- output
+
+
+def test_out_is_what_standard_output_would_be(tmp_path: Path, log: Path) -> None:
+    out = tmp_path / "out.csv"
+    done = call("--out", out, log)
+    assert (done.stdout, done.stderr) == ("", "")
+    assert out.read_text() == call(log).stdout
+    mask = os.umask(0)
+    os.umask(mask)
+    assert out.stat().st_mode & 0o777 == 0o666 & ~mask
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["log", "out.csv"]
+
+
+def test_out_in_the_working_directory(tmp_path: Path, log: Path) -> None:
+    subprocess.run([PROGRAM, "-o", "out.csv", str(log)], cwd=tmp_path, check=True)
+    assert (tmp_path / "out.csv").read_text() == call(log).stdout
+
+
+def test_out_replaces_a_file_only_when_all_is_well(tmp_path: Path, log: Path) -> None:
+    out = tmp_path / "out.csv"
+    out.write_text("what was there before\n")
+    out.chmod(0o640)
+    bad = write_log(tmp_path / "bad", edited(18, left_u="?"))
+    call("--out", out, bad, check=2)
+    assert out.read_text() == "what was there before\n"
+    call("--out", out, log)
+    assert out.read_text() == call(log).stdout
+    assert out.stat().st_mode & 0o777 == 0o640
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bad", "log", "out.csv"]
+
+
+def test_out_through_a_symbolic_link(tmp_path: Path, log: Path) -> None:
+    (tmp_path / "real").mkdir()
+    real, link = tmp_path / "real" / "out.csv", tmp_path / "link.csv"
+    real.write_text("before\n")
+    link.symlink_to(real)
+    call("--out", link, log)
+    assert link.is_symlink() and real.read_text() == call(log).stdout
+
+
+@pytest.mark.parametrize("name", ["frames.csv", "camera.ini"])
+def test_out_never_replaces_the_log(log: Path, name: str) -> None:
+    before = (log / name).read_bytes()
+    assert "would replace the log" in call("--out", log / name, log, check=2).stderr
+    assert (log / name).read_bytes() == before
+
+
+def test_out_that_cannot_be_written(tmp_path: Path, log: Path) -> None:
+    assert "No such file" in call("--out", tmp_path / "nowhere" / "out.csv", log, check=2).stderr
+    assert "cannot be written: Is a directory" in call("--out", tmp_path, log, check=2).stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+def test_full_disk(log: Path) -> None:
+    assert "No space left" in call("--out", "/dev/full", log, check=2).stderr
+    with open("/dev/full", "w", encoding="ascii") as full:
+        done = subprocess.run([PROGRAM, str(log)], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2 and "standard output: cannot be written: No space left" in done.stderr
+
+
+def test_file_size_limit_leaves_nothing(tmp_path: Path, log: Path) -> None:
+    out = tmp_path / "out.csv"
+    command = f'ulimit -f 1; exec "{PROGRAM}" --out "{out}" "{log}"'
+    write_log(log, table(chimney(120)))
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "File too large" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["log"]
+
+
+def test_closed_pipe(log: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run([PROGRAM, str(log)], stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writer)
+    assert done.returncode == 2 and "Broken pipe" in done.stderr
+
+
+@pytest.mark.parametrize("number_of_signal", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_interrupt_leaves_nothing(tmp_path: Path, log: Path, number_of_signal: signal.Signals) -> None:
+    out = tmp_path / "out.csv"
+    arguments = [PROGRAM, "--out", str(out), "--camera", str(log / "camera.ini"), "--frames", "/dev/stdin"]
+    with subprocess.Popen(arguments, stdin=subprocess.PIPE, text=True) as running:
+        assert running.stdin is not None
+        running.stdin.write(table(chimney()))
+        running.stdin.flush()
+        until = time.monotonic() + 20.0
+        while len(list(tmp_path.iterdir())) < 2:  # the temporary file is there
+            assert time.monotonic() < until and running.poll() is None
+            time.sleep(0.01)
+        assert not out.exists()
+        running.send_signal(number_of_signal)
+        assert running.wait(timeout=20) == -number_of_signal
+    assert [path.name for path in tmp_path.iterdir()] == ["log"]
+
+
+# -------------------------------------------------------------------------------------------------- size and speed
+
+ROWS = 1_000_000
+ROWS_PER_SECOND_MIN = 50_000
+
+
+def full_rows() -> list[str]:
+    """The rows of one track with every column filled, without t_s and id."""
+    frames = zip(box(40), chimney(40, north_m=260.0, east_m=-45.0))
+    filled = [{**corners, **{k: v for k, v in disc.items() if v != ""}} for corners, disc in frames]
+    assert all(row[column] != "" for row in filled for column in COLUMNS)
+    return [",".join(str(row[column]) for column in COLUMNS[2:]) for row in filled]
+
+
+def peak_memory_kib(process: int) -> int:
+    for line in Path(f"/proc/{process}/status").read_text(encoding="ascii").splitlines():
+        if line.startswith("VmHWM:"):
+            return int(line.split()[1])
+    raise AssertionError("no VmHWM")
+
+
+def stream(folder: Path, rows: int) -> tuple[int, float]:
+    """Feeds rows through a pipe. Returns the peak memory in KiB, before the pipe is closed, and processor time in s."""
+    tails = full_rows()
+    camera = write_log(folder, "").joinpath("camera.ini")
+    arguments = [PROGRAM, "--out", "/dev/null", "--camera", str(camera), "--frames", "/dev/stdin"]
+    with subprocess.Popen(arguments, stdin=subprocess.PIPE) as running:
+        assert running.stdin is not None
+        running.stdin.write((",".join(COLUMNS) + "\n").encode())
+        for track in range(0, rows, len(tails)):  # ten ids; each starts again after a while, at a later time
+            name = track // len(tails) % 10
+            text = "".join(f"{(track + k) / 10:.1f},{name},{tail}\n" for k, tail in enumerate(tails))
+            running.stdin.write(text.encode())
+        running.stdin.flush()
+        memory = peak_memory_kib(running.pid)
+        running.stdin.close()
+        _, status, usage = os.wait4(running.pid, 0)
+        running.returncode = os.waitstatus_to_exitcode(status)
+    assert running.returncode == 0
+    return memory, usage.ru_utime + usage.ru_stime
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs /proc to measure memory")
+def test_a_million_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Memory does not grow with the number of rows; the speed (processor time, one core) holds its bound."""
+    little, _ = stream(tmp_path, ROWS // 20)
+    much, seconds = stream(tmp_path, ROWS)
+    with capsys.disabled():
+        print(f"\ngoe_replay: {ROWS / seconds:.0f} rows/s with all columns filled, peak memory {much} KiB")
+    assert much < little + 1024
+    assert ROWS / seconds >= ROWS_PER_SECOND_MIN
