@@ -1,0 +1,88 @@
+/* Lens: Brown-Conrady distortion inverted in double.
+ * Made by `python -m goe_tools golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
+#ifndef GOLDEN_LENS_H
+#define GOLDEN_LENS_H
+
+/* pixel (u, v) and the undistorted ray (x, y, 1) in double */
+typedef struct {
+    float fx_px, fy_px, cx_px, cy_px, k1, k2, p1, p2, k3;
+    float u_px, v_px;
+    double x, y;
+} golden_lens_t;
+
+static const golden_lens_t golden_lens[24] = {
+    {0x1.141a66p+9f, 0x1.16dd38p+9f, 0x1.2f76cp+9f, 0x1.eddd96p+8f, -0x1.f0dc56p-10f, 0x1.23ee8cp-5f,
+     0x1.0102c6p-9f, -0x1.c7c43p-11f, 0x1.d33bb6p-9f, 0x1.a2c512p+9f, 0x1.47a7aep+9f,
+     4.16870652056781643e-01, 2.88292122225405290e-01},
+    {0x1.52308ep+9f, 0x1.559252p+9f, 0x1.4db26p+9f, 0x1.f594b8p+8f, 0x1.675f0ap-4f, 0x1.3d3292p-5f,
+     0x1.55a4f8p-10f, -0x1.c1f48ep-10f, 0x1.7f7c3p-11f, 0x1.18b9fap+9f, 0x1.52899ap+9f,
+     -1.55036547312475348e-01, 2.54413259692343685e-01},
+    {0x1.3caa02p+9f, 0x1.3fd4aap+9f, 0x1.3cbf4p+9f, 0x1.e39006p+8f, 0x1.01733p-4f, -0x1.b72c1ap-8f,
+     -0x1.226ef4p-11f, -0x1.c26176p-10f, -0x1.ecf5cep-17f, 0x1.8322bcp+8f, 0x1.090858p+9f,
+     -3.84608688288256784e-01, 7.20124543953317292e-02},
+    {0x1.3cd29ap+9f, 0x1.3ffdaap+9f, 0x1.37cbbap+9f, 0x1.cf7b28p+8f, 0x1.469bep-8f, 0x1.4fde8ap-6f,
+     -0x1.7338e8p-13f, -0x1.567438p-11f, -0x1.322bc8p-9f, 0x1.4f42a4p+9f, 0x1.8b058cp+9f,
+     7.40545471026199109e-02, 5.09075657503023304e-01},
+    {0x1.d0de86p+9f, 0x1.d58496p+9f, 0x1.306734p+9f, 0x1.e89724p+8f, -0x1.d8d928p-5f, 0x1.b2ea34p-9f,
+     -0x1.34fe38p-16f, -0x1.e05e64p-10f, 0x1.3e45bep-8f, 0x1.6b6b8p+8f, 0x1.894f7ep+8f,
+     -2.64748421944984214e-01, -1.01835485784289803e-01},
+    {0x1.26c6d6p+9f, 0x1.29b976p+9f, 0x1.4bf22ap+9f, 0x1.e2f59ep+8f, 0x1.cf4e4ap-5f, 0x1.8c6844p-5f,
+     0x1.0fe8cp-10f, 0x1.86b582p-11f, 0x1.618b6p-10f, 0x1.e7769cp+9f, 0x1.2d9d9ap+9f,
+     5.15526238325486830e-01, 1.97147558453896338e-01},
+    {0x1.6f581p+9f, 0x1.730476p+9f, 0x1.4fba8ep+9f, 0x1.e34a16p+8f, -0x1.72d948p-4f, 0x1.269dc8p-5f,
+     0x1.84dd9ep-10f, 0x1.0ee214p-10f, 0x1.117fe6p-8f, 0x1.82147cp+9f, 0x1.b34348p+8f,
+     1.37316255781002816e-01, -6.48853626477570028e-02},
+    {0x1.314136p+9f, 0x1.344eaap+9f, 0x1.491d5cp+9f, 0x1.002a18p+9f, -0x1.5524c4p-4f, -0x1.361c26p-6f,
+     0x1.a82bc2p-10f, 0x1.c3a062p-11f, -0x1.105decp-13f, 0x1.d38d5ep+9f, 0x1.818ccep+8f,
+     4.63859534129808682e-01, -2.10828182243289391e-01},
+    {0x1.13cce6p+10f, 0x1.168ef2p+10f, 0x1.3b843cp+9f, 0x1.fa8bfp+8f, -0x1.e6590ep-3f, 0x1.a1ffbp-7f,
+     0x1.7d348cp-10f, 0x1.a9ccfcp-10f, -0x1.144f06p-8f, 0x1.44349ep+7f, 0x1.6aa1ecp+9f,
+     -4.52135118884778198e-01, 2.08216395638249591e-01},
+    {0x1.a51b5ep+9f, 0x1.a95166p+9f, 0x1.35ddfap+9f, 0x1.bc5becp+8f, -0x1.b15ae4p-3f, 0x1.41f8acp-5f,
+     0x1.44eae8p-11f, 0x1.ca3548p-10f, 0x1.f95d8ap-10f, 0x1.ad4824p+9f, 0x1.dad2bcp+9f,
+     3.13844980376478455e-01, 6.59222712806885935e-01},
+    {0x1.0f18e2p+9f, 0x1.11cee4p+9f, 0x1.2cd404p+9f, 0x1.f1c402p+8f, 0x1.4ccdp-6f, 0x1.5142p-5f,
+     -0x1.add548p-10f, 0x1.c5d76ep-14f, 0x1.3d7d44p-8f, 0x1.a5239p+9f, 0x1.969dap+9f,
+     4.35078709390338325e-01, 5.65649433745951336e-01},
+    {0x1.67b1a8p+9f, 0x1.6b4a7ap+9f, 0x1.4341e6p+9f, 0x1.c7e53cp+8f, -0x1.f2117cp-3f, 0x1.a7815ep-8f,
+     -0x1.01cc98p-17f, 0x1.0203fep-9f, 0x1.a5501ep-10f, 0x1.d9b1cap+9f, 0x1.a2544p+7f,
+     4.54240729570668023e-01, -3.69403702471871487e-01},
+    {0x1.d8415cp+9f, 0x1.dcfa56p+9f, 0x1.33bc06p+9f, 0x1.f392dep+8f, 0x1.88e694p-5f, 0x1.a27b4p-6f,
+     0x1.08414ep-10f, 0x1.a13356p-12f, -0x1.1addfep-8f, 0x1.fc8c1ap+8f, 0x1.dea616p+7f,
+     -1.12819490749435244e-01, -2.71890122818057689e-01},
+    {0x1.e6fc46p+9f, 0x1.ebdaf4p+9f, 0x1.2fd102p+9f, 0x1.de49d4p+8f, 0x1.3c99d8p-4f, 0x1.73b6e4p-5f,
+     -0x1.de8c9ep-10f, -0x1.85f688p-11f, -0x1.d4eb9ap-12f, 0x1.084374p+8f, 0x1.fbdefcp+6f,
+     -3.44456003915083686e-01, -3.48691233997486083e-01},
+    {0x1.3294p+9f, 0x1.35a4d8p+9f, 0x1.3a6cc2p+9f, 0x1.035b38p+9f, -0x1.85f2a8p-4f, 0x1.77341ep-5f,
+     0x1.32cea6p-10f, -0x1.92d55ap-12f, 0x1.18e1c6p-8f, 0x1.92244ep+9f, 0x1.4200e2p+8f,
+     2.91240368359802826e-01, -3.23469827154985623e-01},
+    {0x1.239cd4p+10f, 0x1.26875cp+10f, 0x1.384d7ap+9f, 0x1.c9fa9cp+8f, 0x1.abc048p-6f, 0x1.f0ef5ep-8f,
+     0x1.5c65a8p-10f, 0x1.9df27ep-10f, -0x1.3d6cbcp-10f, 0x1.b354c8p+9f, 0x1.8b0418p+8f,
+     2.10497919185128279e-01, -5.34119033143034688e-02},
+    {0x1.df623cp+8f, 0x1.e42d74p+8f, 0x1.3c3e1ap+9f, 0x1.e5e23cp+8f, -0x1.b102eep-4f, 0x1.603d6cp-7f,
+     -0x1.706bp-10f, 0x1.e1dd8p-13f, 0x1.7280e4p-9f, 0x1.9b51fp+9f, 0x1.9f798cp+8f,
+     4.04136098782792441e-01, -1.47909116808067564e-01},
+    {0x1.3bdf72p+9f, 0x1.3f0814p+9f, 0x1.445922p+9f, 0x1.b86518p+8f, -0x1.e94b6cp-3f, 0x1.5e60c6p-5f,
+     0x1.c97942p-11f, 0x1.71d87ep-10f, -0x1.084932p-8f, 0x1.d8db16p+9f, 0x1.27427cp+9f,
+     5.05124404418781592e-01, 2.52727017160706724e-01},
+    {0x1.21f248p+10f, 0x1.24d88cp+10f, 0x1.4e28d4p+9f, 0x1.cfd162p+8f, 0x1.9c2626p-6f, -0x1.7a5e52p-12f,
+     -0x1.c7b43p-10f, -0x1.aa9f3ap-10f, 0x1.d4bf5ep-10f, 0x1.1fefb8p+7f, 0x1.abd1d6p+9f,
+     -4.47954042377225137e-01, 3.32327735890071807e-01},
+    {0x1.e0b97ap+9f, 0x1.e58822p+9f, 0x1.3dec0cp+9f, 0x1.c781e8p+8f, -0x1.8ac6bep-3f, 0x1.0ffcf6p-5f,
+     -0x1.030208p-9f, -0x1.a22192p-10f, 0x1.eec418p-11f, 0x1.56a522p+9f, 0x1.f763cep+7f,
+     5.19407685025775057e-02, -2.11569923218930783e-01},
+    {0x1.865ebap+9f, 0x1.8a4612p+9f, 0x1.3d6b9p+9f, 0x1.f99c58p+8f, -0x1.3c8432p-4f, 0x1.dfc8bep-7f,
+     -0x1.7c8a8ap-12f, 0x1.c1d9fap-11f, 0x1.0f7e34p-8f, 0x1.71243ep+9f, 0x1.168f74p+9f,
+     1.32674016543394974e-01, 6.54289858462757112e-02},
+    {0x1.ed2cf2p+9f, 0x1.f21b7ap+9f, 0x1.2e42e4p+9f, 0x1.de3868p+8f, 0x1.093b9ap-7f, 0x1.48ef5p-6f,
+     0x1.b9ca52p-11f, -0x1.c6088p-11f, 0x1.0493f2p-9f, 0x1.b21cd8p+5f, 0x1.06c7a8p+10f,
+     -5.49003232627059745e-01, 5.65963694118036709e-01},
+    {0x1.e5bf3ap+9f, 0x1.ea9abep+9f, 0x1.35967ap+9f, 0x1.e47b46p+8f, -0x1.a3cf38p-4f, -0x1.bef5b4p-9f,
+     -0x1.24d7cap-11f, -0x1.e2b81ep-10f, -0x1.2407dep-8f, 0x1.18ca92p+10f, 0x1.5ed6eep+9f,
+     5.40020081271825103e-01, 2.30339567984073568e-01},
+    {0x1.9ff6bep+9f, 0x1.a41f9cp+9f, 0x1.427c74p+9f, 0x1.de5794p+8f, -0x1.2b92dap-4f, 0x1.18d6e8p-8f,
+     -0x1.4d538p-10f, 0x1.250dcp-12f, 0x1.8fb61p-10f, 0x1.6f7dc6p+9f, 0x1.8bb65ap+5f,
+     1.10198256173729095e-01, -5.19883680391873160e-01},
+};
+
+#endif

@@ -1,0 +1,671 @@
+/* One estimator over whole flights: statuses, counters, what holds on failure. SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "check.h"
+#include "scene.h"
+
+#define WINDOW 8
+
+static scene_t scene;
+static goe_settings_t settings;
+static goe_estimator_t estimator;
+static goe_estimate_t estimate;
+static goe_image_t image;
+
+void setUp(void) {
+    scene_default(&scene);
+    settings = scene_settings(&scene);
+    memset(&estimate, 0, sizeof estimate);
+}
+void tearDown(void) {}
+
+static void start(void) {
+    settings.camera = scene.camera;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+}
+
+static goe_status_t update(void) { return goe_update(&estimator, &image, &estimate); }
+
+/* Flies the scene's images from k on. */
+static goe_status_t fly(int from, int to) {
+    goe_status_t status = GOE_OK;
+    for (int k = from; k < to; k++) {
+        scene_image(&scene, k, &image, NULL);
+        status = update();
+    }
+    return status;
+}
+
+static void hide_all(goe_image_t *of) {
+    of->left.seen = false;
+    of->right.seen = false;
+    of->top.seen = false;
+    of->base_left.seen = false;
+    of->base_near.seen = false;
+    of->base_right.seen = false;
+}
+
+static void make_cylinder(void) {
+    scene.shape = SCENE_CYLINDER;
+    scene.width_m = 6.0;
+    scene.height_m = 30.0;
+}
+
+/* ------------------------------------------------------------------------------------------------- the normal course -- */
+
+static void a_new_estimator_knows_nothing(void) {
+    start();
+    CHECK_STATUS(GOE_COLLECTING, fly(0, 1));
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
+    TEST_ASSERT_EQUAL_HEX32(GOE_HAS_ORIENTATION, estimate.valid);
+    TEST_ASSERT_FALSE(estimate.fresh);
+    TEST_ASSERT_EQUAL_INT(0, estimate.points);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.age_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.width_m);
+}
+
+/* GIVEN a cylinder WHEN it is flown past THEN seven images collect and each one from the eighth on solves. */
+static void the_disc_solves_from_the_eighth_image_on(void) {
+    make_cylinder();
+    start();
+    CHECK_STATUS(GOE_COLLECTING, fly(0, WINDOW - 1));
+    for (int k = WINDOW - 1; k < 40; k++) {
+        CHECK_STATUS(GOE_OK, fly(k, k + 1));
+        TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+        TEST_ASSERT_TRUE(estimate.fresh);
+        TEST_ASSERT_EQUAL_INT(WINDOW, estimate.points);
+        TEST_ASSERT_EQUAL_HEX32(GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_CENTER, estimate.valid);
+    }
+}
+
+/* GIVEN a box whose corners are seen only from the 5th image on WHEN flown in auto THEN the disc is reported from the 8th
+ * image, and the line from the 8th line point, which is the 13th image. */
+static void the_line_takes_over_at_the_eighth_line_point(void) {
+    start();
+    for (int k = 0; k < 30; k++) {
+        scene_image(&scene, k, &image, NULL);
+        if (k < 5) {
+            image.base_left.seen = false;
+            image.base_near.seen = false;
+            image.base_right.seen = false;
+        }
+        const goe_status_t status = update();
+        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, status);
+        TEST_ASSERT_EQUAL_INT(k < 7 ? GOE_MODEL_NONE : k < 12 ? GOE_MODEL_DISC : GOE_MODEL_LINE, estimate.model);
+        TEST_ASSERT_EQUAL_INT(k >= 12, (estimate.valid & GOE_HAS_LENGTH) != 0);
+    }
+}
+
+static void the_number_of_line_points_is_a_setting(void) {
+    settings.line_points = 11;
+    start();
+    (void)fly(0, 10);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+    (void)fly(10, 11);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
+    settings.line_points = 1; /* the window still has to be full */
+    start();
+    (void)fly(0, 7);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
+    (void)fly(7, 8);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
+}
+
+static void the_window_is_a_setting(void) {
+    settings.window = 3;
+    settings.line_points = 3;
+    start();
+    CHECK_STATUS(GOE_COLLECTING, fly(0, 2));
+    CHECK_STATUS(GOE_OK, fly(2, 3));
+    TEST_ASSERT_EQUAL_INT(3, estimate.points);
+}
+
+static void a_forced_model_is_never_left(void) {
+    settings.model = GOE_MODEL_DISC;
+    start();
+    for (int k = 0; k < 30; k++) {
+        (void)fly(k, k + 1);
+        TEST_ASSERT_EQUAL_INT(k < 7 ? GOE_MODEL_NONE : GOE_MODEL_DISC, estimate.model);
+        TEST_ASSERT_FALSE(estimate.valid & (GOE_HAS_LENGTH | GOE_HAS_ORIENTATION));
+    }
+    settings.model = GOE_MODEL_LINE;
+    start();
+    for (int k = 0; k < 30; k++) {
+        (void)fly(k, k + 1);
+        TEST_ASSERT_EQUAL_INT(k < 7 ? GOE_MODEL_NONE : GOE_MODEL_LINE, estimate.model);
+    }
+}
+
+/* ------------------------------------------------------------------------------------ images that do not solve anew -- */
+
+/* GIVEN a solution WHEN nothing is in view THEN the image's pose is followed, the answer ages, and nothing is at fault. */
+static void nothing_seen_is_no_fault(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 16));
+    const goe_estimate_t before = estimate;
+    scene_image(&scene, 20, &image, NULL);
+    hide_all(&image);
+    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    TEST_ASSERT_FALSE(estimate.fresh);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6f, 0.625f, estimate.age_s); /* 5 images of 1/8 s */
+    TEST_ASSERT_EQUAL_HEX32(before.valid, estimate.valid);
+    CHECK_SAME(before.z0_m, estimate.z0_m);
+    CHECK_SAME(before.length_m, estimate.length_m);
+    CHECK_SAME(before.sigma.z0_m, estimate.sigma.z0_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4f, before.z_m - 10.0f, estimate.z_m); /* 5 images of 2 m */
+    for (int i = 0; i < GOE_CAUSES; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[i]);
+    }
+    CHECK_STATUS(GOE_OK, fly(21, 22));
+    TEST_ASSERT_TRUE(estimate.fresh);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.age_s);
+}
+
+/* GIVEN the line is reported WHEN an image shows the silhouette alone THEN the line's solution is held. */
+static void an_image_without_corners_holds_the_line(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 16));
+    const goe_estimate_t before = estimate;
+    scene_image(&scene, 16, &image, NULL);
+    image.base_left.seen = false;
+    image.base_near.seen = false;
+    image.base_right.seen = false;
+    CHECK_STATUS(GOE_HELD, update());
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
+    TEST_ASSERT_FALSE(estimate.fresh);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6f, 0.125f, estimate.age_s);
+    CHECK_SAME(before.z0_m, estimate.z0_m);
+    CHECK_SAME(before.height_m, estimate.height_m);
+}
+
+static void an_age_is_bounded(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 16));
+    hide_all(&image);
+    image.pose.time_us += 3999 * (int64_t)1000000;
+    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 3999.0f, estimate.age_s);
+    image.pose.time_us = INT64_MAX;
+    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 4000.0f, estimate.age_s);
+}
+
+static void times_may_start_anywhere(void) {
+    start();
+    for (int k = 0; k < 10; k++) {
+        scene_image(&scene, k, &image, NULL);
+        image.pose.time_us = INT64_MIN + 1 + k;
+        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, update());
+    }
+    hide_all(&image);
+    image.pose.time_us = INT64_MAX;
+    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 4000.0f, estimate.age_s);
+}
+
+/* GIVEN a box met head-on: one face, parallel to the horizon WHEN the line is forced THEN no edge has a heading. */
+static void head_on_has_no_edge(void) {
+    settings.model = GOE_MODEL_LINE;
+    scene.x0_m = 0.0;
+    start();
+    CHECK_STATUS(GOE_NO_EDGE, fly(0, 20));
+    TEST_ASSERT_EQUAL_UINT32(20u, estimator.causes[-GOE_NO_EDGE]);
+    TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
+    settings.model = GOE_MODEL_AUTO; /* which has the disc */
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 20));
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+    TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[-GOE_NO_EDGE]);
+}
+
+/* --------------------------------------------------------------------------------- faults of an image that was taken -- */
+
+static void swapped_left_and_right_are_told(void) {
+    make_cylinder();
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 10));
+    const goe_estimate_t before = estimate;
+    scene_image(&scene, 10, &image, NULL);
+    const goe_pixel_t left = image.left;
+    image.left = image.right;
+    image.right = left;
+    CHECK_STATUS(GOE_SWAPPED, update());
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_SWAPPED]);
+    TEST_ASSERT_FALSE(estimate.fresh);
+    CHECK_SAME(before.width_m, estimate.width_m);
+    CHECK_STATUS(GOE_OK, fly(11, 12));
+}
+
+/* The camera looks back: every ray is behind. */
+static void what_lies_behind_is_told(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 10));
+    scene_image(&scene, 10, &image, NULL);
+    image.pose.attitude[0] = 0.0f; /* heading south */
+    image.pose.attitude[1] = 0.0f;
+    image.pose.attitude[2] = 0.0f;
+    image.pose.attitude[3] = 1.0f;
+    CHECK_STATUS(GOE_BEHIND_CAMERA, update());
+    TEST_ASSERT_EQUAL_UINT32(6u, estimator.causes[-GOE_BEHIND_CAMERA]);
+    TEST_ASSERT_FALSE(estimate.fresh);
+    TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
+}
+
+/* A fault of one feature does not lose the others. */
+static void a_fault_beside_a_solution_is_partial(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 10));
+    scene_image(&scene, 10, &image, NULL);
+    image.pose.height_m = 0.0f;
+    CHECK_STATUS(GOE_PARTIAL, update());
+    TEST_ASSERT_TRUE(estimate.fresh);
+    TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_HEIGHT); /* that of the images before */
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_BAD_HEIGHT]);
+    image.pose.time_us += 1;
+    image.pose.height_m = -20.0f;
+    CHECK_STATUS(GOE_PARTIAL, update());
+    TEST_ASSERT_EQUAL_UINT32(2u, estimator.causes[-GOE_BAD_HEIGHT]);
+    scene_image(&scene, 11, &image, NULL);
+    const goe_pixel_t left = image.left; /* the disc is not what is reported */
+    image.left = image.right;
+    image.right = left;
+    CHECK_STATUS(GOE_PARTIAL, update());
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
+}
+
+static void a_negative_height_all_along_gives_no_height(void) {
+    make_cylinder();
+    start();
+    for (int k = 0; k < 12; k++) {
+        scene_image(&scene, k, &image, NULL);
+        image.pose.height_m = -1.0f;
+        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_PARTIAL, update());
+        TEST_ASSERT_FALSE(estimate.valid & GOE_HAS_HEIGHT);
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.height_m);
+    }
+}
+
+/* GIVEN a truck flown past so that its side points at the camera THEN lengths are skipped and it is told. */
+static void a_side_seen_edge_on_gives_no_length(void) {
+    scene.x0_m = -1.9; /* the plane of the right side passes 0.65 m from the camera */
+    scene.z0_m = 80.0;
+    start();
+    (void)fly(0, 8);
+    CHECK_STATUS(GOE_PARTIAL, fly(8, 9));
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
+    TEST_ASSERT_FALSE(estimate.valid & (GOE_HAS_LENGTH | GOE_HAS_CENTER));
+    TEST_ASSERT_GREATER_THAN_UINT32(0u, estimator.causes[-GOE_EDGE_ON]);
+}
+
+/* ------------------------------------------------------------------------------------------- failures of the solution -- */
+
+static void hovering_has_no_baseline(void) {
+    make_cylinder();
+    scene.speed_mps = 0.0;
+    start();
+    CHECK_STATUS(GOE_COLLECTING, fly(0, 7));
+    CHECK_STATUS(GOE_NO_BASELINE, fly(7, 12));
+    TEST_ASSERT_EQUAL_UINT32(5u, estimator.causes[-GOE_NO_BASELINE]);
+    TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
+}
+
+/* GIVEN a solution WHEN the camera stops THEN the last good answer stays, stale. */
+static void stopping_keeps_the_last_answer(void) {
+    make_cylinder();
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    goe_status_t status = GOE_OK;
+    goe_estimate_t last = estimate;
+    for (int k = 0; k < 12; k++) {
+        image.pose.time_us += 125000;
+        last = estimate.fresh ? estimate : last;
+        status = update();
+    }
+    CHECK_STATUS(GOE_NO_BASELINE, status);
+    TEST_ASSERT_FALSE(estimate.fresh);
+    TEST_ASSERT_TRUE(estimate.age_s > 0.5f);
+    CHECK_SAME(last.z0_m, estimate.z0_m);
+    CHECK_SAME(last.width_m, estimate.width_m);
+}
+
+/* An obstacle that flies along ahead of us never grows. */
+static void a_moving_obstacle_has_no_parallax(void) {
+    make_cylinder();
+    start();
+    goe_status_t status = GOE_OK;
+    for (int k = 0; k < 12; k++) {
+        goe_image_t first;
+        scene_image(&scene, 0, &first, NULL);
+        scene_image(&scene, k, &image, NULL);
+        first.pose = image.pose;
+        image = first;
+        status = update();
+    }
+    CHECK_STATUS(GOE_NO_PARALLAX, status);
+    TEST_ASSERT_EQUAL_UINT32(5u, estimator.causes[-GOE_NO_PARALLAX]);
+}
+
+/* GIVEN an obstacle that grows faster than our own motion explains: the line through the window meets Z = 0 before its
+ * end THEN it is told as passed, and no solution is made of it. */
+static void an_obstacle_that_is_said_to_lie_behind_is_passed(void) {
+    make_cylinder();
+    start();
+    goe_status_t status = GOE_OK;
+    for (int k = 0; k < 8; k++) {
+        goe_image_t close;
+        scene_image(&scene, k, &image, NULL);
+        scene_image(&scene, 46, &close, NULL);
+        if (k >= 2) {
+            close.pose = image.pose;
+            image = close;
+        }
+        status = update();
+    }
+    CHECK_STATUS(GOE_PASSED, status);
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_PASSED]);
+    TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
+}
+
+/* --------------------------------------------------------------------------------- refused images, and bad arguments -- */
+
+/* The estimator is as it was, but for one counter. */
+static void check_refused(goe_status_t expected) {
+    static goe_estimator_t before;
+    const goe_estimate_t told = estimate;
+    memcpy(&before, &estimator, sizeof before);
+    memset(&estimate, 0xA5, sizeof estimate);
+    CHECK_STATUS(expected, update());
+    TEST_ASSERT_EQUAL_UINT32(before.causes[-expected] + 1u, estimator.causes[-expected]);
+    before.causes[-expected]++;
+    TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
+    TEST_ASSERT_FALSE(estimate.fresh); /* always written */
+    TEST_ASSERT_EQUAL_HEX32(told.valid, estimate.valid);
+    TEST_ASSERT_EQUAL_INT(told.model, estimate.model);
+    CHECK_SAME(told.z0_m, estimate.z0_m);
+    CHECK_SAME(told.x_m, estimate.x_m);
+    CHECK_SAME(told.length_m, estimate.length_m);
+    CHECK_SAME(told.sigma.height_m, estimate.sigma.height_m);
+}
+
+static void every_number_read_is_checked(void) {
+    static const uint32_t patterns[] = {0x7F800000u, 0xFF800000u, 0x7FC00000u, 0xFFFFFFFFu, 0x7F800001u};
+    goe_image_t good;
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    scene_image(&scene, 12, &good, NULL);
+    const struct {
+        float *at;
+        float limit;
+    } numbers[] = {
+        {&image.pose.position_ned_m[0], 1.0e6f},
+        {&image.pose.position_ned_m[1], 1.0e6f},
+        {&image.pose.position_ned_m[2], 1.0e6f},
+        {&image.pose.height_m, 1.0e5f},
+        {&image.left.u_px, 1.0e5f},
+        {&image.left.v_px, 1.0e5f},
+        {&image.right.u_px, 1.0e5f},
+        {&image.right.v_px, 1.0e5f},
+        {&image.top.u_px, 1.0e5f},
+        {&image.top.v_px, 1.0e5f},
+        {&image.base_left.u_px, 1.0e5f},
+        {&image.base_left.v_px, 1.0e5f},
+        {&image.base_near.u_px, 1.0e5f},
+        {&image.base_near.v_px, 1.0e5f},
+        {&image.base_right.u_px, 1.0e5f},
+        {&image.base_right.v_px, 1.0e5f},
+    };
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        for (size_t p = 0; p < sizeof patterns / sizeof patterns[0]; p++) {
+            image = good;
+            *numbers[i].at = check_from_bits(patterns[p]);
+            check_refused(GOE_NOT_FINITE);
+        }
+        image = good;
+        *numbers[i].at = check_next_away(numbers[i].limit);
+        check_refused(GOE_OUT_OF_RANGE);
+        *numbers[i].at = check_next_away(-numbers[i].limit);
+        check_refused(GOE_OUT_OF_RANGE);
+    }
+    for (int i = 0; i < 4; i++) {
+        for (size_t p = 0; p < sizeof patterns / sizeof patterns[0]; p++) {
+            image = good;
+            image.pose.attitude[i] = check_from_bits(patterns[p]);
+            check_refused(GOE_NOT_FINITE);
+        }
+    }
+    image = good;
+    CHECK_STATUS(GOE_OK, update()); /* none of them left a trace */
+}
+
+static void what_is_not_seen_is_not_read(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    scene_image(&scene, 12, &image, NULL);
+    image.top.seen = false;
+    image.top.u_px = check_from_bits(0x7FC00000u);
+    image.top.v_px = 1.0e30f;
+    CHECK_STATUS(GOE_OK, update());
+}
+
+static void time_must_run_on(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    const int64_t now = image.pose.time_us;
+    const int64_t bad[] = {now, now - 1, now - 125000, 0, -1, INT64_MIN + 1, GOE_TIME_UNKNOWN};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        scene_image(&scene, 12, &image, NULL);
+        image.pose.time_us = bad[i];
+        check_refused(GOE_BAD_TIME);
+    }
+    image.pose.time_us = now + 1;
+    CHECK_STATUS(GOE_OK, update());
+}
+
+static void the_first_image_needs_a_time(void) {
+    start();
+    scene_image(&scene, 0, &image, NULL);
+    image.pose.time_us = GOE_TIME_UNKNOWN;
+    CHECK_STATUS(GOE_BAD_TIME, update());
+    TEST_ASSERT_FALSE(estimator.started);
+}
+
+static void a_quaternion_may_be_off_by_one_percent(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    const struct {
+        float norm;
+        bool good;
+    } cases[] = {{0.0f, false},   {1.0e-30f, false}, {0.98f, false},   {0.9899f, false},
+                 {0.9901f, true}, {1.0099f, true},   {1.0101f, false}, {1.02f, false},
+                 {1.9f, false},   {-0.995f, true},   {3.0f, false}};
+    for (int i = 0; i < (int)(sizeof cases / sizeof cases[0]); i++) {
+        scene_image(&scene, 12 + i, &image, NULL);
+        for (int k = 0; k < 4; k++) {
+            image.pose.attitude[k] *= cases[i].norm;
+        }
+        if (cases[i].good) {
+            CHECK_STATUS(GOE_OK, update());
+        } else {
+            check_refused(GOE_BAD_ATTITUDE);
+        }
+    }
+}
+
+/* The order of the checks, each over the whole image. */
+static void the_first_fault_is_told(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    for (int i = 0; i < 4; i++) {
+        image.pose.attitude[i] = 0.0f;
+    }
+    check_refused(GOE_BAD_TIME); /* repeated, and a zero quaternion */
+    image.left.u_px = 2.0e5f;
+    check_refused(GOE_OUT_OF_RANGE);
+    image.base_right.v_px = check_from_bits(0x7F800000u);
+    check_refused(GOE_NOT_FINITE);
+}
+
+/* Counters stop at their largest value. */
+static void counters_saturate(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    estimator.causes[-GOE_BAD_TIME] = UINT32_MAX;
+    CHECK_STATUS(GOE_BAD_TIME, update());
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, estimator.causes[-GOE_BAD_TIME]);
+}
+
+static void null_pointers_are_refused(void) {
+    goe_estimate_t untouched;
+    start();
+    scene_image(&scene, 0, &image, NULL);
+    memset(&estimate, 0xA5, sizeof estimate);
+    memset(&untouched, 0xA5, sizeof untouched);
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_update(NULL, &image, &estimate));
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_update(&estimator, NULL, &estimate));
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_update(&estimator, &image, NULL));
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_reset(NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&untouched, &estimate, sizeof estimate);
+    TEST_ASSERT_FALSE(estimator.started);
+}
+
+static void an_estimator_must_be_initialised(void) {
+    static const int fills[] = {0x00, 0xFF, 0xA5};
+    goe_estimate_t untouched;
+    memset(&untouched, 0x5A, sizeof untouched);
+    scene_image(&scene, 0, &image, NULL);
+    for (int i = 0; i < 3; i++) {
+        static goe_estimator_t before;
+        memset(&estimator, fills[i], sizeof estimator);
+        memset(&before, fills[i], sizeof before);
+        memset(&estimate, 0x5A, sizeof estimate);
+        CHECK_STATUS(GOE_NOT_INITIALISED, update());
+        CHECK_STATUS(GOE_NOT_INITIALISED, goe_reset(&estimator));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
+        TEST_ASSERT_EQUAL_MEMORY(&untouched, &estimate, sizeof estimate);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- tracks -- */
+
+/* GIVEN a track WHEN it is reset THEN the estimator goes on as a new one, but keeps its counters. */
+static void a_reset_forgets_the_track_and_keeps_the_counters(void) {
+    static goe_estimator_t other;
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    CHECK_STATUS(GOE_BAD_TIME, update());
+    CHECK_STATUS(GOE_OK, goe_reset(&estimator));
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_BAD_TIME]);
+    settings.camera = scene.camera;
+    CHECK_STATUS(GOE_OK, goe_init(&other, sizeof other, &settings, NULL));
+    for (int k = 0; k < 20; k++) { /* an earlier time is no fault of a new track */
+        goe_estimate_t expected;
+        scene_image(&scene, k, &image, NULL);
+        CHECK_STATUS(goe_update(&other, &image, &expected), update());
+        TEST_ASSERT_EQUAL_MEMORY(&expected, &estimate, sizeof expected);
+    }
+}
+
+/* GIVEN two obstacles in the same images WHEN two estimators take turns THEN each is what it is alone. */
+static void estimators_share_nothing(void) {
+    static goe_estimator_t second;
+    static goe_estimate_t alone[24];
+    scene_t chimney = scene;
+    goe_estimate_t of_second;
+    goe_image_t other_image;
+    chimney.shape = SCENE_CYLINDER;
+    chimney.x0_m = 25.0;
+    start();
+    for (int k = 0; k < 24; k++) {
+        (void)fly(k, k + 1);
+        alone[k] = estimate;
+    }
+    start();
+    settings.model = GOE_MODEL_DISC;
+    CHECK_STATUS(GOE_OK, goe_init(&second, sizeof second, &settings, NULL));
+    for (int k = 0; k < 24; k++) {
+        scene_image(&chimney, k, &other_image, NULL);
+        (void)goe_update(&second, &other_image, &of_second);
+        (void)fly(k, k + 1);
+        TEST_ASSERT_EQUAL_MEMORY(&alone[k], &estimate, sizeof estimate);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.1f, 25.0f, of_second.x0_m);
+}
+
+/* A copy of an estimator is an estimator: nothing in it points into itself. */
+static void an_estimator_may_be_moved(void) {
+    static goe_estimator_t copy;
+    goe_estimate_t of_copy;
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    memcpy(&copy, &estimator, sizeof copy);
+    for (int k = 12; k < 20; k++) {
+        (void)fly(k, k + 1);
+        (void)goe_update(&copy, &image, &of_copy);
+        TEST_ASSERT_EQUAL_MEMORY(&estimate, &of_copy, sizeof estimate);
+    }
+}
+
+static void a_set_heading_turns_the_trajectory_frame(void) {
+    settings.heading_auto = false;
+    settings.heading_deg = 10.0f;
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 20));
+    /* (X, Z) = (-12, 100) seen from a frame turned by 10 degrees to the right */
+    TEST_ASSERT_FLOAT_WITHIN(0.05f, -12.0f * 0.98480775f - 100.0f * 0.17364818f, estimate.x0_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.05f, 100.0f * 0.98480775f - 12.0f * 0.17364818f, estimate.z0_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.05f, -10.0f, estimate.orientation_deg);
+}
+
+/* A nose that points straight up has no heading: T looks north. */
+static void a_vertical_nose_takes_north(void) {
+    start();
+    scene_image(&scene, 0, &image, NULL);
+    hide_all(&image);
+    image.pose.attitude[0] = 0.5f;
+    image.pose.attitude[1] = 0.5f;
+    image.pose.attitude[2] = 0.5f;
+    image.pose.attitude[3] = -0.5f;
+    /* rotation of 120 degrees about (1, 1, -1): forward goes to -down, with no level part */
+    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, estimator.heading_cos);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, estimator.heading_sin);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_new_estimator_knows_nothing);
+    RUN_TEST(the_disc_solves_from_the_eighth_image_on);
+    RUN_TEST(the_line_takes_over_at_the_eighth_line_point);
+    RUN_TEST(the_number_of_line_points_is_a_setting);
+    RUN_TEST(the_window_is_a_setting);
+    RUN_TEST(a_forced_model_is_never_left);
+    RUN_TEST(nothing_seen_is_no_fault);
+    RUN_TEST(an_image_without_corners_holds_the_line);
+    RUN_TEST(an_age_is_bounded);
+    RUN_TEST(times_may_start_anywhere);
+    RUN_TEST(head_on_has_no_edge);
+    RUN_TEST(swapped_left_and_right_are_told);
+    RUN_TEST(what_lies_behind_is_told);
+    RUN_TEST(a_fault_beside_a_solution_is_partial);
+    RUN_TEST(a_negative_height_all_along_gives_no_height);
+    RUN_TEST(a_side_seen_edge_on_gives_no_length);
+    RUN_TEST(hovering_has_no_baseline);
+    RUN_TEST(stopping_keeps_the_last_answer);
+    RUN_TEST(a_moving_obstacle_has_no_parallax);
+    RUN_TEST(an_obstacle_that_is_said_to_lie_behind_is_passed);
+    RUN_TEST(every_number_read_is_checked);
+    RUN_TEST(what_is_not_seen_is_not_read);
+    RUN_TEST(time_must_run_on);
+    RUN_TEST(the_first_image_needs_a_time);
+    RUN_TEST(a_quaternion_may_be_off_by_one_percent);
+    RUN_TEST(the_first_fault_is_told);
+    RUN_TEST(counters_saturate);
+    RUN_TEST(null_pointers_are_refused);
+    RUN_TEST(an_estimator_must_be_initialised);
+    RUN_TEST(a_reset_forgets_the_track_and_keeps_the_counters);
+    RUN_TEST(estimators_share_nothing);
+    RUN_TEST(an_estimator_may_be_moved);
+    RUN_TEST(a_set_heading_turns_the_trajectory_frame);
+    RUN_TEST(a_vertical_nose_takes_north);
+    return UNITY_END();
+}

@@ -1,0 +1,45 @@
+/* The worked example of goe.h, flown. SPDX-License-Identifier: MIT */
+#include "check.h"
+#include "scene.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* GIVEN an aircraft at north 0, east 0 that heads north, and a chimney of 6 m diameter at north 200, east -30
+ * WHEN it flies 50 m THEN Z0 = 200, X0 = -30 and width = 6 stay as they were, Z = 150 and X = -30. */
+static void the_worked_example_of_the_manual(void) {
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    scene_default(&scene);
+    scene.shape = SCENE_CYLINDER;
+    scene.width_m = 6.0;
+    scene.height_m = 30.0;
+    scene.x0_m = -30.0;
+    scene.z0_m = 200.0;
+    const goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k <= 25; k++) { /* 2 m an image */
+        goe_image_t image;
+        scene_image(&scene, k, &image, NULL);
+        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, goe_update(&estimator, &image, &estimate));
+        if (k >= 7) {
+            TEST_ASSERT_FLOAT_WITHIN(0.1f, 200.0f, estimate.z0_m);
+            TEST_ASSERT_FLOAT_WITHIN(0.02f, -30.0f, estimate.x0_m);
+            TEST_ASSERT_FLOAT_WITHIN(0.005f, 6.0f, estimate.width_m);
+            TEST_ASSERT_FLOAT_WITHIN(0.1f, 200.0f - 2.0f * (float)k, estimate.z_m);
+            TEST_ASSERT_FLOAT_WITHIN(0.02f, -30.0f, estimate.x_m);
+            TEST_ASSERT_FLOAT_WITHIN(0.1f, 200.0f, estimate.center_north_m);
+            TEST_ASSERT_FLOAT_WITHIN(0.02f, -30.0f, estimate.center_east_m);
+        }
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.1f, 150.0f, estimate.z_m);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+    TEST_ASSERT_TRUE(estimate.fresh);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_worked_example_of_the_manual);
+    return UNITY_END();
+}

@@ -1,0 +1,217 @@
+/* Defaults and ranges of the settings. SPDX-License-Identifier: MIT */
+#include <stddef.h>
+#include <string.h>
+
+#include "check.h"
+
+#define SENTINEL 0xA5
+
+static goe_settings_t settings;
+static goe_estimator_t estimator;
+
+void setUp(void) {
+    goe_settings_default(&settings);
+    settings.camera.fx_px = 900.0f;
+    settings.camera.fy_px = 900.0f;
+}
+void tearDown(void) {}
+
+typedef struct {
+    const char *name;
+    size_t at;
+    float smallest, largest, standard;
+} number_t;
+
+typedef struct {
+    const char *name;
+    size_t at;
+    int smallest, largest, standard;
+} count_t;
+
+#define NUMBER(field, smallest, largest, standard)                                                                     \
+    {#field, offsetof(goe_settings_t, field), smallest, largest, standard}
+#define COUNT(field, smallest, largest, standard) {#field, offsetof(goe_settings_t, field), smallest, largest, standard}
+
+/* As goe.h states them. */
+static const number_t numbers[] = {
+    NUMBER(camera.fx_px, 1.0f, 1.0e5f, 0.0f),
+    NUMBER(camera.fy_px, 1.0f, 1.0e5f, 0.0f),
+    NUMBER(camera.cx_px, -1.0e5f, 1.0e5f, 0.0f),
+    NUMBER(camera.cy_px, -1.0e5f, 1.0e5f, 0.0f),
+    NUMBER(camera.k1, -100.0f, 100.0f, 0.0f),
+    NUMBER(camera.k2, -100.0f, 100.0f, 0.0f),
+    NUMBER(camera.p1, -100.0f, 100.0f, 0.0f),
+    NUMBER(camera.p2, -100.0f, 100.0f, 0.0f),
+    NUMBER(camera.k3, -100.0f, 100.0f, 0.0f),
+    NUMBER(camera.mount_yaw_deg, -360.0f, 360.0f, 0.0f),
+    NUMBER(camera.mount_pitch_deg, -360.0f, 360.0f, 0.0f),
+    NUMBER(camera.mount_roll_deg, -360.0f, 360.0f, 0.0f),
+    NUMBER(camera.offset_m[0], -1.0e4f, 1.0e4f, 0.0f),
+    NUMBER(camera.offset_m[1], -1.0e4f, 1.0e4f, 0.0f),
+    NUMBER(camera.offset_m[2], -1.0e4f, 1.0e4f, 0.0f),
+    NUMBER(heading_deg, -360.0f, 360.0f, 0.0f),
+    NUMBER(edge_min_px, 0.0f, 1.0e4f, 10.0f),
+    NUMBER(orientation_min_px, 0.0f, 1.0e4f, 2.0f),
+    NUMBER(side_min_px, 0.1f, 1.0e4f, 10.0f),
+    NUMBER(min_baseline_m, 1.0e-3f, 1.0e4f, 0.1f),
+};
+
+static const count_t counts[] = {
+    COUNT(model, GOE_MODEL_AUTO, GOE_MODEL_LINE, GOE_MODEL_AUTO),
+    COUNT(window, 3, GOE_WINDOW_MAX, 8),
+    COUNT(line_points, 1, 1000, 8),
+    COUNT(orientation_memory, 1, 1000, 20),
+};
+
+#define NUMBERS (sizeof numbers / sizeof numbers[0])
+#define COUNTS (sizeof counts / sizeof counts[0])
+
+static void set_number(const number_t *field, float value) {
+    memcpy((unsigned char *)&settings + field->at, &value, sizeof value);
+}
+
+/* An enumeration is smaller than an int on some machines. */
+static void set_count(const count_t *field, int value) {
+    if (field->at == offsetof(goe_settings_t, model)) {
+        settings.model = (goe_model_t)value;
+    } else {
+        memcpy((unsigned char *)&settings + field->at, &value, sizeof value);
+    }
+}
+
+static int get_count(const count_t *field) {
+    int value;
+    memcpy(&value, (unsigned char *)&settings + field->at, sizeof value);
+    return field->at == offsetof(goe_settings_t, model) ? (int)settings.model : value;
+}
+
+static goe_status_t init(const char **bad) { return goe_init(&estimator, sizeof estimator, &settings, bad); }
+
+static void check_good(void) {
+    const char *bad = "untouched";
+    CHECK_STATUS(GOE_OK, init(&bad));
+    TEST_ASSERT_NULL(bad);
+    CHECK_STATUS(GOE_OK, init(NULL));
+}
+
+/* GIVEN an estimator of which every byte is known WHEN goe_init refuses THEN it names the field and touches no byte. */
+static void check_bad(const char *name) {
+    static goe_estimator_t before;
+    const char *bad = NULL;
+    memset(&estimator, SENTINEL, sizeof estimator);
+    memset(&before, SENTINEL, sizeof before);
+    CHECK_STATUS(GOE_BAD_SETTINGS, init(&bad));
+    TEST_ASSERT_EQUAL_STRING(name, bad);
+    CHECK_STATUS(GOE_BAD_SETTINGS, init(NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
+}
+
+/* GIVEN settings full of a sentinel WHEN defaults are asked for THEN no field is left out. */
+static void the_defaults_set_every_field(void) {
+    goe_settings_t again;
+    unsigned char heading_auto;
+    memset(&settings, SENTINEL, sizeof settings);
+    memset(&again, (unsigned char)~SENTINEL, sizeof again);
+    goe_settings_default(&settings);
+    goe_settings_default(&again);
+    for (size_t i = 0; i < NUMBERS; i++) {
+        float value;
+        memcpy(&value, (unsigned char *)&settings + numbers[i].at, sizeof value);
+        TEST_ASSERT_EQUAL_FLOAT_MESSAGE(numbers[i].standard, value, numbers[i].name);
+    }
+    for (size_t i = 0; i < COUNTS; i++) {
+        TEST_ASSERT_EQUAL_INT_MESSAGE(counts[i].standard, get_count(&counts[i]), counts[i].name);
+    }
+    memcpy(&heading_auto, &settings.heading_auto, 1);
+    TEST_ASSERT_EQUAL_UINT8(1, heading_auto);
+    /* a field that this test does not know of would differ between the two fills */
+    TEST_ASSERT_EQUAL_MEMORY(&again, &settings, sizeof settings);
+}
+
+/* The tables above cover the whole structure: 4 bytes a field, but for the model and the flag beside it. */
+static void the_tables_of_this_test_are_complete(void) {
+    const size_t model_and_flag = offsetof(goe_settings_t, heading_deg) - offsetof(goe_settings_t, model);
+    TEST_ASSERT_EQUAL_size_t(sizeof settings, 4u * (NUMBERS + COUNTS - 1u) + model_and_flag);
+}
+
+static void the_defaults_lack_only_the_camera(void) {
+    goe_settings_default(&settings);
+    check_bad("camera.fx_px");
+    settings.camera.fx_px = 500.0f;
+    check_bad("camera.fy_px");
+    settings.camera.fy_px = 500.0f;
+    check_good();
+}
+
+static void no_settings_are_no_crash(void) { goe_settings_default(NULL); }
+
+static void every_number_may_reach_its_limits_and_no_farther(void) {
+    for (size_t i = 0; i < NUMBERS; i++) {
+        const number_t *field = &numbers[i];
+        const float below = field->smallest > 0.0f   ? check_from_bits(check_bits(field->smallest) - 1u)
+                            : field->smallest < 0.0f ? check_next_away(field->smallest)
+                                                     : -1.0e-45f;
+        setUp();
+        set_number(field, field->smallest);
+        check_good();
+        set_number(field, field->largest);
+        check_good();
+        set_number(field, check_next_away(field->largest));
+        check_bad(field->name);
+        set_number(field, below);
+        check_bad(field->name);
+    }
+}
+
+static void every_number_must_be_finite(void) {
+    static const uint32_t patterns[] = {0x7F800000u, 0xFF800000u, 0x7FC00000u, 0xFFC00001u, 0x7F800001u, 0xFFFFFFFFu};
+    for (size_t i = 0; i < NUMBERS; i++) {
+        for (size_t p = 0; p < sizeof patterns / sizeof patterns[0]; p++) {
+            setUp();
+            set_number(&numbers[i], check_from_bits(patterns[p]));
+            check_bad(numbers[i].name);
+        }
+    }
+}
+
+static void every_count_may_reach_its_limits_and_no_farther(void) {
+    for (size_t i = 0; i < COUNTS; i++) {
+        const count_t *field = &counts[i];
+        setUp();
+        set_count(field, field->smallest);
+        check_good();
+        set_count(field, field->largest);
+        check_good();
+        set_count(field, field->largest + 1);
+        check_bad(field->name);
+        set_count(field, field->smallest - 1);
+        check_bad(field->name);
+        set_count(field, INT32_MIN);
+        check_bad(field->name);
+        set_count(field, INT32_MAX);
+        check_bad(field->name);
+    }
+}
+
+static void init_checks_its_arguments(void) {
+    const char *bad = "untouched";
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_init(NULL, sizeof estimator, &settings, &bad));
+    TEST_ASSERT_NULL(bad);
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_init(&estimator, sizeof estimator, NULL, &bad));
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_init(&estimator, sizeof estimator - 1, &settings, &bad));
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_init(&estimator, sizeof estimator + 4, &settings, NULL));
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_init(NULL, 0, NULL, NULL));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_defaults_set_every_field);
+    RUN_TEST(the_tables_of_this_test_are_complete);
+    RUN_TEST(the_defaults_lack_only_the_camera);
+    RUN_TEST(no_settings_are_no_crash);
+    RUN_TEST(every_number_may_reach_its_limits_and_no_farther);
+    RUN_TEST(every_number_must_be_finite);
+    RUN_TEST(every_count_may_reach_its_limits_and_no_farther);
+    RUN_TEST(init_checks_its_arguments);
+    return UNITY_END();
+}

@@ -1,0 +1,34 @@
+/* Memory of one estimator. SPDX-License-Identifier: MIT */
+#include "check.h"
+
+#define STANDARD_WINDOW 8u
+#define BYTES_PER_POINT 40u
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void an_estimator_takes_a_kibibyte_at_the_default_window(void) {
+    const size_t beyond = (GOE_WINDOW_MAX > STANDARD_WINDOW ? GOE_WINDOW_MAX - STANDARD_WINDOW : 0u) * BYTES_PER_POINT;
+    check_report("bytes of an estimator", (double)sizeof(goe_estimator_t));
+    TEST_ASSERT_TRUE(sizeof(goe_estimator_t) <= 1024u + beyond);
+}
+
+static void each_point_of_the_window_takes_40_bytes(void) {
+    const size_t windows = 2u * sizeof(goe_window_t) + 2u * sizeof(goe_mean_t);
+    const size_t rings = 4u * 2u * sizeof(int16_t);
+    TEST_ASSERT_EQUAL_size_t(BYTES_PER_POINT * GOE_WINDOW_MAX + rings, windows);
+}
+
+static void numbers_have_the_sizes_that_the_library_relies_on(void) {
+    TEST_ASSERT_EQUAL_size_t(4u, sizeof(float));
+    TEST_ASSERT_EQUAL_HEX32(0x3F800000u, check_bits(1.0f));
+    TEST_ASSERT_EQUAL_HEX32(0xC0490FDBu, check_bits(-3.14159274f));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(an_estimator_takes_a_kibibyte_at_the_default_window);
+    RUN_TEST(each_point_of_the_window_takes_40_bytes);
+    RUN_TEST(numbers_have_the_sizes_that_the_library_relies_on);
+    return UNITY_END();
+}

@@ -1,0 +1,35 @@
+# shellcheck shell=bash
+# What the checks of this folder share. Sourced.
+
+# shellcheck disable=SC2034 # of use to whoever sources this file
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# The host compilers that are installed.
+compilers() {
+    local name
+    for name in "$@"; do
+        if command -v "$name" >/dev/null; then
+            echo "$name"
+        fi
+    done
+}
+
+# known <compiler> <flag>...: those of the flags that this compiler takes without a murmur, one a line.
+known() {
+    local compiler=$1 flag language=c
+    [[ $compiler != *++* ]] || language=c++
+    shift
+    for flag in "$@"; do
+        if echo 'int main(void) { return 0; }' |
+            "$compiler" -Werror "$flag" -x "$language" - -o "$scratch/probe" >/dev/null 2>&1; then
+            echo "$flag"
+        fi
+    done
+}
+
+fail() {
+    echo "FAILED: $*" >&2
+    exit 1
+}

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Compiles, links and runs a C++ program that includes goe.h, under strict warnings.
+set -euo pipefail
+. "$(dirname "$0")/common.sh"
+
+warnings=(-Wall -Wextra -Wpedantic -Werror -Wundef -Wold-style-cast -Wuseless-cast -Wshadow -Wconversion
+    -Wsign-conversion -Wcast-qual -Wzero-as-null-pointer-constant -Wmissing-declarations -Wredundant-decls -Wswitch-enum)
+
+mapfile -t present < <(compilers g++ clang++-19)
+if [ ${#present[@]} = 0 ]; then
+    echo "skipped: no C++ compiler"
+    exit 77
+fi
+cd "$scratch"
+gcc -std=c99 -c "$root"/lib/*.c
+for compiler in "${present[@]}"; do
+    mapfile -t accepted < <(known "$compiler" "${warnings[@]}")
+    for standard in c++11 c++17 c++20; do
+        "$compiler" "-std=$standard" "${accepted[@]}" -I"$root/lib" "$root/tests/flags/header.cpp" ./*.o -lm -o header ||
+            fail "$compiler -std=$standard"
+        ./header || fail "the program made by $compiler -std=$standard"
+    done
+done
+echo "header in C++11, C++17, C++20: ${present[*]}"

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Words that the library's sources may not hold: double, heap, stdio, mutable statics, libm beside sqrtf and fabsf.
+# Comments are stripped before the search.
+set -euo pipefail
+. "$(dirname "$0")/common.sh"
+
+types='double|long double|_Complex'
+keywords='goto|setjmp|longjmp'
+calls='malloc|calloc|realloc|free|alloca'
+calls="$calls|printf|fprintf|sprintf|snprintf|puts|fputs|putchar|scanf|fopen|abort|exit|assert"
+calls="$calls|(sin|cos|tan|asin|acos|atan|atan2|hypot|pow|exp|log|fma|floor|ceil|round|fmod|fmin|fmax)[fl]?"
+calls="$calls|sqrt|sqrtl|fabs|fabsl|isnan|isinf|isfinite|isnormal|fpclassify|signbit"
+headers='#include *<(stdio|stdlib|tgmath|complex|assert|errno|fenv)\.h>'
+
+bad=0
+for file in "$root"/lib/*.[ch]; do
+    stripped=$scratch/stripped
+    gcc -fpreprocessed -dD -E -P -w "$file" >"$stripped"
+    if grep -nE "\\b($types|$keywords)\\b|\\b($calls) *\\(" "$stripped" >"$scratch/found" ||
+        grep -nE "$headers" "$file" >"$scratch/found" ||
+        grep -nE '^ *static ' "$stripped" | grep -vE 'static (inline |const )|\(' >"$scratch/found"; then
+        echo "$file: forbidden:" >&2
+        cat "$scratch/found" >&2
+        bad=1
+    fi
+done
+[ $bad = 0 ] || fail "forbidden words in lib/"
+
+# Every floating-point constant carries its f: a double constant would be caught by one of these.
+cd "$scratch"
+mapfile -t flags < <(known gcc -Wdouble-promotion -Wunsuffixed-float-constants -Wfloat-conversion -Wvla)
+gcc -std=c99 "${flags[@]}" -Werror -c "$root"/lib/*.c || fail "double precision or variable-length arrays in lib/"
+echo "no forbidden word in $(find "$root/lib" -name '*.[ch]' | wc -l) files"
