@@ -74,8 +74,8 @@ cd "$scratch/objects"
 mapfile -t present < <(compilers gcc clang-19)
 for compiler in "${present[@]}"; do
     mapfile -t common < <(known "$compiler" "${flags[@]}")
+    compile "$compiler" -std=c99 "${levels[0]}" "${common[@]}" -DNDEBUG
     for standard in c11 gnu17 c99; do
-        compile "$compiler" "-std=$standard" "${levels[0]}" "${common[@]}" -DNDEBUG
         compile "$compiler" "-std=$standard" "${levels[0]}" "${common[@]}"
     done
     run_safety "$compiler" "${levels[0]}" "${common[@]}"

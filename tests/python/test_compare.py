@@ -1,0 +1,120 @@
+"""The comparison: passes what agrees, and finds what does not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from goe_tools import compare
+from goe_tools.__main__ import main
+from goe_tools.estimate import Settings
+from goe_tools.obslog import read_log, write_log
+from goe_tools.scene import Scene, make_log
+
+
+def run(replay: Path, *arguments: object) -> int:
+    return main(["compare", "--replay", str(replay), *(str(argument) for argument in arguments)])
+
+
+def test_agreement(corner_folder: Path, fake_replay, capsys) -> None:
+    assert run(fake_replay(), corner_folder) == 0
+    told = capsys.readouterr()
+    assert "100.000%" in told.out
+    assert "length_sd_m" in told.out
+    assert "mirror32 0/0/0, float64 0/0/0" in told.out
+    assert told.err == ""
+
+
+@pytest.mark.parametrize("options", [("--model", "disc"), ("--model", "line", "--window", "5"), ("--window", "12")])
+def test_options_reach_all_three(options: tuple[str, ...], corner_folder: Path, fake_replay) -> None:
+    assert run(fake_replay(), *options, corner_folder) == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"columns": ["x0_m"], "ulp": 5, "rows": [30]}, "mirror: 5 ULP apart, 4 allowed"),
+        ({"columns": ["z0_m"], "ulp": 1}, "values have identical bits, 99.9% needed"),
+        ({"columns": ["width_m"], "ulp": 30000}, "float64: width_m: 99th percentile"),
+        ({"columns": ["x0_sd_m"], "ulp": 3000000}, "float64: x0_sd_m: 99th percentile"),
+        ({"columns": ["orientation_deg"], "ulp": 20000}, "float64: orientation_deg: 99th percentile"),
+        ({"columns": ["height_m"], "drop": True, "rows": [30]}, "1 empty fields differ"),
+        ({"status": "held", "rows": [30]}, "float64: 1 statuses, models or numbers of points differ"),
+    ],
+)
+def test_differences_are_found(change: dict, message: str, corner_folder: Path, fake_replay, capsys) -> None:
+    assert run(fake_replay(**change), corner_folder) == 1
+    assert message in capsys.readouterr().err
+
+
+def test_one_bad_log_among_good_ones(corner_folder: Path, tmp_path: Path, fake_replay, capsys) -> None:
+    write_log(tmp_path / "other", make_log(Scene(width_m=10.0, alpha_deg=15.0, run_s=2.0)))
+    assert run(fake_replay(columns=["x_m"], ulp=5, rows=[30]), tmp_path / "other", corner_folder) == 1
+    assert "other: BEYOND" not in capsys.readouterr().err
+
+
+def test_a_log_without_any_estimate(tmp_path: Path, fake_replay) -> None:
+    write_log(tmp_path / "short", make_log(Scene(run_s=0.5)))
+    assert run(fake_replay(exit_status=1), tmp_path / "short") == 0
+
+
+def test_bad_input(corner_folder: Path, tmp_path: Path, fake_replay, capsys) -> None:
+    assert run(fake_replay(), tmp_path / "nowhere") == 2
+    assert "no such folder" in capsys.readouterr().err
+    assert run(tmp_path / "no_program", corner_folder) == 2
+    assert "cannot be run" in capsys.readouterr().err
+    assert run(fake_replay(exit_status=2), corner_folder) == 2
+    assert "exit status 2" in capsys.readouterr().err
+    (corner_folder / "frames.csv").write_text("t_s,id\n")
+    assert run(fake_replay(), corner_folder) == 2
+    assert "frames.csv:1: n_m: column is missing" in capsys.readouterr().err
+
+
+def test_rows_must_belong_together(corner_folder: Path) -> None:
+    log = read_log(corner_folder)
+    with pytest.raises(ValueError, match="0 rows of estimates for 49 rows"):
+        compare.compare_rows(log, [], Settings())
+
+
+def test_ulp_index() -> None:
+    values = np.array([1.0, -1.0, 0.0, -0.0, 1e-45, -1e-45], dtype=np.float32)
+    up = np.nextafter(values, np.float32(np.inf))
+    assert np.all(compare.ulp_index(up) - compare.ulp_index(values) == 1)
+    assert compare.ulp_index(np.float32(0.0)) == compare.ulp_index(np.float32(-0.0))
+
+
+def test_too_many_followed_decisions_and_any_disputed_one() -> None:
+    result = compare.Result(decisions=1000, followed=["rises"] * 10)
+    assert result.failures() == []
+    result.followed.append("rises")
+    assert any("11 of 1000 decisions followed" in failure for failure in result.failures())
+    result = compare.Result(decisions=1000, disputed=["passed"])
+    assert any("disputed decisions: passed" in failure for failure in result.failures())
+
+
+def test_the_built_program_on_the_committed_logs(replay: Path) -> None:
+    folders = [path.parent for path in sorted((ROOT / "tests" / "data").glob("*/frames.csv"))]
+    assert folders
+    for model in ("auto", "disc", "line"):
+        assert run(replay, "--model", model, *folders) == 0
+
+
+def test_the_built_program_on_random_flights(replay: Path, tmp_path: Path, real_camera) -> None:
+    generator = np.random.default_rng(11)
+    for k in range(8):
+        shape = str(generator.choice(["box", "cylinder"]))
+        scene = Scene(
+            shape, *generator.uniform(3.0, 25.0, 3), x0_m=generator.uniform(-40.0, 40.0), altitude_m=30.0,
+            z0_m=generator.uniform(80.0, 250.0), alpha_deg=generator.uniform(-90.0, 90.0), wobble_deg=2.0, clip=True,
+            path=str(generator.choice(["straight", "arc", "weave"])), course_deg=generator.uniform(-180.0, 180.0),
+            rounding="pixel", run_s=6.0, camera=real_camera,
+        )  # fmt: skip
+        write_log(tmp_path / str(k), make_log(scene))
+        log = read_log(tmp_path / str(k))
+        settings = Settings(window=int(generator.choice([3, 8, 20])))
+        result = compare.compare_rows(log, compare.run_replay(replay, tmp_path / str(k), settings), settings)
+        assert result.mirror.total == result.presence_mirror == 0
+        assert all(max(column.ulp_mirror, default=0) == 0 for column in result.columns.values())
+        assert not result.disputed

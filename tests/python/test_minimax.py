@@ -1,0 +1,27 @@
+"""The constants of lib/goe_angle.c are the minimax polynomials', and their stated bounds hold."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from goe_tools.minimax import PROBLEMS, remez
+
+SOURCE = Path(__file__).parents[2] / "lib" / "goe_angle.c"
+BOUND = {"ATAN": 5e-9, "SIN": 2e-9, "COS": 1e-10}
+
+
+def constants(name: str) -> np.ndarray:
+    """The coefficients as they stand in the source."""
+    found = re.findall(rf"#define {name}_\d (\S+?)f\b", SOURCE.read_text())
+    return np.array([float(text) for text in found])
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.name)
+def test_source_holds_the_polynomial(problem) -> None:
+    polynomial = remez(problem)
+    signs = (-1.0) ** np.arange(problem.terms)
+    np.testing.assert_allclose(constants(problem.name), signs * polynomial.coefficients, rtol=2e-8)
+    assert polynomial.bound <= BOUND[problem.name]

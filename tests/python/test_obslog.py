@@ -1,0 +1,155 @@
+"""Observation logs: what is read, what is refused, and that writing adds no noise."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from goe_tools.obslog import (
+    Camera,
+    LogError,
+    ObservationLog,
+    read_camera,
+    read_frames,
+    read_log,
+    read_truth,
+    write_log,
+)
+
+CAMERA = "camera.width = 640\ncamera.height=480 # px\n\n# a comment\ncamera.fx = 500\ncamera.fy = 501\n" + (
+    "camera.cx = 320\ncamera.cy = 240\n"
+)
+HEADER = "t_s,id,n_m,e_m,d_m,qw,qx,qy,qz"
+ROW = "0.5,3,1,2,-30,1,0,0,0"
+
+
+def write(path: Path, text: str) -> Path:
+    path.write_bytes(text.encode())
+    return path
+
+
+def frames(tmp_path: Path, *lines: str, end: str = "\n"):
+    return read_frames(write(tmp_path / "frames.csv", end.join(lines) + end))
+
+
+def test_round_trip_is_exact(tmp_path: Path, corner_log: ObservationLog) -> None:
+    write_log(tmp_path / "log", corner_log, "a comment\nof two lines")
+    again = read_log(tmp_path / "log")
+    assert again.camera == corner_log.camera
+    assert again.frames == corner_log.frames
+    assert again.truth == corner_log.truth
+
+
+def test_camera_defaults_and_comments(tmp_path: Path) -> None:
+    camera = read_camera(write(tmp_path / "camera.ini", CAMERA))
+    assert camera == Camera(640.0, 480.0, 500.0, 501.0, 320.0, 240.0)
+    assert camera.heading_deg is None
+    text = CAMERA + "trajectory.heading_deg = -12.5\ncamera.mount_yaw_deg = -35\n"
+    camera = read_camera(write(tmp_path / "camera.ini", text))
+    assert (camera.heading_deg, camera.mount_yaw_deg) == (-12.5, -35.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (CAMERA + "camera.f = 3\n", "camera.ini:9: camera.f: unknown key"),
+        (CAMERA + "camera.heading_deg = 3\n", "camera.ini:9: camera.heading_deg: unknown key"),
+        (CAMERA + "fx = 3\n", "camera.ini:9: fx: unknown key"),
+        (CAMERA + "camera.k1 = wide\n", "camera.ini:9: camera.k1: 'wide' is not a number"),
+        (CAMERA + "camera.k1 = 1_0\n", "camera.ini:9: camera.k1: '1_0' is not a number"),
+        (CAMERA + "camera.k1 = nan\n", "camera.ini:9: camera.k1: 'nan' is not finite"),
+        (CAMERA + "camera.fx = 400\n", "camera.ini:9: camera.fx: given twice"),
+        (CAMERA + "camera.k1\n", "camera.ini:9: 'camera.k1' is not of the form key = value"),
+        (CAMERA.replace("fx = 500", "fx = 0"), "camera.ini:5: camera.fx: must be positive"),
+        (CAMERA.replace("camera.fy = 501\n", ""), "camera.ini: camera.fy: missing"),
+        ("", "camera.ini: camera.width: missing"),
+    ],
+)
+def test_bad_camera(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(LogError) as error:
+        read_camera(write(tmp_path / "camera.ini", text))
+    assert str(error.value) == f"{tmp_path}/{message}"
+
+
+def test_columns_in_any_order_and_unknown_ones(tmp_path: Path) -> None:
+    (frame,) = frames(tmp_path, "score,id,t_s,e_m,n_m,d_m,qz,qy,qx,qw", "0.9,7,1.5,2,1,-3,0.4,0.3,0.2,0.1")
+    assert frame.id == 7
+    assert frame.position_m == (1.0, 2.0, -3.0)
+    assert frame.attitude == (0.1, 0.2, 0.3, 0.4)
+    assert frame.height_m == 3.0  # no altimeter: -down
+    assert frame.left is None
+
+
+def test_empty_fields_are_not_measured(tmp_path: Path) -> None:
+    header = HEADER + ",agl_m,left_u,left_v,top_u,top_v"
+    full, half, pose = frames(
+        tmp_path, header, ROW + ",31.5,10,20,30,40", ROW + ",,10,,30,40", "1,3,,2,-30,1,0,0,0,,,,,"
+    )
+    assert (full.height_m, full.left, full.top) == (31.5, (10.0, 20.0), (30.0, 40.0))
+    assert (half.height_m, half.left, half.top) == (30.0, None, (30.0, 40.0))
+    assert math.isnan(pose.position_m[0])  # a bad measurement, not bad input
+
+
+def test_line_ends_and_blank_lines(tmp_path: Path) -> None:
+    assert len(frames(tmp_path, HEADER, ROW, "", ROW, end="\r\n")) == 2
+    assert len(read_frames(write(tmp_path / "frames.csv", "\ufeff" + HEADER + "\n" + ROW))) == 1
+    assert frames(tmp_path, HEADER) == []
+
+
+def test_numbers_that_are_no_measurement(tmp_path: Path) -> None:
+    (frame,) = frames(tmp_path, HEADER, "nan,3,inf,2,-30,1,0,0,0")
+    assert frame.time_us is None
+    assert math.isinf(frame.position_m[0])
+
+
+@pytest.mark.parametrize(
+    ("t_s", "time_us"), [("0.1", 100000), ("2.5e-6", 2), ("3.5e-6", 4), ("1e30", None), ("-1", -1000000)]
+)
+def test_time_stamps(tmp_path: Path, t_s: str, time_us: int) -> None:
+    (frame,) = frames(tmp_path, HEADER, t_s + ROW[3:])
+    assert frame.time_us == time_us
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ((HEADER.replace(",qy", ""), ROW), "1: qy: column is missing"),
+        ((HEADER + ",left_u", ROW + ",3"), "1: left_v: column is missing"),
+        ((HEADER + ",d_m", ROW + ",3"), "1: d_m: column is given twice"),
+        ((HEADER, ROW, ROW + ",4"), "3: 10 fields under 9 columns"),
+        ((HEADER, ROW, "1,2"), "3: 2 fields under 9 columns"),
+        ((HEADER, ROW.replace("-30", "low")), "2: d_m: 'low' is not a number"),
+        ((HEADER, ROW.replace(",3,", ",3.5,")), "2: id: '3.5' is not an integer"),
+        ((HEADER, ROW.replace("0.5,", ",")), "2: t_s: '' is not a number"),
+        ((HEADER, "", ROW, ROW.replace("-30", "0x1f")), "4: d_m: '0x1f' is not a number"),
+    ],
+)
+def test_bad_frames(tmp_path: Path, lines: tuple[str, ...], message: str) -> None:
+    with pytest.raises(LogError) as error:
+        frames(tmp_path, *lines)
+    assert str(error.value) == f"{tmp_path}/frames.csv:{message}"
+
+
+def test_missing_and_empty_files(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="no such folder"):
+        read_log(tmp_path / "none")
+    with pytest.raises(LogError, match=r"camera\.ini: No such file"):
+        read_log(tmp_path)
+    with pytest.raises(LogError, match="empty: no header line"):
+        read_frames(write(tmp_path / "frames.csv", ""))
+    with pytest.raises(LogError, match="not UTF-8"):
+        (tmp_path / "frames.csv").write_bytes(b"\xff\xfe\x00")
+        read_frames(tmp_path / "frames.csv")
+
+
+def test_truth(tmp_path: Path) -> None:
+    header = "id,static,center_n_m,center_e_m,ground_d_m,width_m,length_m,height_m,heading_deg,frames"
+    path = write(tmp_path / "truth.csv", header + "\n4,1,1,2,3,4,5,6,7,13\n5,0,1,2,3,4,,6,,9\n")
+    truth = read_truth(path)
+    assert truth[4].static
+    assert truth[4].heading_deg == 7.0
+    assert truth[4].extra == {"frames": "13"}
+    assert (truth[5].length_m, truth[5].heading_deg) == (None, None)
+    with pytest.raises(LogError, match=r"truth\.csv:3: id: 4 is given twice"):
+        read_truth(write(path, header + "\n" + "4,1,1,2,3,4,5,6,7,13\n" * 2))

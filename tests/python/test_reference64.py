@@ -1,0 +1,264 @@
+"""The float64 reference: exact on exact data, right about its sigmas, and wrong only by what the paper leaves out."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from goe_tools.estimate import Settings
+from goe_tools.gates import Gates
+from goe_tools.mirror32 import Mirror32
+from goe_tools.obslog import Camera, Frame, ObservationLog
+from goe_tools.reference64 import (
+    Reference64,
+    Report,
+    Row,
+    mounting_rotation,
+    quaternion_rotation,
+    solve,
+    undistort,
+)
+from goe_tools.scene import (
+    CAMERA_AXES_IN_BODY,
+    Scene,
+    distort,
+    make_log,
+    quaternion_of,
+    yaw_pitch_roll,
+)
+
+
+def fly(log: ObservationLog, **settings: object) -> list[Report]:
+    reference = Reference64(log.camera, Settings(**settings))
+    return [reference.update(frame) for frame in log.frames]
+
+
+def closed_form(rows: list[Row]) -> dict[str, float]:
+    """The solution of (5) as two straight lines with one slope."""
+    c, s = np.array([row.cos_b for row in rows]), np.array([row.sin_b for row in rows])
+    forward, aside = np.array([row.forward for row in rows]), np.array([row.aside for row in rows])
+    dx, dz = np.array([row.dx_m for row in rows]), np.array([row.dz_m for row in rows])
+    xi, zeta = c * aside + s * forward, c * forward - s * aside
+    x, z = dx - dx.mean(), dz - dz.mean()
+    spread = x @ x + z @ z
+    slope = -(x @ (xi - xi.mean()) + z @ (zeta - zeta.mean())) / spread
+    width, n = 1.0 / slope, len(rows)
+    residuals = np.concatenate([xi - xi.mean() + slope * x, zeta - zeta.mean() + slope * z])
+    s2 = residuals @ residuals / (2 * n - 3)
+    return {
+        "width_m": width,
+        "x0_m": width * xi.mean() + dx.mean(),
+        "z0_m": width * zeta.mean() + dz.mean(),
+        "width_sd": width**2 * math.sqrt(s2 / spread),
+        "x0_sd": width * math.sqrt(s2 / n + xi.mean() ** 2 * width**2 * s2 / spread),
+        "z0_sd": width * math.sqrt(s2 / n + zeta.mean() ** 2 * width**2 * s2 / spread),
+        "residual": math.sqrt(residuals @ residuals / (2 * n)),
+        "baseline": math.sqrt(spread),
+    }
+
+
+def random_rows(generator: np.random.Generator, noise: float) -> list[Row]:
+    width, x0, z0 = generator.uniform(2.0, 20.0), generator.uniform(-60.0, 60.0), generator.uniform(80.0, 400.0)
+    rows = []
+    for k in range(generator.integers(3, 20)):
+        b = generator.uniform(-0.7, 0.7)
+        dx, dz = generator.normal(0.0, 1.0), 4.0 * k
+        xi, zeta = (x0 - dx) / width, (z0 - dz) / width
+        xi, zeta = xi + noise * generator.normal(), zeta + noise * generator.normal()
+        c, s = math.cos(b), math.sin(b)
+        rows.append(Row(c * zeta + s * xi, c * xi - s * zeta, c, s, dx, dz))
+    return rows
+
+
+def test_dense_solution_is_the_closed_form() -> None:
+    generator = np.random.default_rng(1)
+    for _ in range(100):
+        rows = random_rows(generator, 0.02)
+        status, fit = solve(rows, 0.1, Gates())
+        assert status == "ok"
+        expected = closed_form(rows)
+        for name in ("width_m", "x0_m", "z0_m"):
+            assert getattr(fit, name) == pytest.approx(expected[name], rel=1e-9)
+            assert fit.sigma[name] == pytest.approx(expected[name[:-2] + "_sd"], rel=1e-9)
+        assert fit.residual == pytest.approx(expected["residual"], rel=1e-9)
+        assert fit.baseline_m == pytest.approx(expected["baseline"], rel=1e-12)
+
+
+def test_sigmas_are_the_spread_of_the_solutions() -> None:
+    generator = np.random.default_rng(2)
+    clean, noise = random_rows(generator, 0.0), 1e-4
+    fits = []
+    for _ in range(1000):
+        rows = [replace(row, forward=row.forward + noise * generator.normal(),
+                        aside=row.aside + noise * generator.normal()) for row in clean]  # fmt: skip
+        fits.append(solve(rows, 0.1, Gates())[1])
+    for name in ("width_m", "x0_m", "z0_m"):
+        spread = np.std([getattr(fit, name) for fit in fits])
+        assert math.sqrt(np.mean([fit.sigma[name] ** 2 for fit in fits])) == pytest.approx(spread, rel=0.1)
+
+
+def test_solution_refuses_what_has_no_solution() -> None:
+    still = [Row(20.0, 1.0, 1.0, 0.0, 0.0, 0.0)] * 8
+    assert solve(still, 0.1, Gates())[0] == "no_baseline"
+    same = [Row(20.0, 1.0, 1.0, 0.0, 0.0, 2.0 * k) for k in range(8)]
+    assert solve(same, 0.1, Gates())[0] == "no_parallax"
+    shrinking = [Row(20.0 + k, 1.0, 1.0, 0.0, 0.0, 2.0 * k) for k in range(8)]
+    assert solve(shrinking, 0.1, Gates())[0] == "no_parallax"
+    passed = [Row((5.0 - 2.0 * k) / 3.0, 1.0, 1.0, 0.0, 0.0, 2.0 * k) for k in range(8)]
+    assert solve(passed, 0.1, Gates())[0] == "passed"
+
+
+@pytest.mark.parametrize("path", ["straight", "arc", "weave"])
+@pytest.mark.parametrize("glide_deg", [0.0, 6.0])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("acceleration", [0.0, 1.5])
+def test_exact_boxes_are_recovered(
+    path: str, glide_deg: float, side: float, acceleration: float, real_camera: Camera
+) -> None:
+    for alpha in (-35.0, -15.0, 20.0, 40.0):
+        scene = Scene(
+            width_m=15.0, length_m=20.0, height_m=60.0, x0_m=30.0 * side, z0_m=220.0, alpha_deg=alpha, path=path,
+            arc_radius_m=-900.0 * side, weave_amplitude_m=3.0, altitude_m=45.0, glide_deg=glide_deg, course_deg=123.0,
+            acceleration_mps2=acceleration, wobble_deg=2.0, run_s=4.0, fps_hz=6.0, start_ne_m=(300.0, -200.0),
+            ground_d_m=-70.0, camera=real_camera, clip=True,
+        )  # fmt: skip
+        log = make_log(scene)
+        report = fly(log)[-1]
+        values = report.estimate.values
+        assert report.estimate.model == "line"
+        assert values["x0_m"] == pytest.approx(scene.x0_m, rel=1e-9)
+        assert values["z0_m"] == pytest.approx(220.0, rel=1e-9)
+        assert values["width_m"] == pytest.approx(15.0, rel=1e-9)
+        assert values["length_m"] == pytest.approx(20.0, rel=1e-9)
+        assert values["orientation_deg"] == pytest.approx(alpha, abs=1e-9)
+        assert values["center_n_m"] == pytest.approx(log.truth[1].center_n_m, rel=1e-9)
+        assert values["center_e_m"] == pytest.approx(log.truth[1].center_e_m, rel=1e-9)
+        assert report.residual < 1e-10
+        for name in ("x0_sd_m", "z0_sd_m", "width_sd_m", "orientation_sd_deg"):
+            assert values[name] < 1e-6
+
+
+def test_height_is_off_by_the_top_points_own_distance() -> None:
+    """(8) takes the height at the reference point's distance: h - (h - H) Z/Z_top exactly."""
+    scene = Scene(
+        width_m=15.0, length_m=20.0, height_m=60.0, x0_m=-30.0, z0_m=250.0, alpha_deg=20.0, altitude_m=45.0, run_s=6.0
+    )
+    log = make_log(scene)
+    report = fly(log)[-1]
+    near = 250.0 - 7.5 * math.sin(math.radians(20.0))  # the front edge's right end is the nearest corner
+    predicted = []
+    for k in range(len(log.frames) - 8, len(log.frames)):
+        flown = 17.0 * k / 8.0
+        predicted.append(45.0 - (45.0 - 60.0) * (250.0 - flown) / (near - flown))
+    assert abs(np.mean(predicted) - 60.0) > 0.1
+    assert report.estimate.values["height_m"] == pytest.approx(np.mean(predicted), rel=1e-9)
+
+
+@pytest.mark.parametrize("x0_m", [0.0, 15.0, -40.0])
+def test_disc_rows_are_off_as_the_analysis_says(x0_m: float) -> None:
+    """(2): the position row is exact, the size row is off by r^2 X^2 / (Z^2 d^2)."""
+    log = make_log(Scene("cylinder", 6.0, 6.0, 30.0, x0_m=x0_m, z0_m=180.0, altitude_m=15.0, run_s=6.0))
+    reference = Reference64(log.camera, Settings(model="disc"))
+    for k, frame in enumerate(log.frames):
+        reference.update(frame)
+        row = reference.track.rows["disc"][-1]
+        z = 180.0 - 17.0 * k / 8.0
+        predicted = 9.0 * x0_m**2 / (z**2 * (x0_m**2 + z**2))
+        assert row.aside / row.forward == pytest.approx(x0_m / z, rel=2e-6, abs=1e-12)
+        assert abs(row.forward * 6.0 / (2.0 * z) * 2.0 - 1.0) == pytest.approx(predicted, rel=0.1, abs=1e-9)
+    values = reference.update(replace(log.frames[-1], t_s=99.0)).estimate.values
+    if x0_m == 0.0:
+        assert values["width_m"] == pytest.approx(6.0, rel=1e-7)
+        assert values["z0_m"] == pytest.approx(180.0, rel=1e-7)
+
+
+def test_rotations_against_compositions() -> None:
+    generator = np.random.default_rng(3)
+    for angles in generator.uniform(-180.0, 180.0, (50, 3)):
+        matrix = yaw_pitch_roll(*angles)
+        assert quaternion_rotation(quaternion_of(matrix)) == pytest.approx(matrix, abs=1e-12)
+        camera = Camera(1, 1, 1, 1, 0, 0, mount_yaw_deg=angles[0], mount_pitch_deg=angles[1], mount_roll_deg=angles[2])
+        assert mounting_rotation(camera) == pytest.approx(matrix @ CAMERA_AXES_IN_BODY, abs=1e-12)
+    assert quaternion_rotation((2.0, 0.0, 0.0, 0.0)) == pytest.approx(np.eye(3))
+
+
+def test_lens_is_inverted(real_camera: Camera) -> None:
+    for x, y in itertools.product(np.linspace(-0.7, 0.7, 9), repeat=2):
+        back_x, back_y, converged, _ = undistort(real_camera, *distort(real_camera, x, y))
+        assert converged
+        assert (back_x, back_y) == pytest.approx((x, y), abs=2e-9)
+    fish = replace(real_camera, k1=-0.5, k2=0.0, k3=0.0)
+    assert not undistort(fish, 1.2, 0.0)[2]
+
+
+def frame_at(t_s: float, **changes: object) -> Frame:
+    fields = {"left": (500.0, 600.0), "right": (520.0, 600.0)}
+    return Frame(t_s, 1, (t_s * 17.0, 0.0, -30.0), (1.0, 0.0, 0.0, 0.0), **{**fields, **changes})
+
+
+@pytest.mark.parametrize(
+    ("frame", "status"),
+    [
+        (frame_at(1.0, left=(math.nan, 0.0)), "not_finite"),
+        (frame_at(1.0, agl_m=math.inf), "not_finite"),
+        (frame_at(1.0, left=(2e5, math.nan)), "not_finite"),
+        (frame_at(1.0, left=(2e5, 0.0)), "out_of_range"),
+        (frame_at(1.0, agl_m=2e5), "out_of_range"),
+        (frame_at(0.0), "bad_time"),
+        (frame_at(-1.0), "bad_time"),
+        (replace(frame_at(1.0), t_s=math.nan), "bad_time"),
+        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 0.0)), "bad_attitude"),
+        (replace(frame_at(1.0), attitude=(1.02, 0.0, 0.0, 0.0)), "bad_attitude"),
+        (replace(frame_at(1.0), attitude=(5.0, 0.0, 0.0, 0.0)), "bad_attitude"),
+        (replace(frame_at(1.0), attitude=(1.005, 0.0, 0.0, 0.0)), "collecting"),
+        (frame_at(1.0, left=(520.0, 600.0), right=(500.0, 600.0)), "swapped"),
+        (frame_at(1.0, base_left=(520.0, 700.0), base_right=(500.0, 700.0)), "swapped"),
+        (frame_at(1.0, left=None, right=None), "nothing_seen"),
+        (frame_at(1.0, left=None), "collecting"),
+        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0)), "behind_camera"),
+        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0), left=None, right=None), "nothing_seen"),
+    ],
+)
+def test_statuses_of_one_image(frame: Frame, status: str) -> None:
+    camera = Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0)
+    reference, mirror = Reference64(camera), Mirror32(camera)
+    assert reference.update(frame_at(0.0)).estimate.status == mirror.update(frame_at(0.0)).status == "collecting"
+    assert reference.update(frame).estimate.status == mirror.update(frame).status == status
+
+
+def test_refused_images_change_nothing() -> None:
+    log = make_log(Scene(width_m=10.0, alpha_deg=20.0, run_s=4.0))
+    camera, frames = log.camera, log.frames
+    clean, dirty = Reference64(camera), Reference64(camera)
+    for k, frame in enumerate(frames):
+        expected = clean.update(frame).estimate
+        assert dirty.update(frame).estimate == expected
+        if k % 3 == 0:
+            bad = replace(frame, t_s=frame.t_s + 0.01, position_m=(math.nan, 0.0, 0.0))
+            refused = dirty.update(bad).estimate
+            assert refused.status == "not_finite"
+            assert refused.values == expected.values
+
+
+def test_disc_is_told_until_the_line_takes_over() -> None:
+    log = make_log(Scene(width_m=12.0, length_m=20.0, alpha_deg=20.0, run_s=6.0))
+    models = [report.estimate.model for report in fly(log)]
+    assert models[:7] == ["none"] * 7
+    assert set(models[7:]) == {"line"}
+    models = [report.estimate.model for report in fly(log, line_points=20)]
+    assert models[7:19] == ["disc"] * 12
+    assert set(models[19:]) == {"line"}
+    assert {report.estimate.model for report in fly(log, model="disc")[7:]} == {"disc"}
+
+
+def test_guided_decisions() -> None:
+    gates = Gates({"near": True, "far": True, "same": True})
+    assert gates.decide("near", False, -1e-7, 1.0)
+    assert not gates.decide("far", False, -1e-3, 1.0)
+    assert gates.decide("same", True, 1.0, 1.0)
+    assert not gates.decide("unknown", False, -1e-9, 1.0)
+    assert gates.followed == ["near"]
+    assert gates.disputed == ["far"]

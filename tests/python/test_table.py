@@ -1,0 +1,115 @@
+"""The pilot's table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+from goe_tools.__main__ import main
+from goe_tools.compare import run_replay  # noqa: F401  (the stand-in is run as the program would be)
+from goe_tools.estimate import LABELS, NUMBERS, Estimate, read_estimates
+from goe_tools.obslog import LogError
+from goe_tools.table import chosen, measured
+
+HEADER = ",".join((*LABELS, *NUMBERS))
+
+
+def row(t_s: float, track: int, status: str, model: str, **values: float) -> str:
+    numbers = ["" if name not in values else repr(values[name]) for name in NUMBERS]
+    return ",".join([repr(t_s), str(track), status, model, "8" if model != "none" else "0", *numbers])
+
+
+LINE = {
+    "x0_m": -30.0, "x0_sd_m": 0.5, "z0_m": 200.0, "z0_sd_m": 2.0, "x_m": -30.0, "x_sd_m": 0.5, "z_m": 120.0,
+    "z_sd_m": 2.0, "width_m": 12.1, "width_sd_m": 0.21, "length_m": 20.5, "length_sd_m": 0.6,
+    "orientation_deg": 20.2, "orientation_sd_deg": 0.25,
+}  # fmt: skip
+
+
+@pytest.fixture
+def estimates(tmp_path: Path) -> Path:
+    lines = [HEADER, row(0.0, 1, "collecting", "none"), row(1.0, 1, "ok", "line", **LINE)]
+    lines += [row(1.0, 2, "collecting", "none"), row(2.0, 1, "held", "line", **LINE)]
+    path = tmp_path / "estimates.csv"
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def test_what_it_says(estimates: Path, tmp_path: Path, capsys) -> None:
+    truth = tmp_path / "truth.csv"
+    truth.write_text(
+        "id,static,center_n_m,center_e_m,ground_d_m,width_m,length_m,height_m,heading_deg,x0_m,z0_m,orientation_deg\n"
+        "1,1,1,2,3,12,20,5,7,-29,201,19\n"
+    )
+    assert main(["table", str(estimates), "--truth", str(truth)]) == 0
+    told = capsys.readouterr().out
+    assert "120.0 ±2.0 m" in told
+    assert "30.00 ±0.50 m left" in told
+    assert "* held" in told
+    assert "12.10 ±0.21 m" in told and "12.00 m" in told and "+0.10 m" in told
+    assert "20.20 ±0.25°" in told and "+1.20°" in told
+    assert "obstacle 2: no estimate in 1 images (last: collecting)" in told
+
+
+def test_without_truth(estimates: Path, capsys) -> None:
+    assert main(["table", str(estimates)]) == 0
+    assert "120.0 ±2.0 m" in capsys.readouterr().out
+
+
+def test_one_track(estimates: Path, capsys) -> None:
+    assert main(["table", str(estimates), "--id", "2"]) == 0
+    assert "obstacle 1" not in capsys.readouterr().out
+    assert main(["table", str(estimates), "--id", "5"]) == 2
+    assert "no track 5" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("value", "sigma", "text"),
+    [
+        (1234.5, 123.0, "1234 ±123"),
+        (123.456, 1.26, "123.5 ±1.3"),
+        (5.1234, 0.0121, "5.12 ±0.01"),
+        (5.0, 0.0, "5.00 ±0.00"),
+    ],
+)
+def test_digits_follow_the_sigma(value: float, sigma: float, text: str) -> None:
+    assert measured(Estimate("ok", values={"z_m": value, "z_sd_m": sigma}), "z_m") == text
+
+
+def test_rows_are_spread() -> None:
+    rows = [(float(k), 1, Estimate("ok", "disc")) for k in range(100)]
+    assert [t for t, _, _ in chosen(rows, 4)] == [0.0, 33.0, 66.0, 99.0]
+    assert len(chosen(rows[:3], 4)) == 3
+    assert chosen(rows, 1)[0][0] == 99.0
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "1: t_s: column is missing"),
+        (HEADER.replace(",x_m", "") + "\n", "1: x_m: column is missing"),
+        (HEADER + "\n" + row(1.0, 1, "ok", "disc", x0_m=1.0).replace("1.0,1,", "soon,1,"), "2: t_s: 'soon'"),
+        (HEADER + "\n" + row(1.0, 1, "ok", "disc", x0_m=1.0) + ",3", "2: number of fields"),
+        (HEADER + "\n" + row(1.0, 1, "ok", "disc")[:-3], "2: number of fields"),
+    ],
+)
+def test_bad_estimates(text: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "estimates.csv"
+    path.write_text(text)
+    with pytest.raises(LogError) as error:
+        read_estimates(path)
+    assert str(error.value).startswith(f"{path}:{message}")
+
+
+def test_the_demo(replay: Path, tmp_path: Path, capsys) -> None:
+    import subprocess
+
+    out, folder = tmp_path / "out.csv", ROOT / "tests" / "data" / "corner"
+    subprocess.run([replay, "--out", out, folder], check=True)
+    assert main(["table", str(out), "--truth", str(folder / "truth.csv")]) == 0
+    told = capsys.readouterr().out
+    assert "disc" in told and "front edge" in told
+    errors = [line.split()[-2] for line in told.splitlines() if line.startswith(("width of", "length of", "height "))]
+    assert len(errors) == 3
+    assert all(abs(float(error)) < 1.0 for error in errors)

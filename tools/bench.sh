@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Rows per second of goe_replay on one core, over a long log made of a recorded flight repeated.
+#
+#   tools/bench.sh [rows]   default 1000000
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+rows=${1:-1000000}
+flight=tests/data/corner
+runs=3
+
+cmake --build build --target goe_replay >/dev/null
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# Each repetition is a later obstacle: a new id, and times after those before it.
+awk -F, -v OFS=, -v rows="$rows" '
+    NR == 1 { for (i = 1; i <= NF; i++) { if ($i == "t_s") t = i; if ($i == "id") id = i } print; next }
+    { sub(/\r$/, ""); line[NR - 1] = $0; last = $t }
+    END {
+        n = NR - 1
+        for (k = 0; k < rows; k++) {
+            $0 = line[k % n + 1]
+            repetition = int(k / n)
+            $t = sprintf("%.6f", $t + repetition * (last + 1))
+            $id = repetition + 1
+            print
+        }
+    }' $flight/frames.csv >"$scratch/frames.csv"
+
+best=0
+for _ in $(seq $runs); do
+    start=$(date +%s%N)
+    build/sim_host/goe_replay --camera $flight/camera.ini --frames "$scratch/frames.csv" --out "$scratch/out.csv"
+    end=$(date +%s%N)
+    speed=$((rows * 1000000000 / (end - start)))
+    [ $speed -le $best ] || best=$speed
+done
+
+cached() { sed -n "s/^$1:[A-Z]*=//p" build/CMakeCache.txt; }
+compiler=$(cached CMAKE_C_COMPILER)
+echo "goe_replay: $best rows/s, best of $runs runs over $rows rows"
+echo "machine:  $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
+echo "compiler: $("$compiler" --version | head -n 1)"
+echo "flags:    $(cached CMAKE_C_FLAGS) $(cached CMAKE_C_FLAGS_RELEASE) -std=c99 -ffp-contract=off -fno-math-errno"

@@ -1,0 +1,38 @@
+"""Command line: python -m goe_tools {scene,compare,golden,table} ..."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+from .obslog import LogError
+
+COMMANDS = {
+    "scene": "write a synthetic observation log of a box or a cylinder",
+    "compare": "run goe_replay over logs and compare it with both references",
+    "golden": "write or check the C headers with the unit tests' reference data",
+    "table": "print estimates as a table that a pilot can read",
+}
+EXIT_BAD_INPUT = 2
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="goe_tools", description="Tools of the ground obstacle estimator.")
+    commands = parser.add_subparsers(dest="command", required=True)
+    for name, text in COMMANDS.items():
+        module = importlib.import_module(f".{name}", __package__)
+        command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+        module.add_arguments(command)
+        command.set_defaults(entry=module.run)
+    arguments = parser.parse_args(argv)
+    try:
+        return int(arguments.entry(arguments))
+    except (LogError, ValueError, FileNotFoundError) as error:
+        print(f"goe_tools {arguments.command}: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+
+
+if __name__ == "__main__":
+    sys.exit(main())

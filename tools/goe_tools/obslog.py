@@ -1,0 +1,336 @@
+"""Observation logs: a folder with camera.ini, frames.csv and, where the truth is known, truth.csv.
+
+Frames: NED earth (north, east, down), FRD body, camera with x right, y down and z along the optical axis. Lengths
+are in metres, image points in pixels from the top left corner, attitudes Hamilton quaternions (w, x, y, z) body -> NED.
+An empty field means "not measured": None here. Errors carry file, line and column: LogError.
+"""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+Pixel = tuple[float, float]
+
+TIME_LIMIT_US = 9.2e18  # just inside 64 bits
+FEATURES = ("left", "right", "top", "base_left", "base_near", "base_right")
+POSE_COLUMNS = ("n_m", "e_m", "d_m", "qw", "qx", "qy", "qz")
+REQUIRED_COLUMNS = ("t_s", "id", *POSE_COLUMNS)
+FRAME_COLUMNS = (*REQUIRED_COLUMNS, "agl_m", *(f"{feature}_{axis}" for feature in FEATURES for axis in "uv"))
+TRUTH_COLUMNS = (
+    "id",
+    "static",
+    "center_n_m",
+    "center_e_m",
+    "ground_d_m",
+    "width_m",
+    "length_m",
+    "height_m",
+    "heading_deg",
+)
+
+
+class LogError(ValueError):
+    """Bad input; its text is ``file:line: column: reason`` (without the parts that do not apply)."""
+
+    def __init__(self, path: Path, line: int, column: str, reason: str) -> None:
+        self.path, self.line, self.column, self.reason = Path(path), line, column, reason
+        where = f"{path}:{line}: " if line else f"{path}: "
+        super().__init__(where + (f"{column}: " if column else "") + reason)
+
+
+@dataclass
+class Camera:
+    """camera.ini. ``heading_deg`` is the heading of T's Z axis, clockwise from north; None: auto."""
+
+    width: float
+    height: float
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    k1: float = 0.0
+    k2: float = 0.0
+    p1: float = 0.0
+    p2: float = 0.0
+    k3: float = 0.0
+    mount_roll_deg: float = 0.0
+    mount_pitch_deg: float = 0.0
+    mount_yaw_deg: float = 0.0
+    offset_x_m: float = 0.0
+    offset_y_m: float = 0.0
+    offset_z_m: float = 0.0
+    heading_deg: float | None = None
+
+
+CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.name != "heading_deg")
+REQUIRED_CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.default is dataclasses.MISSING)
+HEADING_KEY = "trajectory.heading_deg"
+
+
+@dataclass
+class Frame:
+    """One row of frames.csv: one obstacle in one image."""
+
+    t_s: float
+    id: int
+    position_m: tuple[float, float, float]  # vehicle, NED
+    attitude: tuple[float, float, float, float]  # w, x, y, z
+    agl_m: float | None = None  # camera above the ground at the obstacle; None: -down
+    left: Pixel | None = None
+    right: Pixel | None = None
+    top: Pixel | None = None
+    base_left: Pixel | None = None
+    base_near: Pixel | None = None
+    base_right: Pixel | None = None
+
+    @property
+    def height_m(self) -> float:
+        """Camera height above the ground at the obstacle, m."""
+        return -self.position_m[2] if self.agl_m is None else self.agl_m
+
+    @property
+    def time_us(self) -> int | None:
+        """Time stamp as the replay program hands it on: microseconds, ties to even; None if not finite or too large."""
+        time_us = self.t_s * 1e6
+        return round(time_us) if abs(time_us) < TIME_LIMIT_US else None
+
+
+@dataclass
+class Truth:
+    """One row of truth.csv. ``extra`` holds the columns beyond the contract's, as text."""
+
+    id: int
+    static: bool
+    center_n_m: float
+    center_e_m: float
+    ground_d_m: float
+    width_m: float
+    length_m: float | None  # None: round
+    height_m: float
+    heading_deg: float | None  # of the length axis, clockwise from north; None: round
+    extra: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass
+class ObservationLog:
+    camera: Camera
+    frames: list[Frame]
+    truth: dict[int, Truth] = field(default_factory=dict)  # by id
+
+    def tracks(self) -> dict[int, list[Frame]]:
+        """The frames of each id, in the log's order."""
+        result: dict[int, list[Frame]] = {}
+        for frame in self.frames:
+            result.setdefault(frame.id, []).append(frame)
+        return result
+
+
+# ----------------------------------------------------------------------------------------------------------- reading
+
+
+def _number(text: str, path: Path, line: int, column: str) -> float:
+    try:
+        if "_" in text:  # Python's digit grouping, unknown to every other reader
+            raise ValueError
+        return float(text)
+    except ValueError:
+        raise LogError(path, line, column, f"'{text}' is not a number") from None
+
+
+def _integer(text: str, path: Path, line: int, column: str) -> int:
+    try:
+        if "_" in text:
+            raise ValueError
+        return int(text)
+    except ValueError:
+        raise LogError(path, line, column, f"'{text}' is not an integer") from None
+
+
+def _read_text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise LogError(path, 0, "", error.strerror or str(error)) from None
+    except UnicodeDecodeError as error:
+        raise LogError(path, 0, "", f"not UTF-8 text: {error.reason}") from None
+
+
+def read_camera(path: Path) -> Camera:
+    """Reads camera.ini; an unknown, doubled, missing or non-numeric key is a LogError."""
+    path = Path(path)
+    values: dict[str, float | None] = {}
+    for line, raw in enumerate(_read_text(path).splitlines(), start=1):
+        text = raw.split("#", 1)[0].strip()
+        if not text:
+            continue
+        key, equals, value = (part.strip() for part in text.partition("="))
+        if not equals:
+            raise LogError(path, line, "", f"'{text}' is not of the form key = value")
+        name = "heading_deg" if key == HEADING_KEY else key[len("camera.") :] if key.startswith("camera.") else ""
+        if name not in CAMERA_FIELDS and key != HEADING_KEY:
+            raise LogError(path, line, key, "unknown key")
+        if name in values:
+            raise LogError(path, line, key, "given twice")
+        if key == HEADING_KEY and value == "auto":
+            values[name] = None
+            continue
+        number = _number(value, path, line, key)
+        if not math.isfinite(number):
+            raise LogError(path, line, key, f"'{value}' is not finite")
+        if name in ("width", "height", "fx", "fy") and number <= 0.0:
+            raise LogError(path, line, key, "must be positive")
+        values[name] = number
+    for name in REQUIRED_CAMERA_FIELDS:
+        if name not in values:
+            raise LogError(path, 0, f"camera.{name}", "missing")
+    return Camera(**values)  # type: ignore[arg-type]
+
+
+def _rows(path: Path, required: Sequence[str], known: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
+    """Yields (line number, column -> text) of a CSV file with a header line."""
+    reader = csv.reader(_read_text(path).splitlines(keepends=True))
+    header: list[str] | None = None
+    for row in reader:
+        if not any(text.strip() for text in row) and len(row) <= 1:
+            continue
+        if header is None:
+            header = [name.strip() for name in row]
+            for name in required:
+                if name not in header:
+                    raise LogError(path, reader.line_num, name, "column is missing")
+            for name in known:
+                if header.count(name) > 1:
+                    raise LogError(path, reader.line_num, name, "column is given twice")
+            for name in FEATURES:
+                if (f"{name}_u" in header) != (f"{name}_v" in header):
+                    absent = f"{name}_v" if f"{name}_u" in header else f"{name}_u"
+                    raise LogError(path, reader.line_num, absent, "column is missing")
+            continue
+        if len(row) != len(header):
+            raise LogError(path, reader.line_num, "", f"{len(row)} fields under {len(header)} columns")
+        yield reader.line_num, {name: text.strip() for name, text in zip(header, row)}
+    if header is None:
+        raise LogError(path, 0, "", "empty: no header line")
+
+
+def _optional(row: dict[str, str], path: Path, line: int, column: str) -> float | None:
+    text = row.get(column, "")
+    return _number(text, path, line, column) if text else None
+
+
+def _pixel(row: dict[str, str], path: Path, line: int, feature: str) -> Pixel | None:
+    u = _optional(row, path, line, f"{feature}_u")
+    v = _optional(row, path, line, f"{feature}_v")
+    return None if u is None or v is None else (u, v)
+
+
+def read_frames(path: Path) -> list[Frame]:
+    """Reads frames.csv. An empty pose field becomes NaN: a bad measurement, which is no bad input."""
+    path = Path(path)
+    frames = []
+    for line, row in _rows(path, REQUIRED_COLUMNS, FRAME_COLUMNS):
+        pose = [_optional(row, path, line, column) for column in POSE_COLUMNS]
+        n, e, d, qw, qx, qy, qz = (math.nan if value is None else value for value in pose)
+        frames.append(
+            Frame(
+                t_s=_number(row["t_s"], path, line, "t_s"),
+                id=_integer(row["id"], path, line, "id"),
+                position_m=(n, e, d),
+                attitude=(qw, qx, qy, qz),
+                agl_m=_optional(row, path, line, "agl_m"),
+                **{feature: _pixel(row, path, line, feature) for feature in FEATURES},
+            )
+        )
+    return frames
+
+
+def read_truth(path: Path) -> dict[int, Truth]:
+    """Reads truth.csv into a dictionary by id."""
+    path = Path(path)
+    result: dict[int, Truth] = {}
+    for line, row in _rows(path, TRUTH_COLUMNS, TRUTH_COLUMNS):
+        key = _integer(row["id"], path, line, "id")
+        if key in result:
+            raise LogError(path, line, "id", f"{key} is given twice")
+
+        def value(column: str, row: dict[str, str] = row, line: int = line) -> float:
+            return _number(row[column], path, line, column)
+
+        result[key] = Truth(
+            id=key,
+            static=_integer(row["static"], path, line, "static") != 0,
+            center_n_m=value("center_n_m"),
+            center_e_m=value("center_e_m"),
+            ground_d_m=value("ground_d_m"),
+            width_m=value("width_m"),
+            length_m=_optional(row, path, line, "length_m"),
+            height_m=value("height_m"),
+            heading_deg=_optional(row, path, line, "heading_deg"),
+            extra={name: text for name, text in row.items() if name not in TRUTH_COLUMNS},
+        )
+    return result
+
+
+def read_log(folder: Path) -> ObservationLog:
+    """Reads a whole log; truth.csv may be absent."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise LogError(folder, 0, "", "no such folder")
+    truth = folder / "truth.csv"
+    return ObservationLog(
+        camera=read_camera(folder / "camera.ini"),
+        frames=read_frames(folder / "frames.csv"),
+        truth=read_truth(truth) if truth.exists() else {},
+    )
+
+
+# ----------------------------------------------------------------------------------------------------------- writing
+
+
+def _text(value: float | None) -> str:
+    """The shortest text that reads back as the same double, so that a file adds no noise; empty for None."""
+    return "" if value is None else repr(float(value))
+
+
+def write_camera(path: Path, camera: Camera, comment: str = "") -> None:
+    lines = [f"# {line}" for line in comment.splitlines()]
+    lines += [f"camera.{name} = {_text(getattr(camera, name))}" for name in CAMERA_FIELDS]
+    lines.append(f"{HEADING_KEY} = {'auto' if camera.heading_deg is None else _text(camera.heading_deg)}")
+    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def write_frames(path: Path, frames: Sequence[Frame]) -> None:
+    header = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz"]
+    header += [f"{feature}_{axis}" for feature in FEATURES for axis in "uv"]
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(header)
+        for frame in frames:
+            pixels = [getattr(frame, feature) or (None, None) for feature in FEATURES]
+            numbers = [*frame.position_m, frame.agl_m, *frame.attitude, *(value for pixel in pixels for value in pixel)]
+            writer.writerow([_text(frame.t_s), frame.id, *(_text(number) for number in numbers)])
+
+
+def write_truth(path: Path, truth: dict[int, Truth]) -> None:
+    extra = list(dict.fromkeys(name for entry in truth.values() for name in entry.extra))
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*TRUTH_COLUMNS, *extra])
+        for entry in truth.values():
+            numbers = [_text(getattr(entry, column)) for column in TRUTH_COLUMNS[2:]]
+            writer.writerow([entry.id, int(entry.static), *numbers, *(entry.extra.get(name, "") for name in extra)])
+
+
+def write_log(folder: Path, log: ObservationLog, comment: str = "") -> None:
+    """Writes camera.ini, frames.csv and, if there is any truth, truth.csv; makes the folder."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_camera(folder / "camera.ini", log.camera, comment)
+    write_frames(folder / "frames.csv", log.frames)
+    if log.truth:
+        write_truth(folder / "truth.csv", log.truth)

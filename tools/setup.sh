@@ -1,0 +1,135 @@
+#!/usr/bin/env bash
+# Gets what the project needs: Debian packages, the Unity test framework, a Python environment in .venv.
+#
+#   tools/setup.sh          everything
+#   tools/setup.sh --demo   only what tools/demo.sh needs
+#
+# Packages are installed by root or through a sudo that asks no password; otherwise the line to type is printed. What is
+# there already is left alone, so that a second run takes a moment. Exit status 1: something needed is missing.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+mkdir -p .cache
+log=$root/.cache/setup.log
+: >"$log"
+
+demo=false
+case ${1:-} in
+    --demo) demo=true ;;
+    '') ;;
+    *)
+        sed -n '2,/^set/ { /^#/ s/^# \{0,1\}//p }' "$0" >&2
+        exit 2 ;;
+esac
+
+die() {
+    tail -n 15 "$log" >&2
+    echo "setup: $*" >&2
+    exit 1
+}
+
+# -------------------------------------------------------------------------------------------------------------- packages
+
+# want <list> <package> <command that succeeds if it is there>...
+want() {
+    local -n list=$1
+    local package=$2
+    shift 2
+    "$@" >/dev/null 2>&1 || list+=("$package")
+}
+
+has() { command -v "$1"; }
+has_header() { echo "#include <$1>" | cc -E -x c -; }
+has_arm_header() { echo "#include <$1>" | arm-none-eabi-gcc -E -x c -; }
+
+find_missing() {
+    needed=()
+    extra=()
+    want needed build-essential eval 'has c++ && has_header stdio.h'
+    want needed cmake has cmake
+    want needed ninja-build has ninja
+    want needed libpopt-dev has_header popt.h
+    want needed libcsv-dev has_header csv.h
+    want needed libinih-dev has_header ini.h
+    want needed python3-venv python3 -c 'import ensurepip, venv'
+    if ! $demo; then
+        want needed curl has curl
+        want needed ca-certificates test -e /etc/ssl/certs/ca-certificates.crt
+        want needed xz-utils has xz
+        # Without these parts of tools/test.sh are skipped.
+        want extra clang-19 has clang-19
+        want extra clang-format-19 has clang-format-19
+        want extra clang-tidy-19 has clang-tidy-19
+        want extra shellcheck has shellcheck
+        want extra gcc-arm-none-eabi has arm-none-eabi-gcc
+        want extra libnewlib-arm-none-eabi has_arm_header math.h
+    fi
+}
+
+as_root=()
+may_install() {
+    command -v apt-get >/dev/null || return 1
+    [ "$(id -u)" = 0 ] && return 0
+    command -v sudo >/dev/null && sudo -n true 2>/dev/null && as_root=(sudo -n)
+}
+
+# Whether apt's lists, as they are, know all of the packages.
+known() { apt-get install --simulate --no-install-recommends "$@" >>"$log" 2>&1; }
+
+install_packages() {
+    echo "setup: installing $*"
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "$@" \
+        </dev/null >>"$log" 2>&1
+}
+
+update_lists() {
+    echo "setup: updating the lists of packages"
+    "${as_root[@]}" apt-get update -qq </dev/null >>"$log" 2>&1 || true
+}
+
+find_missing
+if [ $((${#needed[@]} + ${#extra[@]})) != 0 ]; then
+    if may_install; then
+        known "${needed[@]}" "${extra[@]}" || update_lists
+        if [ ${#needed[@]} != 0 ] && ! install_packages "${needed[@]}"; then
+            update_lists # the packages may have moved on since
+            install_packages "${needed[@]}" || die "apt-get cannot install ${needed[*]}"
+        fi
+        for package in "${extra[@]}"; do
+            if known "$package"; then
+                install_packages "$package" || echo "setup: $package cannot be installed"
+            else
+                echo "setup: there is no package $package here"
+            fi
+        done
+    else
+        echo "setup: missing packages; please type:"
+        echo "    sudo apt-get update && sudo apt-get install --no-install-recommends" "${needed[@]}" "${extra[@]}"
+        if [ ${#needed[@]} != 0 ]; then
+            exit 1
+        fi
+        echo "setup: going on without ${extra[*]}, which only some tests need"
+    fi
+fi
+
+# ----------------------------------------------------------------------------------------------------- Unity and Python
+
+if ! $demo && [ -z "${UNITY_DIR:-}" ] &&
+    ! (cd .cache && cmake --find-package -DNAME=unity -DCOMPILER_ID=GNU -DLANGUAGE=C -DMODE=EXIST) >>"$log" 2>&1; then
+    tools/fetch_unity.sh
+fi
+
+python=${PYTHON:-python3}
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 9))' || die "Python 3.9 or newer is needed"
+stamp=.venv/installed
+state=$("$python" --version && cat tools/requirements.txt tools/pyproject.toml && echo "$root")
+if [ ! -e $stamp ] || [ "$(cat $stamp)" != "$state" ]; then
+    echo "setup: making .venv"
+    rm -rf .venv
+    "$python" -m venv .venv >>"$log" 2>&1 || die "no Python environment can be made"
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check -r tools/requirements.txt >>"$log" 2>&1 ||
+        die "pip cannot install tools/requirements.txt"
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --editable tools >>"$log" 2>&1 ||
+        die "pip cannot install tools/"
+    echo "$state" >$stamp
+fi

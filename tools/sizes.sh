@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# Memory of one estimator and code of the library, as the README's table.
+#
+#   tools/sizes.sh          prints the table
+#   tools/sizes.sh --check  fails if an estimator at the default window is larger than 1 KiB, or if the README
+#                           states bytes per estimator that are not these
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+limit_bytes=1024
+
+# estimator_bytes [window]
+estimator_bytes() {
+    gcc -std=c99 ${1:+-DGOE_WINDOW_MAX=$1} -I"$root/lib" "$root/tests/flags/sizeof.c" -o sizeof
+    ./sizeof
+}
+
+state_rows() {
+    local window
+    for window in 3 8 16 32 64; do
+        echo "| $window | $(estimator_bytes $window) |"
+    done
+}
+
+# code_row <name> <size program> <compiler and flags>...
+code_row() {
+    local name=$1 size=$2
+    shift 2
+    if command -v "$1" >/dev/null; then
+        "$@" -std=c99 -ffp-contract=off -fno-math-errno -c "$root"/lib/*.c
+        # .data.rel.ro holds constants that are addresses: read-only once loaded
+        "$size" -A ./*.o | awk -v name="$name ($("$1" -dumpversion))" \
+            '/^\.(text|rodata|data\.rel\.ro)/ { code += $2 } /^\.(data|bss)/ && !/^\.data\.rel\.ro/ { data += $2 }
+             END { printf "| %s | %d | %d |\n", name, code, data }'
+        rm -f ./*.o
+    fi
+}
+
+if [ "${1:-}" = --check ]; then
+    bytes=$(estimator_bytes)
+    echo "estimator at the default window: $bytes bytes"
+    if [ "$bytes" -gt $limit_bytes ]; then
+        echo "FAILED: more than $limit_bytes" >&2
+        exit 1
+    fi
+    if [ -e "$root/README.md" ]; then
+        while read -r row; do
+            if ! grep -qxF "$row" "$root/README.md"; then
+                echo "FAILED: README.md has no line \"$row\" (tools/sizes.sh prints its table)" >&2
+                exit 1
+            fi
+        done <<<"$(state_rows)"
+    fi
+    exit 0
+fi
+
+echo "| largest window \`GOE_WINDOW_MAX\` | bytes per estimator |"
+echo "|---|---|"
+state_rows
+echo
+echo "| library code | code and constants, bytes | writable data, bytes |"
+echo "|---|---|---|"
+for level in -O2 -Os; do
+    code_row "x86-64 gcc $level" size gcc $level
+done
+for level in -O2 -Os; do
+    code_row "x86-64 clang $level" size clang-19 $level
+done
+for level in -O2 -Os; do
+    code_row "Cortex-M4F gcc $level" arm-none-eabi-size arm-none-eabi-gcc $level \
+        -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
+done
