@@ -212,7 +212,7 @@ def test_quaternion_is_the_rotation() -> None:
 
 
 def test_a_path_into_the_ground_is_refused() -> None:
-    with pytest.raises(ValueError, match="meets the ground after 1.1"):
+    with pytest.raises(ValueError, match=r"meets the ground after 1.1"):
         make_log(Scene(altitude_m=2.0, glide_deg=6.0, run_s=8.0))
 
 
