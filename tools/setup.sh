@@ -61,6 +61,9 @@ find_missing() {
         want extra clang-format-19 has clang-format-19
         want extra clang-tidy-19 has clang-tidy-19
         want extra shellcheck has shellcheck
+        want extra chromium has chromium
+        want extra chromium-driver has chromedriver
+        want extra poppler-utils has pdftoppm
         want extra gcc-arm-none-eabi has arm-none-eabi-gcc
         want extra libnewlib-arm-none-eabi has_arm_header math.h
     fi

@@ -14,6 +14,7 @@ mkdir -p $logs
 python=$root/.venv/bin/python
 flights=${GOE_KITTI_DIR:-../shared/data/kitti}
 export GOE_REPLAY=$root/build/sim_host/goe_replay
+export OPENBLAS_NUM_THREADS=1 # numpy: the matrices are small, threads only get into each other's way
 
 failed=()
 skipped=()

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
 from goe_tools import compare
 from goe_tools.__main__ import main
 from goe_tools.estimate import Settings
 from goe_tools.obslog import read_log, write_log
 from goe_tools.scene import Scene, make_log
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def run(replay: Path, *arguments: object) -> int:

@@ -6,9 +6,10 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
 from goe_tools import golden
 from goe_tools.__main__ import main
+
+ROOT = Path(__file__).resolve().parents[2]
 
 COMMITTED = ROOT / "tests" / "c" / "golden"
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
 from goe_tools import minimax, mirror32
 from goe_tools.compare import MAX_RELATIVE, relative_difference
 from goe_tools.estimate import Settings
@@ -15,6 +15,8 @@ from goe_tools.mirror32 import F, Mirror32, arctan_rad, fold_deg, sincos_deg
 from goe_tools.obslog import Camera, ObservationLog
 from goe_tools.reference64 import Reference64
 from goe_tools.scene import Scene, make_log
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_arctangent() -> None:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 import shlex
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
 from goe_tools.__main__ import main
 from goe_tools.obslog import Camera, Frame, ObservationLog, read_log
 from goe_tools.scene import Scene, distort, make_log, quaternion_of, yaw_pitch_roll
+
+ROOT = Path(__file__).resolve().parents[2]
 
 PINHOLE = Camera(1280.0, 1280.0, 914.0, 900.0, 640.0, 620.0)
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
 from goe_tools.__main__ import main
 from goe_tools.compare import run_replay  # noqa: F401  (the stand-in is run as the program would be)
 from goe_tools.estimate import LABELS, NUMBERS, Estimate, read_estimates
 from goe_tools.obslog import LogError
 from goe_tools.table import chosen, measured
+
+ROOT = Path(__file__).resolve().parents[2]
 
 HEADER = ",".join((*LABELS, *NUMBERS))
 

@@ -1,4 +1,4 @@
-"""Command line: python -m goe_tools {scene,compare,golden,table} ..."""
+"""Command line: python -m goe_tools {scene,compare,golden,report,table} ..."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ COMMANDS = {
     "scene": "write a synthetic observation log of a box or a cylinder",
     "compare": "run goe_replay over logs and compare it with both references",
     "golden": "write or check the C headers with the unit tests' reference data",
+    "report": "write the campaign's report and print Table 3",
     "table": "print estimates as a table that a pilot can read",
 }
 EXIT_BAD_INPUT = 2

@@ -1,5 +1,4 @@
 /* A file that appears whole or not at all. SPDX-License-Identifier: MIT */
-#define _XOPEN_SOURCE 700 /* realpath(); NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp) */
 
 #include "output_file.h"
 

@@ -1,0 +1,27 @@
+/*
+ * The campaign's tables as text: cases.csv and the time series. Metres, degrees, seconds; an empty field: there is no such
+ * number. Numbers have 9 significant digits, so that the estimates' floats survive.
+ *
+ * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
+ */
+#ifndef CAMPAIGN_TEXT_H
+#define CAMPAIGN_TEXT_H
+
+#include <stdio.h>
+
+#include "campaign_plan.h"
+#include "case_statistics.h"
+
+/* "auto", "disc" or "line" as a setting; "none", "disc" or "line" of an estimate. */
+const char *campaign_text_model(goe_model_t model);
+
+void campaign_text_cases_header(FILE *stream);
+
+/* One row: a run over a flight, and statistics of the last fraction of its frames that were solved with a model. */
+void campaign_text_cases_row(FILE *stream, const planned_flight_t *flight, int window, goe_model_t model,
+                             double fraction, const case_statistics_t *statistics);
+
+/* A run's estimates, their truth and errors, frame by frame. samples: one for each frame of log. */
+void campaign_text_series(FILE *stream, const flight_log_t *log, const case_sample_t *samples);
+
+#endif

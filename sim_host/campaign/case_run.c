@@ -1,0 +1,101 @@
+/* Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT */
+#include "case_run.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "case_statistics.h"
+#include "frame.h"
+#include "number_text.h"
+
+#define US_PER_S 1e6
+
+/* ------------------------------------------------------------------------------------------- what a log would carry -- */
+
+static void log_camera(const camera_t *from, goe_camera_t *to) {
+    to->fx_px = number_to_float(from->fx_px);
+    to->fy_px = number_to_float(from->fy_px);
+    to->cx_px = number_to_float(from->cx_px);
+    to->cy_px = number_to_float(from->cy_px);
+    to->k1 = number_to_float(from->k1);
+    to->k2 = number_to_float(from->k2);
+    to->p1 = number_to_float(from->p1);
+    to->p2 = number_to_float(from->p2);
+    to->k3 = number_to_float(from->k3);
+    to->mount_yaw_deg = number_to_float(from->mount_yaw_deg);
+    to->mount_pitch_deg = number_to_float(from->mount_pitch_deg);
+    to->mount_roll_deg = number_to_float(from->mount_roll_deg);
+    to->offset_m[0] = number_to_float(from->offset_m.x);
+    to->offset_m[1] = number_to_float(from->offset_m.y);
+    to->offset_m[2] = number_to_float(from->offset_m.z);
+}
+
+static void log_value(frame_t *row, frame_value_t name, double value) {
+    row->value[name] = value;
+    row->given[name] = true;
+}
+
+static void log_feature(frame_t *row, frame_value_t name_u, const feature_t *feature) {
+    if (feature->seen) {
+        log_value(row, name_u, feature->u_px);
+        log_value(row, (frame_value_t)(name_u + 1), feature->v_px);
+    }
+}
+
+static void log_frame(const flight_frame_t *frame, frame_t *row) {
+    static const frame_value_t features[FEATURE_COUNT] = {
+        [FEATURE_LEFT] = FRAME_LEFT_U,
+        [FEATURE_RIGHT] = FRAME_RIGHT_U,
+        [FEATURE_TOP] = FRAME_TOP_U,
+        [FEATURE_BASE_LEFT] = FRAME_BASE_LEFT_U,
+        [FEATURE_BASE_NEAR] = FRAME_BASE_NEAR_U,
+        [FEATURE_BASE_RIGHT] = FRAME_BASE_RIGHT_U,
+    };
+    const pose_t *pose = &frame->logged;
+    (void)memset(row, 0, sizeof *row);
+    row->time_s = (double)frame->time_us / US_PER_S; /* the double next to the decimal number that the log shows */
+    log_value(row, FRAME_N_M, pose->position_ned_m.x);
+    log_value(row, FRAME_E_M, pose->position_ned_m.y);
+    log_value(row, FRAME_D_M, pose->position_ned_m.z);
+    log_value(row, FRAME_AGL_M, frame->agl_m);
+    log_value(row, FRAME_QW, pose->attitude.w);
+    log_value(row, FRAME_QX, pose->attitude.x);
+    log_value(row, FRAME_QY, pose->attitude.y);
+    log_value(row, FRAME_QZ, pose->attitude.z);
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        log_feature(row, features[i], &frame->measured.feature[i]);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- run -- */
+
+/* The condition is asked of the very points that were solved; only the library's own window knows them. */
+static double condition_behind(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
+    const goe_window_t *window = estimate->model == GOE_MODEL_LINE ? &estimator->line : &estimator->disc;
+    return estimate->fresh ? window_condition(window->point, estimate->points) : (double)NAN;
+}
+
+const char *case_run(const flight_case_t *setup, const flight_log_t *log, goe_model_t model, int window,
+                     case_sample_t *samples) {
+    goe_settings_t settings;
+    goe_estimator_t estimator;
+    const char *bad_field = "settings";
+    goe_settings_default(&settings);
+    log_camera(&setup->camera, &settings.camera);
+    settings.heading_auto = false;
+    settings.heading_deg = number_to_float(degrees(log->course_rad));
+    settings.model = model;
+    settings.window = window;
+    if (goe_init(&estimator, sizeof estimator, &settings, &bad_field) != GOE_OK) {
+        return bad_field;
+    }
+    for (size_t i = 0; i < log->count; i++) {
+        frame_t row;
+        goe_image_t image;
+        log_frame(&log->frames[i], &row);
+        frame_to_image(&row, &image);
+        samples[i].status = goe_update(&estimator, &image, &samples[i].estimate);
+        samples[i].condition = condition_behind(&estimator, &samples[i].estimate);
+    }
+    return NULL;
+}

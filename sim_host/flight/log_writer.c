@@ -1,0 +1,293 @@
+/* Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT */
+#include "log_writer.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define PATH_SIZE 4096
+#define NUMBER_SIZE 32 /* of any double in text */
+
+typedef void (*content_t)(FILE *file, const flight_case_t *setup, const flight_log_t *log);
+
+typedef struct {
+    const char *name;
+    content_t content;
+} log_file_t;
+
+static const char *number(char text[NUMBER_SIZE], double value) {
+    for (int digits = 15; digits <= 17; digits++) {
+        (void)snprintf(text, NUMBER_SIZE, "%.*g", digits, value);
+        const double back = strtod(text, NULL);
+        if (!(back < value) && !(back > value)) {
+            break;
+        }
+    }
+    return text;
+}
+
+static void put(FILE *file, double value) {
+    char text[NUMBER_SIZE];
+    (void)fprintf(file, ",%s", number(text, value));
+}
+
+static void put_vector(FILE *file, vec3_t v) {
+    put(file, v.x);
+    put(file, v.y);
+    put(file, v.z);
+}
+
+static void put_attitude(FILE *file, quat_t q) {
+    put(file, q.w);
+    put(file, q.x);
+    put(file, q.y);
+    put(file, q.z);
+}
+
+static void put_features(FILE *file, const features_t *features) {
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        const feature_t *feature = &features->feature[i];
+        if (feature->seen) {
+            put(file, feature->u_px);
+            put(file, feature->v_px);
+        } else {
+            (void)fputs(",,", file);
+        }
+    }
+}
+
+static void put_feature_names(FILE *file) {
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        (void)fprintf(file, ",%s_u,%s_v", FEATURE_NAMES[i], FEATURE_NAMES[i]);
+    }
+    (void)fputc('\n', file);
+}
+
+static void put_time(FILE *file, int64_t time_us) {
+    (void)fprintf(file, "%" PRId64 ".%06" PRId64, time_us / 1000000, time_us % 1000000);
+}
+
+static void put_key(FILE *file, const char *key, double value) {
+    char text[NUMBER_SIZE];
+    (void)fprintf(file, "%s = %s\n", key, number(text, value));
+}
+
+static void write_camera(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
+    const camera_t *camera = &setup->camera;
+    put_key(file, "camera.width", camera->width_px);
+    put_key(file, "camera.height", camera->height_px);
+    put_key(file, "camera.fx", camera->fx_px);
+    put_key(file, "camera.fy", camera->fy_px);
+    put_key(file, "camera.cx", camera->cx_px);
+    put_key(file, "camera.cy", camera->cy_px);
+    put_key(file, "camera.k1", camera->k1);
+    put_key(file, "camera.k2", camera->k2);
+    put_key(file, "camera.p1", camera->p1);
+    put_key(file, "camera.p2", camera->p2);
+    put_key(file, "camera.k3", camera->k3);
+    put_key(file, "camera.mount_roll_deg", camera->mount_roll_deg);
+    put_key(file, "camera.mount_pitch_deg", camera->mount_pitch_deg);
+    put_key(file, "camera.mount_yaw_deg", camera->mount_yaw_deg);
+    put_key(file, "camera.offset_x_m", camera->offset_m.x);
+    put_key(file, "camera.offset_y_m", camera->offset_m.y);
+    put_key(file, "camera.offset_z_m", camera->offset_m.z);
+    put_key(file, "trajectory.heading_deg", degrees(log->course_rad));
+}
+
+static void write_frames(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
+    (void)setup;
+    (void)fputs("t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz", file);
+    put_feature_names(file);
+    for (size_t i = 0; i < log->count; i++) {
+        const flight_frame_t *frame = &log->frames[i];
+        put_time(file, frame->time_us);
+        (void)fprintf(file, ",%d", LOG_TRACK_ID);
+        put_vector(file, frame->logged.position_ned_m);
+        put(file, frame->agl_m);
+        put_attitude(file, frame->logged.attitude);
+        put_features(file, &frame->measured);
+        (void)fputc('\n', file);
+    }
+}
+
+static void write_truth_frames(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
+    (void)setup;
+    (void)fputs("t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz,airspeed_mps", file);
+    put_feature_names(file);
+    for (size_t i = 0; i < log->count; i++) {
+        const flight_frame_t *frame = &log->frames[i];
+        put_time(file, frame->time_us);
+        (void)fprintf(file, ",%d", LOG_TRACK_ID);
+        put_vector(file, frame->truth.position_ned_m);
+        put(file, frame->true_agl_m);
+        put_attitude(file, frame->truth.attitude);
+        put(file, frame->airspeed_mps);
+        put_features(file, &frame->exact);
+        (void)fputc('\n', file);
+    }
+}
+
+static void write_truth(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
+    const obstacle_t *o = &log->obstacle;
+    (void)fputs("id,static,center_n_m,center_e_m,ground_d_m,width_m,length_m,height_m,heading_deg,"
+                "x0_m,z0_m,front_x0_m,front_z0_m,orientation_deg,kind,seed\n",
+                file);
+    (void)fprintf(file, "%d,1", LOG_TRACK_ID);
+    put(file, o->center_n_m);
+    put(file, o->center_e_m);
+    put(file, o->ground_d_m);
+    put(file, o->width_m);
+    put(file, o->length_m);
+    put(file, o->height_m);
+    put(file, degrees(o->heading_rad));
+    put(file, log->x0_m);
+    put(file, log->z0_m);
+    put(file, log->front_x0_m);
+    put(file, log->front_z0_m);
+    put(file, log->orientation_deg);
+    (void)fprintf(file, ",%s,%" PRIu64 "\n", o->kind == OBSTACLE_BOX ? "box" : "cylinder", setup->seed);
+}
+
+static const log_file_t LOG_FILES[] = {{"camera.ini", write_camera},
+                                       {"frames.csv", write_frames},
+                                       {"truth.csv", write_truth},
+                                       {"truth_frames.csv", write_truth_frames}};
+#define LOG_FILE_COUNT (sizeof LOG_FILES / sizeof LOG_FILES[0])
+
+static bool join(char path[PATH_SIZE], const char *folder, const char *name) {
+    const int length = snprintf(path, PATH_SIZE, "%s/%s", folder, name);
+    return length > 0 && length < PATH_SIZE;
+}
+
+static bool write_file(const char *folder, const log_file_t *entry, const flight_case_t *setup,
+                       const flight_log_t *log) {
+    char path[PATH_SIZE];
+    if (!join(path, folder, entry->name)) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    FILE *file = fopen(path, "wb");
+    if (file == NULL) {
+        return false;
+    }
+    entry->content(file, setup, log);
+    const bool written = !ferror(file);
+    return fclose(file) == 0 && written;
+}
+
+/* Removes a folder that holds files of a log only. */
+static void remove_log(const char *folder) {
+    char path[PATH_SIZE];
+    for (size_t i = 0; i < LOG_FILE_COUNT; i++) {
+        if (join(path, folder, LOG_FILES[i].name)) {
+            (void)unlink(path);
+        }
+    }
+    (void)rmdir(folder);
+}
+
+static bool is_log_file(const char *name) {
+    for (size_t i = 0; i < LOG_FILE_COUNT; i++) {
+        if (strcmp(name, LOG_FILES[i].name) == 0) {
+            return true;
+        }
+    }
+    return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
+}
+
+/* Null if a log may be put in this place, otherwise why not. */
+static const char *occupied(const char *folder, bool *exists) {
+    struct stat status;
+    *exists = lstat(folder, &status) == 0;
+    if (!*exists) {
+        return errno == ENOENT ? NULL : strerror(errno);
+    }
+    DIR *entries = S_ISDIR(status.st_mode) ? opendir(folder) : NULL;
+    if (entries == NULL) {
+        return "is there and is not a folder";
+    }
+    bool only_log = true;
+    for (const struct dirent *entry = readdir(entries); entry != NULL; entry = readdir(entries)) {
+        only_log = only_log && is_log_file(entry->d_name);
+    }
+    (void)closedir(entries);
+    return only_log ? NULL : "is there and holds files that are no log";
+}
+
+static bool exchange(const char *folder, const char *fresh, bool exists) {
+    char old[PATH_SIZE];
+    if (exists) {
+        const int length = snprintf(old, sizeof old, "%s.old", fresh);
+        if (length <= 0 || (size_t)length >= sizeof old || rename(folder, old) != 0) {
+            return false;
+        }
+    }
+    if (rename(fresh, folder) != 0) {
+        const int reason = errno;
+        if (exists) {
+            (void)rename(old, folder);
+        }
+        errno = reason;
+        return false;
+    }
+    if (exists) {
+        remove_log(old);
+    }
+    return true;
+}
+
+static bool write_and_exchange(const char *folder, const char *fresh, bool exists, const flight_case_t *setup,
+                               const flight_log_t *log) {
+    bool done = chmod(fresh, S_IRWXU | S_IRGRP | S_IXGRP | S_IROTH | S_IXOTH) == 0;
+    for (size_t i = 0; i < LOG_FILE_COUNT && done; i++) {
+        done = write_file(fresh, &LOG_FILES[i], setup, log);
+    }
+    done = done && exchange(folder, fresh, exists);
+    if (!done) {
+        const int reason = errno;
+        remove_log(fresh);
+        errno = reason;
+    }
+    return done;
+}
+
+bool log_write(const char *folder, const flight_case_t *setup, const flight_log_t *log, char *fault,
+               size_t fault_size) {
+    char fresh[PATH_SIZE - 16], place[PATH_SIZE - 64];
+    bool exists;
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/') {
+        length--;
+    }
+    if (length == 0 || length >= sizeof place) {
+        (void)snprintf(fault, fault_size, "%s: no usable name of a folder", folder);
+        return false;
+    }
+    memcpy(place, folder, length);
+    place[length] = '\0';
+    const char *reason = occupied(place, &exists);
+    if (reason != NULL) {
+        (void)snprintf(fault, fault_size, "%s: %s", place, reason);
+        return false;
+    }
+    /* An interrupt waits until the log stands or is gone: it must not leave a half of it behind. */
+    sigset_t interrupts, before;
+    (void)sigemptyset(&interrupts);
+    (void)sigaddset(&interrupts, SIGINT);
+    (void)sigaddset(&interrupts, SIGTERM);
+    (void)sigaddset(&interrupts, SIGHUP);
+    (void)sigprocmask(SIG_BLOCK, &interrupts, &before);
+    (void)snprintf(fresh, sizeof fresh, "%s.part-XXXXXX", place);
+    const bool done = mkdtemp(fresh) != NULL && write_and_exchange(place, fresh, exists, setup, log);
+    if (!done) {
+        (void)snprintf(fault, fault_size, "%s: %s", place, strerror(errno));
+    }
+    (void)sigprocmask(SIG_SETMASK, &before, NULL);
+    return done;
+}

@@ -1,0 +1,24 @@
+/*
+ * Writes a flight as an observation log: a folder with camera.ini, frames.csv, truth.csv, and truth_frames.csv with what each
+ * frame would be without noise. Numbers have the fewest digits that read back as the same double.
+ *
+ * The folder appears whole or not at all: it is written beside its place under another name and then renamed. A log that is
+ * already there is replaced; a folder that holds anything else is refused.
+ *
+ * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
+ */
+#ifndef SIM_LOG_WRITER_H
+#define SIM_LOG_WRITER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "flight_case.h"
+
+#define LOG_TRACK_ID 1
+
+/* False: fault says why; the folder is as it was. */
+bool log_write(const char *folder, const flight_case_t *setup, const flight_log_t *log, char *fault, size_t fault_size);
+
+#endif

@@ -1,0 +1,152 @@
+/* Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT */
+#include "sensors.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "text_numbers.h"
+
+#define LARGEST_JITTER 0.45 /* frame intervals: frames keep their order */
+
+bool sensor_noise_parse(const char *text, sensor_noise_t *noise) {
+    memset(noise, 0, sizeof *noise);
+    if (strcmp(text, "none") == 0) {
+        return true;
+    }
+    if (strcmp(text, "rounding") == 0) {
+        noise->rounding = true;
+        return true;
+    }
+    if (strcmp(text, "field") == 0) {
+        noise->pixel_px = 0.5;
+        noise->outlier_rate = 0.02;
+        noise->outlier_px = 15.0;
+        noise->attitude_bias_deg = 0.5;
+        noise->attitude_noise_deg = 0.1;
+        noise->position_walk_m = 0.05;
+        noise->velocity_bias_mps = 0.05;
+        noise->altimeter_m = 0.5;
+        return true;
+    }
+    if (strcmp(text, "detector") == 0) {
+        noise->detector_px = 0.7;
+        noise->detector_width = 0.025;
+        noise->detector_correlation = 0.5;
+        return true;
+    }
+    return text_numbers(text, "pixel:", &noise->pixel_px, 1) && noise->pixel_px >= 0.0;
+}
+
+const char *sensor_noise_fault(const sensor_noise_t *noise) {
+    const double sizes[] = {noise->pixel_px,        noise->outlier_px,        noise->detector_px,
+                            noise->detector_width,  noise->attitude_bias_deg, noise->attitude_noise_deg,
+                            noise->position_walk_m, noise->velocity_bias_mps, noise->altimeter_m,
+                            noise->time_jitter_s};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        if (!(sizes[i] >= 0.0 && sizes[i] <= 1e6)) {
+            return "a noise figure must be 0 to 1e6";
+        }
+    }
+    if (!(noise->outlier_rate >= 0.0 && noise->outlier_rate <= 1.0 && noise->drop_rate >= 0.0 &&
+          noise->drop_rate <= 1.0)) {
+        return "a rate must be 0 to 1";
+    }
+    if (!(noise->detector_correlation >= 0.0 && noise->detector_correlation < 1.0)) {
+        return "the detector's correlation must be 0 or more and less than 1";
+    }
+    return NULL;
+}
+
+static vec3_t normal_vector(random_t *random, double sigma) {
+    vec3_t v;
+    v.x = sigma * random_normal(random);
+    v.y = sigma * random_normal(random);
+    v.z = sigma * random_normal(random);
+    return v;
+}
+
+sensors_t sensors_start(const sensor_noise_t *noise, uint64_t seed) {
+    sensors_t s;
+    memset(&s, 0, sizeof s);
+    s.noise = *noise;
+    s.pixel = random_start(seed, STREAM_PIXEL);
+    s.detector = random_start(seed, STREAM_DETECTOR);
+    s.outlier = random_start(seed, STREAM_OUTLIER);
+    s.attitude = random_start(seed, STREAM_ATTITUDE);
+    s.position = random_start(seed, STREAM_POSITION);
+    s.drop = random_start(seed, STREAM_DROP);
+    s.time = random_start(seed, STREAM_TIME);
+    random_t altimeter = random_start(seed, STREAM_ALTIMETER);
+    s.attitude_bias_rad = normal_vector(&s.attitude, radians(noise->attitude_bias_deg));
+    s.velocity_bias_mps = normal_vector(&s.position, noise->velocity_bias_mps);
+    s.altimeter_m = noise->altimeter_m * random_normal(&altimeter);
+    return s;
+}
+
+bool sensors_frame_lost(sensors_t *sensors) { return random_uniform(&sensors->drop) < sensors->noise.drop_rate; }
+
+double sensors_time_error(sensors_t *sensors, double frame_interval_s) {
+    const double jitter = fmin(sensors->noise.time_jitter_s, LARGEST_JITTER * frame_interval_s);
+    return jitter * (2.0 * random_uniform(&sensors->time) - 1.0);
+}
+
+pose_t sensors_pose(sensors_t *sensors, const pose_t *truth, double t_s) {
+    const vec3_t white = normal_vector(&sensors->attitude, radians(sensors->noise.attitude_noise_deg));
+    const double step = sqrt(fmax(t_s - sensors->walked_s, 0.0));
+    sensors->walk_m =
+        vec3_add(sensors->walk_m, normal_vector(&sensors->position, sensors->noise.position_walk_m * step));
+    sensors->walked_s = fmax(t_s, sensors->walked_s);
+    const vec3_t position_error = vec3_add(sensors->walk_m, vec3_scale(sensors->velocity_bias_mps, t_s));
+    const quat_t turned = quat_from_rotation_vector(vec3_add(sensors->attitude_bias_rad, white));
+    pose_t pose = *truth;
+    pose.position_ned_m = vec3_add(truth->position_ned_m, position_error);
+    pose.attitude = quat_multiply(truth->attitude, turned);
+    return pose;
+}
+
+/* The detector's noise goes on from frame to frame whether or not a feature is seen. */
+static void step_detector(sensors_t *sensors) {
+    const double keep = sensors->detector_started ? sensors->noise.detector_correlation : 0.0;
+    const double fresh = sqrt(1.0 - keep * keep);
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        for (int axis = 0; axis < 2; axis++) {
+            double *state = &sensors->detector_state[i][axis];
+            *state = keep * *state + fresh * random_normal(&sensors->detector);
+        }
+    }
+    sensors->detector_started = true;
+}
+
+static void disturb(sensors_t *sensors, feature_t *feature, const double detector[2], double detector_sigma) {
+    const sensor_noise_t *noise = &sensors->noise;
+    const double du = noise->pixel_px * random_normal(&sensors->pixel);
+    const double dv = noise->pixel_px * random_normal(&sensors->pixel);
+    const bool outlier = random_uniform(&sensors->outlier) < noise->outlier_rate;
+    const double direction = 2.0 * SIM_PI * random_uniform(&sensors->outlier);
+    const double jump = outlier ? noise->outlier_px : 0.0;
+    if (!feature->seen) {
+        return;
+    }
+    feature->u_px += du + detector_sigma * detector[0] + jump * cos(direction);
+    feature->v_px += dv + detector_sigma * detector[1] + jump * sin(direction);
+    if (noise->rounding) {
+        feature->u_px = floor(feature->u_px + 0.5);
+        feature->v_px = floor(feature->v_px + 0.5);
+    }
+}
+
+features_t sensors_features(sensors_t *sensors, const features_t *truth, const camera_t *camera) {
+    const sensor_noise_t *noise = &sensors->noise;
+    const double detector_sigma = hypot(noise->detector_px, noise->detector_width * truth->width_px);
+    features_t measured = *truth;
+    step_detector(sensors);
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        feature_t *feature = &measured.feature[i];
+        disturb(sensors, feature, sensors->detector_state[i], detector_sigma);
+        if (feature->seen && !camera_in_image(camera, feature->u_px, feature->v_px)) {
+            memset(feature, 0, sizeof *feature);
+        }
+    }
+    return measured;
+}

@@ -1,0 +1,373 @@
+/*
+ * goe_sim - flies one case past a ground obstacle and writes what its camera and sensors report as an observation log.
+ *
+ * Exit status: 0 done; 1 the flight ended before its time (log written); 2 bad usage or bad input, nothing written.
+ *
+ * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
+ */
+#include <float.h>
+#include <math.h>
+#include <popt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "flight_case.h"
+#include "log_writer.h"
+#include "scenario.h"
+#include "turbulence.h"
+
+#define EXIT_ENDED_EARLY 1
+#define EXIT_BAD_USAGE 2
+#define FAULT_SIZE 4608
+
+#define NOT_SAID (-DBL_MAX)
+
+/* Options that take a word; their numbers are what popt returns for them. */
+enum {
+    WORD_OBSTACLE = 1,
+    WORD_PATH,
+    WORD_SPEED_PROFILE,
+    WORD_WIND,
+    WORD_NOISE,
+    WORD_CYLINDER,
+    WORD_FLIGHT,
+    WORD_OUT,
+    WORD_COUNT
+};
+
+/* What the command line says. NOT_SAID or null: nothing. */
+typedef struct {
+    char *word[WORD_COUNT];
+    double x0, z0, reach, run, alpha, altitude, glide, speed, fps, course;
+    double wind_speed, wind_from, flight_start;
+    double image_width, image_height, fx, fy, cx, cy, k1, k2, p1, p2, k3;
+    double camera_roll, camera_pitch, camera_yaw, offset_x, offset_y, offset_z;
+    double pixel_noise, outlier_rate, outlier_size, detector_px, detector_width, detector_correlation;
+    double attitude_bias, attitude_noise, position_walk, velocity_bias, altimeter_bias, drop_rate, time_jitter;
+    long long seed;
+    int paper_case, list_cases, rounding;
+} arguments_t;
+
+static arguments_t given;
+
+#define NUMBER(name, variable, unit, text) {name, '\0', POPT_ARG_DOUBLE, &given.variable, 0, text, unit}
+#define WORD(name, number, form, text) {name, '\0', POPT_ARG_STRING, NULL, number, text, form}
+static struct poptOption scene_options[] = {
+    WORD("obstacle", WORD_OBSTACLE, "WHAT", OBSTACLE_FORMS "; default cylinder"),
+    NUMBER("x0", x0, "M", "side distance of its centre from the course at the start, left positive"),
+    NUMBER("z0", z0, "M", "distance of its centre along the course, instead of the way flown by --reach"),
+    NUMBER("alpha", alpha, "DEG", "its length axis from the course, clockwise seen from above"),
+    NUMBER("reach", reach, "S", "time to reach the obstacle"),
+    NUMBER("run", run, "S", "length of the run"),
+    NUMBER("altitude", altitude, "M", "height over ground at reach time"),
+    NUMBER("glide", glide, "DEG", "slope, positive down"),
+    NUMBER("speed", speed, "MPS", "speed over ground in still air; default 17"),
+    NUMBER("course", course, "DEG", "intended flight direction, clockwise from north; default 0"),
+    WORD("path", WORD_PATH, "WHAT", "straight, arc:R (R > 0 turns right) or weave:A,T (amplitude m, period s)"),
+    WORD("speed-profile", WORD_SPEED_PROFILE, "WHAT", "constant or ramp:A (m/s^2)"),
+    WORD("wind", WORD_WIND, "WHAT", "turbulence: none, dryden:light or dryden:moderate"),
+    NUMBER("wind-speed", wind_speed, "MPS", "mean wind"),
+    NUMBER("wind-from", wind_from, "DEG", "where the mean wind comes from"),
+    WORD("flight", WORD_FLIGHT, "FILE",
+         "recorded flight: the camera sees from its true pose, the log carries the estimated one"),
+    NUMBER("flight-start", flight_start, "S", "where in the recording the run starts"),
+    POPT_TABLEEND};
+
+static struct poptOption camera_options[] = {
+    NUMBER("fps", fps, "HZ", "images per second; default 8"),
+    NUMBER("image-width", image_width, "PX", "default 1280"),
+    NUMBER("image-height", image_height, "PX", "default 1280"),
+    NUMBER("fx", fx, "PX", "focal length; default 914"),
+    NUMBER("fy", fy, "PX", "default: fx"),
+    NUMBER("cx", cx, "PX", "principal point; default half the image width"),
+    NUMBER("cy", cy, "PX", "default half the image height"),
+    NUMBER("k1", k1, "-", "lens distortion, OpenCV's meaning"),
+    NUMBER("k2", k2, "-", NULL),
+    NUMBER("p1", p1, "-", NULL),
+    NUMBER("p2", p2, "-", NULL),
+    NUMBER("k3", k3, "-", NULL),
+    NUMBER("yaw-camera", camera_yaw, "DEG", "mounting, negative looks left; default -30"),
+    NUMBER("pitch-camera", camera_pitch, "DEG", "mounting, negative looks down"),
+    NUMBER("roll-camera", camera_roll, "DEG", "mounting"),
+    NUMBER("offset-x", offset_x, "M", "camera from the position's reference point, body forward"),
+    NUMBER("offset-y", offset_y, "M", "body right"),
+    NUMBER("offset-z", offset_z, "M", "body down"),
+    WORD("cylinder", WORD_CYLINDER, "WHAT", "tangent (exact) or cloud (points on the wall); default tangent"),
+    POPT_TABLEEND};
+
+static struct poptOption noise_options[] = {
+    WORD("noise", WORD_NOISE, "WHAT",
+         SENSOR_NOISE_FORMS "; default rounding. The options below change single figures of it"),
+    {"rounding", '\0', POPT_ARG_INT, &given.rounding, 0, "1: whole pixels, 0: not", "0|1"},
+    NUMBER("pixel-noise", pixel_noise, "PX", "one sigma, white"),
+    NUMBER("outlier-rate", outlier_rate, "0..1", "share of features that are displaced"),
+    NUMBER("outlier-size", outlier_size, "PX", "by so much, in a random direction"),
+    NUMBER("detector-px", detector_px, "PX", "detector noise, constant part of one sigma"),
+    NUMBER("detector-width", detector_width, "0..", "detector noise, share of the silhouette's width"),
+    NUMBER("detector-correlation", detector_correlation, "0..1", "detector noise, from frame to frame"),
+    NUMBER("attitude-bias", attitude_bias, "DEG", "one sigma per body axis, constant over a run"),
+    NUMBER("attitude-noise", attitude_noise, "DEG", "one sigma per body axis, white"),
+    NUMBER("position-walk", position_walk, "M", "random walk, one sigma per axis after a second"),
+    NUMBER("velocity-bias", velocity_bias, "MPS", "one sigma per axis, constant over a run"),
+    NUMBER("altimeter-bias", altimeter_bias, "M", "one sigma, constant over a run"),
+    NUMBER("drop-rate", drop_rate, "0..1", "share of frames that are lost"),
+    NUMBER("time-jitter", time_jitter, "S", "largest displacement of an exposure"),
+    {"seed", '\0', POPT_ARG_LONGLONG, &given.seed, 0, "of all random numbers; default 1", "N"},
+    POPT_TABLEEND};
+
+static struct poptOption program_options[] = {
+    {NULL, '\0', POPT_ARG_INCLUDE_TABLE, scene_options, 0, "Obstacle and flight:", NULL},
+    {NULL, '\0', POPT_ARG_INCLUDE_TABLE, camera_options, 0, "Camera:", NULL},
+    {NULL, '\0', POPT_ARG_INCLUDE_TABLE, noise_options, 0, "Sensors:", NULL},
+    {"case", '\0', POPT_ARG_INT, &given.paper_case, 0, "start from this case of the paper's campaign", "N"},
+    {"list-cases", '\0', POPT_ARG_NONE, &given.list_cases, 0, "list the paper's campaign and stop", NULL},
+    WORD("out", WORD_OUT, "DIR", "folder of the log; replaced if it holds one"),
+    POPT_AUTOHELP POPT_TABLEEND};
+
+static void nothing_said(void) {
+    memset(&given, 0, sizeof given);
+    struct poptOption *tables[] = {scene_options, camera_options, noise_options};
+    for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
+        for (struct poptOption *option = tables[i]; option->longName != NULL; option++) {
+            if (option->argInfo == POPT_ARG_DOUBLE) {
+                double *value = option->arg;
+                *value = NOT_SAID;
+            }
+        }
+    }
+    given.paper_case = -1;
+    given.rounding = -1;
+    given.seed = 1;
+}
+
+/* The text after the program's name, on stderr; returns the exit status. */
+static int complain(const char *what, const char *reason) {
+    (void)fprintf(stderr, "goe_sim: %s: %s\n", what, reason);
+    return EXIT_BAD_USAGE;
+}
+
+/* A NaN was said: the checks of the values refuse it. */
+static bool was_said(double value) { return isnan(value) || value < NOT_SAID || value > NOT_SAID; }
+
+static void set(double *value, double said) {
+    if (was_said(said)) {
+        *value = said;
+    }
+}
+
+static void set_flight(flight_case_t *setup) {
+    set(&setup->x0_m, given.x0);
+    set(&setup->z0_m, given.z0);
+    set(&setup->alpha_deg, given.alpha);
+    set(&setup->reach_s, given.reach);
+    set(&setup->run_s, given.run);
+    set(&setup->altitude_m, given.altitude);
+    set(&setup->glide_deg, given.glide);
+    set(&setup->speed_mps, given.speed);
+    set(&setup->fps_hz, given.fps);
+    set(&setup->course_deg, given.course);
+    set(&setup->wind_mps, given.wind_speed);
+    set(&setup->wind_from_deg, given.wind_from);
+    set(&setup->recording_start_s, given.flight_start);
+    setup->course_given = was_said(given.course);
+    setup->altitude_given = was_said(given.altitude);
+    setup->seed = (uint64_t)given.seed;
+}
+
+static void set_camera(camera_t *camera) {
+    set(&camera->width_px, given.image_width);
+    set(&camera->height_px, given.image_height);
+    camera->cx_px = 0.5 * camera->width_px;
+    camera->cy_px = 0.5 * camera->height_px;
+    set(&camera->fx_px, given.fx);
+    camera->fy_px = camera->fx_px;
+    set(&camera->fy_px, given.fy);
+    set(&camera->cx_px, given.cx);
+    set(&camera->cy_px, given.cy);
+    set(&camera->k1, given.k1);
+    set(&camera->k2, given.k2);
+    set(&camera->p1, given.p1);
+    set(&camera->p2, given.p2);
+    set(&camera->k3, given.k3);
+    set(&camera->mount_roll_deg, given.camera_roll);
+    set(&camera->mount_pitch_deg, given.camera_pitch);
+    set(&camera->mount_yaw_deg, given.camera_yaw);
+    set(&camera->offset_m.x, given.offset_x);
+    set(&camera->offset_m.y, given.offset_y);
+    set(&camera->offset_m.z, given.offset_z);
+}
+
+static void set_noise(sensor_noise_t *noise) {
+    set(&noise->pixel_px, given.pixel_noise);
+    set(&noise->outlier_rate, given.outlier_rate);
+    set(&noise->outlier_px, given.outlier_size);
+    set(&noise->detector_px, given.detector_px);
+    set(&noise->detector_width, given.detector_width);
+    set(&noise->detector_correlation, given.detector_correlation);
+    set(&noise->attitude_bias_deg, given.attitude_bias);
+    set(&noise->attitude_noise_deg, given.attitude_noise);
+    set(&noise->position_walk_m, given.position_walk);
+    set(&noise->velocity_bias_mps, given.velocity_bias);
+    set(&noise->altimeter_m, given.altimeter_bias);
+    set(&noise->drop_rate, given.drop_rate);
+    set(&noise->time_jitter_s, given.time_jitter);
+    if (given.rounding >= 0) {
+        noise->rounding = given.rounding != 0;
+    }
+}
+
+/* The case of the command line; otherwise the name of the bad option, and what it may be. */
+static const char *set_case(flight_case_t *setup, const char **reason) {
+    if (given.paper_case >= scenario_count() || given.paper_case < -1) {
+        *reason = "--list-cases tells which there are";
+        return "--case";
+    }
+    *reason = OBSTACLE_FORMS;
+    if (!flight_case_default(setup, given.word[WORD_OBSTACLE] != NULL ? given.word[WORD_OBSTACLE] : "cylinder")) {
+        return "--obstacle";
+    }
+    if (given.paper_case >= 0) {
+        const scenario_t scenario = scenario_get(given.paper_case);
+        *reason = "--case has an obstacle of its own";
+        if (given.word[WORD_OBSTACLE] != NULL) {
+            return "--obstacle";
+        }
+        flight_case_paper(setup, &scenario);
+    }
+    *reason = "straight, arc:R (at least 1 m) or weave:A,T";
+    if (given.word[WORD_PATH] != NULL && !path_parse(given.word[WORD_PATH], &setup->path)) {
+        return "--path";
+    }
+    *reason = "constant or ramp:A";
+    if (given.word[WORD_SPEED_PROFILE] != NULL && !path_parse_speed(given.word[WORD_SPEED_PROFILE], &setup->path)) {
+        return "--speed-profile";
+    }
+    *reason = "none, dryden:light or dryden:moderate";
+    if (given.word[WORD_WIND] != NULL && !turbulence_parse(given.word[WORD_WIND], &setup->w20_mps)) {
+        return "--wind";
+    }
+    *reason = SENSOR_NOISE_FORMS;
+    if (given.word[WORD_NOISE] != NULL && !sensor_noise_parse(given.word[WORD_NOISE], &setup->noise)) {
+        return "--noise";
+    }
+    *reason = "tangent or cloud";
+    if (given.word[WORD_CYLINDER] != NULL) {
+        setup->cylinder_model = strcmp(given.word[WORD_CYLINDER], "cloud") == 0 ? CYLINDER_CLOUD : CYLINDER_TANGENT;
+        if (setup->cylinder_model == CYLINDER_TANGENT && strcmp(given.word[WORD_CYLINDER], "tangent") != 0) {
+            return "--cylinder";
+        }
+    }
+    *reason = "must be a number";
+    if (isnan(given.z0)) {
+        return "--z0";
+    }
+    *reason = "must be 0 or more";
+    if (given.seed < 0) {
+        return "--seed";
+    }
+    set_flight(setup);
+    set_camera(&setup->camera);
+    set_noise(&setup->noise);
+    return NULL;
+}
+
+static int list_cases(void) {
+    (void)printf("case obstacle    x0_m altitude_m alpha_deg glide_deg run_s reach_s\n");
+    for (int i = 0; i < scenario_count(); i++) {
+        const scenario_t s = scenario_get(i);
+        (void)printf("%4d %-10s %5g %10g %9g %9g %5g %7g\n", i, s.obstacle, s.x0_m, s.altitude_m, s.alpha_deg,
+                     s.glide_deg, s.run_s, s.reach_s);
+    }
+    return fflush(stdout) == 0 ? EXIT_SUCCESS : complain("stdout", "write error");
+}
+
+static int fly_and_write(const flight_case_t *setup) {
+    char fault[FAULT_SIZE];
+    flight_log_t log;
+    const char *reason = flight_case_fly(setup, &log);
+    if (reason != NULL) {
+        return complain("cannot fly", reason);
+    }
+    int status = EXIT_SUCCESS;
+    if (!log_write(given.word[WORD_OUT], setup, &log, fault, sizeof fault)) {
+        (void)fprintf(stderr, "goe_sim: %s\n", fault);
+        status = EXIT_BAD_USAGE;
+    } else if (log.ended != NULL) {
+        const double last_s = log.count > 0 ? (double)log.frames[log.count - 1].time_us * 1e-6 : 0.0;
+        (void)fprintf(stderr, "goe_sim: %s: log ends at %g s: %s\n", given.word[WORD_OUT], last_s, log.ended);
+        status = EXIT_ENDED_EARLY;
+    }
+    flight_log_free(&log);
+    return status;
+}
+
+static int fly(void) {
+    flight_case_t setup;
+    const char *reason;
+    const char *option = set_case(&setup, &reason);
+    if (option != NULL) {
+        return complain(option, reason);
+    }
+    if (given.word[WORD_OUT] == NULL) {
+        return complain("--out", "is needed: the folder of the log");
+    }
+    if (given.word[WORD_FLIGHT] == NULL) {
+        return fly_and_write(&setup);
+    }
+    char fault[FAULT_SIZE];
+    recorded_flight_t recording;
+    if (!recorded_flight_read(given.word[WORD_FLIGHT], &recording, fault, sizeof fault)) {
+        (void)fprintf(stderr, "goe_sim: %s\n", fault);
+        return EXIT_BAD_USAGE;
+    }
+    setup.recording = &recording;
+    const int status = fly_and_write(&setup);
+    recorded_flight_free(&recording);
+    return status;
+}
+
+/* The option whose value is bad, where popt names the value alone. */
+static const char *bad_option(poptContext context, int argc, const char **argv) {
+    const char *bad = poptBadOption(context, 0);
+    for (int i = 2; i < argc; i++) {
+        if (strcmp(argv[i], bad) == 0 && bad[0] != '-' && argv[i - 1][0] == '-') {
+            return argv[i - 1];
+        }
+    }
+    return bad;
+}
+
+static void free_words(void) {
+    for (size_t i = 0; i < WORD_COUNT; i++) {
+        free(given.word[i]);
+    }
+}
+
+/* popt's verdict: -1, or an error. The last of several words for one option counts. */
+static int read_options(poptContext context) {
+    int option = poptGetNextOpt(context);
+    while (option > 0) {
+        free(given.word[option]);
+        given.word[option] = poptGetOptArg(context);
+        option = poptGetNextOpt(context);
+    }
+    return option;
+}
+
+int main(int argc, const char **argv) {
+    nothing_said();
+    poptContext context = poptGetContext("goe_sim", argc, argv, program_options, 0);
+    const int error = read_options(context);
+    int status;
+    if (error < -1) {
+        status = complain(bad_option(context, argc, argv), poptStrerror(error));
+    } else if (poptPeekArg(context) != NULL) {
+        status = complain(poptPeekArg(context), "options only; see --help");
+    } else {
+        status = given.list_cases ? list_cases() : fly();
+    }
+    free_words();
+    (void)poptFreeContext(context);
+    return status;
+}
