@@ -1,0 +1,296 @@
+"""The report's statistics against hand-made numbers, its page against what it must hold, its reading of bad files."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+import xml.etree.ElementTree as ET
+from html.parser import HTMLParser
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from goe_tools.obslog import LogError
+from goe_tools.report import page, prose, terminal
+from goe_tools.report import statistics as st
+from goe_tools.report.data import Campaign, Cases, read_campaign
+from goe_tools.report.figures import FIGURES
+from goe_tools.report.style import number
+from rich.console import Console
+from synthetic_campaign import write_campaign
+
+MOST_BYTES = 6_000_000
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+    return read_campaign(write_campaign(tmp_path_factory.mktemp("campaign") / "c"))
+
+
+@pytest.fixture(scope="module")
+def written(campaign: Campaign, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("report") / "report.html"
+    page.write_page(campaign, out)
+    return out
+
+
+def test_holding_range_is_the_smallest_that_holds_three_quarters() -> None:
+    assert st.holding_range(np.array([4.0, 1.0, 3.0, 2.0])) == 3.0
+    assert st.holding_range(np.array([5.0, 1.0, 3.0, 2.0, 4.0])) == 4.0  # 4 of 5; 3 of 5 is too few
+    assert st.holding_range(np.array([7.0, math.nan])) == 7.0
+    assert math.isnan(st.holding_range(np.array([math.nan])))
+    values = np.abs(np.random.default_rng(1).normal(size=997))
+    held = st.holding_range(values)
+    assert np.mean(values <= held) >= 0.75 > np.mean(values < held)
+
+
+def errors(means: list[float], two_sigma: float = 0.0) -> st.Errors:
+    mean = np.array(means)
+    return st.Errors(Cases({"case": mean}), mean, np.full(len(means), two_sigma), 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("paper", "means", "two_sigma", "verdict"),
+    [
+        (st.PaperRange(10.0), [4.0, -4.0, 4.0, 99.0], 1.0, st.BETTER),
+        (st.PaperRange(10.0), [4.0, -4.0, 4.0, 99.0], 1.1, st.REPRODUCED),
+        (st.PaperRange(10.0), [10.5, -10.5, 10.5, 99.0], 2.0, st.REPRODUCED),
+        (st.PaperRange(10.0), [10.5, -10.5, 10.5, 99.0], 2.1, st.MEANS_ONLY),
+        (st.PaperRange(10.0), [12.6, -12.6, 12.6, 0.0], 0.0, st.WORSE),
+        (st.PaperRange(20.0, beyond=True), [21.0, -21.0, 21.0, 0.0], 0.0, st.REPRODUCED),
+        (st.PaperRange(20.0, beyond=True), [21.0, -21.0, 19.0, 0.0], 0.0, st.BETTER),
+        (None, [1.0], 0.0, st.NOT_IN_PAPER),
+        (st.PaperRange(20.0), [], 0.0, st.NOT_IN_PAPER),
+    ],
+)
+def test_verdict(paper: st.PaperRange | None, means: list[float], two_sigma: float, verdict: str) -> None:
+    assert st.judge(paper, errors(means, two_sigma)) == verdict
+
+
+def test_papers_table_is_the_papers() -> None:
+    """Row by row as printed in its Table 3."""
+    text = {
+        f"{obstacle}/{model}": " ".join("N/A" if row[q] is None else str(row[q]) for q in st.TABLE3_QUANTITIES)
+        for (obstacle, model), row in st.PAPER_TABLE3.items()
+    }
+    assert text == {
+        "cylinder/disc": "3 10 12 N/A 1",
+        "truck/disc": "5 >20 >50 N/A 2",
+        "long-truck/disc": "5 >20 >50 N/A 2",
+        "building/line": "10 30 5 30 8",
+        "truck/line": "7 20 2 25 2",
+        "long-truck/line": "7 25 2 25 2",
+    }
+
+
+def test_cell_follows_from_the_rows(campaign: Campaign) -> None:
+    """One cell computed again from the file's text."""
+    with (campaign.folder / "cases.csv").open(encoding="utf-8") as file:
+        reach = sorted(
+            abs(float(row["width_mean_pct"])) + float(row["width_two_sigma_pct"])
+            for row in csv.DictReader(file)
+            if (row["study"], row["obstacle"], row["model"], row["fraction"]) == ("paper", "truck", "auto", "0.4")
+            and float(row["fresh_line_share"]) > 0.0
+        )
+    cell = st.make_cell(campaign.cases, "truck", "line", "width")
+    assert cell is not None
+    assert len(cell.errors.mean) == len(reach) == 56  # 60 less 4 that never see an edge
+    assert cell.bars == reach[math.ceil(0.75 * len(reach)) - 1]
+    assert st.make_cell(campaign.cases, "truck", "disc", "length") is None
+
+
+def test_line_solutions_with_statistics_of_their_own_are_preferred(campaign: Campaign) -> None:
+    cases = campaign.cases
+    auto = cases.select(study="paper", model="auto")
+    assert not st.line_apart(cases)
+    columns = {name: np.concatenate([cases[name], auto[name]]) for name in cases.columns}
+    columns["model"][len(cases) :] = "line"
+    columns["width_mean_pct"][len(cases) :] = 0.5
+    columns["width_two_sigma_pct"][len(cases) :] = 0.25
+    apart = Cases(columns)
+    line, switching = (st.make_cell(apart, "truck", model, "width") for model in ("line", "switching"))
+    before = st.make_cell(cases, "truck", "line", "width")
+    assert line is not None and switching is not None and before is not None
+    assert line.bars == 0.75
+    assert min(switching.bars, before.bars) > 1.0 and switching.paper is None
+    assert [row[:2] for row in st.table3(apart)][-2:] == [("truck", "switching"), ("long-truck", "switching")]
+    assert [row[:2] for row in st.table3(cases)][-1] == ("building", "disc")
+
+
+def test_one_setting_at_a_time() -> None:
+    """Window varied at side 5, side varied at window 8, and a stray run where both differ."""
+    window = np.array([4.0, 8.0, 16.0, 8.0, 8.0, 64.0])
+    side = np.array([5.0, 5.0, 5.0, 0.0, 10.0, 99.0])
+    runs = Cases({"case": np.arange(6.0), "obstacle": np.full(6, "truck"), "window": window, "side_m": side})
+    assert st.nominal_rows(runs, "window", ("window", "side_m"))["case"].tolist() == [0, 1, 2]
+    assert st.nominal_rows(runs, "side_m", ("window", "side_m"))["case"].tolist() == [1, 3, 4]
+
+
+def test_zero_truth_has_no_percentage_and_is_told(campaign: Campaign) -> None:
+    cell = st.make_cell(campaign.cases, "cylinder", "disc", "x0")
+    assert cell is not None
+    assert (len(cell.errors.mean), cell.errors.without_percent, cell.errors.without_estimate) == (4, 2, 0)
+    assert any("cylinder/disc: 2 runs with X₀ = 0" in sentence for sentence in prose.missing(campaign.cases))
+
+
+def test_rank_correlation() -> None:
+    x = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    assert st.rank_correlation(x, np.exp(x)) == pytest.approx(1.0)
+    assert st.rank_correlation(x, -(x**3)) == pytest.approx(-1.0)
+    assert st.rank_correlation(x, np.array([2.0, 1.0, 4.0, 3.0, 6.0, 5.0])) == pytest.approx(1 - 6 * 6 / (6 * 35))
+    tied = st.rank_correlation(np.array([1.0, 1.0, 2.0, 2.0, 3.0]), np.array([1.0, 1.0, 2.0, 2.0, 3.0]))
+    assert tied == pytest.approx(1.0)
+    assert math.isnan(st.rank_correlation(x, np.full(6, 2.0)))
+    assert math.isnan(st.rank_correlation(x[:4], x[:4]))
+
+
+def test_strongest_driver() -> None:
+    side = np.repeat([0.0, 30.0, 60.0], 10)
+    others = {name: np.zeros(30) for name in ("alpha_deg", "altitude_m", "glide_deg")}
+    runs = Cases({"case": np.arange(30.0), "side_m": side, **others})
+    found = st.strongest_driver(runs, side == 60.0)
+    assert found is not None
+    assert (found.factor, found.level, found.out, found.of, found.out_elsewhere) == ("side_m", 60.0, 10, 10, 0)
+    assert st.strongest_driver(runs, np.arange(30) % 2 == 0) is None
+
+
+def test_studies_are_compared_with_the_same_cases(campaign: Campaign) -> None:
+    found = {variant.label: variant for variant in st.variants(campaign.cases)}
+    assert list(found) == [
+        "arc, R = 300 m", "weave, ±5 m in 6 s", "speed ramp, 0.5 m/s²", "wind, light", "wind, moderate",
+        "attitude error", "own position error", "field sensors",
+    ]  # fmt: skip
+    runs = found["field sensors"].runs
+    straight = st.like_for_like(campaign.cases, runs)
+    assert sorted(straight.keys()) == sorted(runs.keys())
+    assert set(straight.levels("study")) == {"paper"}
+    assert st.median_rmse(runs, "z0") > 2.0 * st.median_rmse(straight, "z0")  # invented four times as large
+
+
+def test_misses_are_told_with_a_reason(campaign: Campaign) -> None:
+    cells = [c for c in prose.paper_cells(campaign.cases) if c.verdict in (st.WORSE, st.MEANS_ONLY)]
+    causes = prose.causes(campaign.cases)
+    assert len(cells) > 3
+    assert sum(len(cause.findings) for cause in causes) == len(cells)
+    assert all(cause.sentences and cause.title for cause in causes)
+
+
+def test_small_truth_is_found_as_the_reason() -> None:
+    """Errors of 1 m of truths of 2 m and of 50 m: outside +-20 % for no other reason than the small truth."""
+    truth = np.repeat([2.0, 50.0], 4)
+    ones = np.ones(8)
+    columns = {"case": ones, "x0_truth": truth, "x0_mean": ones, "x0_two_sigma": ones, "fresh_line_share": ones}
+    found = st.Errors(Cases(columns), 100.0 / truth, 100.0 / truth, 0, 0)
+    cell = st.Cell("truck", "line", "x0", st.PaperRange(20.0), found, 100.0, 50.0, st.WORSE)
+    assert prose.likely_cause(cell) == prose.SMALL_TRUTH
+
+
+def test_terminal_table(campaign: Campaign) -> None:
+    out = StringIO()
+    terminal.print_table3(campaign, Console(file=out, width=40, force_terminal=False))
+    lines = out.getvalue().splitlines()
+    assert max(map(len, lines)) <= terminal.MIN_WIDTH
+    row = next(line for line in lines if line.startswith("Long truck/line"))
+    assert [f"{paper} /" in row for paper in (7, 25, 2)] == [True] * 3
+    cell = st.make_cell(campaign.cases, "long-truck", "line", "z0")
+    assert cell is not None and f"7 / {number(cell.bars)}" in row
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        *((0.0, "0"), (0.0432, "0.043"), (1.25, "1.2"), (9.99, "10"), (23.4, "23"), (344.0, "340"), (-3.0, "−3.0")),
+        *((math.nan, "–"), (math.inf, "–")),
+    ],
+)
+def test_number(value: float, text: str) -> None:
+    assert number(value) == text
+
+
+class _Tags(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+
+
+def test_page_is_whole_and_needs_nothing_else(written: Path) -> None:
+    text = written.read_text(encoding="utf-8")
+    assert len(text.encode()) < MOST_BYTES
+    tags = _Tags()
+    tags.feed(text)
+    figures = [attrs["id"] for tag, attrs in tags.found if tag == "figure"]
+    assert figures == [spec.key for spec in FIGURES]
+    assert {f"fig{n:02d}" for n in range(5, 15)} <= {str(key)[:5] for key in figures}
+    for tag, attrs in tags.found:
+        assert tag not in ("script", "iframe", "object")
+        for name in ("src", "srcset", "href"):
+            value = attrs.get(name)
+            assert value is None or value.startswith(("data:", "#")), value[:60]
+        if tag == "img":
+            assert len(attrs["alt"] or "") > 40
+    assert not re.search(r"url\(|@import", text.split("<body>")[0])
+    targets = {attrs["id"] for _, attrs in tags.found if "id" in attrs}
+    assert {(a["href"] or "")[1:] for t, a in tags.found if t == "a"} <= targets
+    assert "nan" not in re.sub(r"<[^>]*>", " ", text).lower().split()
+
+
+def test_figure_files(written: Path) -> None:
+    folder = written.with_name("report_figures")
+    assert {file.name for file in folder.iterdir()} == {f"{s.key}.{kind}" for s in FIGURES for kind in ("svg", "png")}
+    for file in folder.glob("*.svg"):
+        assert ET.parse(file).getroot().tag.endswith("svg")
+    for file in folder.glob("*.png"):
+        assert file.read_bytes().startswith(b"\x89PNG")
+
+
+def test_page_of_the_papers_study_alone(tmp_path: Path) -> None:
+    campaign = read_campaign(write_campaign(tmp_path / "c", seeds=2, studies=False))
+    text = page.render_page(campaign, [])
+    assert "Not flown in this campaign" in text
+    lacking = [spec.key for spec in FIGURES if spec.section != "figures" and spec.draw(campaign, False) is None]
+    assert lacking == ["studies", "conditioning"]
+
+
+def test_bad_files_are_named(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="no such folder"):
+        read_campaign(tmp_path / "none")
+    folder = write_campaign(tmp_path / "c", studies=False)
+    cases = folder / "cases.csv"
+    good = cases.read_text(encoding="utf-8")
+    header, first, *rest = good.splitlines()
+    column = header.split(",").index("z0_mean")
+
+    fields = first.split(",")
+    fields[column] = "12,3".replace(",", ";")
+    cases.write_text("\n".join([header, ",".join(fields), *rest]), encoding="utf-8")
+    with pytest.raises(LogError, match=r"cases\.csv:2: z0_mean: '12;3' is not a number"):
+        read_campaign(folder)
+
+    cases.write_text("\n".join([header.replace("z0_mean,", "z0_men,"), first, *rest]), encoding="utf-8")
+    with pytest.raises(LogError, match=r"cases\.csv:1: z0_mean: this column is missing"):
+        read_campaign(folder)
+
+    cases.write_text("\n".join([header, first, rest[0] + ",7"]), encoding="utf-8")
+    with pytest.raises(LogError, match=r"cases\.csv:3: .* fields"):
+        read_campaign(folder)
+
+    cases.write_text(good, encoding="utf-8")
+    (folder / "campaign.json").write_text("{", encoding="utf-8")
+    with pytest.raises(LogError, match=r"campaign\.json:1"):
+        read_campaign(folder)
+
+
+def test_nothing_half_written(campaign: Campaign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = tmp_path / "report.html"
+    out.write_text("old", encoding="utf-8")
+    monkeypatch.setattr(page, "draw_figures", lambda *_: [])
+    monkeypatch.setattr(page, "render_page", lambda *_: (_ for _ in ()).throw(RuntimeError("broken")))
+    with pytest.raises(RuntimeError):
+        page.write_page(campaign, out)
+    assert out.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [out]

@@ -1,0 +1,141 @@
+"""Reads the folder that goe_campaign wrote: cases.csv, campaign.json, series/*.csv."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..obslog import LogError
+
+LABELS = ("study", "obstacle", "path", "speed_profile", "wind", "noise", "method", "model")
+SETUP = ("case", "side_m", "alpha_deg", "altitude_m", "glide_deg", "seed", "window", "fps_hz", "fraction")
+COUNTS = ("frames", "solved", "used")
+QUANTITIES = ("z0", "x0", "width", "length", "height", "orientation")
+IN_PERCENT = ("z0", "x0", "width", "length")
+MEASURES = ("mean", "two_sigma", "rmse")
+OPTIONAL = ("fresh_line_share", "swapped", "baseline_m", "condition")
+SAME_CASE = ("obstacle", "model", "side_m", "alpha_deg", "altitude_m", "glide_deg")
+
+
+def _required() -> tuple[str, ...]:
+    errors = [f"{q}_{part}" for q in QUANTITIES for part in ("truth", *MEASURES)]
+    percents = [f"{q}_{part}_pct" for q in IN_PERCENT for part in MEASURES]
+    return (*LABELS, *SETUP, *COUNTS, *errors, *percents)
+
+
+@dataclass(frozen=True)
+class Cases:
+    """Rows of cases.csv. Columns are arrays of one length; text in LABELS, float64 otherwise, NaN where the
+    field is empty."""
+
+    columns: dict[str, np.ndarray]
+
+    def __len__(self) -> int:
+        return len(self.columns["case"])
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.columns[name]
+
+    def where(self, mask: np.ndarray) -> Cases:
+        return Cases({name: values[mask] for name, values in self.columns.items()})
+
+    def select(self, **wanted: Any) -> Cases:
+        """The rows whose columns have these values (a tuple: one of them)."""
+        mask = np.ones(len(self), dtype=bool)
+        for name, value in wanted.items():
+            values = value if isinstance(value, tuple) else (value,)
+            mask &= np.isin(self[name], np.array(values, dtype=self[name].dtype))
+        return self.where(mask)
+
+    def levels(self, name: str) -> list[Any]:
+        """The values a column takes, ascending."""
+        values = self[name]
+        if values.dtype.kind == "f":
+            return [float(value) for value in np.unique(values[np.isfinite(values)])]
+        return [str(value) for value in np.unique(values)]
+
+    def keys(self, names: Sequence[str] = SAME_CASE) -> list[tuple[Any, ...]]:
+        """What identifies each row's case across studies."""
+        return list(zip(*(self[name].tolist() for name in names)))
+
+
+@dataclass(frozen=True)
+class Campaign:
+    folder: Path
+    cases: Cases
+    facts: dict[str, Any]  # campaign.json
+
+    def series(self, case: int, model: str) -> Cases | None:
+        """The time series of a case of the paper's study (first seed), or None if it was not written."""
+        path = self.folder / "series" / f"{case}_{model}.csv"
+        if not path.is_file():
+            return None
+        columns = _read_columns(path, text=("status", "model"))
+        columns["case"] = np.full(len(columns["t_s"]), float(case))
+        return Cases(columns)
+
+
+def _read_columns(path: Path, text: Iterable[str]) -> dict[str, np.ndarray]:
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+    except OSError as error:
+        raise LogError(path, 0, "", error.strerror or "cannot be read") from None
+    if len(rows) < 2:
+        raise LogError(path, 0, "", "no rows")
+    header = rows[0]
+    for number, row in enumerate(rows[1:], start=2):
+        if len(row) != len(header):
+            raise LogError(path, number, "", f"{len(row)} fields, the header has {len(header)}")
+    columns: dict[str, np.ndarray] = {}
+    for name, fields in zip(header, zip(*rows[1:])):
+        columns[name] = np.array(fields) if name in text else _numbers(path, name, fields)
+    return columns
+
+
+def _numbers(path: Path, name: str, fields: Sequence[str]) -> np.ndarray:
+    try:
+        return np.array([field or "nan" for field in fields], dtype=float)
+    except ValueError:
+        for number, field in enumerate(fields, start=2):
+            try:
+                float(field or "nan")
+            except ValueError:
+                raise LogError(path, number, name, f"{field!r} is not a number") from None
+        raise
+
+
+def read_campaign(folder: Path) -> Campaign:
+    """Reads cases.csv and campaign.json."""
+    if not folder.is_dir():
+        raise LogError(folder, 0, "", "no such folder")
+    path = folder / "cases.csv"
+    columns = _read_columns(path, LABELS)
+    for name in _required():
+        if name not in columns:
+            raise LogError(path, 1, name, "this column is missing")
+    for name in OPTIONAL:
+        columns.setdefault(name, np.full(len(columns["case"]), np.nan))
+    for name in (*SETUP, *COUNTS):
+        missing = np.flatnonzero(~np.isfinite(columns[name]))
+        if len(missing):
+            raise LogError(path, int(missing[0]) + 2, name, "empty")
+    return Campaign(folder, Cases(columns), _read_facts(folder / "campaign.json"))
+
+
+def _read_facts(path: Path) -> dict[str, Any]:
+    try:
+        facts = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise LogError(path, 0, "", error.strerror or "cannot be read") from None
+    except json.JSONDecodeError as error:
+        raise LogError(path, error.lineno, "", error.msg) from None
+    if not isinstance(facts, dict):
+        raise LogError(path, 1, "", "not an object")
+    return facts

@@ -1,0 +1,474 @@
+"""Sentences that follow from the numbers: what is not reproduced, by how much, and the most likely reason."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import statistics as st
+from .data import IN_PERCENT, Campaign, Cases
+from .style import NAMES, SYMBOLS, UNITS, number, with_unit
+
+LARGE_TRUTH_RATIO = 0.6  # truths of the runs outside this much smaller than inside: percent of a small number
+HARDER, EASIER = 1.3, 0.9  # a study's error against straight flight
+MUCH_CLOSER = 0.6  # a range this much smaller without something speaks for that as the cause
+BIAS_RATIO = 0.67  # mean error over two sigma below this: scatter
+
+
+MIXED, SMALL_TRUTH, SCATTER, HEIGHT_POINT, NO_DISC, SUM_OF_ERRORS, LASTING = (
+    "mixed", "small truth", "scatter", "height point", "no disc", "sum of errors", "lasting",
+)  # fmt: skip
+CAUSE_TITLES = {
+    MIXED: "Disc and line solutions in one bar",
+    SMALL_TRUTH: "Percent of a small number",
+    SCATTER: "Scatter through a short window",
+    NO_DISC: "The disc is not the obstacle's shape, or not where (2) is exact",
+    HEIGHT_POINT: "Height at the wrong point's distance",
+    SUM_OF_ERRORS: "Length takes over all other errors",
+    LASTING: "Errors that last through a run",
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A cell of Table 3 that is not the paper's, with what the runs outside the paper's range have in common."""
+
+    name: str
+    verdict: str
+    paper: str
+    ours: str
+    means: str
+    factor: str
+    outside: str
+    where: str
+    bias: str  # mean error over two sigma, outside
+    condition: str  # rank correlation of the bar with the condition number
+    late: str  # range of the last 20 %
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Findings with the same most likely reason."""
+
+    title: str
+    sentences: list[str]
+    findings: list[Finding]
+
+
+def plural(count: int, one: str, many: str | None = None) -> str:
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
+def paper_cells(cases: Cases) -> list[st.Cell]:
+    return [cell for _, _, cells in st.table3(cases) for cell in cells if cell is not None and cell.paper is not None]
+
+
+def summary(cases: Cases) -> list[str]:
+    """The result in a few sentences."""
+    cells = paper_cells(cases)
+    count = Counter(cell.verdict for cell in cells)
+    parts = [
+        f"{count[st.REPRODUCED]} are reproduced",
+        f"{count[st.BETTER]} are better here",
+        f"{count[st.MEANS_ONLY]} hold for the means but not for the ±2σ bars",
+        f"{count[st.WORSE]} are not reproduced",
+    ]
+    said = [f"Of the {len(cells)} numbers in the paper's Table 3, {', '.join(parts[:-1])} and {parts[-1]}."]
+    misses = [cell for cell in cells if cell.verdict == st.WORSE]
+    if misses:
+        by_quantity = Counter(cell.quantity for cell in misses)
+        names = [f"{SYMBOLS[q]} ({n})" for q, n in by_quantity.most_common()]
+        widest = max(misses, key=lambda cell: cell.factor)
+        said.append(
+            f"What is missed: {', '.join(names)}. The widest miss is {SYMBOLS[widest.quantity]} of the "
+            f"{NAMES[widest.obstacle].lower()} ({widest.model} model): {number(widest.factor)} times the paper's range."
+        )
+    return said + advice(cases)
+
+
+def advice(cases: Cases) -> list[str]:
+    """Does the paper's conclusion hold: the disc for distance and height, the line for side distance and size?"""
+    boxes = ("building", "truck", "long-truck")
+    holds, fails = [], []
+    for quantity, wanted in (("z0", "disc"), ("height", "disc"), ("x0", "line"), ("width", "line")):
+        ranges = {}
+        for model in ("disc", "line"):
+            cells = [st.make_cell(cases, obstacle, model, quantity) for obstacle in boxes]
+            values = [cell.bars for cell in cells if cell is not None and math.isfinite(cell.bars)]
+            ranges[model] = float(np.median(values)) if values else math.nan
+        other = "line" if wanted == "disc" else "disc"
+        if not all(math.isfinite(value) for value in ranges.values()):
+            continue
+        slack = 1.25 if wanted == "disc" else 1.0  # of the disc the paper says only that it is about as good
+        disc, line = (with_unit(ranges[model], quantity) for model in ("disc", "line"))
+        text = f"{SYMBOLS[quantity]} (disc ±{disc}, line ±{line})"
+        (holds if ranges[wanted] <= slack * ranges[other] else fails).append(text)
+    said = []
+    if holds:
+        said.append(
+            "The paper's conclusion, the disc model for distance and height, the line model for side distance "
+            "and size, "
+            f"holds here for {_listed(holds)}, medians over the box-shaped obstacles."
+        )
+    if fails:
+        said.append(f"It does not hold here for {_listed(fails)}.")
+    return said
+
+
+def _listed(parts: list[str]) -> str:
+    return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
+
+
+def causes(cases: Cases) -> list[Cause]:
+    """Every cell of Table 3 whose bars do not keep the paper's range, by the most likely reason; widest miss first."""
+    cells = [cell for cell in paper_cells(cases) if cell.verdict in (st.WORSE, st.MEANS_ONLY)]
+    groups: dict[str, list[st.Cell]] = {}
+    for cell in sorted(cells, key=lambda cell: -cell.factor):
+        groups.setdefault(likely_cause(cell), []).append(cell)
+    return [
+        Cause(CAUSE_TITLES[cause], _explain(cases, cause, members), [_finding(cases, cell) for cell in members])
+        for cause, members in groups.items()
+    ]
+
+
+def _cell_name(cell: st.Cell) -> str:
+    return f"{NAMES[cell.obstacle].lower()}/{cell.model} {SYMBOLS[cell.quantity]}"
+
+
+def _finding(cases: Cases, cell: st.Cell) -> Finding:
+    assert cell.paper is not None
+    outside = cell.outside
+    driver = st.strongest_driver(cell.errors.runs, outside)
+    where = "anywhere"
+    if driver is not None:
+        name, form = st.FACTORS[driver.factor]
+        level = form.format(driver.level).replace("-", "−")
+        where = (
+            f"{name} {level}: {driver.out} of {driver.of}; elsewhere {driver.out_elsewhere} of {driver.of_elsewhere}"
+        )
+    late = st.make_cell(cases, cell.obstacle, cell.model, cell.quantity, min(cases.levels("fraction")))
+    return Finding(
+        name=f"{NAMES[cell.obstacle]}/{cell.model}, {SYMBOLS[cell.quantity]}",
+        verdict=cell.verdict,
+        paper=f"±{cell.paper} {UNITS[cell.quantity]}",
+        ours=f"±{with_unit(cell.bars, cell.quantity)}",
+        means=f"±{with_unit(cell.means, cell.quantity)}",
+        factor=number(cell.factor),
+        outside=f"{int(np.sum(outside))} of {len(outside)}",
+        where=where,
+        bias=number(_bias_ratio(cell)),
+        condition=number(st.rank_correlation(cell.errors.runs["condition"], cell.errors.extent)),
+        late="–" if late is None else f"±{with_unit(late.bars, cell.quantity)}",
+    )
+
+
+def _bias_ratio(cell: st.Cell) -> float:
+    """Mean error over two sigma, median of the runs outside the paper's range."""
+    bias, scatter = np.abs(cell.errors.mean[cell.outside]), cell.errors.two_sigma[cell.outside]
+    return float(np.median(bias / np.maximum(scatter, 1e-12)))
+
+
+def _is_of_small_truth(cell: st.Cell) -> bool:
+    """Is the truth much smaller in the runs outside the paper's range than in those inside?"""
+    if cell.quantity not in IN_PERCENT or np.all(cell.outside):
+        return False
+    truth = np.abs(cell.errors.runs[f"{cell.quantity}_truth"])
+    return bool(np.median(truth[cell.outside]) < LARGE_TRUTH_RATIO * np.median(truth[~cell.outside]))
+
+
+def _pure_range(cell: st.Cell) -> float:
+    """The range of the runs that are line throughout."""
+    return st.holding_range(cell.errors.extent[cell.errors.runs["fresh_line_share"] >= st.PURE])
+
+
+def _is_mixture(cell: st.Cell) -> bool:
+    """Do most bars outside mix disc and line solutions, and do runs without the mixture keep much closer to zero?"""
+    if cell.model != "line":
+        return False
+    mixed = cell.errors.runs["fresh_line_share"][cell.outside] < st.PURE
+    return bool(np.mean(mixed) > 0.5 and _pure_range(cell) < MUCH_CLOSER * cell.bars)
+
+
+def likely_cause(cell: st.Cell) -> str:
+    """The first that fits; a rule of thumb, which the page says."""
+    if _is_mixture(cell):
+        return MIXED
+    if _is_of_small_truth(cell):
+        return SMALL_TRUTH
+    if _bias_ratio(cell) < BIAS_RATIO:
+        return SCATTER
+    if cell.quantity == "height" and cell.obstacle != "cylinder":
+        return HEIGHT_POINT
+    if cell.model == "disc":
+        return NO_DISC
+    return SUM_OF_ERRORS if cell.quantity == "length" else LASTING
+
+
+def _explain(cases: Cases, cause: str, cells: list[st.Cell]) -> list[str]:
+    if cause == MIXED:
+        ranges = [
+            f"{_cell_name(cell)} ±{with_unit(_pure_range(cell), cell.quantity)} "
+            f"({int(np.sum(cell.errors.runs['fresh_line_share'] >= st.PURE))} of {len(cell.errors.mean)} runs)"
+            for cell in cells
+        ]
+        return [
+            "The line takes over late in many runs, so that the part that counts begins with disc solutions, "
+            "which see a box "
+            f"as a disc. Runs that are line throughout this part keep closer: {'; '.join(ranges)}."
+        ]
+    if cause == SMALL_TRUTH:
+        return [_explain_small_truth(cell) for cell in cells]
+    if cause == SCATTER:
+        return [
+            f"In the runs outside the paper's range the mean error is less than {number(BIAS_RATIO)} of the two sigma "
+            "(median): the solution moves from image to image. Rounding to whole pixels does that where a window spans "
+            "little change of the apparent size.",
+            *_evidence_of_part(cases, cells),
+            *_evidence_of_window(cases, cells),
+        ]
+    if cause == NO_DISC:
+        return [
+            "The mean error weighs as much as the scatter or more. (2) draws the tangents of a disc; its size "
+            "row is exact "
+            "on the flight line only, and a box is no disc."
+        ]
+    if cause == HEIGHT_POINT:
+        return [
+            "The mean error weighs as much as the scatter or more. (8) takes the reference point's distance, while the "
+            "top point of a box stands above its near corner."
+        ]
+    if cause == SUM_OF_ERRORS:
+        return ["(7) multiplies the errors of Z₀, X₀, W and the orientation into the length; the paper says so, too."]
+    return [
+        "The mean error weighs as much as the scatter or more: it lasts through the part of the run that counts. W, X₀ "
+        "and Z₀ share one scale in (5) and err together; whole pixels err alike in neighbouring images of a straight "
+        "flight, so that a window does not average them out.",
+        *_evidence_of_wind(cases, cells),
+    ]
+
+
+def _explain_small_truth(cell: st.Cell) -> str:
+    runs, outside = cell.errors.runs, cell.outside
+    truth = np.abs(runs[f"{cell.quantity}_truth"])
+    metres = np.abs(runs[f"{cell.quantity}_mean"]) + runs[f"{cell.quantity}_two_sigma"]
+    return (
+        f"{NAMES[cell.obstacle]}/{cell.model}: {SYMBOLS[cell.quantity]} is "
+        f"{number(float(np.median(truth[outside])))} m in "
+        f"the runs outside the range (median), {number(float(np.median(truth[~outside])))} m in those inside. "
+        "In metres, "
+        f"{st.MOST:.0%} of all bars keep to ±{number(st.holding_range(metres))} m."
+    )
+
+
+def _evidence_of_part(cases: Cases, cells: list[st.Cell]) -> list[str]:
+    """How many keep the paper's range in the shortest last part of the run?"""
+    part = min(cases.levels("fraction"))
+    kept = 0
+    for cell in cells:
+        late = st.make_cell(cases, cell.obstacle, cell.model, cell.quantity, part)
+        kept += late is not None and cell.paper is not None and late.bars <= st.ROUNDING * cell.paper.value
+    return (
+        [
+            f"Over the last {part * 100:.0f} % of the run, {kept} of these {len(cells)} numbers keep the paper's "
+            "range; the paper "
+            "may have judged later parts of its runs."
+        ]
+        if kept
+        else []
+    )
+
+
+def _evidence_of_window(cases: Cases, cells: list[st.Cell]) -> list[str]:
+    """Does a longer window help, as it must if the cause is scatter?"""
+    rows = cases.select(study="conditioning", fraction=st.FRACTION)
+    windows = rows.levels("window") if len(rows) else []
+    usual = float(np.median(cells[0].errors.runs["window"]))
+    if usual not in windows or windows[-1] <= usual:
+        return []
+    said = []
+    for cell in cells:
+        mine = rows.select(obstacle=cell.obstacle, model="disc" if cell.model == "disc" else "auto")
+        short, long = (st.median_rmse(mine.select(window=w), cell.quantity) for w in (usual, windows[-1]))
+        if math.isfinite(short) and math.isfinite(long):
+            said.append(f"{_cell_name(cell)} {with_unit(short, cell.quantity)} → {with_unit(long, cell.quantity)}")
+    if not said:
+        return []
+    return [
+        f"With a window of {windows[-1]:g} images instead of {usual:g}, root mean square error in the "
+        "conditioning study (a "
+        f"fall speaks for scatter as the reason, a rise against): {'; '.join(said)}."
+    ]
+
+
+def _evidence_of_wind(cases: Cases, cells: list[st.Cell]) -> list[str]:
+    """Do the lasting errors go away where the aircraft shakes, as they must if they come from whole pixels?"""
+    wind = cases.select(study="wind", fraction=st.FRACTION)
+    if not len(wind):
+        return []
+    said = []
+    for cell in cells:
+        shaken = wind.select(obstacle=cell.obstacle, model="disc" if cell.model == "disc" else "auto")
+        steady = st.like_for_like(cases, shaken)
+        biases = [
+            float(np.nanmedian(values)) if np.any(np.isfinite(values)) else math.nan
+            for values in (np.abs(runs[st.column(cell.quantity, "mean")]) for runs in (steady, shaken))
+        ]
+        if all(math.isfinite(bias) for bias in biases):
+            said.append(f"{_cell_name(cell)} {' → '.join(with_unit(bias, cell.quantity) for bias in biases)}")
+    if not said:
+        return []
+    return [
+        "In turbulence, which shakes the rounding, the mean errors of the same cases go like this (median; a "
+        "fall speaks "
+        f"for whole pixels as the reason, a rise against): {'; '.join(said)}."
+    ]
+
+
+def missing(cases: Cases) -> list[str]:
+    """Runs that do not count in Table 3."""
+    said = []
+    for obstacle, model in st.PAPER_TABLE3:
+        flown = st.flown_runs(cases, obstacle, model)
+        counted = st.paper_runs(cases, obstacle, model)
+        name = f"{NAMES[obstacle].lower()}/{model}"
+        if len(counted) < len(flown):
+            said.append(
+                f"{name}: {len(flown) - len(counted)} of {plural(len(flown), 'run')} never give the line model "
+                "its 8 points "
+                "and stay with the disc."
+            )
+        for quantity in st.TABLE3_QUANTITIES:
+            if quantity == "length" and model == "disc":
+                continue
+            errors = st.errors_of(counted, quantity)
+            if errors.without_estimate:
+                said.append(f"{name}: {plural(errors.without_estimate, 'run')} without {SYMBOLS[quantity]}.")
+            if errors.without_percent:
+                said.append(
+                    f"{name}: {plural(errors.without_percent, 'run')} with {SYMBOLS[quantity]} = 0, of which no "
+                    "percentage can "
+                    "be taken."
+                )
+    return said
+
+
+def better(cases: Cases) -> str:
+    cells = [cell for cell in paper_cells(cases) if cell.verdict == st.BETTER]
+    if not cells:
+        return ""
+    names = [
+        f"{NAMES[c.obstacle].lower()}/{c.model} {SYMBOLS[c.quantity]} (±{with_unit(c.bars, c.quantity)}, paper "
+        f"{c.paper})"
+        for c in cells
+    ]
+    return f"Better than in the paper: {'; '.join(names)}."
+
+
+def studies(cases: Cases) -> list[str]:
+    """Which studies are harder than straight flight and which are not, by the error of Z₀."""
+    harder, alike, easier = [], [], []
+    for variant in st.variants(cases):
+        straight = st.like_for_like(cases, variant.runs)
+        a, b = st.median_rmse(straight, "z0"), st.median_rmse(variant.runs, "z0")
+        if math.isfinite(a) and math.isfinite(b) and a > 0.0:
+            group = harder if b > HARDER * a else easier if b < EASIER * a else alike
+            group.append(f"{variant.label} (×{number(b / a)})")
+    said = []
+    for group, text in (
+        (harder, f"Harder than straight flight, Z₀ error more than {number(HARDER)} times as large: "),
+        (alike, "About as hard: "),
+        (easier, f"Easier, less than {number(EASIER)} times: "),
+    ):
+        if group:
+            said.append(text + "; ".join(group) + ".")
+    return said
+
+
+def outliers(campaign: Campaign) -> str:
+    """The paper's open question: are its outliers the badly conditioned runs?"""
+    runs = campaign.cases.select(study="paper", fraction=st.FRACTION)
+    runs = runs.where(((runs["model"] == "auto") | (runs["obstacle"] == "cylinder")) & np.isfinite(runs["condition"]))
+    count, bad, shares = 0, 0, []
+    for obstacle in runs.levels("obstacle"):
+        mine = runs.select(obstacle=obstacle)
+        extent = np.abs(mine["z0_mean_pct"]) + mine["z0_two_sigma_pct"]
+        mask = extent > 3.0 * np.nanmedian(extent)
+        limit = np.percentile(mine["condition"], 75.0)
+        count += int(np.sum(mask))
+        bad += int(np.sum(mask & (mine["condition"] >= limit)))
+        shares.append(np.mean(mask))
+    if not len(runs):
+        return ""
+    if not count:
+        return "No run of the paper's study has a Z₀ bar longer than three times its obstacle's median."
+    return (
+        f"Outliers, as the paper met them: {count} of {plural(len(runs), 'run')} have a Z₀ bar longer than "
+        "three times their "
+        f"obstacle's median. {bad} of these {count} are in the worst quarter of their obstacle's condition numbers; "
+        f"by chance it would be {number(count / 4.0)}."
+    )
+
+
+def condition_effect(campaign: Campaign) -> str:
+    """Does the condition number, as the paper would form it, tell good runs from bad ones?"""
+    runs = campaign.cases.select(study="paper", fraction=st.FRACTION)
+    runs = runs.where((runs["model"] == "auto") | (runs["obstacle"] == "cylinder"))
+    there = np.isfinite(runs["condition"]) & np.isfinite(runs["z0_rmse_pct"])
+    if np.sum(there) < 5:
+        return ""
+    condition, error = runs["condition"][there], runs["z0_rmse_pct"][there]
+    low, high = np.percentile(condition, (10.0, 90.0))
+    best, worst = np.percentile(error, (10.0, 90.0))
+    rho = st.rank_correlation(condition, error)
+    text = (
+        f"In the paper's study, 80 % of the runs have a condition number from {number(float(low))} to "
+        f"{number(float(high))}, "
+        f"while their errors of Z₀ go from {number(float(best))} to {number(float(worst))} %; the rank correlation is "
+        f"{number(rho)}. "
+    )
+    if abs(rho) < 0.4:
+        text += (
+            "The condition number of (5) as written does not tell good runs from bad ones: it is set by the "
+            "units and the "
+            "length of the baseline, which all runs share, not by how much the apparent size changes over the window."
+        )
+    else:
+        text += "So it tells part of what makes a run good or bad."
+    return text
+
+
+def window_effect(campaign: Campaign) -> str:
+    rows = campaign.cases.select(study="conditioning", fraction=st.FRACTION)
+    windows = [w for w in rows.levels("window")] if len(rows) else []
+    if len(windows) < 2:
+        return ""
+    kept = st.nominal_rows(rows, "window")
+    errors = {w: st.median_rmse(kept.select(window=w), "z0") for w in windows}
+    shown = [w for w in windows if math.isfinite(errors[w])]
+    if len(shown) < 2:
+        return ""
+    values = "; ".join(f"{w:g} images {number(errors[w])}\u00a0%" for w in shown)
+    return f"Root mean square error of Z₀ against the length of the window, median over all obstacles: {values}."
+
+
+def fraction_effect(cases: Cases) -> str:
+    """How Table 3 depends on the part of the run, in one sentence."""
+    levels = cases.levels("fraction")
+    ratios = []
+    for obstacle, model in st.PAPER_TABLE3:
+        for quantity in st.TABLE3_QUANTITIES:
+            short, long = (st.make_cell(cases, obstacle, model, quantity, level) for level in (levels[0], levels[-1]))
+            if short is not None and long is not None and long.bars > 0.0:
+                ratios.append(short.bars / long.bars)
+    ratios = [ratio for ratio in ratios if math.isfinite(ratio)]
+    if len(levels) < 2 or not ratios:
+        return ""
+    narrower = sum(ratio < 1.0 for ratio in ratios)
+    return (
+        f"Over the last {levels[0] * 100:.0f} % alone, {narrower} of the {len(ratios)} ranges are narrower than "
+        "over all "
+        f"solved images; the median ratio is {number(float(np.median(ratios)))}."
+    )

@@ -1,0 +1,45 @@
+"""Table 3 as plain text."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from . import statistics as st
+from .data import Campaign
+from .style import NAMES, number
+
+HEADINGS = ("Z0 %", "X0 %", "W %", "L %", "H m")
+MARKS = {st.BETTER: "+", st.REPRODUCED: "=", st.MEANS_ONLY: "~", st.WORSE: "!", st.NOT_IN_PAPER: " "}
+MIN_WIDTH = 78
+
+
+def print_table3(campaign: Campaign, console: Console | None = None) -> None:
+    console = console or Console(highlight=False)
+    if console.width < MIN_WIDTH:
+        console.width = MIN_WIDTH
+    rows = st.table3(campaign.cases)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table.add_column("object/model")
+    for heading in HEADINGS:
+        table.add_column(heading, justify="right", no_wrap=True)
+    for obstacle, model, cells in rows:
+        table.add_row(f"{NAMES[obstacle]}/{model}", *(_cell_text(cell) for cell in cells))
+    console.print("Table 3, errors within ±: paper / ours", style="bold")
+    console.print(table)
+    count = Counter(cell.verdict for _, _, cells in rows for cell in cells if cell is not None and cell.paper)
+    console.print(
+        f"+ half the paper's range or less ({count[st.BETTER]})   = reproduced ({count[st.REPRODUCED]})   "
+        f"~ means only ({count[st.MEANS_ONLY]})\n"
+        f"! not reproduced ({count[st.WORSE]})   >: most values lie outside\n"
+        f"ours: mean ± two sigma of {st.MOST:.0%} of the cases, last {st.FRACTION:.0%} of the solved images; simulation"
+    )
+
+
+def _cell_text(cell: st.Cell | None) -> str:
+    if cell is None:
+        return "-"
+    return f"{cell.paper if cell.paper else '-'} / {number(cell.bars)} {MARKS[cell.verdict]}"
