@@ -1,4 +1,4 @@
-"""For all tests: interrupts reach the programs that are started here, even where those who started pytest ignore them."""
+"""For all tests: interrupts reach the programs started here, even where those who started pytest ignore them."""
 
 from __future__ import annotations
 

@@ -15,6 +15,7 @@ from .style import NAMES, number
 HEADINGS = ("Z0 %", "X0 %", "W %", "L %", "H m")
 MARKS = {st.BETTER: "+", st.REPRODUCED: "=", st.MEANS_ONLY: "~", st.WORSE: "!", st.NOT_IN_PAPER: " "}
 MIN_WIDTH = 78
+SHORT = {"switching": "auto"}  # so that the table keeps to its width
 
 
 def print_table3(campaign: Campaign, console: Console | None = None) -> None:
@@ -27,7 +28,7 @@ def print_table3(campaign: Campaign, console: Console | None = None) -> None:
     for heading in HEADINGS:
         table.add_column(heading, justify="right", no_wrap=True)
     for obstacle, model, cells in rows:
-        table.add_row(f"{NAMES[obstacle]}/{model}", *(_cell_text(cell) for cell in cells))
+        table.add_row(f"{NAMES[obstacle]}/{SHORT.get(model, model)}", *(_cell_text(cell) for cell in cells))
     console.print("Table 3, errors within ±: paper / ours", style="bold")
     console.print(table)
     count = Counter(cell.verdict for _, _, cells in rows for cell in cells if cell is not None and cell.paper)
