@@ -15,14 +15,16 @@ from .style import NAMES, SYMBOLS, UNITS, number, with_unit
 LARGE_TRUTH_RATIO = 0.6  # truths of the runs outside this much smaller than inside: percent of a small number
 HARDER, EASIER = 1.3, 0.9  # a study's error against straight flight
 MUCH_CLOSER = 0.6  # a range this much smaller without something speaks for that as the cause
+SAME_SHARE = 1.25  # percentages of two quantities within this factor of each other: one common error
 BIAS_RATIO = 0.67  # mean error over two sigma below this: scatter
 
 
-MIXED, SMALL_TRUTH, SCATTER, HEIGHT_POINT, NO_DISC, SUM_OF_ERRORS, LASTING = (
-    "mixed", "small truth", "scatter", "height point", "no disc", "sum of errors", "lasting",
+MIXED, SHARED_SCALE, SMALL_TRUTH, SCATTER, HEIGHT_POINT, NO_DISC, SUM_OF_ERRORS, LASTING = (
+    "mixed", "shared scale", "small truth", "scatter", "height point", "no disc", "sum of errors", "lasting",
 )  # fmt: skip
 CAUSE_TITLES = {
     MIXED: "Disc and line solutions in one bar",
+    SHARED_SCALE: "Width and side distance share one scale",
     SMALL_TRUTH: "Percent of a small number",
     SCATTER: "Scatter through a short window",
     NO_DISC: "The disc is not the obstacle's shape, or not where (2) is exact",
@@ -192,10 +194,26 @@ def _is_mixture(cell: st.Cell) -> bool:
     return bool(np.mean(mixed) > 0.5 and _pure_range(cell) < MUCH_CLOSER * cell.bars)
 
 
+def _width_by_side(cell: st.Cell) -> float:
+    """Two sigma of W over two sigma of X0, both in percent, median of the runs that have both."""
+    side = cell.errors.runs[st.column("x0", "two_sigma")]
+    ratios = cell.errors.two_sigma[side > 0.0] / side[side > 0.0]
+    return float(np.median(ratios)) if len(ratios) else math.nan
+
+
+def _shares_scale(cell: st.Cell) -> bool:
+    """Is the width of the line model off by the same share as X0, as (5) makes it?"""
+    if cell.model != "line" or cell.quantity != "width":
+        return False
+    return 1.0 / SAME_SHARE <= _width_by_side(cell) <= SAME_SHARE
+
+
 def likely_cause(cell: st.Cell) -> str:
     """The first that fits; a rule of thumb, which the page says."""
     if _is_mixture(cell):
         return MIXED
+    if _shares_scale(cell):
+        return SHARED_SCALE
     if _is_of_small_truth(cell):
         return SMALL_TRUTH
     if _bias_ratio(cell) < BIAS_RATIO:
@@ -218,6 +236,15 @@ def _explain(cases: Cases, cause: str, cells: list[st.Cell]) -> list[str]:
             "The line takes over late in many runs, so that the part that counts begins with disc solutions, "
             "which see a box "
             f"as a disc. Runs that are line throughout this part keep closer: {'; '.join(ranges)}."
+        ]
+    if cause == SHARED_SCALE:
+        ratios = _listed([f"{_cell_name(cell)} {number(_width_by_side(cell))}" for cell in cells])
+        return [
+            "(5) knows the ratio X₀/W far better than the scale 1/W, so that X₀ and W are wrong by the same share. "
+            f"The scatter of W over that of X₀, both in percent, median of the runs: {ratios}. The paper's range "
+            "of W is 6 to 12 times narrower than its range of X₀: one solution of (5) cannot give both, so the "
+            "paper's W is likely taken in another way, which it does not describe. Its X₀, Z₀ and L agree.",
+            *_evidence_of_part(cases, cells),
         ]
     if cause == SMALL_TRUTH:
         return [_explain_small_truth(cell) for cell in cells]
