@@ -265,7 +265,7 @@ typedef struct {
     bool started; /* a first image was taken; the fields below hold */
     uint8_t reset_count;
     float heading_cos, heading_sin;
-    float origin_ned_m[3]; /* camera at the track's first image, moved along with compensated resets */
+    float origin_ne_m[2];  /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;      /* camera since then, T axes */
     int64_t time_us, solved_time_us;
     goe_window_t disc, line;

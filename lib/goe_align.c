@@ -7,44 +7,49 @@
 
 #define FORWARD_MIN 0.05f /* third component of a unit ray in T: farther aside than 87 degrees nothing can be aligned */
 
-typedef struct {
-    const goe_camera_t *camera;
-    const float *rotation; /* camera -> T */
-    bool undistorts;
-} aligner_t;
+#define FEATURES 6
 
-static goe_status_t align(const aligner_t *aligner, const goe_pixel_t *pixel, goe_point_t *point) {
-    const float *r = aligner->rotation;
-    float x;
-    float y;
-    if (!goe_camera_ray(aligner->camera, aligner->undistorts, pixel, &x, &y)) {
-        return GOE_LENS_FAILED;
-    }
-    const float forward = r[6] * x + r[7] * y + r[8];
-    if (forward <= FORWARD_MIN * sqrtf(x * x + y * y + 1.0f)) {
-        return GOE_BEHIND_CAMERA;
-    }
-    point->x = (r[0] * x + r[1] * y + r[2]) / forward;
-    point->y = (r[3] * x + r[4] * y + r[5]) / forward;
-    point->usable = true;
-    return GOE_OK;
+/* Feature i of an image and of a view: both hold them one after the other, in the same order. */
+static const goe_pixel_t *pixel_of(const goe_image_t *image, size_t i) {
+    const void *at = (const unsigned char *)image + offsetof(goe_image_t, left) + i * sizeof(goe_pixel_t);
+    return at;
 }
 
-static void align_if_seen(const aligner_t *aligner, const goe_pixel_t *pixel, goe_point_t *point,
-                          goe_faults_t *faults) {
-    point->usable = false;
-    if (pixel->seen) {
-        goe_fault_note(faults, align(aligner, pixel, point));
-    }
+static goe_point_t *point_of(goe_view_t *view, size_t i) {
+    void *at = (unsigned char *)view + i * sizeof(goe_point_t);
+    return at;
 }
 
+/* The rotation and the camera are read once: the compiler could not know that writing the points leaves them alone. */
 void goe_align_view(const goe_camera_t *camera, const float camera_to_trajectory[9], const goe_image_t *image,
                     goe_view_t *view, goe_faults_t *faults) {
-    const aligner_t aligner = {camera, camera_to_trajectory, goe_camera_distorts(camera)};
-    align_if_seen(&aligner, &image->left, &view->left, faults);
-    align_if_seen(&aligner, &image->right, &view->right, faults);
-    align_if_seen(&aligner, &image->top, &view->top, faults);
-    align_if_seen(&aligner, &image->base_left, &view->base_left, faults);
-    align_if_seen(&aligner, &image->base_near, &view->base_near, faults);
-    align_if_seen(&aligner, &image->base_right, &view->base_right, faults);
+    const float *r = camera_to_trajectory;
+    const float xx = r[0], xy = r[1], xz = r[2];
+    const float yx = r[3], yy = r[4], yz = r[5];
+    const float zx = r[6], zy = r[7], zz = r[8];
+    const float cx_px = camera->cx_px, cy_px = camera->cy_px, fx_px = camera->fx_px, fy_px = camera->fy_px;
+    const bool distorts = goe_camera_distorts(camera);
+    for (size_t i = 0; i < FEATURES; i++) {
+        const goe_pixel_t *pixel = pixel_of(image, i);
+        goe_point_t *point = point_of(view, i);
+        point->usable = pixel->seen;
+        if (!pixel->seen) {
+            continue;
+        }
+        float x = (pixel->u_px - cx_px) / fx_px;
+        float y = (pixel->v_px - cy_px) / fy_px;
+        if (distorts && !goe_camera_undistort(camera, &x, &y)) {
+            point->usable = false;
+            goe_fault_note(faults, GOE_LENS_FAILED);
+            continue;
+        }
+        const float forward = zx * x + zy * y + zz;
+        if (forward <= FORWARD_MIN * sqrtf(x * x + y * y + 1.0f)) {
+            point->usable = false;
+            goe_fault_note(faults, GOE_BEHIND_CAMERA);
+            continue;
+        }
+        point->x = (xx * x + xy * y + xz) / forward;
+        point->y = (yx * x + yy * y + yz) / forward;
+    }
 }

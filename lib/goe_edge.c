@@ -5,11 +5,6 @@
 
 #include "goe_angle.h"
 
-typedef struct {
-    const goe_pixel_t *pixel;
-    const goe_point_t *point;
-} corner_t;
-
 static bool in_order(const goe_point_t *left, const goe_point_t *right) {
     return !left->usable || !right->usable || left->x <= right->x;
 }
@@ -23,35 +18,46 @@ static float heading_deg(const goe_point_t *a, const goe_point_t *b) {
     return goe_fold_deg(rad * GOE_DEG_PER_RAD);
 }
 
-static void add_edge(const goe_settings_t *settings, corner_t left, corner_t right, goe_edges_t *edges) {
-    if (!left.point->usable || !right.point->usable) {
-        return;
-    }
-    goe_edge_t *edge = &edges->edge[edges->count++];
-    const float du = right.pixel->u_px - left.pixel->u_px;
-    const float dv = right.pixel->v_px - left.pixel->v_px;
-    const float rise_px = fabsf(right.point->y - left.point->y) * settings->camera.fx_px;
-    edge->left = left.point;
-    edge->right = right.point;
+/* edge->left and edge->right are usable; from_px and to_px are their pixels. */
+static void measure_edge(const goe_settings_t *settings, const goe_pixel_t *from_px, const goe_pixel_t *to_px,
+                         goe_edge_t *edge) {
+    const goe_point_t *left = edge->left;
+    const goe_point_t *right = edge->right;
+    const float du = to_px->u_px - from_px->u_px;
+    const float dv = to_px->v_px - from_px->v_px;
+    const float rise_px = fabsf(right->y - left->y) * settings->camera.fx_px;
     edge->counts = du * du + dv * dv > settings->edge_min_px * settings->edge_min_px;
     edge->has_heading = edge->counts && rise_px > settings->orientation_min_px;
-    edge->heading_deg = edge->has_heading ? heading_deg(left.point, right.point) : 0.0f;
+    edge->heading_deg = edge->has_heading ? heading_deg(left, right) : 0.0f;
+}
+
+static void add_edge(const goe_settings_t *settings, const goe_pixel_t *from_px, const goe_point_t *from,
+                     const goe_pixel_t *to_px, const goe_point_t *to, goe_edges_t *edges) {
+    if (from->usable && to->usable) {
+        goe_edge_t *edge = &edges->edge[edges->count++];
+        edge->left = from;
+        edge->right = to;
+        measure_edge(settings, from_px, to_px, edge);
+    }
 }
 
 goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_image_t *image, const goe_view_t *view,
                            goe_edges_t *edges) {
-    const corner_t left = {&image->base_left, &view->base_left};
-    const corner_t near = {&image->base_near, &view->base_near};
-    const corner_t right = {&image->base_right, &view->base_right};
+    const goe_point_t *left = &view->base_left;
+    const goe_point_t *near = &view->base_near;
+    const goe_point_t *right = &view->base_right;
     edges->count = 0;
-    if (!in_order(left.point, near.point) || !in_order(near.point, right.point) || !in_order(left.point, right.point)) {
-        return GOE_SWAPPED;
-    }
-    if (near.point->usable) {
-        add_edge(settings, left, near, edges);
-        add_edge(settings, near, right, edges);
+    if (near->usable) {
+        if (!in_order(left, near) || !in_order(near, right)) {
+            return GOE_SWAPPED;
+        }
+        add_edge(settings, &image->base_left, left, &image->base_near, near, edges);
+        add_edge(settings, &image->base_near, near, &image->base_right, right, edges);
     } else {
-        add_edge(settings, left, right, edges);
+        if (!in_order(left, right)) {
+            return GOE_SWAPPED;
+        }
+        add_edge(settings, &image->base_left, left, &image->base_right, right, edges);
     }
     return GOE_OK;
 }

@@ -9,14 +9,6 @@
 
 #define LEVEL_NOSE_MIN 1.0e-3f /* horizontal part of the nose's unit vector below which it has no heading */
 
-bool goe_ego_motion_reset(const goe_estimator_t *estimator, const goe_pose_t *pose) {
-    return estimator->started && pose->reset_count != estimator->reset_count;
-}
-
-bool goe_ego_motion_lost(const goe_estimator_t *estimator, const goe_pose_t *pose) {
-    return goe_ego_motion_reset(estimator, pose) && !pose->reset_delta_known;
-}
-
 /* T's Z axis in (north, east): the set heading, or where the nose points. */
 static void fix_heading(goe_estimator_t *estimator, const float body_to_ned[9]) {
     const float north = body_to_ned[0];
@@ -34,48 +26,48 @@ static void fix_heading(goe_estimator_t *estimator, const float body_to_ned[9]) 
 }
 
 static void camera_position(const goe_estimator_t *estimator, const goe_pose_t *pose, const float body_to_ned[9],
-                            float position[3]) {
+                            float position[2]) {
     float arm[3];
     goe_rotation_apply(body_to_ned, estimator->settings.camera.offset_m, arm);
-    for (int i = 0; i < 3; i++) {
-        position[i] = pose->position_ned_m[i] + arm[i];
-    }
+    position[0] = pose->position_ned_m[0] + arm[0];
+    position[1] = pose->position_ned_m[1] + arm[1];
 }
 
-/* Rows of NED -> T: X = (-sin, cos, 0), Y = (0, 0, 1), Z = (cos, sin, 0): level, whatever the glide slope. */
-static void turn_into_trajectory(const goe_estimator_t *estimator, const float camera_to_ned[9], float turned[9]) {
+/* (NED -> T) (body -> NED) (camera -> body), column by column. Rows of NED -> T: X = (-sin, cos, 0), Y = (0, 0, 1),
+ * Z = (cos, sin, 0): level, whatever the glide slope. */
+static void turn_into_trajectory(const goe_estimator_t *estimator, const float body_to_ned[9], float turned[9]) {
+    const float *b = body_to_ned;
     const float c = estimator->heading_cos;
     const float s = estimator->heading_sin;
     for (int i = 0; i < 3; i++) {
-        const float north = camera_to_ned[i];
-        const float east = camera_to_ned[3 + i];
+        const float *m = &estimator->camera_to_body[i];
+        const float north = b[0] * m[0] + b[1] * m[3] + b[2] * m[6];
+        const float east = b[3] * m[0] + b[4] * m[3] + b[5] * m[6];
         turned[i] = c * east - s * north;
-        turned[3 + i] = camera_to_ned[6 + i];
+        turned[3 + i] = b[6] * m[0] + b[7] * m[3] + b[8] * m[6];
         turned[6 + i] = c * north + s * east;
     }
 }
 
 void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, float camera_to_trajectory[9]) {
     float body_to_ned[9];
-    float camera_to_ned[9];
-    float position[3];
+    float position[2];
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
     camera_position(estimator, pose, body_to_ned, position);
     if (!estimator->started) {
         fix_heading(estimator, body_to_ned);
-        memcpy(estimator->origin_ned_m, position, sizeof position);
+        memcpy(estimator->origin_ne_m, position, sizeof position);
         estimator->started = true;
     } else if (goe_ego_motion_reset(estimator, pose)) {
-        for (int i = 0; i < 3; i++) {
-            estimator->origin_ned_m[i] += pose->reset_delta_ned_m[i];
+        for (int i = 0; i < 2; i++) {
+            estimator->origin_ne_m[i] += pose->reset_delta_ned_m[i];
         }
     }
     estimator->reset_count = pose->reset_count;
     estimator->time_us = pose->time_us;
-    const float north = position[0] - estimator->origin_ned_m[0];
-    const float east = position[1] - estimator->origin_ned_m[1];
+    const float north = position[0] - estimator->origin_ne_m[0];
+    const float east = position[1] - estimator->origin_ne_m[1];
     estimator->dx_m = estimator->heading_cos * east - estimator->heading_sin * north;
     estimator->dz_m = estimator->heading_cos * north + estimator->heading_sin * east;
-    goe_rotation_multiply(body_to_ned, estimator->camera_to_body, camera_to_ned);
-    turn_into_trajectory(estimator, camera_to_ned, camera_to_trajectory);
+    turn_into_trajectory(estimator, body_to_ned, camera_to_trajectory);
 }

@@ -10,7 +10,12 @@
 void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, float camera_to_trajectory[9]);
 
 /* Whether the autopilot's filter jumped since the image before; the same by an unknown amount. */
-bool goe_ego_motion_reset(const goe_estimator_t *estimator, const goe_pose_t *pose);
-bool goe_ego_motion_lost(const goe_estimator_t *estimator, const goe_pose_t *pose);
+static inline bool goe_ego_motion_reset(const goe_estimator_t *estimator, const goe_pose_t *pose) {
+    return estimator->started && pose->reset_count != estimator->reset_count;
+}
+
+static inline bool goe_ego_motion_lost(const goe_estimator_t *estimator, const goe_pose_t *pose) {
+    return goe_ego_motion_reset(estimator, pose) && !pose->reset_delta_known;
+}
 
 #endif

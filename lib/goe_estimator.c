@@ -32,7 +32,8 @@ typedef struct {
     goe_view_t view;
     goe_edges_t edges;
     goe_faces_t faces;
-    goe_turn_t turn; /* filtered orientation */
+    goe_turn_t turn;  /* filtered orientation */
+    goe_span_t front; /* holds if line_row */
     goe_faults_t faults;
     bool disc_row, line_row; /* the image added a row to that model's window */
 } frame_t;
@@ -62,8 +63,8 @@ static void find_faces(goe_estimator_t *estimator, const goe_image_t *image, fra
         return;
     }
     goe_fault_note(&frame->faults, goe_edge_find(&estimator->settings, image, &frame->view, &frame->edges));
-    frame->faces =
-        goe_orientation_update(&estimator->orientation, &frame->edges, estimator->settings.orientation_memory);
+    goe_orientation_update(&estimator->orientation, &frame->edges, estimator->settings.orientation_memory,
+                           &frame->faces);
     goe_sincos_deg(estimator->orientation.filtered_deg, &frame->turn.s, &frame->turn.c);
 }
 
@@ -73,7 +74,7 @@ static void add_line_row(goe_estimator_t *estimator, frame_t *frame) {
     if (!frame->faces.measured || !front || !front->counts) {
         return;
     }
-    const goe_status_t fault = goe_projection_line(front->left, front->right, frame->turn, &row);
+    const goe_status_t fault = goe_projection_line(front->left, front->right, frame->turn, &frame->front, &row);
     goe_fault_note(&frame->faults, fault);
     if (fault == GOE_OK) {
         goe_window_add(&estimator->line, estimator->settings.window, estimator->dx_m, estimator->dz_m, row);
@@ -95,28 +96,17 @@ static goe_model_t reported_model(const goe_estimator_t *estimator) {
     return estimator->line.count >= line_points_needed(&estimator->settings) ? GOE_MODEL_LINE : GOE_MODEL_DISC;
 }
 
-static void take_fit(goe_estimator_t *estimator, goe_model_t model, const goe_fit_t *fit) {
+static void take_fit(goe_estimator_t *estimator, goe_model_t model) {
     goe_estimate_t *estimate = &estimator->estimate;
     estimate->model = model;
     estimate->valid |= GOE_HAS_POSITION;
     estimate->fresh = true;
     estimate->points = estimator->settings.window;
-    estimate->x0_m = fit->x0_m;
-    estimate->z0_m = fit->z0_m;
-    estimate->width_m = fit->width_m;
-    estimate->residual = fit->residual;
-    estimate->baseline_m = fit->baseline_m;
-    estimate->sigma.x0_m = fit->sigma_x0_m;
-    estimate->sigma.z0_m = fit->sigma_z0_m;
-    estimate->sigma.x_m = fit->sigma_x0_m;
-    estimate->sigma.z_m = fit->sigma_z0_m;
-    estimate->sigma.width_m = fit->sigma_width_m;
     estimator->solved_time_us = estimator->time_us;
 }
 
 /* GOE_OK: solved. GOE_COLLECTING, GOE_HELD: nothing to solve. Otherwise why there is no solution. */
 static goe_status_t solve(goe_estimator_t *estimator, const frame_t *frame) {
-    goe_fit_t fit;
     const goe_model_t model = reported_model(estimator);
     const goe_window_t *window = model == GOE_MODEL_LINE ? &estimator->line : &estimator->disc;
     const int length = estimator->settings.window;
@@ -126,9 +116,10 @@ static goe_status_t solve(goe_estimator_t *estimator, const frame_t *frame) {
     if (!(model == GOE_MODEL_LINE ? frame->line_row : frame->disc_row)) {
         return GOE_HELD;
     }
-    const goe_status_t status = goe_window_solve(window, length, estimator->settings.min_baseline_m, &fit);
+    const goe_status_t status =
+        goe_window_solve(window, length, estimator->settings.min_baseline_m, &estimator->estimate);
     if (status == GOE_OK) {
-        take_fit(estimator, model, &fit);
+        take_fit(estimator, model);
     }
     return status;
 }
@@ -160,12 +151,11 @@ static void take_extent(goe_estimator_t *estimator, goe_mean_t *mean, const goe_
 
 static void measure_extents(goe_estimator_t *estimator, const goe_image_t *image, frame_t *frame) {
     goe_estimate_t *estimate = &estimator->estimate;
-    const goe_reference_t reference = {estimate->x_m,       estimate->z_m,       estimate->width_m,
-                                       estimate->sigma.x_m, estimate->sigma.z_m, estimate->sigma.width_m};
     goe_extent_t extent;
-    if (estimate->model == GOE_MODEL_LINE && frame->faces.front && frame->faces.side) {
+    if (estimate->model == GOE_MODEL_LINE && frame->faces.side) {
         const float min_x = estimator->settings.side_min_px / estimator->settings.camera.fx_px;
-        const goe_status_t fault = goe_extent_length(&frame->faces, frame->turn, &reference, min_x, &extent);
+        const goe_status_t fault =
+            goe_extent_length(&frame->faces, &frame->front, frame->turn, estimate, min_x, &extent);
         goe_fault_note(&frame->faults, fault);
         if (fault == GOE_OK) {
             take_extent(estimator, &estimator->length, &extent, GOE_HAS_LENGTH, &estimate->length_m,
@@ -173,7 +163,7 @@ static void measure_extents(goe_estimator_t *estimator, const goe_image_t *image
         }
     }
     if (frame->view.top.usable) {
-        const goe_status_t fault = goe_extent_height(&frame->view.top, image->pose.height_m, &reference, &extent);
+        const goe_status_t fault = goe_extent_height(&frame->view.top, image->pose.height_m, estimate, &extent);
         goe_fault_note(&frame->faults, fault);
         if (fault == GOE_OK) {
             take_extent(estimator, &estimator->height, &extent, GOE_HAS_HEIGHT, &estimate->height_m,
@@ -228,8 +218,8 @@ static void tell_center(goe_estimator_t *estimator) {
         variance_z += half_z * half_z * sigma->length_m * sigma->length_m;
     }
     estimate->valid |= GOE_HAS_CENTER;
-    estimate->center_north_m = estimator->origin_ned_m[0] + (c * z_m - s * x_m);
-    estimate->center_east_m = estimator->origin_ned_m[1] + (s * z_m + c * x_m);
+    estimate->center_north_m = estimator->origin_ne_m[0] + (c * z_m - s * x_m);
+    estimate->center_east_m = estimator->origin_ne_m[1] + (s * z_m + c * x_m);
     estimate->sigma.center_north_m = sqrtf(c * c * variance_z + s * s * variance_x);
     estimate->sigma.center_east_m = sqrtf(s * s * variance_z + c * c * variance_x);
 }
@@ -281,7 +271,6 @@ static goe_status_t judge(const goe_estimator_t *estimator, const goe_image_t *i
     return solving;
 }
 
-/* Not the view: the alignment writes all of it. */
 static void start_frame(goe_estimator_t *estimator, frame_t *frame) {
     frame->edges.count = 0;
     frame->faces.measured = false;

@@ -13,35 +13,33 @@
 
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
-static uint32_t largest_of(const float *values, int count) {
-    uint32_t largest = 0u;
-    for (int i = 0; i < count; i++) {
-        largest = larger(largest, goe_magnitude(values[i]));
-    }
-    return largest;
+static uint32_t largest_of(const float v[3]) {
+    return larger(larger(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
 }
 
-static uint32_t largest_pixel(uint32_t largest, const goe_pixel_t *pixel) {
-    if (!pixel->seen) {
-        return largest;
-    }
-    return larger(largest, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px)));
+static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
+    return pixel->seen ? larger(so_far, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px))) : so_far;
 }
 
-static goe_status_t check_numbers(const goe_image_t *image, bool reset) {
+static uint32_t largest_pixel(const goe_image_t *image) {
+    uint32_t largest = with_pixel(0u, &image->left);
+    largest = with_pixel(largest, &image->right);
+    largest = with_pixel(largest, &image->top);
+    largest = with_pixel(largest, &image->base_left);
+    largest = with_pixel(largest, &image->base_near);
+    return with_pixel(largest, &image->base_right);
+}
+
+/* Not finite outranks out of range, which outranks a bad attitude. */
+static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {
     const goe_pose_t *pose = &image->pose;
     const uint32_t height = goe_magnitude(pose->height_m);
-    uint32_t position = largest_of(pose->position_ned_m, 3);
+    const uint32_t pixel = largest_pixel(image);
+    uint32_t position = largest_of(pose->position_ned_m);
     if (reset && pose->reset_delta_known) {
-        position = larger(position, largest_of(pose->reset_delta_ned_m, 3));
+        position = larger(position, largest_of(pose->reset_delta_ned_m));
     }
-    uint32_t pixel = largest_pixel(0u, &image->left);
-    pixel = largest_pixel(pixel, &image->right);
-    pixel = largest_pixel(pixel, &image->top);
-    pixel = largest_pixel(pixel, &image->base_left);
-    pixel = largest_pixel(pixel, &image->base_near);
-    pixel = largest_pixel(pixel, &image->base_right);
-    if (larger(larger(height, largest_of(pose->attitude, 4)), larger(position, pixel)) >= GOE_INFINITY_BITS) {
+    if (larger(larger(height, attitude), larger(position, pixel)) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
     const bool within = height <= goe_magnitude(HEIGHT_LIMIT_M) && position <= goe_magnitude(POSITION_LIMIT_M) &&
@@ -49,8 +47,8 @@ static goe_status_t check_numbers(const goe_image_t *image, bool reset) {
     return within ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
-static bool is_unit(const float q[4]) {
-    if (largest_of(q, 4) > goe_magnitude(ATTITUDE_LIMIT)) {
+static bool is_unit(const float q[4], uint32_t largest) {
+    if (largest > goe_magnitude(ATTITUDE_LIMIT)) {
         return false;
     }
     const float norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
@@ -58,12 +56,14 @@ static bool is_unit(const float q[4]) {
 }
 
 goe_status_t goe_intake_check(const goe_estimator_t *estimator, const goe_image_t *image) {
-    const goe_status_t status = check_numbers(image, goe_ego_motion_reset(estimator, &image->pose));
+    const float *q = image->pose.attitude;
+    const uint32_t attitude = larger(largest_of(q), goe_magnitude(q[3]));
+    const goe_status_t status = check_numbers(image, attitude, goe_ego_motion_reset(estimator, &image->pose));
     if (status != GOE_OK) {
         return status;
     }
     if (image->pose.time_us <= estimator->time_us) { /* GOE_TIME_UNKNOWN is the smallest of all times */
         return GOE_BAD_TIME;
     }
-    return is_unit(image->pose.attitude) ? GOE_OK : GOE_BAD_ATTITUDE;
+    return is_unit(q, attitude) ? GOE_OK : GOE_BAD_ATTITUDE;
 }

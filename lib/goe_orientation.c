@@ -40,24 +40,18 @@ static void low_pass(goe_orientation_t *orientation, float measured_deg, int mem
     orientation->variance_deg2 += (step * step - orientation->variance_deg2) * gain;
 }
 
-goe_faces_t goe_orientation_update(goe_orientation_t *orientation, const goe_edges_t *edges, int memory) {
-    goe_faces_t faces = {false, NULL, NULL, false};
+void goe_orientation_update(goe_orientation_t *orientation, const goe_edges_t *edges, int memory, goe_faces_t *faces) {
     const goe_edge_t *first = edges->count > 0 ? &edges->edge[0] : NULL;
     const goe_edge_t *second = edges->count > 1 ? &edges->edge[1] : NULL;
     if (!(first && first->has_heading) && !(second && second->has_heading)) {
-        return faces;
+        return;
     }
     const float if_first_deg = hypothesis_deg(first, second);
     const float if_second_deg = hypothesis_deg(second, first);
     const bool first_is_side = prefers_first(orientation, if_first_deg, if_second_deg);
-    faces.measured = true;
-    faces.side = first_is_side ? first : second;
-    faces.front = first_is_side ? second : first;
-    faces.side_is_right = !first_is_side;
+    faces->measured = true;
+    faces->side = first_is_side ? first : second;
+    faces->front = first_is_side ? second : first;
+    faces->side_is_right = !first_is_side;
     low_pass(orientation, first_is_side ? if_first_deg : if_second_deg, memory);
-    return faces;
-}
-
-float goe_orientation_sigma_deg(const goe_orientation_t *orientation) {
-    return orientation->count > 0 ? sqrtf(orientation->variance_deg2 / (float)orientation->count) : 0.0f;
 }

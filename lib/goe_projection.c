@@ -4,7 +4,6 @@
 #include <math.h>
 
 #define WIDTH_MIN 1.0e-4f    /* smallest image width that is divided by, of the focal length */
-#define FORWARD_MIN 0.05f    /* as in the alignment: third component of a unit ray */
 #define DISC_MULTIPLIER 2.0f /* m in (5) */
 
 goe_status_t goe_projection_disc(const goe_point_t *left, const goe_point_t *right, goe_row_t *row) {
@@ -21,16 +20,8 @@ goe_status_t goe_projection_disc(const goe_point_t *left, const goe_point_t *rig
     return GOE_OK;
 }
 
-bool goe_projection_turn(const goe_point_t *point, goe_turn_t turn, float *turned_x) {
-    const float forward = turn.c + point->x * turn.s;
-    if (!(forward > FORWARD_MIN * sqrtf(1.0f + point->x * point->x))) {
-        return false;
-    }
-    *turned_x = (point->x * turn.c - turn.s) / forward;
-    return true;
-}
-
-goe_status_t goe_projection_line(const goe_point_t *left, const goe_point_t *right, goe_turn_t turn, goe_row_t *row) {
+goe_status_t goe_projection_line(const goe_point_t *left, const goe_point_t *right, goe_turn_t turn, goe_span_t *span,
+                                 goe_row_t *row) {
     float x_left;
     float x_right;
     if (!goe_projection_turn(left, turn, &x_left) || !goe_projection_turn(right, turn, &x_right)) {
@@ -42,6 +33,8 @@ goe_status_t goe_projection_line(const goe_point_t *left, const goe_point_t *rig
     }
     const float forward = 1.0f / size;                       /* m/S, m = 1 */
     const float aside = 0.5f * (x_left + x_right) * forward; /* m x/S */
+    span->left = x_left;
+    span->right = x_right;
     row->xi = turn.c * aside + turn.s * forward;
     row->zeta = turn.c * forward - turn.s * aside;
     return GOE_OK;

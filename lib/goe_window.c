@@ -20,17 +20,6 @@ typedef struct {
     float largest_dz_m;
 } moments_t;
 
-void goe_window_add(goe_window_t *window, int length, float dx_m, float dz_m, goe_row_t row) {
-    const int at = window->next;
-    goe_window_point_t *point = &window->point[at];
-    point->dx_m = dx_m;
-    point->dz_m = dz_m;
-    point->xi = row.xi;
-    point->zeta = row.zeta;
-    window->next = (int16_t)(at + 1 < length ? at + 1 : 0);
-    window->count = (int16_t)(window->count < INT16_MAX ? window->count + 1 : INT16_MAX);
-}
-
 static void sum_means(const goe_window_point_t *points, int length, moments_t *m) {
     const goe_window_point_t *end = points + length;
     float dx_m = 0.0f;
@@ -82,17 +71,19 @@ static float squared_residuals(const goe_window_point_t *points, int length, con
 static float bounded(float sigma_m) { return sigma_m < SIGMA_LIMIT_M ? sigma_m : SIGMA_LIMIT_M; }
 
 /* From the covariance of the fit: 1/W has s2/D, the window means have s2/N, and they are independent. */
-static void set_sigmas(const moments_t *m, int length, float squares, goe_fit_t *fit) {
+static void set_sigmas(const moments_t *m, int length, float squares, goe_estimate_t *fit) {
     const float s2 = squares / (float)(2 * length - 3);
     const float mean = s2 / (float)length;
     const float slope = fit->width_m * fit->width_m * (s2 / m->spread_m2);
     fit->residual = sqrtf(squares / (float)(2 * length));
-    fit->sigma_width_m = bounded(fit->width_m * sqrtf(slope));
-    fit->sigma_x0_m = bounded(fit->width_m * sqrtf(mean + m->xi * m->xi * slope));
-    fit->sigma_z0_m = bounded(fit->width_m * sqrtf(mean + m->zeta * m->zeta * slope));
+    fit->sigma.width_m = bounded(fit->width_m * sqrtf(slope));
+    fit->sigma.x0_m = bounded(fit->width_m * sqrtf(mean + m->xi * m->xi * slope));
+    fit->sigma.z0_m = bounded(fit->width_m * sqrtf(mean + m->zeta * m->zeta * slope));
+    fit->sigma.x_m = fit->sigma.x0_m;
+    fit->sigma.z_m = fit->sigma.z0_m;
 }
 
-goe_status_t goe_window_solve(const goe_window_t *window, int length, float min_baseline_m, goe_fit_t *fit) {
+goe_status_t goe_window_solve(const goe_window_t *window, int length, float min_baseline_m, goe_estimate_t *fit) {
     moments_t m;
     sum_means(window->point, length, &m);
     sum_products(window->point, length, &m);

@@ -4,18 +4,21 @@
 
 #include "goe_projection.h"
 
-typedef struct {
-    float x0_m, z0_m, width_m;
-    float sigma_x0_m, sigma_z0_m, sigma_width_m;
-    float residual;   /* rms of the rows */
-    float baseline_m; /* root of the summed squared spread of dX, dZ */
-} goe_fit_t;
-
 /* Adds a row; the oldest of `length` rows leaves. */
-void goe_window_add(goe_window_t *window, int length, float dx_m, float dz_m, goe_row_t row);
+static inline void goe_window_add(goe_window_t *window, int length, float dx_m, float dz_m, goe_row_t row) {
+    const int at = window->next;
+    goe_window_point_t *point = &window->point[at];
+    point->dx_m = dx_m;
+    point->dz_m = dz_m;
+    point->xi = row.xi;
+    point->zeta = row.zeta;
+    window->next = (int16_t)(at + 1 < length ? at + 1 : 0);
+    window->count = (int16_t)(window->count < INT16_MAX ? window->count + 1 : INT16_MAX);
+}
 
-/* Solves (5) over the newest `length` rows, which must be there. GOE_OK, or with *fit untouched GOE_NO_BASELINE,
+/* Solves (5) over the newest `length` rows, which must be there. GOE_OK with x0, z0, width, residual,
+ * baseline and their sigmas set, or with *fit untouched GOE_NO_BASELINE,
  * GOE_NO_PARALLAX or GOE_PASSED. */
-goe_status_t goe_window_solve(const goe_window_t *window, int length, float min_baseline_m, goe_fit_t *fit);
+goe_status_t goe_window_solve(const goe_window_t *window, int length, float min_baseline_m, goe_estimate_t *fit);
 
 #endif

@@ -59,7 +59,9 @@ static void mounting_angles_apply_in_order(void) {
 
 static bool ray_of(float u, float v, float *x, float *y) {
     const goe_pixel_t pixel = {u, v, true};
-    return goe_camera_ray(&camera, goe_camera_distorts(&camera), &pixel, x, y);
+    *x = (pixel.u_px - camera.cx_px) / camera.fx_px;
+    *y = (pixel.v_px - camera.cy_px) / camera.fy_px;
+    return !goe_camera_distorts(&camera) || goe_camera_undistort(&camera, x, y);
 }
 
 static void a_pinhole_camera_divides_by_its_focal_lengths(void) {

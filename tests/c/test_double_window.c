@@ -51,7 +51,7 @@ static void the_fit_is_that_of_the_dense_system(void) {
                               check_random_between(&random, -2.0, 2.0),     check_random_between(&random, 0.5, 4.0)};
         reference_row_t rows[LENGTH];
         goe_window_t window;
-        goe_fit_t fit;
+        goe_estimate_t fit;
         const double baseline = sqrt(42.0 * (given.step_x * given.step_x + given.step_z * given.step_z));
         make_rows(&given, 0.02 * baseline / given.width, &random, rows, &window);
         const reference_fit_t expected = reference_solve(rows, LENGTH);
@@ -60,9 +60,9 @@ static void the_fit_is_that_of_the_dense_system(void) {
             check_worst(&worst, ((double)fit.width_m / expected.width_m - 1.0) / rounding);
             check_worst(&worst, ((double)fit.x0_m - expected.x0_m) / expected.z0_m / rounding);
             check_worst(&worst, ((double)fit.z0_m / expected.z0_m - 1.0) / rounding);
-            check_worst(&worst_sigma, (double)fit.sigma_width_m / expected.sigma_width_m - 1.0);
-            check_worst(&worst_sigma, (double)fit.sigma_x0_m / expected.sigma_x0_m - 1.0);
-            check_worst(&worst_sigma, (double)fit.sigma_z0_m / expected.sigma_z0_m - 1.0);
+            check_worst(&worst_sigma, (double)fit.sigma.width_m / expected.sigma_width_m - 1.0);
+            check_worst(&worst_sigma, (double)fit.sigma.x0_m / expected.sigma_x0_m - 1.0);
+            check_worst(&worst_sigma, (double)fit.sigma.z0_m / expected.sigma_z0_m - 1.0);
             check_worst(&worst_sigma, (double)fit.residual / expected.residual - 1.0);
             solved++;
         }
@@ -85,12 +85,12 @@ static void the_sigmas_are_the_scatter(void) {
     for (int i = 0; i < DRAWS; i++) {
         reference_row_t rows[LENGTH];
         goe_window_t window;
-        goe_fit_t fit;
+        goe_estimate_t fit;
         make_rows(&given, 0.01, &random, rows, &window);
         CHECK_STATUS(GOE_OK, goe_window_solve(&window, LENGTH, 0.1f, &fit));
         const double off[3] = {(double)fit.x0_m - given.x0, (double)fit.z0_m - given.z0,
                                (double)fit.width_m - given.width};
-        const double sigma[3] = {(double)fit.sigma_x0_m, (double)fit.sigma_z0_m, (double)fit.sigma_width_m};
+        const double sigma[3] = {(double)fit.sigma.x0_m, (double)fit.sigma.z0_m, (double)fit.sigma.width_m};
         for (int q = 0; q < 3; q++) {
             sum[q] += off[q];
             sum2[q] += off[q] * off[q];

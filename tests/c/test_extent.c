@@ -14,6 +14,22 @@ void tearDown(void) {}
 
 static goe_point_t aligned(double x, double z) { return (goe_point_t){(float)(x / z), 0.0f, true}; }
 
+static goe_estimate_t solved(float x_m, float z_m, float width_m) {
+    goe_estimate_t estimate = {.x_m = x_m, .z_m = z_m, .width_m = width_m};
+    estimate.sigma.x_m = 0.5f;
+    estimate.sigma.z_m = 2.0f;
+    estimate.sigma.width_m = 0.25f;
+    return estimate;
+}
+
+/* The front edge, which ends at the near corner on both sides. */
+static goe_span_t front_to(const goe_point_t *near, goe_turn_t turn) {
+    goe_span_t front = {0.0f, 0.0f};
+    TEST_ASSERT_TRUE(goe_projection_turn(near, turn, &front.left));
+    front.right = front.left;
+    return front;
+}
+
 /* A box with the middle of its front edge at (x, z), width w, length l, turned by b, all seen exactly. */
 static goe_status_t measure(double x, double z, double w, double l, double b_deg, bool side_is_right) {
     const double s = sin(b_deg * RAD_PER_DEG);
@@ -25,8 +41,9 @@ static goe_status_t measure(double x, double z, double w, double l, double b_deg
     const goe_edge_t front = {NULL, NULL, true, true, 0.0f};
     const goe_faces_t faces = {true, &front, &side, side_is_right};
     const goe_turn_t turn = {(float)s, (float)c};
-    const goe_reference_t reference = {(float)x, (float)z, (float)w, 0.5f, 2.0f, 0.25f};
-    return goe_extent_length(&faces, turn, &reference, MIN_X, &extent);
+    const goe_span_t span = front_to(&near, turn);
+    const goe_estimate_t reference = solved((float)x, (float)z, (float)w);
+    return goe_extent_length(&faces, &span, turn, &reference, MIN_X, &extent);
 }
 
 static void length_is_exact_on_both_sides(void) {
@@ -64,23 +81,26 @@ static void ends_on_both_sides_of_the_axis_have_no_length(void) {
     const goe_point_t far = {0.1f, 0.0f, true};
     const goe_edge_t side = {&near, &far, true, true, 0.0f};
     const goe_faces_t faces = {true, &side, &side, true};
-    const goe_reference_t reference = {-10.0f, 80.0f, 2.5f, 0.5f, 2.0f, 0.25f};
-    CHECK_STATUS(GOE_EDGE_ON, goe_extent_length(&faces, (goe_turn_t){0.0f, 1.0f}, &reference, MIN_X, &extent));
+    const goe_estimate_t reference = solved(-10.0f, 80.0f, 2.5f);
+    const goe_turn_t turn = {0.0f, 1.0f};
+    const goe_span_t span = front_to(&near, turn);
+    CHECK_STATUS(GOE_EDGE_ON, goe_extent_length(&faces, &span, turn, &reference, MIN_X, &extent));
     TEST_ASSERT_EQUAL_FLOAT(-1.0f, extent.value_m);
 }
 
 static void an_end_behind_the_turned_camera_has_no_length(void) {
-    const goe_point_t near = {-3.0f, 0.0f, true};
+    const goe_point_t near = {-1.0f, 0.0f, true};
     const goe_point_t far = {-2.0f, 0.0f, true};
     const goe_edge_t side = {&near, &far, true, true, 0.0f};
     const goe_faces_t faces = {true, &side, &side, true};
-    const goe_reference_t reference = {-10.0f, 80.0f, 2.5f, 0.5f, 2.0f, 0.25f};
+    const goe_estimate_t reference = solved(-10.0f, 80.0f, 2.5f);
     const goe_turn_t turn = {0.707106781f, 0.707106781f}; /* bearing -63 seen from 45: 108 degrees aside */
-    CHECK_STATUS(GOE_EDGE_ON, goe_extent_length(&faces, turn, &reference, MIN_X, &extent));
+    const goe_span_t span = {-1.0f, -1.0f};
+    CHECK_STATUS(GOE_EDGE_ON, goe_extent_length(&faces, &span, turn, &reference, MIN_X, &extent));
 }
 
 static void height_is_below_or_above_the_camera(void) {
-    const goe_reference_t reference = {0.0f, 100.0f, 2.5f, 0.5f, 2.0f, 0.25f};
+    const goe_estimate_t reference = solved(0.0f, 100.0f, 2.5f);
     const goe_point_t below = {0.0f, 0.175f, true};
     const goe_point_t above = {0.0f, -0.4f, true};
     CHECK_STATUS(GOE_OK, goe_extent_height(&below, 20.0f, &reference, &extent));
@@ -91,7 +111,7 @@ static void height_is_below_or_above_the_camera(void) {
 }
 
 static void height_needs_a_camera_above_ground(void) {
-    const goe_reference_t reference = {0.0f, 100.0f, 2.5f, 0.5f, 2.0f, 0.25f};
+    const goe_estimate_t reference = solved(0.0f, 100.0f, 2.5f);
     const goe_point_t top = {0.0f, -0.1f, true};
     CHECK_STATUS(GOE_BAD_HEIGHT, goe_extent_height(&top, 0.0f, &reference, &extent));
     CHECK_STATUS(GOE_BAD_HEIGHT, goe_extent_height(&top, -0.0f, &reference, &extent));

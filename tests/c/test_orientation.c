@@ -23,17 +23,23 @@ static goe_edge_t edge_of(float heading_deg) {
     return (goe_edge_t){NULL, NULL, true, has, has ? heading_deg : 0.0f};
 }
 
+static goe_faces_t update(int memory) {
+    goe_faces_t faces = {false, NULL, NULL, false};
+    goe_orientation_update(&orientation, &edges, memory, &faces);
+    return faces;
+}
+
 static goe_faces_t see_two(float left_deg, float right_deg) {
     edges.count = 2;
     edges.edge[0] = edge_of(left_deg);
     edges.edge[1] = edge_of(right_deg);
-    return goe_orientation_update(&orientation, &edges, MEMORY);
+    return update(MEMORY);
 }
 
 static goe_faces_t see_one(float heading_deg) {
     edges.count = 1;
     edges.edge[0] = edge_of(heading_deg);
-    return goe_orientation_update(&orientation, &edges, MEMORY);
+    return update(MEMORY);
 }
 
 static void the_side_is_the_edge_nearer_to_the_flight_direction(void) {
@@ -86,7 +92,7 @@ static void no_heading_leaves_everything_as_it_is(void) {
     TEST_ASSERT_NULL(faces.side);
     TEST_ASSERT_EQUAL_MEMORY(&before, &orientation, sizeof before);
     edges.count = 0;
-    TEST_ASSERT_FALSE(goe_orientation_update(&orientation, &edges, MEMORY).measured);
+    TEST_ASSERT_FALSE(update(MEMORY).measured);
 }
 
 /* GIVEN a box at 44 degrees and noise of 3 degrees, which often makes the other edge's angle the smaller one
@@ -139,7 +145,7 @@ static void a_memory_of_one_does_not_filter(void) {
     for (int k = 0; k < 5; k++) {
         edges.edge[0] = edge_of(-80.0f);
         edges.edge[1] = edge_of((float)k * 7.0f);
-        (void)goe_orientation_update(&orientation, &edges, 1);
+        (void)update(1);
         TEST_ASSERT_EQUAL_FLOAT((float)k * 7.0f, orientation.filtered_deg);
     }
 }

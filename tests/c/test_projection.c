@@ -101,8 +101,9 @@ static void the_line_is_exact_everywhere(void) {
         const goe_point_t left = at((x - 0.5 * w * c) / (z + 0.5 * w * s));
         const goe_point_t right = at((x + 0.5 * w * c) / (z - 0.5 * w * s));
         goe_row_t row;
+        goe_span_t span;
         if (x * s + z * c > 0.2 * z) { /* the front is seen, not too flat */
-            CHECK_STATUS(GOE_OK, goe_projection_line(&left, &right, turn_of(b), &row));
+            CHECK_STATUS(GOE_OK, goe_projection_line(&left, &right, turn_of(b), &span, &row));
             check_worst(&worst, ((double)row.xi - x / w) * w / z);
             check_worst(&worst, ((double)row.zeta - z / w) * w / z);
             seen++;
@@ -115,14 +116,15 @@ static void the_line_is_exact_everywhere(void) {
 
 static void a_line_seen_from_its_end_or_from_behind_is_edge_on(void) {
     goe_row_t row = {1.25f, 2.5f};
+    goe_span_t span;
     const goe_point_t a = at(0.1);
     const goe_point_t b = at(0.2);
     const goe_point_t far_left = at(-1.0);
-    CHECK_STATUS(GOE_EDGE_ON, goe_projection_line(&b, &a, turn_of(0.0), &row));         /* from behind */
-    CHECK_STATUS(GOE_EDGE_ON, goe_projection_line(&a, &a, turn_of(0.0), &row));         /* no width */
-    CHECK_STATUS(GOE_EDGE_ON, goe_projection_line(&far_left, &b, turn_of(60.0), &row)); /* an end behind (4) */
+    CHECK_STATUS(GOE_EDGE_ON, goe_projection_line(&b, &a, turn_of(0.0), &span, &row));         /* from behind */
+    CHECK_STATUS(GOE_EDGE_ON, goe_projection_line(&a, &a, turn_of(0.0), &span, &row));         /* no width */
+    CHECK_STATUS(GOE_EDGE_ON, goe_projection_line(&far_left, &b, turn_of(60.0), &span, &row)); /* an end behind (4) */
     TEST_ASSERT_EQUAL_FLOAT(1.25f, row.xi);
-    CHECK_STATUS(GOE_OK, goe_projection_line(&a, &b, turn_of(60.0), &row));
+    CHECK_STATUS(GOE_OK, goe_projection_line(&a, &b, turn_of(60.0), &span, &row));
 }
 
 /* (4): turning the camera by b moves a ray at bearing a to bearing a - b. */

@@ -124,7 +124,7 @@ static void check_state(void) {
     const goe_estimator_t *e = &memory.estimator;
     check_finite(e->camera_to_body, 9, "mounting");
     check_finite(&e->heading_cos, 2, "heading");
-    check_finite(e->origin_ned_m, 3, "origin");
+    check_finite(e->origin_ne_m, 2, "origin");
     check_finite(&e->dx_m, 2, "displacement");
     check_finite(&e->disc.point[0].dx_m, 4 * GOE_WINDOW_MAX, "disc window");
     check_finite(&e->line.point[0].dx_m, 4 * GOE_WINDOW_MAX, "line window");

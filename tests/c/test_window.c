@@ -9,7 +9,7 @@
 #define MIN_BASELINE_M 0.1f
 
 static goe_window_t window;
-static goe_fit_t fit;
+static goe_estimate_t fit;
 
 void setUp(void) {
     memset(&window, 0, sizeof window);
@@ -25,7 +25,7 @@ static void add(float x, float z, float w, float dx, float dz) {
 static goe_status_t solve(void) { return goe_window_solve(&window, LENGTH, MIN_BASELINE_M, &fit); }
 
 static void check_failure(goe_status_t expected) {
-    goe_fit_t untouched;
+    goe_estimate_t untouched;
     memset(&untouched, 0xA5, sizeof untouched);
     CHECK_STATUS(expected, solve());
     TEST_ASSERT_EQUAL_MEMORY(&untouched, &fit, sizeof fit);
@@ -41,7 +41,7 @@ static void exact_rows_are_solved_exactly(void) {
     TEST_ASSERT_FLOAT_WITHIN(1.5e-3f, 150.0f, fit.z0_m);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4f, 13.0623f, fit.baseline_m); /* sqrt(42 (2^2 + 0.25^2)) */
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4f, 0.0f, fit.residual);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 0.0f, fit.sigma_width_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 0.0f, fit.sigma.width_m);
 }
 
 /* The slope is shared: motion aside alone tells the width as well as motion ahead. */
@@ -161,8 +161,8 @@ static void hopeless_rows_have_a_finite_sigma(void) {
         goe_window_add(&window, LENGTH, wild, 1.0e-2f * (float)k, (goe_row_t){-0.5f * wild, 2.0e5f});
     }
     CHECK_STATUS(GOE_OK, solve());
-    TEST_ASSERT_TRUE(check_is_finite(fit.sigma_x0_m) && check_is_finite(fit.sigma_z0_m) &&
-                     check_is_finite(fit.sigma_width_m) && check_is_finite(fit.residual));
+    TEST_ASSERT_TRUE(check_is_finite(fit.sigma.x0_m) && check_is_finite(fit.sigma.z0_m) &&
+                     check_is_finite(fit.sigma.width_m) && check_is_finite(fit.residual));
 }
 
 int main(void) {
