@@ -18,7 +18,8 @@
  *   body        forward, right, down (FRD); attitude = Hamilton quaternion (w, x, y, z) that turns body into NED
  *   camera      x right, y down, z along the optical axis; pixel (u, v) = (right, down) from the top left corner
  *   trajectory  "T": X right, Y down, Z forward along the intended flight direction, ALWAYS LEVEL, also on a glide slope;
- *               its origin moves with the camera
+ *               its origin moves with the camera. By default Z is where the nose points at the track's first image,
+ *               which in a crosswind is not the course: set heading_deg to know T exactly
  *
  *   seen from above, north up; the aircraft flies along Z, an obstacle on its left has X < 0
  *
@@ -55,7 +56,8 @@
  * Safety      Every output is finite. Input that is not finite is refused by its exponent bits, so also under -ffast-math.
  *             No argument leads to a trap, an endless loop or a write outside the estimator.
  * Failure     A call that returns a negative status changed nothing in the estimator but its counters, unless the
- *             status says "image taken" below. The last good estimate is kept and marked stale.
+ *             status says "image taken" below. The last good estimate is kept and marked stale. One thing ends a track:
+ *             a filter reset of unknown size (goe_pose_t) forgets it, as goe_reset does.
  */
 #ifndef GOE_H
 #define GOE_H
@@ -98,8 +100,9 @@ typedef enum {
     GOE_NOTHING_SEEN = 4,   /* image taken for its pose; no feature is marked as seen. Not a fault: nothing is in view */
     /* a feature of an image that was taken; no new solution */
     GOE_BEHIND_CAMERA = -1, /* a ray points backwards or sideways: third component in T <= 0.05 of its norm */
-    GOE_LENS_FAILED = -2,   /* the lens model cannot be inverted at a pixel: it lies outside the model's valid field */
-    GOE_SWAPPED = -3,       /* left is not left of right, or base corners are not in image order, after alignment */
+    GOE_LENS_FAILED = -2,   /* the iteration that inverts the lens model does not settle at a pixel: too far off the axis */
+    GOE_SWAPPED = -3,       /* after alignment left is not left of right by 1e-4 focal lengths, or base corners are not in
+                               image order */
     GOE_EDGE_ON = -4,       /* the front edge is seen from its end or from behind; as GOE_PARTIAL: no length from this
                                image, the side edge points at the camera */
     GOE_NO_EDGE = -5,       /* line model forced and no line point: the front edge is too short or no edge has a
@@ -113,7 +116,7 @@ typedef enum {
     /* an image that was refused whole */
     GOE_NOT_FINITE = -10,   /* a NaN or an infinity in the pose or in a seen feature */
     GOE_OUT_OF_RANGE = -11, /* a number outside the range stated at its field */
-    GOE_BAD_TIME = -12,     /* time unknown, repeated or running backwards */
+    GOE_BAD_TIME = -12,     /* time unknown, repeated or running backwards; after a wild jump ahead: goe_reset */
     GOE_BAD_ATTITUDE = -13, /* the quaternion's norm is off 1 by more than 1 % (a zero quaternion among them) */
     /* a call */
     GOE_BAD_SETTINGS = -14, /* goe_init: a setting is outside its range; bad_field names it */
@@ -130,7 +133,8 @@ typedef enum {
 /* The projection model that is reported. */
 typedef enum {
     GOE_MODEL_NONE = 0, /* estimate only: nothing solved yet. As a setting: refused */
-    GOE_MODEL_AUTO = 1, /* setting only: disc until line_points line points exist, the line from then on */
+    GOE_MODEL_AUTO = 1, /* setting only: disc until line_points line points exist, the line from then on: when no more
+                           base corners come its last solution is held, until goe_reset */
     GOE_MODEL_DISC = 2, /* (2): an upright cylinder, or the circle that stands for anything else */
     GOE_MODEL_LINE = 3  /* (3): the front edge of a box; needs base corners */
 } goe_model_t;
@@ -167,12 +171,14 @@ typedef struct {
 
 /* Where the aircraft was AT THE TIME OF EXPOSURE, not when the image arrived.
  * A jump of the autopilot's own filter is not motion. Whenever the filter resets, increment reset_count; give the
- * position it jumped by since the image before (new minus old; the sum, if it jumped more than once) when it is known.
- * Known: compensated, the track goes on. Unknown: the track starts anew with this image. */
+ * position it jumped by, when it is known: new minus old, summed over all resets since the last image that was taken,
+ * that is, not refused whole (GOE_NOT_FINITE to GOE_BAD_ATTITUDE): after a refusal the same delta must be told again.
+ * Known: compensated, the track goes on. Unknown, and also when heading or attitude jumped: reset_delta_known = false,
+ * the track starts anew with this image. */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
-    float position_ned_m[3]; /* vehicle's reference point, each +-1e6 */
-    float height_m;          /* camera above the ground at the obstacle, +-1e5; <= 0: no obstacle height */
+    float position_ned_m[3]; /* vehicle's reference point, each +-1e6; down is checked only: heights come from height_m */
+    float height_m;          /* of the camera itself above the ground at the obstacle, +-1e5; <= 0: no obstacle height */
     float attitude[4];       /* w, x, y, z; body FRD to NED; normalised here, refused if its norm is off by over 1 % */
     uint8_t reset_count;     /* the filter's reset counter, any start, wraps */
     bool reset_delta_known;  /* read only when reset_count changed */
@@ -186,7 +192,10 @@ typedef struct {
 } goe_pixel_t;
 
 /* One image of one obstacle. Any subset of the features may be seen.
- * Disc: left and right. Line: two or three base corners. Height: top, and a solution of either model. */
+ * Disc: left and right. Line: two or three base corners. Height: top, and a solution of either model.
+ * A bounding box is upright in the image, not in the world: when the camera rolls, its sides touch the top and the foot
+ * of a tall obstacle, and the width comes out too large (a mast of 6 m by 30 m: 11 m at 10 degrees of roll) without any
+ * sign of it. Banked, give silhouette points or leave left and right unseen. */
 typedef struct {
     goe_pose_t pose;
     goe_pixel_t left, right; /* leftmost and rightmost point of the silhouette; of a bounding box: the side's middle */
@@ -205,7 +214,9 @@ typedef struct {
 #define GOE_HAS_CENTER 0x10u      /* center: disc; or line with length */
 
 /* One-sigma of each quantity, from the residuals of the fits; units as the quantity. A sigma is only as good as the
- * assumption that errors are independent from image to image: constant errors of attitude or altitude are not in it. */
+ * assumption that errors are independent from image to image: constant errors of attitude or altitude are not in it.
+ * After one single measurement the spread is not known: then the orientation's is 0, and those of length and height
+ * hold only what the solution gives them. */
 typedef struct {
     float x0_m, z0_m, x_m, z_m, width_m, length_m, height_m, orientation_deg, center_north_m, center_east_m;
 } goe_sigma_t;
@@ -213,9 +224,11 @@ typedef struct {
 typedef struct {
     goe_model_t model;     /* none (nothing solved), disc or line: the model behind x0 to width and the centre */
     unsigned valid;        /* GOE_HAS_... */
-    bool fresh;            /* solved from the latest image; false: stale, the last good answer */
+    bool fresh;            /* x0 to width are solved from the latest image; false: stale, the last good answer. Length,
+                              height and orientation are the latest measured, and have no age of their own */
     int points;            /* image points in the solution's window; 0 if none */
-    float age_s;           /* since the image of the last solution; 0 if fresh or none; at most 4000 */
+    float age_s;           /* since the image of the last solution, refused images included; 0 if fresh or none; at
+                              most 4000. It stands still when goe_update is not called */
     float x0_m, z0_m;      /* reference point at the track's first image, T axes */
     float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale */
     float width_m;         /* disc: diameter; line: length of the front edge */
@@ -290,9 +303,11 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
                                     const char **bad_field);
 
 /* Takes one image and tells the estimate after it.
- *   estimate  always written, unless a pointer is null or the estimator is not initialised: then left as it was
+ *   estimate  written by every call, unless it is null; all zero (valid = 0) with GOE_BAD_ARGUMENT and
+ *             GOE_NOT_INITIALISED
  * Returns GOE_OK, a positive status, or one of GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE, GOE_BAD_ARGUMENT,
- * GOE_NOT_INITIALISED. If several faults meet in one image all are counted and the first one met is returned.
+ * GOE_NOT_INITIALISED. If several faults meet in one image all are counted; a failed solution is told rather than a
+ * feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
  * Cost: bounded; no loop runs longer than GOE_WINDOW_MAX or 20. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
@@ -304,7 +319,8 @@ goe_status_t goe_reset(goe_estimator_t *estimator);
 /* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number. */
 const char *goe_status_text(goe_status_t status);
 
-/* What the library's own arithmetic does on this machine, as it was compiled: 0 if it is the IEEE 754 single precision
+/* What the arithmetic of the library does on this machine, with the flags that goe_self_check.c was compiled with (give all
+ * of lib/ the same): 0 if it is the IEEE 754 single precision
  * arithmetic that bit identity rests on, otherwise a sum of GOE_SELF_... */
 unsigned goe_self_check(void);
 #define GOE_SELF_CONTRACTED 0x01u   /* a*b + c is rounded once (fused): compile with -ffp-contract=off */

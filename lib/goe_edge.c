@@ -44,15 +44,15 @@ static void add_edge(const goe_settings_t *settings, const goe_pixel_t *from_px,
 goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_image_t *image, const goe_view_t *view,
                            goe_edges_t *edges) {
     const goe_point_t *left = &view->base_left;
-    const goe_point_t *near = &view->base_near;
+    const goe_point_t *corner = &view->base_near;
     const goe_point_t *right = &view->base_right;
     edges->count = 0;
-    if (near->usable) {
-        if (!in_order(left, near) || !in_order(near, right)) {
+    if (corner->usable) {
+        if (!in_order(left, corner) || !in_order(corner, right)) {
             return GOE_SWAPPED;
         }
-        add_edge(settings, &image->base_left, left, &image->base_near, near, edges);
-        add_edge(settings, &image->base_near, near, &image->base_right, right, edges);
+        add_edge(settings, &image->base_left, left, &image->base_near, corner, edges);
+        add_edge(settings, &image->base_near, corner, &image->base_right, right, edges);
     } else {
         if (!in_order(left, right)) {
             return GOE_SWAPPED;

@@ -224,9 +224,9 @@ static void tell_center(goe_estimator_t *estimator) {
     estimate->sigma.center_east_m = sqrtf(s * s * variance_z + c * c * variance_x);
 }
 
-static void tell_age(const goe_estimator_t *estimator, goe_estimate_t *estimate) {
+static void tell_age(const goe_estimator_t *estimator, int64_t time_us, goe_estimate_t *estimate) {
     const bool aged = (estimate->valid & GOE_HAS_POSITION) && !estimate->fresh;
-    const uint64_t age_us = (uint64_t)estimator->time_us - (uint64_t)estimator->solved_time_us;
+    const uint64_t age_us = (uint64_t)time_us - (uint64_t)estimator->solved_time_us;
     const uint32_t told_us = age_us < AGE_LIMIT_US ? (uint32_t)age_us : AGE_LIMIT_US;
     estimate->age_s = aged ? (float)told_us * S_PER_US : 0.0f;
 }
@@ -306,7 +306,7 @@ static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *im
         measure_extents(estimator, image, &frame);
     }
     tell_center(estimator);
-    tell_age(estimator, &estimator->estimate);
+    tell_age(estimator, estimator->time_us, &estimator->estimate);
     return judge(estimator, image, &frame, solving);
 }
 
@@ -336,11 +336,12 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
 }
 
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate) {
-    if (!estimator || !image || !estimate) {
+    if (!estimate) {
         return GOE_BAD_ARGUMENT;
     }
-    if (estimator->ready != READY) {
-        return GOE_NOT_INITIALISED;
+    if (!estimator || !image || estimator->ready != READY) {
+        memset(estimate, 0, sizeof *estimate);
+        return !estimator || !image ? GOE_BAD_ARGUMENT : GOE_NOT_INITIALISED;
     }
     goe_status_t status = goe_intake_check(estimator, image);
     if (status == GOE_OK) {
@@ -351,7 +352,8 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
     goe_count_cause(estimator->causes, status);
     *estimate = estimator->estimate;
     estimate->fresh = false;
-    tell_age(estimator, estimate);
+    /* the estimate grows old while images are refused, too, as far as their times can be believed */
+    tell_age(estimator, image->pose.time_us > estimator->time_us ? image->pose.time_us : estimator->time_us, estimate);
     return status;
 }
 

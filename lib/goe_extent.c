@@ -6,10 +6,10 @@
 goe_status_t goe_extent_length(const goe_faces_t *faces, const goe_span_t *front, goe_turn_t turn,
                                const goe_estimate_t *reference, float min_x, goe_extent_t *length) {
     /* the edges meet at the near corner: the front's right end if the side is the right edge */
-    const goe_point_t *far = faces->side_is_right ? faces->side->right : faces->side->left;
+    const goe_point_t *far_end = faces->side_is_right ? faces->side->right : faces->side->left;
     const float x_near = faces->side_is_right ? front->right : front->left;
     float x_far;
-    if (!goe_projection_turn(far, turn, &x_far)) {
+    if (!goe_projection_turn(far_end, turn, &x_far)) {
         return GOE_EDGE_ON;
     }
     if (fabsf(x_near) < min_x || fabsf(x_far) < min_x || (x_near < 0.0f) != (x_far < 0.0f)) {

@@ -1,4 +1,5 @@
 /* One estimator over whole flights: statuses, counters, what holds on failure. SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <string.h>
 
 #include "check.h"
@@ -188,6 +189,22 @@ static void an_age_is_bounded(void) {
     image.pose.time_us = INT64_MAX;
     CHECK_STATUS(GOE_NOTHING_SEEN, update());
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 4000.0f, estimate.age_s);
+}
+
+/* GIVEN a solution WHEN every image after it is refused THEN it grows old by their times, and a time that runs backwards
+ * does not make it younger. */
+static void an_estimate_grows_old_while_images_are_refused(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 16));
+    const int64_t solved_us = image.pose.time_us;
+    image.left.u_px = NAN;
+    image.pose.time_us = solved_us + 3 * (int64_t)1000000;
+    CHECK_STATUS(GOE_NOT_FINITE, update());
+    TEST_ASSERT_FALSE(estimate.fresh);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6f, 3.0f, estimate.age_s);
+    image.pose.time_us = solved_us - 1;
+    CHECK_STATUS(GOE_NOT_FINITE, update());
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.age_s);
 }
 
 static void times_may_start_anywhere(void) {
@@ -515,23 +532,25 @@ static void counters_saturate(void) {
 }
 
 static void null_pointers_are_refused(void) {
-    goe_estimate_t untouched;
+    goe_estimate_t nothing;
     start();
     scene_image(&scene, 0, &image, NULL);
+    memset(&nothing, 0, sizeof nothing);
     memset(&estimate, 0xA5, sizeof estimate);
-    memset(&untouched, 0xA5, sizeof untouched);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_update(NULL, &image, &estimate));
+    TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
+    memset(&estimate, 0xA5, sizeof estimate);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_update(&estimator, NULL, &estimate));
+    TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_update(&estimator, &image, NULL));
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_reset(NULL));
-    TEST_ASSERT_EQUAL_MEMORY(&untouched, &estimate, sizeof estimate);
     TEST_ASSERT_FALSE(estimator.started);
 }
 
 static void an_estimator_must_be_initialised(void) {
     static const int fills[] = {0x00, 0xFF, 0xA5};
-    goe_estimate_t untouched;
-    memset(&untouched, 0x5A, sizeof untouched);
+    goe_estimate_t nothing;
+    memset(&nothing, 0, sizeof nothing);
     scene_image(&scene, 0, &image, NULL);
     for (int i = 0; i < 3; i++) {
         static goe_estimator_t before;
@@ -541,7 +560,7 @@ static void an_estimator_must_be_initialised(void) {
         CHECK_STATUS(GOE_NOT_INITIALISED, update());
         CHECK_STATUS(GOE_NOT_INITIALISED, goe_reset(&estimator));
         TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
-        TEST_ASSERT_EQUAL_MEMORY(&untouched, &estimate, sizeof estimate);
+        TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
     }
 }
 
@@ -642,6 +661,7 @@ int main(void) {
     RUN_TEST(nothing_seen_is_no_fault);
     RUN_TEST(an_image_without_corners_holds_the_line);
     RUN_TEST(an_age_is_bounded);
+    RUN_TEST(an_estimate_grows_old_while_images_are_refused);
     RUN_TEST(times_may_start_anywhere);
     RUN_TEST(head_on_has_no_edge);
     RUN_TEST(swapped_left_and_right_are_told);
