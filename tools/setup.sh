@@ -40,6 +40,7 @@ want() {
 
 has() { command -v "$1"; }
 has_header() { echo "#include <$1>" | cc -E -x c -; }
+has_arm_cxx_header() { echo "#include <$1>" | arm-none-eabi-g++ -E -x c++ -; }
 has_arm_header() { echo "#include <$1>" | arm-none-eabi-gcc -E -x c -; }
 
 find_missing() {
@@ -66,6 +67,13 @@ find_missing() {
         want extra poppler-utils has pdftoppm
         want extra gcc-arm-none-eabi has arm-none-eabi-gcc
         want extra libnewlib-arm-none-eabi has_arm_header math.h
+        want extra qemu-system-arm has qemu-system-arm
+        want extra qemu-system-misc has qemu-system-riscv32
+        want extra gcc-riscv64-unknown-elf has riscv64-unknown-elf-gcc
+        want extra picolibc-riscv64-unknown-elf test -e /usr/lib/picolibc/riscv64-unknown-elf/picolibc.specs
+        want extra libeigen3-dev test -e /usr/include/eigen3/Eigen/Dense
+        want extra liblapacke-dev has_header lapacke.h
+        want extra libstdc++-arm-none-eabi-newlib has_arm_cxx_header cstddef
     fi
 }
 

@@ -90,7 +90,7 @@ if ! step "build" build default; then
     finish
 fi
 
-if step "ctest" ctest --preset default -j "$jobs"; then
+if step "ctest" ctest --preset default -j "$jobs"; then # every target under QEMU among it
     closing ctest 'tests passed|Total Test time'
 fi
 while read -r name; do
@@ -103,6 +103,13 @@ if step "pytest" run_pytest tests; then
 fi
 
 step "golden data are what their generator makes" "$python" -m goe_tools golden --check tests/c/golden
+step "embedded logs are what their generator makes" \
+    "$python" -m goe_tools embed_logs --out tests/targets/embedded_logs.c --check
+if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
+    step "cost ledger" "$python" -m goe_tools ledger --check tests/targets/ledger.json --readme README.md
+else
+    skip "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
+fi
 step "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests
 step "compare with the references: tests/data" "$python" -m goe_tools compare tests/data/*/
 if [ -d "$flights" ]; then
@@ -133,7 +140,7 @@ else
     skip "clang-format (not installed)"
 fi
 if has shellcheck; then
-    step "shellcheck" shellcheck tools/*.sh tests/flags/*.sh .ci/run
+    step "shellcheck" shellcheck tools/*.sh tests/flags/*.sh tests/targets/*.sh .ci/run
 else
     skip "shellcheck (not installed)"
 fi

@@ -1,4 +1,4 @@
-"""Command line: python -m goe_tools {scene,compare,golden,report,table} ..."""
+"""Command line: python -m goe_tools COMMAND ..."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ from .obslog import LogError
 
 COMMANDS = {
     "scene": "write a synthetic observation log of a box or a cylinder",
+    "embed_logs": "write or check the synthetic logs that the target images carry",
     "compare": "run goe_replay over logs and compare it with both references",
     "golden": "write or check the C headers with the unit tests' reference data",
+    "ledger": "measure what the library costs on each target",
+    "peers": "hold the window solve against other solvers",
     "report": "write the campaign's report and print Table 3",
     "table": "print estimates as a table that a pilot can read",
 }

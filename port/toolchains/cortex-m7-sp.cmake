@@ -1,0 +1,4 @@
+# Cortex-M7 with the single precision unit.
+set(GOE_TARGET_FLAGS -mcpu=cortex-m7 -mthumb -mfpu=fpv5-sp-d16 -mfloat-abi=hard)
+set(GOE_TARGET_BOARDS mps2-an500)
+include(${CMAKE_CURRENT_LIST_DIR}/arm.cmake)

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Builds a target's preset and runs its tests under QEMU.
+#
+#   build_target.sh <preset> <folder for the build> <ON|OFF: unit tests too> <folder of unity.c>
+set -euo pipefail
+root=$(cd "$(dirname "$0")/../.." && pwd)
+preset=$1
+tree=$2/$1
+
+need() {
+    if ! command -v "$1" >/dev/null; then
+        echo "skipped: no $1"
+        exit 77
+    fi
+}
+
+case $preset in
+    rv32*)
+        need riscv64-unknown-elf-gcc
+        need qemu-system-riscv32 ;;
+    *)
+        need arm-none-eabi-gcc
+        need qemu-system-arm ;;
+esac
+case $preset in
+    *-clang-*) need clang-19 ;;
+esac
+
+cd "$root"
+cmake --preset "$preset" -B "$tree" -DGOE_TARGET_UNIT_TESTS="$3" -DUNITY_DIR="$4" >"$tree.log" 2>&1 || {
+    cat "$tree.log" >&2
+    exit 1
+}
+cmake --build "$tree" >"$tree.log" 2>&1 || {
+    tail -n 60 "$tree.log" >&2
+    exit 1
+}
+ctest --test-dir "$tree" --output-on-failure

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# The replay's hash is the golden one whatever compiler of this machine and whatever level builds it.
+#
+#   host_builds.sh <golden hash>
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+golden=$1
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+own=(-std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib" -I"$here")
+sources=("$root"/lib/*.c "$here/replay_main.c" "$here/replay.c" "$here/embedded_logs.c")
+failed=0
+ran=0
+
+# possible <compiler> <flag>...: whether this machine has what the flags need
+possible() {
+    echo '#include <math.h>
+int main(void) { return 0; }' | "$@" -x c - -o "$scratch/probe" 2>/dev/null && return
+    echo "skipped: $* is not possible here"
+    return 1
+}
+
+# try <compiler> <flag>...
+try() {
+    local line
+    "$1" "${own[@]}" "${@:2}" "${sources[@]}" -lm -o "$scratch/replay"
+    line=$("$scratch/replay")
+    ran=$((ran + 1))
+    echo "$line  $*"
+    if [[ $line != "replay $golden "*" self_check 0x00" ]]; then
+        echo "FAILED: $* (expected $golden and self_check 0x00)" >&2
+        failed=1
+    fi
+}
+
+for compiler in gcc clang-19; do
+    command -v "$compiler" >/dev/null || continue
+    for level in -O0 -O1 -O2 -Os -O3 "-O3 -march=native" "-O3 -march=native -funroll-loops"; do
+        # shellcheck disable=SC2086 # several flags
+        try "$compiler" $level
+    done
+done
+for flags in "gcc -O2 -flto" "gcc -O3 -march=native -flto" "gcc -O2 -m32 -msse2 -mfpmath=sse" "clang-19 -O2 -flto" \
+    "clang-19 -O3 -march=native -flto" "clang-19 -O3 -march=native -flto -fuse-ld=lld"; do
+    command -v "${flags%% *}" >/dev/null || continue
+    # shellcheck disable=SC2086 # several words
+    if possible $flags; then
+        try $flags
+    fi
+done
+[ $ran -gt 0 ] || exit 77
+exit $failed

@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# The self-check reports what flags and modes of the floating-point unit do to the library on this machine. Where it
+# reports nothing, the replay's hash must be the golden one: then the flag changed nothing.
+#
+#   host_self_check.sh <golden hash>
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+golden=$1
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+contracted=0x01u reassociated=0x02u reciprocal=0x04u flushed=0x08u excess=0x10u rounding=0x20u any=0x3Fu
+machine=
+failed=0
+ran=0
+
+# prove <name> <mode> <expected bits> <allowed bits> <strict|loose> <link flags> <compiler> <flag>...
+#   strict: the bits must be reported; loose: or the hash is golden
+prove() {
+    local name=$1 mode=$2 expected=$3 allowed=$4 strict=$5 link=$6 compiler=$7
+    shift 7
+    local flags=(-std=gnu99 -O2 -ffp-contract=off -fno-math-errno "$@" -I"$root/lib" -I"$here")
+    local define=(-DMODE="MODE_$mode" -DEXPECTED="$expected" -DALLOWED="$allowed")
+    [ "$strict" = strict ] || define+=(-DGOLDEN="0x${golden}u")
+    command -v "$compiler" >/dev/null || return 0
+    rm -f "$scratch"/*.o
+    # the program that judges is compiled plainly
+    (cd "$scratch" && "$compiler" "${flags[@]}" -c "$root"/lib/*.c)
+    # The program that judges is compiled plainly.
+    # shellcheck disable=SC2086 # several flags or none
+    "$compiler" -std=gnu99 -O1 -ffp-contract=off $machine "${define[@]}" -I"$root/lib" -I"$here" \
+        "$here/self_check_main.c" "$here/replay.c" "$here/embedded_logs.c" "$scratch"/*.o $link -lm -o "$scratch/check"
+    ran=$((ran + 1))
+    echo -n "$name, $compiler $*: "
+    if ! "$scratch/check"; then
+        echo "FAILED: $name: $compiler $*" >&2
+        failed=1
+    fi
+}
+
+for compiler in gcc clang-19; do
+    strict=strict
+    [ $compiler = gcc ] || strict=loose # clang makes no use of some flags
+    prove plain NONE 0u 0u strict "" $compiler
+    prove "rounding up" UP $rounding $any strict "" $compiler
+    prove "rounding down" DOWN $rounding $any strict "" $compiler
+    prove "rounding to zero" TO_ZERO $rounding $any strict "" $compiler
+    if [ "$(uname -m)" = x86_64 ]; then
+        if grep -qw fma /proc/cpuinfo; then
+            prove contraction NONE $contracted 0u strict "" $compiler -mfma -ffp-contract=fast
+        fi
+        prove "subnormal results to zero" FLUSH $flushed 0u strict "" $compiler
+        prove "subnormal operands to zero" FLUSH_OPERANDS $flushed 0u strict "" $compiler
+    fi
+    prove reciprocals NONE $reciprocal 0u $strict "" $compiler -freciprocal-math
+    prove "fast math" NONE $reassociated $any strict "" $compiler -ffast-math
+    prove "fast math at -O3" NONE $reassociated $any strict "" $compiler -O3 -ffast-math
+    prove "reordering" NONE $reassociated $any strict "" $compiler -fassociative-math -fno-signed-zeros \
+        -fno-trapping-math
+done
+if [ "$(uname -m)" = x86_64 ]; then
+    # at link time alone: gcc's start-up code switches the processor
+    prove "fast math at link time" NONE $flushed 0u strict -ffast-math gcc
+    prove "x87" NONE $excess $any strict "" gcc -mfpmath=387
+    if echo '#include <math.h>' | gcc -m32 -x c - -fsyntax-only 2>/dev/null; then
+        machine=-m32
+        prove "x87, 32 bit" NONE $excess $any strict "" gcc -m32 -mfpmath=387
+    else
+        echo "skipped: x87, 32 bit: there is no 32-bit C library here (gcc-multilib)"
+    fi
+fi
+[ $ran -gt 0 ] || exit 77
+exit $failed

@@ -1,0 +1,138 @@
+# A build for a target: see CMakeLists.txt.
+
+option(GOE_TARGET_UNIT_TESTS "Build the unit tests of tests/c as images, too" ON)
+
+add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
+
+target_link_libraries(goe PUBLIC m)
+# What tools/goe_tools/ledger.py reads.
+target_compile_options(goe PRIVATE -ffunction-sections -fstack-usage $<$<C_COMPILER_ID:GNU>:-fcallgraph-info=su>)
+
+# goe_image(<target> <board> <source>...): an image for a board, without the library
+function(goe_image target board)
+    add_executable(${target} ${ARGN})
+    goe_compile(${target})
+    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/lib)
+    target_link_libraries(${target} PRIVATE goe_port goe_board_${board})
+    set_target_properties(${target} PROPERTIES CROSSCOMPILING_EMULATOR "${goe_qemu_${board}}")
+endfunction()
+
+# ------------------------------------------------------------------------------------------------- replay and its stack
+
+foreach(board IN LISTS GOE_TARGET_BOARDS)
+    goe_image(replay_${board} ${board} replay_main.c ${replay_sources})
+    target_link_libraries(replay_${board} PRIVATE goe)
+    target_link_options(replay_${board} PRIVATE LINKER:-Map,${CMAKE_CURRENT_BINARY_DIR}/replay_${board}.map)
+    goe_check_hash(replay_${board} replay_${board})
+
+    goe_image(stack_${board} ${board} stack_main.c ${replay_sources})
+    target_link_libraries(stack_${board} PRIVATE goe)
+    add_test(NAME stack_${board} COMMAND stack_${board})
+    set_tests_properties(stack_${board} PROPERTIES LABELS targets TIMEOUT 60
+        PASS_REGULAR_EXPRESSION "stack goe_update [1-9][0-9]*\n")
+endforeach()
+
+# ---------------------------------------------------------------------------------------------------------- self-check
+
+file(GLOB library_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/*.c)
+
+# The library once more, with other people's flags after its own.
+function(goe_library_with name)
+    add_library(${name} STATIC ${library_sources})
+    set_target_properties(${name} PROPERTIES C_STANDARD 99 C_EXTENSIONS ON)
+    target_compile_options(${name} PRIVATE -ffp-contract=off -fno-math-errno ${ARGN})
+    target_compile_definitions(${name} PUBLIC GOE_WINDOW_MAX=${GOE_WINDOW_MAX})
+    target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/lib)
+    target_link_libraries(${name} PUBLIC m)
+endfunction()
+
+# goe_self_check_proof(<name> <expected bits> <allowed bits> <mode> <flag>...): the self-check, compiled and run so,
+# must say so.
+function(goe_self_check_proof name expected allowed mode)
+    set(image self_check_${name})
+    goe_library_with(goe_${name} ${ARGN})
+    goe_image(${image} ${GOE_TARGET_BOARD} self_check_main.c ${replay_sources})
+    set_target_properties(${image} PROPERTIES C_EXTENSIONS ON)
+    target_compile_definitions(${image} PRIVATE EXPECTED=${expected} ALLOWED=${allowed} MODE=MODE_${mode})
+    # gcc at -O2 makes use of every flag on every processor; the others may not
+    if(ARGN AND NOT (CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_C_FLAGS_RELEASE STREQUAL -O2))
+        target_compile_definitions(${image} PRIVATE GOLDEN=0x${golden}u)
+    endif()
+    target_link_libraries(${image} PRIVATE goe_${name})
+    add_test(NAME ${image} COMMAND ${image})
+    set_tests_properties(${image} PROPERTIES LABELS targets TIMEOUT 60)
+endfunction()
+
+set(contracted 0x01u)
+set(reassociated 0x02u)
+set(reciprocal 0x04u)
+set(flushed 0x08u)
+set(rounding 0x20u)
+set(any 0x3Fu)
+string(REGEX MATCH "-mfpu=|-mcpu=cortex-m55|rv32[a-z]*f" has_fpu "${GOE_TARGET_FLAGS}")
+
+goe_self_check_proof(plain 0u 0u NONE)
+goe_self_check_proof(reciprocal ${reciprocal} 0u NONE -freciprocal-math)
+goe_self_check_proof(fast_math ${reassociated} ${any} NONE -ffast-math)
+if(has_fpu)
+    goe_self_check_proof(contracted ${contracted} 0u NONE -ffp-contract=fast)
+    goe_self_check_proof(round_up ${rounding} ${any} UP)
+    goe_self_check_proof(round_down ${rounding} ${any} DOWN)
+    goe_self_check_proof(round_to_zero ${rounding} ${any} TO_ZERO)
+    if(CMAKE_SYSTEM_PROCESSOR STREQUAL arm) # RISC-V has no such mode
+        goe_self_check_proof(flushed ${flushed} 0u FLUSH)
+        if(GOE_TARGET_FLAGS MATCHES nomve.fp)
+            goe_self_check_proof(helium ${flushed} 0u NONE -mcpu=cortex-m55)
+        endif()
+    endif()
+endif()
+
+# ---------------------------------------------------------------------------------------------------------- unit tests
+
+# All of tests/c but test_host_*.c, and test_double_*.c: those hold the library against double precision at length,
+# which single precision processors emulate.
+if(GOE_TARGET_UNIT_TESTS)
+    include(${PROJECT_SOURCE_DIR}/port/cmake/unity.cmake)
+    if(NOT TARGET goe_unity)
+        message(FATAL_ERROR "Images need the sources of Unity: name them with -DUNITY_DIR=")
+    endif()
+    target_compile_definitions(goe_unity PUBLIC UNITY_OUTPUT_CHAR=port_write_char
+        "UNITY_OUTPUT_CHAR_HEADER_DECLARATION=port_write_char(char)")
+
+    set(unit_tests ${PROJECT_SOURCE_DIR}/tests/c)
+    file(GLOB programs CONFIGURE_DEPENDS ${unit_tests}/test_*.c)
+    file(GLOB support CONFIGURE_DEPENDS ${unit_tests}/*.c)
+    list(REMOVE_ITEM support ${programs})
+    list(FILTER programs EXCLUDE REGEX "/test_(host|double)_")
+
+    add_library(unit_test_support STATIC ${support})
+    goe_compile(unit_test_support)
+    target_compile_options(unit_test_support PRIVATE -Wno-double-promotion -Wno-float-equal)
+    target_include_directories(unit_test_support PUBLIC ${unit_tests})
+    target_link_libraries(unit_test_support PUBLIC goe goe_unity goe_port)
+    foreach(source IN LISTS programs)
+        get_filename_component(name ${source} NAME_WE)
+        goe_image(${name} ${GOE_TARGET_BOARD} ${source})
+        target_compile_options(${name} PRIVATE -Wno-double-promotion -Wno-float-equal)
+        target_link_libraries(${name} PRIVATE unit_test_support)
+        add_test(NAME ${name} COMMAND ${name})
+        set_tests_properties(${name} PROPERTIES LABELS unit TIMEOUT 300)
+    endforeach()
+
+    # The safety tests, with the library under the flags of four firmwares that run on such processors.
+    if(has_fpu AND CMAKE_SYSTEM_PROCESSOR STREQUAL arm AND CMAKE_C_COMPILER_ID STREQUAL GNU)
+        set(px4 -std=gnu11 -freciprocal-math -fno-signed-zeros -fno-trapping-math -fno-math-errno)
+        set(ardupilot -std=gnu11 -fsingle-precision-constant -DNDEBUG -ffp-contract=fast)
+        set(betaflight -std=gnu17 -Ofast -ffast-math -ffp-contract=fast)
+        set(inav -std=gnu11 -fsingle-precision-constant -ffp-contract=fast)
+        foreach(firmware px4 ardupilot betaflight inav)
+            goe_library_with(goe_${firmware} ${${firmware}})
+            goe_image(safety_${firmware} ${GOE_TARGET_BOARD} ${unit_tests}/test_safety.c ${support})
+            target_compile_options(safety_${firmware} PRIVATE -Wno-double-promotion -Wno-float-equal)
+            target_include_directories(safety_${firmware} PRIVATE ${unit_tests})
+            target_link_libraries(safety_${firmware} PRIVATE goe_${firmware} goe_unity)
+            add_test(NAME safety_${firmware} COMMAND safety_${firmware})
+            set_tests_properties(safety_${firmware} PROPERTIES LABELS "unit;safety" TIMEOUT 300)
+        endforeach()
+    endif()
+endif()

@@ -1,0 +1,189 @@
+/* Replay of the embedded logs. SPDX-License-Identifier: MIT */
+#include "replay.h"
+
+#include <string.h>
+
+#if defined(GOE_BARE_METAL)
+#include "semihosting.h"
+#else
+#include <stdio.h>
+void port_write_text(const char *text) { (void)fputs(text, stdout); }
+#endif
+
+#define FNV_OFFSET 0xCBF29CE484222325u
+#define FNV_PRIME 0x100000001B3u
+
+static void hash_word(replay_t *replay, uint32_t word) {
+    for (int byte = 0; byte < 4; byte++) {
+        replay->hash = (replay->hash ^ ((word >> (8 * byte)) & 0xFFu)) * FNV_PRIME;
+    }
+}
+
+static void hash_number(replay_t *replay, float number) {
+    uint32_t word;
+    memcpy(&word, &number, sizeof word);
+    hash_word(replay, word);
+}
+
+static void hash_numbers(replay_t *replay, const float *numbers, int count) {
+    for (int i = 0; i < count; i++) {
+        hash_number(replay, numbers[i]);
+    }
+}
+
+static void hash_text(replay_t *replay, const char *text) {
+    for (; *text != '\0'; text++) {
+        hash_word(replay, (uint32_t)(unsigned char)*text);
+    }
+}
+
+static void hash_sigma(replay_t *replay, const goe_sigma_t *sigma) {
+    const float numbers[] = {sigma->x0_m,           sigma->z0_m,         sigma->x_m,      sigma->z_m,
+                             sigma->width_m,        sigma->length_m,     sigma->height_m, sigma->orientation_deg,
+                             sigma->center_north_m, sigma->center_east_m};
+    hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
+}
+
+static void hash_estimate(replay_t *replay, const goe_estimate_t *e) {
+    const float numbers[] = {e->age_s,
+                             e->x0_m,
+                             e->z0_m,
+                             e->x_m,
+                             e->z_m,
+                             e->width_m,
+                             e->length_m,
+                             e->height_m,
+                             e->orientation_deg,
+                             e->orientation_raw_deg,
+                             e->other_side_deg,
+                             e->length_axis[0],
+                             e->length_axis[1],
+                             e->width_axis[0],
+                             e->width_axis[1],
+                             e->center_north_m,
+                             e->center_east_m,
+                             e->residual,
+                             e->baseline_m};
+    hash_word(replay, (uint32_t)e->model);
+    hash_word(replay, (uint32_t)e->valid);
+    hash_word(replay, e->fresh ? 1u : 0u);
+    hash_word(replay, (uint32_t)e->points);
+    hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
+    hash_sigma(replay, &e->sigma);
+}
+
+static void hash_status(replay_t *replay, goe_status_t status) {
+    hash_word(replay, (uint32_t)(int)status);
+    hash_text(replay, goe_status_text(status));
+}
+
+static void read_numbers(const uint32_t *bits, float *numbers, int count) {
+    memcpy(numbers, bits, (size_t)count * sizeof *numbers);
+}
+
+void replay_read_image(const logged_image_t *logged, goe_image_t *image) {
+    goe_pixel_t *pixels[] = {&image->left,      &image->right,     &image->top,
+                             &image->base_left, &image->base_near, &image->base_right};
+    memset(image, 0, sizeof *image);
+    image->pose.time_us = logged->time_us;
+    image->pose.reset_count = logged->reset_count;
+    image->pose.reset_delta_known = logged->reset_delta_known != 0u;
+    read_numbers(&logged->bits[0], image->pose.position_ned_m, 3);
+    read_numbers(&logged->bits[3], &image->pose.height_m, 1);
+    read_numbers(&logged->bits[4], image->pose.attitude, 4);
+    read_numbers(&logged->bits[8], image->pose.reset_delta_ned_m, 3);
+    for (int i = 0; i < 6; i++) {
+        read_numbers(&logged->bits[11 + 2 * i], &pixels[i]->u_px, 1);
+        read_numbers(&logged->bits[12 + 2 * i], &pixels[i]->v_px, 1);
+        pixels[i]->seen = ((logged->seen >> i) & 1u) != 0u;
+    }
+}
+
+void replay_read_settings(const logged_track_t *track, goe_settings_t *settings) {
+    goe_camera_t *camera = &settings->camera;
+    float *const fields[] = {&camera->fx_px,
+                             &camera->fy_px,
+                             &camera->cx_px,
+                             &camera->cy_px,
+                             &camera->k1,
+                             &camera->k2,
+                             &camera->p1,
+                             &camera->p2,
+                             &camera->k3,
+                             &camera->mount_yaw_deg,
+                             &camera->mount_pitch_deg,
+                             &camera->mount_roll_deg,
+                             &camera->offset_m[0],
+                             &camera->offset_m[1],
+                             &camera->offset_m[2],
+                             &settings->heading_deg};
+    goe_settings_default(settings);
+    for (int i = 0; i < 16; i++) {
+        read_numbers(&track->bits[i], fields[i], 1);
+    }
+    settings->model = (goe_model_t)track->model;
+    settings->window = track->window;
+    settings->line_points = track->line_points;
+    settings->orientation_memory = track->orientation_memory;
+    settings->heading_auto = track->heading_auto != 0u;
+}
+
+replay_t replay_start(void) {
+    const replay_t replay = {FNV_OFFSET, 0};
+    return replay;
+}
+
+static goe_status_t init_track(replay_t *replay, goe_estimator_t *estimator, const logged_track_t *track) {
+    goe_settings_t settings;
+    const char *bad = NULL;
+    replay_read_settings(track, &settings);
+    const goe_status_t status = goe_init(estimator, sizeof *estimator, &settings, &bad);
+    hash_status(replay, status);
+    hash_text(replay, bad ? bad : "");
+    return status;
+}
+
+static void replay_images(replay_t *replay, goe_estimator_t *estimator, const logged_track_t *track) {
+    for (int k = 0; k < track->count; k++) {
+        goe_image_t image;
+        goe_estimate_t estimate;
+        memset(&estimate, 0, sizeof estimate);
+        replay_read_image(&logged_images[track->first + k], &image);
+        hash_status(replay, goe_update(estimator, &image, &estimate));
+        hash_estimate(replay, &estimate);
+        replay->images++;
+    }
+    for (int i = 0; i < GOE_CAUSES; i++) {
+        hash_word(replay, estimator->causes[i]);
+    }
+}
+
+void replay_all(replay_t *replay) {
+    static goe_estimator_t estimator;
+    for (int t = 0; t < logged_track_count; t++) {
+        const logged_track_t *track = &logged_tracks[t];
+        if (init_track(replay, &estimator, track) == GOE_OK) {
+            replay_images(replay, &estimator, track);
+            hash_status(replay, goe_reset(&estimator));
+        }
+    }
+}
+
+void replay_hash_text(uint64_t hash, char text[17]) {
+    static const char digits[] = "0123456789abcdef";
+    for (int i = 0; i < 16; i++) {
+        text[i] = digits[(hash >> (60 - 4 * i)) & 0xFu];
+    }
+    text[16] = '\0';
+}
+
+void replay_write_count(long count) {
+    char text[12];
+    int at = 11;
+    text[at] = '\0';
+    do {
+        text[--at] = (char)('0' + count % 10);
+        count /= 10;
+    } while (count > 0);
+    port_write_text(&text[at]);
+}

@@ -1,0 +1,33 @@
+/* Replays the embedded logs and hashes every bit that comes out. SPDX-License-Identifier: MIT */
+#ifndef GOE_TARGET_REPLAY_H
+#define GOE_TARGET_REPLAY_H
+
+#include <stdint.h>
+
+#include "embedded_logs.h"
+
+/* FNV-1a, 64 bit, over fields written out one by one, least significant byte first: no padding, no byte order. */
+typedef struct {
+    uint64_t hash;
+    long images;
+} replay_t;
+
+replay_t replay_start(void);
+
+/* Every track: its estimator initialised, each image taken, reset at the end. All that is returned is hashed. */
+void replay_all(replay_t *replay);
+
+void replay_read_settings(const logged_track_t *track, goe_settings_t *settings);
+void replay_read_image(const logged_image_t *logged, goe_image_t *image);
+
+/* 16 digits and the ending zero. */
+void replay_hash_text(uint64_t hash, char text[17]);
+
+/* Writes to the console, 0 to 2^31 - 1. */
+void replay_write_count(long count);
+
+#if !defined(GOE_BARE_METAL)
+void port_write_text(const char *text); /* on the host: to standard output */
+#endif
+
+#endif

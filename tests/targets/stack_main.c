@@ -1,0 +1,93 @@
+/* Prints how deep each public function drives the stack over the embedded logs. SPDX-License-Identifier: MIT
+ *
+ *   stack <function> <bytes>
+ *
+ * The stack is painted before each call. What the call itself needs (arguments on the stack) belongs to the caller. */
+#include "replay.h"
+#include "semihosting.h"
+#include "stack.h"
+
+typedef struct {
+    size_t update, init, reset, defaults, text, self_check;
+} depth_t;
+
+static goe_estimator_t estimator;
+static goe_settings_t settings;
+static goe_image_t image;
+static goe_estimate_t estimate;
+static depth_t deepest;
+
+static void keep_larger(size_t *largest, size_t value) {
+    if (value > *largest) {
+        *largest = value;
+    }
+}
+
+__attribute__((noinline)) static size_t depth_of_update(void) {
+    port_stack_paint();
+    (void)goe_update(&estimator, &image, &estimate);
+    return port_stack_used();
+}
+
+__attribute__((noinline)) static size_t depth_of_init(void) {
+    port_stack_paint();
+    const goe_status_t status = goe_init(&estimator, sizeof estimator, &settings, NULL);
+    return status == GOE_OK ? port_stack_used() : 0u;
+}
+
+__attribute__((noinline)) static size_t depth_of_reset(void) {
+    port_stack_paint();
+    (void)goe_reset(&estimator);
+    return port_stack_used();
+}
+
+__attribute__((noinline)) static size_t depth_of_defaults(void) {
+    static goe_settings_t defaults;
+    port_stack_paint();
+    goe_settings_default(&defaults);
+    return port_stack_used();
+}
+
+__attribute__((noinline)) static size_t depth_of_text(void) {
+    port_stack_paint();
+    (void)goe_status_text(GOE_NOT_INITIALISED);
+    return port_stack_used();
+}
+
+__attribute__((noinline)) static size_t depth_of_self_check(void) {
+    port_stack_paint();
+    (void)goe_self_check();
+    return port_stack_used();
+}
+
+static void measure_track(const logged_track_t *track) {
+    replay_read_settings(track, &settings);
+    keep_larger(&deepest.defaults, depth_of_defaults());
+    keep_larger(&deepest.init, depth_of_init());
+    for (int k = 0; k < track->count; k++) {
+        replay_read_image(&logged_images[track->first + k], &image);
+        keep_larger(&deepest.update, depth_of_update());
+    }
+    keep_larger(&deepest.reset, depth_of_reset());
+}
+
+static void tell(const char *function, size_t bytes) {
+    port_write_text("stack ");
+    port_write_text(function);
+    port_write_text(" ");
+    replay_write_count((long)bytes);
+    port_write_text("\n");
+}
+
+int main(void) {
+    for (int t = 0; t < logged_track_count; t++) {
+        measure_track(&logged_tracks[t]);
+    }
+    tell("goe_settings_default", deepest.defaults);
+    tell("goe_init", deepest.init);
+    tell("goe_update", deepest.update);
+    tell("goe_reset", deepest.reset);
+    tell("goe_status_text", depth_of_text());
+    tell("goe_self_check", depth_of_self_check());
+    return 0;
+}
