@@ -6,8 +6,12 @@
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  *
- * Source of the method: P. Bauer, "Position, Size and Orientation Estimation of Ground Obstacles in Sense and Avoid",
- * IFAC ACA 2019. "(1)" to "(8)" below and in the .c files are the equations of that paper.
+ * Two methods, chosen by goe_settings_t.method:
+ *   refined  (default) a square-root information filter over the whole track: maximum likelihood in fixed memory, with the
+ *            errors of the sensors (goe_noise_t) as its weights and nuisances, so that its sigmas are of the true error
+ *   window   the paper: P. Bauer, "Position, Size and Orientation Estimation of Ground Obstacles in Sense and Avoid", IFAC
+ *            ACA 2019, equation by equation. It runs beside the refined method and answers until that has started.
+ * "(1)" to "(8)" below and in the .c files are the equations of that paper.
  *
  * THIS HEADER IS THE MANUAL. The .c files hold reasons and equation numbers only.
  *
@@ -29,8 +33,8 @@
  *                    /             / side              width W:     the FRONT edge
  *                   /  front      /  (length L)        length L:    the SIDE edge
  *                  /_____________/                     reference point:
- *                        ^   near corner                 disc model  the centre of the disc
- *                        |                               line model  the middle of the front edge
+ *                        ^   near corner                 disc       the centre of the disc
+ *                        |                               line, box  the middle of the front edge
  *            reference point (X0, Z0)
  *                        .
  *                          .          Z forward
@@ -44,8 +48,15 @@
  *   6 m diameter stands at north 200, east -30. Then Z0 = 200 m, X0 = -30 m, width = 6 m.
  *   After 50 m of flight: Z = 150 m, X = -30 m, and X0, Z0 stay as they were.
  *
+ *   The track's first image fixes T and its origin, whether or not anything is seen in it. Call goe_reset when an obstacle
+ *   comes into view: what lies more than 87 degrees from Z cannot be used.
+ *
+ *   Jumps: x0, z0, x and z move by half the obstacle's size when a disc becomes a line or box. Refined: front and side keep
+ *   their names until the side lies more than 52 degrees (tan b = 1.3) from Z; then width and length, their sigmas,
+ *   orientation, both axes and the reference point change at once. The center does neither.
+ *
  * ---------------------------------------------------------------------------------------------------------------------
- * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 1 KiB at the default window), and all there
+ * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 2 KiB at the default window), and all there
  *             is: no heap, no hidden statics, no recursion. One estimator follows one obstacle; several obstacles take
  *             several estimators, which share nothing.
  * Threads     Every function touches only what its arguments point at. Two threads may work on two estimators; one
@@ -95,7 +106,7 @@ extern "C" {
 typedef enum {
     GOE_OK = 0,             /* solved from this image and the window before it */
     GOE_PARTIAL = 1,        /* solved, but a part of the image was refused or could not be used: see the counters */
-    GOE_COLLECTING = 2,     /* image taken; fewer points than the window, no solution yet */
+    GOE_COLLECTING = 2,     /* image taken; no solution yet: too few points, or the range is not known to 25 % (1 sigma) */
     GOE_HELD = 3,           /* image taken; it adds no point to the reported model, whose older solution stands */
     GOE_NOTHING_SEEN = 4,   /* image taken for its pose; no feature is marked as seen. Not a fault: nothing is in view */
     /* a feature of an image that was taken; no new solution */
@@ -107,8 +118,9 @@ typedef enum {
                                image, the side edge points at the camera */
     GOE_NO_EDGE = -5,       /* line model forced and no line point: the front edge is too short or no edge has a
                                measurable orientation (10 px and 2 px gates), as when the obstacle is met head-on */
-    GOE_BAD_HEIGHT = -6,    /* camera's height above ground <= 0; told as GOE_PARTIAL: no obstacle height from this image */
-    /* the solution; image taken */
+    GOE_BAD_HEIGHT = -6,    /* camera's height above ground <= 0; told as GOE_PARTIAL: no obstacle height from this image.
+                               Window */
+    /* the solution; image taken. Window, also while it answers for the refined method */
     GOE_NO_BASELINE = -7,   /* the camera moved too little over the window: goe_settings_t.min_baseline_m */
     GOE_NO_PARALLAX = -8,   /* the image does not grow as it must (1/W <= 0, or lost in rounding): not a static obstacle
                                ahead, or far too noisy */
@@ -133,11 +145,34 @@ typedef enum {
 /* The projection model that is reported. */
 typedef enum {
     GOE_MODEL_NONE = 0, /* estimate only: nothing solved yet. As a setting: refused */
-    GOE_MODEL_AUTO = 1, /* setting only: disc until line_points line points exist, the line from then on: when no more
-                           base corners come its last solution is held, until goe_reset */
-    GOE_MODEL_DISC = 2, /* (2): an upright cylinder, or the circle that stands for anything else */
-    GOE_MODEL_LINE = 3  /* (3): the front edge of a box; needs base corners */
+    GOE_MODEL_AUTO = 1, /* setting only. Window: disc until line_points line points exist, the line from then on: when no
+                           more base corners come its last solution is held, until goe_reset. Refined: disc until the
+                           images show a box */
+    GOE_MODEL_DISC = 2, /* an upright cylinder, or the circle that stands for anything else; (2) */
+    GOE_MODEL_LINE = 3, /* (3): the front edge of a box; needs base corners. As a setting of the refined method: a box,
+                           and no disc before it */
+    GOE_MODEL_BOX = 4   /* estimate only: a box with an upright, level outline. Refined method */
 } goe_model_t;
+
+typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2 } goe_method_t;
+
+/* How wrong the measurements are, for the refined method: one-sigma each, as a data sheet or a look at a log gives them.
+ * "Constant" errors are the same over a track; the filter estimates them beside the obstacle. Too small a figure makes
+ * the sigmas too small, too large a one wastes data; wrong by a factor of 2 in either direction does little harm. */
+typedef struct {
+    float pixel_px;            /* of an image point, new in each image; 0.05 to 100; default 0.5. Rounding alone: 0.35 */
+    float size_share;          /* of left, right and top, added to it: share of the silhouette's width; 0 to 1; default 0.
+                                  A detector's bounding boxes: about 0.025 */
+    float correlation;         /* of a point's error from image to image; 0 to 0.95; default 0. Detectors: about 0.5 */
+    float shape_share;         /* by how much the silhouette of what is taken for a disc differs from a disc's: share of its
+                                  width; 0 to 1; default 0. Cars as discs: about 0.12 */
+    float attitude_bias_deg;   /* constant attitude error, mounting included, about each body axis; 1e-3 to 30; 0.5 */
+    float attitude_white_deg;  /* attitude error that is new in each image; 1e-4 to 30; 0.1 */
+    float attitude_drift_deg;  /* by which the constant one wanders, per square root of a second; 0 to 30; 0 */
+    float height_m;            /* constant error of height_m over the obstacle's ground; 1e-3 to 1e3; 0.5 */
+    float velocity_bias_m_s;   /* constant error of the own horizontal velocity, each axis; 0 to 100; 0.05 */
+    float position_walk_m;     /* random walk of the own position, per square root of a second; 0 to 100; 0.05 */
+} goe_noise_t;
 
 /* Pinhole camera with Brown-Conrady lens, in OpenCV's conventions, and how it sits on the aircraft.
  * Mounting: the un-mounted camera looks along body x with image x = body y and image y = body z; it is turned by yaw
@@ -152,6 +187,7 @@ typedef struct {
 
 typedef struct {
     goe_camera_t camera;
+    goe_method_t method;       /* default refined */
     goe_model_t model;         /* auto, disc or line; default auto */
     bool heading_auto;         /* default true: T's Z axis = the vehicle's yaw at the track's first image */
     float heading_deg;         /* otherwise this: clockwise from north, -360 to 360; default 0 */
@@ -163,6 +199,15 @@ typedef struct {
                                   paper: 10 */
     int orientation_memory;    /* images that the low-pass of the orientation remembers; 1 to 1000; paper: 20 */
     float min_baseline_m;      /* root of the summed squared spread of the flown baseline; 1e-3 to 1e4; default 0.1 */
+    /* the refined method only, from here on */
+    goe_noise_t noise;
+    float typical_size_m;      /* width that the range is first guessed from, to a factor of 3; 0.1 to 1e3; default 6 */
+    float gate_sigma;          /* a point farther off than this is left out; 1 to 100; default 5 */
+    float huber_sigma;         /* a point farther off than this counts less; 0.5 to 100; default 2.5 */
+    float misfit_max;          /* misfit (goe_estimate_t) above which the obstacle is suspect; 0.01 to 1e3; default 1.9. Less
+                                  where shape_share or size_share stand for what is the same in every image */
+    bool top_is_highest;       /* the detector's `top` is the highest point in the image, also seen from above the roof;
+                                  default false: see goe_image_t.top */
 } goe_settings_t;
 
 /* ----------------------------------------------------------------------------------------------------------- input -- */
@@ -177,8 +222,10 @@ typedef struct {
  * the track starts anew with this image. */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
-    float position_ned_m[3]; /* vehicle's reference point, each +-1e6; down is checked only: heights come from height_m */
-    float height_m;          /* of the camera itself above the ground at the obstacle, +-1e5; <= 0: no obstacle height */
+    float position_ned_m[3]; /* vehicle's reference point, each +-1e6, in steps of 6 cm out there and of 1 mm within 1e4;
+                                down is checked only: heights come from height_m */
+    float height_m;          /* of the camera itself above the ground at the obstacle, +-1e5; window: no obstacle height
+                                if it is <= 0 */
     float attitude[4];       /* w, x, y, z; body FRD to NED; normalised here, refused if its norm is off by over 1 % */
     uint8_t reset_count;     /* the filter's reset counter, any start, wraps */
     bool reset_delta_known;  /* read only when reset_count changed */
@@ -192,14 +239,19 @@ typedef struct {
 } goe_pixel_t;
 
 /* One image of one obstacle. Any subset of the features may be seen.
- * Disc: left and right. Line: two or three base corners. Height: top, and a solution of either model.
+ * Disc: left and right. Line and box: two or three base corners; refined also finds a box by left and right alone when one of
+ * its faces turns away in flight: before that it is told as a disc about its middle, whose width is the lateral extent of what
+ * is seen of it. Height: top, and a solution of any model.
  * A bounding box is upright in the image, not in the world: when the camera rolls, its sides touch the top and the foot
  * of a tall obstacle, and the width comes out too large (a mast of 6 m by 30 m: 11 m at 10 degrees of roll) without any
  * sign of it. Banked, give silhouette points or leave left and right unseen. */
 typedef struct {
     goe_pose_t pose;
     goe_pixel_t left, right; /* leftmost and rightmost point of the silhouette; of a bounding box: the side's middle */
-    goe_pixel_t top;         /* highest point; of a bounding box: the top side's middle */
+    goe_pixel_t top;         /* point of the roof's edge over the nearest base corner, of a disc the nearest point of the
+                                upper rim; of a bounding box: the top side's middle. Seen from below the roof and
+                                not far from the axis it is the highest point in the image; from above, the highest one
+                                is another: top_is_highest */
     goe_pixel_t base_left, base_near, base_right; /* visible corners of the base on the ground, in image order;
                                 base_near lies between two visible faces, and is not seen when one face alone is */
 } goe_image_t;
@@ -207,41 +259,55 @@ typedef struct {
 /* ---------------------------------------------------------------------------------------------------------- output -- */
 
 /* Which quantities of an estimate hold an answer. A quantity without its bit is 0 and means nothing. */
-#define GOE_HAS_POSITION 0x01u    /* x0, z0, x, z, width, residual, baseline */
-#define GOE_HAS_LENGTH 0x02u      /* length: line model, side edge seen from aside */
+#define GOE_HAS_POSITION 0x01u    /* x0, z0, x, z, residual, baseline */
+#define GOE_HAS_LENGTH 0x02u      /* length: line or box, side edge seen from aside */
 #define GOE_HAS_HEIGHT 0x04u      /* height */
 #define GOE_HAS_ORIENTATION 0x08u /* orientation, other_side, both axes */
-#define GOE_HAS_CENTER 0x10u      /* center: disc; or line with length */
+#define GOE_HAS_CENTER 0x10u      /* center: disc; or line or box with length */
+#define GOE_HAS_WIDTH 0x20u       /* width */
 
-/* One-sigma of each quantity, from the residuals of the fits; units as the quantity. A sigma is only as good as the
- * assumption that errors are independent from image to image: constant errors of attitude or altitude are not in it.
- * After one single measurement the spread is not known: then the orientation's is 0, and those of length and height
- * hold only what the solution gives them. */
+/* One-sigma of each quantity; units as the quantity.
+ * Refined: of the true error, as far as goe_noise_t tells the truth; a quantity is valid once its sigma was below 25 % (x0,
+ * z0: of the range), 30 % (width, length, height) or 10 degrees in two images in a row.
+ * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
+ * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:
+ * then the orientation's is 0, and those of length and height hold only what the solution gives them. */
 typedef struct {
     float x0_m, z0_m, x_m, z_m, width_m, length_m, height_m, orientation_deg, center_north_m, center_east_m;
 } goe_sigma_t;
 
 typedef struct {
-    goe_model_t model;     /* none (nothing solved), disc or line: the model behind x0 to width and the centre */
+    goe_method_t method;   /* that gave the answer; refined also while that has started and knows nothing yet; 0 if none */
+    goe_model_t model;     /* none (nothing solved), disc, line or box: the model behind x0 to width and the centre */
     unsigned valid;        /* GOE_HAS_... */
-    bool fresh;            /* x0 to width are solved from the latest image; false: stale, the last good answer. Length,
-                              height and orientation are the latest measured, and have no age of their own */
-    int points;            /* image points in the solution's window; 0 if none */
+    bool fresh;            /* x0 to width are solved from the latest image; false: stale, the last good answer. Window:
+                              length, height and orientation are the latest measured, and have no age of their own */
+    bool suspect;          /* refined: the residuals do not fit a static obstacle of this model (misfit > misfit_max): it
+                              moves, or it is of another shape, or the noise is larger than told; or a disc was asked for
+                              and its silhouette is not that of one; or what was told as base corners proved to be none and
+                              is left out. Do not trust the rest */
+    int points;            /* images behind the answer: the window, or all that were used; at most 32767; 0 if none */
     float age_s;           /* since the image of the last solution, refused images included; 0 if fresh or none; at
                               most 4000. It stands still when goe_update is not called */
     float x0_m, z0_m;      /* reference point at the track's first image, T axes */
     float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale */
-    float width_m;         /* disc: diameter; line: length of the front edge */
+    float width_m;         /* disc: diameter; line, box: length of the front edge */
     float length_m;        /* of the side edge */
     float height_m;        /* top above ground */
-    float orientation_deg; /* side edge (length axis) from Z, clockwise seen from above, -90 < b <= 90, filtered */
-    float orientation_raw_deg; /* the same from the latest image that measured it alone */
+    float orientation_deg; /* side edge (length axis) from Z, clockwise seen from above, -90 < b <= 90 */
+    float orientation_raw_deg; /* window: the same from the latest image that measured it alone, not filtered; refined:
+                                  orientation_deg again */
     float other_side_deg;  /* front edge (width axis), same convention */
     float length_axis[2];  /* unit vector (X, Z) along the side edge */
     float width_axis[2];   /* unit vector (X, Z) along the front edge, to the right of length_axis */
     float center_north_m, center_east_m; /* middle of the base, NED as of the latest pose */
-    float residual;        /* root mean square residual of (5), in the rows' own unit m/S */
-    float baseline_m;      /* root of the summed squared spread of the camera's path over the window */
+    float residual;        /* window: root mean square residual of (5), in the rows' own unit m/S; refined: 0 */
+    float baseline_m;      /* window: root of the summed squared spread of the camera's path over the window; refined:
+                              distance of the camera from where the track began */
+    float nis;             /* refined: normalised innovation squared of the latest image, and how many rows made it: */
+    int nis_rows;          /* its expectation; 0 if the image gave none */
+    float misfit;          /* refined: mean of nis over nis_rows, of the track's latest 64 images, begun with eight times 0;
+                              1 is what goe_noise_t lets expect */
     goe_sigma_t sigma;
 } goe_estimate_t;
 
@@ -271,6 +337,58 @@ typedef struct {
     int count;           /* saturates at orientation_memory */
 } goe_orientation_t;
 
+#define GOE_STATES 10
+#define GOE_FEATURES 6
+
+typedef struct { /* upper triangular matrix of GOE_STATES, row by row */
+    float element[GOE_STATES * (GOE_STATES + 1) / 2];
+} goe_triangle_t;
+
+typedef struct { /* the inverse of one, column by column */
+    float element[GOE_STATES * (GOE_STATES + 1) / 2];
+} goe_inverse_t;
+
+/* Rows of a measurement, column by column: three of the image's own attitude noise, the states, the residual. */
+#define GOE_TEMPORARIES 3
+#define GOE_COLUMNS (GOE_TEMPORARIES + GOE_STATES + 1)
+#define GOE_ROWS_MAX 9
+
+typedef struct {
+    float column[GOE_COLUMNS][GOE_ROWS_MAX];
+} goe_matrix_t;
+
+typedef struct { /* the refined method; lib/goe_sight.h tells what the states are */
+    float state[GOE_STATES];
+    goe_triangle_t root;    /* R: R'R is the information of the state */
+    goe_inverse_t inverse;  /* of R, after the latest image: R^-1 R^-1' is the covariance */
+    float drift_rad2, walk2; /* variance that the attitude bias and GOE_A have gained since */
+    goe_matrix_t rows;      /* of the image at hand */
+    float start_dx_m, start_dz_m; /* camera at the filter's start, T axes: the origin of the state */
+    float turn_cos, turn_sin; /* the state's axes: T turned by this about the vertical, clockwise seen from above */
+    float candidate[2]; /* what the next image must agree with before the box starts: one face's orientation, rad, or the
+                           lateral extents of two, focal lengths */
+    float outward, turning; /* chord: by how many sigmas, sliding mean, its ends leave it outwards; to the right */
+    float level;            /* sliding mean of nis over rows, of the filter's present start; negative: not begun */
+    float nis;              /* of the latest image */
+    float misfit; /* as told, over the track */
+    int64_t time_us;        /* of the latest image that the filter took */
+    int16_t images;         /* of the track that gave rows, saturating */
+    uint8_t phase;          /* goe_phase_t */
+    uint8_t agreeing, poor; /* images in a row: candidates alike, half of the points refused */
+    uint8_t refused[GOE_FEATURES]; /* images in a row in which this feature was refused */
+    uint8_t known;          /* GOE_HAS_...: what the latest image knew well enough */
+    bool candidate_both;    /* of two faces */
+    bool deep;              /* the length is estimated, not held */
+    bool exchanged;         /* the answer calls front what the state calls side */
+    bool named;             /* exchanged is decided */
+    uint8_t since;          /* images of the phase, saturating */
+    uint8_t failed;         /* times that a box proved wrong */
+    bool base_refused;      /* base corners proved to be none: they are not used */
+    bool outline;           /* box: found by its silhouette, without base corners */
+    bool stand_in;          /* disc: base corners were seen, so that it stands for a box */
+    int16_t nis_rows;
+} goe_filter_t;
+
 typedef struct {
     uint32_t ready; /* tells an initialised estimator from any other memory */
     goe_settings_t settings;
@@ -280,18 +398,24 @@ typedef struct {
     float heading_cos, heading_sin;
     float origin_ne_m[2];  /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;      /* camera since then, T axes */
-    int64_t time_us, solved_time_us;
+    int64_t time_us, start_time_us; /* latest and first image of the track */
+    int64_t solved_time_us;         /* image of the window's last solution */
+    float height_m;                 /* camera above ground, latest image */
     goe_window_t disc, line;
     goe_mean_t length, height;
     goe_orientation_t orientation;
-    goe_estimate_t estimate;
+    goe_estimate_t estimate; /* of the window method */
+    goe_filter_t filter;
+    goe_estimate_t told; /* of the latest image, by whatever method */
+    int64_t told_time_us; /* image behind it */
     uint32_t causes[GOE_CAUSES];
 } goe_estimator_t;
 
 /* ------------------------------------------------------------------------------------------------------- functions -- */
 
-/* Sets every field of *settings: the paper's values, no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are
- * 0 and must be set by the caller. A null pointer is ignored. */
+/* Sets every field of *settings: the refined method, for the noise of a small aircraft's usual sensors; the paper's values
+ * for the window; no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are 0 and must be set by the caller. A
+ * null pointer is ignored. */
 void goe_settings_default(goe_settings_t *settings);
 
 /* Checks *settings, copies them and starts with an empty track and zeroed counters.
@@ -303,8 +427,8 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
                                     const char **bad_field);
 
 /* Takes one image and tells the estimate after it.
- *   estimate  written by every call, unless it is null; all zero (valid = 0) with GOE_BAD_ARGUMENT and
- *             GOE_NOT_INITIALISED
+ *   estimate  written by every call; all zero (valid = 0) with GOE_BAD_ARGUMENT and GOE_NOT_INITIALISED. If it is null
+ *             the image is not taken: GOE_BAD_ARGUMENT
  * Returns GOE_OK, a positive status, or one of GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE, GOE_BAD_ARGUMENT,
  * GOE_NOT_INITIALISED. If several faults meet in one image all are counted; a failed solution is told rather than a
  * feature's fault, and of the features the first.
@@ -312,8 +436,53 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * Cost: bounded; no loop runs longer than GOE_WINDOW_MAX or 20. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
-/* Forgets the track: windows, orientation, estimate. Keeps settings and counters. For another obstacle, or a new view of
- * the same one. Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED. */
+/* The quantities of goe_covariance, in this order. */
+enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_QUANTITIES };
+
+/* Covariance of x0_m, z0_m, orientation_deg, width_m, length_m, height_m of the latest estimate: metres and degrees. Rows
+ * and columns of a quantity that is not valid there are 0. Of the window's answer, and of a stale one: the sigmas squared
+ * on the diagonal.
+ *   covariance  written by every call unless null; all zero on failure
+ * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED. */
+goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
+
+/* What the aircraft is about to do: fly on from the latest image's position at constant velocity. Slower than 0.1 m/s over
+ * the ground it is taken as standing still, also when it climbs or descends. */
+typedef struct {
+    float velocity_ned_m_s[3]; /* relative to the ground, each +-1e3 */
+    float margin_m;            /* the outline of the obstacle must stay farther away than this, horizontally; 0 to 1e4 */
+    float clearance_m;         /* ... or its top must lie deeper than this below the aircraft; 0 to 1e4 */
+} goe_plan_t;
+
+/* What will become of it. Sigmas are to first order, from the covariance of the estimate; goe_plan_t is taken as exact.
+ * Refined: a constant error of goe_pose_t.height_m moves the camera and the top alike, and is not in the clearance. */
+typedef struct {
+    float time_s;      /* until the horizontal distance to the obstacle's outline is smallest for the first time; if the
+                          path crosses the outline: until it enters. 0: the distance grows already, or it is inside */
+    float miss_m;      /* that distance; 0 if the path crosses the outline */
+    float clearance_m; /* camera above the top at that time; negative: below it. Descending across the outline: where it
+                          leaves it, which is the least. 0 if the height is not known */
+    float time_sd_s;   /* 0 if time_s is. Along a side that may lean either way from the path it spans that side */
+    float miss_sd_m;   /* of a crossing path: of how far the outline would have to be moved for the path to miss it */
+    float clearance_sd_m;
+    float violation;   /* probability, 0 to 1, that the margin and the clearance are both violated; if the height is not
+                          known: that the margin is. The clearance is that of clearance_m: within the margin, but before
+                          or after that time, a slope costs up to climb * margin_m / speed more, which is for
+                          goe_plan_t.clearance_m to allow for. Told too high, not too low, where the errors of distance
+                          and clearance are opposed */
+    bool has_clearance; /* the obstacle's height is known */
+} goe_hazard_t;
+
+/* Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. The outline is the disc, or the box
+ * as far as it is known: without orientation or length the circle of its width about the reference point, without width
+ * (GOE_HAS_WIDTH) that point alone, so that margin_m has to cover the obstacle's size.
+ *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
+ * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,
+ * GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED. Cost: bounded; no loop runs longer than 10. */
+GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard);
+
+/* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
+ * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED. */
 goe_status_t goe_reset(goe_estimator_t *estimator);
 
 /* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number. */

@@ -7,8 +7,6 @@
 
 #define FORWARD_MIN 0.05f /* third component of a unit ray in T: farther aside than 87 degrees nothing can be aligned */
 
-#define FEATURES 6
-
 /* Feature i of an image and of a view: both hold them one after the other, in the same order. */
 static const goe_pixel_t *pixel_of(const goe_image_t *image, size_t i) {
     const void *at = (const unsigned char *)image + offsetof(goe_image_t, left) + i * sizeof(goe_pixel_t);
@@ -29,7 +27,7 @@ void goe_align_view(const goe_camera_t *camera, const float camera_to_trajectory
     const float zx = r[6], zy = r[7], zz = r[8];
     const float cx_px = camera->cx_px, cy_px = camera->cy_px, fx_px = camera->fx_px, fy_px = camera->fy_px;
     const bool distorts = goe_camera_distorts(camera);
-    for (size_t i = 0; i < FEATURES; i++) {
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
         const goe_pixel_t *pixel = pixel_of(image, i);
         goe_point_t *point = point_of(view, i);
         point->usable = pixel->seen;

@@ -58,6 +58,7 @@ void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, f
         fix_heading(estimator, body_to_ned);
         memcpy(estimator->origin_ne_m, position, sizeof position);
         estimator->started = true;
+        estimator->start_time_us = pose->time_us;
     } else if (goe_ego_motion_reset(estimator, pose)) {
         for (int i = 0; i < 2; i++) {
             estimator->origin_ne_m[i] += pose->reset_delta_ned_m[i];
@@ -65,6 +66,7 @@ void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, f
     }
     estimator->reset_count = pose->reset_count;
     estimator->time_us = pose->time_us;
+    estimator->height_m = pose->height_m;
     const float north = position[0] - estimator->origin_ne_m[0];
     const float east = position[1] - estimator->origin_ne_m[1];
     estimator->dx_m = estimator->heading_cos * east - estimator->heading_sin * north;

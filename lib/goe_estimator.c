@@ -1,234 +1,83 @@
 /* The estimator: one image through the whole chain. SPDX-License-Identifier: MIT
  *
- *   image -> intake -> ego motion -> aligned points -> disc row ------------------> window -> length, height -> estimate
- *                                                  \-> edges -> orientation -> line row -/
+ *   image -> intake -> ego motion -> aligned points -> paper ---------> estimate
+ *                                                  \-> refined -> answer -/
  */
-#include <math.h>
 #include <string.h>
 
 #include "goe.h"
 #include "goe_align.h"
 #include "goe_angle.h"
+#include "goe_answer.h"
 #include "goe_camera.h"
-#include "goe_edge.h"
 #include "goe_ego_motion.h"
-#include "goe_extent.h"
 #include "goe_fault.h"
 #include "goe_intake.h"
-#include "goe_mean.h"
-#include "goe_orientation.h"
-#include "goe_projection.h"
-#include "goe_scalar.h"
+#include "goe_paper.h"
+#include "goe_refined.h"
 #include "goe_settings.h"
-#include "goe_window.h"
+#include "goe_told.h"
 
-#define READY 0x474F4531u /* "GOE1" */
-#define RESETS 0          /* causes[0] counts tracks that an unknown filter reset ended */
+#define RESETS 0 /* causes[0] counts tracks that an unknown filter reset ended */
 #define AGE_LIMIT_US 4000000000u
 #define S_PER_US 1.0e-6f
 
-/* What one image contributes, on its way through the chain. */
-typedef struct {
-    goe_view_t view;
-    goe_edges_t edges;
-    goe_faces_t faces;
-    goe_turn_t turn;  /* filtered orientation */
-    goe_span_t front; /* holds if line_row */
-    goe_faults_t faults;
-    bool disc_row, line_row; /* the image added a row to that model's window */
-} frame_t;
+/* --------------------------------------------------------------------------------------------------------- the answer -- */
 
-/* ------------------------------------------------------------------------------------------------- rows of one image -- */
-
-static bool any_seen(const goe_image_t *image) {
-    return image->left.seen || image->right.seen || image->top.seen || image->base_left.seen || image->base_near.seen ||
-           image->base_right.seen;
-}
-
-static void add_disc_row(goe_estimator_t *estimator, frame_t *frame) {
-    goe_row_t row;
-    if (estimator->settings.model == GOE_MODEL_LINE || !frame->view.left.usable || !frame->view.right.usable) {
+static void tell_age(const goe_estimator_t *estimator, int64_t time_us, goe_estimate_t *estimate) {
+    estimate->age_s = 0.0f;
+    if (estimate->fresh || !(estimate->valid & GOE_HAS_POSITION)) {
         return;
     }
-    const goe_status_t fault = goe_projection_disc(&frame->view.left, &frame->view.right, &row);
-    goe_fault_note(&frame->faults, fault);
-    if (fault == GOE_OK) {
-        goe_window_add(&estimator->disc, estimator->settings.window, estimator->dx_m, estimator->dz_m, row);
-        frame->disc_row = true;
-    }
+    const int64_t then_us = goe_is_refined(estimator) ? estimator->told_time_us : estimator->solved_time_us;
+    const uint64_t age_us = (uint64_t)time_us - (uint64_t)then_us;
+    const uint32_t told_us = age_us < AGE_LIMIT_US ? (uint32_t)age_us : AGE_LIMIT_US;
+    estimate->age_s = (float)told_us * S_PER_US;
 }
 
-static void find_faces(goe_estimator_t *estimator, const goe_image_t *image, frame_t *frame) {
-    if (estimator->settings.model == GOE_MODEL_DISC) {
-        return;
-    }
-    goe_fault_note(&frame->faults, goe_edge_find(&estimator->settings, image, &frame->view, &frame->edges));
-    goe_orientation_update(&estimator->orientation, &frame->edges, estimator->settings.orientation_memory,
-                           &frame->faces);
-    goe_sincos_deg(estimator->orientation.filtered_deg, &frame->turn.s, &frame->turn.c);
-}
-
-static void add_line_row(goe_estimator_t *estimator, frame_t *frame) {
-    goe_row_t row;
-    const goe_edge_t *front = frame->faces.front;
-    if (!frame->faces.measured || !front || !front->counts) {
-        return;
-    }
-    const goe_status_t fault = goe_projection_line(front->left, front->right, frame->turn, &frame->front, &row);
-    goe_fault_note(&frame->faults, fault);
-    if (fault == GOE_OK) {
-        goe_window_add(&estimator->line, estimator->settings.window, estimator->dx_m, estimator->dz_m, row);
-        frame->line_row = true;
-    }
-}
-
-/* ------------------------------------------------------------------------------------------------------- solution -- */
-
-static int line_points_needed(const goe_settings_t *settings) {
-    return settings->line_points > settings->window ? settings->line_points : settings->window;
-}
-
-/* The model to report: Section 4 of the paper, disc until enough line points are there. */
-static goe_model_t reported_model(const goe_estimator_t *estimator) {
-    if (estimator->settings.model != GOE_MODEL_AUTO) {
-        return estimator->settings.model;
-    }
-    return estimator->line.count >= line_points_needed(&estimator->settings) ? GOE_MODEL_LINE : GOE_MODEL_DISC;
-}
-
-static void take_fit(goe_estimator_t *estimator, goe_model_t model) {
-    goe_estimate_t *estimate = &estimator->estimate;
-    estimate->model = model;
-    estimate->valid |= GOE_HAS_POSITION;
-    estimate->fresh = true;
-    estimate->points = estimator->settings.window;
-    estimator->solved_time_us = estimator->time_us;
-}
-
-/* GOE_OK: solved. GOE_COLLECTING, GOE_HELD: nothing to solve. Otherwise why there is no solution. */
-static goe_status_t solve(goe_estimator_t *estimator, const frame_t *frame) {
-    const goe_model_t model = reported_model(estimator);
-    const goe_window_t *window = model == GOE_MODEL_LINE ? &estimator->line : &estimator->disc;
-    const int length = estimator->settings.window;
-    if (window->count < length) {
-        return GOE_COLLECTING;
-    }
-    if (!(model == GOE_MODEL_LINE ? frame->line_row : frame->disc_row)) {
-        return GOE_HELD;
-    }
-    const goe_status_t status =
-        goe_window_solve(window, length, estimator->settings.min_baseline_m, &estimator->estimate);
-    if (status == GOE_OK) {
-        take_fit(estimator, model);
-    }
-    return status;
-}
-
-/* ------------------------------------------------------------------------------------------- what hangs on a solution -- */
-
-/* The reference point relative to the camera at this image. */
-static void follow_motion(goe_estimator_t *estimator) {
-    goe_estimate_t *estimate = &estimator->estimate;
+/* No new answer: the last one grows old, and follows the motion. */
+static void grow_old(goe_estimator_t *estimator) {
+    goe_estimate_t *estimate = &estimator->told;
+    estimate->fresh = false;
     if (estimate->valid & GOE_HAS_POSITION) {
         estimate->x_m = estimate->x0_m - estimator->dx_m;
         estimate->z_m = estimate->z0_m - estimator->dz_m;
     }
 }
 
-/* Takes one image's length or height into its sliding mean. A mean that is not positive is no answer. */
-static void take_extent(goe_estimator_t *estimator, goe_mean_t *mean, const goe_extent_t *extent, unsigned has,
-                        float *value_m, float *sigma_m) {
-    const goe_average_t average = goe_mean_add(mean, estimator->settings.window, extent->value_m);
-    const bool answers = average.mean > 0.0f;
-    *value_m = answers ? average.mean : 0.0f;
-    *sigma_m = answers ? sqrtf(average.variance + extent->variance_m2) : 0.0f;
-    if (answers) {
-        estimator->estimate.valid |= has;
+/* A filter that has not started, or has only a disc where a box was asked for, leaves the answer to the window; a stale
+ * answer of its own is worth more than none, or than a stale one of the window's. */
+static goe_status_t tell_window(goe_estimator_t *estimator, goe_status_t status) {
+    if (estimator->estimate.fresh || estimator->told.method != GOE_METHOD_REFINED ||
+        !(estimator->told.valid & GOE_HAS_POSITION)) {
+        estimator->told = estimator->estimate;
+        estimator->told_time_us = estimator->solved_time_us;
+        return status;
+    }
+    grow_old(estimator);
+    goe_answer_residuals(estimator, &estimator->told);
+    return status == GOE_COLLECTING ? GOE_HELD : status;
+}
+
+static goe_status_t tell_refined(goe_estimator_t *estimator, const goe_image_t *image, const goe_faults_t *faults,
+                                 bool measured) {
+    const bool fresh = measured && goe_answer_tell(estimator, &estimator->told);
+    if (fresh) {
+        estimator->told_time_us = estimator->time_us;
     } else {
-        estimator->estimate.valid &= ~has;
+        grow_old(estimator);
     }
-}
-
-static void measure_extents(goe_estimator_t *estimator, const goe_image_t *image, frame_t *frame) {
-    goe_estimate_t *estimate = &estimator->estimate;
-    goe_extent_t extent;
-    if (estimate->model == GOE_MODEL_LINE && frame->faces.side) {
-        const float min_x = estimator->settings.side_min_px / estimator->settings.camera.fx_px;
-        const goe_status_t fault =
-            goe_extent_length(&frame->faces, &frame->front, frame->turn, estimate, min_x, &extent);
-        goe_fault_note(&frame->faults, fault);
-        if (fault == GOE_OK) {
-            take_extent(estimator, &estimator->length, &extent, GOE_HAS_LENGTH, &estimate->length_m,
-                        &estimate->sigma.length_m);
-        }
+    goe_answer_residuals(estimator, &estimator->told);
+    if (fresh) {
+        return faults->first == GOE_OK ? GOE_OK : GOE_PARTIAL;
     }
-    if (frame->view.top.usable) {
-        const goe_status_t fault = goe_extent_height(&frame->view.top, image->pose.height_m, estimate, &extent);
-        goe_fault_note(&frame->faults, fault);
-        if (fault == GOE_OK) {
-            take_extent(estimator, &estimator->height, &extent, GOE_HAS_HEIGHT, &estimate->height_m,
-                        &estimate->sigma.height_m);
-        }
+    if (faults->first != GOE_OK) {
+        return faults->first;
     }
-}
-
-static void tell_orientation(goe_estimator_t *estimator, goe_turn_t turn) {
-    const goe_orientation_t *orientation = &estimator->orientation;
-    goe_estimate_t *estimate = &estimator->estimate;
-    if (orientation->count == 0) {
-        return;
+    if (!goe_image_seen(image)) {
+        return GOE_NOTHING_SEEN;
     }
-    estimate->valid |= GOE_HAS_ORIENTATION;
-    estimate->orientation_deg = orientation->filtered_deg;
-    estimate->orientation_raw_deg = orientation->raw_deg;
-    estimate->other_side_deg = goe_fold_deg(orientation->filtered_deg + 90.0f);
-    estimate->length_axis[0] = turn.s;
-    estimate->length_axis[1] = turn.c;
-    estimate->width_axis[0] = turn.c;
-    estimate->width_axis[1] = -turn.s;
-    estimate->sigma.orientation_deg = goe_orientation_sigma_deg(orientation);
-}
-
-/* Middle of the base: a disc's reference point; half a length behind a box's front edge. */
-static void tell_center(goe_estimator_t *estimator) {
-    goe_estimate_t *estimate = &estimator->estimate;
-    const goe_sigma_t *sigma = &estimate->sigma;
-    const float c = estimator->heading_cos;
-    const float s = estimator->heading_sin;
-    float x_m = estimate->x0_m;
-    float z_m = estimate->z0_m;
-    float variance_x = sigma->x0_m * sigma->x0_m;
-    float variance_z = sigma->z0_m * sigma->z0_m;
-    const bool known = (estimate->valid & GOE_HAS_POSITION) &&
-                       (estimate->model == GOE_MODEL_DISC || (estimate->valid & GOE_HAS_LENGTH));
-    if (!known) {
-        estimate->valid &= ~GOE_HAS_CENTER;
-        estimate->center_north_m = 0.0f;
-        estimate->center_east_m = 0.0f;
-        estimate->sigma.center_north_m = 0.0f;
-        estimate->sigma.center_east_m = 0.0f;
-        return;
-    }
-    if (estimate->model == GOE_MODEL_LINE) {
-        const float half_x = 0.5f * estimate->length_axis[0];
-        const float half_z = 0.5f * estimate->length_axis[1];
-        x_m += half_x * estimate->length_m;
-        z_m += half_z * estimate->length_m;
-        variance_x += half_x * half_x * sigma->length_m * sigma->length_m;
-        variance_z += half_z * half_z * sigma->length_m * sigma->length_m;
-    }
-    estimate->valid |= GOE_HAS_CENTER;
-    estimate->center_north_m = estimator->origin_ne_m[0] + (c * z_m - s * x_m);
-    estimate->center_east_m = estimator->origin_ne_m[1] + (s * z_m + c * x_m);
-    estimate->sigma.center_north_m = sqrtf(c * c * variance_z + s * s * variance_x);
-    estimate->sigma.center_east_m = sqrtf(s * s * variance_z + c * c * variance_x);
-}
-
-static void tell_age(const goe_estimator_t *estimator, int64_t time_us, goe_estimate_t *estimate) {
-    const bool aged = (estimate->valid & GOE_HAS_POSITION) && !estimate->fresh;
-    const uint64_t age_us = (uint64_t)time_us - (uint64_t)estimator->solved_time_us;
-    const uint32_t told_us = age_us < AGE_LIMIT_US ? (uint32_t)age_us : AGE_LIMIT_US;
-    estimate->age_s = aged ? (float)told_us * S_PER_US : 0.0f;
+    return (estimator->told.valid & GOE_HAS_POSITION) ? GOE_HELD : GOE_COLLECTING;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
@@ -242,72 +91,67 @@ static void forget_track(goe_estimator_t *estimator) {
     memset(&e->height, 0, sizeof e->height);
     memset(&e->orientation, 0, sizeof e->orientation);
     memset(&e->estimate, 0, sizeof e->estimate);
+    memset(&e->filter, 0, sizeof e->filter);
+    e->filter.turn_cos = 1.0f;
+    memset(&e->told, 0, sizeof e->told);
     e->dx_m = 0.0f;
     e->dz_m = 0.0f;
     e->time_us = GOE_TIME_UNKNOWN;
+    e->start_time_us = GOE_TIME_UNKNOWN;
     e->solved_time_us = GOE_TIME_UNKNOWN;
+    e->told_time_us = GOE_TIME_UNKNOWN;
 }
 
-/* What to say of an image that was taken. */
-static goe_status_t judge(const goe_estimator_t *estimator, const goe_image_t *image, frame_t *frame,
-                          goe_status_t solving) {
-    if (solving == GOE_OK) {
-        return frame->faults.first == GOE_OK ? GOE_OK : GOE_PARTIAL;
+static goe_status_t estimate_refined(goe_estimator_t *estimator, const goe_image_t *image, goe_view_t *view,
+                                     const float camera_to_trajectory[9], goe_faults_t *faults) {
+    unsigned swapped;
+    const goe_phase_t least = estimator->settings.model == GOE_MODEL_LINE ? GOE_PHASE_BOX : GOE_PHASE_DISC;
+    const goe_paper_task_t task = (goe_phase_t)estimator->filter.phase < least ? GOE_PAPER_SOLVES : GOE_PAPER_COLLECTS;
+    const goe_status_t status = goe_paper_update(estimator, image, view, task, faults);
+    const bool measured = goe_refined_update(estimator, camera_to_trajectory, view, &swapped);
+    for (unsigned i = 0; i < swapped && task == GOE_PAPER_COLLECTS;
+         i++) { /* otherwise the paper's method has counted */
+        goe_count_cause(estimator->causes, GOE_SWAPPED);
     }
-    if (solving < GOE_OK) {
-        goe_count_cause(frame->faults.causes, solving);
-        return solving;
+    if (swapped > 0 && faults->first == GOE_OK) {
+        faults->first = GOE_SWAPPED;
     }
-    if (frame->faults.first != GOE_OK) {
-        return frame->faults.first;
-    }
-    if (!any_seen(image)) {
-        return GOE_NOTHING_SEEN;
-    }
-    if (estimator->settings.model == GOE_MODEL_LINE && frame->edges.count > 0 && !frame->line_row) {
-        goe_count_cause(frame->faults.causes, GOE_NO_EDGE);
-        return GOE_NO_EDGE;
-    }
-    return solving;
+    const goe_status_t told = (goe_phase_t)estimator->filter.phase < least
+                                  ? tell_window(estimator, status)
+                                  : tell_refined(estimator, image, faults, measured);
+    estimator->told.suspect = estimator->told.suspect || estimator->filter.base_refused;
+    return told;
 }
 
-static void start_frame(goe_estimator_t *estimator, frame_t *frame) {
-    frame->edges.count = 0;
-    frame->faces.measured = false;
-    frame->faces.front = NULL;
-    frame->faces.side = NULL;
-    frame->turn.s = 0.0f;
-    frame->turn.c = 1.0f;
-    frame->faults.causes = estimator->causes;
-    frame->faults.first = GOE_OK;
-    frame->disc_row = false;
-    frame->line_row = false;
+/* North and east of an older answer are those of the autopilot's filter before its reset. */
+static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
+    if (estimate->valid & GOE_HAS_CENTER) {
+        estimate->center_north_m += delta_ned_m[0];
+        estimate->center_east_m += delta_ned_m[1];
+    }
 }
 
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image) {
     float camera_to_trajectory[9];
-    frame_t frame;
-    start_frame(estimator, &frame);
+    goe_view_t view;
+    goe_faults_t faults = {estimator->causes, GOE_OK};
     if (goe_ego_motion_lost(estimator, &image->pose)) {
         forget_track(estimator);
         estimator->causes[RESETS] += estimator->causes[RESETS] < UINT32_MAX ? 1u : 0u;
     }
-    goe_ego_motion_follow(estimator, &image->pose, camera_to_trajectory);
-    goe_align_view(&estimator->settings.camera, camera_to_trajectory, image, &frame.view, &frame.faults);
-    add_disc_row(estimator, &frame);
-    find_faces(estimator, image, &frame);
-    add_line_row(estimator, &frame);
-
-    estimator->estimate.fresh = false;
-    const goe_status_t solving = solve(estimator, &frame);
-    follow_motion(estimator);
-    tell_orientation(estimator, frame.turn);
-    if (solving == GOE_OK) {
-        measure_extents(estimator, image, &frame);
+    if (goe_is_refined(estimator) && goe_ego_motion_reset(estimator, &image->pose)) {
+        move_center(&estimator->told, image->pose.reset_delta_ned_m);
     }
-    tell_center(estimator);
-    tell_age(estimator, estimator->time_us, &estimator->estimate);
-    return judge(estimator, image, &frame, solving);
+    goe_ego_motion_follow(estimator, &image->pose, camera_to_trajectory);
+    goe_align_view(&estimator->settings.camera, camera_to_trajectory, image, &view, &faults);
+    if (!goe_is_refined(estimator)) {
+        const goe_status_t status = goe_paper_update(estimator, image, &view, GOE_PAPER_SOLVES, &faults);
+        tell_age(estimator, estimator->time_us, &estimator->estimate);
+        return status;
+    }
+    const goe_status_t status = estimate_refined(estimator, image, &view, camera_to_trajectory, &faults);
+    tell_age(estimator, estimator->time_us, &estimator->told);
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- public calls -- */
@@ -331,7 +175,7 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
     estimator->settings = *settings;
     goe_camera_mounting(&settings->camera, estimator->camera_to_body);
     forget_track(estimator);
-    estimator->ready = READY;
+    estimator->ready = GOE_READY;
     return GOE_OK;
 }
 
@@ -339,18 +183,18 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
     if (!estimate) {
         return GOE_BAD_ARGUMENT;
     }
-    if (!estimator || !image || estimator->ready != READY) {
+    if (!estimator || !image || estimator->ready != GOE_READY) {
         memset(estimate, 0, sizeof *estimate);
         return !estimator || !image ? GOE_BAD_ARGUMENT : GOE_NOT_INITIALISED;
     }
     goe_status_t status = goe_intake_check(estimator, image);
     if (status == GOE_OK) {
         status = take_image(estimator, image);
-        *estimate = estimator->estimate;
+        *estimate = *goe_told(estimator);
         return status;
     }
     goe_count_cause(estimator->causes, status);
-    *estimate = estimator->estimate;
+    *estimate = *goe_told(estimator);
     estimate->fresh = false;
     /* the estimate grows old while images are refused, too, as far as their times can be believed */
     tell_age(estimator, image->pose.time_us > estimator->time_us ? image->pose.time_us : estimator->time_us, estimate);
@@ -361,9 +205,60 @@ goe_status_t goe_reset(goe_estimator_t *estimator) {
     if (!estimator) {
         return GOE_BAD_ARGUMENT;
     }
-    if (estimator->ready != READY) {
+    if (estimator->ready != GOE_READY) {
         return GOE_NOT_INITIALISED;
     }
     forget_track(estimator);
+    return GOE_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- covariance -- */
+
+static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
+                                                GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
+
+static void covariance_of_sigmas(const goe_sigma_t *sigma, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+    const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
+                                      sigma->width_m, sigma->length_m, sigma->height_m};
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        covariance[i][i] = of[i] * of[i];
+    }
+}
+
+static void keep_valid(unsigned valid, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        for (int j = 0; j < GOE_QUANTITIES; j++) {
+            const float scale =
+                (i == GOE_ORIENTATION ? GOE_DEG_PER_RAD : 1.0f) * (j == GOE_ORIENTATION ? GOE_DEG_PER_RAD : 1.0f);
+            const bool known = (valid & bit_of[i]) && (valid & bit_of[j]);
+            covariance[i][j] = known ? covariance[i][j] * scale : 0.0f;
+        }
+    }
+}
+
+void goe_told_covariance(const goe_estimator_t *estimator, goe_zero_t zero,
+                         float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+    const goe_estimate_t *estimate = goe_told(estimator);
+    memset(covariance, 0, sizeof(float) * GOE_QUANTITIES * GOE_QUANTITIES);
+    if (estimate->method == GOE_METHOD_REFINED && estimate->fresh) {
+        goe_answer_covariance(estimator, zero, covariance);
+        keep_valid(estimate->valid, covariance);
+    } else {
+        covariance_of_sigmas(&estimate->sigma, covariance);
+    }
+}
+
+goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+    if (!covariance) {
+        return GOE_BAD_ARGUMENT;
+    }
+    memset(covariance, 0, sizeof(float) * GOE_QUANTITIES * GOE_QUANTITIES);
+    if (!estimator || estimator->ready != GOE_READY) {
+        return estimator ? GOE_NOT_INITIALISED : GOE_BAD_ARGUMENT;
+    }
+    if (!(goe_told(estimator)->valid & GOE_HAS_POSITION)) {
+        return GOE_COLLECTING;
+    }
+    goe_told_covariance(estimator, GOE_FROM_GROUND, covariance);
     return GOE_OK;
 }

@@ -49,6 +49,20 @@ static const number_range_t number_ranges[] = {
     NUMBER(orientation_min_px, 0.0f, GATE_MAX_PX),
     NUMBER(side_min_px, 0.1f, GATE_MAX_PX),
     NUMBER(min_baseline_m, 1.0e-3f, 1.0e4f),
+    NUMBER(noise.pixel_px, 0.05f, 100.0f),
+    NUMBER(noise.size_share, 0.0f, 1.0f),
+    NUMBER(noise.correlation, 0.0f, 0.95f),
+    NUMBER(noise.shape_share, 0.0f, 1.0f),
+    NUMBER(noise.attitude_bias_deg, 1.0e-3f, 30.0f),
+    NUMBER(noise.attitude_white_deg, 1.0e-4f, 30.0f),
+    NUMBER(noise.attitude_drift_deg, 0.0f, 30.0f),
+    NUMBER(noise.height_m, 1.0e-3f, 1.0e3f),
+    NUMBER(noise.velocity_bias_m_s, 0.0f, 100.0f),
+    NUMBER(noise.position_walk_m, 0.0f, 100.0f),
+    NUMBER(typical_size_m, 0.1f, 1.0e3f),
+    NUMBER(gate_sigma, 1.0f, 100.0f),
+    NUMBER(huber_sigma, 0.5f, 100.0f),
+    NUMBER(misfit_max, 1.0e-2f, 1.0e3f),
 };
 
 void goe_settings_default(goe_settings_t *settings) {
@@ -56,15 +70,26 @@ void goe_settings_default(goe_settings_t *settings) {
         return;
     }
     memset(settings, 0, sizeof *settings);
+    settings->method = GOE_METHOD_REFINED;
     settings->model = GOE_MODEL_AUTO;
     settings->heading_auto = true;
-    settings->window = 8; /* Section 4 of the paper, and so are all below but the last */
+    settings->window = 8; /* Section 4 of the paper, and so are all down to orientation_memory */
     settings->line_points = 8;
     settings->edge_min_px = 10.0f;
     settings->orientation_min_px = 2.0f;
     settings->side_min_px = 10.0f;
     settings->orientation_memory = 20;
     settings->min_baseline_m = 0.1f;
+    settings->noise.pixel_px = 0.5f;
+    settings->noise.attitude_bias_deg = 0.5f;
+    settings->noise.attitude_white_deg = 0.1f;
+    settings->noise.height_m = 0.5f;
+    settings->noise.velocity_bias_m_s = 0.05f;
+    settings->noise.position_walk_m = 0.05f;
+    settings->typical_size_m = 6.0f;
+    settings->gate_sigma = 5.0f;
+    settings->huber_sigma = 2.5f;
+    settings->misfit_max = 1.9f;
 }
 
 static const char *first_bad_number(const goe_settings_t *settings) {
@@ -81,6 +106,7 @@ static const char *first_bad_number(const goe_settings_t *settings) {
 
 static const char *first_bad_count(const goe_settings_t *s) {
     const count_range_t counts[] = {
+        {"method", (int)s->method, GOE_METHOD_WINDOW, GOE_METHOD_REFINED},
         {"model", (int)s->model, GOE_MODEL_AUTO, GOE_MODEL_LINE},
         {"window", s->window, WINDOW_MIN, GOE_WINDOW_MAX},
         {"line_points", s->line_points, 1, COUNT_MAX},

@@ -118,28 +118,30 @@ static char *series_text(const flight_log_t *log, const case_sample_t *samples) 
     return text;
 }
 
-/* Rows of one run; model: whose frames count. */
-static const char *put_rows(FILE *rows, const planned_flight_t *flight, int window, goe_model_t model,
-                            const flight_log_t *log, const case_sample_t *samples) {
+/* Rows of one run; setting.model: whose frames count. */
+static const char *put_rows(FILE *rows, const planned_flight_t *flight, case_setting_t setting, const flight_log_t *log,
+                            const case_sample_t *samples) {
     for (size_t i = 0; i < FRACTIONS_COUNT; i++) {
         case_statistics_t statistics;
-        if (!case_statistics(log, samples, model, FRACTIONS[i], &statistics)) {
+        if (!case_statistics(log, samples, setting.model, FRACTIONS[i], &statistics)) {
             return "out of memory";
         }
-        campaign_text_cases_row(rows, flight, window, model, FRACTIONS[i], &statistics);
+        campaign_text_cases_row(rows, flight, setting, FRACTIONS[i], &statistics);
     }
     return NULL;
 }
 
-/* A run that switches models is judged twice: as a whole, and by its frames with the line alone. */
-static const char *run_over(const planned_flight_t *flight, const planned_run_t *run, const flight_log_t *log,
+/* A run that switches models is judged twice: as a whole, and by its frames with the line (refined: the box) alone. */
+static const char *run_over(const planned_flight_t *flight, case_setting_t setting, const flight_log_t *log,
                             case_sample_t *samples, FILE *rows) {
-    const char *fault = case_run(&flight->setup, log, run->model, run->window, samples);
+    const char *fault = case_run(&flight->setup, log, setting, samples);
+    const bool switches = setting.model == GOE_MODEL_AUTO && flight->setup.obstacle.kind == OBSTACLE_BOX;
     if (fault == NULL) {
-        fault = put_rows(rows, flight, run->window, run->model, log, samples);
+        fault = put_rows(rows, flight, setting, log, samples);
     }
-    if (fault == NULL && run->model == GOE_MODEL_AUTO) {
-        fault = put_rows(rows, flight, run->window, GOE_MODEL_LINE, log, samples);
+    if (fault == NULL && switches) {
+        setting.model = setting.method == GOE_METHOD_REFINED ? GOE_MODEL_BOX : GOE_MODEL_LINE;
+        fault = put_rows(rows, flight, setting, log, samples);
     }
     return fault;
 }
@@ -152,7 +154,7 @@ static void run_all_over(const options_t *options, const planned_flight_t *fligh
         return;
     }
     for (int r = 0; r < flight->runs && result->fault == NULL; r++) {
-        result->fault = run_over(flight, &flight->run[r], log, samples, rows);
+        result->fault = run_over(flight, flight->run[r], log, samples, rows);
         if (result->fault == NULL && series_wanted(options, flight)) {
             result->series[r] = series_text(log, samples);
             result->fault = result->series[r] != NULL ? NULL : "out of memory";
@@ -263,6 +265,12 @@ static void name_file(campaign_file_t *file, const char *name, const char *const
     file->count = count;
 }
 
+/* What tells the series of a flight's runs apart. */
+static const char *series_name(case_setting_t setting) {
+    return setting.method == GOE_METHOD_REFINED ? campaign_text_method(setting.method)
+                                                : campaign_text_model(setting.model);
+}
+
 /* The series first: whoever finds cases.csv and campaign.json finds what belongs to them. */
 static size_t list_files(const campaign_t *campaign, const char *const *rows, const char *const *facts,
                          campaign_file_t *files) {
@@ -274,7 +282,7 @@ static size_t list_files(const campaign_t *campaign, const char *const *rows, co
             char name[sizeof files->name];
             if (*series != NULL) {
                 (void)snprintf(name, sizeof name, CAMPAIGN_SERIES_FOLDER "/%d_%s.csv", flight->number,
-                               campaign_text_model(flight->run[r].model));
+                               series_name(flight->run[r]));
                 name_file(&files[count++], name, (const char *const *)series, 1);
             }
         }
@@ -362,8 +370,9 @@ static void print_help(poptContext context) {
     poptPrintHelp(context, stdout, 0);
     (void)puts(
         "\nDIR gets cases.csv (one row for each run and each part of it that statistics are over: the last 20, 40, 60\n"
-        "and 100 % of the solved images), series/CASE_MODEL.csv (estimates, truth and errors over time, of the\n"
-        "paper's study, seed 1) and campaign.json. Studies: " STUDY_GROUPS ".\n"
+        "and 100 % of the solved images), series/CASE_RUN.csv (estimates, truth and errors over time, of the\n"
+        "paper's study, seed 1; RUN: the window method's model, or refined) and campaign.json. Studies: " STUDY_GROUPS
+        ".\n"
         "\nExit status: 0 done; 2 bad usage or DIR cannot be written, then it is as it was.");
 }
 

@@ -13,6 +13,7 @@
 #include "goe.h"
 #include "input_error.h"
 #include "output_file.h"
+#include "settings_text.h"
 #include "track_table.h"
 
 #ifndef GOE_VERSION
@@ -29,8 +30,9 @@ enum { EXIT_DONE = 0, EXIT_NO_ESTIMATE = 1, EXIT_BAD_INPUT = 2 };
 typedef struct {
     char *method, *model, *out;
     char *camera, *frames; /* after parse_options(): the paths to read */
-    int window;            /* 0: the library's default */
-    int help, version;
+    char **set;            /* NAME=VALUE, null at the end; null if there are none */
+    int window;
+    int residuals, help, version;
 } options_t;
 
 static void free_options(options_t *options) {
@@ -39,6 +41,10 @@ static void free_options(options_t *options) {
     free(options->out);
     free(options->camera);
     free(options->frames);
+    for (size_t i = 0; options->set != NULL && options->set[i] != NULL; i++) {
+        free(options->set[i]);
+    }
+    free(options->set);
 }
 
 /* Bad usage. */
@@ -53,12 +59,15 @@ static bool give_up(const char *subject, const char *reason) {
     return false;
 }
 
-static bool check_method(const char *method) {
-    if (method == NULL || strcmp(method, "window") == 0) {
-        return true;
+static bool parse_method(const char *text, goe_method_t *method) {
+    if (text == NULL || strcmp(text, "refined") == 0) {
+        *method = GOE_METHOD_REFINED;
+    } else if (strcmp(text, "window") == 0) {
+        *method = GOE_METHOD_WINDOW;
+    } else {
+        return complain(text, "--method must be window or refined");
     }
-    return complain(method, strcmp(method, "refined") == 0 ? "this version has no refined method, only --method window"
-                                                           : "--method must be window or refined");
+    return true;
 }
 
 static bool parse_model(const char *text, goe_model_t *model) {
@@ -118,24 +127,45 @@ static bool parse_arguments(poptContext context, options_t *options) {
            default_path(&options->frames, directory, "frames.csv", "--frames");
 }
 
+static bool set_by_name(char *const *set, goe_settings_t *settings) {
+    setting_fault_t fault;
+    for (size_t i = 0; set != NULL && set[i] != NULL; i++) {
+        if (!setting_assign(settings, set[i], &fault)) {
+            return complain("--set", fault.text);
+        }
+    }
+    const char *bad_field = settings_out_of_range(settings);
+    if (bad_field != NULL) {
+        (void)snprintf(fault.text, sizeof fault.text, "%s: out of range", bad_field);
+        return complain("--set", fault.text);
+    }
+    return true;
+}
+
+/* The window is checked before what is set by name, so that it is not blamed on that. */
 static bool apply_options(const options_t *options, goe_settings_t *settings) {
-    if (!check_method(options->method) || !parse_model(options->model, &settings->model)) {
+    if (!parse_method(options->method, &settings->method) || !parse_model(options->model, &settings->model)) {
         return false;
     }
     settings->window = options->window;
-    return check_window(options);
+    return check_window(options) && set_by_name(options->set, settings);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ help -- */
 
 static void print_help(poptContext context) {
+    goe_settings_t defaults;
+    goe_settings_default(&defaults);
     poptPrintHelp(context, stdout, 0);
     (void)puts(
         "\nDIR holds camera.ini and frames.csv. One row comes out for each row of frames.csv; a quantity that is not\n"
         "known is empty. The fields are named in the first line: metres, degrees, each quantity followed by its\n"
         "one-sigma (..._sd_...).\n"
-        "\nExit status: 0 done; 1 the log was read but no row gave an estimate; 2 bad usage or bad input, then\n"
-        "nothing is written to FILE.");
+        "\nMETHOD: refined, the square-root information filter over the whole track, by default; window, the paper's\n"
+        "sliding window. NAME=VALUE: a setting of goe.h, which tells its meaning and range; by default");
+    (void)settings_print(stdout, &defaults);
+    (void)puts("\nExit status: 0 done; 1 the log was read but no row gave an estimate; 2 bad usage or bad input, then\n"
+               "nothing is written to FILE.");
 }
 
 /* ---------------------------------------------------------------------------------------------------------- replay -- */
@@ -187,7 +217,7 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
     input_error_t error;
     frame_reader_result_t result = FRAME_READER_END;
     (void)memset(&estimate, 0, sizeof estimate);
-    if (!estimate_write_header(stream)) {
+    if (!estimate_write_header(stream, options->residuals != 0)) {
         return write_failed(options);
     }
     while ((result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
@@ -198,7 +228,7 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
         frame_to_image(&frame, &image);
         const goe_status_t status = goe_update(estimator, &image, &estimate);
         count_row(tally, status, &estimate);
-        if (!estimate_write_row(stream, frame.time_text, frame.id, status, &estimate)) {
+        if (!estimate_write_row(stream, frame.time_text, frame.id, status, &estimate, options->residuals != 0)) {
             return write_failed(options);
         }
     }
@@ -288,10 +318,13 @@ int main(int argc, char **argv) {
     goe_settings_default(&defaults);
     options_t options = {.window = defaults.window};
     const struct poptOption table[] = {
-        {"method", 0, POPT_ARG_STRING, &options.method, 0, "how to estimate: the paper's sliding window", "window"},
+        {"method", 0, POPT_ARG_STRING, &options.method, 0, "how to estimate; refined by default", "refined|window"},
         {"model", 0, POPT_ARG_STRING, &options.model, 0, "what stands for the obstacle; auto by default",
          "auto|disc|line"},
         {"window", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &options.window, 0, "image points in the window", "N"},
+        {"set", 0, POPT_ARG_ARGV, &options.set, 0, "change a setting; may be repeated", "NAME=VALUE"},
+        {"residuals", 0, POPT_ARG_NONE, &options.residuals, 0,
+         "four columns more: nis, nis_rows, misfit, suspect (refined)", NULL},
         {"out", 'o', POPT_ARG_STRING, &options.out, 0, "where to write the estimates; standard output by default",
          "FILE"},
         {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},

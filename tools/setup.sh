@@ -3,6 +3,7 @@
 #
 #   tools/setup.sh          everything
 #   tools/setup.sh --demo   only what tools/demo.sh needs
+#   tools/setup.sh --rivals everything, and GTSAM in .cache/rivals for the comparison with other estimators
 #
 # Packages are installed by root or through a sudo that asks no password; otherwise the line to type is printed. What is
 # there already is left alone, so that a second run takes a moment. Exit status 1: something needed is missing.
@@ -14,8 +15,10 @@ log=$root/.cache/setup.log
 : >"$log"
 
 demo=false
+rivals=false
 case ${1:-} in
     --demo) demo=true ;;
+    --rivals) rivals=true ;;
     '') ;;
     *)
         sed -n '2,/^set/ { /^#/ s/^# \{0,1\}//p }' "$0" >&2
@@ -143,4 +146,19 @@ if [ ! -e $stamp ] || [ "$(cat $stamp)" != "$state" ]; then
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --editable tools >>"$log" 2>&1 ||
         die "pip cannot install tools/"
     echo "$state" >$stamp
+fi
+
+if $rivals; then
+    stamp=.cache/rivals/installed
+    state=$("$python" --version && cat tools/requirements-rivals.txt)
+    if [ ! -e $stamp ] || [ "$(cat $stamp)" != "$state" ]; then
+        echo "setup: making .cache/rivals"
+        rm -rf .cache/rivals
+        mkdir .cache/rivals
+        # Without dependencies and apart from .venv: tools/requirements-rivals.txt says why.
+        .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --target .cache/rivals \
+            -r tools/requirements-rivals.txt >>"$log" 2>&1 || die "pip cannot install tools/requirements-rivals.txt"
+        [ -e .cache/rivals/gtsam ] || echo "setup: there is no GTSAM for this Python; the comparison goes without it"
+        echo "$state" >$stamp
+    fi
 fi

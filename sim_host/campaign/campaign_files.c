@@ -106,13 +106,18 @@ static void remove_staging(const char *folder, const campaign_file_t *files, siz
 
 /* ---------------------------------------------------------------------------------------------------------- exchange -- */
 
-/* <case>_<model>.csv */
+/* <case>_<run>.csv */
 static bool is_series(const char *name) {
-    const char *model = name;
-    while (isdigit((unsigned char)*model)) {
-        model++;
+    static const char *const endings[] = {"_auto.csv", "_disc.csv", "_refined.csv"};
+    const char *run = name;
+    bool known = false;
+    while (isdigit((unsigned char)*run)) {
+        run++;
     }
-    return model != name && (strcmp(model, "_auto.csv") == 0 || strcmp(model, "_disc.csv") == 0);
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        known = known || strcmp(run, endings[i]) == 0;
+    }
+    return run != name && known;
 }
 
 static bool remove_old_series(const char *folder) {

@@ -109,9 +109,14 @@ static bool parse_noise(const char *text, sensor_noise_t *noise) {
 }
 
 static void add_run(planned_flight_t *flight, goe_model_t model, int window) {
-    flight->run[flight->runs].model = model;
-    flight->run[flight->runs].window = window;
-    flight->runs++;
+    const case_setting_t setting = {GOE_METHOD_WINDOW, model, window};
+    flight->run[flight->runs++] = setting;
+}
+
+/* After the window's runs. */
+static void add_refined_run(planned_flight_t *flight) {
+    const case_setting_t setting = {GOE_METHOD_REFINED, GOE_MODEL_AUTO, PLAN_WINDOW};
+    flight->run[flight->runs++] = setting;
 }
 
 /* The boxes' own model first; for the cylinder there is only the disc. */
@@ -163,6 +168,7 @@ static void add_table2(campaign_plan_t *plan, const variant_t *variant, int seed
         if (variant->study == STUDY_PAPER && usual_model(flight) != GOE_MODEL_DISC) {
             add_run(flight, GOE_MODEL_DISC, PLAN_WINDOW);
         }
+        add_refined_run(flight);
     }
 }
 
@@ -197,6 +203,7 @@ static void vary_side(conditioning_t *study, const scenario_t *usual) {
             scenario.x0_m = 2.0 * usual->x0_m * (double)i / SIDE_STEPS;
             planned_flight_t *flight = add_condition(study, &scenario);
             add_run(flight, usual_model(flight), PLAN_WINDOW);
+            add_refined_run(flight);
         }
     }
 }
@@ -208,6 +215,7 @@ static void vary_orientation(conditioning_t *study, const scenario_t *usual) {
         if (fabs(scenario.alpha_deg - usual->alpha_deg) > 0.5 * ALPHA_STEP_DEG) {
             planned_flight_t *flight = add_condition(study, &scenario);
             add_run(flight, usual_model(flight), PLAN_WINDOW);
+            add_refined_run(flight);
         }
     }
 }
@@ -217,6 +225,7 @@ static void vary_rate(conditioning_t *study, const scenario_t *usual) {
         planned_flight_t *flight = add_condition(study, usual);
         flight->setup.fps_hz = RATES_HZ[i];
         add_run(flight, usual_model(flight), PLAN_WINDOW);
+        add_refined_run(flight);
     }
 }
 
@@ -236,6 +245,7 @@ static void add_conditioning(campaign_plan_t *plan, int seed) {
         for (size_t k = 0; k < WINDOWS_COUNT; k++) {
             add_run(flight, usual_model(flight), WINDOWS[k]);
         }
+        add_refined_run(flight);
         vary_side(&study, &usual);
         if (usual_model(first) == GOE_MODEL_AUTO) {
             vary_orientation(&study, &usual);

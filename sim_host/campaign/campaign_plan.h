@@ -9,6 +9,8 @@
  *   attitude, position, field     errors of the own attitude, of the own position and height, and all sensors of the field
  *   conditioning  one obstacle of each type at its middle side distance, turned by 20 degrees, in level flight; from there
  *                 one at a time: window, side distance, orientation, image rate
+ * The above are runs of the window method. Over every flight goes the refined method too, once, with its own choice of the
+ * model and the flight's noise as its settings.
  *
  * A seed names the random numbers. Where nothing is random it still tells runs apart: it sets how far into an interval
  * between two images the run starts, so that pixels are rounded differently. Seed 1 starts as Table 2 says.
@@ -21,6 +23,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "case_run.h"
 #include "flight_case.h"
 #include "goe.h"
 
@@ -45,17 +48,12 @@ extern const char *const STUDY_NAMES[STUDY_COUNT];
 #define PLAN_FIRST_CONDITIONING_CASE 1000 /* cases of other studies bear their number in Table 2 */
 
 typedef struct {
-    goe_model_t model;
-    int window;
-} planned_run_t;
-
-typedef struct {
     study_t study;
     int number; /* case */
     int seed;
     const char *obstacle, *path, *speed_profile, *wind, *noise; /* as goe_sim's options name them, or a study's name */
     flight_case_t setup;
-    planned_run_t run[PLAN_RUNS_MAX];
+    case_setting_t run[PLAN_RUNS_MAX];
     int runs;
 } planned_flight_t;
 

@@ -28,11 +28,15 @@ const char *campaign_text_model(goe_model_t model) {
             return "disc";
         case GOE_MODEL_LINE:
             return "line";
+        case GOE_MODEL_BOX:
+            return "box";
         case GOE_MODEL_NONE:
         default:
             return "none";
     }
 }
+
+const char *campaign_text_method(goe_method_t method) { return method == GOE_METHOD_REFINED ? "refined" : "window"; }
 
 /* A field and the comma before it. */
 static void put(FILE *stream, double value) {
@@ -81,8 +85,8 @@ static void put_percentages(FILE *stream, const error_statistics_t *s) {
     put(stream, s->rmse * unit);
 }
 
-void campaign_text_cases_row(FILE *stream, const planned_flight_t *flight, int window, goe_model_t model,
-                             double fraction, const case_statistics_t *statistics) {
+void campaign_text_cases_row(FILE *stream, const planned_flight_t *flight, case_setting_t setting, double fraction,
+                             const case_statistics_t *statistics) {
     const flight_case_t *setup = &flight->setup;
     (void)fprintf(stream, "%s,%d,%s", STUDY_NAMES[flight->study], flight->number, flight->obstacle);
     put(stream, setup->x0_m);
@@ -93,7 +97,8 @@ void campaign_text_cases_row(FILE *stream, const planned_flight_t *flight, int w
     put_name(stream, flight->speed_profile);
     put_name(stream, flight->wind);
     put_name(stream, flight->noise);
-    (void)fprintf(stream, ",%d,%d,window,%s,%g,%zu,%zu,%zu", flight->seed, window, campaign_text_model(model), fraction,
+    (void)fprintf(stream, ",%d,%d,%s,%s,%g,%zu,%zu,%zu", flight->seed, setting.window,
+                  campaign_text_method(setting.method), campaign_text_model(setting.model), fraction,
                   statistics->frames, statistics->solved, statistics->used);
     put(stream, statistics->line_share);
     (void)fprintf(stream, ",%d", statistics->swapped ? 1 : 0);
@@ -137,7 +142,7 @@ static void put_series_row(FILE *stream, const flight_log_t *log, int64_t time_u
                   goe_status_text(sample->status), campaign_text_model(e->model));
     put_estimate(stream, e, GOE_HAS_POSITION, e->x0_m);
     put_estimate(stream, e, GOE_HAS_POSITION, e->z0_m);
-    put_estimate(stream, e, GOE_HAS_POSITION, e->width_m);
+    put_estimate(stream, e, GOE_HAS_WIDTH, e->width_m);
     put_estimate(stream, e, GOE_HAS_LENGTH, e->length_m);
     put_estimate(stream, e, GOE_HAS_HEIGHT, e->height_m);
     put_estimate(stream, e, GOE_HAS_ORIENTATION, e->orientation_deg);
@@ -145,7 +150,7 @@ static void put_series_row(FILE *stream, const flight_log_t *log, int64_t time_u
     put_estimate(stream, e, GOE_HAS_ORIENTATION, e->other_side_deg);
     put_estimate(stream, e, GOE_HAS_POSITION, e->sigma.x0_m);
     put_estimate(stream, e, GOE_HAS_POSITION, e->sigma.z0_m);
-    put_estimate(stream, e, GOE_HAS_POSITION, e->sigma.width_m);
+    put_estimate(stream, e, GOE_HAS_WIDTH, e->sigma.width_m);
     put_estimate(stream, e, GOE_HAS_LENGTH, e->sigma.length_m);
     put_estimate(stream, e, GOE_HAS_HEIGHT, e->sigma.height_m);
     put_estimate(stream, e, GOE_HAS_ORIENTATION, e->sigma.orientation_deg);

@@ -12,14 +12,17 @@
 #include "campaign_plan.h"
 #include "case_statistics.h"
 
-/* "auto", "disc" or "line" as a setting; "none", "disc" or "line" of an estimate. */
+/* "auto", "disc" or "line" as a setting; "none", "disc", "line" or "box" of an estimate. */
 const char *campaign_text_model(goe_model_t model);
+
+/* "window" or "refined". */
+const char *campaign_text_method(goe_method_t method);
 
 void campaign_text_cases_header(FILE *stream);
 
-/* One row: a run over a flight, and statistics of the last fraction of its frames that were solved with a model. */
-void campaign_text_cases_row(FILE *stream, const planned_flight_t *flight, int window, goe_model_t model,
-                             double fraction, const case_statistics_t *statistics);
+/* One row: a run over a flight, and statistics of the last fraction of its frames that were solved with setting.model. */
+void campaign_text_cases_row(FILE *stream, const planned_flight_t *flight, case_setting_t setting, double fraction,
+                             const case_statistics_t *statistics);
 
 /* A run's estimates, their truth and errors, frame by frame. samples: one for each frame of log. */
 void campaign_text_series(FILE *stream, const flight_log_t *log, const case_sample_t *samples);

@@ -3,6 +3,7 @@
  *
  * A log carries every number so that the same double comes back, and goe_replay shows the library the float next to it.
  * Here the doubles go the same way, through the same frame_to_image(), and only their passage through text is left out.
+ * The refined method is told case_noise(), which goe_replay takes by --set.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -12,16 +13,27 @@
 #include "flight_case.h"
 #include "goe.h"
 
+/* How a flight is run over. */
+typedef struct {
+    goe_method_t method;
+    goe_model_t model;
+    int window;
+} case_setting_t;
+
 /* What the estimator says after one frame. */
 typedef struct {
     goe_status_t status;
     goe_estimate_t estimate;
-    double condition; /* of the matrix of (5) behind a solution from this frame, see case_statistics.h; otherwise NaN */
+    double condition; /* window: of the matrix of (5) behind this frame's solution, see case_statistics.h; or NaN */
 } case_sample_t;
+
+/* What the refined method is told of the sensors: their true errors, as a user knows them from data sheets. Outliers are
+ * left to its gate. */
+goe_noise_t case_noise(const sensor_noise_t *sensors);
 
 /* Runs the library over log, which setup flew. samples: room for log->count of them.
  * Null, or the name of the setting that the library refuses. */
-const char *case_run(const flight_case_t *setup, const flight_log_t *log, goe_model_t model, int window,
+const char *case_run(const flight_case_t *setup, const flight_log_t *log, case_setting_t setting,
                      case_sample_t *samples);
 
 #endif

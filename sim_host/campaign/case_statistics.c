@@ -14,8 +14,12 @@ static double fold_deg(double angle_deg) {
     return folded <= -90.0 ? folded + 180.0 : folded;
 }
 
-/* The box as the estimate names its sides, from the front edge: the truth of the line model. */
-static void set_line_truth(const flight_log_t *log, bool swapped, double truth[CASE_QUANTITIES]) {
+static bool has_front_edge(const goe_estimate_t *estimate) {
+    return estimate->model == GOE_MODEL_LINE || estimate->model == GOE_MODEL_BOX;
+}
+
+/* The box as the estimate names its sides, from the front edge: the truth of the line and the box model. */
+static void set_edge_truth(const flight_log_t *log, bool swapped, double truth[CASE_QUANTITIES]) {
     const obstacle_t *box = &log->obstacle;
     const double length_m = swapped ? box->width_m : box->length_m;
     const double axis_rad = radians(truth[CASE_ORIENTATION]);
@@ -40,8 +44,8 @@ static bool set_truth(const flight_log_t *log, const goe_estimate_t *estimate, d
                          fabs(fold_deg((double)estimate->orientation_deg - log->orientation_deg)) > 45.0;
     truth[CASE_LENGTH] = obstacle->length_m;
     truth[CASE_ORIENTATION] = swapped ? fold_deg(log->orientation_deg + 90.0) : log->orientation_deg;
-    if (estimate->model == GOE_MODEL_LINE) {
-        set_line_truth(log, swapped, truth);
+    if (has_front_edge(estimate)) {
+        set_edge_truth(log, swapped, truth);
     }
     return swapped;
 }
@@ -50,12 +54,13 @@ case_errors_t case_errors(const flight_log_t *log, const goe_estimate_t *estimat
     case_errors_t e;
     e.swapped = set_truth(log, estimate, e.truth);
     const bool located = (estimate->valid & GOE_HAS_POSITION) != 0;
+    const bool wide_known = (estimate->valid & GOE_HAS_WIDTH) != 0;
     const bool long_known = (estimate->valid & GOE_HAS_LENGTH) != 0;
     const bool high_known = (estimate->valid & GOE_HAS_HEIGHT) != 0;
     const bool turned = (estimate->valid & GOE_HAS_ORIENTATION) != 0;
     e.error[CASE_Z0] = located ? (double)estimate->z0_m - e.truth[CASE_Z0] : NONE;
     e.error[CASE_X0] = located ? (double)estimate->x0_m - e.truth[CASE_X0] : NONE;
-    e.error[CASE_WIDTH] = located ? (double)estimate->width_m - e.truth[CASE_WIDTH] : NONE;
+    e.error[CASE_WIDTH] = wide_known ? (double)estimate->width_m - e.truth[CASE_WIDTH] : NONE;
     e.error[CASE_LENGTH] = long_known ? (double)estimate->length_m - e.truth[CASE_LENGTH] : NONE;
     e.error[CASE_HEIGHT] = high_known ? (double)estimate->height_m - e.truth[CASE_HEIGHT] : NONE;
     e.error[CASE_ORIENTATION] = turned ? fold_deg((double)estimate->orientation_deg - e.truth[CASE_ORIENTATION]) : NONE;
@@ -136,7 +141,7 @@ static void describe_used(const flight_log_t *log, const case_sample_t *const *u
     size_t lines = 0;
     for (size_t i = 0; i < count; i++) {
         errors[i] = case_errors(log, &used[i]->estimate);
-        lines += used[i]->estimate.model == GOE_MODEL_LINE ? 1u : 0u;
+        lines += has_front_edge(&used[i]->estimate) ? 1u : 0u;
     }
     for (int q = 0; q < CASE_QUANTITIES; q++) {
         result->quantity[q] = describe(errors, count, (case_quantity_t)q);

@@ -3,13 +3,13 @@
  *
  * The truth is what the estimate means, from the true motion, with the true camera of the first frame as the origin:
  *   disc model   reference point = the obstacle's centre
- *   line model   reference point = middle of the front edge
+ *   line, box    reference point = middle of the front edge
  * Which side of a box is called the side edge is a convention; near 45 degrees noise decides it. An estimate that calls the
  * other one so (its orientation is more than 45 degrees off, modulo 180) is compared with the truth renamed accordingly:
  * width and length change places, the front edge is the other one, the orientation differs by 90 degrees.
  *
  * Only frames that were solved count: those whose image gave a solution of its own. A run that switches from the disc to the
- * line can also be judged by its frames of one model alone.
+ * line or the box can also be judged by its frames of one model alone.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -48,14 +48,14 @@ typedef struct {
 
 typedef struct {
     size_t frames, solved, used; /* used: the last ones of those solved */
-    double line_share;           /* of the frames used; NaN if there are none */
+    double line_share;           /* line or box, of the frames used; NaN if there are none */
     bool swapped;                /* in the last frame used */
     error_statistics_t quantity[CASE_QUANTITIES];
-    double baseline_m, condition; /* medians over the frames used */
+    double baseline_m, condition; /* medians over the frames used; condition: NaN in a refined run */
 } case_statistics_t;
 
 /* Statistics over the last fraction (0 to 1) of the frames that were solved with a model, rounded up; GOE_MODEL_AUTO: with
- * either. samples: one for each frame of log. False if memory is short. */
+ * any. samples: one for each frame of log. False if memory is short. */
 bool case_statistics(const flight_log_t *log, const case_sample_t *samples, goe_model_t model, double fraction,
                      case_statistics_t *result);
 

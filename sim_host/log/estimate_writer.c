@@ -20,7 +20,7 @@ static const quantity_t quantities[] = {
     QUANTITY("z0_m", "z0_sd_m", z0_m, GOE_HAS_POSITION),
     QUANTITY("x_m", "x_sd_m", x_m, GOE_HAS_POSITION),
     QUANTITY("z_m", "z_sd_m", z_m, GOE_HAS_POSITION),
-    QUANTITY("width_m", "width_sd_m", width_m, GOE_HAS_POSITION),
+    QUANTITY("width_m", "width_sd_m", width_m, GOE_HAS_WIDTH),
     QUANTITY("length_m", "length_sd_m", length_m, GOE_HAS_LENGTH),
     QUANTITY("height_m", "height_sd_m", height_m, GOE_HAS_HEIGHT),
     QUANTITY("orientation_deg", "orientation_sd_deg", orientation_deg, GOE_HAS_ORIENTATION),
@@ -31,14 +31,15 @@ static const quantity_t quantities[] = {
 #define QUANTITIES (sizeof quantities / sizeof quantities[0])
 
 #define LEADING_MAX 160 /* time text, id, status, model and number of points */
-#define ROW_MAX (LEADING_MAX + 2 * QUANTITIES * (NUMBER_TEXT_MAX + 1) + 1)
+#define RESIDUALS_MAX (3 * (NUMBER_TEXT_MAX + 1) + 2)
+#define ROW_MAX (LEADING_MAX + 2 * QUANTITIES * (NUMBER_TEXT_MAX + 1) + RESIDUALS_MAX + 1)
 
-bool estimate_write_header(FILE *stream) {
+bool estimate_write_header(FILE *stream, bool residuals) {
     bool written = fputs("t_s,id,status,model,n_used", stream) >= 0;
     for (size_t i = 0; i < QUANTITIES; i++) {
         written = fprintf(stream, ",%s,%s", quantities[i].name, quantities[i].sigma_name) >= 0 && written;
     }
-    return fputc('\n', stream) != EOF && written;
+    return fputs(residuals ? ",nis,nis_rows,misfit,suspect\n" : "\n", stream) >= 0 && written;
 }
 
 static const char *model_text(goe_model_t model) {
@@ -47,6 +48,8 @@ static const char *model_text(goe_model_t model) {
             return "disc";
         case GOE_MODEL_LINE:
             return "line";
+        case GOE_MODEL_BOX:
+            return "box";
         case GOE_MODEL_NONE:
         case GOE_MODEL_AUTO:
         default:
@@ -68,8 +71,24 @@ static char *append_quantity(char *out, const goe_estimate_t *estimate, const qu
     return valid ? append_number(out, estimate, quantity->sigma) : out;
 }
 
+static char *append_residuals(char *out, const goe_estimate_t *estimate) {
+    *out++ = ',';
+    if (estimate->nis_rows > 0) {
+        out += number_format(out, estimate->nis);
+    }
+    *out++ = ',';
+    out += number_format(out, (float)estimate->nis_rows);
+    *out++ = ',';
+    if (estimate->misfit > 0.0f) {
+        out += number_format(out, estimate->misfit);
+    }
+    *out++ = ',';
+    *out++ = estimate->suspect ? '1' : '0';
+    return out;
+}
+
 bool estimate_write_row(FILE *stream, const char *time_text, int64_t id, goe_status_t status,
-                        const goe_estimate_t *estimate) {
+                        const goe_estimate_t *estimate, bool residuals) {
     char row[ROW_MAX];
     const int leading = snprintf(row, LEADING_MAX, "%s,%" PRId64 ",%s,%s,%d", time_text, id, goe_status_text(status),
                                  model_text(estimate->model), estimate->points);
@@ -80,6 +99,7 @@ bool estimate_write_row(FILE *stream, const char *time_text, int64_t id, goe_sta
     for (size_t i = 0; i < QUANTITIES; i++) {
         out = append_quantity(out, estimate, &quantities[i]);
     }
+    out = residuals ? append_residuals(out, estimate) : out;
     *out++ = '\n';
     const size_t length = (size_t)(out - row);
     return fwrite(row, 1u, length, stream) == length;

@@ -8,12 +8,14 @@
 
 #include "goe.h"
 
-/* The header line. False if it could not be written: errno says why. */
-bool estimate_write_header(FILE *stream);
+/* The header line. residuals: with the columns nis, nis_rows, misfit and suspect at the end.
+ * False if it could not be written: errno says why. */
+bool estimate_write_header(FILE *stream, bool residuals);
 
-/* One row; a quantity that is not valid leaves its field and that of its sigma empty. time_text: at most 63 characters.
+/* One row; a quantity that is not valid leaves its field and that of its sigma empty. residuals: as in the header; nis is
+ * empty where no rows made it, misfit until there is one. time_text: at most 63 characters.
  * False if it could not be written: errno says why. */
 bool estimate_write_row(FILE *stream, const char *time_text, int64_t id, goe_status_t status,
-                        const goe_estimate_t *estimate);
+                        const goe_estimate_t *estimate, bool residuals);
 
 #endif

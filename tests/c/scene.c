@@ -107,6 +107,12 @@ goe_settings_t scene_settings(const scene_t *scene) {
     return settings;
 }
 
+goe_settings_t scene_window_settings(const scene_t *scene) {
+    goe_settings_t settings = scene_settings(scene);
+    settings.method = GOE_METHOD_WINDOW;
+    return settings;
+}
+
 scene_t scene_mirrored(const scene_t *scene) {
     scene_t m = *scene;
     m.x0_m = -m.x0_m;
@@ -230,7 +236,7 @@ typedef struct {
     bool base_seen[3];
 } points_t;
 
-/* Tangent points at half height, and the point of the top's rim that is highest in the image. */
+/* Tangent points at half height, and the point of the top's rim that is highest in the image, or nearest. */
 static void cylinder_points(const scene_t *scene, double x, double z, double h, points_t *points) {
     const double r = 0.5 * scene->width_m;
     const double d2 = x * x + z * z;
@@ -240,8 +246,15 @@ static void cylinder_points(const scene_t *scene, double x, double z, double h, 
     points->left = (vector_t){{x * along - z * across, middle, z * along + x * across}};
     points->right = (vector_t){{x * along + z * across, middle, z * along - x * across}};
     points->top = (vector_t){{x, h - scene->height_m, scene->height_m > h ? z - r : z + r}};
+    if (scene->top_nearest) {
+        const double share = 1.0 - r / sqrt(d2);
+        points->top = (vector_t){{x * share, h - scene->height_m, z * share}};
+    }
     memset(points->base_seen, 0, sizeof points->base_seen);
 }
+
+/* Horizontal. */
+static double range2(vector_t v) { return v.v[0] * v.v[0] + v.v[2] * v.v[2]; }
 
 static void box_points(const scene_t *scene, double x, double z, double h, points_t *points) {
     const double s = sin(scene->alpha_deg * RAD_PER_DEG);
@@ -259,16 +272,18 @@ static void box_points(const scene_t *scene, double x, double z, double h, point
     int leftmost = 0;
     int rightmost = 0;
     int highest = 0;
+    int nearest = 0;
     for (int i = 1; i < 4; i++) {
         const double tangent = corners[i].v[0] / corners[i].v[2];
         const double nearness = (scene->height_m > h ? -1.0 : 1.0) * (corners[i].v[2] - corners[highest].v[2]);
         leftmost = tangent < corners[leftmost].v[0] / corners[leftmost].v[2] ? i : leftmost;
         rightmost = tangent > corners[rightmost].v[0] / corners[rightmost].v[2] ? i : rightmost;
         highest = nearness > 0.0 ? i : highest;
+        nearest = range2(corners[i]) < range2(corners[nearest]) ? i : nearest;
     }
     points->left = corners[leftmost];
     points->right = corners[rightmost];
-    points->top = corners[highest];
+    points->top = corners[scene->top_nearest ? nearest : highest];
     points->left.v[1] = h - 0.5 * scene->height_m;
     points->right.v[1] = h - 0.5 * scene->height_m;
     points->top.v[1] = h - scene->height_m;

@@ -33,6 +33,7 @@ typedef struct {
     double wobble_deg; /* amplitude of an oscillation of all three attitude angles; the yaw starts at 0 */
     double start_ned_m[2];
     double ground_d_m;
+    bool top_nearest; /* top: the roof's point nearest to the camera; otherwise the highest in the image */
     goe_camera_t camera;
 } scene_t;
 
@@ -43,7 +44,7 @@ typedef struct {
     double height_above_ground_m; /* of the camera */
     double center_north_m, center_east_m;
     double left_x, right_x;                   /* silhouette, aligned */
-    double top_y, top_z_m;                    /* highest point in the image: aligned y, and its Z */
+    double top_y, top_z_m;                    /* aligned y, and its Z */
     double base_x[3], base_y[3], base_z_m[3]; /* left, near, right */
     bool base_seen[3];
 } scene_truth_t;
@@ -54,8 +55,9 @@ void scene_default(scene_t *scene);
 /* The k-th image, k >= 0. truth may be null. Points behind the camera are not seen. */
 void scene_image(const scene_t *scene, int k, goe_image_t *image, scene_truth_t *truth);
 
-/* Settings of the library's defaults with the scene's camera. */
+/* Settings of the library's defaults with the scene's camera; the same for the paper's method. */
 goe_settings_t scene_settings(const scene_t *scene);
+goe_settings_t scene_window_settings(const scene_t *scene);
 
 /* Brown-Conrady distortion of a normalised image point. */
 void scene_distort(const goe_camera_t *camera, double x, double y, double *distorted_x, double *distorted_y);

@@ -51,7 +51,7 @@ static void fly_cylinder(const scene_t *scene, worst_t *worst) {
     static reference_row_t rows[IMAGES];
     goe_estimator_t estimator;
     goe_estimate_t e;
-    goe_settings_t settings = scene_settings(scene);
+    goe_settings_t settings = scene_window_settings(scene);
     settings.model = GOE_MODEL_DISC;
     setUp();
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
@@ -118,7 +118,7 @@ static void cylinders_come_out_as_equation_2_says(void) {
 static void fly_box(const scene_t *scene, worst_t *worst) {
     goe_estimator_t estimator;
     goe_estimate_t e;
-    goe_settings_t settings = scene_settings(scene);
+    goe_settings_t settings = scene_window_settings(scene);
     settings.model = GOE_MODEL_LINE;
     setUp();
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));

@@ -15,7 +15,7 @@ static goe_image_t image;
 
 void setUp(void) {
     scene_default(&scene);
-    settings = scene_settings(&scene);
+    settings = scene_window_settings(&scene);
     memset(&estimate, 0, sizeof estimate);
 }
 void tearDown(void) {}
@@ -75,7 +75,7 @@ static void the_disc_solves_from_the_eighth_image_on(void) {
         TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
         TEST_ASSERT_TRUE(estimate.fresh);
         TEST_ASSERT_EQUAL_INT(WINDOW, estimate.points);
-        TEST_ASSERT_EQUAL_HEX32(GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_CENTER, estimate.valid);
+        TEST_ASSERT_EQUAL_HEX32(GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_CENTER | GOE_HAS_WIDTH, estimate.valid);
     }
 }
 

@@ -124,6 +124,7 @@ static void a_whole_flight_bit_by_bit(void) {
     goe_estimator_t estimator;
     size_t different = 0;
     goe_settings_default(&settings);
+    settings.method = GOE_METHOD_WINDOW;
     settings.camera = golden_corner_camera;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (size_t i = 0; i < COUNT_OF(golden_corner); i++) {

@@ -33,7 +33,7 @@ static void fly_with(const scene_t *scene, const goe_settings_t *settings, step_
 }
 
 static void fly(const scene_t *scene, goe_model_t model, step_t steps[IMAGES]) {
-    goe_settings_t settings = scene_settings(scene);
+    goe_settings_t settings = scene_window_settings(scene);
     settings.model = model;
     fly_with(scene, &settings, steps);
 }
@@ -215,7 +215,7 @@ static void the_heading_in_the_world_does_not_depend_on_the_trajectory_frame(voi
     scene.course_deg = 70.0;
     fly(&scene, GOE_MODEL_LINE, flight);
     for (int turn_deg = -15; turn_deg <= 15; turn_deg += 5) {
-        goe_settings_t settings = scene_settings(&scene);
+        goe_settings_t settings = scene_window_settings(&scene);
         settings.model = GOE_MODEL_LINE;
         settings.heading_auto = false;
         settings.heading_deg = (float)(70 + turn_deg);

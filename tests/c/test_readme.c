@@ -7,7 +7,7 @@ void tearDown(void) {}
 
 /* GIVEN an aircraft at north 0, east 0 that heads north, and a chimney of 6 m diameter at north 200, east -30
  * WHEN it flies 50 m THEN Z0 = 200, X0 = -30 and width = 6 stay as they were, Z = 150 and X = -30. */
-static void the_worked_example_of_the_manual(void) {
+static void fly_the_worked_example(goe_method_t method, int first) {
     scene_t scene;
     goe_estimator_t estimator;
     goe_estimate_t estimate;
@@ -17,13 +17,14 @@ static void the_worked_example_of_the_manual(void) {
     scene.height_m = 30.0;
     scene.x0_m = -30.0;
     scene.z0_m = 200.0;
-    const goe_settings_t settings = scene_settings(&scene);
+    goe_settings_t settings = scene_settings(&scene);
+    settings.method = method;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k <= 25; k++) { /* 2 m an image */
         goe_image_t image;
         scene_image(&scene, k, &image, NULL);
-        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, goe_update(&estimator, &image, &estimate));
-        if (k >= 7) {
+        CHECK_STATUS(k < first ? GOE_COLLECTING : GOE_OK, goe_update(&estimator, &image, &estimate));
+        if (k >= first) {
             TEST_ASSERT_FLOAT_WITHIN(0.1f, 200.0f, estimate.z0_m);
             TEST_ASSERT_FLOAT_WITHIN(0.02f, -30.0f, estimate.x0_m);
             TEST_ASSERT_FLOAT_WITHIN(0.005f, 6.0f, estimate.width_m);
@@ -38,8 +39,13 @@ static void the_worked_example_of_the_manual(void) {
     TEST_ASSERT_TRUE(estimate.fresh);
 }
 
+/* The refined method answers once the range is known to 25 %, the window when it is full. */
+static void the_worked_example_of_the_manual(void) { fly_the_worked_example(GOE_METHOD_REFINED, 6); }
+static void the_worked_example_by_the_window(void) { fly_the_worked_example(GOE_METHOD_WINDOW, 7); }
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_worked_example_of_the_manual);
+    RUN_TEST(the_worked_example_by_the_window);
     return UNITY_END();
 }

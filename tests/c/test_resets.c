@@ -13,7 +13,7 @@ static goe_estimate_t estimate_plain, estimate_jumped;
 /* All positions are multiples of 1/4 m, and so are the jumps: their sums are exact floats. */
 void setUp(void) {
     scene_default(&scene);
-    const goe_settings_t settings = scene_settings(&scene);
+    const goe_settings_t settings = scene_window_settings(&scene);
     CHECK_STATUS(GOE_OK, goe_init(&plain, sizeof plain, &settings, NULL));
     CHECK_STATUS(GOE_OK, goe_init(&jumped, sizeof jumped, &settings, NULL));
 }

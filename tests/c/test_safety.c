@@ -4,10 +4,13 @@
  *   - the status is one that goe.h allows for the call;
  *   - every number of the estimate and of the estimator is finite, told by its exponent bits;
  *   - a quantity without its valid bit is 0, one with it lies in its range, sigmas and age are not negative;
+ *   - the refined method tells no quantity whose sigma is larger than goe.h allows; the covariance is finite, symmetric and
+ *     not negative on its diagonal;
  *   - a refused image changes nothing in the estimator but one counter;
  *   - no byte before or behind the estimator and the estimate is touched.
  * Floats are judged by bits and by integer comparison of bits alone: the test must also hold for a library that was
  * compiled, and a program that was linked, with -ffast-math. GOE_TEST_SEED and GOE_TEST_UPDATES set seed and length. */
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,31 +87,53 @@ static void check_zero_unless(unsigned has, const float *x) {
     }
 }
 
-static void check_estimate(void) {
-    const goe_estimate_t *e = &memory.estimate;
-    const size_t floats = (sizeof(goe_estimate_t) - offsetof(goe_estimate_t, age_s)) / sizeof(float);
-    check_finite(&e->age_s, floats, "estimate"); /* age_s and all behind it are floats */
-    TEST_ASSERT_TRUE((int)e->model == GOE_MODEL_NONE || (int)e->model == GOE_MODEL_DISC ||
-                     (int)e->model == GOE_MODEL_LINE);
-    TEST_ASSERT_EQUAL_HEX32(0u, e->valid & ~0x1Fu);
-    TEST_ASSERT_TRUE((e->valid & GOE_HAS_POSITION) ? (int)e->model != GOE_MODEL_NONE : (int)e->model == GOE_MODEL_NONE);
-    TEST_ASSERT_TRUE(!e->fresh || (e->valid & GOE_HAS_POSITION));
-    TEST_ASSERT_TRUE(e->points >= 0 && e->points <= GOE_WINDOW_MAX);
+/* |x| <= share |of|, but for rounding. */
+static bool within_share(const float *x, double share, const float *of) {
+    return within(x, (float)(share * 1.00001 * fabs((double)*of)));
+}
+
+static void check_header(const goe_estimate_t *e) {
+    const bool position = (e->valid & GOE_HAS_POSITION) != 0u;
+    const int model = (int)e->model;
+    const int method = (int)e->method;
+    TEST_ASSERT_EQUAL_HEX32(0u, e->valid & ~0x3Fu);
+    TEST_ASSERT_TRUE(model == GOE_MODEL_NONE || model == GOE_MODEL_DISC || model == GOE_MODEL_LINE ||
+                     model == GOE_MODEL_BOX);
+    TEST_ASSERT_TRUE(position == (model != GOE_MODEL_NONE));
+    TEST_ASSERT_TRUE(method >= 0 && method <= (int)memory.estimator.settings.method);
+    TEST_ASSERT_TRUE(!position || method != 0);
+    TEST_ASSERT_TRUE(model != GOE_MODEL_LINE || method == GOE_METHOD_WINDOW);
+    TEST_ASSERT_TRUE(model != GOE_MODEL_BOX || method == GOE_METHOD_REFINED);
+    TEST_ASSERT_TRUE(!e->fresh || position);
+    TEST_ASSERT_TRUE(e->points >= 0 && e->points <= (method == GOE_METHOD_REFINED ? INT16_MAX : GOE_WINDOW_MAX));
     TEST_ASSERT_TRUE(!is_negative(&e->age_s) && within(&e->age_s, 4000.5f));
     TEST_ASSERT_TRUE(!e->fresh || is_zero(&e->age_s));
-    const float *positions[] = {&e->x0_m,     &e->z0_m,       &e->x_m,        &e->z_m,          &e->width_m,
-                                &e->residual, &e->baseline_m, &e->sigma.x0_m, &e->sigma.width_m};
+}
+
+static void check_nothing_beside_the_valid(const goe_estimate_t *e) {
+    const goe_sigma_t *s = &e->sigma;
+    const float *positions[] = {&e->x0_m,       &e->z0_m, &e->x_m,  &e->z_m, &e->residual,
+                                &e->baseline_m, &s->x0_m, &s->z0_m, &s->x_m, &s->z_m};
     for (size_t i = 0; i < sizeof positions / sizeof positions[0]; i++) {
         check_zero_unless(GOE_HAS_POSITION, positions[i]);
     }
+    check_zero_unless(GOE_HAS_WIDTH, &e->width_m);
+    check_zero_unless(GOE_HAS_WIDTH, &s->width_m);
     check_zero_unless(GOE_HAS_LENGTH, &e->length_m);
-    check_zero_unless(GOE_HAS_LENGTH, &e->sigma.length_m);
+    check_zero_unless(GOE_HAS_LENGTH, &s->length_m);
     check_zero_unless(GOE_HAS_HEIGHT, &e->height_m);
-    check_zero_unless(GOE_HAS_HEIGHT, &e->sigma.height_m);
+    check_zero_unless(GOE_HAS_HEIGHT, &s->height_m);
     check_zero_unless(GOE_HAS_ORIENTATION, &e->orientation_deg);
+    check_zero_unless(GOE_HAS_ORIENTATION, &s->orientation_deg);
     check_zero_unless(GOE_HAS_CENTER, &e->center_north_m);
-    check_zero_unless(GOE_HAS_CENTER, &e->sigma.center_east_m);
-    const float *never_negative[] = {&e->width_m, &e->length_m, &e->height_m, &e->residual, &e->baseline_m};
+    check_zero_unless(GOE_HAS_CENTER, &e->center_east_m);
+    check_zero_unless(GOE_HAS_CENTER, &s->center_north_m);
+    check_zero_unless(GOE_HAS_CENTER, &s->center_east_m);
+}
+
+static void check_ranges(const goe_estimate_t *e) {
+    const float *never_negative[] = {&e->width_m,    &e->length_m, &e->height_m, &e->residual,
+                                     &e->baseline_m, &e->nis,      &e->misfit};
     for (size_t i = 0; i < sizeof never_negative / sizeof never_negative[0]; i++) {
         TEST_ASSERT_FALSE(is_negative(never_negative[i]));
     }
@@ -118,6 +143,123 @@ static void check_estimate(void) {
     }
     TEST_ASSERT_TRUE(within(&e->orientation_deg, 90.0f) && within(&e->other_side_deg, 90.0f));
     TEST_ASSERT_TRUE(within(&e->length_axis[0], 1.000001f) && within(&e->width_axis[1], 1.000001f));
+    TEST_ASSERT_TRUE(e->nis_rows >= 0 && e->nis_rows <= 9);
+    TEST_ASSERT_TRUE(e->nis_rows > 0 || is_zero(&e->nis));
+}
+
+/* What goe_sigma_t says of the refined method. */
+static void check_refined(const goe_estimate_t *e) {
+    static const float two_metres = 2.0f;
+    const goe_sigma_t *s = &e->sigma;
+    if (e->method != GOE_METHOD_REFINED || !(e->valid & GOE_HAS_POSITION)) {
+        return;
+    }
+    if (!e->fresh) { /* of a filter that may have started anew since */
+        return;
+    }
+    const double x_m = (double)e->x0_m - (double)memory.estimator.filter.start_dx_m;
+    const double z_m = (double)e->z0_m - (double)memory.estimator.filter.start_dz_m;
+    const float range_m = (float)sqrt(x_m * x_m + z_m * z_m);
+    TEST_ASSERT_FALSE(is_zero(&range_m));
+    TEST_ASSERT_TRUE(within(&e->x0_m, 1.0e6f) && within(&e->z0_m, 1.0e6f) && within(&s->x0_m, 1.0e6f));
+    TEST_ASSERT_TRUE(within_share(&s->z0_m, 0.25, &range_m));
+    TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3, &e->width_m));
+    TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3, &e->length_m));
+    TEST_ASSERT_TRUE(within_share(&s->height_m, 0.3, within(&e->height_m, two_metres) ? &two_metres : &e->height_m));
+    TEST_ASSERT_TRUE(within(&s->orientation_deg, 10.001f));
+    TEST_ASSERT_TRUE(e->model == GOE_MODEL_BOX || !(e->valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH)));
+}
+
+static void check_covariance(const goe_estimate_t *e) {
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    memset(covariance, 0xFF, sizeof covariance);
+    const goe_status_t status = goe_covariance(&memory.estimator, covariance);
+    CHECK_STATUS((e->valid & GOE_HAS_POSITION) ? GOE_OK : GOE_COLLECTING, status);
+    check_finite(&covariance[0][0], (size_t)GOE_QUANTITIES * GOE_QUANTITIES, "covariance");
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        TEST_ASSERT_FALSE(is_negative(&covariance[i][i]));
+        for (int j = 0; j < i; j++) {
+            CHECK_SAME(covariance[i][j], covariance[j][i]);
+        }
+    }
+}
+
+static float any_bits(void) { return check_from_bits(check_random_bits(&any)); }
+
+/* A finite number of any size within the limit, its ends and zeros more often than by chance. */
+static float any_within(float limit) {
+    const float sign = one_in(2) ? -1.0f : 1.0f;
+    switch (below(8)) {
+        case 0:
+            return sign * limit;
+        case 1:
+            return sign * 0.0f;
+        case 2:
+            return sign * check_from_bits(1u + below(0x00800000u)); /* subnormal */
+        case 3:
+        case 4:
+            return sign * check_from_bits(0x2F800000u + below(check_bits(limit) - 0x2F800000u)); /* any exponent */
+        default:
+            return between(-(double)limit, (double)limit);
+    }
+}
+
+/* A plan of numbers that make sense, of extremes, or of bits. */
+static goe_plan_t any_plan(bool *legal) {
+    goe_plan_t plan;
+    const bool bits = one_in(4);
+    for (int i = 0; i < 3; i++) {
+        plan.velocity_ned_m_s[i] = bits ? any_bits() : any_within(one_in(2) ? 30.0f : 1.0e3f);
+    }
+    plan.margin_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
+    plan.clearance_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
+    *legal = !bits;
+    return plan;
+}
+
+static void check_hazard(const goe_estimate_t *e) {
+    static const float one = 1.0f;
+    bool legal;
+    goe_hazard_t hazard;
+    const goe_plan_t plan = any_plan(&legal);
+    memset(&hazard, 0xFF, sizeof hazard);
+    const int status = (int)goe_hazard(&memory.estimator, &plan, &hazard);
+    const int expected = (e->valid & GOE_HAS_POSITION) ? GOE_OK : GOE_COLLECTING;
+    TEST_ASSERT_TRUE(status == expected || (!legal && (status == GOE_NOT_FINITE || status == GOE_OUT_OF_RANGE)));
+    const float numbers[] = {hazard.time_s,    hazard.miss_m,         hazard.clearance_m, hazard.time_sd_s,
+                             hazard.miss_sd_m, hazard.clearance_sd_m, hazard.violation};
+    check_finite(numbers, sizeof numbers / sizeof numbers[0], "hazard");
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        TEST_ASSERT_TRUE(i == 2 || !is_negative(&numbers[i]));
+        TEST_ASSERT_TRUE(status == GOE_OK || is_zero(&numbers[i]));
+    }
+    TEST_ASSERT_TRUE(within(&hazard.violation, one));
+    TEST_ASSERT_TRUE(hazard.has_clearance || (is_zero(&hazard.clearance_m) && is_zero(&hazard.clearance_sd_m)));
+    TEST_ASSERT_TRUE(!hazard.has_clearance || (e->valid & GOE_HAS_HEIGHT) != 0u);
+}
+
+static void check_estimate(void) {
+    const goe_estimate_t *e = &memory.estimate;
+    const size_t floats = (sizeof(goe_estimate_t) - offsetof(goe_estimate_t, age_s)) / sizeof(float);
+    check_finite(&e->age_s, floats,
+                 "estimate"); /* age_s and all behind it are floats, or a count that looks like one */
+    check_header(e);
+    check_nothing_beside_the_valid(e);
+    check_ranges(e);
+    check_refined(e);
+    check_covariance(e);
+    check_hazard(e);
+}
+
+static void check_filter(const goe_filter_t *filter) {
+    TEST_ASSERT_TRUE(filter->phase <= 3u);
+    TEST_ASSERT_TRUE(filter->images >= 0 && filter->nis_rows >= 0);
+    const float sums[] = {filter->level, filter->nis, filter->misfit, filter->outward, filter->turning};
+    check_finite(sums, 5, "residuals");
+    if (filter->phase != 0u) { /* otherwise the next image starts it anew */
+        check_finite(filter->state, GOE_STATES, "state");
+        check_finite(filter->root.element, sizeof filter->root / sizeof(float), "root");
+    }
 }
 
 static void check_state(void) {
@@ -131,6 +273,7 @@ static void check_state(void) {
     check_finite(e->length.value, GOE_WINDOW_MAX, "lengths");
     check_finite(e->height.value, GOE_WINDOW_MAX, "heights");
     check_finite(&e->orientation.filtered_deg, 3, "orientation");
+    check_filter(&e->filter);
     TEST_ASSERT_TRUE(e->disc.next >= 0 && e->disc.next < e->settings.window);
     TEST_ASSERT_TRUE(e->line.next >= 0 && e->line.next < e->settings.window);
     TEST_ASSERT_TRUE(e->length.next >= 0 && e->length.next < e->settings.window);
@@ -158,28 +301,37 @@ static void update_and_check(const goe_image_t *image) {
 
 /* -------------------------------------------------------------------------------------------------------------- input -- */
 
-static float any_bits(void) { return check_from_bits(check_random_bits(&any)); }
+static void start(const goe_settings_t *settings) {
+    CHECK_STATUS(GOE_OK, goe_init(&memory.estimator, sizeof memory.estimator, settings, NULL));
+}
 
-/* A finite number of any size within the limit, its ends and zeros more often than by chance. */
-static float any_within(float limit) {
-    const float sign = one_in(2) ? -1.0f : 1.0f;
-    switch (below(8)) {
+/* From `least` to `most`, the ends more often than by chance, and small ones as often as large ones. */
+static float any_from(float least, float most) {
+    switch (below(4)) {
         case 0:
-            return sign * limit;
+            return least;
         case 1:
-            return sign * 0.0f;
-        case 2:
-            return sign * check_from_bits(1u + below(0x00800000u)); /* subnormal */
-        case 3:
-        case 4:
-            return sign * check_from_bits(0x2F800000u + below(check_bits(limit) - 0x2F800000u)); /* any exponent */
+            return most;
         default:
-            return between(-(double)limit, (double)limit);
+            return check_from_bits(check_bits(least) + below(check_bits(most) - check_bits(least)));
     }
 }
 
-static void start(const goe_settings_t *settings) {
-    CHECK_STATUS(GOE_OK, goe_init(&memory.estimator, sizeof memory.estimator, settings, NULL));
+static void any_noise(goe_settings_t *s) {
+    s->noise.pixel_px = any_from(0.05f, 100.0f);
+    s->noise.size_share = any_from(0.0f, 1.0f);
+    s->noise.correlation = any_from(0.0f, 0.95f);
+    s->noise.shape_share = any_from(0.0f, 1.0f);
+    s->noise.attitude_bias_deg = any_from(1.0e-3f, 30.0f);
+    s->noise.attitude_white_deg = any_from(1.0e-4f, 30.0f);
+    s->noise.attitude_drift_deg = any_from(0.0f, 30.0f);
+    s->noise.height_m = any_from(1.0e-3f, 1.0e3f);
+    s->noise.velocity_bias_m_s = any_from(0.0f, 100.0f);
+    s->noise.position_walk_m = any_from(0.0f, 100.0f);
+    s->typical_size_m = any_from(0.1f, 1.0e3f);
+    s->gate_sigma = any_from(1.0f, 100.0f);
+    s->huber_sigma = any_from(0.5f, 100.0f);
+    s->misfit_max = any_from(1.0e-2f, 1.0e3f);
 }
 
 static goe_settings_t any_settings(void) {
@@ -216,6 +368,11 @@ static goe_settings_t any_settings(void) {
     s.side_min_px = one_in(2) ? 0.1f : between(0.1, 20.0);
     s.orientation_memory = 1 + (int)below(one_in(2) ? 3 : 1000);
     s.min_baseline_m = one_in(2) ? 1.0e-3f : between(1.0e-3, 10.0);
+    s.method = one_in(4) ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
+    s.top_is_highest = one_in(2);
+    if (one_in(2)) {
+        any_noise(&s);
+    }
     return s;
 }
 
@@ -366,26 +523,37 @@ static void spoil(float *x) {
     }
 }
 
+static void any_scene(scene_t *of) {
+    scene_t scene;
+    scene_default(&scene);
+    scene.shape = one_in(3) ? SCENE_CYLINDER : SCENE_BOX;
+    scene.path = (scene_path_t)below(3);
+    scene.x0_m = (double)between(-60.0, 60.0);
+    scene.z0_m = (double)between(40.0, 200.0);
+    scene.alpha_deg = (double)between(-90.0, 90.0);
+    scene.width_m = (double)between(1.0, 20.0);
+    scene.length_m = (double)between(1.0, 40.0);
+    scene.height_m = (double)between(1.0, 60.0);
+    scene.speed_mps = (double)between(0.0, 40.0);
+    scene.wobble_deg = (double)between(0.0, 20.0);
+    *of = scene;
+}
+
 /* GIVEN flights that make sense, with pixel noise, broken numbers and missing features now and then */
 static void spoiled_flights_do_no_harm(void) {
     any = check_random_start("spoiled flights");
     const int flights = updates_each() / 50;
     for (int f = 0; f < flights; f++) {
         scene_t scene;
-        scene_default(&scene);
-        scene.shape = one_in(3) ? SCENE_CYLINDER : SCENE_BOX;
-        scene.path = (scene_path_t)below(3);
-        scene.x0_m = (double)between(-60.0, 60.0);
-        scene.z0_m = (double)between(40.0, 200.0);
-        scene.alpha_deg = (double)between(-90.0, 90.0);
-        scene.width_m = (double)between(1.0, 20.0);
-        scene.length_m = (double)between(1.0, 40.0);
-        scene.height_m = (double)between(1.0, 60.0);
-        scene.speed_mps = (double)between(0.0, 40.0);
-        scene.wobble_deg = (double)between(0.0, 20.0);
+        any_scene(&scene);
         goe_settings_t settings = scene_settings(&scene);
         settings.model = (goe_model_t)(GOE_MODEL_AUTO + (int)below(3));
         settings.window = 3 + (int)below(GOE_WINDOW_MAX - 2);
+        settings.method = one_in(4) ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
+        settings.top_is_highest = one_in(2);
+        if (one_in(3)) {
+            any_noise(&settings);
+        }
         start(&settings);
         for (int k = 0; k < 50; k++) {
             goe_image_t image;
@@ -413,10 +581,106 @@ static void spoiled_flights_do_no_harm(void) {
     TEST_ASSERT_GREATER_THAN_UINT32((uint32_t)flights * 5u, statuses[16 + GOE_OK]);
 }
 
+/* What an opponent would show the refined method, one trick for some images, then the next. */
+enum {
+    HONEST,
+    FROZEN,
+    SHRINKING,
+    BLOWN_UP,
+    ONE_OUTLIER,
+    LEAPING,
+    BASE_ALONE,
+    TOP_ALONE,
+    ROOF_BELOW,
+    ALL_AT_ONE,
+    TRICKS
+};
+
+static void play_trick(uint32_t trick, int n, goe_image_t *image, const goe_image_t *frozen) {
+    goe_pixel_t *pixels[] = {&image->left,      &image->right,     &image->top,
+                             &image->base_left, &image->base_near, &image->base_right};
+    const goe_pixel_t *still = &frozen->left;
+    const float scale = trick == SHRINKING ? 1.0f / (1.0f + 0.05f * (float)n) : trick == BLOWN_UP ? 40.0f : 1.0f;
+    const float leap = trick == LEAPING && n % 2 ? 300.0f : 0.0f;
+    const float u = image->left.u_px;
+    const float v = image->left.v_px;
+    for (uint32_t i = 0; i < 6; i++) {
+        pixels[i]->u_px = u + (pixels[i]->u_px - u) * scale + leap;
+        pixels[i]->v_px = v + (pixels[i]->v_px - v) * scale;
+        if (trick == FROZEN) {
+            *pixels[i] = still[i];
+        }
+        if ((trick == BASE_ALONE && i < 3) || (trick == TOP_ALONE && i != 2)) {
+            pixels[i]->seen = false;
+        }
+        if (trick == ALL_AT_ONE) {
+            pixels[i]->u_px = u;
+            pixels[i]->v_px = v;
+        }
+    }
+    if (trick == ONE_OUTLIER) {
+        pixels[(n / 7) % 6]->u_px += 400.0f;
+    }
+    if (trick == ROOF_BELOW) {
+        image->top.v_px = image->base_left.v_px + 50.0f;
+    }
+}
+
+static bool fits_a_pixel(const goe_pixel_t *pixel) {
+    return within(&pixel->u_px, 9.0e4f) && within(&pixel->v_px, 9.0e4f);
+}
+
+/* GIVEN one track of thousands of images that is never reset: flights flown again and again, the whole obstacle tricked,
+ * the aircraft standing, leaping, or seconds away from its last image */
+static void long_adversarial_tracks_do_no_harm(void) {
+    any = check_random_start("long tracks");
+    const int tracks = 6;
+    const int images = updates_each() / tracks;
+    for (int t = 0; t < tracks; t++) {
+        scene_t scene;
+        goe_image_t frozen;
+        uint32_t trick = HONEST;
+        int64_t now = 0;
+        int k = 0;
+        any_scene(&scene);
+        goe_settings_t settings = scene_settings(&scene);
+        settings.model = (goe_model_t)(GOE_MODEL_AUTO + t % 3);
+        settings.top_is_highest = one_in(2);
+        if (t >= 3) {
+            any_noise(&settings);
+        }
+        start(&settings);
+        scene_image(&scene, 0, &frozen, NULL);
+        for (int n = 0; n < images; n++) {
+            goe_image_t image;
+            if (n % 10 == 0) {
+                trick = one_in(2) ? (uint32_t)HONEST : below(TRICKS);
+            }
+            if (n % 60 == 0) { /* another obstacle, and the flight from its start: nobody tells */
+                any_scene(&scene);
+                k = 0;
+            }
+            k += one_in(50) ? 0 : 1;
+            scene_image(&scene, k, &image, NULL);
+            play_trick(trick, n, &image, &frozen);
+            if (fits_a_pixel(&image.left) && fits_a_pixel(&image.top)) {
+                frozen = image;
+            }
+            now += one_in(200) ? 3000000000 : one_in(20) ? 1 : 125000;
+            image.pose.time_us = now;
+            image.pose.height_m = one_in(100) ? between(-50.0, 50.0) : image.pose.height_m;
+            update_and_check(&image);
+        }
+    }
+    note_statuses("long tracks");
+    TEST_ASSERT_GREATER_THAN_UINT32((uint32_t)updates_each() / 60u, statuses[16 + GOE_OK]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(random_bits_do_no_harm);
     RUN_TEST(extremes_do_no_harm);
     RUN_TEST(spoiled_flights_do_no_harm);
+    RUN_TEST(long_adversarial_tracks_do_no_harm);
     return UNITY_END();
 }

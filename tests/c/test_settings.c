@@ -54,9 +54,24 @@ static const number_t numbers[] = {
     NUMBER(orientation_min_px, 0.0f, 1.0e4f, 2.0f),
     NUMBER(side_min_px, 0.1f, 1.0e4f, 10.0f),
     NUMBER(min_baseline_m, 1.0e-3f, 1.0e4f, 0.1f),
+    NUMBER(noise.pixel_px, 0.05f, 100.0f, 0.5f),
+    NUMBER(noise.size_share, 0.0f, 1.0f, 0.0f),
+    NUMBER(noise.correlation, 0.0f, 0.95f, 0.0f),
+    NUMBER(noise.shape_share, 0.0f, 1.0f, 0.0f),
+    NUMBER(noise.attitude_bias_deg, 1.0e-3f, 30.0f, 0.5f),
+    NUMBER(noise.attitude_white_deg, 1.0e-4f, 30.0f, 0.1f),
+    NUMBER(noise.attitude_drift_deg, 0.0f, 30.0f, 0.0f),
+    NUMBER(noise.height_m, 1.0e-3f, 1.0e3f, 0.5f),
+    NUMBER(noise.velocity_bias_m_s, 0.0f, 100.0f, 0.05f),
+    NUMBER(noise.position_walk_m, 0.0f, 100.0f, 0.05f),
+    NUMBER(typical_size_m, 0.1f, 1.0e3f, 6.0f),
+    NUMBER(gate_sigma, 1.0f, 100.0f, 5.0f),
+    NUMBER(huber_sigma, 0.5f, 100.0f, 2.5f),
+    NUMBER(misfit_max, 1.0e-2f, 1.0e3f, 1.9f),
 };
 
 static const count_t counts[] = {
+    COUNT(method, GOE_METHOD_WINDOW, GOE_METHOD_REFINED, GOE_METHOD_REFINED),
     COUNT(model, GOE_MODEL_AUTO, GOE_MODEL_LINE, GOE_MODEL_AUTO),
     COUNT(window, 3, GOE_WINDOW_MAX, 8),
     COUNT(line_points, 1, 1000, 8),
@@ -72,7 +87,9 @@ static void set_number(const number_t *field, float value) {
 
 /* An enumeration is smaller than an int on some machines. */
 static void set_count(const count_t *field, int value) {
-    if (field->at == offsetof(goe_settings_t, model)) {
+    if (field->at == offsetof(goe_settings_t, method)) {
+        settings.method = (goe_method_t)value;
+    } else if (field->at == offsetof(goe_settings_t, model)) {
         settings.model = (goe_model_t)value;
     } else {
         memcpy((unsigned char *)&settings + field->at, &value, sizeof value);
@@ -81,8 +98,14 @@ static void set_count(const count_t *field, int value) {
 
 static int get_count(const count_t *field) {
     int value;
+    if (field->at == offsetof(goe_settings_t, method)) {
+        return (int)settings.method;
+    }
+    if (field->at == offsetof(goe_settings_t, model)) {
+        return (int)settings.model;
+    }
     memcpy(&value, (unsigned char *)&settings + field->at, sizeof value);
-    return field->at == offsetof(goe_settings_t, model) ? (int)settings.model : value;
+    return value;
 }
 
 static goe_status_t init(const char **bad) { return goe_init(&estimator, sizeof estimator, &settings, bad); }
@@ -110,6 +133,7 @@ static void check_bad(const char *name) {
 static void the_defaults_set_every_field(void) {
     goe_settings_t again;
     unsigned char heading_auto;
+    unsigned char top_is_highest;
     memset(&settings, SENTINEL, sizeof settings);
     memset(&again, (unsigned char)~SENTINEL, sizeof again);
     goe_settings_default(&settings);
@@ -123,15 +147,18 @@ static void the_defaults_set_every_field(void) {
         TEST_ASSERT_EQUAL_INT_MESSAGE(counts[i].standard, get_count(&counts[i]), counts[i].name);
     }
     memcpy(&heading_auto, &settings.heading_auto, 1);
+    memcpy(&top_is_highest, &settings.top_is_highest, 1);
     TEST_ASSERT_EQUAL_UINT8(1, heading_auto);
+    TEST_ASSERT_EQUAL_UINT8(0, top_is_highest);
     /* a field that this test does not know of would differ between the two fills */
     TEST_ASSERT_EQUAL_MEMORY(&again, &settings, sizeof settings);
 }
 
-/* The tables above cover the whole structure: 4 bytes a field, but for the model and the flag beside it. */
+/* The tables above cover the whole structure: 4 bytes a field, but for the enumerations and the flags beside them. */
 static void the_tables_of_this_test_are_complete(void) {
-    const size_t model_and_flag = offsetof(goe_settings_t, heading_deg) - offsetof(goe_settings_t, model);
-    TEST_ASSERT_EQUAL_size_t(sizeof settings, 4u * (NUMBERS + COUNTS - 1u) + model_and_flag);
+    const size_t head = offsetof(goe_settings_t, heading_deg) - offsetof(goe_settings_t, method);
+    const size_t tail = sizeof settings - offsetof(goe_settings_t, top_is_highest);
+    TEST_ASSERT_EQUAL_size_t(sizeof settings, 4u * (NUMBERS + COUNTS - 2u) + head + tail);
 }
 
 static void the_defaults_lack_only_the_camera(void) {

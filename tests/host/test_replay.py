@@ -30,6 +30,9 @@ HEADER = (
     "length_m,length_sd_m,height_m,height_sd_m,orientation_deg,orientation_sd_deg,"
     "center_n_m,center_n_sd_m,center_e_m,center_e_sd_m"
 )
+RESIDUALS = ",nis,nis_rows,misfit,suspect"
+PAPER = ("--method", "window")
+CORNER = ROOT / "tests" / "data" / "corner"
 POSE = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz"]
 POINTS = ["left", "right", "top", "base_left", "base_near", "base_right"]
 COLUMNS = POSE + [f"{point}_{axis}" for point in POINTS for axis in "uv"]
@@ -149,7 +152,7 @@ def test_one_row_per_row_with_time_as_it_was_read(tmp_path: Path) -> None:
 
 
 def test_chimney_is_found(log: Path) -> None:
-    out = replay(log)
+    out = replay(log, *PAPER)
     assert [row["status"] for row in out] == ["collecting"] * 7 + ["ok"] * 13
     assert [row["n_used"] for row in out] == ["0"] * 7 + ["8"] * 13
     assert [row["model"] for row in out] == ["none"] * 7 + ["disc"] * 13
@@ -166,7 +169,7 @@ def test_chimney_is_found(log: Path) -> None:
 
 
 def test_box_is_found(tmp_path: Path) -> None:
-    last = replay(write_log(tmp_path, table(box())))[-1]
+    last = replay(write_log(tmp_path, table(box())), *PAPER)[-1]
     assert (last["status"], last["model"]) == ("ok", "line")
     assert number(last, "width_m") == pytest.approx(20.0, rel=2e-3)
     assert number(last, "length_m") == pytest.approx(12.0, rel=5e-3)
@@ -177,27 +180,28 @@ def test_box_is_found(tmp_path: Path) -> None:
 
 def test_forced_model(tmp_path: Path) -> None:
     folder = write_log(tmp_path, table(box()))
-    assert replay(folder, "--model", "line")[-1]["model"] == "line"
-    assert {row["model"] for row in replay(folder, "--model=disc", check=1)} == {"none"}
+    assert replay(folder, *PAPER, "--model", "line")[-1]["model"] == "line"
+    assert {row["model"] for row in replay(folder, *PAPER, "--model=disc", check=1)} == {"none"}
 
 
 def test_window(log: Path) -> None:
     for window in (3, 8, 13):
-        out = replay(log, "--window", str(window))
+        out = replay(log, *PAPER, "--window", str(window))
         assert [row["status"] for row in out].index("ok") == window - 1
         assert out[-1]["n_used"] == str(window)
 
 
 def test_window_64(tmp_path: Path) -> None:
-    out = replay(write_log(tmp_path, table(chimney(70))), "--window=64")
+    out = replay(write_log(tmp_path, table(chimney(70))), *PAPER, "--window=64")
     assert [row["status"] for row in out].index("ok") == 63
 
 
-def test_numbers_are_floats_with_nine_digits(tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", ["window", "refined"])
+def test_numbers_are_floats_with_nine_digits(tmp_path: Path, method: str) -> None:
     """Each number is the shortest %.9g text of one float, as a C library prints it."""
     numbers = 0
     for name, rows in (("chimney", chimney()), ("box", box())):
-        for row in replay(write_log(tmp_path / name, table(rows))):
+        for row in replay(write_log(tmp_path / name, table(rows)), "--method", method, "--residuals"):
             for text in list(row.values())[5:]:
                 if text:
                     nearest = struct.unpack("f", struct.pack("f", float(text)))[0]
@@ -206,8 +210,9 @@ def test_numbers_are_floats_with_nine_digits(tmp_path: Path) -> None:
     assert numbers > 500
 
 
-def test_every_quantity_is_followed_by_its_sigma(log: Path) -> None:
-    for row in replay(log):
+@pytest.mark.parametrize("method", ["window", "refined"])
+def test_every_quantity_is_followed_by_its_sigma(log: Path, method: str) -> None:
+    for row in replay(log, "--method", method):
         texts = list(row.values())[5:]
         assert [text == "" for text in texts[0::2]] == [text == "" for text in texts[1::2]]
 
@@ -226,6 +231,154 @@ def test_many_tracks(tmp_path: Path) -> None:
     rows = [pose_row(0.1 * k, 1.0 * k, track=(7919 * i) % 5003 - 2500) for k in range(2) for i in range(5003)]
     out = replay(write_log(tmp_path, table(rows)), check=1)
     assert [row["status"] for row in out] == ["nothing_seen"] * len(rows)
+
+
+# ------------------------------------------------------------------------------------------- the refined method
+
+
+def test_refined_is_the_default(log: Path) -> None:
+    for folder in (log, CORNER):
+        refined = call(folder).stdout
+        assert call("--method", "refined", folder).stdout == refined
+        assert call(*PAPER, folder).stdout != refined
+
+
+def test_refined_chimney(log: Path) -> None:
+    """No later than the window, and the truth within what the sigmas tell: the log is without errors."""
+    out = replay(log)
+    start = [row["status"] for row in out].index("ok")
+    assert start < 7
+    assert [row["status"] for row in out] == ["collecting"] * start + ["ok"] * (20 - start)
+    assert [row["model"] for row in out] == ["none"] * start + ["disc"] * (20 - start)
+    for name, truth in {
+        "x0": -30.0,
+        "z0": 200.0,
+        "center_n": 200.0,
+        "center_e": -30.0,
+        "width": 6.0,
+        "height": 20.0,
+    }.items():
+        first, last = float(out[start][f"{name}_sd_m"] or math.inf), number(out[-1], f"{name}_sd_m")
+        assert 0.0 < last < first
+        assert abs(number(out[-1], f"{name}_m") - truth) < last
+    assert out[-1]["length_m"] == out[-1]["orientation_deg"] == ""
+
+
+def test_refined_box() -> None:
+    """The corner log: the box takes over from the disc, sooner than the window's line does, and stays."""
+    out = replay(CORNER)
+    models = [row["model"] for row in out]
+    start = models.index("box")
+    assert 0 < start < [row["model"] for row in replay(CORNER, *PAPER)].index("line")
+    assert set(models[:start]) == {"disc"} and set(models[start:]) == {"box"}
+    (truth,) = csv.DictReader((CORNER / "truth.csv").read_text(encoding="utf-8").splitlines())
+    last = out[-1]
+    for name, column in {"width_m": "width_m", "length_m": "length_m", "height_m": "height_m"}.items():
+        assert number(last, name) == pytest.approx(float(truth[column]), rel=0.02)
+    for name, column in {"center_n_m": "center_n_m", "center_e_m": "center_e_m"}.items():
+        assert abs(number(last, name) - float(truth[column])) < 2.0 * number(last, name.replace("_m", "_sd_m"))
+
+
+def test_refined_disc_for_a_stand_in_has_no_width() -> None:
+    """Before its orientation is known a box is a disc, whose width would be neither of its sides'."""
+    first = replay(CORNER)[0]
+    assert (first["status"], first["model"]) == ("ok", "disc")
+    assert first["z0_m"] != "" and first["width_m"] == first["width_sd_m"] == ""
+
+
+def test_refined_forced_model() -> None:
+    assert {row["model"] for row in replay(CORNER, "--model=disc")} == {"disc"}
+    assert {row["model"] for row in replay(CORNER, "--model=line")} <= {"none", "line", "box"}
+
+
+@pytest.mark.parametrize("method", ["window", "refined"])
+def test_residuals_are_columns_at_the_end(method: str) -> None:
+    plain = call("--method", method, CORNER).stdout.splitlines()
+    wide = call("--method", method, "--residuals", CORNER).stdout.splitlines()
+    assert plain[0] == HEADER and wide[0] == HEADER + RESIDUALS
+    assert [line.rsplit(",", 4)[0] for line in wide] == plain
+    rows = list(csv.DictReader(wide))
+    assert {row["suspect"] for row in rows} == {"0"}
+    if method == "window":
+        assert {(row["nis"], row["nis_rows"], row["misfit"]) for row in rows} == {("", "0", "")}
+        return
+    assert [row["nis"] == "" for row in rows] == [row["nis_rows"] == "0" for row in rows]
+    judged = [row for row in rows if row["nis"] != ""]
+    assert len(judged) > 0.9 * len(rows)
+    assert all(0.0 <= number(row, "nis") < 5.0 * number(row, "nis_rows") for row in judged)
+    assert all(0.0 < number(row, "misfit") < 1.0 for row in judged[10:])
+
+
+def test_suspect() -> None:
+    """Pixels said to be ten times better than they are, and a bound for it."""
+    told = ("--set", "noise.pixel_px=0.05", "--set", "noise.attitude_white_deg=1e-4", "--set", "gate_sigma=100")
+    out = replay(CORNER, "--residuals", *told, "--set", "huber_sigma=100")
+    assert number(out[-1], "misfit") > 2.0
+    assert [row["suspect"] for row in out] == [str(int(float(row["misfit"] or 0.0) > 2.0)) for row in out]
+    assert {row["suspect"] for row in replay(CORNER, "--residuals", *told, "--set", "misfit_max=1e3")} == {"0"}
+
+
+SETTINGS = {  # by --set, and their defaults
+    "noise.pixel_px": 0.5,
+    "noise.size_share": 0,
+    "noise.correlation": 0,
+    "noise.shape_share": 0,
+    "noise.attitude_bias_deg": 0.5,
+    "noise.attitude_white_deg": 0.1,
+    "noise.attitude_drift_deg": 0,
+    "noise.height_m": 0.5,
+    "noise.velocity_bias_m_s": 0.05,
+    "noise.position_walk_m": 0.05,
+    "typical_size_m": 6,
+    "gate_sigma": 5,
+    "huber_sigma": 2.5,
+    "misfit_max": 2,
+    "top_is_highest": 0,
+    "line_points": 8,
+    "edge_min_px": 10,
+    "orientation_min_px": 2,
+    "side_min_px": 10,
+    "orientation_memory": 20,
+    "min_baseline_m": 0.1,
+}
+OTHERWISE = {  # values that change what the refined method, or else the window, says of the corner log or the chimney
+    "refined": {
+        **{name: 0.2 for name in SETTINGS if name.startswith("noise.")},
+        "typical_size_m": 30,
+        "gate_sigma": 1,
+        "huber_sigma": 0.5,
+        "top_is_highest": 1,
+    },
+    "window": {
+        "line_points": 20,
+        "edge_min_px": 40,
+        "orientation_min_px": 100,
+        "side_min_px": 60,
+        "orientation_memory": 3,
+        "min_baseline_m": 100,
+    },
+}
+
+
+def test_each_setting_is_set(log: Path) -> None:
+    assert {"misfit_max"} | {name for told in OTHERWISE.values() for name in told} == set(SETTINGS)
+    for method, told in OTHERWISE.items():
+        usual = [call("--method", method, folder).stdout for folder in (CORNER, log)]
+        for name, value in told.items():
+            option = f"--set={name}={value}"
+            changed = [call("--method", method, option, folder, check=None).stdout for folder in (CORNER, log)]
+            assert all(changed) and changed != usual, name
+
+
+def test_set_to_the_default_changes_nothing() -> None:
+    for method in ("window", "refined"):
+        told = [option for name, value in SETTINGS.items() for option in ("--set", f"{name}={value}")]
+        assert call("--method", method, *told, CORNER).stdout == call("--method", method, CORNER).stdout
+
+
+def test_the_last_of_two_counts() -> None:
+    both = call("--set", "noise.pixel_px=3", "--set=noise.pixel_px=0.7", CORNER).stdout
+    assert both == call("--set", "noise.pixel_px=0.7", CORNER).stdout != call(CORNER).stdout
 
 
 # ------------------------------------------------------------------------------------------------------- file formats
@@ -290,8 +443,8 @@ def test_height_above_ground_falls_back_to_altitude(tmp_path: Path, log: Path, h
 
 
 def test_height_above_ground_is_used(tmp_path: Path, log: Path) -> None:
-    other = replay(write_log(tmp_path / "other", table([{**row, "agl_m": 60.0} for row in chimney()])))
-    assert number(other[-1], "height_m") == pytest.approx(number(replay(log)[-1], "height_m") + 10.0, abs=1e-4)
+    other = replay(write_log(tmp_path / "other", table([{**row, "agl_m": 60.0} for row in chimney()])), *PAPER)
+    assert number(other[-1], "height_m") == pytest.approx(number(replay(log, *PAPER)[-1], "height_m") + 10.0, abs=1e-4)
 
 
 # --------------------------------------------------------------------------------------- bad measurements: a status
@@ -301,7 +454,7 @@ def test_height_above_ground_is_used(tmp_path: Path, log: Path) -> None:
 def test_half_a_point_is_not_seen(tmp_path: Path, empty: str) -> None:
     rows = chimney()
     rows[15][empty] = ""
-    out = replay(write_log(tmp_path, table(rows)))
+    out = replay(write_log(tmp_path, table(rows)), *PAPER)
     assert (out[15]["status"], out[15]["z0_m"]) == ("held", out[14]["z0_m"])
     assert out[16]["status"] == "ok"
 
@@ -478,6 +631,29 @@ BAD_USAGE = [
     (["--model", "box"], "box: --model must be auto, disc or line"),
     (["--model", ""], "--model must be auto, disc or line"),
     (["--method", "magic"], "magic: --method must be window or refined"),
+    (["--set"], "--set: missing argument"),
+    (["--set", ""], "--set: '' is no setting; there are noise.pixel_px, "),
+    (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are noise.pixel_px, "),
+    (["--set", "noise.pixel_p=1"], "--set: 'noise.pixel_p' is no setting"),
+    (["--set", "noise.pixel_pxx=1"], "orientation_memory and min_baseline_m"),
+    (["--set", "window=5"], "--set: 'window' is no setting"),
+    (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting"),
+    (["--set", "\x1b[31m=5"], "--set: '?[31m' is no setting"),
+    (["--set", "noise.pixel_px"], "--set: noise.pixel_px: no value; write noise.pixel_px=VALUE"),
+    (["--set", "noise.pixel_px="], "--set: noise.pixel_px: '' is not a number"),
+    (["--set", "noise.pixel_px=0.5px"], "--set: noise.pixel_px: '0.5px' is not a number"),
+    (["--set", "noise.pixel_px= 1"], "--set: noise.pixel_px: ' 1' is not a number"),
+    (["--set", "noise.pixel_px=1=1"], "--set: noise.pixel_px: '1=1' is not a number"),
+    (["--set", "noise.pixel_px=" + "9" * 400 + "x"], "9...' is not a number"),
+    (["--set", "noise.pixel_px=nan"], "--set: noise.pixel_px: out of range"),
+    (["--set", "noise.pixel_px=1e99"], "--set: noise.pixel_px: out of range"),
+    (["--set", "noise.correlation=1"], "--set: noise.correlation: out of range"),
+    (["--set", "gate_sigma=4", "--set", "typical_size_m=-6"], "--set: typical_size_m: out of range"),
+    (["--set", "line_points=2.5"], "--set: line_points: '2.5' is not a whole number"),
+    (["--set", "line_points=nan"], "--set: line_points: 'nan' is not a whole number"),
+    (["--set", "orientation_memory=0"], "--set: orientation_memory: out of range"),
+    (["--set", "top_is_highest=2"], "--set: top_is_highest: '2' is not 0 or 1"),
+    (["--set", "top_is_highest=yes"], "--set: top_is_highest: 'yes' is not a number"),
     (["--wat"], "--wat: unknown option"),
     (["another"], "another: one folder at a time"),
 ]
@@ -488,12 +664,7 @@ def test_bad_usage(log: Path, options: list[str], reason: str) -> None:
     done = call(log, *options, check=2)
     assert done.stdout == ""
     assert reason in done.stderr and done.stderr.startswith("goe_replay: ")
-
-
-def test_refined_is_refused_while_there_is_none(log: Path) -> None:
-    done = call("--method", "refined", log, check=2)
-    assert "no refined method" in done.stderr and done.stdout == ""
-    assert call("--method", "window", log).stdout == call(log).stdout
+    assert done.stderr.count("\n") == 1
 
 
 def test_no_arguments() -> None:
@@ -502,8 +673,13 @@ def test_no_arguments() -> None:
 
 def test_help_and_version() -> None:
     text = call("--help").stdout
-    for option in ("--method", "--model", "--window", "--out", "--camera", "--frames", "--version"):
+    for option in (
+        *("--method", "--model", "--window", "--set", "--residuals"),
+        *("--out", "--camera", "--frames", "--version"),
+        *(f"{name}={value}" for name, value in SETTINGS.items()),
+    ):
         assert option in text
+    assert max(map(len, text.splitlines())) <= 120
     assert call("--version").stdout.startswith("goe_replay ")
 
 
@@ -518,9 +694,12 @@ def test_header_alone(tmp_path: Path) -> None:
 
 
 def test_no_row_gave_an_estimate(tmp_path: Path) -> None:
-    done = call(write_log(tmp_path, table(chimney(7))), check=1)
+    done = call(*PAPER, write_log(tmp_path, table(chimney(7))), check=1)
     assert len(done.stdout.splitlines()) == 8
     assert "no row gave an estimate (collecting: 7)" in done.stderr
+    done = call(write_log(tmp_path, table([pose_row(0.1 * k, 1.5 * k) for k in range(7)])), check=1)
+    assert len(done.stdout.splitlines()) == 8
+    assert "no row gave an estimate (nothing_seen: 7)" in done.stderr
 
 
 # ------------------------------------------------------------------------------------------------------------- output

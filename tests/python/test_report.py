@@ -13,20 +13,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.obslog import LogError
-from goe_tools.report import page, prose, terminal
+from goe_tools.report import page, prose, refined_prose, terminal
+from goe_tools.report import refined as rf
 from goe_tools.report import statistics as st
 from goe_tools.report.data import Campaign, Cases, read_campaign
 from goe_tools.report.figures import FIGURES
+from goe_tools.report.goals_file import read_goals
 from goe_tools.report.style import number
 from rich.console import Console
-from synthetic_campaign import write_campaign
+from synthetic_campaign import write_campaign, write_goals
 
 MOST_BYTES = 6_000_000
 
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
-    return read_campaign(write_campaign(tmp_path_factory.mktemp("campaign") / "c"))
+    folder = tmp_path_factory.mktemp("campaign")
+    return read_campaign(write_campaign(folder / "c"), goals=write_goals(folder / "goals.json"))
 
 
 @pytest.fixture(scope="module")
@@ -92,6 +95,7 @@ def test_cell_follows_from_the_rows(campaign: Campaign) -> None:
             abs(float(row["width_mean_pct"])) + float(row["width_two_sigma_pct"])
             for row in csv.DictReader(file)
             if (row["study"], row["obstacle"], row["model"], row["fraction"]) == ("paper", "truck", "auto", "0.4")
+            and row["method"] == "window"
             and float(row["fresh_line_share"]) > 0.0
         )
     cell = st.make_cell(campaign.cases, "truck", "line", "width")
@@ -187,6 +191,107 @@ def test_small_truth_is_found_as_the_reason() -> None:
     assert prose.likely_cause(cell) == prose.SMALL_TRUTH
 
 
+# ------------------------------------------------------------------------------------------------ the refined method
+
+
+def refined_extent(folder: Path, obstacle: str, model: str, column: str) -> float:
+    """A refined number of Table 3 computed again from the file's text."""
+    with (folder / "cases.csv").open(encoding="utf-8") as file:
+        reach = sorted(
+            abs(float(row[column.format("mean")])) + float(row[column.format("two_sigma")])
+            for row in csv.DictReader(file)
+            if (row["study"], row["obstacle"], row["model"], row["fraction"]) == ("paper", obstacle, model, "0.4")
+            and row["method"] == "refined"
+        )
+    return reach[math.ceil(0.75 * len(reach)) - 1]
+
+
+def test_refined_numbers_follow_from_the_rows(campaign: Campaign) -> None:
+    rows = {(obstacle, model): cells for obstacle, model, cells in rf.table3(campaign)}
+    assert set(rows) == {*st.PAPER_TABLE3, *((obstacle, "box") for obstacle in rf.BOXES)}
+    z0 = rows["truck", "line"][0]
+    assert z0 is not None and z0.paper is not None
+    assert z0.refined == refined_extent(campaign.folder, "truck", "auto", "z0_{}_pct")
+    assert z0.factor == z0.paper.value / z0.refined
+    window = st.make_cell(campaign.cases, "truck", "line", "z0")
+    assert window is not None and z0.window == window.bars > z0.refined
+    height = rows["building", "box"][4]
+    assert height is not None and height.paper is None and math.isnan(height.factor)
+    assert height.refined == refined_extent(campaign.folder, "building", "box", "height_{}")
+    assert rows["cylinder", "disc"][3] is None  # no length
+    assert len(rf.papers(campaign)) == 27
+
+
+def test_refined_sentences(campaign: Campaign) -> None:
+    said = " ".join(refined_prose.table3(campaign))
+    cells = rf.papers(campaign)
+    fivefold = sum(cell.factor >= 5.0 for cell in cells)
+    assert 0 < fivefold <= 27
+    assert f"Of the 27 numbers of the paper's Table 3, refined betters 27, {fivefold} of them" in said
+    assert ("Short of fivefold" in said) == (fivefold < 27)
+    goals = campaign.goals
+    assert goals is not None
+    verdict = " ".join(refined_prose.verdict(goals))
+    assert "4 of 6 goals are met. 2 are missed" in verdict and "quick run" in verdict
+    assert "Recorded flights".lower() in verdict.lower()  # not in this run, and told so
+    assert refined_prose.missed(goals) == [
+        "Gaussian pixel noise, 1 px, within 2 sigma, boxes, all answers: W 81.7\u00a0% (wanted 90\u00a0…\u00a098).",
+        "KITTI's cars, 68 moving cars caught, at a share of false flags: 5 %: 34.7\u00a0% (wanted ≥\u00a060).",
+    ]
+    shares = " ".join(refined_prose.coverage(goals))
+    assert "9 of 10 shares are in the wanted range, 0 above it (the sigma is too wide), 1 below" in shares
+    assert "lowest is 81.7 %: W" in shares
+    assert "X₀ by triangulation (GTSAM) (0.53\u00a0m against 0.70\u00a0m)" in " ".join(refined_prose.rivals(goals))
+    assert "cylinder 16.8 s instead of 4.59 s" in " ".join(refined_prose.early(goals))
+
+
+def section_of(text: str, name: str) -> str:
+    return text.split(f'<section id="{name}">')[1].split("</section>")[0]
+
+
+def test_page_shows_the_goals_met_and_missed(campaign: Campaign, written: Path) -> None:
+    section = section_of(written.read_text(encoding="utf-8"), "refined")
+    assert re.search(r'class="n miss"[^>]*>81.7<', section) and re.search(r'class="miss">5 %: 34.7<', section)
+    assert section.count("✗ missed") == 2 and section.count("✓ met") == 4
+    for number_told in ("1.01", "0.997", "96.6", "0.661", "0.987", "0.021"):
+        assert f">{number_told}<" in section or f" {number_told}<" in section, number_told
+    assert "no start value, no corner to be recognised" in section  # a rival's strength
+    cell = rf.papers(campaign)[0]
+    assert f"±{number(cell.refined)}" in section and f"×{number(cell.factor)}" in section
+    assert f"window ±{number(cell.window)}" in section
+
+
+def test_page_without_goals_and_without_refined_rows(tmp_path: Path) -> None:
+    folder = write_campaign(tmp_path / "c", studies=False)
+    text = page.render_page(read_campaign(folder), [])
+    section = section_of(text, "refined")
+    assert "Table 3 again" in section and "missed" not in section and "Other methods" not in section
+    assert "<strong>Everything here is simulation.</strong>" in text
+    older = page.render_page(read_campaign(write_campaign(tmp_path / "old", studies=False, refined=False)), [])
+    assert 'id="refined"' not in older and "#refined" not in older
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", r"goals\.json:1"),
+        ('{"quick": true, "goals": []}', "no list of goals"),
+        ('{"goals": [{"group": "kitti", "name": "a", "unit": "1", "values": {}, "asked": []}]}', "'wanted' is missing"),
+        ('{"goals": [{"group": "k", "name": "a", "unit": "1", "values": {"Z0": 3}, "asked": ["Z0"], "wanted": [0, 2],'
+         ' "met": true}]}', "goal 1: says True, its figures say False"),
+        ('{"goals": [{"group": "k", "name": "a", "unit": "1", "values": {"Z0": "x"}, "asked": [], "wanted": null,'
+         ' "met": null}]}', "could not convert"),
+    ],
+)  # fmt: skip
+def test_bad_goals_are_named(text: str, message: str, tmp_path: Path) -> None:
+    file = tmp_path / "goals.json"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(LogError, match=message):
+        read_goals(file)
+    with pytest.raises(LogError, match=r"none\.json"):
+        read_goals(tmp_path / "none.json")
+
+
 def test_terminal_table(campaign: Campaign) -> None:
     out = StringIO()
     terminal.print_table3(campaign, Console(file=out, width=40, force_terminal=False))
@@ -196,6 +301,9 @@ def test_terminal_table(campaign: Campaign) -> None:
     assert [f"{paper} /" in row for paper in (7, 25, 2)] == [True] * 3
     cell = st.make_cell(campaign.cases, "long-truck", "line", "z0")
     assert cell is not None and f"7 / {number(cell.bars)}" in row
+    below = lines[lines.index(row) + 1]
+    z0 = next(c for c in rf.papers(campaign) if (c.obstacle, c.model, c.quantity) == ("long-truck", "line", "z0"))
+    assert below.startswith("  refined") and f"{number(z0.refined)} ×{number(z0.factor)}" in below
 
 
 @pytest.mark.parametrize(
@@ -253,7 +361,7 @@ def test_page_of_the_papers_study_alone(tmp_path: Path) -> None:
     text = page.render_page(campaign, [])
     assert "Not flown in this campaign" in text
     lacking = [spec.key for spec in FIGURES if spec.section != "figures" and spec.draw(campaign, False) is None]
-    assert lacking == ["studies", "conditioning"]
+    assert lacking == ["early", "bound", "coverage", "flags", "studies", "conditioning"]
 
 
 def test_bad_files_are_named(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from goe_tools.report import data, page
 from goe_tools.report.figures import FIGURES
-from synthetic_campaign import write_campaign
+from synthetic_campaign import write_campaign, write_goals
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 CHROMEDRIVER = shutil.which("chromedriver")
@@ -29,11 +29,14 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page to look at: of the campaign that GOE_CAMPAIGN_DIR names, otherwise of an invented one."""
+    """The page to look at: of the campaign that GOE_CAMPAIGN_DIR names, otherwise of an invented one; of the goals'
+    file that GOE_GOALS names, otherwise of invented goals."""
     folder = tmp_path_factory.mktemp("report")
     given = os.environ.get("GOE_CAMPAIGN_DIR")
     campaign = Path(given) if given else write_campaign(folder / "campaign")
-    page.write_page(data.read_campaign(campaign), folder / "report.html")
+    told = os.environ.get("GOE_GOALS")
+    goals = Path(told) if told else write_goals(folder / "goals.json")
+    page.write_page(data.read_campaign(campaign, goals=goals), folder / "report.html")
     return folder / "report.html"
 
 

@@ -1,5 +1,5 @@
 /*
- * campaign_probe CASE NOISE CYLINDER MODEL WINDOW - flies a case of the paper's with other sensors and runs the library over
+ * campaign_probe CASE NOISE CYLINDER METHOD MODEL WINDOW - flies a case of the paper's with other sensors and runs the library over
  * it in-process, as goe_campaign does; writes what goe_replay would.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
@@ -20,15 +20,15 @@ static int fail(const char *what, const char *why) {
     return EXIT_FAILURE;
 }
 
-static int run(const flight_case_t *setup, const flight_log_t *log, goe_model_t model, int window) {
+static int run(const flight_case_t *setup, const flight_log_t *log, case_setting_t setting) {
     case_sample_t *samples = calloc(log->count + 1, sizeof *samples);
-    const char *fault = samples != NULL ? case_run(setup, log, model, window, samples) : "out of memory";
-    bool written = fault == NULL && estimate_write_header(stdout);
+    const char *fault = samples != NULL ? case_run(setup, log, setting, samples) : "out of memory";
+    bool written = fault == NULL && estimate_write_header(stdout, false);
     for (size_t i = 0; i < log->count && written; i++) {
         char time_text[64];
         const int64_t time_us = log->frames[i].time_us;
         (void)snprintf(time_text, sizeof time_text, "%" PRId64 ".%06" PRId64, time_us / US_PER_S, time_us % US_PER_S);
-        written = estimate_write_row(stdout, time_text, LOG_TRACK_ID, samples[i].status, &samples[i].estimate);
+        written = estimate_write_row(stdout, time_text, LOG_TRACK_ID, samples[i].status, &samples[i].estimate, false);
     }
     free(samples);
     return written && fflush(stdout) == 0 ? EXIT_SUCCESS : fail("run", fault != NULL ? fault : "write error");
@@ -37,8 +37,8 @@ static int run(const flight_case_t *setup, const flight_log_t *log, goe_model_t 
 int main(int argc, char **argv) {
     flight_case_t setup;
     flight_log_t log;
-    if (argc != 6) {
-        return fail("usage", "CASE NOISE CYLINDER MODEL WINDOW");
+    if (argc != 7) {
+        return fail("usage", "CASE NOISE CYLINDER METHOD MODEL WINDOW");
     }
     const scenario_t scenario = scenario_get((int)strtol(argv[1], NULL, 10));
     flight_case_paper(&setup, &scenario);
@@ -51,8 +51,10 @@ int main(int argc, char **argv) {
     if (fault != NULL) {
         return fail("fly", fault);
     }
-    const goe_model_t model = strcmp(argv[4], "disc") == 0 ? GOE_MODEL_DISC : GOE_MODEL_AUTO;
-    const int status = run(&setup, &log, model, (int)strtol(argv[5], NULL, 10));
+    const case_setting_t setting = {strcmp(argv[4], "refined") == 0 ? GOE_METHOD_REFINED : GOE_METHOD_WINDOW,
+                                    strcmp(argv[5], "disc") == 0 ? GOE_MODEL_DISC : GOE_MODEL_AUTO,
+                                    (int)strtol(argv[6], NULL, 10)};
+    const int status = run(&setup, &log, setting);
     flight_log_free(&log);
     return status;
 }

@@ -63,10 +63,15 @@ static void hash_estimate(replay_t *replay, const goe_estimate_t *e) {
                              e->center_north_m,
                              e->center_east_m,
                              e->residual,
-                             e->baseline_m};
+                             e->baseline_m,
+                             e->nis,
+                             e->misfit};
+    hash_word(replay, (uint32_t)e->method);
     hash_word(replay, (uint32_t)e->model);
     hash_word(replay, (uint32_t)e->valid);
     hash_word(replay, e->fresh ? 1u : 0u);
+    hash_word(replay, e->suspect ? 1u : 0u);
+    hash_word(replay, (uint32_t)e->nis_rows);
     hash_word(replay, (uint32_t)e->points);
     hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
     hash_sigma(replay, &e->sigma);
@@ -99,7 +104,7 @@ void replay_read_image(const logged_image_t *logged, goe_image_t *image) {
     }
 }
 
-void replay_read_settings(const logged_track_t *track, goe_settings_t *settings) {
+void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_settings_t *settings) {
     goe_camera_t *camera = &settings->camera;
     float *const fields[] = {&camera->fx_px,
                              &camera->fy_px,
@@ -121,6 +126,7 @@ void replay_read_settings(const logged_track_t *track, goe_settings_t *settings)
     for (int i = 0; i < 16; i++) {
         read_numbers(&track->bits[i], fields[i], 1);
     }
+    settings->method = method;
     settings->model = (goe_model_t)track->model;
     settings->window = track->window;
     settings->line_points = track->line_points;
@@ -133,14 +139,28 @@ replay_t replay_start(void) {
     return replay;
 }
 
-static goe_status_t init_track(replay_t *replay, goe_estimator_t *estimator, const logged_track_t *track) {
+static goe_status_t init_track(replay_t *replay, goe_estimator_t *estimator, const logged_track_t *track,
+                               goe_method_t method) {
     goe_settings_t settings;
     const char *bad = NULL;
-    replay_read_settings(track, &settings);
+    replay_read_settings(track, method, &settings);
     const goe_status_t status = goe_init(estimator, sizeof *estimator, &settings, &bad);
     hash_status(replay, status);
     hash_text(replay, bad ? bad : "");
     return status;
+}
+
+static void replay_questions(replay_t *replay, const goe_estimator_t *estimator) {
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f};
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    goe_hazard_t hazard;
+    hash_status(replay, goe_covariance(estimator, covariance));
+    hash_numbers(replay, &covariance[0][0], GOE_QUANTITIES * GOE_QUANTITIES);
+    hash_status(replay, goe_hazard(estimator, &plan, &hazard));
+    const float numbers[] = {hazard.time_s,    hazard.miss_m,    hazard.clearance_m,   hazard.violation,
+                             hazard.time_sd_s, hazard.miss_sd_m, hazard.clearance_sd_m};
+    hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
+    hash_word(replay, hazard.has_clearance ? 1u : 0u);
 }
 
 static void replay_images(replay_t *replay, goe_estimator_t *estimator, const logged_track_t *track) {
@@ -151,6 +171,7 @@ static void replay_images(replay_t *replay, goe_estimator_t *estimator, const lo
         replay_read_image(&logged_images[track->first + k], &image);
         hash_status(replay, goe_update(estimator, &image, &estimate));
         hash_estimate(replay, &estimate);
+        replay_questions(replay, estimator);
         replay->images++;
     }
     for (int i = 0; i < GOE_CAUSES; i++) {
@@ -158,11 +179,13 @@ static void replay_images(replay_t *replay, goe_estimator_t *estimator, const lo
     }
 }
 
+const goe_method_t replay_methods[REPLAY_METHODS] = {GOE_METHOD_WINDOW, GOE_METHOD_REFINED};
+
 void replay_all(replay_t *replay) {
     static goe_estimator_t estimator;
-    for (int t = 0; t < logged_track_count; t++) {
-        const logged_track_t *track = &logged_tracks[t];
-        if (init_track(replay, &estimator, track) == GOE_OK) {
+    for (int t = 0; t < logged_track_count * REPLAY_METHODS; t++) {
+        const logged_track_t *track = &logged_tracks[t / REPLAY_METHODS];
+        if (init_track(replay, &estimator, track, replay_methods[t % REPLAY_METHODS]) == GOE_OK) {
             replay_images(replay, &estimator, track);
             hash_status(replay, goe_reset(&estimator));
         }

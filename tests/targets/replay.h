@@ -14,10 +14,14 @@ typedef struct {
 
 replay_t replay_start(void);
 
+/* Each track is flown by each method, in this order. */
+#define REPLAY_METHODS 2
+extern const goe_method_t replay_methods[REPLAY_METHODS];
+
 /* Every track: its estimator initialised, each image taken, reset at the end. All that is returned is hashed. */
 void replay_all(replay_t *replay);
 
-void replay_read_settings(const logged_track_t *track, goe_settings_t *settings);
+void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_settings_t *settings);
 void replay_read_image(const logged_image_t *logged, goe_image_t *image);
 
 /* 16 digits and the ending zero. */

@@ -8,7 +8,7 @@
 #include "stack.h"
 
 typedef struct {
-    size_t update, init, reset, defaults, text, self_check;
+    size_t update[REPLAY_METHODS], covariance, hazard, init, reset, defaults, text, self_check;
 } depth_t;
 
 static goe_estimator_t estimator;
@@ -60,13 +60,30 @@ __attribute__((noinline)) static size_t depth_of_self_check(void) {
     return port_stack_used();
 }
 
-static void measure_track(const logged_track_t *track) {
-    replay_read_settings(track, &settings);
+__attribute__((noinline)) static size_t depth_of_covariance(void) {
+    static float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    port_stack_paint();
+    (void)goe_covariance(&estimator, covariance);
+    return port_stack_used();
+}
+
+__attribute__((noinline)) static size_t depth_of_hazard(void) {
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f};
+    static goe_hazard_t hazard;
+    port_stack_paint();
+    const goe_status_t status = goe_hazard(&estimator, &plan, &hazard);
+    return status == GOE_OK ? port_stack_used() : 0u;
+}
+
+static void measure_track(const logged_track_t *track, int method) {
+    replay_read_settings(track, replay_methods[method], &settings);
     keep_larger(&deepest.defaults, depth_of_defaults());
     keep_larger(&deepest.init, depth_of_init());
     for (int k = 0; k < track->count; k++) {
         replay_read_image(&logged_images[track->first + k], &image);
-        keep_larger(&deepest.update, depth_of_update());
+        keep_larger(&deepest.update[method], depth_of_update());
+        keep_larger(&deepest.covariance, depth_of_covariance());
+        keep_larger(&deepest.hazard, depth_of_hazard());
     }
     keep_larger(&deepest.reset, depth_of_reset());
 }
@@ -80,12 +97,15 @@ static void tell(const char *function, size_t bytes) {
 }
 
 int main(void) {
-    for (int t = 0; t < logged_track_count; t++) {
-        measure_track(&logged_tracks[t]);
+    for (int t = 0; t < logged_track_count * REPLAY_METHODS; t++) {
+        measure_track(&logged_tracks[t / REPLAY_METHODS], t % REPLAY_METHODS);
     }
     tell("goe_settings_default", deepest.defaults);
     tell("goe_init", deepest.init);
-    tell("goe_update", deepest.update);
+    tell("goe_update_window", deepest.update[0]);
+    tell("goe_update", deepest.update[1]);
+    tell("goe_covariance", deepest.covariance);
+    tell("goe_hazard", deepest.hazard);
     tell("goe_reset", deepest.reset);
     tell("goe_status_text", depth_of_text());
     tell("goe_self_check", depth_of_self_check());

@@ -10,15 +10,19 @@ from collections.abc import Sequence
 from .obslog import LogError
 
 COMMANDS = {
+    "bound": "print the Cramer-Rao bound of a log with truth",
     "scene": "write a synthetic observation log of a box or a cylinder",
     "embed_logs": "write or check the synthetic logs that the target images carry",
     "compare": "run goe_replay over logs and compare it with both references",
     "golden": "write or check the C headers with the unit tests' reference data",
     "ledger": "measure what the library costs on each target",
+    "goals": "print what the project promises beside what is reached",
+    "offline": "fit all images of a log with truth at once",
     "peers": "hold the window solve against other solvers",
     "report": "write the campaign's report and print Table 3",
     "table": "print estimates as a table that a pilot can read",
 }
+MODULES = {name: f".optimum.{name}" for name in ("bound", "goals", "offline")}
 EXIT_BAD_INPUT = 2
 
 
@@ -26,7 +30,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="goe_tools", description="Tools of the ground obstacle estimator.")
     commands = parser.add_subparsers(dest="command", required=True)
     for name, text in COMMANDS.items():
-        module = importlib.import_module(f".{name}", __package__)
+        module = importlib.import_module(MODULES.get(name, f".{name}"), __package__)
         command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
         module.add_arguments(command)
         command.set_defaults(entry=module.run)

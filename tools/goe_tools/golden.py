@@ -37,6 +37,7 @@ VALID = {
     "GOE_HAS_HEIGHT": "height_m",
     "GOE_HAS_ORIENTATION": "orientation_deg",
     "GOE_HAS_CENTER": "center_n_m",
+    "GOE_HAS_WIDTH": "width_m",
 }
 
 
@@ -323,7 +324,7 @@ def corner_header() -> str:
         "",
     ]
     body += array("golden_corner_t", "golden_corner", rows)
-    title = "One whole flight, tests/data/corner with default settings: every image and the estimate after it, in bits."
+    title = "One flight, tests/data/corner with the window method: every image and the estimate after it, in bits."
     return header("corner", title, body, '#include "goe.h"')
 
 

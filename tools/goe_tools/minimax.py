@@ -1,17 +1,23 @@
-"""Minimax polynomials of lib/goe_angle.c: `python -m goe_tools.minimax` prints the constants and their error bounds.
+"""Minimax polynomials of lib/goe_angle.c and lib/goe_normal.c: `python -m goe_tools.minimax` prints the constants and
+their error bounds.
 
-Each function is written around its leading terms, with z = t^2:
+Each angle function is written around its leading terms, with z = t^2:
 
     atan t = t - t z A(z)          |t| <= tan(pi/8)
     sin t  = t - t z S(z)          |t| <= pi/4
     cos t  = 1 - z/2 + z^2 C(z)    |t| <= pi/4
 
-and A, S, C are the polynomials whose largest weighted error is smallest (Remez exchange, float64).
+and of the normal distribution the upper tail
+
+    1 - Phi(t) = N(t)^-8           0 <= t <= 5.2
+
+A, S, C and N are the polynomials whose largest weighted error is smallest (Remez exchange, float64).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import erfc
 from typing import Callable
 
 import numpy as np
@@ -24,7 +30,10 @@ EXCHANGES = 60
 
 @dataclass(frozen=True)
 class Problem:
-    """A function of z to approximate on [smallest, largest] with `terms` coefficients."""
+    """A function of z to approximate on [smallest, largest] with `terms` coefficients.
+
+    The C source has their magnitudes; the signs, in its expressions, alternate or not.
+    """
 
     name: str
     function: Function
@@ -32,6 +41,8 @@ class Problem:
     smallest: float
     largest: float
     terms: int
+    source: str = "goe_angle.c"
+    alternating: bool = True
 
 
 @dataclass(frozen=True)
@@ -64,11 +75,25 @@ def _even_weight(z: np.ndarray) -> np.ndarray:
     return z**2
 
 
+def _normal_tail(t: np.ndarray) -> np.ndarray:
+    """Probability that a normal variable exceeds t sigma."""
+    return 0.5 * np.array([erfc(x) for x in (t / np.sqrt(2.0)).tolist()])
+
+
+def _normal_root(t: np.ndarray) -> np.ndarray:
+    return _normal_tail(t) ** (-1 / 8)
+
+
+def _normal_weight(t: np.ndarray) -> np.ndarray:
+    return 8.0 * _normal_tail(t) ** (9 / 8)
+
+
 # The smallest z keep the differences above free of cancellation; below them the next term is far under the bound.
 PROBLEMS = (
     Problem("ATAN", _atan_rest, _odd_weight, 1e-4, float(np.tan(np.pi / 8) ** 2), 4),
     Problem("SIN", _sin_rest, _odd_weight, 1e-4, float((np.pi / 4) ** 2), 3),
     Problem("COS", _cos_rest, _even_weight, 1e-2, float((np.pi / 4) ** 2), 3),
+    Problem("NORMAL", _normal_root, _normal_weight, 0.0, 5.2, 8, "goe_normal.c", alternating=False),
 )
 
 
@@ -106,7 +131,7 @@ def remez(problem: Problem) -> Polynomial:
 
 
 def main() -> None:
-    """Prints the constants as they stand in lib/goe_angle.c."""
+    """Prints the constants as they stand in the C sources."""
     for problem in PROBLEMS:
         polynomial = remez(problem)
         for number, coefficient in enumerate(polynomial.coefficients, start=1):

@@ -15,10 +15,11 @@ from .obslog import LogError, Truth, read_truth
 
 DEFAULT_ROWS = 12
 NOTHING = "-"
-MODEL_WORDS = {"disc": "disc", "line": "front edge", "none": NOTHING}
+MODEL_WORDS = {"disc": "disc", "line": "front edge", "box": "box", "none": NOTHING}
 HINT = (
     "Ahead and aside: from the aircraft to the obstacle's reference point, along and across the direction of flight "
-    "(disc: its centre, front edge: its middle). Turned: the side edge against the direction of flight, clockwise. "
+    "(disc: its centre; front edge, box: the middle of the front edge). Turned: the side edge against the direction of "
+    "flight, clockwise. "
     "± is one sigma. A row marked * repeats an older solution."
 )
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..obslog import LogError
+from .goals_file import Goals, read_goals
 
 LABELS = ("study", "obstacle", "path", "speed_profile", "wind", "noise", "method", "model")
 SETUP = ("case", "side_m", "alpha_deg", "altitude_m", "glide_deg", "seed", "window", "fps_hz", "fraction")
@@ -70,6 +71,8 @@ class Campaign:
     folder: Path
     cases: Cases
     facts: dict[str, Any]  # campaign.json
+    refined: Cases | None = None  # the refined method's rows, if the campaign has any
+    goals: Goals | None = None
 
     def series(self, case: int, model: str) -> Cases | None:
         """The time series of a case of the paper's study (first seed), or None if it was not written."""
@@ -111,8 +114,8 @@ def _numbers(path: Path, name: str, fields: Sequence[str]) -> np.ndarray:
         raise
 
 
-def read_campaign(folder: Path) -> Campaign:
-    """Reads cases.csv and campaign.json."""
+def read_campaign(folder: Path, method: str = "window", goals: Path | None = None) -> Campaign:
+    """Reads cases.csv and campaign.json, and the goals' file if there is one. ``cases`` are the rows of one method."""
     if not folder.is_dir():
         raise LogError(folder, 0, "", "no such folder")
     path = folder / "cases.csv"
@@ -126,7 +129,12 @@ def read_campaign(folder: Path) -> Campaign:
         missing = np.flatnonzero(~np.isfinite(columns[name]))
         if len(missing):
             raise LogError(path, int(missing[0]) + 2, name, "empty")
-    return Campaign(folder, Cases(columns), _read_facts(folder / "campaign.json"))
+    rows = Cases(columns)
+    refined = rows.select(method="refined")
+    return Campaign(
+        folder, rows.select(method=method), _read_facts(folder / "campaign.json"), refined if len(refined) else None,
+        read_goals(goals) if goals else None,
+    )  # fmt: skip
 
 
 def _read_facts(path: Path) -> dict[str, Any]:

@@ -6,13 +6,8 @@ A figure is drawn twice: wide (panels side by side) and narrow (panels one below
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from io import BytesIO
+from collections.abc import Callable
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
@@ -24,10 +19,11 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocato
 
 from . import statistics as st
 from .data import Campaign, Cases
+from .drawing import Draw, FigureSpec, panels
+from .refined_figures import REFINED_FIGURES
 from .style import (
     BAND,
     COLOURS,
-    DPI,
     FAINT,
     INK,
     MARKERS,
@@ -36,42 +32,12 @@ from .style import (
     OBSTACLES,
     PAPER_COLOUR,
     QUANTITY_NAMES,
-    RC,
     SOFT,
     SYMBOLS,
     UNITS,
     WIDE_IN,
     number,
 )
-
-Draw = Callable[[Campaign, bool], "Figure | None"]
-
-
-@dataclass(frozen=True)
-class FigureSpec:
-    """A figure of the page. ``draw(campaign, narrow)`` gives None where the campaign lacks the data."""
-
-    key: str  # name of its files
-    title: str
-    section: str
-    draw: Draw
-    describe: Callable[[Campaign], tuple[str, str]]  # caption, alternative text
-    in_page: str = "svg"  # png for many points
-
-
-def panels(count: int, narrow: bool, height: float, widths: list[float] | None = None) -> tuple[Figure, list[Axes]]:
-    """A row of panels, or a column of them. ``height`` of one panel, inches."""
-    if narrow:
-        figure, axes = plt.subplots(count, 1, figsize=(NARROW_IN, height * count), squeeze=False)
-        figure.subplots_adjust(
-            left=0.15, right=0.97, top=1.0 - 0.42 / (height * count), bottom=0.5 / (height * count), hspace=0.48
-        )
-    else:
-        ratios = {"width_ratios": widths} if widths else None
-        figure, axes = plt.subplots(1, count, figsize=(WIDE_IN, height), squeeze=False, gridspec_kw=ratios)
-        figure.subplots_adjust(left=0.068, right=0.99, top=1.0 - 0.62 / height, bottom=0.5 / height, wspace=0.26)
-    return figure, list(axes.ravel())
-
 
 # ------------------------------------------------------------------------------------------------- figures 6 to 14
 
@@ -585,6 +551,7 @@ def _error_figure(number_in_paper: int, quantity: str, model: str) -> FigureSpec
 
 
 FIGURES: tuple[FigureSpec, ...] = (
+    *REFINED_FIGURES,
     FigureSpec("fig05_orientation", "Figure 5. Orientation of a building", "figures", draw_orientation,
                describe_orientation),
     *(_error_figure(*entry) for entry in _ERRORS),
@@ -594,19 +561,3 @@ FIGURES: tuple[FigureSpec, ...] = (
     FigureSpec("condition_scatter", "Error against condition number", "conditioning", draw_condition_scatter,
                describe_condition_scatter, in_page="png"),
 )  # fmt: skip
-
-
-def render(campaign: Campaign, spec: FigureSpec, narrow: bool, formats: Sequence[str]) -> dict[str, bytes]:
-    """The figure in each of the formats (svg, png); empty where the campaign lacks the data."""
-    with plt.rc_context(RC):
-        figure = spec.draw(campaign, narrow)
-        if figure is None:
-            return {}
-        drawn = {}
-        for kind in formats:
-            file = BytesIO()
-            nothing = {"Date": None, "Creator": None} if kind == "svg" else {"Software": None}
-            figure.savefig(file, format=kind, dpi=DPI, metadata=nothing)
-            drawn[kind] = file.getvalue()
-        plt.close(figure)
-    return drawn

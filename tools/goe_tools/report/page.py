@@ -6,7 +6,7 @@ import base64
 import math
 import multiprocessing
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,10 +16,14 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
 from . import prose
+from . import refined as rf
+from . import refined_prose as rp
 from . import statistics as st
 from .data import Campaign
-from .figures import FIGURES, render
-from .style import COLOURS, NAMES, SYMBOLS, UNITS, number
+from .drawing import render
+from .figures import FIGURES
+from .goals_file import QUANTITIES, GoalRow, Goals
+from .style import COLOURS, GOAL_SYMBOLS, NAMES, SYMBOLS, UNITS, number
 
 VERDICT_MARKS = {
     st.BETTER: ("better", "▲"),
@@ -172,6 +176,121 @@ def _studies(campaign: Campaign) -> list[dict[str, Any]]:
     return rows
 
 
+def _trio(cell: rf.Trio | None) -> dict[str, Any] | None:
+    if cell is None or not math.isfinite(cell.refined):
+        return None
+    return {
+        "refined": number(cell.refined),
+        "window": number(cell.window) if math.isfinite(cell.window) else "",
+        "paper": str(cell.paper) if cell.paper else "",
+        "factor": number(cell.factor) if math.isfinite(cell.factor) else "",
+        "short": cell.factor < rf.FIVEFOLD,
+    }
+
+
+def _refined_table3(campaign: Campaign) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": NAMES[obstacle],
+            "model": model,
+            "told": model == "box",
+            "colour": COLOURS[obstacle],
+            "runs": max(cell.runs for cell in cells if cell is not None),
+            "cells": [_trio(cell) for cell in cells],
+        }
+        for obstacle, model, cells in rf.table3(campaign)
+    ]
+
+
+def _refined_studies(campaign: Campaign) -> list[dict[str, Any]]:
+    return [
+        {
+            "label": row.label,
+            "cells": [
+                {"refined": number(ours), "window": number(theirs), "worse": ours > theirs}
+                for theirs, ours in row.errors.values()
+            ],
+        }
+        for row in rf.studies(campaign)
+    ]
+
+
+def _goal_rows(rows: Iterable[GoalRow]) -> list[dict[str, Any]]:
+    found, group = [], ""
+    for row in rows:
+        names = QUANTITIES if row.by_quantity else tuple(row.values)
+        cells = []
+        for name in names:
+            value = row.values.get(name, math.nan)
+            text = rp.goal_value(value) if math.isfinite(value) or name in row.asked else ""
+            css = "miss" if name in row.missed else "unasked" if row.asked and name not in row.asked else ""
+            cells.append({"name": rp.value_label(name), "text": text, "css": css})
+        found.append({
+            "group": rf.group_title(row.group) if row.group != group else "", "name": row.name,
+            "unit": rp.unit_text(row), "wanted": rp.wanted(row), "by_quantity": row.by_quantity, "cells": cells,
+            "met": row.met,
+        })  # fmt: skip
+        group = row.group
+    return found
+
+
+def _rivals(goals: Goals) -> list[dict[str, Any]]:
+    from ..optimum.rivals import STRENGTHS
+
+    tables = []
+    for noise, rows in rf.rivals(goals).items():
+        ours = next((row.errors for row in rows if row.name == "refined"), dict.fromkeys(QUANTITIES, math.nan))
+        told = []
+        for row in rows:
+            cells = []
+            for name in QUANTITIES:
+                share = row.answers.get(name, math.nan)
+                cells.append({
+                    "text": number(row.errors[name]), "ahead": row.errors[name] < ours[name],
+                    "share": number(share) if 0.0 < share < 99.95 else "",
+                })  # fmt: skip
+            told.append({
+                "name": rp.METHOD_NAMES.get(row.name, row.name), "own": row.name == "refined", "cells": cells,
+                "strength": "" if tables else STRENGTHS.get(row.name, ""),
+            })  # fmt: skip
+        tables.append({"noise": rp.NOISE_NAMES.get(noise, noise), "flights": rows[0].flights, "rows": told,
+                       "strengths": not tables})  # fmt: skip
+    return tables
+
+
+def _goals(goals: Goals) -> dict[str, Any]:
+    parts = (
+        ("early", rp.early(goals)), ("bound", rp.bounds(goals)), ("coverage", [*rp.coverage(goals), *rp.nees(goals)]),
+        ("flags", rp.flags(goals)),
+    )  # fmt: skip
+    return {
+        "verdict": rp.verdict(goals),
+        "missed": rp.missed(goals),
+        "asked": _goal_rows(goals.asked),
+        "others": _goal_rows(row for row in goals.rows if row.met is None),
+        "parts": [{"figure": figure, "sentences": sentences} for figure, sentences in parts],
+        "rivals": _rivals(goals),
+        "rival_heads": [(GOAL_SYMBOLS[name], "°" if name == "orientation" else "m") for name in QUANTITIES],
+        "rival_sentences": rp.rivals(goals),
+    }
+
+
+def _refined(campaign: Campaign) -> dict[str, Any] | None:
+    """The section on the refined method; None if the campaign has none of its rows and there are no goals."""
+    if campaign.refined is None and campaign.goals is None:
+        return None
+    return {
+        "lead": rp.lead(campaign),
+        "table3": _refined_table3(campaign),
+        "table3_sentences": rp.table3(campaign),
+        "fivefold": rf.FIVEFOLD,
+        "short": any(cell.factor < rf.FIVEFOLD for cell in rf.papers(campaign)),
+        "studies": _refined_studies(campaign),
+        "study_sentences": rp.studies(campaign),
+        "goals": _goals(campaign.goals) if campaign.goals else None,
+    }
+
+
 def _version(campaign: Campaign) -> str:
     version = str(campaign.facts.get("version", ""))
     return version if version[:1].isdigit() else ""
@@ -205,6 +324,9 @@ def render_page(campaign: Campaign, figures: list[PageFigure]) -> str:
         condition_effect=prose.condition_effect(campaign),
         line_apart=st.line_apart(cases),
         window_effect=prose.window_effect(campaign),
+        refined=_refined(campaign),
+        real=rp.real_data(campaign),
+        goal_symbols=[GOAL_SYMBOLS[name] for name in QUANTITIES],
         figures=figures,
         marks=VERDICT_MARKS,
     )

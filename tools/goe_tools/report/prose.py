@@ -113,14 +113,14 @@ def advice(cases: Cases) -> list[str]:
         said.append(
             "The paper's conclusion, the disc model for distance and height, the line model for side distance "
             "and size, "
-            f"holds here for {_listed(holds)}, medians over the box-shaped obstacles."
+            f"holds here for {listed(holds)}, medians over the box-shaped obstacles."
         )
     if fails:
-        said.append(f"It does not hold here for {_listed(fails)}.")
+        said.append(f"It does not hold here for {listed(fails)}.")
     return said
 
 
-def _listed(parts: list[str]) -> str:
+def listed(parts: list[str]) -> str:
     return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
 
 
@@ -238,7 +238,7 @@ def _explain(cases: Cases, cause: str, cells: list[st.Cell]) -> list[str]:
             f"as a disc. Runs that are line throughout this part keep closer: {'; '.join(ranges)}."
         ]
     if cause == SHARED_SCALE:
-        ratios = _listed([f"{_cell_name(cell)} {number(_width_by_side(cell))}" for cell in cells])
+        ratios = listed([f"{_cell_name(cell)} {number(_width_by_side(cell))}" for cell in cells])
         return [
             "(5) knows the ratio X₀/W far better than the scale 1/W, so that X₀ and W are wrong by the same share. "
             f"The scatter of W over that of X₀, both in percent, median of the runs: {ratios}. The paper's range "

@@ -8,6 +8,7 @@ from typing import Any
 
 INK, SOFT, FAINT, BAND = "#1c2430", "#5b6673", "#c9d0d8", "#eef2f6"
 PAPER_COLOUR = "#8a94a0"
+WINDOW_COLOUR, REFINED_COLOUR, REFINED_PALE, MISSED = "#8a94a0", "#0072B2", "#8cc0e0", "#a33400"
 
 OBSTACLES = ("cylinder", "building", "truck", "long-truck")
 NAMES = {"cylinder": "Cylinder", "building": "Building", "truck": "Truck", "long-truck": "Long truck"}
@@ -23,6 +24,7 @@ QUANTITY_NAMES = {
     "orientation": "orientation",
 }
 SYMBOLS = {"z0": "Z₀", "x0": "X₀", "width": "W", "length": "L", "height": "H", "orientation": "β"}
+GOAL_SYMBOLS = {"X0": "X₀", "Z0": "Z₀", "orientation": "β", "W": "W", "L": "L", "H": "H"}  # as the goals name them
 UNITS = {"z0": "%", "x0": "%", "width": "%", "length": "%", "height": "m", "orientation": "deg"}
 
 WIDE_IN, NARROW_IN = 9.6, 4.2  # figure widths: shown at about 100 px per inch, wide and on a phone

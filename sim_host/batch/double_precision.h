@@ -1,0 +1,41 @@
+/* Included before everything else (-include), this turns the library and goe_batch into the same filter in float64. For
+ * the host's tests and tools only: it shows how much of an answer is the rounding of floats. SPDX-License-Identifier: MIT
+ *
+ * Constants stay floats, as in the library itself: what differs is the arithmetic and nothing else. The functions of
+ * goe_scalar.h, which look at a float's bits, are given here for doubles, and its include guard is taken. */
+#ifndef GOE_DOUBLE_PRECISION_H
+#define GOE_DOUBLE_PRECISION_H
+
+#include <float.h> /* standard headers come first: they must not see the macros below */
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define GOE_SCALAR_H
+#define GOE_INFINITY_BITS 0x7F800000u
+
+/* Bits of |x| as a float: infinities and NaN stay what they are, and what no float can hold counts as infinite. */
+static inline uint32_t goe_magnitude(double x) {
+    const float single = (float)x;
+    uint32_t bits;
+    memcpy(&bits, &single, sizeof bits);
+    return bits & 0x7FFFFFFFu;
+}
+
+static inline bool goe_within(double x, double limit) { return fabs(x) <= fabs(limit) && isfinite(x); }
+
+static inline double goe_larger(double a, double b) { return a > b ? a : b; }
+
+/* The arrays of goe_batch.h are those of the other build. */
+typedef float goe_batch_float_t;
+#define GOE_BATCH_FLOAT
+
+#define float double
+#define sqrtf sqrt
+#define fabsf fabs
+
+#endif /* GOE_DOUBLE_PRECISION_H */

@@ -1,0 +1,52 @@
+/* The library over whole tracks at once, for callers that are not C: flat arrays in, flat arrays out, settings by name.
+ * SPDX-License-Identifier: MIT */
+#ifndef GOE_BATCH_H
+#define GOE_BATCH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "goe.h"
+
+#define GOE_BATCH_POSE 8    /* north, east, down, height in m; quaternion w, x, y, z */
+#define GOE_BATCH_PIXELS 12 /* u, v in px of left, right, top, base_left, base_near, base_right */
+#define GOE_BATCH_FEATURES 6
+#define GOE_BATCH_LABELS 8   /* goe_batch_label() names them */
+#define GOE_BATCH_NUMBERS 14 /* goe_batch_number() names them */
+
+/* Of the arrays: float, also where double_precision.h makes doubles of the library's floats. */
+#ifndef GOE_BATCH_FLOAT
+typedef float goe_batch_float_t;
+#define GOE_BATCH_FLOAT
+#endif
+
+size_t goe_batch_settings_size(void);
+void goe_batch_default(goe_settings_t *settings);
+
+/* Sets a field by its name in goe_settings_t ("noise.pixel_px", "camera.fx_px", "method", ...); whole numbers and truth
+ * values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
+int goe_batch_set(goe_settings_t *settings, const char *name, double value);
+
+/* Names of the columns of labels and numbers, in order; null after the last. */
+const char *goe_batch_label(int column);
+const char *goe_batch_number(int column);
+
+typedef struct {
+    int images;
+    const int64_t *time_us;            /* [images] */
+    const goe_batch_float_t *pose;     /* [images][GOE_BATCH_POSE] */
+    const goe_batch_float_t *pixel_px; /* [images][GOE_BATCH_PIXELS] */
+    const uint8_t *seen;               /* [images][GOE_BATCH_FEATURES] */
+} goe_batch_track_t;
+
+typedef struct {
+    int32_t *label;                /* [images][GOE_BATCH_LABELS] */
+    goe_batch_float_t *number;     /* [images][GOE_BATCH_NUMBERS] */
+    goe_batch_float_t *covariance; /* [images][GOE_QUANTITIES][GOE_QUANTITIES], m and deg; null: not wanted */
+} goe_batch_answer_t;
+
+/* Runs one estimator over a track. Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS with the field's name. */
+int goe_batch_run(const goe_settings_t *settings, const goe_batch_track_t *track, const goe_batch_answer_t *answer,
+                  const char **bad_field);
+
+#endif /* GOE_BATCH_H */

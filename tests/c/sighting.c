@@ -1,0 +1,111 @@
+/* One image as the refined method sees it. SPDX-License-Identifier: MIT */
+#include "sighting.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STEP 1.0e-6
+#define RESIDUAL_BOUND 2.0e-6 /* rounding of a state that a close range divides by, for derivatives of 1 */
+#define SLOPE_BOUND 2.0e-3    /* of the largest derivative by a state, and the last digits of small differences */
+
+/* Product of rotations about x, y, z. */
+static void rotation_of(double x, double y, double z, double m[9]) {
+    const double cx = cos(x);
+    const double sx = sin(x);
+    const double cy = cos(y);
+    const double sy = sin(y);
+    const double cz = cos(z);
+    const double sz = sin(z);
+    const double r[9] = {cz * cy,
+                         cz * sy * sx - sz * cx,
+                         cz * sy * cx + sz * sx,
+                         sz * cy,
+                         sz * sy * sx + cz * cx,
+                         sz * sy * cx - cz * sx,
+                         -sy,
+                         cy * sx,
+                         cy * cx};
+    memcpy(m, r, sizeof r);
+}
+
+static void any_rotation(check_random_t *random, double most_rad, float m[9]) {
+    double r[9];
+    rotation_of(check_random_between(random, -most_rad, most_rad), check_random_between(random, -most_rad, most_rad),
+                check_random_between(random, -most_rad, most_rad), r);
+    for (int i = 0; i < 9; i++) {
+        m[i] = (float)r[i];
+    }
+}
+
+void sighting_start(sighting_t *sighting, check_random_t *random) {
+    memset(sighting, 0, sizeof *sighting);
+    goe_settings_default(&sighting->settings);
+    sighting->settings.camera.fx_px = 914.0f;
+    sighting->settings.camera.fy_px = 850.0f;
+    sighting->sight.settings = &sighting->settings;
+    sighting->sight.state = sighting->state;
+    sighting->sight.point = sighting->point;
+    sighting->sight.dx_m = 3.0f;
+    sighting->sight.dz_m = 25.0f;
+    sighting->sight.height_m = 20.0f;
+    any_rotation(random, 0.35, sighting->sight.camera_to_axes);
+    any_rotation(random, 3.14, sighting->sight.body_to_axes);
+    for (int i = 0; i < 3; i++) {
+        sighting->state[i] = (float)check_random_between(random, -0.03, 0.03);
+    }
+    sighting_look(sighting);
+}
+
+void sighting_look(sighting_t *sighting) { goe_sight_look(&sighting->sight); }
+
+/* A ray r of the told axes is r + e x r in the true ones, and the other way round with the other sign. */
+void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
+                      double seen[2]) {
+    double e[3];
+    for (int i = 0; i < 3; i++) {
+        const float *row = &sighting->sight.body_to_axes[3 * i];
+        e[i] = (double)row[0] * state[0] + (double)row[1] * state[1] + (double)row[2] * state[2];
+    }
+    const double x = point[0] + e[1] * point[2] - e[2] * point[1];
+    const double y = point[1] + e[2] * point[0] - e[0] * point[2];
+    const double z = point[2] + e[0] * point[1] - e[1] * point[0];
+    seen[0] = x / z;
+    seen[1] = y / z;
+}
+
+void sighting_check_rows(sighting_t *sighting, sighting_predict_t predict) {
+    double state[GOE_STATES];
+    goe_rows_turn(&sighting->rows, &sighting->sight);
+    goe_rows_end(&sighting->rows);
+    for (int i = 0; i < GOE_STATES; i++) {
+        state[i] = (double)sighting->state[i];
+    }
+    for (size_t row = 0; row < sighting->rows.count; row++) {
+        double slope[GOE_STATES];
+        double largest = 1.0;
+        TEST_ASSERT_TRUE(sighting->rows.variance[row] > 0.0f);
+        const double steep =
+            1.0 + fabs((double)sighting->matrix.column[0][row]) + fabs((double)sighting->matrix.column[1][row]);
+        CHECK_CLOSE(RESIDUAL_BOUND * steep, 0.0, sighting->matrix.column[GOE_RESIDUAL][row]);
+        for (int i = 0; i < GOE_STATES; i++) {
+            const double step = i == GOE_Q ? STEP * 1.0e-2 : i == GOE_DH ? STEP * 1.0e2 : STEP;
+            double up[GOE_STATES];
+            double down[GOE_STATES];
+            memcpy(up, state, sizeof up);
+            memcpy(down, state, sizeof down);
+            up[i] += step;
+            down[i] -= step;
+            slope[i] = (predict(sighting, up, row) - predict(sighting, down, row)) / (2.0 * step);
+            largest = fabs(slope[i]) > largest && i != GOE_Q ? fabs(slope[i]) : largest;
+        }
+        for (size_t i = 0; i < GOE_STATES; i++) {
+            const double scale = i == GOE_Q ? 100.0 * largest : largest;
+            CHECK_CLOSE(SLOPE_BOUND * scale, slope[i], goe_rows_get(&sighting->rows, row, i));
+        }
+    }
+    for (size_t row = sighting->rows.count; row < GOE_ROWS_MAX; row++) {
+        for (size_t c = 0; c < GOE_COLUMNS; c++) {
+            TEST_ASSERT_EQUAL_FLOAT(0.0f, sighting->matrix.column[c][row]);
+        }
+    }
+}

@@ -1,0 +1,36 @@
+/* One image as lib/goe_sight.h holds it, made up from numbers, and what it should show, in double.
+ * SPDX-License-Identifier: MIT */
+#ifndef SIGHTING_H
+#define SIGHTING_H
+
+#include "check.h"
+#include "goe_sight.h"
+
+typedef struct {
+    goe_settings_t settings;
+    float state[GOE_STATES];
+    goe_point_t point[GOE_FEATURES];
+    goe_sight_t sight;
+    goe_matrix_t matrix;
+    goe_rows_t rows;
+} sighting_t;
+
+/* A camera turned anyhow within 20 degrees of the state's axes on a body turned anyhow; no point is measured; the state is 0
+ * but for an attitude bias of some degrees; camera 20 m above the ground and moved by (3, 25) m. */
+void sighting_start(sighting_t *sighting, check_random_t *random);
+
+/* What depends on the state, after a change of it. */
+void sighting_look(sighting_t *sighting);
+
+/* Where the point is seen under the attitude bias of `state`: the exact small-rotation model of goe_sight.h in double. */
+void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
+                      double seen[2]);
+
+/* What row `row` predicts for a state; depends on the shape. */
+typedef double (*sighting_predict_t)(const sighting_t *sighting, const double state[GOE_STATES], size_t row);
+
+/* GIVEN points that were measured at the present state THEN the residuals of all rows are 0, the rows' columns are the
+ * derivatives of the prediction, and what belongs to no row is 0. */
+void sighting_check_rows(sighting_t *sighting, sighting_predict_t predict);
+
+#endif

@@ -1,0 +1,390 @@
+/* Boxes by their silhouette alone, and what is no box or no disc. SPDX-License-Identifier: MIT */
+#include "goe_chord.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "scene.h"
+#include "sighting.h"
+
+#define CASES 1000
+#define IMAGES 188 /* half a metre each, to some metres before the obstacle */
+#define RAD_PER_DEG 0.017453292519943295
+#define BOX_BITS 0x3Fu
+
+static check_random_t any;
+static sighting_t sighting;
+static double truth[GOE_STATES];
+static size_t kind[3];
+static size_t expected_rows;
+
+static scene_t scene;
+static goe_settings_t settings;
+static goe_estimator_t estimator;
+static goe_estimate_t estimate;
+static goe_image_t image;
+static unsigned phases; /* bit i: phase i was there */
+static bool suspected;
+
+/* A box on the left whose front and right face are seen until the front turns away; the aircraft passes it closely. */
+void setUp(void) {
+    scene_default(&scene);
+    scene.width_m = 5.0;
+    scene.length_m = 9.0;
+    scene.height_m = 6.0;
+    scene.alpha_deg = 40.0;
+    scene.x0_m = -16.0;
+    scene.speed_mps = 10.0;
+    scene.image_rate_hz = 20.0;
+    scene.wobble_deg = 1.0;
+    scene.top_nearest = true;
+    settings = scene_settings(&scene);
+    phases = 0;
+    suspected = false;
+}
+void tearDown(void) {}
+
+static void make_cylinder(void) {
+    scene.shape = SCENE_CYLINDER;
+    scene.width_m = 6.0;
+    scene.height_m = 30.0;
+}
+
+/* What the scenes are: nothing but the rounding of their numbers is wrong. */
+static void tell_that_nothing_is_wrong(void) {
+    settings.noise.pixel_px = 0.05f;
+    settings.noise.attitude_bias_deg = 1.0e-3f;
+    settings.noise.attitude_white_deg = 1.0e-3f;
+    settings.noise.height_m = 1.0e-2f;
+    settings.noise.velocity_bias_m_s = 0.0f;
+    settings.noise.position_walk_m = 0.0f;
+}
+
+static void start(void) {
+    settings.camera = scene.camera;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+}
+
+static void add_noise(double sigma_px) {
+    goe_pixel_t *const all[] = {&image.left,      &image.right,     &image.top,
+                                &image.base_left, &image.base_near, &image.base_right};
+    for (int i = 0; i < 6; i++) {
+        all[i]->u_px += (float)(sigma_px * check_random_normal(&any));
+        all[i]->v_px += (float)(sigma_px * check_random_normal(&any));
+    }
+}
+
+static void update(void) {
+    (void)goe_update(&estimator, &image, &estimate);
+    phases |= 1u << estimator.filter.phase;
+    suspected = suspected || estimate.suspect;
+}
+
+static void leave_base_out(void) {
+    image.base_left.seen = false;
+    image.base_near.seen = false;
+    image.base_right.seen = false;
+}
+
+static void see_silhouette(int k, double sigma_px) {
+    scene_image(&scene, k, &image, NULL);
+    leave_base_out();
+    add_noise(sigma_px);
+    update();
+}
+
+static bool was_in(goe_phase_t phase) { return (phases >> phase & 1u) != 0u; }
+
+/* --------------------------------------------------------------------------------------------------------------- rows -- */
+
+static double end_z(const double state[GOE_STATES], double side) {
+    return 1.0 - (double)sighting.sight.dz_m * state[GOE_Q] + side * state[GOE_SX];
+}
+
+/* Left, right: the end's x at the measured height, which is taken as known; top: the y of the nearer end, or of the farther one if the highest. */
+static double see(const double state[GOE_STATES], size_t feature) {
+    const double px = state[GOE_A] - (double)sighting.sight.dx_m * state[GOE_Q];
+    const double pz = 1.0 - (double)sighting.sight.dz_m * state[GOE_Q];
+    const double y = (double)sighting.sight.height_m * state[GOE_Q] - state[GOE_E];
+    const bool highest = sighting.settings.top_is_highest && y > 0.0;
+    const bool right_is_near = px * state[GOE_FX] + pz * state[GOE_SX] < 0.0;
+    const double side = (feature == GOE_TOP ? right_is_near != highest : feature == GOE_RIGHT) ? 0.5 : -0.5;
+    const double held = (double)sighting.point[feature].y * end_z(truth, side);
+    const double point[3] = {px + side * state[GOE_FX], feature == GOE_TOP ? y : held, end_z(state, side)};
+    double seen[2];
+    sighting_project(&sighting, state, point, seen);
+    return seen[feature == GOE_TOP ? 1 : 0];
+}
+
+static double predict(const sighting_t *of, const double state[GOE_STATES], size_t row) {
+    (void)of;
+    return see(state, kind[row]);
+}
+
+static void any_chord(void) {
+    sighting_start(&sighting, &any);
+    const double z0_m = check_random_between(&any, 60.0, 200.0);
+    sighting.state[GOE_DH] = (float)check_random_between(&any, -1.0, 1.0);
+    sighting.state[GOE_A] = (float)check_random_between(&any, -0.5, 0.5);
+    sighting.state[GOE_Q] = (float)(1.0 / z0_m);
+    sighting.state[GOE_SX] = (float)(check_random_between(&any, -12.0, 12.0) / z0_m);
+    sighting.state[GOE_FX] = (float)(check_random_between(&any, 1.0, 25.0) / z0_m);
+    sighting.state[GOE_E] = (float)(check_random_between(&any, 2.0, 60.0) / z0_m);
+    sighting.settings.top_is_highest = check_random_bits(&any) % 2u != 0u;
+    for (int i = 0; i < GOE_STATES; i++) {
+        truth[i] = (double)sighting.state[i];
+    }
+    sighting_look(&sighting);
+    expected_rows = 0;
+}
+
+/* The features in the order of the rows. */
+static void measure(size_t feature) {
+    goe_point_t *point = &sighting.point[feature];
+    point->usable = true;
+    point->x = 0.0f;
+    point->y = (float)check_random_between(&any, -0.2, 0.2);
+    *(feature == GOE_TOP ? &point->y : &point->x) = (float)see(truth, feature);
+    kind[expected_rows++] = feature;
+}
+
+/* GIVEN chords of any place, slope and length THEN the residuals are 0 at the truth and the derivatives those of its ends; base
+ * corners give no rows. */
+static void rows_are_those_of_the_ends(void) {
+    any = check_random_start("chords");
+    for (int n = 0; n < CASES; n++) {
+        any_chord();
+        for (size_t feature = GOE_LEFT; feature <= GOE_TOP; feature++) {
+            if (n % 4 == 0 || n % 4 == (int)feature + 1) {
+                measure(feature);
+            }
+        }
+        sighting.point[GOE_BASE_NEAR].usable = true;
+        goe_rows_clear(&sighting.rows, &sighting.matrix);
+        goe_chord_rows(&sighting.sight, &sighting.rows);
+        TEST_ASSERT_EQUAL_size_t(expected_rows, sighting.rows.count);
+        for (size_t row = 0; row < expected_rows; row++) {
+            TEST_ASSERT_EQUAL_size_t(kind[row], sighting.rows.feature[row]);
+        }
+        sighting_check_rows(&sighting, predict);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- boxes -- */
+
+static double half_diagonal(void) { return 0.5 * hypot(scene.width_m, scene.length_m); }
+
+/* The estimate's centre from the box's, in sigmas of each axis; the camera starts at north 0, east 0, heading north. */
+static double center_off(void) {
+    const double s = sin(scene.alpha_deg * RAD_PER_DEG);
+    const double c = cos(scene.alpha_deg * RAD_PER_DEG);
+    const double north = scene.z0_m + 0.5 * scene.length_m * c - (double)estimate.center_north_m;
+    const double east = scene.x0_m + 0.5 * scene.length_m * s - (double)estimate.center_east_m;
+    return fmax(fabs(north) / (double)estimate.sigma.center_north_m, fabs(east) / (double)estimate.sigma.center_east_m);
+}
+
+/* GIVEN a box without base corners WHEN two of its faces are seen THEN it is told as a disc about its middle. */
+static void check_chord(void) {
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+    TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid & (GOE_HAS_LENGTH | GOE_HAS_ORIENTATION));
+    TEST_ASSERT_TRUE(estimate.width_m < 2.0f * (float)half_diagonal());
+    TEST_ASSERT_TRUE((double)estimate.sigma.center_north_m >= 0.25 * (double)estimate.width_m);
+    TEST_ASSERT_TRUE(center_off() < 1.0);
+}
+
+static void check_box(double share) {
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
+    TEST_ASSERT_EQUAL_HEX32(BOX_BITS, estimate.valid);
+    CHECK_CLOSE(90.0 * share, scene.alpha_deg, estimate.orientation_deg);
+    CHECK_CLOSE(scene.width_m * share, scene.width_m, estimate.width_m);
+    CHECK_CLOSE(scene.length_m * share, scene.length_m, estimate.length_m);
+    CHECK_CLOSE(scene.z0_m * share, scene.z0_m, estimate.z0_m);
+    CHECK_CLOSE(scene.z0_m * share, scene.x0_m, estimate.x0_m);
+    CHECK_CLOSE(scene.height_m * share, scene.height_m, estimate.height_m);
+    TEST_ASSERT_TRUE(center_off() < 2.0);
+}
+
+/* ... and WHEN its front turns away THEN as the box that it is. */
+static void a_box_comes_out_of_its_silhouette(void) {
+    static const double alpha_deg[] = {40.0, 42.0, 44.0};
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        scene.alpha_deg = alpha_deg[i];
+        tell_that_nothing_is_wrong();
+        start();
+        for (int k = 0; k < IMAGES; k++) {
+            see_silhouette(k, 0.0);
+            TEST_ASSERT_FALSE(estimate.suspect);
+            if (estimator.filter.phase == GOE_PHASE_CHORD && estimator.filter.since > 20 && estimate.fresh &&
+                !goe_chord_is_left(&estimator.filter)) {
+                check_chord();
+            }
+        }
+        TEST_ASSERT_TRUE(was_in(GOE_PHASE_CHORD));
+        check_box(2.0e-3);
+    }
+}
+
+/* GIVEN errors as settings tell them THEN what is told of the box holds within its sigmas. */
+static void noise_does_not_hide_the_box(void) {
+    any = check_random_start("silhouettes");
+    settings.noise.attitude_bias_deg = 1.0e-3f;
+    settings.noise.attitude_white_deg = 1.0e-3f;
+    start();
+    for (int k = 0; k < IMAGES; k++) {
+        see_silhouette(k, 0.5);
+    }
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
+    CHECK_CLOSE(3.0 * (double)estimate.sigma.z0_m, scene.z0_m, estimate.z0_m);
+    if (estimate.valid & GOE_HAS_ORIENTATION) {
+        CHECK_CLOSE(3.0 * (double)estimate.sigma.orientation_deg, scene.alpha_deg, estimate.orientation_deg);
+    }
+    if (estimate.valid & GOE_HAS_WIDTH) {
+        CHECK_CLOSE(3.0 * (double)estimate.sigma.width_m, scene.width_m, estimate.width_m);
+    }
+}
+
+/* GIVEN a flight WHEN it is mirrored THEN the same models come at the same images, and the box is the mirrored one. */
+static void left_and_right_are_alike(void) {
+    unsigned char phase[IMAGES];
+    scene.camera.cx_px = 0.0f;
+    tell_that_nothing_is_wrong();
+    start();
+    for (int k = 0; k < IMAGES; k++) {
+        see_silhouette(k, 0.0);
+        phase[k] = estimator.filter.phase;
+    }
+    const goe_estimate_t plain = estimate;
+    scene = scene_mirrored(&scene);
+    start();
+    for (int k = 0; k < IMAGES; k++) {
+        see_silhouette(k, 0.0);
+        TEST_ASSERT_EQUAL_UINT8(phase[k], estimator.filter.phase);
+    }
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, plain.model);
+    TEST_ASSERT_EQUAL_HEX32(plain.valid, estimate.valid);
+    CHECK_CLOSE(2.0e-3, -plain.x0_m, estimate.x0_m);
+    CHECK_CLOSE(2.0e-3, plain.z0_m, estimate.z0_m);
+    CHECK_CLOSE(2.0e-2, -plain.orientation_deg, estimate.orientation_deg);
+    CHECK_CLOSE(2.0e-3, plain.width_m, estimate.width_m);
+    CHECK_CLOSE(2.0e-3, plain.length_m, estimate.length_m);
+    CHECK_CLOSE(1.0e-2 * (double)plain.sigma.width_m, plain.sigma.width_m, estimate.sigma.width_m);
+}
+
+/* GIVEN a box that starts by its silhouette WHEN its base comes into view THEN it becomes a box by its corners. */
+static void base_corners_end_the_chord(void) {
+    tell_that_nothing_is_wrong();
+    start();
+    for (int k = 0; k < 60; k++) {
+        see_silhouette(k, 0.0);
+    }
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_CHORD, estimator.filter.phase);
+    for (int k = 60; k < 100; k++) {
+        scene_image(&scene, k, &image, NULL);
+        update();
+    }
+    TEST_ASSERT_FALSE(estimator.filter.outline);
+    check_box(1.0e-3);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- cylinders -- */
+
+/* GIVEN cylinders, noise-free and noisy THEN they stay discs and are not suspect, also if a disc was asked for. */
+static void a_cylinder_stays_a_disc(void) {
+    any = check_random_start("cylinders");
+    for (int i = 0; i < 12; i++) {
+        setUp();
+        make_cylinder();
+        scene.width_m = 2.0 + 2.0 * i;
+        scene.x0_m = i % 2 ? -25.0 : 30.0;
+        scene.path = (scene_path_t)(i % 3);
+        settings.model = i < 6 ? GOE_MODEL_AUTO : GOE_MODEL_DISC;
+        start();
+        for (int k = 0; k < 150; k++) {
+            see_silhouette(k, i % 4 < 2 ? 0.0 : 0.5);
+            TEST_ASSERT_FALSE(estimate.suspect);
+        }
+        TEST_ASSERT_FALSE(was_in(GOE_PHASE_CHORD) || was_in(GOE_PHASE_BOX));
+        TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+        CHECK_CLOSE(3.0 * (double)estimate.sigma.width_m, scene.width_m, estimate.width_m);
+        CHECK_CLOSE(3.0 * (double)estimate.sigma.z0_m, scene.z0_m, estimate.z0_m);
+    }
+}
+
+/* GIVEN a long box WHEN a disc is asked for THEN it is told, and told as suspect. */
+static void a_disc_by_force_is_suspect(void) {
+    any = check_random_start("force");
+    scene.length_m = 18.0;
+    settings.model = GOE_MODEL_DISC;
+    start();
+    for (int k = 0; k < 120; k++) {
+        see_silhouette(k, 0.3);
+    }
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+    TEST_ASSERT_TRUE(estimate.suspect);
+}
+
+/* ------------------------------------------------------------------------------------------------------ base corners -- */
+
+/* What a detector without a sense of shape tells of a cylinder: the lower corners of its bounding box, and the point between. */
+static void fake_base(int k) {
+    scene_truth_t seen;
+    scene_image(&scene, k, &image, &seen);
+    const double radius = 0.5 * scene.width_m;
+    const double range = hypot(seen.x_m, seen.z_m);
+    const double nearest = seen.z_m * (1.0 - radius / range);
+    const float v =
+        (float)((double)scene.camera.cy_px + (double)scene.camera.fy_px * seen.height_above_ground_m / nearest);
+    image.base_left = image.left;
+    image.base_right = image.right;
+    image.base_near = image.left;
+    image.base_near.u_px = (float)((double)scene.camera.cx_px + (double)scene.camera.fx_px * seen.x_m / seen.z_m);
+    image.base_left.v_px = v;
+    image.base_right.v_px = v;
+    image.base_near.v_px = v;
+}
+
+/* GIVEN a cylinder with base corners that it does not have THEN the answer is suspect sooner or later. */
+static void false_base_corners_are_found_out(void) {
+    any = check_random_start("false corners");
+    make_cylinder();
+    scene.width_m = 12.0;
+    scene.wobble_deg = 0.0;
+    start();
+    for (int k = 0; k < 170; k++) {
+        fake_base(k);
+        add_noise(0.3);
+        update();
+    }
+    TEST_ASSERT_TRUE(was_in(GOE_PHASE_BOX));
+    TEST_ASSERT_TRUE(suspected);
+}
+
+/* GIVEN noise larger than told by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
+static void noise_does_not_make_corners_false(void) {
+    any = check_random_start("large noise");
+    start();
+    for (int k = 0; k < 170; k++) {
+        scene_image(&scene, k, &image, NULL);
+        add_noise(1.0);
+        update();
+    }
+    TEST_ASSERT_TRUE(suspected);
+    TEST_ASSERT_FALSE(estimator.filter.base_refused);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(rows_are_those_of_the_ends);
+    RUN_TEST(a_box_comes_out_of_its_silhouette);
+    RUN_TEST(noise_does_not_hide_the_box);
+    RUN_TEST(left_and_right_are_alike);
+    RUN_TEST(base_corners_end_the_chord);
+    RUN_TEST(a_cylinder_stays_a_disc);
+    RUN_TEST(a_disc_by_force_is_suspect);
+    RUN_TEST(false_base_corners_are_found_out);
+    RUN_TEST(noise_does_not_make_corners_false);
+    return UNITY_END();
+}

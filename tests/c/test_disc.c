@@ -1,0 +1,201 @@
+/* Rows of a disc against its exact tangents in double. SPDX-License-Identifier: MIT */
+#include "goe_disc.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "sighting.h"
+
+#define CASES 2000
+
+static check_random_t any;
+static sighting_t sighting;
+static double truth[GOE_STATES];
+static size_t kind[GOE_ROWS_MAX]; /* feature of each row that should come */
+static size_t expected_rows;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* ---------------------------------------------------------------------------------------------------------- reference -- */
+
+/* Seen coordinate of a feature: left, right: the tangent's azimuth; top: the rim's nearest point, or the farthest if it is
+ * the highest; base corners: a point of the centre's range on the ground. */
+static double see(const double state[GOE_STATES], size_t feature) {
+    const double h = (double)sighting.sight.height_m;
+    const double px = state[GOE_A] - (double)sighting.sight.dx_m * state[GOE_Q];
+    const double pz = 1.0 - (double)sighting.sight.dz_m * state[GOE_Q];
+    const double distance = sqrt(px * px + pz * pz);
+    const double radius = 0.5 * state[GOE_FX];
+    double seen[2];
+    if (feature == GOE_LEFT || feature == GOE_RIGHT) {
+        const double half = asin(radius / distance);
+        const double azimuth = atan2(px, pz) + (feature == GOE_LEFT ? -half : half);
+        /* without base corners: half the skew deeper */
+        const double half_skew = sighting.sight.base ? 0.0 : (feature == GOE_LEFT ? -0.5 : 0.5) * state[GOE_SX];
+        const double ray[3] = {tan(azimuth) * (1.0 - half_skew / pz), (double)sighting.point[feature].y, 1.0};
+        sighting_project(&sighting, state, ray, seen);
+        return seen[0];
+    }
+    if (feature == GOE_TOP) {
+        const double y = h * state[GOE_Q] - state[GOE_E];
+        const bool farthest = sighting.settings.top_is_highest && y > 0.0;
+        const double share = (distance + (farthest ? radius : -radius)) / distance;
+        const double rim[3] = {px * share, y, pz * share};
+        sighting_project(&sighting, state, rim, seen);
+        return seen[1];
+    }
+    const double ground[3] = {px, (h + state[GOE_DH]) * state[GOE_Q], pz};
+    sighting_project(&sighting, state, ground, seen);
+    return seen[1];
+}
+
+static double predict(const sighting_t *of, const double state[GOE_STATES], size_t row) {
+    (void)of;
+    return see(state, kind[row]);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- input -- */
+
+static void any_disc(void) {
+    sighting_start(&sighting, &any);
+    const double z0_m = check_random_between(&any, 60.0, 200.0);
+    sighting.state[GOE_DH] = (float)check_random_between(&any, -1.0, 1.0);
+    sighting.state[GOE_A] = (float)check_random_between(&any, -0.5, 0.5);
+    sighting.state[GOE_Q] = (float)(1.0 / z0_m);
+    sighting.state[GOE_FX] = (float)(check_random_between(&any, 0.5, 25.0) / z0_m);
+    sighting.state[GOE_E] = (float)(check_random_between(&any, 2.0, 60.0) / z0_m);
+    sighting.settings.top_is_highest = check_random_bits(&any) % 2u != 0u;
+    for (int i = 0; i < GOE_STATES; i++) {
+        truth[i] = (double)sighting.state[i];
+    }
+    sighting_look(&sighting);
+    expected_rows = 0;
+}
+
+static void measure(size_t feature) {
+    goe_point_t *point = &sighting.point[feature];
+    point->usable = true;
+    point->x = 0.0f;
+    point->y = (float)check_random_between(&any, -0.2, 0.2);
+    if (feature == GOE_LEFT || feature == GOE_RIGHT) {
+        point->x = (float)see(truth, feature);
+    } else {
+        point->y = (float)see(truth, feature);
+    }
+    kind[expected_rows++] = feature;
+}
+
+static void check_rows(void) {
+    sighting.sight.base = sighting.point[GOE_BASE_LEFT].usable && sighting.point[GOE_BASE_RIGHT].usable;
+    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    goe_disc_rows(&sighting.sight, &sighting.rows);
+    TEST_ASSERT_EQUAL_size_t(expected_rows, sighting.rows.count);
+    for (size_t row = 0; row < expected_rows; row++) {
+        TEST_ASSERT_EQUAL_size_t(kind[row], sighting.rows.feature[row]);
+    }
+    sighting_check_rows(&sighting, predict);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- tests -- */
+
+/* GIVEN discs of any size and place, with the roof below or above the camera THEN residuals are 0 at the truth and all
+ * derivatives are those of tangents and rim; with base corners, of the ground below the centre, too. */
+static void rows_are_those_of_tangents_and_rim(void) {
+    any = check_random_start("discs");
+    for (int n = 0; n < CASES; n++) {
+        any_disc();
+        measure(GOE_LEFT);
+        measure(GOE_RIGHT);
+        measure(GOE_TOP);
+        if (n % 2) {
+            measure(GOE_BASE_LEFT);
+            measure(GOE_BASE_RIGHT);
+        }
+        check_rows();
+    }
+}
+
+static void each_feature_alone_gives_its_row(void) {
+    static const size_t features[] = {GOE_LEFT, GOE_RIGHT, GOE_TOP};
+    any = check_random_start("alone");
+    for (int n = 0; n < 300; n++) {
+        any_disc();
+        measure(features[n % 3]);
+        check_rows();
+    }
+}
+
+/* GIVEN a noise model of the shape or of the size THEN it is added to the rows' variance as a share of the width. */
+static void shape_and_size_noise_are_shares_of_the_width(void) {
+    float variance[2][3];
+    any = check_random_start("variance");
+    any_disc();
+    measure(GOE_LEFT);
+    measure(GOE_RIGHT);
+    measure(GOE_TOP);
+    for (int i = 0; i < 2; i++) {
+        sighting.settings.noise.shape_share = i ? 0.12f : 0.0f;
+        sighting.settings.noise.size_share = i ? 0.05f : 0.0f;
+        goe_rows_clear(&sighting.rows, &sighting.matrix);
+        goe_disc_rows(&sighting.sight, &sighting.rows);
+        memcpy(variance[i], sighting.rows.variance, sizeof variance[i]);
+    }
+    const double width = (double)sighting.point[GOE_RIGHT].x - (double)sighting.point[GOE_LEFT].x;
+    for (int row = 0; row < 3; row++) {
+        const double added = 0.0169 * width * width; /* 0.12^2 + 0.05^2 */
+        CHECK_CLOSE(1.0e-4 * added, added, (double)variance[1][row] - (double)variance[0][row]);
+    }
+}
+
+/* GIVEN a disc of the typical size, noise-free and seen from a level camera WHEN the filter starts on it THEN the state is the
+ * truth; of another size, only the direction is. */
+static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
+    any = check_random_start("start");
+    for (int n = 0; n < 200; n++) {
+        goe_triangle_t root;
+        float state[GOE_STATES];
+        any_disc();
+        memset(sighting.state, 0, 3 * sizeof sighting.state[0]);
+        memset(truth, 0, 3 * sizeof truth[0]);
+        sighting_look(&sighting);
+        sighting.settings.typical_size_m = sighting.state[GOE_FX] / sighting.state[GOE_Q];
+        measure(GOE_LEFT);
+        measure(GOE_RIGHT);
+        measure(GOE_TOP);
+        sighting.sight.base = false;
+        TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, state, &root));
+        const double px = truth[GOE_A] - 3.0 * truth[GOE_Q]; /* chord and diameter differ by their ratio squared */
+        const double pz = 1.0 - 25.0 * truth[GOE_Q];
+        const double narrow = truth[GOE_FX] * truth[GOE_FX] / (px * px + pz * pz);
+        CHECK_CLOSE(0.01 + 2.0 * narrow, 0.0, (double)state[GOE_Q] / truth[GOE_Q] - 1.0);
+        CHECK_CLOSE(0.01 + 2.0 * narrow, truth[GOE_A], state[GOE_A]);
+        for (size_t i = 0; i < GOE_STATES; i++) {
+            TEST_ASSERT_TRUE(*goe_root_at(&root, i, i) > 0.0f);
+        }
+    }
+}
+
+static void no_width_is_no_start(void) {
+    goe_triangle_t root;
+    float state[GOE_STATES];
+    any = check_random_start("no start");
+    any_disc();
+    sighting.sight.base = false;
+    measure(GOE_LEFT);
+    TEST_ASSERT_FALSE(goe_disc_start(&sighting.sight, state, &root));
+    measure(GOE_RIGHT);
+    sighting.point[GOE_RIGHT].x = sighting.point[GOE_LEFT].x;
+    TEST_ASSERT_FALSE(goe_disc_start(&sighting.sight, state, &root));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(rows_are_those_of_tangents_and_rim);
+    RUN_TEST(each_feature_alone_gives_its_row);
+    RUN_TEST(shape_and_size_noise_are_shares_of_the_width);
+    RUN_TEST(a_first_guess_has_the_right_direction_and_the_typical_size);
+    RUN_TEST(no_width_is_no_start);
+    return UNITY_END();
+}

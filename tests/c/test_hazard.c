@@ -1,0 +1,687 @@
+/* Closest approach: against brute force in double, and its sigmas and probability against random truths.
+ * SPDX-License-Identifier: MIT
+ *
+ * The answers that goe_hazard works on are written into the estimator, so that every number of them is known. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "check.h"
+#include "goe_refined.h"
+#include "goe_sight.h"
+#include "goe_told.h"
+#include "scene.h"
+
+#define RAD_PER_DEG 0.017453292519943295
+#define SAMPLES 8000
+
+/* An obstacle as the reference sees it: relative to the camera, T axes. */
+typedef struct {
+    bool box;
+    double x_m, z_m, width_m, length_m, orientation_deg, height_m;
+} obstacle_t;
+
+typedef struct {
+    double time_s, miss_m, clearance_m;
+} truth_t;
+
+static goe_estimator_t estimator;
+static check_random_t any;
+
+static void start(void) {
+    goe_settings_t settings;
+    goe_settings_default(&settings);
+    settings.camera.fx_px = settings.camera.fy_px = 900.0f;
+    settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.method = GOE_METHOD_WINDOW;
+    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    estimator.heading_cos = 1.0f;
+    estimator.height_m = 50.0f;
+}
+
+void setUp(void) { start(); }
+void tearDown(void) {}
+
+/* ---------------------------------------------------------------------------------------------------------- the answer -- */
+
+static void tell(goe_estimate_t *e, const obstacle_t *o) {
+    memset(e, 0, sizeof *e);
+    e->model = o->box ? GOE_MODEL_LINE : GOE_MODEL_DISC;
+    e->method = GOE_METHOD_WINDOW;
+    e->fresh = true;
+    e->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT;
+    e->x0_m = e->x_m = (float)o->x_m;
+    e->z0_m = e->z_m = (float)o->z_m;
+    e->width_m = (float)o->width_m;
+    e->height_m = (float)o->height_m;
+    if (o->box) {
+        e->valid |= GOE_HAS_ORIENTATION | GOE_HAS_LENGTH;
+        e->length_m = (float)o->length_m;
+        e->orientation_deg = (float)o->orientation_deg;
+        e->length_axis[0] = (float)sin(o->orientation_deg * RAD_PER_DEG);
+        e->length_axis[1] = (float)cos(o->orientation_deg * RAD_PER_DEG);
+        e->width_axis[0] = e->length_axis[1];
+        e->width_axis[1] = -e->length_axis[0];
+    }
+}
+
+static goe_hazard_t foresee(const goe_plan_t *plan) {
+    goe_hazard_t hazard;
+    const goe_estimator_t before = estimator;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, plan, &hazard));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
+    return hazard;
+}
+
+/* heading north: T's X is east, its Z north */
+static goe_plan_t plan_of(double z_m_s, double x_m_s, double climb_m_s) {
+    const goe_plan_t plan = {{(float)z_m_s, (float)x_m_s, (float)-climb_m_s}, 5.0f, 10.0f};
+    return plan;
+}
+
+/* -------------------------------------------------------------------------------------------------------- the reference -- */
+
+static double distance_to_segment(double px, double pz, const double a[2], const double b[2]) {
+    const double dx = b[0] - a[0];
+    const double dz = b[1] - a[1];
+    const double norm2 = dx * dx + dz * dz;
+    double t = norm2 > 0.0 ? ((px - a[0]) * dx + (pz - a[1]) * dz) / norm2 : 0.0;
+    t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+    return hypot(px - a[0] - t * dx, pz - a[1] - t * dz);
+}
+
+static void corners(const obstacle_t *o, double corner[4][2]) {
+    const double s = sin(o->orientation_deg * RAD_PER_DEG);
+    const double c = cos(o->orientation_deg * RAD_PER_DEG);
+    static const double across[4] = {-0.5, -0.5, 0.5, 0.5};
+    static const double along[4] = {0.0, 1.0, 1.0, 0.0};
+    for (int i = 0; i < 4; i++) {
+        corner[i][0] = o->x_m + across[i] * o->width_m * c + along[i] * o->length_m * s;
+        corner[i][1] = o->z_m - across[i] * o->width_m * s + along[i] * o->length_m * c;
+    }
+}
+
+/* Horizontal distance of a point from the outline, 0 inside. */
+static double distance_from(const obstacle_t *o, double px, double pz) {
+    double corner[4][2];
+    double least = 1e30;
+    bool inside = true;
+    if (!o->box) {
+        return fmax(hypot(px - o->x_m, pz - o->z_m) - 0.5 * o->width_m, 0.0);
+    }
+    corners(o, corner);
+    for (int i = 0; i < 4; i++) {
+        const double *a = corner[i];
+        const double *b = corner[(i + 1) % 4];
+        inside = inside && (b[0] - a[0]) * (pz - a[1]) - (b[1] - a[1]) * (px - a[0]) <= 0.0;
+        least = fmin(least, distance_to_segment(px, pz, a, b));
+    }
+    return inside ? 0.0 : least;
+}
+
+static double distance_at(const obstacle_t *o, const goe_plan_t *plan, double t) {
+    return distance_from(o, t * (double)plan->velocity_ned_m_s[1], t * (double)plan->velocity_ned_m_s[0]);
+}
+
+/* End of the flight over the outline next to `in`, which is over it; `out` is not. */
+static double outline_end(const obstacle_t *o, const goe_plan_t *plan, double out, double in) {
+    for (int i = 0; i < 35; i++) {
+        const double t = 0.5 * (out + in);
+        if (distance_at(o, plan, t) > 0.0) {
+            out = t;
+        } else {
+            in = t;
+        }
+    }
+    return in;
+}
+
+/* The distance is convex in time: nested intervals, then the ends of the crossing. */
+static truth_t truth_of(const obstacle_t *o, const goe_plan_t *plan) {
+    const double climb = -(double)plan->velocity_ned_m_s[2];
+    const double longest = 400.0;
+    double low = 0.0;
+    double high = longest;
+    double over = distance_at(o, plan, 0.0) > 0.0 ? -1.0 : 0.0; /* a time over the outline */
+    for (int i = 0; i < 60 && over < 0.0; i++) {
+        const double a = low + (high - low) / 3.0;
+        const double b = high - (high - low) / 3.0;
+        const double at_a = distance_at(o, plan, a);
+        const double at_b = distance_at(o, plan, b);
+        over = at_a > 0.0 ? at_b > 0.0 ? -1.0 : b : a;
+        if (at_a <= at_b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    truth_t truth = {low, distance_at(o, plan, low), 0.0};
+    double lowest = truth.time_s;
+    if (over >= 0.0) {
+        truth.miss_m = 0.0;
+        truth.time_s = over > 0.0 ? outline_end(o, plan, 0.0, over) : 0.0;
+        lowest = climb < 0.0 ? outline_end(o, plan, longest, over) : truth.time_s;
+    }
+    truth.clearance_m = (double)estimator.height_m + climb * lowest - o->height_m;
+    return truth;
+}
+
+static obstacle_t random_obstacle(check_random_t *random, bool box) {
+    const obstacle_t o = {box,
+                          check_random_between(random, -60.0, 60.0),
+                          check_random_between(random, -80.0, 200.0),
+                          check_random_between(random, 1.0, 40.0),
+                          check_random_between(random, 1.0, 60.0),
+                          check_random_between(random, -89.9, 90.0),
+                          check_random_between(random, 2.0, 80.0)};
+    return o;
+}
+
+static void any_obstacle_is_met_as_brute_force_says(void) {
+    check_random_t random = check_random_start("closest approach");
+    double worst_time = 0.0;
+    double worst_miss = 0.0;
+    double worst_clearance = 0.0;
+    for (int i = 0; i < 20000; i++) {
+        const obstacle_t o = random_obstacle(&random, i % 3 != 0);
+        const goe_plan_t plan =
+            plan_of(check_random_between(&random, -30.0, 30.0), check_random_between(&random, -30.0, 30.0),
+                    check_random_between(&random, -4.0, 4.0));
+        const double speed = hypot((double)plan.velocity_ned_m_s[0], (double)plan.velocity_ned_m_s[1]);
+        const truth_t truth = truth_of(&o, &plan);
+        if (speed < 1.0 || (truth.miss_m > 0.0 && truth.miss_m < 0.01)) {
+            continue; /* a graze: rounding decides on which side, and the time jumps from a corner to an entry */
+        }
+        tell(&estimator.estimate, &o);
+        const goe_hazard_t hazard = foresee(&plan);
+        check_worst(&worst_miss, (double)hazard.miss_m - truth.miss_m);
+        check_worst(&worst_time, ((double)hazard.time_s - truth.time_s) * speed);
+        check_worst(&worst_clearance, (double)hazard.clearance_m - truth.clearance_m);
+    }
+    check_report("worst miss, m", worst_miss);
+    check_report("worst time times speed, m", worst_time);
+    check_report("worst clearance, m", worst_clearance);
+    TEST_ASSERT_TRUE(worst_miss < 1e-3);
+    TEST_ASSERT_TRUE(worst_time < 0.05);
+    TEST_ASSERT_TRUE(worst_clearance < 0.05);
+}
+
+/* ------------------------------------------------------------------------------------------------------- known places -- */
+
+static void a_chimney_ahead_is_reached_at_its_near_side(void) {
+    const obstacle_t chimney = {false, 0.0, 103.0, 6.0, 0.0, 0.0, 60.0};
+    const goe_plan_t plan = plan_of(20.0, 0.0, 1.0);
+    tell(&estimator.estimate, &chimney);
+    const goe_hazard_t hazard = foresee(&plan);
+    CHECK_CLOSE(1e-5, 5.0, hazard.time_s);
+    CHECK_CLOSE(0.0, 0.0, hazard.miss_m);
+    CHECK_CLOSE(1e-4, 50.0 + 5.0 - 60.0, hazard.clearance_m);
+    TEST_ASSERT_TRUE(hazard.has_clearance);
+    CHECK_CLOSE(0.0, 1.0, hazard.violation); /* no sigma, no doubt */
+}
+
+static void turning_t_turns_the_answer_along(void) {
+    /* GIVEN T at 30 degrees from north THEN the same flight relative to T meets the same obstacle */
+    const obstacle_t o = {true, -15.0, 80.0, 8.0, 20.0, 25.0, 12.0};
+    goe_plan_t plan = plan_of(25.0, 3.0, -1.0);
+    tell(&estimator.estimate, &o);
+    const goe_hazard_t before = foresee(&plan);
+    const double angle = 30.0 * RAD_PER_DEG;
+    estimator.heading_cos = (float)cos(angle);
+    estimator.heading_sin = (float)sin(angle);
+    plan.velocity_ned_m_s[0] = (float)(25.0 * cos(angle) - 3.0 * sin(angle));
+    plan.velocity_ned_m_s[1] = (float)(25.0 * sin(angle) + 3.0 * cos(angle));
+    const goe_hazard_t after = foresee(&plan);
+    CHECK_CLOSE(1e-4, before.time_s, after.time_s);
+    CHECK_CLOSE(1e-4, before.miss_m, after.miss_m);
+    CHECK_CLOSE(1e-4, before.clearance_m, after.clearance_m);
+}
+
+static void what_lies_behind_is_as_far_as_now(void) {
+    const obstacle_t behind = {true, 10.0, -60.0, 8.0, 20.0, 0.0, 12.0};
+    const goe_plan_t plan = plan_of(25.0, 0.0, 2.0);
+    tell(&estimator.estimate, &behind);
+    estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 1.0f;
+    const goe_hazard_t hazard = foresee(&plan);
+    CHECK_CLOSE(0.0, 0.0, hazard.time_s);
+    CHECK_CLOSE(0.0, 0.0, hazard.time_sd_s);
+    CHECK_CLOSE(1e-4, hypot(6.0, 40.0), hazard.miss_m);
+    CHECK_CLOSE(1e-4, 1.0, hazard.miss_sd_m);
+    CHECK_CLOSE(1e-5, 38.0, hazard.clearance_m);
+    CHECK_CLOSE(1e-6, 0.0, hazard.violation);
+}
+
+static void over_the_roof_the_distance_is_none(void) {
+    const obstacle_t o = {true, 0.0, -10.0, 20.0, 30.0, 0.0, 45.0};
+    const goe_plan_t level = plan_of(10.0, 0.0, 0.0);
+    const goe_plan_t descending = plan_of(10.0, 0.0, -2.0);
+    tell(&estimator.estimate, &o);
+    const goe_hazard_t now = foresee(&level);
+    CHECK_CLOSE(0.0, 0.0, now.time_s);
+    CHECK_CLOSE(0.0, 0.0, now.miss_m);
+    CHECK_CLOSE(1e-5, 5.0, now.clearance_m);
+    CHECK_CLOSE(0.0, 1.0, now.violation);
+    /* AND descending, the roof's far edge counts, 20 m on */
+    CHECK_CLOSE(1e-4, 5.0 - 4.0, foresee(&descending).clearance_m);
+}
+
+static void standing_still_the_distance_is_that_of_now(void) {
+    const obstacle_t boxes[2] = {{true, 30.0, 0.0, 20.0, 40.0, 0.0, 20.0}, {false, 26.0, 0.0, 12.0, 0.0, 0.0, 20.0}};
+    const goe_plan_t still = plan_of(0.0, 0.0, -3.0);
+    for (int i = 0; i < 2; i++) {
+        tell(&estimator.estimate, &boxes[i]);
+        estimator.estimate.sigma.x0_m = 10.0f;
+        estimator.estimate.sigma.height_m = 10.0f;
+        const goe_hazard_t hazard = foresee(&still);
+        CHECK_CLOSE(0.0, 0.0, hazard.time_s);
+        CHECK_CLOSE(1e-5, 20.0, hazard.miss_m);
+        CHECK_CLOSE(1e-5, 10.0, hazard.miss_sd_m);
+        CHECK_CLOSE(1e-5, 30.0, hazard.clearance_m);
+        CHECK_CLOSE(2e-6, 0.0668072 * 0.0227501, hazard.violation); /* 1.5 and 2 sigma off */
+    }
+}
+
+static void a_camera_in_the_middle_of_a_disc_has_an_answer(void) {
+    const obstacle_t o = {false, 0.0, 0.0, 10.0, 0.0, 0.0, 45.0};
+    const goe_plan_t plans[2] = {plan_of(0.0, 0.0, 0.0), plan_of(0.0, 15.0, 0.0)};
+    tell(&estimator.estimate, &o);
+    for (int i = 0; i < 2; i++) {
+        const goe_hazard_t hazard = foresee(&plans[i]);
+        CHECK_CLOSE(0.0, 0.0, hazard.miss_m);
+        CHECK_CLOSE(0.0, 1.0, hazard.violation);
+    }
+}
+
+static void what_is_not_known_leaves_a_circle_or_a_point(void) {
+    const obstacle_t o = {true, 20.0, 100.0, 10.0, 40.0, 0.0, 12.0};
+    const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
+    tell(&estimator.estimate, &o);
+    estimator.estimate.valid &= ~(GOE_HAS_LENGTH | GOE_HAS_HEIGHT);
+    estimator.estimate.length_m = 0.0f;
+    estimator.estimate.height_m = 0.0f;
+    const goe_hazard_t circle = foresee(&plan);
+    CHECK_CLOSE(1e-4, 15.0, circle.miss_m);
+    CHECK_CLOSE(1e-5, 5.0, circle.time_s);
+    TEST_ASSERT_FALSE(circle.has_clearance);
+    CHECK_CLOSE(0.0, 0.0, circle.clearance_m);
+    CHECK_CLOSE(0.0, 0.0, circle.clearance_sd_m);
+    estimator.estimate.valid &= ~GOE_HAS_WIDTH;
+    estimator.estimate.width_m = 0.0f;
+    CHECK_CLOSE(1e-4, 20.0, foresee(&plan).miss_m);
+}
+
+static void without_a_height_the_margin_alone_counts(void) {
+    const obstacle_t o = {false, 14.0, 100.0, 10.0, 0.0, 0.0, 12.0};
+    const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
+    tell(&estimator.estimate, &o);
+    estimator.estimate.sigma.x0_m = 4.0f;
+    CHECK_CLOSE(1e-6, 0.0, foresee(&plan).violation); /* 28 m above what asks for 10 */
+    estimator.estimate.valid &= ~GOE_HAS_HEIGHT;
+    CHECK_CLOSE(2e-6, 0.1586553, foresee(&plan).violation); /* 9 m off, 5 wanted: 1 sigma */
+}
+
+/* ------------------------------------------------------------------------------------------------ against random truths -- */
+
+typedef struct {
+    double sum, squares;
+} spread_t;
+
+static void spread_add(spread_t *s, double x) {
+    s->sum += x;
+    s->squares += x * x;
+}
+
+static double spread_sd(const spread_t *s, int n) {
+    return sqrt(fmax(s->squares / n - (s->sum / n) * (s->sum / n), 0.0));
+}
+
+typedef struct {
+    double time_sd_s, miss_sd_m, clearance_sd_m, violation;
+} drawn_t;
+
+typedef void draw_t(check_random_t *random, const obstacle_t *mean, obstacle_t *o);
+
+/* Independent errors, as the window's. */
+static void draw_from_sigmas(check_random_t *random, const obstacle_t *mean, obstacle_t *o) {
+    const goe_sigma_t *sigma = &estimator.estimate.sigma;
+    *o = *mean;
+    o->x_m += (double)sigma->x0_m * check_random_normal(random);
+    o->z_m += (double)sigma->z0_m * check_random_normal(random);
+    o->width_m = fabs(o->width_m + (double)sigma->width_m * check_random_normal(random));
+    o->length_m = fabs(o->length_m + (double)sigma->length_m * check_random_normal(random));
+    o->orientation_deg += (double)sigma->orientation_deg * check_random_normal(random);
+    o->height_m += (double)sigma->height_m * check_random_normal(random);
+}
+
+static drawn_t draw(const obstacle_t *mean, const goe_plan_t *plan, draw_t *one) {
+    spread_t time = {0.0, 0.0};
+    spread_t miss = {0.0, 0.0};
+    spread_t clearance = {0.0, 0.0};
+    int violated = 0;
+    for (int i = 0; i < SAMPLES; i++) {
+        obstacle_t o;
+        one(&any, mean, &o);
+        const truth_t truth = truth_of(&o, plan);
+        spread_add(&time, truth.time_s);
+        spread_add(&miss, truth.miss_m);
+        spread_add(&clearance, truth.clearance_m);
+        violated += truth.miss_m < (double)plan->margin_m && truth.clearance_m < (double)plan->clearance_m ? 1 : 0;
+    }
+    const drawn_t drawn = {spread_sd(&time, SAMPLES), spread_sd(&miss, SAMPLES), spread_sd(&clearance, SAMPLES),
+                           (double)violated / SAMPLES};
+    return drawn;
+}
+
+static void give_sigmas(double position, double range, double extent, double orientation_deg, double height) {
+    goe_sigma_t *sigma = &estimator.estimate.sigma;
+    sigma->x0_m = (float)position;
+    sigma->z0_m = (float)range;
+    sigma->width_m = sigma->length_m = (float)extent;
+    sigma->orientation_deg = (float)orientation_deg;
+    sigma->height_m = (float)height;
+}
+
+/* Within 5 % or 2 cm: what is left of the curvature of corners and circles, and of the draw. */
+static void check_sd(double expected, float actual) { CHECK_CLOSE(fmax(0.05 * expected, 0.02), expected, actual); }
+
+static void sigmas_of_a_miss_are_those_of_random_truths(void) {
+    static const obstacle_t missed[4] = {{false, 30.0, 150.0, 10.0, 0.0, 0.0, 30.0},
+                                         {true, -40.0, 120.0, 12.0, 30.0, 25.0, 45.0},
+                                         {true, 35.0, 160.0, 20.0, 10.0, -40.0, 45.0},
+                                         {true, 30.0, -20.0, 8.0, 15.0, 20.0, 45.0}};
+    for (int i = 0; i < 4; i++) {
+        const goe_plan_t plan = plan_of(20.0, -1.0, i % 2 ? 1.5 : -1.5);
+        tell(&estimator.estimate, &missed[i]);
+        give_sigmas(1.5, 4.0, 1.0, 1.5, 1.2);
+        const goe_hazard_t hazard = foresee(&plan);
+        const drawn_t drawn = draw(&missed[i], &plan, draw_from_sigmas);
+        check_sd(drawn.time_sd_s, hazard.time_sd_s);
+        check_sd(drawn.miss_sd_m, hazard.miss_sd_m);
+        check_sd(drawn.clearance_sd_m, hazard.clearance_sd_m);
+    }
+}
+
+static void sigmas_of_a_crossing_are_those_of_random_truths(void) {
+    static const obstacle_t crossed[3] = {{false, 5.0, 150.0, 60.0, 0.0, 0.0, 30.0},
+                                          {true, -2.0, 120.0, 40.0, 50.0, 25.0, 45.0},
+                                          {true, 4.0, 160.0, 60.0, 20.0, -15.0, 45.0}};
+    for (int i = 0; i < 3; i++) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const goe_plan_t plan = plan_of(20.0, 0.5, 1.5 * sign);
+            tell(&estimator.estimate, &crossed[i]);
+            give_sigmas(1.5, 4.0, 1.0, 1.5, 1.2);
+            const goe_hazard_t hazard = foresee(&plan);
+            const drawn_t drawn = draw(&crossed[i], &plan, draw_from_sigmas);
+            check_sd(drawn.time_sd_s, hazard.time_sd_s);
+            check_sd(drawn.clearance_sd_m, hazard.clearance_sd_m);
+        }
+    }
+}
+
+static void a_grazed_edge_does_not_blow_the_sigma_of_the_time_up(void) {
+    /* GIVEN a path 1 cm inside of the rim, or along a side THEN the time is spread over no more than half the outline and the
+     * range's sigma, nor over much less than random truths are */
+    static const obstacle_t grazed[3] = {{false, 9.99, 150.0, 20.0, 0.0, 0.0, 30.0},
+                                         {true, 9.99, 150.0, 20.0, 40.0, 0.01, 30.0},
+                                         {true, 12.0, 150.0, 20.0, 40.0, 0.01, 30.0}};
+    static const double half_m[3] = {10.0, 20.0, 20.0};
+    const goe_plan_t plan = plan_of(20.0, 0.0, -2.0);
+    for (int i = 0; i < 3; i++) {
+        tell(&estimator.estimate, &grazed[i]);
+        give_sigmas(2.0, 4.0, 1.0, 1.0, 1.0);
+        const drawn_t drawn = draw(&grazed[i], &plan, draw_from_sigmas);
+        const goe_hazard_t hazard = foresee(&plan);
+        printf("graze: time sd %.3f, drawn %.3f s; clearance sd %.3f, drawn %.3f m\n", (double)hazard.time_sd_s,
+               drawn.time_sd_s, (double)hazard.clearance_sd_m, drawn.clearance_sd_m);
+        TEST_ASSERT_TRUE((double)hazard.time_sd_s <= (half_m[i] + 4.6) / 20.0);
+        TEST_ASSERT_TRUE((double)hazard.time_sd_s > 0.7 * drawn.time_sd_s);
+        TEST_ASSERT_TRUE((double)hazard.clearance_sd_m > 0.7 * drawn.clearance_sd_m);
+    }
+}
+
+/* The probability told may exceed the drawn one, by what goe.h says, but hardly fall short of it. */
+static void the_probability_is_that_of_random_truths(void) {
+    check_random_t random = check_random_start("violation");
+    double least = 0.0;
+    double most = 0.0;
+    double sum = 0.0;
+    int cases = 0;
+    for (int i = 0; i < 60; i++) {
+        const obstacle_t o = {i % 3 != 0,
+                              check_random_between(&random, -25.0, 25.0),
+                              check_random_between(&random, 40.0, 200.0),
+                              check_random_between(&random, 3.0, 30.0),
+                              check_random_between(&random, 3.0, 40.0),
+                              check_random_between(&random, -89.0, 89.0),
+                              check_random_between(&random, 30.0, 50.0)};
+        const goe_plan_t plan =
+            plan_of(20.0, check_random_between(&random, -2.0, 2.0), check_random_between(&random, -2.0, 2.0));
+        tell(&estimator.estimate, &o);
+        give_sigmas(check_random_between(&random, 0.5, 8.0), check_random_between(&random, 1.0, 10.0),
+                    check_random_between(&random, 0.1, 1.0), check_random_between(&random, 0.2, 4.0),
+                    check_random_between(&random, 0.5, 5.0));
+        const double off = (double)foresee(&plan).violation - draw(&o, &plan, draw_from_sigmas).violation;
+        least = fmin(least, off);
+        most = fmax(most, off);
+        sum += fabs(off);
+        cases++;
+    }
+    check_report("violation, told less drawn, least", least);
+    check_report("violation, told less drawn, most", most);
+    check_report("violation, told less drawn, mean magnitude", sum / cases);
+    TEST_ASSERT_TRUE(least > -0.05 && most < 0.05 && sum / cases < 0.005);
+}
+
+/* ------------------------------------------------------------------------------------- the filter's own covariance -- */
+
+static double root_of[GOE_QUANTITIES][GOE_QUANTITIES]; /* lower triangular, of the covariance */
+
+static void factorise(float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+    memset(root_of, 0, sizeof root_of);
+    for (int j = 0; j < GOE_QUANTITIES; j++) {
+        for (int i = j; i < GOE_QUANTITIES; i++) {
+            double sum = (double)covariance[i][j];
+            for (int k = 0; k < j; k++) {
+                sum -= root_of[i][k] * root_of[j][k];
+            }
+            if (i == j) {
+                root_of[j][j] = sum > 0.0 ? sqrt(sum) : 0.0; /* 0: not known */
+            } else {
+                root_of[i][j] = root_of[j][j] > 0.0 ? sum / root_of[j][j] : 0.0;
+            }
+        }
+    }
+}
+
+static void draw_from_covariance(check_random_t *random, const obstacle_t *mean, obstacle_t *o) {
+    double *quantity[GOE_QUANTITIES] = {&o->x_m, &o->z_m, &o->orientation_deg, &o->width_m, &o->length_m, &o->height_m};
+    *o = *mean;
+    for (int k = 0; k < GOE_QUANTITIES; k++) {
+        const double w = check_random_normal(random);
+        for (int i = k; i < GOE_QUANTITIES; i++) {
+            *quantity[i] += root_of[i][k] * w;
+        }
+    }
+}
+
+/* A filter that holds a disc 150 m ahead, 30 m to the right and 35 m high, whose direction and top share their error. */
+static void give_disc(float shared) {
+    goe_filter_t *f = &estimator.filter;
+    float *r = f->inverse.element;
+    memset(f, 0, sizeof *f);
+    f->phase = GOE_PHASE_DISC;
+    f->turn_cos = 1.0f;
+    f->state[GOE_Q] = 1.0f / 150.0f;
+    f->state[GOE_A] = 30.0f / 150.0f;
+    f->state[GOE_FX] = 10.0f / 150.0f;
+    f->state[GOE_E] = 35.0f / 150.0f;
+    r[goe_inverse_column(GOE_Q) + GOE_Q] = 1e-4f;
+    r[goe_inverse_column(GOE_FX) + GOE_FX] = 1e-3f;
+    r[goe_inverse_column(GOE_A) + GOE_A] = 0.02f * sqrtf(1.0f - shared * shared);
+    r[goe_inverse_column(GOE_E) + GOE_A] = 0.02f * shared;
+    r[goe_inverse_column(GOE_E) + GOE_E] = 0.02f;
+    estimator.settings.method = GOE_METHOD_REFINED;
+    estimator.time_us = estimator.start_time_us = 0;
+}
+
+static void correlation_moves_the_probability(void) {
+    static const float shared[5] = {-0.95f, -0.5f, 0.0f, 0.5f, 0.95f};
+    const obstacle_t mean = {false, 30.0, 150.0, 10.0, 0.0, 0.0, 35.0};
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    for (int i = 0; i < 5; i++) {
+        give_disc(shared[i]);
+        tell(&estimator.told, &mean);
+        estimator.told.method = GOE_METHOD_REFINED;
+        goe_told_covariance(&estimator, GOE_FROM_DATUM, covariance);
+        factorise(covariance);
+        goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
+        plan.margin_m = 23.0f;
+        plan.clearance_m = 14.0f;
+        const double told = (double)foresee(&plan).violation;
+        const double drawn = draw(&mean, &plan, draw_from_covariance).violation;
+        printf("shared %.2f: violation told %.3f, drawn %.3f\n", (double)shared[i], told, drawn);
+        TEST_ASSERT_TRUE(told > drawn - 0.03);
+        TEST_ASSERT_TRUE(told < drawn + 0.15);
+        if (fabs((double)shared[i]) < 0.6) {
+            CHECK_CLOSE(0.1, drawn, told);
+        }
+    }
+}
+
+/* 4 m higher than the flight, so that the highest point in the image is over the nearest corner */
+static scene_t tower(void) {
+    scene_t scene;
+    scene_default(&scene);
+    scene.width_m = 6.0;
+    scene.height_m = 24.0;
+    return scene;
+}
+
+static void fly_towards_a_tower(float told_too_high_m) {
+    const scene_t scene = tower();
+    const goe_settings_t settings = scene_settings(&scene);
+    goe_estimate_t estimate;
+    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 40; k++) {
+        goe_image_t image;
+        scene_image(&scene, k, &image, NULL);
+        image.pose.height_m += told_too_high_m;
+        (void)goe_update(&estimator, &image, &estimate);
+    }
+    TEST_ASSERT_EQUAL_HEX32(0x3Fu, estimate.valid & 0x3Fu);
+    TEST_ASSERT_TRUE(estimate.fresh);
+}
+
+static void correlated_errors_are_accounted_for(void) {
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    fly_towards_a_tower(0.0f);
+    const goe_estimate_t *e = &estimator.told;
+    goe_told_covariance(&estimator, GOE_FROM_DATUM, covariance);
+    factorise(covariance);
+    const double datum_m = (double)estimator.filter.state[GOE_DH];
+    const obstacle_t mean = {true,
+                             (double)e->x_m,
+                             (double)e->z_m,
+                             (double)e->width_m,
+                             (double)e->length_m,
+                             (double)e->orientation_deg,
+                             (double)e->height_m - datum_m};
+    for (int i = 0; i < 2; i++) {
+        /* to the middle of the front edge and past it, its margin grazed; the clearance that is likely */
+        const double aside_m = i == 0 ? 0.0 : 0.5 * mean.width_m + 5.0;
+        goe_plan_t plan = plan_of(20.0, 20.0 * (mean.x_m + aside_m) / mean.z_m, 6.0);
+        plan.clearance_m = (float)truth_of(&mean, &plan).clearance_m;
+        const goe_hazard_t hazard = foresee(&plan);
+        const drawn_t drawn = draw(&mean, &plan, draw_from_covariance);
+        printf("refined: sd %.3f s %.3f m %.3f m, violation %.3f; drawn %.3f %.3f %.3f, %.3f\n",
+               (double)hazard.time_sd_s, (double)hazard.miss_sd_m, (double)hazard.clearance_sd_m,
+               (double)hazard.violation, drawn.time_sd_s, drawn.miss_sd_m, drawn.clearance_sd_m, drawn.violation);
+        CHECK_CLOSE(1e-3, truth_of(&mean, &plan).clearance_m, hazard.clearance_m);
+        check_sd(drawn.time_sd_s, hazard.time_sd_s);
+        check_sd(drawn.clearance_sd_m, hazard.clearance_sd_m);
+        if (i == 1) {
+            check_sd(drawn.miss_sd_m, hazard.miss_sd_m);
+        }
+        CHECK_CLOSE(0.06, drawn.violation, hazard.violation);
+    }
+}
+
+static void the_altimeters_bias_does_not_part_camera_and_top(void) {
+    /* GIVEN a height that is told 1 m too large THEN the clearance is the true one all the same */
+    goe_plan_t plan = plan_of(0.0, 0.0, 0.0);
+    for (int i = 0; i < 2; i++) {
+        const scene_t scene = tower();
+        goe_image_t image;
+        scene_image(&scene, 39, &image, NULL);
+        fly_towards_a_tower((float)i);
+        const goe_hazard_t hazard = foresee(&plan);
+        printf("clearance %.3f +- %.3f m, height %.3f +- %.3f m\n", (double)hazard.clearance_m,
+               (double)hazard.clearance_sd_m, (double)estimator.told.height_m, (double)estimator.told.sigma.height_m);
+        CHECK_CLOSE(3.0 * (double)hazard.clearance_sd_m, (double)image.pose.height_m - scene.height_m,
+                    hazard.clearance_m);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- refusals -- */
+
+static void check_refused(goe_status_t expected, const goe_estimator_t *e, const goe_plan_t *plan) {
+    goe_hazard_t hazard;
+    goe_hazard_t zero;
+    memset(&hazard, 0xC3, sizeof hazard);
+    memset(&zero, 0, sizeof zero);
+    CHECK_STATUS(expected, goe_hazard(e, plan, &hazard));
+    TEST_ASSERT_EQUAL_MEMORY(&zero, &hazard, sizeof zero);
+}
+
+static void a_refusal_leaves_zeros(void) {
+    const obstacle_t o = {false, 0.0, 100.0, 6.0, 0.0, 0.0, 12.0};
+    const goe_plan_t good = plan_of(20.0, 0.0, 0.0);
+    check_refused(GOE_COLLECTING, &estimator, &good);
+    check_refused(GOE_BAD_ARGUMENT, NULL, &good);
+    check_refused(GOE_BAD_ARGUMENT, &estimator, NULL);
+    CHECK_STATUS(GOE_BAD_ARGUMENT, goe_hazard(&estimator, &good, NULL));
+    tell(&estimator.estimate, &o);
+    for (int field = 0; field < 5; field++) {
+        static const float most[5] = {1e3f, 1e3f, 1e3f, 1e4f, 1e4f};
+        goe_plan_t plan = good;
+        float *x = field < 3 ? &plan.velocity_ned_m_s[field] : field == 3 ? &plan.margin_m : &plan.clearance_m;
+        goe_hazard_t hazard;
+        *x = most[field];
+        CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+        *x = check_next_away(most[field]);
+        check_refused(GOE_OUT_OF_RANGE, &estimator, &plan);
+        *x = check_from_bits(0x7FC00000u);
+        check_refused(GOE_NOT_FINITE, &estimator, &plan);
+        *x = check_from_bits(0xFF800000u);
+        check_refused(GOE_NOT_FINITE, &estimator, &plan);
+        *x = -1e-3f;
+        if (field >= 3) {
+            check_refused(GOE_OUT_OF_RANGE, &estimator, &plan);
+        }
+    }
+    estimator.ready = 0u;
+    check_refused(GOE_NOT_INITIALISED, &estimator, &good);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    any = check_random_start("truths");
+    RUN_TEST(any_obstacle_is_met_as_brute_force_says);
+    RUN_TEST(a_chimney_ahead_is_reached_at_its_near_side);
+    RUN_TEST(turning_t_turns_the_answer_along);
+    RUN_TEST(what_lies_behind_is_as_far_as_now);
+    RUN_TEST(over_the_roof_the_distance_is_none);
+    RUN_TEST(standing_still_the_distance_is_that_of_now);
+    RUN_TEST(a_camera_in_the_middle_of_a_disc_has_an_answer);
+    RUN_TEST(what_is_not_known_leaves_a_circle_or_a_point);
+    RUN_TEST(without_a_height_the_margin_alone_counts);
+    RUN_TEST(sigmas_of_a_miss_are_those_of_random_truths);
+    RUN_TEST(sigmas_of_a_crossing_are_those_of_random_truths);
+    RUN_TEST(a_grazed_edge_does_not_blow_the_sigma_of_the_time_up);
+    RUN_TEST(the_probability_is_that_of_random_truths);
+    RUN_TEST(correlation_moves_the_probability);
+    RUN_TEST(correlated_errors_are_accounted_for);
+    RUN_TEST(the_altimeters_bias_does_not_part_camera_and_top);
+    RUN_TEST(a_refusal_leaves_zeros);
+    return UNITY_END();
+}

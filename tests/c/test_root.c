@@ -1,0 +1,507 @@
+/* Square-root information against dense normal equations in double. SPDX-License-Identifier: MIT */
+#include "goe_root.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+
+#define N GOE_STATES
+#define ROWS GOE_ROWS_MAX
+#define CASES 300
+#define SHARE 2.0e-4 /* rounding, of one sigma, at the condition numbers of random_root() */
+
+typedef struct {
+    double m[N][N];
+} dense_t;
+
+static check_random_t any;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* ---------------------------------------------------------------------------------------------------- dense reference -- */
+
+/* Gauss-Jordan with pivoting: *inverse = a^-1. */
+static dense_t inverted(dense_t a, int n) {
+    dense_t inverse;
+    memset(&inverse, 0, sizeof inverse);
+    for (int i = 0; i < n; i++) {
+        inverse.m[i][i] = 1.0;
+    }
+    for (int c = 0; c < n; c++) {
+        int pivot = c;
+        for (int i = c + 1; i < n; i++) {
+            pivot = fabs(a.m[i][c]) > fabs(a.m[pivot][c]) ? i : pivot;
+        }
+        for (int j = 0; j < n; j++) {
+            const double x = a.m[c][j];
+            const double y = inverse.m[c][j];
+            a.m[c][j] = a.m[pivot][j];
+            a.m[pivot][j] = x;
+            inverse.m[c][j] = inverse.m[pivot][j];
+            inverse.m[pivot][j] = y;
+        }
+        const double by = 1.0 / a.m[c][c];
+        for (int j = 0; j < n; j++) {
+            a.m[c][j] *= by;
+            inverse.m[c][j] *= by;
+        }
+        for (int i = 0; i < n; i++) {
+            const double f = i == c ? 0.0 : a.m[i][c];
+            for (int j = 0; j < n; j++) {
+                a.m[i][j] -= f * a.m[c][j];
+                inverse.m[i][j] -= f * inverse.m[c][j];
+            }
+        }
+    }
+    return inverse;
+}
+
+static dense_t dense_of(const goe_triangle_t *triangle) {
+    dense_t d;
+    memset(&d, 0, sizeof d);
+    for (size_t i = 0; i < N; i++) {
+        for (size_t j = i; j < N; j++) {
+            d.m[i][j] = (double)triangle->element[goe_root_row(i) + j];
+        }
+    }
+    return d;
+}
+
+static dense_t dense_of_inverse(const goe_inverse_t *inverse) {
+    dense_t d;
+    memset(&d, 0, sizeof d);
+    for (size_t j = 0; j < N; j++) {
+        for (size_t i = 0; i <= j; i++) {
+            d.m[i][j] = (double)inverse->element[goe_inverse_column(j) + i];
+        }
+    }
+    return d;
+}
+
+/* R'R */
+static dense_t information_of(const goe_triangle_t *root) {
+    const dense_t r = dense_of(root);
+    dense_t p;
+    for (int i = 0; i < N; i++) {
+        for (int j = 0; j < N; j++) {
+            p.m[i][j] = 0.0;
+            for (int k = 0; k < N; k++) {
+                p.m[i][j] += r.m[k][i] * r.m[k][j];
+            }
+        }
+    }
+    return p;
+}
+
+static dense_t covariance_of(const goe_triangle_t *root) { return inverted(information_of(root), N); }
+
+/* Symmetric matrices, each element by the diagonal's. */
+static void check_alike(double share, const dense_t *expected, const dense_t *actual) {
+    for (int i = 0; i < N; i++) {
+        for (int j = 0; j < N; j++) {
+            const double scale = sqrt(expected->m[i][i] * expected->m[j][j]);
+            CHECK_CLOSE(share, 0.0, (actual->m[i][j] - expected->m[i][j]) / scale);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- input -- */
+
+static float normal(void) { return (float)check_random_normal(&any); }
+
+/* Diagonals from 1 to 1000 and of either sign, the rest of their row's size. */
+static void random_root(goe_triangle_t *root) {
+    for (size_t i = 0; i < N; i++) {
+        const double size = pow(10.0, check_random_between(&any, 0.0, 3.0));
+        for (size_t j = i; j < N; j++) {
+            *goe_root_at(root, i, j) = (float)(0.5 * size * check_random_normal(&any));
+        }
+        *goe_root_at(root, i, i) = (float)(check_random_bits(&any) % 2u ? size : -size);
+    }
+}
+
+/* `rows` rows, the rest 0. */
+static void random_matrix(size_t rows, goe_matrix_t *matrix) {
+    memset(matrix, 0, sizeof *matrix);
+    for (size_t c = 0; c < GOE_COLUMNS; c++) {
+        const double size = c == GOE_RESIDUAL ? 1.0 : pow(10.0, check_random_between(&any, 0.0, 3.0));
+        for (size_t i = 0; i < rows; i++) {
+            matrix->column[c][i] = (float)(size * check_random_normal(&any));
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- update -- */
+
+typedef struct {
+    dense_t information;
+    double change[N];
+    double nis;
+} solution_t;
+
+/* Unit noise of the rows, and the temporaries': S = I + B B'/t^2. */
+static dense_t noise_of(const goe_matrix_t *matrix, double temporaries_root) {
+    dense_t s;
+    memset(&s, 0, sizeof s);
+    for (int i = 0; i < ROWS; i++) {
+        for (int j = 0; j < ROWS; j++) {
+            s.m[i][j] = i == j ? 1.0 : 0.0;
+            for (int c = 0; c < GOE_TEMPORARIES; c++) {
+                s.m[i][j] +=
+                    (double)matrix->column[c][i] * (double)matrix->column[c][j] / (temporaries_root * temporaries_root);
+            }
+        }
+    }
+    return s;
+}
+
+/* R'R + A'S^-1A, its solution for A'S^-1r, and what is left: e'S^-1e + x'R'Rx, e = r - Ax. */
+static solution_t solve(const goe_triangle_t *root, double temporaries_root, const goe_matrix_t *matrix) {
+    const dense_t weight = inverted(noise_of(matrix, temporaries_root), ROWS);
+    const dense_t prior = information_of(root);
+    solution_t s;
+    double right[N];
+    double left_over[ROWS];
+    s.information = prior;
+    for (int i = 0; i < N; i++) {
+        const float *a = matrix->column[GOE_TEMPORARIES + i];
+        right[i] = 0.0;
+        for (int k = 0; k < ROWS; k++) {
+            for (int l = 0; l < ROWS; l++) {
+                right[i] += (double)a[k] * weight.m[k][l] * (double)matrix->column[GOE_RESIDUAL][l];
+                for (int j = 0; j < N; j++) {
+                    s.information.m[i][j] +=
+                        (double)a[k] * weight.m[k][l] * (double)matrix->column[GOE_TEMPORARIES + j][l];
+                }
+            }
+        }
+    }
+    const dense_t covariance = inverted(s.information, N);
+    for (int i = 0; i < N; i++) {
+        s.change[i] = 0.0;
+        for (int j = 0; j < N; j++) {
+            s.change[i] += covariance.m[i][j] * right[j];
+        }
+    }
+    s.nis = 0.0;
+    for (int k = 0; k < ROWS; k++) {
+        left_over[k] = (double)matrix->column[GOE_RESIDUAL][k];
+        for (int j = 0; j < N; j++) {
+            left_over[k] -= (double)matrix->column[GOE_TEMPORARIES + j][k] * s.change[j];
+        }
+    }
+    for (int k = 0; k < ROWS; k++) {
+        for (int l = 0; l < ROWS; l++) {
+            s.nis += left_over[k] * weight.m[k][l] * left_over[l];
+        }
+    }
+    for (int i = 0; i < N; i++) {
+        for (int j = 0; j < N; j++) {
+            s.nis += s.change[i] * prior.m[i][j] * s.change[j];
+        }
+    }
+    return s;
+}
+
+static void check_update(goe_triangle_t *root, double temporaries_root, goe_matrix_t *matrix) {
+    const solution_t expected = solve(root, temporaries_root, matrix);
+    const dense_t covariance = inverted(expected.information, N);
+    float change[N];
+    const float nis = goe_root_update(root, (float)temporaries_root, matrix, change);
+    const dense_t information = information_of(root);
+    check_alike(SHARE, &expected.information, &information);
+    for (int i = 0; i < N; i++) {
+        CHECK_CLOSE(SHARE, 0.0, ((double)change[i] - expected.change[i]) / sqrt(covariance.m[i][i]));
+    }
+    CHECK_CLOSE(SHARE * (1.0 + expected.nis), expected.nis, nis);
+}
+
+/* GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and what is left are those of the
+ * normal equations with the temporaries' noise in the rows' covariance. */
+static void an_update_solves_the_normal_equations(void) {
+    any = check_random_start("update");
+    for (int n = 0; n < CASES; n++) {
+        goe_triangle_t root;
+        goe_matrix_t matrix;
+        random_root(&root);
+        random_matrix(1u + (size_t)n % ROWS, &matrix);
+        check_update(&root, pow(10.0, check_random_between(&any, 0.0, 3.0)), &matrix);
+    }
+}
+
+/* GIVEN measurements drawn from the model WHEN updated many times THEN the squares that are left over average to the number
+ * of rows: that is what makes them an innovation statistic. */
+static void the_squares_left_over_average_to_the_number_of_rows(void) {
+    const size_t rows = 7;
+    const int draws = 4000;
+    double sum = 0.0;
+    any = check_random_start("innovations");
+    goe_triangle_t root;
+    goe_inverse_t inverse;
+    goe_matrix_t matrix;
+    random_root(&root);
+    goe_root_invert(&root, &inverse);
+    const dense_t v = dense_of_inverse(&inverse);
+    random_matrix(rows, &matrix);
+    for (int n = 0; n < draws; n++) {
+        goe_triangle_t updated = root;
+        goe_matrix_t drawn = matrix;
+        float noise[N];
+        float change[N];
+        float temporaries[GOE_TEMPORARIES];
+        for (size_t i = 0; i < N; i++) {
+            noise[i] = normal();
+        }
+        for (size_t i = 0; i < GOE_TEMPORARIES; i++) {
+            temporaries[i] = normal() / 20.0f;
+        }
+        for (size_t k = 0; k < rows; k++) {
+            double r = (double)normal();
+            for (size_t c = 0; c < GOE_TEMPORARIES; c++) {
+                r += (double)matrix.column[c][k] * (double)temporaries[c];
+            }
+            for (size_t i = 0; i < N; i++) { /* a state off by R^-1 noise */
+                for (size_t j = i; j < N; j++) {
+                    r += (double)matrix.column[GOE_TEMPORARIES + i][k] * v.m[i][j] * (double)noise[j];
+                }
+            }
+            drawn.column[GOE_RESIDUAL][k] = (float)r;
+        }
+        sum += (double)goe_root_update(&updated, 20.0f, &drawn, change);
+    }
+    check_report("mean of the squares left over, 7 rows", sum / draws);
+    CHECK_CLOSE(5.0 * sqrt(2.0 * (double)rows / draws), (double)rows, sum / draws); /* 5 sigma */
+}
+
+static void rows_of_zeros_change_nothing(void) {
+    any = check_random_start("zeros");
+    goe_triangle_t root;
+    goe_matrix_t matrix;
+    float change[N];
+    random_root(&root);
+    const goe_triangle_t before = root;
+    memset(&matrix, 0, sizeof matrix);
+    CHECK_SAME(0.0f, goe_root_update(&root, 100.0f, &matrix, change));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &root, sizeof root);
+    for (int i = 0; i < N; i++) {
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, change[i]);
+    }
+}
+
+/* A residual that no column explains is left over whole. */
+static void a_row_without_derivatives_is_left_over(void) {
+    any = check_random_start("no derivatives");
+    goe_triangle_t root;
+    goe_matrix_t matrix;
+    float change[N];
+    random_root(&root);
+    memset(&matrix, 0, sizeof matrix);
+    matrix.column[GOE_RESIDUAL][4] = 3.0f;
+    CHECK_SAME(9.0f, goe_root_update(&root, 100.0f, &matrix, change));
+}
+
+/* Each row of R with the other sign is the same information. */
+static void the_signs_of_the_rows_are_free(void) {
+    any = check_random_start("signs");
+    for (size_t i = 0; i < N; i++) {
+        goe_triangle_t root;
+        goe_matrix_t matrix;
+        float change[2][N];
+        float nis[2];
+        random_root(&root);
+        random_matrix(ROWS, &matrix);
+        for (int turned = 0; turned < 2; turned++) {
+            goe_triangle_t r = root;
+            goe_matrix_t m = matrix;
+            for (size_t j = i; turned && j < N; j++) {
+                *goe_root_at(&r, i, j) *= -1.0f;
+            }
+            const dense_t covariance = covariance_of(&r);
+            nis[turned] = goe_root_update(&r, 50.0f, &m, change[turned]);
+            for (int k = 0; turned && k < N; k++) {
+                CHECK_CLOSE(SHARE, 0.0, ((double)change[1][k] - (double)change[0][k]) / sqrt(covariance.m[k][k]));
+            }
+        }
+        CHECK_CLOSE(SHARE * (1.0 + (double)nis[0]), nis[0], nis[1]);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ process noise -- */
+
+static void check_spread(size_t first, float first_weight, size_t last, float last_weight, float sigma) {
+    goe_triangle_t root;
+    random_root(&root);
+    dense_t expected = covariance_of(&root);
+    double direction[N] = {0.0};
+    if (first < last) {
+        direction[first] = (double)first_weight;
+    }
+    direction[last] = (double)last_weight;
+    for (int i = 0; i < N; i++) {
+        for (int j = 0; j < N; j++) {
+            expected.m[i][j] += (double)sigma * (double)sigma * direction[i] * direction[j];
+        }
+    }
+    goe_root_spread(&root, first, first_weight, last, last_weight, sigma);
+    const dense_t actual = covariance_of(&root);
+    check_alike(5.0 * SHARE, &expected, &actual);
+}
+
+/* GIVEN a variance along one state, or along two at once THEN the covariance grows by sigma^2 d d', and nothing else
+ * changes. */
+static void spreading_adds_to_the_covariance(void) {
+    any = check_random_start("spread");
+    for (int n = 0; n < CASES; n++) {
+        const size_t last = (size_t)check_random_bits(&any) % N;
+        const size_t first = (size_t)check_random_bits(&any) % (last + 1u);
+        const float sigma = (float)pow(10.0, check_random_between(&any, -4.0, 1.0));
+        check_spread(last, 0.0f, last, 1.0f, sigma);
+        check_spread(first, first < last ? normal() : 0.0f, last, normal(), sigma);
+    }
+}
+
+/* GIVEN a sigma so small that its inverse squared is no float any more THEN the root stays as it is. */
+static void a_tiny_sigma_changes_nothing(void) {
+    static const float tiny[] = {1.0e-45f, 1.0e-38f, 1.0e-30f, 1.0e-20f, 1.0e-19f, 1.0e-17f};
+    any = check_random_start("tiny sigma");
+    for (size_t i = 0; i < sizeof tiny / sizeof tiny[0]; i++) {
+        goe_triangle_t root;
+        random_root(&root);
+        const dense_t before = information_of(&root);
+        goe_root_spread(&root, 0, 0.0f, 0, 1.0f, tiny[i]);
+        goe_root_spread(&root, 2, 1.0f, 6, -0.5f, tiny[i]);
+        const dense_t after = information_of(&root);
+        check_alike(SHARE, &before, &after);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ inverse, covariance -- */
+
+static void check_inverse(const goe_triangle_t *root, const goe_inverse_t *inverse) {
+    const dense_t r = dense_of(root);
+    const dense_t v = dense_of_inverse(inverse);
+    for (int i = 0; i < N; i++) {
+        for (int j = 0; j < N; j++) {
+            double product = 0.0;
+            double size = 1.0;
+            for (int k = 0; k < N; k++) {
+                product += r.m[i][k] * v.m[k][j];
+                size += fabs(r.m[i][k] * v.m[k][j]);
+            }
+            CHECK_CLOSE(5.0e-6 * size, i == j ? 1.0 : 0.0, product);
+        }
+    }
+}
+
+static void the_root_times_its_inverse_is_one(void) {
+    any = check_random_start("inverse");
+    for (int n = 0; n < CASES; n++) {
+        goe_triangle_t root;
+        goe_inverse_t inverse;
+        random_root(&root);
+        memset(&inverse, 0xA5, sizeof inverse); /* is written whole */
+        goe_root_invert(&root, &inverse);
+        check_inverse(&root, &inverse);
+    }
+}
+
+/* GIVEN weights with zeros among them THEN projected'projected = w'Pw. */
+static void a_variance_is_the_covariance_seen_along_the_weights(void) {
+    any = check_random_start("variance");
+    for (int n = 0; n < CASES; n++) {
+        goe_triangle_t root;
+        goe_inverse_t inverse;
+        float weight[N];
+        float projected[N];
+        double expected = 0.0;
+        double squares = 0.0;
+        random_root(&root);
+        goe_root_invert(&root, &inverse);
+        const dense_t p = covariance_of(&root);
+        for (int i = 0; i < N; i++) {
+            weight[i] = check_random_bits(&any) % 3u ? normal() / (float)sqrt(p.m[i][i]) : 0.0f;
+        }
+        for (int i = 0; i < N; i++) {
+            for (int j = 0; j < N; j++) {
+                expected += (double)weight[i] * p.m[i][j] * (double)weight[j];
+            }
+        }
+        goe_root_project(&inverse, weight, projected);
+        for (int i = 0; i < N; i++) {
+            squares += (double)projected[i] * (double)projected[i];
+        }
+        CHECK_CLOSE(SHARE * (double)N, expected, squares);
+        CHECK_CLOSE(1.0e-5 * (1.0 + squares), squares, goe_root_variance(&inverse, weight));
+    }
+}
+
+/* GIVEN any triangle WHEN the covariance of its first states is taken THEN it is that block of the whole one; WHEN it is put
+ * together with sigmas for the others THEN root and inverse are those of a covariance in which these stand alone. */
+static void a_marginal_makes_a_root_again(void) {
+    any = check_random_start("marginal");
+    for (int n = 0; n < CASES; n++) {
+        goe_triangle_t root;
+        goe_inverse_t inverse;
+        float c[GOE_KEPT][GOE_KEPT];
+        float sigma[N - GOE_KEPT];
+        random_root(&root);
+        dense_t expected = covariance_of(&root);
+        goe_root_invert(&root, &inverse);
+        goe_root_marginal(&inverse, c);
+        for (size_t i = 0; i < N; i++) {
+            for (size_t j = i; j < N; j++) {
+                if (j < GOE_KEPT) {
+                    const double scale = sqrt(expected.m[i][i] * expected.m[j][j]);
+                    CHECK_CLOSE(SHARE, 0.0, ((double)c[i][j] - expected.m[i][j]) / scale);
+                } else {
+                    expected.m[i][j] = 0.0;
+                    expected.m[j][i] = 0.0;
+                }
+            }
+        }
+        for (size_t i = GOE_KEPT; i < N; i++) {
+            sigma[i - GOE_KEPT] = (float)pow(10.0, check_random_between(&any, -3.0, 1.0));
+            expected.m[i][i] = (double)sigma[i - GOE_KEPT] * (double)sigma[i - GOE_KEPT];
+        }
+        goe_root_from_covariance(c, sigma, &root, &inverse);
+        const dense_t actual = covariance_of(&root);
+        check_alike(20.0 * SHARE, &expected, &actual); /* squaring doubled the digits that the condition takes */
+        check_inverse(&root, &inverse);
+    }
+}
+
+/* GIVEN a covariance without any rank left THEN root and inverse are finite all the same. */
+static void a_singular_covariance_gives_a_finite_root(void) {
+    float c[GOE_KEPT][GOE_KEPT];
+    const float sigma[N - GOE_KEPT] = {1.0f, 1.0f, 1.0f, 1.0f};
+    goe_triangle_t root;
+    goe_inverse_t inverse;
+    for (size_t i = 0; i < GOE_KEPT; i++) {
+        for (size_t j = 0; j < GOE_KEPT; j++) {
+            c[i][j] = 1.0f; /* all states are the same one */
+        }
+    }
+    goe_root_from_covariance(c, sigma, &root, &inverse);
+    for (size_t i = 0; i < sizeof root / sizeof(float); i++) {
+        TEST_ASSERT_TRUE(check_is_finite(root.element[i]));
+        TEST_ASSERT_TRUE(check_is_finite(inverse.element[i]));
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(an_update_solves_the_normal_equations);
+    RUN_TEST(the_squares_left_over_average_to_the_number_of_rows);
+    RUN_TEST(rows_of_zeros_change_nothing);
+    RUN_TEST(a_row_without_derivatives_is_left_over);
+    RUN_TEST(the_signs_of_the_rows_are_free);
+    RUN_TEST(spreading_adds_to_the_covariance);
+    RUN_TEST(a_tiny_sigma_changes_nothing);
+    RUN_TEST(the_root_times_its_inverse_is_one);
+    RUN_TEST(a_variance_is_the_covariance_seen_along_the_weights);
+    RUN_TEST(a_marginal_makes_a_root_again);
+    RUN_TEST(a_singular_covariance_gives_a_finite_root);
+    return UNITY_END();
+}

@@ -1,0 +1,232 @@
+/* Projection under an attitude bias, and noise of the points, against differences in double. SPDX-License-Identifier: MIT */
+#include "goe_sight.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "sighting.h"
+
+#define CASES 500
+
+static check_random_t any;
+static sighting_t sighting;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void any_point(double p[3]) {
+    p[0] = check_random_between(&any, -0.5, 0.5);
+    p[1] = check_random_between(&any, -0.3, 0.3);
+    p[2] = check_random_between(&any, 0.2, 1.2);
+}
+
+/* Exact projection with a bias about the axes themselves. */
+static void project(const double e[3], const double p[3], double seen[2]) {
+    const double z = p[2] + e[0] * p[1] - e[1] * p[0];
+    seen[0] = (p[0] + e[1] * p[2] - e[2] * p[1]) / z;
+    seen[1] = (p[1] + e[2] * p[0] - e[0] * p[2]) / z;
+}
+
+/* GIVEN any point and bias THEN place and all twelve derivatives are those of the projection. */
+static void derivatives_are_those_of_the_projection(void) {
+    any = check_random_start("projection");
+    for (int n = 0; n < CASES; n++) {
+        goe_gradient_t gx;
+        goe_gradient_t gy;
+        double p[3];
+        double seen[2];
+        sighting_start(&sighting, &any);
+        any_point(p);
+        const double e[3] = {sighting.sight.ex, sighting.sight.ey, sighting.sight.ez};
+        const goe_point_t told = goe_sight_project(&sighting.sight, (float)p[0], (float)p[1], (float)p[2], &gx, &gy);
+        project(e, p, seen);
+        CHECK_CLOSE(3.0e-6, seen[0], told.x);
+        CHECK_CLOSE(3.0e-6, seen[1], told.y);
+        const float by_x[6] = {gx.x, gx.y, gx.z, gx.ex, gx.ey, gx.ez};
+        const float by_y[6] = {gy.x, gy.y, gy.z, gy.ex, gy.ey, gy.ez};
+        for (int i = 0; i < 6; i++) {
+            double up[6] = {p[0], p[1], p[2], e[0], e[1], e[2]};
+            double down[6] = {p[0], p[1], p[2], e[0], e[1], e[2]};
+            double above[2];
+            double below[2];
+            up[i] += 1.0e-6;
+            down[i] -= 1.0e-6;
+            project(&up[3], up, above);
+            project(&down[3], down, below);
+            CHECK_CLOSE(2.0e-4, (above[0] - below[0]) / 2.0e-6, by_x[i]);
+            CHECK_CLOSE(2.0e-4, (above[1] - below[1]) / 2.0e-6, by_y[i]);
+        }
+    }
+}
+
+/* A bias of the body is turned into the axes. */
+static void the_bias_is_turned_from_body_axes(void) {
+    any = check_random_start("bias");
+    for (int n = 0; n < CASES; n++) {
+        sighting_start(&sighting, &any);
+        const float told[3] = {sighting.sight.ex, sighting.sight.ey, sighting.sight.ez};
+        for (int i = 0; i < 3; i++) {
+            double expected = 0.0;
+            for (int j = 0; j < 3; j++) {
+                expected += (double)sighting.sight.body_to_axes[3 * i + j] * (double)sighting.state[j];
+            }
+            CHECK_CLOSE(1.0e-7, expected, told[i]);
+        }
+    }
+}
+
+/* GIVEN a point beside or behind the camera THEN everything stays finite. */
+static void points_behind_the_camera_stay_finite(void) {
+    static const float z[] = {1.0e-5f, 0.0f, -1.0e-5f, -1.0f, -1.0e6f};
+    any = check_random_start("behind");
+    sighting_start(&sighting, &any);
+    for (int i = 0; i < 5; i++) {
+        goe_gradient_t g[2];
+        const goe_point_t told = goe_sight_project(&sighting.sight, 0.3f, -0.2f, z[i], &g[0], &g[1]);
+        TEST_ASSERT_TRUE(check_is_finite(told.x) && check_is_finite(told.y));
+        for (int j = 0; j < 2; j++) {
+            TEST_ASSERT_TRUE(check_is_finite(g[j].x) && check_is_finite(g[j].y) && check_is_finite(g[j].z));
+            TEST_ASSERT_TRUE(check_is_finite(g[j].ex) && check_is_finite(g[j].ey) && check_is_finite(g[j].ez));
+        }
+    }
+}
+
+/* Pixel to aligned point. */
+static void align(const sighting_t *s, double u_px, double v_px, double aligned[2]) {
+    const float *h = s->sight.camera_to_axes;
+    const double ray[3] = {u_px / (double)s->settings.camera.fx_px, v_px / (double)s->settings.camera.fy_px, 1.0};
+    double turned[3];
+    for (int i = 0; i < 3; i++) {
+        turned[i] = (double)h[3 * i] * ray[0] + (double)h[3 * i + 1] * ray[1] + (double)h[3 * i + 2] * ray[2];
+    }
+    aligned[0] = turned[0] / turned[2];
+    aligned[1] = turned[1] / turned[2];
+}
+
+static void differentiate(const sighting_t *s, double u_px, double v_px, double by_u[2], double by_v[2]) {
+    const double step = 1.0e-3;
+    double up[2];
+    double down[2];
+    align(s, u_px + step, v_px, up);
+    align(s, u_px - step, v_px, down);
+    by_u[0] = (up[0] - down[0]) / (2.0 * step);
+    by_u[1] = (up[1] - down[1]) / (2.0 * step);
+    align(s, u_px, v_px + step, up);
+    align(s, u_px, v_px - step, down);
+    by_v[0] = (up[0] - down[0]) / (2.0 * step);
+    by_v[1] = (up[1] - down[1]) / (2.0 * step);
+}
+
+/* GIVEN a pixel anywhere in the image of a turned camera THEN the spread of its aligned point is the pixel's variance through
+ * the derivative of the alignment. */
+static void the_spread_is_that_of_the_alignment(void) {
+    any = check_random_start("spread");
+    for (int n = 0; n < CASES; n++) {
+        double aligned[2];
+        double by_u[2];
+        double by_v[2];
+        sighting_start(&sighting, &any);
+        sighting.settings.noise.pixel_px = (float)check_random_between(&any, 0.1, 3.0);
+        const double u = check_random_between(&any, -600.0, 600.0);
+        const double v = check_random_between(&any, -500.0, 500.0);
+        align(&sighting, u, v, aligned);
+        sighting.point[GOE_TOP] = (goe_point_t){(float)aligned[0], (float)aligned[1], true};
+        differentiate(&sighting, u, v, by_u, by_v);
+        const double variance = (double)sighting.settings.noise.pixel_px * (double)sighting.settings.noise.pixel_px;
+        const double xx = variance * (by_u[0] * by_u[0] + by_v[0] * by_v[0]);
+        const double xy = variance * (by_u[0] * by_u[1] + by_v[0] * by_v[1]);
+        const double yy = variance * (by_u[1] * by_u[1] + by_v[1] * by_v[1]);
+        const goe_spread_t told = goe_sight_spread(&sighting.sight, GOE_TOP);
+        CHECK_CLOSE(1.0e-5 * xx, xx, told.xx);
+        CHECK_CLOSE(1.0e-5 * sqrt(xx * yy), xy, told.xy);
+        CHECK_CLOSE(1.0e-5 * yy, yy, told.yy);
+    }
+}
+
+static void size_noise_is_a_share_of_the_width(void) {
+    any = check_random_start("size");
+    sighting_start(&sighting, &any);
+    sighting.settings.noise.size_share = 0.03f;
+    sighting.point[GOE_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
+    sighting.point[GOE_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
+    CHECK_CLOSE(1.0e-10, 3.6e-5, goe_sight_size_variance(&sighting.sight));
+    sighting.point[GOE_RIGHT].usable = false; /* no width is seen */
+    CHECK_SAME(0.0f, goe_sight_size_variance(&sighting.sight));
+}
+
+/* -------------------------------------------------------------------------------------------------- opening an image -- */
+
+static goe_estimator_t estimator;
+static goe_view_t view;
+static const float identity[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f};
+
+static void start(void) {
+    goe_settings_t settings;
+    goe_settings_default(&settings);
+    settings.camera.fx_px = 900.0f;
+    settings.camera.fy_px = 900.0f;
+    settings.camera.mount_yaw_deg = -30.0f;
+    settings.camera.mount_pitch_deg = 10.0f;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    memset(&view, 0, sizeof view);
+}
+
+/* The camera's mounting taken back: a ray along the camera's axis is that of the body's mounting. */
+static void the_body_is_where_the_mounting_puts_it(void) {
+    goe_sight_t sight;
+    start();
+    TEST_ASSERT_EQUAL_UINT(0u, goe_sight_open(&sight, &estimator, identity, &view));
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) { /* identity = camera to axes: body to axes is the mounting's inverse */
+            CHECK_CLOSE(1.0e-6, estimator.camera_to_body[3 * j + i], sight.body_to_axes[3 * i + j]);
+        }
+    }
+}
+
+static goe_point_t at(float x) { return (goe_point_t){x, 0.1f, true}; }
+
+static void points_out_of_order_do_not_count(void) {
+    goe_sight_t sight;
+    start();
+    view.left = at(0.1f);
+    view.right = at(0.2f);
+    view.base_left = at(0.3f);
+    view.base_right = at(0.1f);
+    TEST_ASSERT_EQUAL_UINT(1u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_TRUE(sight.point[GOE_LEFT].usable && sight.point[GOE_RIGHT].usable);
+    TEST_ASSERT_FALSE(sight.point[GOE_BASE_LEFT].usable || sight.point[GOE_BASE_RIGHT].usable || sight.base);
+    start();
+    view.left = at(0.2f);
+    view.right = at(0.2f);
+    view.base_left = at(0.1f);
+    view.base_right = at(0.3f);
+    TEST_ASSERT_EQUAL_UINT(1u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_FALSE(sight.point[GOE_LEFT].usable || sight.point[GOE_RIGHT].usable);
+    TEST_ASSERT_TRUE(sight.base && sight.edge);
+}
+
+static void an_edge_takes_two_base_corners(void) {
+    goe_sight_t sight;
+    start();
+    view.base_left = at(0.1f);
+    TEST_ASSERT_EQUAL_UINT(0u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_FALSE(sight.base || sight.edge);
+    view.base_near = at(0.2f);
+    TEST_ASSERT_EQUAL_UINT(0u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_FALSE(sight.base);
+    TEST_ASSERT_TRUE(sight.edge);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(derivatives_are_those_of_the_projection);
+    RUN_TEST(the_bias_is_turned_from_body_axes);
+    RUN_TEST(points_behind_the_camera_stay_finite);
+    RUN_TEST(the_spread_is_that_of_the_alignment);
+    RUN_TEST(size_noise_is_a_share_of_the_width);
+    RUN_TEST(the_body_is_where_the_mounting_puts_it);
+    RUN_TEST(points_out_of_order_do_not_count);
+    RUN_TEST(an_edge_takes_two_base_corners);
+    return UNITY_END();
+}

@@ -1,0 +1,317 @@
+"""The bound, the offline fit and the goals: what they rest on is checked by other means than they use."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from goe_tools.__main__ import main
+from goe_tools.optimum import flights as fl
+from goe_tools.optimum import goals, model
+from goe_tools.optimum.bound import bound
+from goe_tools.optimum.judge import judge, renamed, renamed_sigma
+from goe_tools.optimum.library import MODEL_BOX, MODEL_DISC, Track, estimate, library_path, settings_of
+
+CORNER = Path(__file__).resolve().parents[1] / "data" / "corner"
+EXACT = fl.Noise(pixel_px=0.0)
+SENSORS = replace(fl.FIELD, outliers=0.0, position_walk_m=0.0)  # all that the model knows, and nothing else
+
+
+def box_scene(**change: object) -> fl.Scene:
+    truth = fl.Obstacle("box", -30.0, 300.0, math.radians(20.0), 8.0, 14.0, 12.0)
+    course = fl.Course(15.0, 18.0, 20.0, 0.0, 300.0 / 18.0, 0.1, "weave", (5.0, 9.0))
+    return fl.simulate("box", "box", fl.pinhole(-15.0), replace(truth, **change), course, np.array([0.1, 0.2, 0.3]))
+
+
+def disc_scene(x0: float = 25.0) -> fl.Scene:
+    truth = fl.Obstacle("disc", x0, 300.0, 0.0, 6.0, 6.0, 25.0)
+    course = fl.Course(15.0, 18.0, 20.0, 0.0, 300.0 / 18.0)
+    return fl.simulate("disc", "disc", fl.pinhole(), truth, course, np.zeros(3))
+
+
+@pytest.fixture
+def built() -> Path:
+    try:
+        return library_path()
+    except FileNotFoundError as reason:
+        pytest.skip(str(reason))
+
+
+# --------------------------------------------------------------------------------------------------------------- model
+
+
+@pytest.mark.parametrize("scene", [box_scene(), disc_scene()], ids=["box", "disc"])
+def test_exact_points_leave_no_residuals(scene: fl.Scene) -> None:
+    """The simulator projects corners in NED, the model works in T: two ways to the same pixels."""
+    flight = fl.measure(scene, EXACT)
+    view, state = model.view_of(flight), model.true_state(flight)
+    corners = model.correspond(view, state)
+    rows = model.row_mask(corners.usable)
+    assert rows.sum() > 300
+    assert np.abs(model.residuals(view, corners, state)[rows]).max() < 1e-12
+
+
+@pytest.mark.parametrize("scene", [box_scene(), disc_scene()], ids=["box", "disc"])
+def test_complex_steps_agree_with_differences(scene: fl.Scene) -> None:
+    flight = fl.measure(scene, fl.FIELD, 3)
+    flight.camera = replace(flight.camera, k1=-0.05, k2=0.01, p1=0.001, p2=-0.0005, k3=0.002)
+    view, state = model.view_of(flight), model.true_state(flight)
+    state[[model.BX, model.BY, model.BZ, model.DH, model.VX, model.VZ]] = [0.004, -0.003, 0.005, 0.3, 0.02, 0.03]
+    corners = model.correspond(view, state)
+    rows = model.row_mask(corners.usable)
+    exact = model.jacobian(view, corners, state)
+    for i in range(len(state)):
+        step = np.zeros(len(state))
+        step[i] = 1e-6 * max(abs(state[i]), 1e-2)
+        there, back = (model.residuals(view, corners, state + sign * step) for sign in (1, -1))
+        difference = (back - there) / (2 * step[i])
+        scale = np.abs(exact[rows][:, i]).max()
+        assert np.abs(difference - exact[..., i])[rows].max() <= 1e-6 * scale + 1e-9, model.STATES[i]
+
+
+def test_an_attitude_error_is_undone_by_the_bias_states() -> None:
+    scene = box_scene()
+    flight = fl.measure(scene, EXACT)
+    turned = np.array([0.006, -0.004, 0.008])
+    flight.attitude = fl.multiply(flight.attitude, fl.small_rotations(-turned))
+    view, state = model.view_of(flight), model.true_state(flight)
+    corners = model.correspond(view, state)
+    rows = model.row_mask(corners.usable)
+    state[:3] = turned
+    assert np.abs(model.residuals(view, corners, state)[rows]).max() < 1e-6  # the model's rotation: third power / 12
+
+
+def test_undistort_inverts_the_lens() -> None:
+    camera = replace(fl.pinhole(), k1=-0.2, k2=0.05, p1=0.001, p2=-0.002, k3=-0.01)
+    pixel = np.random.default_rng(1).uniform(100.0, 1180.0, (50, 2))
+    point, slope = model.undistort(camera, pixel)
+    again = model._distorted(camera, point) * [camera.fx, camera.fy] + [camera.cx, camera.cy]
+    assert np.abs(again - pixel).max() < 1e-9
+    moved, _ = model.undistort(camera, pixel + np.array([1e-4, 0.0]))
+    assert np.allclose((moved - point) / 1e-4, slope[..., 0], rtol=1e-5, atol=1e-9)
+
+
+# --------------------------------------------------------------------------------------------------------------- bound
+
+
+def test_the_bound_is_linear_in_the_pixel_noise() -> None:
+    flight = fl.measure(box_scene(), EXACT)
+    small, large = (bound(flight, fl.Noise(pixel_px=px)).sigma for px in (0.2, 0.8))
+    assert np.allclose(large / small, 4.0, rtol=1e-3)
+
+
+def test_twice_the_images_are_worth_the_square_root_of_two() -> None:
+    noise = fl.Noise(pixel_px=0.5, attitude_white_deg=0.05)
+    flight = fl.measure(box_scene(), EXACT)
+    names = ("time_s", "pixel_px", "seen", "position_ned_m", "attitude", "height_m")
+    doubled = replace(flight, **{name: np.repeat(getattr(flight, name), 2, 0) for name in names})
+    ratio = bound(flight, noise).sigma / bound(doubled, noise).sigma
+    assert np.allclose(ratio, math.sqrt(2.0), rtol=1e-3)
+
+
+def test_the_bound_of_a_distant_disc_is_that_of_three_numbers() -> None:
+    """Far away a disc's outline is x = (a -+ w/2)/(1 - dZ q): its information can be written down by hand."""
+    scene = disc_scene(x0=0.0).trimmed(0)
+    flight = fl.measure(scene, EXACT).first(80)  # to 120 m before it
+    flight.seen[:, fl.TOP] = False
+    noise = fl.Noise(pixel_px=0.5)
+    view = model.view_of(flight)
+    q, w = 1 / 300.0, 6.0 / 300.0
+    depth = 1 - view.dz_m * q
+    rows = [np.stack([1 / depth, side * w / 2 * view.dz_m / depth**2, side / 2 / depth], -1) for side in (-1, 1)]
+    jacobian = np.concatenate(rows) * 914.0 / 0.5
+    covariance = np.linalg.inv(jacobian.T @ jacobian)
+    slopes = np.array([[0.0, -1 / q**2, 0.0], [0.0, -w / q**2, 1 / q]])  # Z0 = 1/q, W = w/q
+    by_hand = np.sqrt(np.diag(slopes @ covariance @ slopes.T))
+    assert np.allclose(bound(flight, noise).sigma[[1, 3]], by_hand, rtol=0.02)
+
+
+def test_nuisances_only_raise_the_bound() -> None:
+    flight = fl.measure(box_scene(), EXACT)
+    assert (bound(flight, SENSORS).sigma >= bound(flight, fl.Noise(pixel_px=0.5)).sigma).all()
+
+
+# ------------------------------------------------------------------------------------------------------------- offline
+
+
+@pytest.mark.parametrize("scene", [box_scene(), disc_scene()], ids=["box", "disc"])
+def test_the_fit_finds_the_truth_without_noise(scene: fl.Scene) -> None:
+    pytest.importorskip("scipy")
+    from goe_tools.optimum.offline import fit
+
+    flight = fl.measure(scene, EXACT)
+    start = model.true_state(flight)
+    start[model.A :] *= [1.02, 0.98, 1.03, 0.98, 1.02, 1.02, 1.0, 1.0]
+    if flight.truth.kind == "disc":
+        start[[model.SX, model.SZ]] = model.true_state(flight)[[model.SX, model.SZ]]
+    result = fit(flight, replace(SENSORS, pixel_px=20.0), start)  # so little trust that the start has no outliers
+    shown = np.arange(6) if scene.truth.kind == "box" else [0, 1, 3, 5]
+    assert np.abs((result.values - flight.truth.values)[shown]).max() < 1e-5
+    assert np.abs(result.state[model.NUISANCES]).max() < 1e-6
+
+
+def test_the_fit_reaches_the_bound() -> None:
+    pytest.importorskip("scipy")
+    from goe_tools.optimum.offline import fit
+
+    ratios = []
+    for seed in range(30):
+        flight = fl.measure(box_scene(), SENSORS, seed)
+        error = fit(flight).values - flight.truth.values
+        ratios.append(error / bound(flight).sigma)
+    rmse = np.sqrt(np.mean(np.square(ratios), 0))
+    assert (rmse > 0.8).all() and (rmse < 1.25).all(), rmse
+
+
+def test_the_fit_leaves_outliers_out() -> None:
+    pytest.importorskip("scipy")
+    from goe_tools.optimum.offline import fit
+
+    flight = fl.measure(box_scene(), SENSORS, 1)
+    bad = np.random.default_rng(2).random(flight.seen.shape) < 0.05
+    bad &= flight.seen
+    flight.pixel_px[bad] += [25.0, 25.0]
+    result = fit(flight)
+    assert not (result.used & bad).any()
+    assert result.used.sum() > 0.97 * (flight.seen & ~bad).sum()
+    assert (np.abs(result.values - flight.truth.values) < 4 * result.sigma).all()
+
+
+# ---------------------------------------------------------------------------------------------------------------- logs
+
+
+def test_a_log_becomes_a_flight() -> None:
+    (flight,) = model.logged_flights(CORNER)
+    truth = flight.truth
+    assert (truth.kind, truth.width_m, truth.length_m, truth.height_m) == ("box", 15.0, 25.0, 60.0)
+    assert (truth.x0_m, truth.z0_m) == (-50.0, 612.0)
+    assert truth.orientation_rad == pytest.approx(math.radians(-5.0))
+    assert len(flight.time_s) == 121 and flight.seen[:, fl.LEFT].sum() > 100
+    assert flight.top_is_highest  # the scene's: the highest point in the image
+
+
+def test_the_truth_of_a_log_without_the_simulators_columns(tmp_path: Path) -> None:
+    for name in ("camera.ini", "frames.csv"):
+        (tmp_path / name).write_text((CORNER / name).read_text())
+    lines = (CORNER / "truth.csv").read_text().splitlines()
+    (tmp_path / "truth.csv").write_text("\n".join(",".join(line.split(",")[:9]) for line in lines) + "\n")
+    (plain,), (told,) = fl.from_log(tmp_path), fl.from_log(CORNER)
+    assert np.allclose(plain.truth.values, told.truth.values, atol=1e-6)
+
+
+@pytest.mark.parametrize("command", ["bound", "offline"])
+def test_commands(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("scipy")
+    noise = ["--pixel", "0.35", "--attitude-bias", "0", "--attitude-white", "0", "--height", "0", "--velocity", "0"]
+    assert main([command, str(CORNER), *noise]) == 0
+    text = capsys.readouterr().out
+    assert "corner/1: box, 121 images" in text
+    if command == "offline":
+        line = next(line for line in text.splitlines() if line.startswith("error / one sigma"))
+        assert np.abs(np.array(line.split()[4:], float)).max() < 3.0
+
+
+def test_a_log_without_truth_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("camera.ini", "frames.csv"):
+        (tmp_path / name).write_text((CORNER / name).read_text())
+    assert main(["bound", str(tmp_path)]) == 2
+    assert "there is no truth" in capsys.readouterr().err
+    assert main(["bound", str(CORNER), "--correlation", "1"]) == 2
+    assert "correlation" in capsys.readouterr().err
+
+
+def test_the_campaign_of_the_paper() -> None:
+    scenes = fl.paper_scenes()
+    assert len(scenes) == 156
+    assert all(s.seen[: len(s.time_s) // 2, [fl.LEFT, fl.RIGHT]].all(1).mean() > 0.8 for s in scenes)
+    again = [fl.measure(scenes[40], fl.FIELD, (3, 4)) for _ in range(2)]
+    assert np.array_equal(again[0].pixel_px, again[1].pixel_px)
+
+
+# --------------------------------------------------------------------------------------------------------------- judge
+
+
+def track_of(values: np.ndarray, model_number: int) -> Track:
+    count = len(values)
+    number, zero = np.full(count, model_number), np.zeros(count)
+    return Track(
+        zero, number, number, zero > 0, zero > 0, values, np.ones((count, 6)), np.zeros((count, 6, 6)), zero, zero, zero
+    )
+
+
+def test_names_of_front_and_side_may_be_exchanged() -> None:
+    flight = fl.measure(box_scene(), EXACT)
+    truth = flight.truth.values
+    twice = renamed(renamed(truth, 1), -1)
+    assert np.allclose(twice, truth, atol=1e-9)
+    other = renamed(truth, 1)  # the camera passes on the right of a box that stands at the left
+    error = judge(track_of(np.array([truth, other]), MODEL_BOX), flight)
+    assert np.abs(error.error).max() < 1e-9
+    assert error.renamed.tolist() == [False, True]
+
+
+def test_the_bound_under_the_other_name() -> None:
+    flight = fl.measure(box_scene(), EXACT)
+    best = bound(flight, fl.Noise())
+    other = renamed_sigma(flight.truth, best.covariance)
+    assert np.allclose(other[[2, 3, 4, 5]], best.sigma[[2, 4, 3, 5]])
+
+
+def test_a_disc_for_a_box_is_held_against_its_middle() -> None:
+    flight = fl.measure(box_scene(), EXACT)
+    values = np.tile(flight.truth.values, (2, 1))
+    values[:, :2] = flight.truth.corners().mean(0)
+    error = judge(track_of(values, MODEL_DISC), flight).error
+    assert np.abs(error[:, :2]).max() < 1e-9
+    assert np.isnan(error[:, 2:]).all()
+
+
+# ------------------------------------------------------------------------------------------------- library and goals
+
+
+def test_the_library_over_a_flight(built: Path) -> None:
+    flight = fl.measure(box_scene(), fl.NOISES["gauss0.3"], 1)
+    track = estimate(flight)
+    error = judge(track, flight)
+    assert track.valid[-1].all()
+    assert (np.abs(error.error[-1]) < 4 * error.sigma[-1]).all()
+    assert np.allclose(np.sqrt(np.diag(track.covariance[-1])), track.sigma[-1], rtol=1e-3)
+    window = estimate(flight, settings_of(flight, method="window"))
+    assert set(window.method[window.valid[:, 1]]) == {1}
+    with pytest.raises(ValueError, match=r"noise\.of_nothing"):
+        estimate(flight, noise__of_nothing=1.0)
+    with pytest.raises(ValueError, match=r"camera\.fx_px"):
+        estimate(flight, camera__fx_px=-1.0)
+
+
+def test_a_goal_is_met_within_its_range() -> None:
+    goal = goals.Goal("g", "n", "1", {"X0": 1.0, "Z0": 3.0}, (0.0, 2.0), ("X0",))
+    assert goal.met and not replace(goal, asked=("X0", "Z0")).met
+    assert replace(goal, asked=("X0", "Z0")).missed == ("Z0",)
+    assert replace(goal, asked=()).met is None
+    assert not replace(goal, values={"X0": math.nan}).met
+
+
+def test_caught_at_a_share_of_false_flags() -> None:
+    static, moving = np.arange(10.0), np.array([8.5, 9.5, 20.0, 1.0])
+    assert goals.caught(static, moving, 0.0) == 50.0
+    assert goals.caught(static, moving, 0.1) == 75.0
+
+
+def test_goals_of_table3(built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "goals.json"
+    assert main(["goals", "--quick", "--only", "table3", "--json", str(out)]) == 0
+    assert "cylinder" in capsys.readouterr().out
+    rows = json.loads(out.read_text())["goals"]
+    asked = [row for row in rows if row["asked"]]
+    assert len(asked) == 4 and set(asked[0]) == {"group", "name", "unit", "wanted", "asked", "values", "met"}
+    assert all(row["values"]["Z0"] > 5.0 for row in asked)
+
+
+def test_goals_says_what_it_does_not_know(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["goals", "--only", "everything"]) == 2
+    assert "everything" in capsys.readouterr().err

@@ -1,0 +1,72 @@
+"""The library in float32 against the same library in float64: rounding must stay far below what an answer claims."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+
+import numpy as np
+import pytest
+from goe_tools.optimum import flights as fl
+from goe_tools.optimum.library import MODEL_DISC, estimate, library_path
+from goe_tools.optimum.precision import rounding_of
+
+LIMIT = 0.05  # of one sigma
+NOISES = ("gauss0.3", "gauss1", "field")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built() -> None:
+    for double in (False, True):
+        try:
+            library_path(double)
+        except FileNotFoundError as reason:
+            pytest.skip(str(reason))
+
+
+@pytest.fixture(scope="module")
+def scenes() -> list[fl.Scene]:
+    """Every twelfth of the paper's cases, and a few random ones."""
+    return fl.paper_scenes()[::12] + fl.random_scenes(12)
+
+
+@pytest.fixture(scope="module")
+def box(scenes: list[fl.Scene]) -> fl.Scene:
+    return next(scene for scene in scenes if scene.truth.kind == "box")
+
+
+@pytest.mark.parametrize("noise", NOISES)
+def test_rounding_is_small_beside_the_sigma(noise: str, scenes: list[fl.Scene]) -> None:
+    flights = [rounding_of(fl.measure(s, fl.NOISES[noise], (1, i))) for i, s in enumerate(scenes)]
+    worst, last = (np.array([getattr(r, name) for r in flights]) for name in ("worst", "last"))
+    assert np.isfinite(worst).sum(0).min() >= 10  # every quantity was compared
+    assert max(np.quantile(column[np.isfinite(column)], 0.99) for column in worst.T) < LIMIT
+    assert np.nanmax(last) <= LIMIT
+    assert sum(r.answered for r in flights) > 50 * len(flights)
+    assert sum(r.apart for r in flights) <= 0.01 * sum(r.answered for r in flights)
+
+
+def test_the_other_build_does_compute_in_float64(box: fl.Scene) -> None:
+    """Its settings are of doubles, and its answers are others, if only a little."""
+    sizes = []
+    for double in (False, True):
+        size = ctypes.CDLL(str(library_path(double))).goe_batch_settings_size
+        size.restype = ctypes.c_size_t
+        sizes.append(size())
+    assert sizes[1] > 1.5 * sizes[0]
+    flight = fl.measure(box, fl.NOISES["gauss0.3"], 1)
+    single, double = estimate(flight), estimate(flight, double=True)
+    assert 0.0 < np.nanmax(np.abs(single.values[-1] - double.values[-1])) < 0.1
+    assert math.isfinite(rounding_of(flight).worst.max())
+
+
+def test_where_the_builds_decide_otherwise_is_counted(monkeypatch: pytest.MonkeyPatch, box: fl.Scene) -> None:
+    flight = fl.measure(box, fl.NOISES["gauss1"], 1)
+    tracks = [estimate(flight), estimate(flight, double=True)]
+    tracks[1].model[-3:] = MODEL_DISC
+    tracks[0].values[-4] += 0.5 * tracks[1].sigma[-4]
+    monkeypatch.setattr("goe_tools.optimum.precision.estimate", lambda _, double=False: tracks[int(double)])
+    told = rounding_of(flight)
+    assert told.apart == 3
+    assert np.isnan(told.last).all()
+    assert told.worst == pytest.approx(np.full(6, 0.5), abs=0.01)

@@ -1,0 +1,87 @@
+"""Reads what ``python -m goe_tools goals --json FILE`` wrote: every goal's figures, wanted and reached."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..obslog import LogError
+
+QUANTITIES = ("X0", "Z0", "orientation", "W", "L", "H")  # as the file names them, in the order of its tables
+
+
+@dataclass(frozen=True)
+class GoalRow:
+    """One line: figures by name, NaN where there is none. ``low`` and ``high`` hold for the ``asked`` ones; a line
+    without any is told for information and has ``met`` None."""
+
+    group: str
+    name: str
+    unit: str
+    values: dict[str, float]
+    low: float
+    high: float
+    asked: tuple[str, ...]
+    met: bool | None
+
+    @property
+    def missed(self) -> tuple[str, ...]:
+        return tuple(name for name in self.asked if not self.low <= self.values.get(name, math.nan) <= self.high)
+
+    @property
+    def by_quantity(self) -> bool:
+        return set(self.values) <= set(QUANTITIES)
+
+
+@dataclass(frozen=True)
+class Goals:
+    rows: tuple[GoalRow, ...]
+    quick: bool  # fewer flights than the full count
+
+    @property
+    def asked(self) -> tuple[GoalRow, ...]:
+        return tuple(row for row in self.rows if row.met is not None)
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(row.group for row in self.rows))
+
+    def find(self, group: str, name: str) -> GoalRow | None:
+        """The first line of a group whose name begins so."""
+        return next((row for row in self.rows if row.group == group and row.name.startswith(name)), None)
+
+
+def read_goals(path: Path) -> Goals:
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise LogError(path, 0, "", error.strerror or "cannot be read") from None
+    except json.JSONDecodeError as error:
+        raise LogError(path, error.lineno, "", error.msg) from None
+    if not isinstance(content, dict) or not isinstance(content.get("goals"), list) or not content["goals"]:
+        raise LogError(path, 1, "goals", "no list of goals; goals --json writes one")
+    rows = tuple(_row(path, number, told) for number, told in enumerate(content["goals"], start=1))
+    return Goals(rows, bool(content.get("quick", False)))
+
+
+def _row(path: Path, number: int, told: Any) -> GoalRow:
+    try:
+        low, high = told["wanted"] if told["wanted"] is not None else (None, None)
+        values = {str(name): _number(value, math.nan) for name, value in told["values"].items()}
+        row = GoalRow(
+            str(told["group"]), str(told["name"]), str(told["unit"]), values, _number(low, -math.inf),
+            _number(high, math.inf), tuple(told["asked"]), told["met"],
+        )  # fmt: skip
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        reason = f"{error} is missing" if isinstance(error, KeyError) else str(error)
+        raise LogError(path, 0, "goals", f"goal {number}: {reason}") from None
+    if row.met is not None and row.met is not (not row.missed):
+        raise LogError(path, 0, "met", f"goal {number}: says {row.met}, its figures say {not row.missed}")
+    return row
+
+
+def _number(value: float | None, none: float) -> float:
+    return none if value is None else float(value)

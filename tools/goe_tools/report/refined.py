@@ -1,0 +1,201 @@
+"""What the refined method's rows and the goals come to: Table 3 once more, studies, early warning, rivals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from . import statistics as st
+from .data import Campaign, Cases
+from .goals_file import QUANTITIES, GoalRow, Goals
+
+FIVEFOLD = 5.0  # what is wanted of every cell of Table 3
+BOXES = ("building", "truck", "long-truck")
+KINDS = ("boxes", "cylinders", "parked cars")
+MOMENTS = ("all answers", "first answers", "at the end")
+GROUPS = {  # beginnings of the goals' groups, and what they are
+    "gauss0.3": "Gaussian pixel noise, 0.3 px",
+    "gauss1": "Gaussian pixel noise, 1 px",
+    "rounding": "Whole pixels",
+    "field": "All errors of a small aircraft's sensors",
+    "table3": "The paper's Table 3",
+    "early": "Early warning",
+    "recorded": "Autopilots' recorded flights",
+    "kitti": "KITTI's cars",
+    "rivals": "Other methods",
+}
+
+
+AUTOPILOTS = {"px4": "PX4", "arduplane": "ArduPlane"}
+
+
+def group_title(group: str) -> str:
+    for start, title in GROUPS.items():
+        if group == start:
+            return title
+        if group.startswith((f"{start} ", f"{start}:")):
+            rest = group[len(start) :].strip(" :")
+            return f"{title}, {AUTOPILOTS.get(rest, rest)}"
+    return group
+
+
+@dataclass(frozen=True)
+class Trio:
+    """A number of Table 3: the paper's range, the window method's and the refined method's (percent; height m)."""
+
+    obstacle: str
+    model: str  # the paper's row; "box": refined alone, told that it is a box
+    quantity: str
+    paper: st.PaperRange | None
+    window: float
+    refined: float
+    runs: int  # of the refined method, those that have the quantity
+    without: int  # those that do not
+
+    @property
+    def factor(self) -> float:
+        """How many times refined is inside the paper's range, at least so where the paper's values lie beyond it."""
+        return self.paper.value / self.refined if self.paper and self.refined > 0.0 else math.nan
+
+
+def refined_runs(refined: Cases, obstacle: str, model: str) -> Cases:
+    return refined.select(study="paper", obstacle=obstacle, model=model, fraction=st.FRACTION)
+
+
+def _trio(campaign: Campaign, obstacle: str, model: str, quantity: str) -> Trio | None:
+    window = None if model == "box" else st.make_cell(campaign.cases, obstacle, model, quantity)
+    if campaign.refined is None or (window is None and model != "box"):
+        return None
+    runs = refined_runs(campaign.refined, obstacle, "box" if model == "box" else "auto")
+    errors = st.errors_of(runs, quantity)
+    return Trio(
+        obstacle, model, quantity, window.paper if window else None, window.bars if window else math.nan,
+        st.holding_range(errors.extent), len(errors.mean), errors.without_estimate,
+    )  # fmt: skip
+
+
+def table3(campaign: Campaign) -> list[tuple[str, str, list[Trio | None]]]:
+    """Rows (obstacle, model, cells in the order of TABLE3_QUANTITIES): the paper's, then boxes told to be boxes."""
+    if campaign.refined is None:
+        return []
+    told = [(o, "box") for o in BOXES if len(refined_runs(campaign.refined, o, "box"))]
+    rows = (*st.PAPER_TABLE3, *told)
+    return [(o, m, [_trio(campaign, o, m, q) for q in st.TABLE3_QUANTITIES]) for o, m in rows]
+
+
+def papers(campaign: Campaign) -> list[Trio]:
+    """The numbers that the paper gives."""
+    return [cell for _, _, cells in table3(campaign) for cell in cells if cell is not None and cell.paper is not None]
+
+
+@dataclass(frozen=True)
+class StudyRow:
+    """Root mean square errors, medians over the runs, by quantity: window, refined."""
+
+    label: str
+    errors: dict[str, tuple[float, float]]
+
+
+def studies(campaign: Campaign) -> list[StudyRow]:
+    """Straight flight first; boxes and cylinder together, the switching window method against the refined one."""
+    if campaign.refined is None:
+        return []
+    window, refined = (_of_auto(cases) for cases in (campaign.cases, campaign.refined))
+    straight = [cases.select(study="paper", fraction=st.FRACTION) for cases in (window, refined)]
+    pairs = [("straight, as the paper", *straight)]
+    others = {variant.label: variant.runs for variant in st.variants(refined)}
+    pairs += [(v.label, v.runs, others[v.label]) for v in st.variants(window) if v.label in others]
+    return [
+        StudyRow(label, {q: (st.median_rmse(a, q), st.median_rmse(b, q)) for q in st.STUDY_QUANTITIES})
+        for label, a, b in pairs
+    ]
+
+
+def _of_auto(cases: Cases) -> Cases:
+    return cases.where((cases["model"] == "auto") | (cases["obstacle"] == "cylinder"))
+
+
+# --------------------------------------------------------------------------------------------------------------- goals
+
+
+def early_rows(goals: Goals) -> dict[str, dict[str, GoalRow]]:
+    """By noise: seconds before abeam by obstacle, for each way to tell ("refined, own 2 sigma", ...)."""
+    found: dict[str, dict[str, GoalRow]] = {}
+    for row in goals.rows:
+        if row.group.startswith("early"):
+            noise, _, way = row.name.partition(", ")
+            found.setdefault(noise, {})[way] = row
+    return found
+
+
+def bound_rows(goals: Goals) -> dict[str, tuple[GoalRow, GoalRow]]:
+    """By group: RMSE over the bound, median and 90th percentile of the cases."""
+    found = {}
+    for group in goals.groups:
+        rows = (goals.find(group, "RMSE / bound, median"), goals.find(group, "RMSE / bound, 90th"))
+        if rows[0] is not None and rows[1] is not None:
+            found[group] = (rows[0], rows[1])
+    return found
+
+
+def coverage_rows(goals: Goals) -> dict[str, dict[tuple[str, str], GoalRow]]:
+    """By group: how often the truth lies within two sigma, by kind of obstacle and moment."""
+    found: dict[str, dict[tuple[str, str], GoalRow]] = {}
+    for row in goals.rows:
+        parts = row.name.split(", ")
+        if parts[0] == "within 2 sigma" and len(parts) == 3:
+            found.setdefault(row.group, {})[(parts[1], parts[2])] = row
+    return found
+
+
+def nees_rows(goals: Goals) -> list[GoalRow]:
+    return [row for row in goals.rows if row.name.startswith("NEES")]
+
+
+@dataclass(frozen=True)
+class Flags:
+    """Moving cars told apart: percent caught at each percent of false flags; the flag as the library raises it."""
+
+    false: tuple[float, ...]
+    caught: tuple[float, ...]
+    area: float
+    default: tuple[float, float] | None  # false, caught
+    goal: GoalRow
+
+
+def flags(goals: Goals) -> Flags | None:
+    curve = next((row for row in goals.rows if "caught, at a share of false flags" in row.name), None)
+    if curve is None:
+        return None
+    points = sorted((float(name.rstrip("% ")), value) for name, value in curve.values.items())
+    area = goals.find(curve.group, "misfit as a flag")
+    default = goals.find(curve.group, "told as suspect with the default threshold")
+    return Flags(
+        tuple(x for x, _ in points), tuple(y for _, y in points),
+        next(iter(area.values.values())) if area else math.nan,
+        (default.values["parked"], default.values["moving"]) if default else None, curve,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Median errors at the end of the flights that it answers, and the share of those in percent, by quantity."""
+
+    name: str
+    errors: dict[str, float]
+    answers: dict[str, float]
+    flights: int
+
+
+def rivals(goals: Goals) -> dict[str, list[Rival]]:
+    """By noise, refined and window first."""
+    found: dict[str, list[Rival]] = {}
+    for row in goals.rows:
+        noise, _, rest = row.name.partition(", median error, ")
+        if row.group != "rivals" or not rest:
+            continue
+        flights, _, name = rest.partition(" flights: ")
+        answers = goals.find("rivals", f"{noise}, answers: {name}")
+        errors = {quantity: row.values.get(quantity, math.nan) for quantity in QUANTITIES}
+        found.setdefault(noise, []).append(Rival(name, errors, answers.values if answers else {}, int(flights)))
+    return found
