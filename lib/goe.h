@@ -157,10 +157,10 @@ typedef enum {
 typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2 } goe_method_t;
 
 /* How wrong the measurements are, for the refined method: one-sigma each, as a data sheet or a look at a log gives them.
- * "Constant" errors are the same over a track; the filter estimates them beside the obstacle. Too small a figure makes
- * the sigmas too small, too large a one wastes data; wrong by a factor of 2 in either direction does little harm. */
+ * "Constant" errors are the same over a track; the filter estimates them beside the obstacle. Too large a figure wastes
+ * data; too small a one makes the sigmas too small by as much, refuses good points and makes obstacles suspect. */
 typedef struct {
-    float pixel_px;            /* of an image point, new in each image; 0.05 to 100; default 0.5. Rounding alone: 0.35 */
+    float pixel_px;            /* of an image point, new in each image; 0.05 to 100; default 0.5. Rounding alone: 0.3 */
     float size_share;          /* of left, right and top, added to it: share of the silhouette's width; 0 to 1; default 0.
                                   A detector's bounding boxes: about 0.025 */
     float correlation;         /* of a point's error from image to image; 0 to 0.95; default 0. Detectors: about 0.5 */
@@ -268,7 +268,7 @@ typedef struct {
 
 /* One-sigma of each quantity; units as the quantity.
  * Refined: of the true error, as far as goe_noise_t tells the truth; a quantity is valid once its sigma was below 25 % (x0,
- * z0: of the range), 30 % (width, length, height) or 10 degrees in two images in a row.
+ * z0: of the range at the filter's start), 30 % (width, length, height) or 10 degrees in two images in a row.
  * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
  * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:
  * then the orientation's is 0, and those of length and height hold only what the solution gives them. */

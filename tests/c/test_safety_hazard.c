@@ -2,11 +2,13 @@
  *
  * As in test_safety.c floats are judged by their bits alone: the test must also hold with -ffast-math. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "check.h"
 
 #define CALLS 200000
+#define UPDATES_PER_CALL 10 /* of GOE_TEST_UPDATES, which shortens the test where an emulator runs it */
 
 static goe_estimator_t estimator;
 static check_random_t any;
@@ -93,8 +95,13 @@ static void check_told(const goe_hazard_t *h) {
     TEST_ASSERT_TRUE(magnitude(&h->violation) <= magnitude(&one));
 }
 
+static int calls(void) {
+    const char *wanted = getenv("GOE_TEST_UPDATES");
+    return wanted ? (int)strtol(wanted, NULL, 0) / UPDATES_PER_CALL : CALLS;
+}
+
 static void any_answer_and_plan_give_finite_numbers(void) {
-    for (int i = 0; i < CALLS; i++) {
+    for (int i = 0; i < calls(); i++) {
         const goe_plan_t plan = {{up_to(1e3), up_to(1e3), up_to(1e3)}, magnitude_up_to(1e4), magnitude_up_to(1e4)};
         goe_hazard_t hazard;
         give_any_answer();
@@ -107,7 +114,7 @@ static void any_answer_and_plan_give_finite_numbers(void) {
 }
 
 static void any_bits_of_a_plan_are_refused_or_answered(void) {
-    for (int i = 0; i < CALLS; i++) {
+    for (int i = 0; i < calls(); i++) {
         goe_plan_t plan;
         goe_hazard_t hazard;
         uint32_t bits[5];

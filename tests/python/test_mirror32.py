@@ -51,6 +51,8 @@ def test_polynomials_are_those_of_the_library() -> None:
     in_c = {name: F(value) for name, value in re.findall(r"#define (\w+_\d) ([0-9.e-]+)f", source)}
     in_mirror = {"ATAN": mirror32.ATAN, "SIN": mirror32.SIN, "COS": mirror32.COS}
     for problem in minimax.PROBLEMS:
+        if problem.name not in in_mirror:  # the window method has no use for it
+            continue
         for number, coefficient in enumerate(minimax.remez(problem).coefficients, start=1):
             name = f"{problem.name}_{number}"
             assert in_c[name] == in_mirror[problem.name][number - 1], name

@@ -315,3 +315,12 @@ def test_goals_of_table3(built: Path, tmp_path: Path, capsys: pytest.CaptureFixt
 def test_goals_says_what_it_does_not_know(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["goals", "--only", "everything"]) == 2
     assert "everything" in capsys.readouterr().err
+
+
+def test_an_interrupt_ends_with_a_word(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def interrupted(*_: object) -> list[goals.Goal]:
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(goals.GROUPS, "field", interrupted)
+    assert main(["goals", "--quick", "--only", "field"]) == 130
+    assert capsys.readouterr().err.splitlines()[-1] == "goe_tools goals: interrupted"

@@ -24,6 +24,7 @@ COMMANDS = {
 }
 MODULES = {name: f".optimum.{name}" for name in ("bound", "goals", "offline")}
 EXIT_BAD_INPUT = 2
+EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -40,6 +41,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (LogError, ValueError, FileNotFoundError) as error:
         print(f"goe_tools {arguments.command}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
+    except KeyboardInterrupt:
+        print(f"goe_tools {arguments.command}: interrupted", file=sys.stderr)
+        return EXIT_INTERRUPTED
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import argparse
 import json
 import math
 import multiprocessing
+import signal
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -186,7 +187,7 @@ def _each(work: Callable[[Task], Result], tasks: Sequence[Task], jobs: int, titl
     progress = {"total": len(tasks), "desc": title, "disable": None, "leave": False}
     if jobs == 1:
         return [work(task) for task in tqdm(tasks, **progress)]
-    with multiprocessing.Pool(jobs) as pool:
+    with multiprocessing.Pool(jobs, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:  # Ctrl-C: ours alone
         return list(tqdm(pool.imap(work, tasks, chunksize=8), **progress))
 
 
@@ -470,10 +471,10 @@ def table3_bounds(group: str, tasks: Sequence[Task], outcomes: Sequence[Outcome]
     bounds = dict(zip([id(o) for o in outcomes], _each(_bound_when_judged, tasks, amount.jobs, f"{group} bounds")))
     result = []
     for obstacle, chosen in _by_obstacle(outcomes).items():
-        values = np.nanmedian(np.array([bounds[id(o)] for o in chosen]), axis=0)
         asked = (X0, Z0, WIDTH, LENGTH, HEIGHT) if chosen[0].box else (X0, Z0, WIDTH, HEIGHT)
+        values = np.nanmedian(np.array([bounds[id(o)] for o in chosen])[:, asked], axis=0)
         label = f"{obstacle}: bound (2 sigma) at {1 - FRACTION:.0%} of the run"
-        result.append(Goal(group, label, "%, m", _named(values[list(asked)], asked)))
+        result.append(Goal(group, label, "%, m", _named(values, asked)))
     return result
 
 

@@ -3,7 +3,6 @@
  *
  * The answers that goe_hazard works on are written into the estimator, so that every number of them is known. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "check.h"
@@ -431,8 +430,8 @@ static void a_grazed_edge_does_not_blow_the_sigma_of_the_time_up(void) {
         give_sigmas(2.0, 4.0, 1.0, 1.0, 1.0);
         const drawn_t drawn = draw(&grazed[i], &plan, draw_from_sigmas);
         const goe_hazard_t hazard = foresee(&plan);
-        printf("graze: time sd %.3f, drawn %.3f s; clearance sd %.3f, drawn %.3f m\n", (double)hazard.time_sd_s,
-               drawn.time_sd_s, (double)hazard.clearance_sd_m, drawn.clearance_sd_m);
+        check_report("graze: time sd, s", (double)hazard.time_sd_s);
+        check_report("graze: drawn, s", drawn.time_sd_s);
         TEST_ASSERT_TRUE((double)hazard.time_sd_s <= (half_m[i] + 4.6) / 20.0);
         TEST_ASSERT_TRUE((double)hazard.time_sd_s > 0.7 * drawn.time_sd_s);
         TEST_ASSERT_TRUE((double)hazard.clearance_sd_m > 0.7 * drawn.clearance_sd_m);
@@ -539,7 +538,8 @@ static void correlation_moves_the_probability(void) {
         plan.clearance_m = 14.0f;
         const double told = (double)foresee(&plan).violation;
         const double drawn = draw(&mean, &plan, draw_from_covariance).violation;
-        printf("shared %.2f: violation told %.3f, drawn %.3f\n", (double)shared[i], told, drawn);
+        check_report("shared errors: violation told", told);
+        check_report("shared errors: violation drawn", drawn);
         TEST_ASSERT_TRUE(told > drawn - 0.03);
         TEST_ASSERT_TRUE(told < drawn + 0.15);
         if (fabs((double)shared[i]) < 0.6) {
@@ -593,9 +593,8 @@ static void correlated_errors_are_accounted_for(void) {
         plan.clearance_m = (float)truth_of(&mean, &plan).clearance_m;
         const goe_hazard_t hazard = foresee(&plan);
         const drawn_t drawn = draw(&mean, &plan, draw_from_covariance);
-        printf("refined: sd %.3f s %.3f m %.3f m, violation %.3f; drawn %.3f %.3f %.3f, %.3f\n",
-               (double)hazard.time_sd_s, (double)hazard.miss_sd_m, (double)hazard.clearance_sd_m,
-               (double)hazard.violation, drawn.time_sd_s, drawn.miss_sd_m, drawn.clearance_sd_m, drawn.violation);
+        check_report("refined: violation told", (double)hazard.violation);
+        check_report("refined: violation drawn", drawn.violation);
         CHECK_CLOSE(1e-3, truth_of(&mean, &plan).clearance_m, hazard.clearance_m);
         check_sd(drawn.time_sd_s, hazard.time_sd_s);
         check_sd(drawn.clearance_sd_m, hazard.clearance_sd_m);
@@ -615,8 +614,7 @@ static void the_altimeters_bias_does_not_part_camera_and_top(void) {
         scene_image(&scene, 39, &image, NULL);
         fly_towards_a_tower((float)i);
         const goe_hazard_t hazard = foresee(&plan);
-        printf("clearance %.3f +- %.3f m, height %.3f +- %.3f m\n", (double)hazard.clearance_m,
-               (double)hazard.clearance_sd_m, (double)estimator.told.height_m, (double)estimator.told.sigma.height_m);
+        check_report("clearance, m", (double)hazard.clearance_m);
         CHECK_CLOSE(3.0 * (double)hazard.clearance_sd_m, (double)image.pose.height_m - scene.height_m,
                     hazard.clearance_m);
     }
