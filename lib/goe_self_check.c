@@ -34,16 +34,17 @@ static bool reassociates(void) {
 }
 
 #define QUOTIENTS 3
+#define DIVISOR 41.0f
 
-/* 5/d, 7/d and 11/d with one divisor invite the compiler to compute 1/d once, side by side or before a loop; with d = 41 all
- * three quotients come out differently. Bits are joined by |, not ||: a compiler that may skip a division does not merge it
- * with the others. */
+/* 5/d, 7/d and 11/d with one divisor invite the compiler to compute 1/d once, side by side or before a loop, and a constant
+ * d to compute it beforehand; with d = 41 all three quotients come out differently. Bits are joined by |, not ||: a
+ * compiler that may skip a division does not merge it with the others. */
 static bool reciprocates(void) {
     static const uint32_t right[QUOTIENTS] = {0x3DF9C190u, 0x3E2ED44Bu, 0x3E895DA9u};
     volatile float given_five = 5.0f;
     volatile float given_seven = 7.0f;
     volatile float given_eleven = 11.0f;
-    volatile float given_divisor = 41.0f;
+    volatile float given_divisor = DIVISOR;
     volatile int given_count = QUOTIENTS; /* so that the loop stays one */
     const float dividend[QUOTIENTS] = {given_five, given_seven, given_eleven};
     const float divisor = given_divisor;
@@ -52,6 +53,7 @@ static bool reciprocates(void) {
     const float second = dividend[1] / divisor;
     const float third = dividend[2] / divisor;
     uint32_t off = (bits_of(first) ^ right[0]) | (bits_of(second) ^ right[1]) | (bits_of(third) ^ right[2]);
+    off |= bits_of(dividend[0] / DIVISOR) ^ right[0];
     for (int k = 0; k < count; k++) {
         off |= bits_of(dividend[k] / divisor) ^ right[k];
     }
