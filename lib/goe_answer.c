@@ -14,7 +14,6 @@
 #define EXTENT_SHARE 0.3f   /* ... width, length and height */
 #define HEIGHT_LEAST_M 2.0f /* a lower obstacle's height may be off by the share of this */
 #define ORIENTATION_MOST_RAD 0.174532925f
-#define ACROSS 1.3f      /* tan b above which front and side change names */
 #define SUSPECT_IMAGES 8 /* fewer say nothing */
 #define EARLY 4.0f
 #define EARLY_MOST 4.0f
@@ -91,7 +90,7 @@ static void name_edges(goe_filter_t *filter) {
     const float fx = filter->state[GOE_FX];
     const axis_t side = filter->exchanged ? into_trajectory(filter, fx, -sign_of(sx) * depth.front)
                                           : into_trajectory(filter, sx, depth.side);
-    const float slope = filter->named ? ACROSS : 1.0f;
+    const float slope = filter->named ? GOE_EXCHANGE_SLOPE : 1.0f;
     if (fabsf(side.x) > slope * fabsf(side.z)) {
         filter->exchanged = !filter->exchanged;
     }
@@ -236,8 +235,6 @@ static void differentiate(const answer_t *a, int quantity, float weight[GOE_STAT
     }
 }
 
-static float square(float x) { return x * x; }
-
 /* Constant velocity errors scale and turn the flown path, and the obstacle with it: no image shows that. */
 typedef struct {
     float share; /* of lengths, and rad */
@@ -248,25 +245,25 @@ static drift_t drift_of(const goe_estimator_t *estimator) {
     const goe_noise_t *noise = &estimator->settings.noise;
     const uint64_t us = (uint64_t)estimator->time_us - (uint64_t)estimator->start_time_us;
     const float s = (float)(uint32_t)(us < TIME_MOST_US ? us : TIME_MOST_US) * S_PER_US;
-    const float path_m = sqrtf(square(estimator->dx_m) + square(estimator->dz_m));
+    const float path_m = sqrtf(goe_square(estimator->dx_m) + goe_square(estimator->dz_m));
     const drift_t drift = {noise->velocity_bias_m_s * s / (path_m > PATH_LEAST_M ? path_m : PATH_LEAST_M),
-                           square(noise->position_walk_m) * s};
+                           goe_square(noise->position_walk_m) * s};
     return drift;
 }
 
 static float drift_variance(const goe_estimator_t *estimator, drift_t drift, const answer_t *a, int quantity) {
-    const float share2 = square(drift.share);
+    const float share2 = goe_square(drift.share);
     switch (quantity) {
         case GOE_X0:
         case GOE_Z0:
-            return share2 * square(a->value[GOE_Z0]) + drift.walk_m2 + a->place_m2;
+            return share2 * goe_square(a->value[GOE_Z0]) + drift.walk_m2 + a->place_m2;
         case GOE_ORIENTATION:
             return a->box ? share2 : 0.0f;
         case GOE_HEIGHT:
             return share2 *
-                   goe_larger(square(a->value[GOE_HEIGHT]), square(a->value[GOE_HEIGHT] - estimator->height_m));
+                   goe_larger(goe_square(a->value[GOE_HEIGHT]), goe_square(a->value[GOE_HEIGHT] - estimator->height_m));
         default:
-            return share2 * square(a->value[quantity]);
+            return share2 * goe_square(a->value[quantity]);
     }
 }
 
@@ -276,7 +273,7 @@ static float find_early_factor(const goe_filter_t *filter, const answer_t *a) {
     if (!a->box) {
         return 1.0f;
     }
-    const float relative = goe_inverse_variance(&filter->inverse, GOE_D) / square(a->depth.sum);
+    const float relative = goe_inverse_variance(&filter->inverse, GOE_D) / goe_square(a->depth.sum);
     return 1.0f + EARLY * (relative < EARLY_MOST ? relative : EARLY_MOST);
 }
 
@@ -317,13 +314,13 @@ static float variance_of(const goe_filter_t *filter, const answer_t *a, const fl
 static float outline_variance(const goe_estimator_t *estimator, const answer_t *a, int quantity,
                               float orientation_rad2) {
     const goe_filter_t *filter = &estimator->filter;
-    if (!a->box || !filter->outline || quantity < GOE_ORIENTATION || quantity > GOE_LENGTH) {
+    if (!a->box || !filter->outline || !hangs_on_corner(quantity)) {
         return 0.0f;
     }
     if (quantity == GOE_ORIENTATION) {
-        return square(OUTLINE_RAD);
+        return goe_square(OUTLINE_RAD);
     }
-    const float size2 = square(OUTLINE_SHARE * (a->value[GOE_WIDTH] + a->value[GOE_LENGTH]));
+    const float size2 = goe_square(OUTLINE_SHARE * (a->value[GOE_WIDTH] + a->value[GOE_LENGTH]));
     if ((quantity == GOE_LENGTH) == a->exchanged) { /* the front of the state */
         return size2;
     }
@@ -332,8 +329,8 @@ static float outline_variance(const goe_estimator_t *estimator, const answer_t *
     const float px = a->start - estimator->dx_m / a->scale_m;
     const float pz = 1.0f - estimator->dz_m / a->scale_m;
     const float beside = goe_larger(fabsf(vz * px - vx * pz) - 0.5f * a->fx / vz, 0.0f);
-    const float sine2 = square(beside) / (px * px + pz * pz);
-    return size2 + square(a->value[quantity]) * orientation_rad2 / (sine2 + SINE2_LEAST);
+    const float sine2 = goe_square(beside) / (px * px + pz * pz);
+    return size2 + goe_square(a->value[quantity]) * orientation_rad2 / (sine2 + SINE2_LEAST);
 }
 
 /* Within a share of the value, and finite, by the bits. */
@@ -347,7 +344,7 @@ static void tell_motion(const goe_estimator_t *estimator, goe_estimate_t *estima
     estimate->z_m = estimate->z0_m - estimator->dz_m;
     estimate->sigma.x_m = estimate->sigma.x0_m;
     estimate->sigma.z_m = estimate->sigma.z0_m;
-    estimate->baseline_m = sqrtf(square(estimator->dx_m) + square(estimator->dz_m));
+    estimate->baseline_m = sqrtf(goe_square(estimator->dx_m) + goe_square(estimator->dz_m));
 }
 
 static void tell_axes(const answer_t *a, goe_estimate_t *estimate) {
@@ -488,7 +485,7 @@ static unsigned find_quantities(goe_estimator_t *estimator, answer_t *a, float s
         differentiate(a, i, weight);
         const float variance = variance_of(filter, a, weight) * (hangs_on_corner(i) ? early : 1.0f) +
                                drift_variance(estimator, drift, a, i);
-        sigma[i] = sqrtf(variance + outline_variance(estimator, a, i, square(sigma[GOE_ORIENTATION])));
+        sigma[i] = sqrtf(variance + outline_variance(estimator, a, i, goe_square(sigma[GOE_ORIENTATION])));
     }
     const unsigned now = known_now(filter, a, sigma);
     const unsigned known = now & filter->known;

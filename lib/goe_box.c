@@ -66,8 +66,8 @@ static void describe(const goe_sight_t *sight, outline_t *o) {
     o->fz = -o->sign * o->depth.front;
     o->curvature =
         CURVATURE * 2.0f * fabsf(o->sx) * o->fx / (o->depth.sum * o->depth.sum * o->depth.sum) * sight->depth_variance;
-    o->px = x[GOE_A] - sight->dx_m * o->q;
-    o->pz = 1.0f - sight->dz_m * o->q;
+    o->px = goe_sight_reference_x(sight);
+    o->pz = goe_sight_reference_z(sight);
     o->ground = (sight->height_m + x[GOE_DH]) * o->q;
     o->top = sight->height_m * o->q - x[GOE_E];
     const float length = sqrtf(o->sx * o->sx + o->sz * o->sz);
@@ -124,7 +124,7 @@ static void visible_corners(const goe_sight_t *sight, const outline_t *o, size_t
         /* one face, or two and the detector missed the corner between them: whichever fits clearly better */
         size_t both[3];
         corners_of_faces(first_of_two, true, both);
-        const float clearly = CLEARLY_PX * sight->settings->noise.pixel_px / sight->settings->camera.fx_px;
+        const float clearly = CLEARLY_PX * goe_sight_pixel(sight);
         if (misfit(sight, o, both) + clearly < misfit(sight, o, corner)) {
             memcpy(corner, both, sizeof both);
         }

@@ -13,6 +13,8 @@ typedef struct {
     float side_by_d, front_by_d;
 } goe_depth_t;
 
+#define GOE_EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names, in the state and in the answer */
+
 goe_depth_t goe_box_depth(const float state[GOE_STATES]);
 
 /* Appends the rows of a box. */

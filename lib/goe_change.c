@@ -15,13 +15,10 @@
 #define AGREEING_SHARE 0.1f /* ... and share of the whole */
 #define RANGE_SHARE 0.1f    /* one sigma of the range over it */
 #define AGREEING_SIGMAS2 9.0f
-#define EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names */
-#define SIZE_FREEDOM 2.0f   /* one sigma of the box's extents at its start, in its larger side */
-#define DEPTH_FREEDOM 4.0f  /* ... of its depth */
-#define DEPTH_HELD 0.01f    /* ... if one face alone is seen */
-#define LENGTH_FREED 2.0f   /* relative, when it comes into view */
-
-static float square(float x) { return x * x; }
+#define SIZE_FREEDOM 2.0f  /* one sigma of the box's extents at its start, in its larger side */
+#define DEPTH_FREEDOM 4.0f /* ... of its depth */
+#define DEPTH_HELD 0.01f   /* ... if one face alone is seen */
+#define LENGTH_FREED 2.0f  /* relative, when it comes into view */
 
 /* --------------------------------------------------------------------------------------------------------------- start -- */
 
@@ -36,7 +33,7 @@ static void turn_covariance(const float x[GOE_STATES], float c, float s, float c
     const float aa = covariance[GOE_A][GOE_A];
     const float aq = covariance[GOE_A][GOE_Q] - shear * aa;
     const float qq = covariance[GOE_Q][GOE_Q] - shear * (covariance[GOE_A][GOE_Q] + aq);
-    covariance[GOE_A][GOE_A] = square(m * m) * aa;
+    covariance[GOE_A][GOE_A] = goe_square(m * m) * aa;
     covariance[GOE_A][GOE_Q] = m * m * m * aq;
     covariance[GOE_Q][GOE_Q] = m * m * qq;
 }
@@ -53,8 +50,8 @@ static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool bot
     }
     c[GOE_A][GOE_A] += filter->walk2;
     turn_covariance(x, box->turn_cos, box->turn_sin, c);
-    c[GOE_A][GOE_A] = 4.0f * c[GOE_A][GOE_A] + square(4.0f * size) + 1.0e-6f;
-    c[GOE_Q][GOE_Q] = 2.0f * c[GOE_Q][GOE_Q] + square(size * box->q);
+    c[GOE_A][GOE_A] = 4.0f * c[GOE_A][GOE_A] + goe_square(4.0f * size) + 1.0e-6f;
+    c[GOE_Q][GOE_Q] = 2.0f * c[GOE_Q][GOE_Q] + goe_square(size * box->q);
     x[GOE_E] *= box->q / x[GOE_Q];
     x[GOE_A] = box->a;
     x[GOE_Q] = box->q;
@@ -65,8 +62,7 @@ static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool bot
                                                 (both ? DEPTH_FREEDOM : DEPTH_HELD) * size,
                                                 SIZE_FREEDOM * goe_larger(fabsf(x[GOE_E]), size)};
     goe_root_from_covariance(c, sigma, &filter->root, &filter->inverse);
-    filter->drift_rad2 = 0.0f;
-    filter->walk2 = 0.0f;
+    goe_refined_settle(filter);
     filter->turn_cos = box->turn_cos;
     filter->turn_sin = box->turn_sin;
     filter->deep = both;
@@ -88,7 +84,7 @@ static float difference_rad(float a, float b) {
 /* One image alone may be lucky. */
 static bool one_face_agrees(goe_filter_t *filter, const goe_footprint_t *box) {
     const float d = difference_rad(box->orientation_rad, filter->candidate[0]);
-    const bool agrees = filter->agreeing > 0 && square(d) < AGREEING_SIGMAS2 * square(box->sigma_rad);
+    const bool agrees = filter->agreeing > 0 && goe_square(d) < AGREEING_SIGMAS2 * goe_square(box->sigma_rad);
     filter->agreeing = (uint8_t)(agrees ? filter->agreeing + 1 : 1);
     filter->candidate[0] = box->orientation_rad;
     return filter->agreeing >= ONE_FACE_IMAGES;
@@ -97,9 +93,8 @@ static bool one_face_agrees(goe_filter_t *filter, const goe_footprint_t *box) {
 /* An outlier must not become the start, and range and depth multiply in the image: the range must be known. */
 static bool two_faces_agree(goe_filter_t *filter, const goe_sight_t *sight, const goe_footprint_t *box) {
     const float q = filter->state[GOE_Q];
-    const float most = RANGE_SHARE * q * (1.0f - sight->dz_m * q);
-    const float pixel = sight->settings->noise.pixel_px / sight->settings->camera.fx_px;
-    const float tolerance = AGREEING_PX * pixel + AGREEING_SHARE * (box->left + box->right);
+    const float most = RANGE_SHARE * q * goe_sight_reference_z(sight);
+    const float tolerance = AGREEING_PX * goe_sight_pixel(sight) + AGREEING_SHARE * (box->left + box->right);
     const bool agree = filter->agreeing > 0 && fabsf(box->left - filter->candidate[0]) < tolerance &&
                        fabsf(box->right - filter->candidate[1]) < tolerance;
     filter->agreeing = (uint8_t)(agree ? filter->agreeing + 1 : 1);
@@ -193,7 +188,7 @@ bool goe_change_box(goe_filter_t *filter, const goe_sight_t *sight) {
         free_length(filter, side);
         return true;
     }
-    if (fabsf(filter->state[GOE_SX]) > EXCHANGE_SLOPE * side) {
+    if (fabsf(filter->state[GOE_SX]) > GOE_EXCHANGE_SLOPE * side) {
         exchange_names(filter);
         return true;
     }

@@ -7,7 +7,8 @@
 
 /* Both return whether there was a change. It costs as much as a measurement: the image that brings it is not used for more.
  *
- * Of a disc, or of a chord (goe_chord.h): turns it into a box as soon as two faces are seen, or enough images agree on the direction of one. */
+ * Of a disc, or of a chord (goe_chord.h): turns it into a box as soon as two faces are seen, or enough images agree on the
+ * direction of one. */
 bool goe_change_to_box(goe_filter_t *filter, const goe_sight_t *sight);
 
 /* Of a box: frees its length when a second face comes into view, and exchanges front and side if the side lies across. */

@@ -34,18 +34,16 @@ typedef struct {
     float x, z;
 } vector_t;
 
-static float square(float x) { return x * x; }
-
-static float chord_length(const float x[GOE_STATES]) { return sqrtf(square(x[GOE_SX]) + square(x[GOE_FX])); }
+static float chord_length(const float x[GOE_STATES]) { return sqrtf(goe_square(x[GOE_SX]) + goe_square(x[GOE_FX])); }
 
 /* Aligned y of the top over the chord's middle. */
 static float top_y(const goe_sight_t *sight) {
     const float *x = sight->state;
-    return (sight->height_m * x[GOE_Q] - x[GOE_E]) / goe_larger(1.0f - sight->dz_m * x[GOE_Q], AHEAD_TINY);
+    return (sight->height_m * x[GOE_Q] - x[GOE_E]) / goe_larger(goe_sight_reference_z(sight), AHEAD_TINY);
 }
 
 static void spread(goe_filter_t *filter, size_t state, float sigma) {
-    goe_root_spread(&filter->root, state, 0.0f, state, 1.0f, goe_larger(sigma, SIGMA_LEAST));
+    goe_root_spread_state(&filter->root, state, goe_larger(sigma, SIGMA_LEAST));
 }
 
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
@@ -58,8 +56,8 @@ typedef struct {
 
 static end_t end_of(const goe_sight_t *sight, float side) {
     const float *x = sight->state;
-    const float z = 1.0f - sight->dz_m * x[GOE_Q] + side * x[GOE_SX];
-    const end_t end = {x[GOE_A] - sight->dx_m * x[GOE_Q] + side * x[GOE_FX], goe_larger(z, AHEAD_LEAST), side};
+    const float z = goe_sight_reference_z(sight) + side * x[GOE_SX];
+    const end_t end = {goe_sight_reference_x(sight) + side * x[GOE_FX], goe_larger(z, AHEAD_LEAST), side};
     return end;
 }
 
@@ -94,8 +92,8 @@ static void add_top(const goe_sight_t *sight, goe_rows_t *rows) {
     if (!measured->usable) {
         return;
     }
-    const float px = x[GOE_A] - sight->dx_m * x[GOE_Q];
-    const float pz = 1.0f - sight->dz_m * x[GOE_Q];
+    const float px = goe_sight_reference_x(sight);
+    const float pz = goe_sight_reference_z(sight);
     const float y = sight->height_m * x[GOE_Q] - x[GOE_E];
     const bool highest = sight->settings->top_is_highest && y > 0.0f;
     const bool right_is_near = px * x[GOE_FX] + pz * x[GOE_SX] < 0.0f;
@@ -105,7 +103,7 @@ static void add_top(const goe_sight_t *sight, goe_rows_t *rows) {
                             ? sight->point[GOE_RIGHT].x - sight->point[GOE_LEFT].x
                             : 0.0f;
     const float variance =
-        goe_sight_spread(sight, GOE_TOP).yy + goe_sight_size_variance(sight) + square(TOP_NOISE * seen.y * width);
+        goe_sight_spread(sight, GOE_TOP).yy + goe_sight_size_variance(sight) + goe_square(TOP_NOISE * seen.y * width);
     const size_t row = goe_rows_add(rows, GOE_TOP, measured->y - seen.y, variance, &gy);
     set_end(rows, row, sight, &end, &gy);
     goe_rows_set(rows, row, GOE_Q, goe_rows_get(rows, row, GOE_Q) + gy.y * sight->height_m);
@@ -121,7 +119,7 @@ void goe_chord_rows(const goe_sight_t *sight, goe_rows_t *rows) {
 /* ------------------------------------------------------------------------------------------------------- from the disc -- */
 
 bool goe_chord_is_skewed(const goe_filter_t *filter) {
-    return square(filter->state[GOE_SX]) > SKEWED_SIGMAS2 * goe_inverse_variance(&filter->inverse, GOE_SX);
+    return goe_square(filter->state[GOE_SX]) > SKEWED_SIGMAS2 * goe_inverse_variance(&filter->inverse, GOE_SX);
 }
 
 /* Skew and diameter of the disc become depth and width of the chord: nothing else changes. */
@@ -171,11 +169,10 @@ typedef struct {
 /* The corner stands on the circle over the chord, where the ray to the end that has left it meets it first. */
 static bool find_corner(const goe_sight_t *sight, size_t feature, vector_t *corner) {
     const float *x = sight->state;
-    const goe_point_t *p = &sight->point[feature];
-    const float ray = p->x - sight->ey * (1.0f + p->x * p->x) + sight->ez * p->y + sight->ex * p->x * p->y;
-    const float px = x[GOE_A] - sight->dx_m * x[GOE_Q];
-    const float pz = 1.0f - sight->dz_m * x[GOE_Q];
-    const float length2 = square(x[GOE_FX]) + square(x[GOE_SX]);
+    const float ray = goe_sight_unbiased(sight, feature).x;
+    const float px = goe_sight_reference_x(sight);
+    const float pz = goe_sight_reference_z(sight);
+    const float length2 = goe_square(x[GOE_FX]) + goe_square(x[GOE_SX]);
     const float outside = px * px + pz * pz - 0.25f * length2;
     const float along = ray * px + pz;
     const float met = along * along - (1.0f + ray * ray) * outside;
@@ -234,7 +231,7 @@ static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES
     const goe_depth_t depth = goe_box_depth(is);
     const float sign = is[GOE_SX] > 0.0f ? -1.0f : 1.0f; /* of the front's depth */
     const float scale = 1.0f / (1.0f + 0.5f * depth.side);
-    const float turn = 2.0f / (square(is[GOE_FX]) + square(depth.side));
+    const float turn = 2.0f / (goe_square(is[GOE_FX]) + goe_square(depth.side));
     const float side[] = {depth.by_extents[0], depth.by_extents[1], depth.side_by_d};
     const float front[] = {sign * depth.by_extents[0], sign * depth.by_extents[1], sign * depth.front_by_d};
     memset(old, 0, sizeof *old);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "goe_angle.h"
+#include "goe_scalar.h"
 
 #define AHEAD_LEAST 1.0e-3f /* centre, units of Z0: nearer gives no rows */
 #define TANGENT_AHEAD 0.02f /* third component of a tangent's unit vector */
@@ -28,16 +29,15 @@ typedef struct {
 } circle_t;
 
 static bool describe(const goe_sight_t *sight, circle_t *o) {
-    const float *x = sight->state;
-    o->px = x[GOE_A] - sight->dx_m * x[GOE_Q];
-    o->pz = 1.0f - sight->dz_m * x[GOE_Q];
+    o->px = goe_sight_reference_x(sight);
+    o->pz = goe_sight_reference_z(sight);
     if (!(o->pz >= AHEAD_LEAST)) {
         return false;
     }
     o->distance = sqrtf(o->px * o->px + o->pz * o->pz);
     o->ex = o->px / o->distance;
     o->ez = o->pz / o->distance;
-    const float sine = 0.5f * x[GOE_FX] / o->distance;
+    const float sine = 0.5f * sight->state[GOE_FX] / o->distance;
     o->sine = sine > SINE_MOST ? SINE_MOST : (sine > SINE_LEAST ? sine : SINE_LEAST);
     o->cosine = sqrtf(1.0f - o->sine * o->sine);
     return true;
@@ -50,8 +50,6 @@ static bool outline_features(const goe_sight_t *sight, size_t *left, size_t *rig
     *right = silhouette || !sight->base ? GOE_RIGHT : GOE_BASE_RIGHT;
     return silhouette || sight->base;
 }
-
-static float square(float x) { return x * x; }
 
 /* The tangent's azimuth is that of the centre plus or minus asin(r/d). */
 static void add_tangent(const goe_sight_t *sight, const circle_t *o, size_t feature, float side, float extra_variance,
@@ -112,7 +110,7 @@ static void add_base(const goe_sight_t *sight, const circle_t *o, size_t feature
     const float q = sight->state[GOE_Q];
     const float height_m = sight->height_m + sight->state[GOE_DH];
     const goe_point_t seen = goe_sight_project(sight, o->px, height_m * q, o->pz, &gx, &gy);
-    const float variance = goe_sight_spread(sight, feature).yy * BASE_NOISE + square(seen.y * width);
+    const float variance = goe_sight_spread(sight, feature).yy * BASE_NOISE + goe_square(seen.y * width);
     const size_t row = goe_rows_add(rows, feature, measured->y - seen.y, variance, &gy);
     goe_rows_set(rows, row, GOE_DH, gy.y * q);
     goe_rows_set(rows, row, GOE_A, gy.x);
@@ -129,7 +127,7 @@ void goe_disc_rows(const goe_sight_t *sight, goe_rows_t *rows) {
     const bool wide = outline_features(sight, &left, &right);
     const float width = wide ? sight->point[right].x - sight->point[left].x : 0.0f;
     const float shape = sight->settings->noise.shape_share + (sight->base ? BOX_SHAPE : 0.0f);
-    const float extra = square(shape * width) + square(sight->settings->noise.size_share * width);
+    const float extra = goe_square(shape * width) + goe_square(sight->settings->noise.size_share * width);
     add_tangent(sight, &circle, left, -1.0f, extra, rows);
     add_tangent(sight, &circle, right, 1.0f, extra, rows);
     add_top(sight, &circle, extra, rows);
@@ -146,9 +144,9 @@ static float first_range_m(const goe_sight_t *sight, float size) {
     const goe_noise_t *noise = &sight->settings->noise;
     if (sight->base && sight->height_m > 0.0f) {
         const float y = 0.5f * (sight->point[GOE_BASE_LEFT].y + sight->point[GOE_BASE_RIGHT].y);
-        const float sigma = sqrtf(square(noise->attitude_bias_deg * GOE_RAD_PER_DEG) +
-                                  square(noise->attitude_white_deg * GOE_RAD_PER_DEG) +
-                                  square(noise->pixel_px / sight->settings->camera.fx_px));
+        const float sigma =
+            sqrtf(goe_square(noise->attitude_bias_deg * GOE_RAD_PER_DEG) +
+                  goe_square(noise->attitude_white_deg * GOE_RAD_PER_DEG) + goe_square(goe_sight_pixel(sight)));
         if (y > GROUND_SIGMAS * sigma) {
             return sight->height_m / y;
         }
@@ -163,7 +161,7 @@ static void first_root(const goe_settings_t *settings, const float state[GOE_STA
     *goe_root_at(root, GOE_BX, GOE_BX) = 1.0f / bias;
     *goe_root_at(root, GOE_BY, GOE_BY) = 1.0f / bias;
     *goe_root_at(root, GOE_BZ, GOE_BZ) =
-        1.0f / sqrtf(square(bias) + square(HEADING_ARM * settings->noise.velocity_bias_m_s));
+        1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->noise.velocity_bias_m_s));
     *goe_root_at(root, GOE_DH, GOE_DH) = 1.0f / settings->noise.height_m;
     *goe_root_at(root, GOE_A, GOE_A) = 1.0f;
     *goe_root_at(root, GOE_Q, GOE_Q) = 1.0f / (RANGE_FREEDOM * state[GOE_Q]);

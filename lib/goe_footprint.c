@@ -22,19 +22,6 @@ typedef struct {
     float x, z; /* from the camera, m */
 } place_t;
 
-/* One sigma of a pixel, focal lengths. */
-static float pixel_sigma(const goe_sight_t *sight) {
-    return sight->settings->noise.pixel_px / sight->settings->camera.fx_px;
-}
-
-/* The attitude bias taken off, to first order. */
-static goe_point_t unbiased(const goe_sight_t *sight, const goe_point_t *p) {
-    goe_point_t q = *p;
-    q.x = p->x - sight->ey * (1.0f + p->x * p->x) + sight->ez * p->y + sight->ex * p->x * p->y;
-    q.y = p->y + sight->ex * (1.0f + p->y * p->y) - sight->ez * p->x - sight->ey * p->x * p->y;
-    return q;
-}
-
 /* Into the state's scale; reference: middle of the front edge from the camera, in the footprint's axes. False if it is out of
  * bounds. */
 static bool scale(const goe_sight_t *sight, place_t reference, float width_m, float length_m, float range_m,
@@ -61,14 +48,14 @@ bool goe_footprint_two_faces(const goe_sight_t *sight, goe_footprint_t *box) {
     if (!sight->base || !sight->point[GOE_BASE_NEAR].usable || !(range_m >= RANGE_LEAST_M)) {
         return false;
     }
-    const float near = unbiased(sight, &sight->point[GOE_BASE_NEAR]).x;
+    const float near = goe_sight_unbiased(sight, GOE_BASE_NEAR).x;
     const float c = 1.0f / sqrtf(1.0f + near * near);
-    box->left = near - unbiased(sight, &sight->point[GOE_BASE_LEFT]).x;
-    box->right = unbiased(sight, &sight->point[GOE_BASE_RIGHT]).x - near;
+    box->left = near - goe_sight_unbiased(sight, GOE_BASE_LEFT).x;
+    box->right = goe_sight_unbiased(sight, GOE_BASE_RIGHT).x - near;
     const float left_m = box->left * range_m * c;
     const float right_m = box->right * range_m * c;
     const float least_m = left_m < right_m ? left_m : right_m;
-    if (!(least_m > FACE_LEAST_PX * pixel_sigma(sight) * range_m)) {
+    if (!(least_m > FACE_LEAST_PX * goe_sight_pixel(sight) * range_m)) {
         return false;
     }
     /* side (right_m, deep_m) and front (left_m, -deep_m) are square to each other; or the names exchanged */
@@ -104,15 +91,15 @@ static bool place_end(const goe_point_t *point, float mean_y, const face_t *face
 }
 
 static bool place_face(const goe_sight_t *sight, face_t *face) {
-    const goe_point_t left = unbiased(sight, &sight->point[GOE_BASE_LEFT]);
-    const goe_point_t right = unbiased(sight, &sight->point[GOE_BASE_RIGHT]);
+    const goe_point_t left = goe_sight_unbiased(sight, GOE_BASE_LEFT);
+    const goe_point_t right = goe_sight_unbiased(sight, GOE_BASE_RIGHT);
     const float mean_y = 0.5f * (left.y + right.y);
     return place_end(&left, mean_y, face, &face->left) && place_end(&right, mean_y, face, &face->right);
 }
 
 /* One sigma of the orientation that an edge tells, rad. */
 static float edge_sigma(const goe_sight_t *sight, const face_t *face, float x, float z) {
-    const float pixel = pixel_sigma(sight) * POINT_NOISE;
+    const float pixel = goe_sight_pixel(sight) * POINT_NOISE;
     const float deep = face->range_m * face->range_m / face->height_m * pixel;
     const float wide = face->range_m * pixel;
     const float tilt =

@@ -36,8 +36,6 @@
 #define STATE_MOST 1.0e6f
 #define NIS_MOST 1.0e6f
 
-static float square(float x) { return x * x; }
-
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
 static float seconds_since(int64_t then_us, int64_t now_us) {
@@ -53,10 +51,10 @@ static void let_time_pass(goe_filter_t *filter, const goe_noise_t *noise, int64_
     filter->drift_rad2 += drift * drift;
     filter->walk2 += walk * walk;
     for (size_t i = GOE_BX; drift > 0.0f && i <= GOE_BZ; i++) {
-        goe_root_spread(&filter->root, i, 0.0f, i, 1.0f, drift);
+        goe_root_spread_state(&filter->root, i, drift);
     }
     if (walk > 0.0f) {
-        goe_root_spread(&filter->root, GOE_A, 0.0f, GOE_A, 1.0f, walk);
+        goe_root_spread_state(&filter->root, GOE_A, walk);
     }
 }
 
@@ -74,10 +72,10 @@ static void clip_box(float x[GOE_STATES]) {
 
 /* What linearising at an uncertain range may miss: the second order of 1/Z. */
 static void allow_for_curvature(const goe_filter_t *filter, const goe_sight_t *sight, goe_rows_t *rows) {
-    const float ahead = goe_larger(1.0f - sight->dz_m * filter->state[GOE_Q], AHEAD_LEAST);
+    const float ahead = goe_larger(goe_sight_reference_z(sight), AHEAD_LEAST);
     const float missed = sight->dz_m * goe_inverse_variance(&filter->inverse, GOE_Q) / ahead;
     for (size_t i = 0; i < rows->count; i++) {
-        rows->variance[i] += square(goe_rows_get(rows, i, GOE_Q) * missed);
+        rows->variance[i] += goe_square(goe_rows_get(rows, i, GOE_Q) * missed);
     }
 }
 
@@ -185,7 +183,7 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
     const float size = goe_larger(fabsf(x[GOE_E]), goe_larger(x[GOE_FX], fabsf(x[GOE_D])));
-    goe_root_spread(&filter->root, GOE_E, 0.0f, GOE_E, 1.0f, TOP_FREEDOM * size);
+    goe_root_spread_state(&filter->root, GOE_E, TOP_FREEDOM * size);
     filter->refused[GOE_TOP] = 0;
 }
 
@@ -200,13 +198,11 @@ static bool is_sane(const goe_filter_t *filter) {
 
 /* A box of base corners that proved wrong more than once: they are those of something else. Residuals alone do not decide:
  * noise that is told too small must not cost a true box its corners. */
-static bool refuse_base(goe_filter_t *filter, const goe_settings_t *settings, bool lost) {
-    if (!lost || filter->phase != GOE_PHASE_BOX || filter->outline || settings->model != GOE_MODEL_AUTO ||
-        filter->images < EARLY_IMAGES) {
-        return false;
+static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) {
+    if (filter->phase == GOE_PHASE_BOX && !filter->outline && settings->model == GOE_MODEL_AUTO &&
+        filter->images >= EARLY_IMAGES) {
+        filter->base_refused = goe_refined_count(&filter->failed) >= FAILURES_MOST;
     }
-    filter->base_refused = goe_refined_count(&filter->failed) >= FAILURES_MOST;
-    return filter->base_refused;
 }
 
 static void recover(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict) {
@@ -214,9 +210,8 @@ static void recover(goe_filter_t *filter, const goe_settings_t *settings, goe_ve
     if (filter->refused[GOE_TOP] >= REFUSED_TOPS) {
         free_top(filter);
     }
-    const bool lost = captured || filter->level > LEVEL_MOST || !is_sane(filter);
-    const bool refused = refuse_base(filter, settings, lost);
-    if (lost || refused) {
+    if (captured || filter->level > LEVEL_MOST || !is_sane(filter)) {
+        count_failure(filter, settings);
         goe_refined_enter(filter, GOE_PHASE_NONE);
         memset(filter->refused, 0, sizeof filter->refused);
     }
@@ -233,8 +228,7 @@ static bool start(goe_estimator_t *estimator, const goe_sight_t *sight) {
     filter->stand_in = false;
     filter->outline = false;
     goe_root_invert_diagonal(&filter->root, &filter->inverse);
-    filter->drift_rad2 = 0.0f;
-    filter->walk2 = 0.0f;
+    goe_refined_settle(filter);
     filter->time_us = estimator->time_us;
     return true;
 }

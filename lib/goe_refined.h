@@ -2,7 +2,6 @@
 #ifndef GOE_REFINED_H
 #define GOE_REFINED_H
 
-#include "goe_fault.h"
 #include "goe_root.h"
 #include "goe_sight.h"
 
@@ -19,11 +18,16 @@ static inline unsigned goe_refined_count(uint8_t *count) {
     return *count;
 }
 
+/* The inverse is that of R. */
+static inline void goe_refined_settle(goe_filter_t *filter) {
+    filter->drift_rad2 = 0.0f;
+    filter->walk2 = 0.0f;
+}
+
 /* Brings the inverse up to date with R. */
 static inline void goe_refined_invert(goe_filter_t *filter) {
     goe_root_invert(&filter->root, &filter->inverse);
-    filter->drift_rad2 = 0.0f;
-    filter->walk2 = 0.0f;
+    goe_refined_settle(filter);
 }
 
 /* Enters a phase: what counts images of the phase begins anew. */

@@ -30,10 +30,15 @@ static inline float *goe_root_at(goe_triangle_t *r, size_t i, size_t j) { return
  * Returns the squared norm that is left of the residuals: the normalised innovation squared. */
 float goe_root_update(goe_triangle_t *root, float temporaries_root, goe_matrix_t *matrix, float change[GOE_STATES]);
 
-/* Adds variance sigma^2 along the states first and last (first < last), with the weights of each; sigma > 0. For one
- * state alone: first = last, and its weight is last_weight. */
+/* Adds variance sigma^2 along the states first and last, first <= last, with the weights of each; sigma > 0. For first = last
+ * the weight is last_weight. */
 void goe_root_spread(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
                      float sigma);
+
+/* The same of one state alone. */
+static inline void goe_root_spread_state(goe_triangle_t *root, size_t state, float sigma) {
+    goe_root_spread(root, state, 0.0f, state, 1.0f, sigma);
+}
 
 /* *inverse = R^-1. */
 void goe_root_invert(const goe_triangle_t *root, goe_inverse_t *inverse);

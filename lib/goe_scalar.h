@@ -21,4 +21,6 @@ static inline bool goe_within(float x, float limit) { return goe_magnitude(x) <=
 
 static inline float goe_larger(float a, float b) { return a > b ? a : b; }
 
+static inline float goe_square(float x) { return x * x; }
+
 #endif

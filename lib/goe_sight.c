@@ -111,6 +111,14 @@ goe_point_t goe_sight_project(const goe_sight_t *sight, float x, float y, float 
     return seen;
 }
 
+goe_point_t goe_sight_unbiased(const goe_sight_t *sight, size_t feature) {
+    const goe_point_t *p = &sight->point[feature];
+    goe_point_t q = *p;
+    q.x = p->x - sight->ey * (1.0f + p->x * p->x) + sight->ez * p->y + sight->ex * p->x * p->y;
+    q.y = p->y + sight->ex * (1.0f + p->y * p->y) - sight->ez * p->x - sight->ey * p->x * p->y;
+    return q;
+}
+
 /* Derivative of the aligned point n1/n3, n2/n3, n = H (u, v, 1), by the pixel; 1/n3 is the third component of H'(x, y, 1). The
  * lens is left out: its scale is good to a few percent. */
 goe_spread_t goe_sight_spread(const goe_sight_t *sight, size_t feature) {

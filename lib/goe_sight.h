@@ -68,6 +68,21 @@ void goe_sight_look(goe_sight_t *sight);
 goe_point_t goe_sight_project(const goe_sight_t *sight, float x, float y, float z, goe_gradient_t *of_x,
                               goe_gradient_t *of_y);
 
+/* One sigma of a pixel, focal lengths. */
+static inline float goe_sight_pixel(const goe_sight_t *sight) {
+    return sight->settings->noise.pixel_px / sight->settings->camera.fx_px;
+}
+
+/* The state's reference point relative to the camera now, units of Z0. */
+static inline float goe_sight_reference_x(const goe_sight_t *sight) {
+    return sight->state[GOE_A] - sight->dx_m * sight->state[GOE_Q];
+}
+
+static inline float goe_sight_reference_z(const goe_sight_t *sight) { return 1.0f - sight->dz_m * sight->state[GOE_Q]; }
+
+/* A measured point with the attitude bias taken off, to first order. */
+goe_point_t goe_sight_unbiased(const goe_sight_t *sight, size_t feature);
+
 goe_spread_t goe_sight_spread(const goe_sight_t *sight, size_t feature);
 
 /* Variance of a silhouette point beyond the pixel noise: goe_noise_t.size_share. */

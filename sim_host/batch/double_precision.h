@@ -30,6 +30,8 @@ static inline bool goe_within(double x, double limit) { return fabs(x) <= fabs(l
 
 static inline double goe_larger(double a, double b) { return a > b ? a : b; }
 
+static inline double goe_square(double x) { return x * x; }
+
 /* The arrays of goe_batch.h are those of the other build. */
 typedef float goe_batch_float_t;
 #define GOE_BATCH_FLOAT

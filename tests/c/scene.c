@@ -100,6 +100,30 @@ void scene_default(scene_t *scene) {
     scene->camera.cy_px = 640.0f;
 }
 
+void scene_make_cylinder(scene_t *scene) {
+    scene->shape = SCENE_CYLINDER;
+    scene->width_m = 6.0;
+    scene->height_m = 30.0;
+}
+
+void scene_tell_no_noise(goe_noise_t *noise) {
+    noise->pixel_px = 0.05f;
+    noise->attitude_bias_deg = 1.0e-3f;
+    noise->attitude_white_deg = 1.0e-3f;
+    noise->height_m = 1.0e-2f;
+    noise->velocity_bias_m_s = 0.0f;
+    noise->position_walk_m = 0.0f;
+}
+
+void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px) {
+    goe_pixel_t *const all[] = {&image->left,      &image->right,     &image->top,
+                                &image->base_left, &image->base_near, &image->base_right};
+    for (int i = 0; i < 6; i++) {
+        all[i]->u_px += (float)(sigma_px * check_random_normal(random));
+        all[i]->v_px += (float)(sigma_px * check_random_normal(random));
+    }
+}
+
 goe_settings_t scene_settings(const scene_t *scene) {
     goe_settings_t settings;
     goe_settings_default(&settings);

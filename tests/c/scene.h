@@ -9,6 +9,7 @@
 #ifndef SCENE_H
 #define SCENE_H
 
+#include "check.h"
 #include "goe.h"
 
 typedef enum { SCENE_BOX, SCENE_CYLINDER } scene_shape_t;
@@ -58,6 +59,15 @@ void scene_image(const scene_t *scene, int k, goe_image_t *image, scene_truth_t 
 /* Settings of the library's defaults with the scene's camera; the same for the paper's method. */
 goe_settings_t scene_settings(const scene_t *scene);
 goe_settings_t scene_window_settings(const scene_t *scene);
+
+/* The obstacle becomes a chimney of 6 m by 30 m. */
+void scene_make_cylinder(scene_t *scene);
+
+/* The noise that the scenes have: nothing but the rounding of their numbers is wrong. */
+void scene_tell_no_noise(goe_noise_t *noise);
+
+/* Gaussian noise on every point, seen or not. */
+void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px);
 
 /* Brown-Conrady distortion of a normalised image point. */
 void scene_distort(const goe_camera_t *camera, double x, double y, double *distorted_x, double *distorted_y);

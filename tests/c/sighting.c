@@ -73,6 +73,24 @@ void sighting_project(const sighting_t *sighting, const double state[GOE_STATES]
     seen[1] = y / z;
 }
 
+double sighting_place(sighting_t *sighting, check_random_t *random) {
+    sighting_start(sighting, random);
+    const double z0_m = check_random_between(random, 60.0, 200.0);
+    sighting->state[GOE_DH] = (float)check_random_between(random, -1.0, 1.0);
+    sighting->state[GOE_A] = (float)check_random_between(random, -0.5, 0.5);
+    sighting->state[GOE_Q] = (float)(1.0 / z0_m);
+    return z0_m;
+}
+
+void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, double truth[GOE_STATES]) {
+    sighting->state[GOE_E] = (float)(check_random_between(random, 2.0, 60.0) / z0_m);
+    sighting->settings.top_is_highest = check_random_bits(random) % 2u != 0u;
+    for (int i = 0; i < GOE_STATES; i++) {
+        truth[i] = (double)sighting->state[i];
+    }
+    sighting_look(sighting);
+}
+
 void sighting_check_rows(sighting_t *sighting, sighting_predict_t predict) {
     double state[GOE_STATES];
     goe_rows_turn(&sighting->rows, &sighting->sight);

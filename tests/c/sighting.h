@@ -19,6 +19,12 @@ typedef struct {
  * but for an attitude bias of some degrees; camera 20 m above the ground and moved by (3, 25) m. */
 void sighting_start(sighting_t *sighting, check_random_t *random);
 
+/* As it starts, and the states that every obstacle has but for its extents: place and height's offset. Returns Z0, m. */
+double sighting_place(sighting_t *sighting, check_random_t *random);
+
+/* The top, whichever the detector tells; then what depends on the state. truth: the state in double. */
+void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, double truth[GOE_STATES]);
+
 /* What depends on the state, after a change of it. */
 void sighting_look(sighting_t *sighting);
 

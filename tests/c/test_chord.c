@@ -45,34 +45,9 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-static void make_cylinder(void) {
-    scene.shape = SCENE_CYLINDER;
-    scene.width_m = 6.0;
-    scene.height_m = 30.0;
-}
-
-/* What the scenes are: nothing but the rounding of their numbers is wrong. */
-static void tell_that_nothing_is_wrong(void) {
-    settings.noise.pixel_px = 0.05f;
-    settings.noise.attitude_bias_deg = 1.0e-3f;
-    settings.noise.attitude_white_deg = 1.0e-3f;
-    settings.noise.height_m = 1.0e-2f;
-    settings.noise.velocity_bias_m_s = 0.0f;
-    settings.noise.position_walk_m = 0.0f;
-}
-
 static void start(void) {
     settings.camera = scene.camera;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
-}
-
-static void add_noise(double sigma_px) {
-    goe_pixel_t *const all[] = {&image.left,      &image.right,     &image.top,
-                                &image.base_left, &image.base_near, &image.base_right};
-    for (int i = 0; i < 6; i++) {
-        all[i]->u_px += (float)(sigma_px * check_random_normal(&any));
-        all[i]->v_px += (float)(sigma_px * check_random_normal(&any));
-    }
 }
 
 static void update(void) {
@@ -90,7 +65,7 @@ static void leave_base_out(void) {
 static void see_silhouette(int k, double sigma_px) {
     scene_image(&scene, k, &image, NULL);
     leave_base_out();
-    add_noise(sigma_px);
+    scene_add_noise(&image, &any, sigma_px);
     update();
 }
 
@@ -123,19 +98,10 @@ static double predict(const sighting_t *of, const double state[GOE_STATES], size
 }
 
 static void any_chord(void) {
-    sighting_start(&sighting, &any);
-    const double z0_m = check_random_between(&any, 60.0, 200.0);
-    sighting.state[GOE_DH] = (float)check_random_between(&any, -1.0, 1.0);
-    sighting.state[GOE_A] = (float)check_random_between(&any, -0.5, 0.5);
-    sighting.state[GOE_Q] = (float)(1.0 / z0_m);
+    const double z0_m = sighting_place(&sighting, &any);
     sighting.state[GOE_SX] = (float)(check_random_between(&any, -12.0, 12.0) / z0_m);
     sighting.state[GOE_FX] = (float)(check_random_between(&any, 1.0, 25.0) / z0_m);
-    sighting.state[GOE_E] = (float)(check_random_between(&any, 2.0, 60.0) / z0_m);
-    sighting.settings.top_is_highest = check_random_bits(&any) % 2u != 0u;
-    for (int i = 0; i < GOE_STATES; i++) {
-        truth[i] = (double)sighting.state[i];
-    }
-    sighting_look(&sighting);
+    sighting_finish(&sighting, &any, z0_m, truth);
     expected_rows = 0;
 }
 
@@ -211,7 +177,7 @@ static void a_box_comes_out_of_its_silhouette(void) {
     for (int i = 0; i < 3; i++) {
         setUp();
         scene.alpha_deg = alpha_deg[i];
-        tell_that_nothing_is_wrong();
+        scene_tell_no_noise(&settings.noise);
         start();
         for (int k = 0; k < IMAGES; k++) {
             see_silhouette(k, 0.0);
@@ -249,7 +215,7 @@ static void noise_does_not_hide_the_box(void) {
 static void left_and_right_are_alike(void) {
     unsigned char phase[IMAGES];
     scene.camera.cx_px = 0.0f;
-    tell_that_nothing_is_wrong();
+    scene_tell_no_noise(&settings.noise);
     start();
     for (int k = 0; k < IMAGES; k++) {
         see_silhouette(k, 0.0);
@@ -274,7 +240,7 @@ static void left_and_right_are_alike(void) {
 
 /* GIVEN a box that starts by its silhouette WHEN its base comes into view THEN it becomes a box by its corners. */
 static void base_corners_end_the_chord(void) {
-    tell_that_nothing_is_wrong();
+    scene_tell_no_noise(&settings.noise);
     start();
     for (int k = 0; k < 60; k++) {
         see_silhouette(k, 0.0);
@@ -295,7 +261,7 @@ static void a_cylinder_stays_a_disc(void) {
     any = check_random_start("cylinders");
     for (int i = 0; i < 12; i++) {
         setUp();
-        make_cylinder();
+        scene_make_cylinder(&scene);
         scene.width_m = 2.0 + 2.0 * i;
         scene.x0_m = i % 2 ? -25.0 : 30.0;
         scene.path = (scene_path_t)(i % 3);
@@ -348,13 +314,13 @@ static void fake_base(int k) {
 /* GIVEN a cylinder with base corners that it does not have THEN the answer is suspect sooner or later. */
 static void false_base_corners_are_found_out(void) {
     any = check_random_start("false corners");
-    make_cylinder();
+    scene_make_cylinder(&scene);
     scene.width_m = 12.0;
     scene.wobble_deg = 0.0;
     start();
     for (int k = 0; k < 170; k++) {
         fake_base(k);
-        add_noise(0.3);
+        scene_add_noise(&image, &any, 0.3);
         update();
     }
     TEST_ASSERT_TRUE(was_in(GOE_PHASE_BOX));
@@ -367,7 +333,7 @@ static void noise_does_not_make_corners_false(void) {
     start();
     for (int k = 0; k < 170; k++) {
         scene_image(&scene, k, &image, NULL);
-        add_noise(1.0);
+        scene_add_noise(&image, &any, 1.0);
         update();
     }
     TEST_ASSERT_TRUE(suspected);

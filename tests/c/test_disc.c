@@ -59,18 +59,9 @@ static double predict(const sighting_t *of, const double state[GOE_STATES], size
 /* -------------------------------------------------------------------------------------------------------------- input -- */
 
 static void any_disc(void) {
-    sighting_start(&sighting, &any);
-    const double z0_m = check_random_between(&any, 60.0, 200.0);
-    sighting.state[GOE_DH] = (float)check_random_between(&any, -1.0, 1.0);
-    sighting.state[GOE_A] = (float)check_random_between(&any, -0.5, 0.5);
-    sighting.state[GOE_Q] = (float)(1.0 / z0_m);
+    const double z0_m = sighting_place(&sighting, &any);
     sighting.state[GOE_FX] = (float)(check_random_between(&any, 0.5, 25.0) / z0_m);
-    sighting.state[GOE_E] = (float)(check_random_between(&any, 2.0, 60.0) / z0_m);
-    sighting.settings.top_is_highest = check_random_bits(&any) % 2u != 0u;
-    for (int i = 0; i < GOE_STATES; i++) {
-        truth[i] = (double)sighting.state[i];
-    }
-    sighting_look(&sighting);
+    sighting_finish(&sighting, &any, z0_m, truth);
     expected_rows = 0;
 }
 

@@ -46,12 +46,6 @@ static void hide_all(goe_image_t *of) {
     of->base_right.seen = false;
 }
 
-static void make_cylinder(void) {
-    scene.shape = SCENE_CYLINDER;
-    scene.width_m = 6.0;
-    scene.height_m = 30.0;
-}
-
 /* ------------------------------------------------------------------------------------------------- the normal course -- */
 
 static void a_new_estimator_knows_nothing(void) {
@@ -67,7 +61,7 @@ static void a_new_estimator_knows_nothing(void) {
 
 /* GIVEN a cylinder WHEN it is flown past THEN seven images collect and each one from the eighth on solves. */
 static void the_disc_solves_from_the_eighth_image_on(void) {
-    make_cylinder();
+    scene_make_cylinder(&scene);
     start();
     CHECK_STATUS(GOE_COLLECTING, fly(0, WINDOW - 1));
     for (int k = WINDOW - 1; k < 40; k++) {
@@ -238,7 +232,7 @@ static void head_on_has_no_edge(void) {
 /* --------------------------------------------------------------------------------- faults of an image that was taken -- */
 
 static void swapped_left_and_right_are_told(void) {
-    make_cylinder();
+    scene_make_cylinder(&scene);
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
     const goe_estimate_t before = estimate;
@@ -291,7 +285,7 @@ static void a_fault_beside_a_solution_is_partial(void) {
 }
 
 static void a_negative_height_all_along_gives_no_height(void) {
-    make_cylinder();
+    scene_make_cylinder(&scene);
     start();
     for (int k = 0; k < 12; k++) {
         scene_image(&scene, k, &image, NULL);
@@ -317,7 +311,7 @@ static void a_side_seen_edge_on_gives_no_length(void) {
 /* ------------------------------------------------------------------------------------------- failures of the solution -- */
 
 static void hovering_has_no_baseline(void) {
-    make_cylinder();
+    scene_make_cylinder(&scene);
     scene.speed_mps = 0.0;
     start();
     CHECK_STATUS(GOE_COLLECTING, fly(0, 7));
@@ -328,7 +322,7 @@ static void hovering_has_no_baseline(void) {
 
 /* GIVEN a solution WHEN the camera stops THEN the last good answer stays, stale. */
 static void stopping_keeps_the_last_answer(void) {
-    make_cylinder();
+    scene_make_cylinder(&scene);
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
     goe_status_t status = GOE_OK;
@@ -347,7 +341,7 @@ static void stopping_keeps_the_last_answer(void) {
 
 /* An obstacle that flies along ahead of us never grows. */
 static void a_moving_obstacle_has_no_parallax(void) {
-    make_cylinder();
+    scene_make_cylinder(&scene);
     start();
     goe_status_t status = GOE_OK;
     for (int k = 0; k < 12; k++) {
@@ -365,7 +359,7 @@ static void a_moving_obstacle_has_no_parallax(void) {
 /* GIVEN an obstacle that grows faster than our own motion explains: the line through the window meets Z = 0 before its
  * end THEN it is told as passed, and no solution is made of it. */
 static void an_obstacle_that_is_said_to_lie_behind_is_passed(void) {
-    make_cylinder();
+    scene_make_cylinder(&scene);
     start();
     goe_status_t status = GOE_OK;
     for (int k = 0; k < 8; k++) {

@@ -34,22 +34,6 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-static void make_cylinder(void) {
-    scene.shape = SCENE_CYLINDER;
-    scene.width_m = 6.0;
-    scene.height_m = 30.0;
-}
-
-/* What the scenes are: nothing but the rounding of their numbers is wrong. */
-static void tell_that_nothing_is_wrong(void) {
-    settings.noise.pixel_px = 0.05f;
-    settings.noise.attitude_bias_deg = 1.0e-3f;
-    settings.noise.attitude_white_deg = 1.0e-3f;
-    settings.noise.height_m = 1.0e-2f;
-    settings.noise.velocity_bias_m_s = 0.0f;
-    settings.noise.position_walk_m = 0.0f;
-}
-
 static void start(void) {
     settings.camera = scene.camera;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
@@ -72,18 +56,11 @@ static goe_status_t fly(int from, int to) {
     return status;
 }
 
-static void add_noise(double sigma_px) {
-    for (int i = 0; i < 6; i++) {
-        pixel(i)->u_px += (float)(sigma_px * check_random_normal(&any));
-        pixel(i)->v_px += (float)(sigma_px * check_random_normal(&any));
-    }
-}
-
 static goe_status_t fly_noisily(int from, int to, double sigma_px) {
     goe_status_t status = GOE_OK;
     for (int k = from; k < to; k++) {
         scene_image(&scene, k, &image, NULL);
-        add_noise(sigma_px);
+        scene_add_noise(&image, &any, sigma_px);
         status = update();
     }
     return status;
@@ -167,7 +144,7 @@ static void boxes_come_out_as_they_are(void) {
                 scene.path = (scene_path_t)path;
                 scene.x0_m = aside_m[i];
                 scene.alpha_deg = alpha_deg;
-                tell_that_nothing_is_wrong();
+                scene_tell_no_noise(&settings.noise);
                 start();
                 CHECK_STATUS(GOE_OK, fly(0, IMAGES));
                 TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
@@ -186,12 +163,12 @@ static void cylinders_come_out_as_they_are(void) {
     for (int path = 0; path < 3; path++) {
         for (int i = 0; i < 6; i++) {
             setUp();
-            make_cylinder();
+            scene_make_cylinder(&scene);
             scene.path = (scene_path_t)path;
             scene.x0_m = aside_m[i % 3];
             scene.height_m = height_m[i / 3];
             scene.width_m = 1.5 + 3.0 * i; /* the first guess, of 6 m, is never right */
-            tell_that_nothing_is_wrong();
+            scene_tell_no_noise(&settings.noise);
             start();
             CHECK_STATUS(GOE_OK, fly(0, IMAGES));
             TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
@@ -234,7 +211,7 @@ static void left_and_right_are_alike(void) {
     for (int shape = 0; shape < 2; shape++) {
         setUp();
         if (shape > 0) {
-            make_cylinder();
+            scene_make_cylinder(&scene);
         }
         scene.camera.cx_px = 0.0f;
         scene.camera.mount_yaw_deg = 5.0f;
@@ -267,7 +244,7 @@ static void a_constant_attitude_error_is_taken_out(void) {
         setUp();
         scene.camera.mount_pitch_deg = 0.5f;
         scene.camera.mount_yaw_deg = -0.4f;
-        tell_that_nothing_is_wrong();
+        scene_tell_no_noise(&settings.noise);
         settings.noise.pixel_px = 0.1f;
         settings.noise.attitude_bias_deg = known > 0 ? 0.5f : 1.0e-3f;
         CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
@@ -347,7 +324,7 @@ static void the_covariance_is_positive_and_holds_the_sigmas(void) {
     for (int shape = 0; shape < 2; shape++) {
         setUp();
         if (shape > 0) {
-            make_cylinder();
+            scene_make_cylinder(&scene);
         }
         start();
         for (int k = 0; k < IMAGES; k++) {
@@ -396,7 +373,7 @@ static void sigmas_tell_the_error(void) {
         for (int n = 0; n < 80; n++) {
             setUp();
             if (shape > 0) {
-                make_cylinder();
+                scene_make_cylinder(&scene);
                 scene.width_m = check_random_between(&any, 1.0, 12.0);
             } else {
                 scene.width_m = check_random_between(&any, 2.5, 10.0);
@@ -405,7 +382,7 @@ static void sigmas_tell_the_error(void) {
             }
             scene.x0_m = check_random_between(&any, -30.0, 30.0);
             scene.path = (scene_path_t)(n % 3);
-            tell_that_nothing_is_wrong();
+            scene_tell_no_noise(&settings.noise);
             settings.noise.pixel_px = 0.5f;
             fly_once(&honesty, 0.5);
         }
@@ -508,12 +485,12 @@ static void a_reset_forgets_the_track(void) {
 /* GIVEN single wild points WHEN they come now and then THEN the answer hardly moves. */
 static void single_outliers_are_left_out(void) {
     any = check_random_start("outliers");
-    tell_that_nothing_is_wrong();
+    scene_tell_no_noise(&settings.noise);
     settings.noise.pixel_px = 0.5f;
     start();
     for (int k = 0; k < IMAGES; k++) {
         scene_image(&scene, k, &image, NULL);
-        add_noise(0.5);
+        scene_add_noise(&image, &any, 0.5);
         if (k > 5 && k % 3 == 0) {
             pixel(k / 3 % 6)->u_px += 25.0f;
             pixel(k / 3 % 6)->v_px -= 25.0f;
@@ -533,14 +510,14 @@ static void a_track_that_began_with_an_outlier_recovers(void) {
             for (int sign = -1; sign <= 1; sign += 2) {
                 setUp();
                 if (shape > 0) {
-                    make_cylinder();
+                    scene_make_cylinder(&scene);
                 }
-                tell_that_nothing_is_wrong();
+                scene_tell_no_noise(&settings.noise);
                 settings.noise.pixel_px = 0.5f;
                 start();
                 for (int k = 0; k < IMAGES; k++) {
                     scene_image(&scene, k, &image, NULL);
-                    add_noise(0.5);
+                    scene_add_noise(&image, &any, 0.5);
                     if (k < 8) {
                         pixel(feature)->u_px += (float)sign * (feature == TOP ? 0.0f : 12.0f);
                         pixel(feature)->v_px += (float)sign * 15.0f;
@@ -578,8 +555,8 @@ static void the_error_of_the_altitude_is_in_the_height(void) {
     float sigma[2][2];
     for (int i = 0; i < 2; i++) {
         setUp();
-        make_cylinder();
-        tell_that_nothing_is_wrong();
+        scene_make_cylinder(&scene);
+        scene_tell_no_noise(&settings.noise);
         settings.noise.height_m = i > 0 ? 2.0f : 0.01f;
         start();
         fly(0, IMAGES);
@@ -593,7 +570,7 @@ static void the_error_of_the_altitude_is_in_the_height(void) {
 
 /* GIVEN eight images of another obstacle, 15 m aside and half as far THEN the track ends up at the one that is seen. */
 static void a_track_that_began_at_another_obstacle_recovers(void) {
-    tell_that_nothing_is_wrong();
+    scene_tell_no_noise(&settings.noise);
     settings.noise.pixel_px = 0.5f;
     start();
     const scene_t right = scene;
@@ -619,7 +596,7 @@ static int fly_past_a_mover(double vx, double vz, double swing_m) {
         scene.x0_m = x0_m + vx * t + swing_m * sin(2.0 * t);
         scene.z0_m = z0_m + vz * t;
         scene_image(&scene, k, &image, NULL);
-        add_noise(0.5);
+        scene_add_noise(&image, &any, 0.5);
         update();
         suspicious += estimate.suspect ? 1 : 0;
     }
@@ -674,7 +651,7 @@ static void a_forced_line_is_a_box_and_no_disc_before_it(void) {
 
 /* A forced line with a cylinder in view: never a base corner, never an answer. */
 static void a_forced_line_without_corners_tells_nothing(void) {
-    make_cylinder();
+    scene_make_cylinder(&scene);
     settings.model = GOE_MODEL_LINE;
     start();
     for (int k = 0; k < IMAGES; k++) {

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -119,11 +120,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_noise_arguments(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
-    noise = noise_of(arguments)
+def print_flights(arguments: argparse.Namespace) -> Iterator[Flight]:
+    """The flights of the log, each once its name, the headings and the truth are printed."""
     for flight in logged_flights(arguments.log, "disc" if arguments.disc else None):
         print(f"{flight.name}: {flight.truth.kind}, {len(flight.time_s)} images")
         print(" " * 22 + "".join(f"{heading:>17s}" for heading in HEADINGS))
         print_row("truth", printable(flight.truth.values), shown(flight))
+        yield flight
+
+
+def run(arguments: argparse.Namespace) -> int:
+    noise = noise_of(arguments)
+    for flight in print_flights(arguments):
         print_row("one sigma, at best", printable(bound(flight, noise).sigma), shown(flight))
     return 0

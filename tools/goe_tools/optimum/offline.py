@@ -12,11 +12,11 @@ from __future__ import annotations
 import argparse
 import importlib.util
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from .bound import HEADINGS, add_noise_arguments, inverse, noise_of, print_row, printable, shown
+from .bound import add_arguments as add_arguments  # of both commands
+from .bound import inverse, noise_of, print_flights, print_row, printable, shown
 from .flights import Flight, Noise, fold
 from .model import (
     DH,
@@ -32,7 +32,6 @@ from .model import (
     correspond,
     covariances,
     jacobian,
-    logged_flights,
     masked,
     prior_sigmas,
     quantities,
@@ -157,23 +156,14 @@ def _told(view: View, state: np.ndarray, noise: Noise, use: np.ndarray) -> Fit:
 # -------------------------------------------------------------------------------------------------------------- shell
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("log", type=Path, metavar="DIR", help="log folder with truth.csv")
-    parser.add_argument("--disc", action="store_true", help="take every obstacle for a disc")
-    add_noise_arguments(parser)
-
-
 def run(arguments: argparse.Namespace) -> int:
     noise = noise_of(arguments)
     if not available():
         raise ValueError(MISSING)
-    for flight in logged_flights(arguments.log, "disc" if arguments.disc else None):
+    for flight in print_flights(arguments):
         result, show = fit(flight, noise), shown(flight)
         error = result.values - flight.truth.values
         error[2] = fold(error[2])
-        print(f"{flight.name}: {flight.truth.kind}, {len(flight.time_s)} images")
-        print(" " * 22 + "".join(f"{heading:>17s}" for heading in HEADINGS))
-        print_row("truth", printable(flight.truth.values), show)
         print_row("fit", printable(result.values), show)
         print_row("its one sigma", printable(result.sigma), show)
         print_row("error / one sigma", error / np.maximum(result.sigma, 1e-12), show)
