@@ -61,7 +61,8 @@
  *             several estimators, which share nothing.
  * Threads     Every function touches only what its arguments point at. Two threads may work on two estimators; one
  *             estimator needs the caller's lock.
- * Arithmetic  float only; of the C library sqrtf, fabsf, memcpy and memset. Compiled with its own flags (see README)
+ * Arithmetic  float only; of the C library sqrtf, memcpy and memset, no more. sqrtf must be correctly rounded, as IEEE 754
+ *             asks: goe_self_check() tries it. Compiled with its own flags (see README)
  *             the results are bit-identical on every IEEE 754 target; goe_self_check() tells at run time whether they are.
  *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity.
  * Safety      Every output is finite. Input that is not finite is refused by its exponent bits, so also under -ffast-math.

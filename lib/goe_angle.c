@@ -1,7 +1,6 @@
 /* Angles. SPDX-License-Identifier: MIT */
 #include "goe_angle.h"
-
-#include <math.h>
+#include "goe_scalar.h"
 
 /* Minimax polynomials in z = t^2, made by tools/goe_tools/minimax.py; the bounds are those of the polynomials alone. */
 #define TAN_PI_8 0.414213562f
@@ -33,7 +32,7 @@ static float arctan_of_unit(float t) {
 }
 
 float goe_arctan_rad(float y, float x) {
-    const float magnitude = fabsf(y);
+    const float magnitude = goe_absolute(y);
     const float angle = magnitude <= x ? arctan_of_unit(magnitude / x) : HALF_PI_RAD - arctan_of_unit(x / magnitude);
     return y < 0.0f ? -angle : angle;
 }

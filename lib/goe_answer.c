@@ -91,7 +91,7 @@ static void name_edges(goe_filter_t *filter) {
     const axis_t side = filter->exchanged ? into_trajectory(filter, fx, -sign_of(sx) * depth.front)
                                           : into_trajectory(filter, sx, depth.side);
     const float slope = filter->named ? GOE_EXCHANGE_SLOPE : 1.0f;
-    if (fabsf(side.x) > slope * fabsf(side.z)) {
+    if (goe_absolute(side.x) > slope * goe_absolute(side.z)) {
         filter->exchanged = !filter->exchanged;
     }
     filter->named = true;
@@ -105,10 +105,10 @@ static void solve_box(const goe_filter_t *filter, answer_t *a) {
     a->front = sqrtf(fx * fx + a->depth.front * a->depth.front);
     const axis_t side = into_trajectory(filter, sx, a->depth.side);
     const axis_t front = into_trajectory(filter, fx, -sign_of(sx) * a->depth.front);
-    const float far = front.z < 0.0f ? 1.0f : -1.0f; /* the end of the front from which it leads away */
+    const float away = front.z < 0.0f ? 1.0f : -1.0f; /* the end of the front from which it leads away */
     a->exchanged = filter->exchanged;
-    a->reference = a->exchanged ? spot_of(a, 0.5f * far, 0.5f) : spot_of(a, 0.0f, 0.0f);
-    const float length = a->exchanged ? -far * a->front : (side.z < 0.0f ? -a->side : a->side);
+    a->reference = a->exchanged ? spot_of(a, 0.5f * away, 0.5f) : spot_of(a, 0.0f, 0.0f);
+    const float length = a->exchanged ? -away * a->front : (side.z < 0.0f ? -a->side : a->side);
     a->length_axis.x = (a->exchanged ? front.x : side.x) / length;
     a->length_axis.z = (a->exchanged ? front.z : side.z) / length;
     a->value[GOE_ORIENTATION] = goe_arctan_rad(a->length_axis.x, a->length_axis.z);
@@ -328,14 +328,14 @@ static float outline_variance(const goe_estimator_t *estimator, const answer_t *
     const float vz = a->depth.side / a->side;
     const float px = a->start - estimator->dx_m / a->scale_m;
     const float pz = 1.0f - estimator->dz_m / a->scale_m;
-    const float beside = goe_larger(fabsf(vz * px - vx * pz) - 0.5f * a->fx / vz, 0.0f);
+    const float beside = goe_larger(goe_absolute(vz * px - vx * pz) - 0.5f * a->fx / vz, 0.0f);
     const float sine2 = goe_square(beside) / (px * px + pz * pz);
     return size2 + goe_square(a->value[quantity]) * orientation_rad2 / (sine2 + SINE2_LEAST);
 }
 
 /* Within a share of the value, and finite, by the bits. */
 static bool is_known(float value, float sigma, float least, float share) {
-    const float size = goe_larger(fabsf(value), least);
+    const float size = goe_larger(goe_absolute(value), least);
     return goe_within(value, METRES_MOST) && goe_within(size, METRES_MOST) && goe_within(sigma, share * size);
 }
 

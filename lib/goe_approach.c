@@ -44,7 +44,7 @@ typedef struct {
 
 /* Closest approach. */
 typedef struct {
-    gauge_t left, right, near; /* signed distances: passed with the obstacle on the left, right; along the course */
+    gauge_t left, right, ahead; /* signed distances: passed with the obstacle on the left, right; along the course */
     gauge_t clearance;
     float time_s, time_sd_s;
     bool moves;
@@ -146,8 +146,8 @@ static gauge_t along_course(const outline_t *o, vector_t course, vector_t m) {
     if (o->box) {
         float across = dot(m, o->width_axis);
         float along = dot(m, o->length_axis);
-        across = fabsf(across) > PARALLEL ? across : -dot(course, o->width_axis);
-        along = fabsf(along) > PARALLEL ? along : -dot(course, o->length_axis);
+        across = goe_absolute(across) > PARALLEL ? across : -dot(course, o->width_axis);
+        along = goe_absolute(along) > PARALLEL ? along : -dot(course, o->length_axis);
         return corner(o, course, across < 0.0f ? -0.5f : 0.5f, along > 0.0f ? 1.0f : 0.0f);
     }
     gauge_t s = {dot(course, o->reference), {0}};
@@ -317,8 +317,8 @@ static float time_sd_most(const outline_t *o, const motion_t *motion, goe_covari
 /* Variance of the time along an edge which, as far as the orientation is known, may lean either way from the course: then
  * the closest corner is its other end, if the outline is passed at all. */
 static float edge_variance(const motion_t *motion, vector_t edge, float length_m, float sigma_rad, float passes) {
-    const float lean = fabsf(dot(edge, motion->right));
-    const float lead = fabsf(dot(edge, motion->course));
+    const float lean = goe_absolute(dot(edge, motion->right));
+    const float lead = goe_absolute(dot(edge, motion->course));
     const float other = passes * goe_normal_below(-lean / goe_larger(lead * sigma_rad, SIGMA_LEAST));
     const float between_s = lead * length_m / motion->speed_m_s;
     return other * (1.0f - other) * between_s * between_s;
@@ -368,16 +368,16 @@ static void find_approach(const outline_t *o, const motion_t *motion, goe_covari
         share = time_sd(o, motion, a, &lowest, covariance) / goe_larger(sigma_of(&lowest, covariance), SIGMA_LEAST);
     }
     find_clearance(motion, &lowest, share, height_m, &a->clearance);
-    a->near = distance(o, a->time_s > 0.0f ? motion->course
-                          : o->box         ? way_from_box(o, motion)
-                                           : way_from_disc(o, motion));
+    a->ahead = distance(o, a->time_s > 0.0f ? motion->course
+                           : o->box         ? way_from_box(o, motion)
+                                            : way_from_disc(o, motion));
 }
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
 
 static const gauge_t *largest(const approach_t *a) {
     const gauge_t *side = a->left.value > a->right.value ? &a->left : &a->right;
-    return a->moves && side->value > a->near.value ? side : &a->near;
+    return a->moves && side->value > a->ahead.value ? side : &a->ahead;
 }
 
 /* Probability that the obstacle is not passed on the side that m points away from it. Each corner may spoil it, and the
@@ -396,7 +396,7 @@ static float side_violation(const outline_t *o, vector_t m, const gauge_t *neare
 /* Each is necessary for the margin to be violated: not passed on either side, and not out of the way along the course. */
 static float margin_violation(const outline_t *o, const motion_t *motion, const approach_t *a, float margin_m,
                               goe_covariance_t covariance) {
-    const float out = below(&a->near, margin_m, covariance);
+    const float out = below(&a->ahead, margin_m, covariance);
     if (!a->moves) {
         return out;
     }

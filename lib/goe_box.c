@@ -21,7 +21,7 @@
 
 enum { FRONT_LEFT, BACK_LEFT, BACK_RIGHT, FRONT_RIGHT, CORNERS }; /* clockwise */
 enum { FACE_FRONT, FACE_RIGHT, FACE_BACK, FACE_LEFT };
-enum { OUTER_LEFT, NEAR, OUTER_RIGHT };
+enum { OUTER_LEFT, NEAR_CORNER, OUTER_RIGHT };
 
 static const float across_of[CORNERS] = {-0.5f, -0.5f, 0.5f, 0.5f};
 static const float along_of[CORNERS] = {0.0f, 1.0f, 1.0f, 0.0f};
@@ -41,15 +41,15 @@ typedef struct {
 goe_depth_t goe_box_depth(const float state[GOE_STATES]) {
     goe_depth_t depth;
     const float d = state[GOE_D];
-    const float product = fabsf(state[GOE_SX]) * state[GOE_FX];
+    const float product = goe_absolute(state[GOE_SX]) * state[GOE_FX];
     const float sum = goe_larger(sqrtf(d * d + 4.0f * product), SUM_LEAST);
     /* the larger one by adding, the smaller one by the product: no cancellation */
-    const float larger = 0.5f * (sum + fabsf(d));
+    const float larger = 0.5f * (sum + goe_absolute(d));
     depth.sum = sum;
     depth.side = d > 0.0f ? larger : product / larger;
     depth.front = d > 0.0f ? product / larger : larger;
     depth.by_extents[0] = (state[GOE_SX] > 0.0f ? state[GOE_FX] : -state[GOE_FX]) / sum;
-    depth.by_extents[1] = fabsf(state[GOE_SX]) / sum;
+    depth.by_extents[1] = goe_absolute(state[GOE_SX]) / sum;
     depth.side_by_d = depth.side / sum;
     depth.front_by_d = -depth.front / sum;
     return depth;
@@ -64,8 +64,8 @@ static void describe(const goe_sight_t *sight, outline_t *o) {
     o->sz = o->depth.side;
     o->sign = o->sx > 0.0f ? 1.0f : -1.0f;
     o->fz = -o->sign * o->depth.front;
-    o->curvature =
-        CURVATURE * 2.0f * fabsf(o->sx) * o->fx / (o->depth.sum * o->depth.sum * o->depth.sum) * sight->depth_variance;
+    o->curvature = CURVATURE * 2.0f * goe_absolute(o->sx) * o->fx / (o->depth.sum * o->depth.sum * o->depth.sum) *
+                   sight->depth_variance;
     o->px = goe_sight_reference_x(sight);
     o->pz = goe_sight_reference_z(sight);
     o->ground = (sight->height_m + x[GOE_DH]) * o->q;
@@ -96,7 +96,7 @@ static float corner_z(const outline_t *o, size_t corner) {
 /* Corners at the left end, between and at the right end of one face, or of two faces that begin with `face`. */
 static void corners_of_faces(size_t face, bool two, size_t corner[3]) {
     corner[OUTER_LEFT] = (CORNERS - face) % CORNERS;
-    corner[NEAR] = (corner[OUTER_LEFT] + 3u) % CORNERS;
+    corner[NEAR_CORNER] = (corner[OUTER_LEFT] + 3u) % CORNERS;
     corner[OUTER_RIGHT] = (corner[OUTER_LEFT] + (two ? 2u : 3u)) % CORNERS;
 }
 
@@ -106,7 +106,7 @@ static float misfit(const goe_sight_t *sight, const outline_t *o, const size_t c
     for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i += 2) {
         const float z = corner_z(o, corner[i]);
         const float x = corner_x(o, corner[i]) / (z > AHEAD_LEAST ? z : AHEAD_LEAST);
-        sum += fabsf(sight->point[GOE_BASE_LEFT + i].x - x);
+        sum += goe_absolute(sight->point[GOE_BASE_LEFT + i].x - x);
     }
     return sum;
 }

@@ -1,8 +1,6 @@
 /* Camera. SPDX-License-Identifier: MIT */
 #include "goe_camera.h"
 
-#include <math.h>
-
 #include "goe_rotation.h"
 #include "goe_scalar.h"
 
@@ -34,7 +32,7 @@ bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y
     float x = distorted_x;
     float y = distorted_y;
     float step = 0.0f;
-    for (int round = 0; round < UNDISTORT_ROUNDS; round++) {
+    for (int turn = 0; turn < UNDISTORT_ROUNDS; turn++) {
         const float r2 = x * x + y * y;
         const float radial = 1.0f + r2 * (camera->k1 + r2 * (camera->k2 + r2 * camera->k3));
         if (!goe_within(radial, 1.0e6f) || radial < RADIAL_MIN) {
@@ -47,7 +45,7 @@ bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y
         if (!goe_within(next_x, RAY_LIMIT) || !goe_within(next_y, RAY_LIMIT)) {
             return false;
         }
-        step = goe_larger(fabsf(next_x - x), fabsf(next_y - y));
+        step = goe_larger(goe_absolute(next_x - x), goe_absolute(next_y - y));
         x = next_x;
         y = next_y;
         if (step <= UNDISTORT_DONE) {

@@ -1,7 +1,6 @@
 /* From a disc to a box, and from a box to another name of it. SPDX-License-Identifier: MIT */
 #include "goe_change.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "goe_box.h"
@@ -57,10 +56,10 @@ static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool bot
     x[GOE_Q] = box->q;
     x[GOE_SX] = box->length * box->sine;
     x[GOE_FX] = box->width * box->cosine;
-    x[GOE_D] = box->length * box->cosine - box->width * fabsf(box->sine);
+    x[GOE_D] = box->length * box->cosine - box->width * goe_absolute(box->sine);
     const float sigma[GOE_STATES - GOE_KEPT] = {SIZE_FREEDOM * size, SIZE_FREEDOM * size,
                                                 (both ? DEPTH_FREEDOM : DEPTH_HELD) * size,
-                                                SIZE_FREEDOM * goe_larger(fabsf(x[GOE_E]), size)};
+                                                SIZE_FREEDOM * goe_larger(goe_absolute(x[GOE_E]), size)};
     goe_root_from_covariance(c, sigma, &filter->root, &filter->inverse);
     goe_refined_settle(filter);
     filter->turn_cos = box->turn_cos;
@@ -95,8 +94,8 @@ static bool two_faces_agree(goe_filter_t *filter, const goe_sight_t *sight, cons
     const float q = filter->state[GOE_Q];
     const float most = RANGE_SHARE * q * goe_sight_reference_z(sight);
     const float tolerance = AGREEING_PX * goe_sight_pixel(sight) + AGREEING_SHARE * (box->left + box->right);
-    const bool agree = filter->agreeing > 0 && fabsf(box->left - filter->candidate[0]) < tolerance &&
-                       fabsf(box->right - filter->candidate[1]) < tolerance;
+    const bool agree = filter->agreeing > 0 && goe_absolute(box->left - filter->candidate[0]) < tolerance &&
+                       goe_absolute(box->right - filter->candidate[1]) < tolerance;
     filter->agreeing = (uint8_t)(agree ? filter->agreeing + 1 : 1);
     filter->candidate[0] = box->left;
     filter->candidate[1] = box->right;
@@ -146,30 +145,30 @@ static void exchange_state(float x[GOE_STATES]) {
     x[GOE_A] = (x[GOE_A] + 0.5f * (sign * x[GOE_FX] + side)) * scale;
     x[GOE_Q] *= scale;
     x[GOE_SX] = -sign * x[GOE_FX] * scale;
-    x[GOE_FX] = fabsf(side) * scale;
+    x[GOE_FX] = goe_absolute(side) * scale;
     x[GOE_D] = -x[GOE_D] * scale;
     x[GOE_E] *= scale;
 }
 
 /* R in the new states: the derivative of the old ones by them is that of the exchange back. */
 static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
-    enum { A, Q, SX, FX, D, E };
+    enum { OF_A, OF_Q, OF_SX, OF_FX, OF_D, OF_E };
     goe_substitution_t old;
     const float *is = filter->state;
     const float sign = is[GOE_SX] > 0.0f ? 1.0f : -1.0f;
     const float scale = 1.0f / (1.0f + 0.5f * is[GOE_D]);
     memset(&old, 0, sizeof old);
     for (size_t k = 0; k < GOE_CHANGED; k++) {
-        old.by[k][D] = -0.5f * scale * was[GOE_A + k];
+        old.by[k][OF_D] = -0.5f * scale * was[GOE_A + k];
     }
-    old.by[D][D] -= scale;
-    old.by[A][SX] = 0.5f * scale;
-    old.by[A][FX] = 0.5f * scale * sign;
-    old.by[SX][FX] = -scale * sign;
-    old.by[FX][SX] = scale * sign;
-    old.by[A][A] = scale;
-    old.by[Q][Q] = scale;
-    old.by[E][E] = scale;
+    old.by[OF_D][OF_D] -= scale;
+    old.by[OF_A][OF_SX] = 0.5f * scale;
+    old.by[OF_A][OF_FX] = 0.5f * scale * sign;
+    old.by[OF_SX][OF_FX] = -scale * sign;
+    old.by[OF_FX][OF_SX] = scale * sign;
+    old.by[OF_A][OF_A] = scale;
+    old.by[OF_Q][OF_Q] = scale;
+    old.by[OF_E][OF_E] = scale;
     goe_root_substitute(&filter->root, &old, &filter->rows);
 }
 
@@ -188,7 +187,7 @@ bool goe_change_box(goe_filter_t *filter, const goe_sight_t *sight) {
         free_length(filter, side);
         return true;
     }
-    if (fabsf(filter->state[GOE_SX]) > GOE_EXCHANGE_SLOPE * side) {
+    if (goe_absolute(filter->state[GOE_SX]) > GOE_EXCHANGE_SLOPE * side) {
         exchange_names(filter);
         return true;
     }

@@ -142,7 +142,7 @@ bool goe_chord_start(goe_filter_t *filter, const goe_sight_t *sight) {
 /* ------------------------------------------------------------------------------------------------------------- upkeep -- */
 
 void goe_chord_free_top(goe_filter_t *filter, const goe_sight_t *sight) {
-    spread(filter, GOE_E, TOP_FREEDOM * fabsf(top_y(sight)) * chord_length(filter->state));
+    spread(filter, GOE_E, TOP_FREEDOM * goe_absolute(top_y(sight)) * chord_length(filter->state));
 }
 
 void goe_chord_follow(goe_filter_t *filter, const goe_verdict_t *verdict) {
@@ -192,7 +192,7 @@ static faces_t faces_at(const float x[GOE_STATES], vector_t corner) {
     const vector_t from_left = {corner.x + half.x, corner.z + half.z};
     const vector_t to_right = {half.x - corner.x, half.z - corner.z};
     faces_t faces;
-    if (fabsf(from_left.x * to_right.z) > fabsf(from_left.z * to_right.x)) {
+    if (goe_absolute(from_left.x * to_right.z) > goe_absolute(from_left.z * to_right.x)) {
         faces.front = from_left;
         faces.side = to_right;
         faces.side_sign = 1.0f;
@@ -218,7 +218,7 @@ static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
     x[GOE_Q] *= scale;
     x[GOE_SX] = faces->side.x * scale;
     x[GOE_FX] = faces->front.x * scale;
-    x[GOE_D] = (faces->side.z - fabsf(faces->front.z)) * scale;
+    x[GOE_D] = (faces->side.z - goe_absolute(faces->front.z)) * scale;
     x[GOE_E] *= scale;
     return true;
 }
@@ -227,7 +227,7 @@ static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
  * for the corner's place on the circle: twice the angle between chord and front, tan = side over front. */
 static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES], float side_sign,
                           goe_substitution_t *old) {
-    enum { A, Q, SX, FX, D, E };
+    enum { OF_A, OF_Q, OF_SX, OF_FX, OF_D, OF_E };
     const goe_depth_t depth = goe_box_depth(is);
     const float sign = is[GOE_SX] > 0.0f ? -1.0f : 1.0f; /* of the front's depth */
     const float scale = 1.0f / (1.0f + 0.5f * depth.side);
@@ -237,18 +237,18 @@ static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES
     memset(old, 0, sizeof *old);
     for (size_t i = 0; i < 3; i++) {
         for (size_t k = 0; k < GOE_CHANGED; k++) {
-            old->by[k][SX + i] = -0.5f * scale * was[GOE_A + k] * side[i];
+            old->by[k][OF_SX + i] = -0.5f * scale * was[GOE_A + k] * side[i];
         }
-        old->by[SX][SX + i] += scale * (front[i] + side_sign * side[i]);
-        old->by[D][SX + i] = turn * is[GOE_FX] * side[i];
+        old->by[OF_SX][OF_SX + i] += scale * (front[i] + side_sign * side[i]);
+        old->by[OF_D][OF_SX + i] = turn * is[GOE_FX] * side[i];
     }
-    old->by[D][FX] -= turn * depth.side;
-    old->by[A][SX] += 0.5f * scale;
-    old->by[FX][SX] += side_sign * scale;
-    old->by[FX][FX] += scale;
-    old->by[A][A] = scale;
-    old->by[Q][Q] = scale;
-    old->by[E][E] = scale;
+    old->by[OF_D][OF_FX] -= turn * depth.side;
+    old->by[OF_A][OF_SX] += 0.5f * scale;
+    old->by[OF_FX][OF_SX] += side_sign * scale;
+    old->by[OF_FX][OF_FX] += scale;
+    old->by[OF_A][OF_A] = scale;
+    old->by[OF_Q][OF_Q] = scale;
+    old->by[OF_E][OF_E] = scale;
 }
 
 static void become_box(goe_filter_t *filter, const float was[GOE_STATES], float side_sign, float top) {
@@ -279,7 +279,7 @@ static bool turn_face_away(goe_filter_t *filter, const goe_sight_t *sight, size_
     if (!find_corner(sight, feature, &corner)) {
         return false;
     }
-    const float top = fabsf(top_y(sight));
+    const float top = goe_absolute(top_y(sight));
     const faces_t faces = faces_at(filter->state, corner);
     memcpy(was, filter->state, sizeof was);
     if (!set_box(&faces, filter->state)) {
@@ -300,7 +300,7 @@ static void learn_anew(goe_filter_t *filter) {
 
 bool goe_chord_change(goe_filter_t *filter, const goe_sight_t *sight) {
     if (filter->since < SETTLED_IMAGES || !(filter->outward > GONE_SIGMAS) || !sight->point[GOE_LEFT].usable ||
-        !sight->point[GOE_RIGHT].usable || !(fabsf(filter->turning) > TURNING_SIGMAS)) {
+        !sight->point[GOE_RIGHT].usable || !(goe_absolute(filter->turning) > TURNING_SIGMAS)) {
         return false;
     }
     /* as the bearing moves to the left, faces come into view on the right and turn away on the left */

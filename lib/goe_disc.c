@@ -156,7 +156,7 @@ static float first_range_m(const goe_sight_t *sight, float size) {
 
 static void first_root(const goe_settings_t *settings, const float state[GOE_STATES], goe_triangle_t *root) {
     const float bias = settings->noise.attitude_bias_deg * GOE_RAD_PER_DEG;
-    const float top = fabsf(state[GOE_E]) > state[GOE_FX] ? fabsf(state[GOE_E]) : state[GOE_FX];
+    const float top = goe_absolute(state[GOE_E]) > state[GOE_FX] ? goe_absolute(state[GOE_E]) : state[GOE_FX];
     memset(root, 0, sizeof *root);
     *goe_root_at(root, GOE_BX, GOE_BX) = 1.0f / bias;
     *goe_root_at(root, GOE_BY, GOE_BY) = 1.0f / bias;

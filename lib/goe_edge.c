@@ -1,9 +1,8 @@
 /* Edges: (1) and the gates of Section 4. SPDX-License-Identifier: MIT */
 #include "goe_edge.h"
 
-#include <math.h>
-
 #include "goe_angle.h"
+#include "goe_scalar.h"
 
 static bool in_order(const goe_point_t *left, const goe_point_t *right) {
     return !left->usable || !right->usable || left->x <= right->x;
@@ -25,7 +24,7 @@ static void measure_edge(const goe_settings_t *settings, const goe_pixel_t *from
     const goe_point_t *right = edge->right;
     const float du = to_px->u_px - from_px->u_px;
     const float dv = to_px->v_px - from_px->v_px;
-    const float rise_px = fabsf(right->y - left->y) * settings->camera.fx_px;
+    const float rise_px = goe_absolute(right->y - left->y) * settings->camera.fx_px;
     edge->counts = du * du + dv * dv > settings->edge_min_px * settings->edge_min_px;
     edge->has_heading = edge->counts && rise_px > settings->orientation_min_px;
     edge->heading_deg = edge->has_heading ? heading_deg(left, right) : 0.0f;

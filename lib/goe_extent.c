@@ -1,7 +1,6 @@
 /* Length and height. SPDX-License-Identifier: MIT */
 #include "goe_extent.h"
-
-#include <math.h>
+#include "goe_scalar.h"
 
 goe_status_t goe_extent_length(const goe_faces_t *faces, const goe_span_t *front, goe_turn_t turn,
                                const goe_estimate_t *reference, float min_x, goe_extent_t *length) {
@@ -12,7 +11,7 @@ goe_status_t goe_extent_length(const goe_faces_t *faces, const goe_span_t *front
     if (!goe_projection_turn(far_end, turn, &x_far)) {
         return GOE_EDGE_ON;
     }
-    if (fabsf(x_near) < min_x || fabsf(x_far) < min_x || (x_near < 0.0f) != (x_far < 0.0f)) {
+    if (goe_absolute(x_near) < min_x || goe_absolute(x_far) < min_x || (x_near < 0.0f) != (x_far < 0.0f)) {
         return GOE_EDGE_ON;
     }
     const float inverse = 1.0f / x_far - 1.0f / x_near; /* (6) = L/X_side */

@@ -48,10 +48,10 @@ bool goe_footprint_two_faces(const goe_sight_t *sight, goe_footprint_t *box) {
     if (!sight->base || !sight->point[GOE_BASE_NEAR].usable || !(range_m >= RANGE_LEAST_M)) {
         return false;
     }
-    const float near = goe_sight_unbiased(sight, GOE_BASE_NEAR).x;
-    const float c = 1.0f / sqrtf(1.0f + near * near);
-    box->left = near - goe_sight_unbiased(sight, GOE_BASE_LEFT).x;
-    box->right = goe_sight_unbiased(sight, GOE_BASE_RIGHT).x - near;
+    const float corner = goe_sight_unbiased(sight, GOE_BASE_NEAR).x;
+    const float c = 1.0f / sqrtf(1.0f + corner * corner);
+    box->left = corner - goe_sight_unbiased(sight, GOE_BASE_LEFT).x;
+    box->right = goe_sight_unbiased(sight, GOE_BASE_RIGHT).x - corner;
     const float left_m = box->left * range_m * c;
     const float right_m = box->right * range_m * c;
     const float least_m = left_m < right_m ? left_m : right_m;
@@ -65,7 +65,7 @@ bool goe_footprint_two_faces(const goe_sight_t *sight, goe_footprint_t *box) {
     const bool exchange = right_m > deep_m;
     const place_t reference = {exchange ? 0.5f * right_m : -0.5f * left_m, range_m / c + 0.5f * deep_m};
     box->turn_cos = c;
-    box->turn_sin = near * c;
+    box->turn_sin = corner * c;
     box->sine = exchange ? -left_m / on_left_m : right_m / on_right_m;
     box->cosine = exchange ? deep_m / on_left_m : deep_m / on_right_m;
     return scale(sight, reference, exchange ? on_right_m : on_left_m, exchange ? on_left_m : on_right_m, range_m, box);
@@ -111,7 +111,7 @@ static float edge_sigma(const goe_sight_t *sight, const face_t *face, float x, f
 
 /* An edge that lies more across than along is the front, any other the side. */
 static place_t measure_face(const face_t *face, float x, float z, float size_m, goe_footprint_t *box) {
-    const bool front = fabsf(x) > fabsf(z);
+    const bool front = goe_absolute(x) > goe_absolute(z);
     const float across = front ? -z : x;
     const float along = front ? x : z;
     const float sign = along < 0.0f ? -1.0f : 1.0f;

@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "goe_angle.h"
+#include "goe_scalar.h"
 
 typedef struct {
     size_t row[GOE_ROWS_MAX]; /* by residual */
@@ -18,7 +19,7 @@ static float residual_of(const goe_rows_t *rows, size_t row) { return rows->matr
 
 /* A row along x is moved more by the attitude's error about Y than about X. */
 static bool is_along_x(const goe_rows_t *rows, size_t row) {
-    return fabsf(rows->matrix->column[0][row]) > fabsf(rows->matrix->column[1][row]);
+    return goe_absolute(rows->matrix->column[0][row]) > goe_absolute(rows->matrix->column[1][row]);
 }
 
 static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
@@ -36,7 +37,8 @@ static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
     const size_t half = group->count / 2;
     const bool even = group->count > 0 && group->count % 2 == 0;
     group->middle = group->count > 0 ? group->row[half] : 0;
-    if (even && fabsf(residual_of(rows, group->row[half - 1])) < fabsf(residual_of(rows, group->middle))) {
+    if (even &&
+        goe_absolute(residual_of(rows, group->row[half - 1])) < goe_absolute(residual_of(rows, group->middle))) {
         group->middle = group->row[half - 1];
     }
 }
@@ -123,10 +125,10 @@ goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t 
     judge(settings, filter, rows, true, &belief);
     judge(settings, filter, rows, false, &belief);
     for (size_t i = 0; i < rows->count; i++) {
-        const unsigned bit = 1u << rows->feature[i];
-        const bool refused = (belief.verdict.refused & bit) != 0;
+        const unsigned flag = 1u << rows->feature[i];
+        const bool refused = (belief.verdict.refused & flag) != 0;
         const float weight = sqrtf(belief.factor[rows->feature[i]] / (rows->variance[i] * repeated));
-        belief.verdict.measured |= bit;
+        belief.verdict.measured |= flag;
         belief.verdict.rows += refused ? 0 : 1;
         scale_row(rows->matrix, i, refused ? 0.0f : weight);
     }

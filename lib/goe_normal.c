@@ -1,7 +1,6 @@
 /* The normal distribution. SPDX-License-Identifier: MIT */
 #include "goe_normal.h"
-
-#include <math.h>
+#include "goe_scalar.h"
 
 /* Minimax polynomial made by tools/goe_tools/minimax.py. The upper tail is N(x)^-8, N = N1 + x (N2 + x (N3 + ...)), on
  * 0 <= x <= 5.2: 2.0e-7. The eighth power needs no exponential and falls off as fast as the tail does. */
@@ -16,7 +15,7 @@
 #define TAIL_END 5.2f /* 1e-7 lies beyond */
 
 float goe_normal_below(float x) {
-    const float t = fabsf(x);
+    const float t = goe_absolute(x);
     if (t > TAIL_END) {
         return x < 0.0f ? 0.0f : 1.0f;
     }

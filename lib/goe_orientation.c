@@ -1,9 +1,8 @@
 /* Orientation. SPDX-License-Identifier: MIT */
 #include "goe_orientation.h"
 
-#include <math.h>
-
 #include "goe_angle.h"
+#include "goe_scalar.h"
 
 /* Between +-30 and +-60 degrees the smaller angle no longer tells the side edge from the front edge under noise: there
  * the low-pass decides, or it would average +45 with -45. */
@@ -17,12 +16,12 @@ static float hypothesis_deg(const goe_edge_t *side, const goe_edge_t *front) {
     return goe_fold_deg(front->heading_deg - 90.0f);
 }
 
-static float distance_deg(float a_deg, float b_deg) { return fabsf(goe_fold_deg(a_deg - b_deg)); }
+static float distance_deg(float a_deg, float b_deg) { return goe_absolute(goe_fold_deg(a_deg - b_deg)); }
 
 static bool prefers_first(const goe_orientation_t *orientation, float first_deg, float second_deg) {
-    const float first = fabsf(first_deg);
-    const float second = fabsf(second_deg);
-    if (orientation->count > 0 && fabsf(first - second) < AMBIGUOUS_DEG) {
+    const float first = goe_absolute(first_deg);
+    const float second = goe_absolute(second_deg);
+    if (orientation->count > 0 && goe_absolute(first - second) < AMBIGUOUS_DEG) {
         return distance_deg(first_deg, orientation->filtered_deg) <=
                distance_deg(second_deg, orientation->filtered_deg);
     }

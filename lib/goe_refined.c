@@ -60,11 +60,11 @@ static void let_time_pass(goe_filter_t *filter, const goe_noise_t *noise, int64_
 
 /* Extents of too different size make a box that the next image cannot be linearised at. */
 static void clip_box(float x[GOE_STATES]) {
-    const float least = EXTENT_LEAST * (fabsf(x[GOE_SX]) + fabsf(x[GOE_FX]) + fabsf(x[GOE_D]));
+    const float least = EXTENT_LEAST * (goe_absolute(x[GOE_SX]) + goe_absolute(x[GOE_FX]) + goe_absolute(x[GOE_D]));
     x[GOE_FX] = goe_larger(x[GOE_FX], least);
-    x[GOE_D] = goe_larger(x[GOE_D], DEPTH_LEAST * fabsf(x[GOE_SX]) - x[GOE_FX] / DEPTH_LEAST);
+    x[GOE_D] = goe_larger(x[GOE_D], DEPTH_LEAST * goe_absolute(x[GOE_SX]) - x[GOE_FX] / DEPTH_LEAST);
     if (goe_box_depth(x).side < least) {
-        x[GOE_D] = least - fabsf(x[GOE_SX]) * x[GOE_FX] / least;
+        x[GOE_D] = least - goe_absolute(x[GOE_SX]) * x[GOE_FX] / least;
     }
 }
 
@@ -160,10 +160,10 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     const unsigned most = chord ? REFUSED_ENDS : REFUSED_IMAGES;
     bool captured = false;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
-        const unsigned bit = 1u << i;
-        if ((verdict.refused & bit) != 0) {
+        const unsigned flag = 1u << i;
+        if ((verdict.refused & flag) != 0) {
             captured = goe_refined_count(&filter->refused[i]) >= most || captured;
-        } else if ((verdict.measured & bit) != 0) {
+        } else if ((verdict.measured & flag) != 0) {
             filter->refused[i] = 0;
         }
     }
@@ -182,7 +182,7 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
 /* The top alone hangs on nothing else. */
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
-    const float size = goe_larger(fabsf(x[GOE_E]), goe_larger(x[GOE_FX], fabsf(x[GOE_D])));
+    const float size = goe_larger(goe_absolute(x[GOE_E]), goe_larger(x[GOE_FX], goe_absolute(x[GOE_D])));
     goe_root_spread_state(&filter->root, GOE_E, TOP_FREEDOM * size);
     filter->refused[GOE_TOP] = 0;
 }

@@ -16,6 +16,18 @@ static inline uint32_t goe_magnitude(float x) {
     return bits & 0x7FFFFFFFu;
 }
 
+/* |x|. Not fabsf(): a C library may lack it, and then an undeclared call would return an int. */
+static inline float goe_absolute(float x) {
+#if defined(__GNUC__)
+    return __builtin_fabsf(x); /* one instruction, never a call */
+#else
+    const uint32_t bits = goe_magnitude(x);
+    float magnitude;
+    memcpy(&magnitude, &bits, sizeof magnitude);
+    return magnitude;
+#endif
+}
+
 /* |x| <= limit; false for NaN and infinity. */
 static inline bool goe_within(float x, float limit) { return goe_magnitude(x) <= goe_magnitude(limit); }
 

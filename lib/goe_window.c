@@ -92,7 +92,7 @@ goe_status_t goe_window_solve(const goe_window_t *window, int length, float min_
         return GOE_NO_BASELINE;
     }
     const float inverse_width = -m.mixed_m / m.spread_m2;
-    if (inverse_width * baseline_m <= PARALLAX_MIN * (1.0f + fabsf(m.xi) + fabsf(m.zeta))) {
+    if (inverse_width * baseline_m <= PARALLAX_MIN * (1.0f + goe_absolute(m.xi) + goe_absolute(m.zeta))) {
         return GOE_NO_PARALLAX;
     }
     const float width_m = 1.0f / inverse_width;

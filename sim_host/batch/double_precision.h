@@ -26,6 +26,8 @@ static inline uint32_t goe_magnitude(double x) {
     return bits & 0x7FFFFFFFu;
 }
 
+static inline double goe_absolute(double x) { return fabs(x); }
+
 static inline bool goe_within(double x, double limit) { return fabs(x) <= fabs(limit) && isfinite(x); }
 
 static inline double goe_larger(double a, double b) { return a > b ? a : b; }

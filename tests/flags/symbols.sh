@@ -32,7 +32,7 @@ case ${1:-} in
         mapfile -t present < <(compilers gcc clang-19)
         for compiler in "${present[@]}"; do
             for level in -O0 -O2 -Os; do
-                check "$compiler $level" nm "$allowed|fabsf" \
+                check "$compiler $level" nm "$allowed" \
                     "$compiler" "${own[@]}" $level -fno-pic -fno-stack-protector
             done
         done ;;

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Compiles the library among other people's macros, and with the poorest C library that it may meet: sqrtf, memcpy, memset
+# and the compiler's own headers, everything undeclared an error. Public header in C++ too.
+set -euo pipefail
+. "$(dirname "$0")/common.sh"
+here=$root/tests/flags
+warnings=(-Wall -Wextra -Wundef -Wshadow -Werror)
+sources=("$root"/lib/*.c)
+
+cd "$scratch"
+cat >header.cpp <<'END'
+#include "goe.h"
+int main() { return goe_status_text(GOE_OK) == nullptr; }
+END
+
+compiled=0
+# compile <compiler> <flag>...: every source of the library
+compile() {
+    "$@" "${warnings[@]}" -I"$root/lib" -c "${sources[@]}" || fail "$*"
+    compiled=$((compiled + ${#sources[@]}))
+}
+
+# poor <compiler> <flag>...: no headers but the compiler's own and the poor library's
+poor() {
+    local own
+    own=$("$1" -print-file-name=include)
+    compile "$@" -nostdinc -isystem "$own" -isystem "$here/poor_c_library" -ffreestanding \
+        -Werror=implicit-function-declaration
+}
+
+for compiler in $(compilers gcc clang-19); do
+    for standard in c99 gnu17; do
+        compile "$compiler" -std=$standard -include "$here/hostile.h"
+        poor "$compiler" -std=$standard
+        poor "$compiler" -std=$standard -include "$here/hostile.h"
+    done
+done
+for compiler in $(compilers g++ clang++-19); do
+    for standard in c++11 c++17; do
+        "$compiler" -std=$standard "${warnings[@]}" -include "$here/hostile.h" -I"$root/lib" -fsyntax-only header.cpp ||
+            fail "$compiler -std=$standard: the public header"
+    done
+done
+if command -v arm-none-eabi-gcc >/dev/null; then
+    poor arm-none-eabi-gcc -std=c99 -include "$here/hostile.h" -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 \
+        -mfloat-abi=hard
+fi
+[ $compiled -gt 0 ] || exit 77
+
+# The test itself must bite: a file that uses such a name, or calls what the poor library lacks, does not compile.
+echo 'enum { NEAR }; int probe(void);' >macro.c
+! gcc -include "$here/hostile.h" -c macro.c 2>/dev/null || fail "hostile.h does not notice NEAR"
+printf '#include <math.h>\nfloat probe(float x);\nfloat probe(float x) { return fabsf(x); }\n' >call.c
+! gcc -std=c99 -nostdinc -isystem "$here/poor_c_library" -ffreestanding -fno-builtin \
+    -Werror=implicit-function-declaration -c call.c 2>/dev/null || fail "the poor library does not notice fabsf"
+echo "hostile macros and a poor C library: $compiled compilations without a warning"
