@@ -358,7 +358,7 @@ typedef struct {
     float column[GOE_COLUMNS][GOE_ROWS_MAX];
 } goe_matrix_t;
 
-typedef struct { /* the refined method; lib/goe_sight.h tells what the states are */
+typedef struct { /* the refined method; lib/refined/goe_observation.h tells what the states are */
     float state[GOE_STATES];
     goe_triangle_t root;    /* R: R'R is the information of the state */
     goe_inverse_t inverse;  /* of R, after the latest image: R^-1 R^-1' is the covariance */

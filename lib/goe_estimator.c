@@ -6,17 +6,17 @@
 #include <string.h>
 
 #include "goe.h"
-#include "goe_align.h"
-#include "goe_angle.h"
-#include "goe_answer.h"
-#include "goe_camera.h"
-#include "goe_ego_motion.h"
-#include "goe_fault.h"
-#include "goe_intake.h"
-#include "goe_paper.h"
-#include "goe_refined.h"
 #include "goe_settings.h"
 #include "goe_told.h"
+#include "image/goe_align.h"
+#include "image/goe_camera.h"
+#include "image/goe_ego_motion.h"
+#include "image/goe_fault.h"
+#include "image/goe_intake.h"
+#include "maths/goe_angle.h"
+#include "refined/goe_answer.h"
+#include "refined/goe_refined.h"
+#include "window/goe_window.h"
 
 #define RESETS 0 /* causes[0] counts tracks that an unknown filter reset ended */
 #define AGE_LIMIT_US 4000000000u
@@ -106,10 +106,11 @@ static goe_status_t estimate_refined(goe_estimator_t *estimator, const goe_image
                                      const float camera_to_trajectory[9], goe_faults_t *faults) {
     unsigned swapped;
     const goe_phase_t least = estimator->settings.model == GOE_MODEL_LINE ? GOE_PHASE_BOX : GOE_PHASE_DISC;
-    const goe_paper_task_t task = (goe_phase_t)estimator->filter.phase < least ? GOE_PAPER_SOLVES : GOE_PAPER_COLLECTS;
-    const goe_status_t status = goe_paper_update(estimator, image, view, task, faults);
+    const goe_window_task_t task =
+        (goe_phase_t)estimator->filter.phase < least ? GOE_WINDOW_SOLVES : GOE_WINDOW_COLLECTS;
+    const goe_status_t status = goe_window_update(estimator, image, view, task, faults);
     const bool measured = goe_refined_update(estimator, camera_to_trajectory, view, &swapped);
-    for (unsigned i = 0; i < swapped && task == GOE_PAPER_COLLECTS;
+    for (unsigned i = 0; i < swapped && task == GOE_WINDOW_COLLECTS;
          i++) { /* otherwise the paper's method has counted */
         goe_count_cause(estimator->causes, GOE_SWAPPED);
     }
@@ -145,7 +146,7 @@ static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *im
     goe_ego_motion_follow(estimator, &image->pose, camera_to_trajectory);
     goe_align_view(&estimator->settings.camera, camera_to_trajectory, image, &view, &faults);
     if (!goe_is_refined(estimator)) {
-        const goe_status_t status = goe_paper_update(estimator, image, &view, GOE_PAPER_SOLVES, &faults);
+        const goe_status_t status = goe_window_update(estimator, image, &view, GOE_WINDOW_SOLVES, &faults);
         tell_age(estimator, estimator->time_us, &estimator->estimate);
         return status;
     }

@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "goe.h"
-#include "goe_scalar.h"
+#include "maths/goe_scalar.h"
 
 static uint32_t bits_of(float a) {
     uint32_t bits;

@@ -1,7 +1,7 @@
 /* Settings: defaults and ranges. SPDX-License-Identifier: MIT */
 #include "goe_settings.h"
 
-#include "goe_scalar.h"
+#include "maths/goe_scalar.h"
 
 #define PIXELS_MAX 1.0e5f
 #define TURN_MAX_DEG 360.0f

@@ -30,7 +30,7 @@ code_row() {
     local name=$1 size=$2
     shift 2
     if command -v "$1" >/dev/null; then
-        "$@" -std=c99 -ffp-contract=off -fno-math-errno -c "$root"/lib/*.c
+        "$@" -std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib" -c "$root"/lib/*.c "$root"/lib/*/*.c
         # .data.rel.ro holds constants that are addresses: read-only once loaded
         "$size" -A ./*.o | awk -v name="$name ($("$1" -dumpversion))" \
             '/^\.(text|rodata|data\.rel\.ro)/ { code += $2 } /^\.(data|bss)/ && !/^\.data\.rel\.ro/ { data += $2 }

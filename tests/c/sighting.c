@@ -56,7 +56,7 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting_look(sighting);
 }
 
-void sighting_look(sighting_t *sighting) { goe_sight_look(&sighting->sight); }
+void sighting_look(sighting_t *sighting) { goe_observation_look(&sighting->sight); }
 
 /* A ray r of the told axes is r + e x r in the true ones, and the other way round with the other sign. */
 void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],

@@ -1,16 +1,16 @@
-/* One image as lib/goe_sight.h holds it, made up from numbers, and what it should show, in double.
+/* One image as lib/refined/goe_observation.h holds it, made up from numbers, and what it should show, in double.
  * SPDX-License-Identifier: MIT */
 #ifndef SIGHTING_H
 #define SIGHTING_H
 
 #include "check.h"
-#include "goe_sight.h"
+#include "refined/goe_observation.h"
 
 typedef struct {
     goe_settings_t settings;
     float state[GOE_STATES];
     goe_point_t point[GOE_FEATURES];
-    goe_sight_t sight;
+    goe_observation_t sight;
     goe_matrix_t matrix;
     goe_rows_t rows;
 } sighting_t;
@@ -28,7 +28,7 @@ void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, 
 /* What depends on the state, after a change of it. */
 void sighting_look(sighting_t *sighting);
 
-/* Where the point is seen under the attitude bias of `state`: the exact small-rotation model of goe_sight.h in double. */
+/* Where the point is seen under the attitude bias of `state`: the exact small-rotation model of goe_observation.h in double. */
 void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
                       double seen[2]);
 

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_align.h"
-#include "goe_rotation.h"
+#include "image/goe_align.h"
+#include "maths/goe_rotation.h"
 
 static goe_camera_t camera;
 static goe_image_t image;

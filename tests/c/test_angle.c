@@ -1,7 +1,7 @@
 /* Arctangent, sine and cosine, folding: exact places, symmetries, continuity. SPDX-License-Identifier: MIT
  * The error bounds are tested against double in test_double_angle.c. */
 #include "check.h"
-#include "goe_angle.h"
+#include "maths/goe_angle.h"
 
 #define BOUND 2.0e-7f
 #define PI 3.14159265f

@@ -1,5 +1,5 @@
 /* Rows of a box against a brute-force projection of its corners in double. SPDX-License-Identifier: MIT */
-#include "goe_box.h"
+#include "refined/goe_box.h"
 
 #include <math.h>
 #include <string.h>
@@ -124,7 +124,7 @@ static double predict(const sighting_t *of, const double state[GOE_STATES], size
     if (feature == GOE_TOP) {
         return seen[1];
     }
-    const goe_spread_t spread = goe_sight_spread(&of->sight, feature);
+    const goe_spread_t spread = goe_observation_spread(&of->sight, feature);
     return seen[1] - (double)spread.xy / (double)spread.xx * seen[0]; /* free of the first row's noise */
 }
 

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_camera.h"
+#include "image/goe_camera.h"
 #include "scene.h"
 
 static goe_camera_t camera;

@@ -1,5 +1,5 @@
 /* Boxes by their silhouette alone, and what is no box or no disc. SPDX-License-Identifier: MIT */
-#include "goe_chord.h"
+#include "refined/goe_chord.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Rows of a disc against its exact tangents in double. SPDX-License-Identifier: MIT */
-#include "goe_disc.h"
+#include "refined/goe_disc.h"
 
 #include <math.h>
 #include <string.h>
@@ -163,7 +163,7 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
         CHECK_CLOSE(0.01 + 2.0 * narrow, 0.0, (double)state[GOE_Q] / truth[GOE_Q] - 1.0);
         CHECK_CLOSE(0.01 + 2.0 * narrow, truth[GOE_A], state[GOE_A]);
         for (size_t i = 0; i < GOE_STATES; i++) {
-            TEST_ASSERT_TRUE(*goe_root_at(&root, i, i) > 0.0f);
+            TEST_ASSERT_TRUE(*goe_srif_at(&root, i, i) > 0.0f);
         }
     }
 }

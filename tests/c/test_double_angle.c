@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "goe_angle.h"
+#include "maths/goe_angle.h"
 
 #define BOUND 2.0e-7 /* as the header states it, radians */
 #define RAD_PER_DEG 0.017453292519943295

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_refined.h"
-#include "goe_sight.h"
 #include "goe_told.h"
+#include "refined/goe_observation.h"
+#include "refined/goe_refined.h"
 #include "scene.h"
 
 #define RAD_PER_DEG 0.017453292519943295

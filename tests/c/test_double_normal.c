@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "goe_normal.h"
+#include "maths/goe_normal.h"
 
 #define BOUND 1.0e-6 /* as the header states it */
 

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_window.h"
 #include "reference.h"
+#include "window/goe_fit.h"
 
 #define LENGTH 8
 #define DRAWS 4000
@@ -34,7 +34,7 @@ static void make_rows(const case_t *given, double noise, check_random_t *random,
         r->cosine = c;
         r->size = s * xi + c * zeta;
         r->aside = c * xi - s * zeta;
-        goe_window_add(window, LENGTH, (float)r->dx_m, (float)r->dz_m, (goe_row_t){(float)xi, (float)zeta});
+        goe_fit_add(window, LENGTH, (float)r->dx_m, (float)r->dz_m, (goe_row_t){(float)xi, (float)zeta});
     }
 }
 
@@ -55,7 +55,7 @@ static void the_fit_is_that_of_the_dense_system(void) {
         const double baseline = sqrt(42.0 * (given.step_x * given.step_x + given.step_z * given.step_z));
         make_rows(&given, 0.02 * baseline / given.width, &random, rows, &window);
         const reference_fit_t expected = reference_solve(rows, LENGTH);
-        if (goe_window_solve(&window, LENGTH, 0.1f, &fit) == GOE_OK) {
+        if (goe_fit_solve(&window, LENGTH, 0.1f, &fit) == GOE_OK) {
             const double rounding = (given.z0 / given.width) / (baseline / expected.width_m);
             check_worst(&worst, ((double)fit.width_m / expected.width_m - 1.0) / rounding);
             check_worst(&worst, ((double)fit.x0_m - expected.x0_m) / expected.z0_m / rounding);
@@ -87,7 +87,7 @@ static void the_sigmas_are_the_scatter(void) {
         goe_window_t window;
         goe_estimate_t fit;
         make_rows(&given, 0.01, &random, rows, &window);
-        CHECK_STATUS(GOE_OK, goe_window_solve(&window, LENGTH, 0.1f, &fit));
+        CHECK_STATUS(GOE_OK, goe_fit_solve(&window, LENGTH, 0.1f, &fit));
         const double off[3] = {(double)fit.x0_m - given.x0, (double)fit.z0_m - given.z0,
                                (double)fit.width_m - given.width};
         const double sigma[3] = {(double)fit.sigma.x0_m, (double)fit.sigma.z0_m, (double)fit.sigma.width_m};

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_edge.h"
+#include "window/goe_edge.h"
 
 #define RAD_PER_DEG 0.017453292519943295
 

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "goe_extent.h"
+#include "window/goe_extent.h"
 
 #define RAD_PER_DEG 0.017453292519943295
 #define MIN_X 0.01f

@@ -1,5 +1,5 @@
 /* First guess of a box from exact base corners. SPDX-License-Identifier: MIT */
-#include "goe_footprint.h"
+#include "refined/goe_footprint.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Outlier gate and Huber weights. SPDX-License-Identifier: MIT */
-#include "goe_gate.h"
+#include "refined/goe_gate.h"
 
 #include <math.h>
 #include <string.h>

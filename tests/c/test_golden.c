@@ -4,13 +4,13 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_angle.h"
-#include "goe_camera.h"
-#include "goe_window.h"
 #include "golden/golden_angle.h"
 #include "golden/golden_corner.h"
 #include "golden/golden_lens.h"
 #include "golden/golden_window.h"
+#include "image/goe_camera.h"
+#include "maths/goe_angle.h"
+#include "window/goe_fit.h"
 
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 #define ANGLE_BOUND 2.0e-7 /* goe_angle.h */
@@ -65,9 +65,9 @@ static void windows(void) {
         goe_estimate_t fit;
         memset(&window, 0, sizeof window);
         for (int k = 0; k < g->length; k++) {
-            goe_window_add(&window, g->length, g->dx_m[k], g->dz_m[k], (goe_row_t){g->xi[k], g->zeta[k]});
+            goe_fit_add(&window, g->length, g->dx_m[k], g->dz_m[k], (goe_row_t){g->xi[k], g->zeta[k]});
         }
-        CHECK_STATUS(GOE_OK, goe_window_solve(&window, g->length, 0.1f, &fit));
+        CHECK_STATUS(GOE_OK, goe_fit_solve(&window, g->length, 0.1f, &fit));
         const double share = 5.0e-7 * g->z0_m / g->baseline_m;
         const double noise = 1.0e-3 + 5.0e-7 * (g->z0_m / g->width_m) / g->residual;
         CHECK_CLOSE(share * g->z0_m, g->x0_m, fit.x0_m);

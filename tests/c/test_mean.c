@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_mean.h"
+#include "window/goe_mean.h"
 
 static goe_mean_t mean;
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_orientation.h"
+#include "window/goe_orientation.h"
 
 #define MEMORY 20
 

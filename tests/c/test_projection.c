@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "goe_projection.h"
+#include "window/goe_projection.h"
 
 #define RAD_PER_DEG 0.017453292519943295
 

@@ -1,5 +1,5 @@
 /* Square-root information against dense normal equations in double. SPDX-License-Identifier: MIT */
-#include "goe_root.h"
+#include "refined/goe_srif.h"
 
 #include <math.h>
 #include <string.h>
@@ -63,7 +63,7 @@ static dense_t dense_of(const goe_triangle_t *triangle) {
     memset(&d, 0, sizeof d);
     for (size_t i = 0; i < N; i++) {
         for (size_t j = i; j < N; j++) {
-            d.m[i][j] = (double)triangle->element[goe_root_row(i) + j];
+            d.m[i][j] = (double)triangle->element[goe_srif_row(i) + j];
         }
     }
     return d;
@@ -116,9 +116,9 @@ static void random_root(goe_triangle_t *root) {
     for (size_t i = 0; i < N; i++) {
         const double size = pow(10.0, check_random_between(&any, 0.0, 3.0));
         for (size_t j = i; j < N; j++) {
-            *goe_root_at(root, i, j) = (float)(0.5 * size * check_random_normal(&any));
+            *goe_srif_at(root, i, j) = (float)(0.5 * size * check_random_normal(&any));
         }
-        *goe_root_at(root, i, i) = (float)(check_random_bits(&any) % 2u ? size : -size);
+        *goe_srif_at(root, i, i) = (float)(check_random_bits(&any) % 2u ? size : -size);
     }
 }
 
@@ -209,7 +209,7 @@ static void check_update(goe_triangle_t *root, double temporaries_root, goe_matr
     const solution_t expected = solve(root, temporaries_root, matrix);
     const dense_t covariance = inverted(expected.information, N);
     float change[N];
-    const float nis = goe_root_update(root, (float)temporaries_root, matrix, change);
+    const float nis = goe_srif_update(root, (float)temporaries_root, matrix, change);
     const dense_t information = information_of(root);
     check_alike(SHARE, &expected.information, &information);
     for (int i = 0; i < N; i++) {
@@ -242,7 +242,7 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
     goe_inverse_t inverse;
     goe_matrix_t matrix;
     random_root(&root);
-    goe_root_invert(&root, &inverse);
+    goe_srif_invert(&root, &inverse);
     const dense_t v = dense_of_inverse(&inverse);
     random_matrix(rows, &matrix);
     for (int n = 0; n < draws; n++) {
@@ -269,7 +269,7 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
             }
             drawn.column[GOE_RESIDUAL][k] = (float)r;
         }
-        sum += (double)goe_root_update(&updated, 20.0f, &drawn, change);
+        sum += (double)goe_srif_update(&updated, 20.0f, &drawn, change);
     }
     check_report("mean of the squares left over, 7 rows", sum / draws);
     CHECK_CLOSE(5.0 * sqrt(2.0 * (double)rows / draws), (double)rows, sum / draws); /* 5 sigma */
@@ -283,7 +283,7 @@ static void rows_of_zeros_change_nothing(void) {
     random_root(&root);
     const goe_triangle_t before = root;
     memset(&matrix, 0, sizeof matrix);
-    CHECK_SAME(0.0f, goe_root_update(&root, 100.0f, &matrix, change));
+    CHECK_SAME(0.0f, goe_srif_update(&root, 100.0f, &matrix, change));
     TEST_ASSERT_EQUAL_MEMORY(&before, &root, sizeof root);
     for (int i = 0; i < N; i++) {
         TEST_ASSERT_EQUAL_FLOAT(0.0f, change[i]);
@@ -299,7 +299,7 @@ static void a_row_without_derivatives_is_left_over(void) {
     random_root(&root);
     memset(&matrix, 0, sizeof matrix);
     matrix.column[GOE_RESIDUAL][4] = 3.0f;
-    CHECK_SAME(9.0f, goe_root_update(&root, 100.0f, &matrix, change));
+    CHECK_SAME(9.0f, goe_srif_update(&root, 100.0f, &matrix, change));
 }
 
 /* Each row of R with the other sign is the same information. */
@@ -316,10 +316,10 @@ static void the_signs_of_the_rows_are_free(void) {
             goe_triangle_t r = root;
             goe_matrix_t m = matrix;
             for (size_t j = i; turned && j < N; j++) {
-                *goe_root_at(&r, i, j) *= -1.0f;
+                *goe_srif_at(&r, i, j) *= -1.0f;
             }
             const dense_t covariance = covariance_of(&r);
-            nis[turned] = goe_root_update(&r, 50.0f, &m, change[turned]);
+            nis[turned] = goe_srif_update(&r, 50.0f, &m, change[turned]);
             for (int k = 0; turned && k < N; k++) {
                 CHECK_CLOSE(SHARE, 0.0, ((double)change[1][k] - (double)change[0][k]) / sqrt(covariance.m[k][k]));
             }
@@ -344,7 +344,7 @@ static void check_spread(size_t first, float first_weight, size_t last, float la
             expected.m[i][j] += (double)sigma * (double)sigma * direction[i] * direction[j];
         }
     }
-    goe_root_spread(&root, first, first_weight, last, last_weight, sigma);
+    goe_srif_spread(&root, first, first_weight, last, last_weight, sigma);
     const dense_t actual = covariance_of(&root);
     check_alike(5.0 * SHARE, &expected, &actual);
 }
@@ -370,8 +370,8 @@ static void a_tiny_sigma_changes_nothing(void) {
         goe_triangle_t root;
         random_root(&root);
         const dense_t before = information_of(&root);
-        goe_root_spread(&root, 0, 0.0f, 0, 1.0f, tiny[i]);
-        goe_root_spread(&root, 2, 1.0f, 6, -0.5f, tiny[i]);
+        goe_srif_spread(&root, 0, 0.0f, 0, 1.0f, tiny[i]);
+        goe_srif_spread(&root, 2, 1.0f, 6, -0.5f, tiny[i]);
         const dense_t after = information_of(&root);
         check_alike(SHARE, &before, &after);
     }
@@ -402,7 +402,7 @@ static void the_root_times_its_inverse_is_one(void) {
         goe_inverse_t inverse;
         random_root(&root);
         memset(&inverse, 0xA5, sizeof inverse); /* is written whole */
-        goe_root_invert(&root, &inverse);
+        goe_srif_invert(&root, &inverse);
         check_inverse(&root, &inverse);
     }
 }
@@ -418,7 +418,7 @@ static void a_variance_is_the_covariance_seen_along_the_weights(void) {
         double expected = 0.0;
         double squares = 0.0;
         random_root(&root);
-        goe_root_invert(&root, &inverse);
+        goe_srif_invert(&root, &inverse);
         const dense_t p = covariance_of(&root);
         for (int i = 0; i < N; i++) {
             weight[i] = check_random_bits(&any) % 3u ? normal() / (float)sqrt(p.m[i][i]) : 0.0f;
@@ -428,12 +428,12 @@ static void a_variance_is_the_covariance_seen_along_the_weights(void) {
                 expected += (double)weight[i] * p.m[i][j] * (double)weight[j];
             }
         }
-        goe_root_project(&inverse, weight, projected);
+        goe_srif_project(&inverse, weight, projected);
         for (int i = 0; i < N; i++) {
             squares += (double)projected[i] * (double)projected[i];
         }
         CHECK_CLOSE(SHARE * (double)N, expected, squares);
-        CHECK_CLOSE(1.0e-5 * (1.0 + squares), squares, goe_root_variance(&inverse, weight));
+        CHECK_CLOSE(1.0e-5 * (1.0 + squares), squares, goe_srif_variance(&inverse, weight));
     }
 }
 
@@ -448,8 +448,8 @@ static void a_marginal_makes_a_root_again(void) {
         float sigma[N - GOE_KEPT];
         random_root(&root);
         dense_t expected = covariance_of(&root);
-        goe_root_invert(&root, &inverse);
-        goe_root_marginal(&inverse, c);
+        goe_srif_invert(&root, &inverse);
+        goe_srif_marginal(&inverse, c);
         for (size_t i = 0; i < N; i++) {
             for (size_t j = i; j < N; j++) {
                 if (j < GOE_KEPT) {
@@ -465,7 +465,7 @@ static void a_marginal_makes_a_root_again(void) {
             sigma[i - GOE_KEPT] = (float)pow(10.0, check_random_between(&any, -3.0, 1.0));
             expected.m[i][i] = (double)sigma[i - GOE_KEPT] * (double)sigma[i - GOE_KEPT];
         }
-        goe_root_from_covariance(c, sigma, &root, &inverse);
+        goe_srif_from_covariance(c, sigma, &root, &inverse);
         const dense_t actual = covariance_of(&root);
         check_alike(20.0 * SHARE, &expected, &actual); /* squaring doubled the digits that the condition takes */
         check_inverse(&root, &inverse);
@@ -483,7 +483,7 @@ static void a_singular_covariance_gives_a_finite_root(void) {
             c[i][j] = 1.0f; /* all states are the same one */
         }
     }
-    goe_root_from_covariance(c, sigma, &root, &inverse);
+    goe_srif_from_covariance(c, sigma, &root, &inverse);
     for (size_t i = 0; i < sizeof root / sizeof(float); i++) {
         TEST_ASSERT_TRUE(check_is_finite(root.element[i]));
         TEST_ASSERT_TRUE(check_is_finite(inverse.element[i]));

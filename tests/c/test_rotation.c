@@ -1,6 +1,6 @@
 /* Rotation matrices. SPDX-License-Identifier: MIT */
 #include "check.h"
-#include "goe_rotation.h"
+#include "maths/goe_rotation.h"
 
 #define EPS 5.0e-7f
 #define HALF_SQRT2 0.707106781f

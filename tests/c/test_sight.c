@@ -1,5 +1,5 @@
 /* Projection under an attitude bias, and noise of the points, against differences in double. SPDX-License-Identifier: MIT */
-#include "goe_sight.h"
+#include "refined/goe_observation.h"
 
 #include <math.h>
 #include <string.h>
@@ -39,7 +39,8 @@ static void derivatives_are_those_of_the_projection(void) {
         sighting_start(&sighting, &any);
         any_point(p);
         const double e[3] = {sighting.sight.ex, sighting.sight.ey, sighting.sight.ez};
-        const goe_point_t told = goe_sight_project(&sighting.sight, (float)p[0], (float)p[1], (float)p[2], &gx, &gy);
+        const goe_point_t told =
+            goe_observation_project(&sighting.sight, (float)p[0], (float)p[1], (float)p[2], &gx, &gy);
         project(e, p, seen);
         CHECK_CLOSE(3.0e-6, seen[0], told.x);
         CHECK_CLOSE(3.0e-6, seen[1], told.y);
@@ -83,7 +84,7 @@ static void points_behind_the_camera_stay_finite(void) {
     sighting_start(&sighting, &any);
     for (int i = 0; i < 5; i++) {
         goe_gradient_t g[2];
-        const goe_point_t told = goe_sight_project(&sighting.sight, 0.3f, -0.2f, z[i], &g[0], &g[1]);
+        const goe_point_t told = goe_observation_project(&sighting.sight, 0.3f, -0.2f, z[i], &g[0], &g[1]);
         TEST_ASSERT_TRUE(check_is_finite(told.x) && check_is_finite(told.y));
         for (int j = 0; j < 2; j++) {
             TEST_ASSERT_TRUE(check_is_finite(g[j].x) && check_is_finite(g[j].y) && check_is_finite(g[j].z));
@@ -137,7 +138,7 @@ static void the_spread_is_that_of_the_alignment(void) {
         const double xx = variance * (by_u[0] * by_u[0] + by_v[0] * by_v[0]);
         const double xy = variance * (by_u[0] * by_u[1] + by_v[0] * by_v[1]);
         const double yy = variance * (by_u[1] * by_u[1] + by_v[1] * by_v[1]);
-        const goe_spread_t told = goe_sight_spread(&sighting.sight, GOE_TOP);
+        const goe_spread_t told = goe_observation_spread(&sighting.sight, GOE_TOP);
         CHECK_CLOSE(1.0e-5 * xx, xx, told.xx);
         CHECK_CLOSE(1.0e-5 * sqrt(xx * yy), xy, told.xy);
         CHECK_CLOSE(1.0e-5 * yy, yy, told.yy);
@@ -150,9 +151,9 @@ static void size_noise_is_a_share_of_the_width(void) {
     sighting.settings.noise.size_share = 0.03f;
     sighting.point[GOE_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
     sighting.point[GOE_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
-    CHECK_CLOSE(1.0e-10, 3.6e-5, goe_sight_size_variance(&sighting.sight));
+    CHECK_CLOSE(1.0e-10, 3.6e-5, goe_observation_size_variance(&sighting.sight));
     sighting.point[GOE_RIGHT].usable = false; /* no width is seen */
-    CHECK_SAME(0.0f, goe_sight_size_variance(&sighting.sight));
+    CHECK_SAME(0.0f, goe_observation_size_variance(&sighting.sight));
 }
 
 /* -------------------------------------------------------------------------------------------------- opening an image -- */
@@ -174,9 +175,9 @@ static void start(void) {
 
 /* The camera's mounting taken back: a ray along the camera's axis is that of the body's mounting. */
 static void the_body_is_where_the_mounting_puts_it(void) {
-    goe_sight_t sight;
+    goe_observation_t sight;
     start();
-    TEST_ASSERT_EQUAL_UINT(0u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator, identity, &view));
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) { /* identity = camera to axes: body to axes is the mounting's inverse */
             CHECK_CLOSE(1.0e-6, estimator.camera_to_body[3 * j + i], sight.body_to_axes[3 * i + j]);
@@ -187,13 +188,13 @@ static void the_body_is_where_the_mounting_puts_it(void) {
 static goe_point_t at(float x) { return (goe_point_t){x, 0.1f, true}; }
 
 static void points_out_of_order_do_not_count(void) {
-    goe_sight_t sight;
+    goe_observation_t sight;
     start();
     view.left = at(0.1f);
     view.right = at(0.2f);
     view.base_left = at(0.3f);
     view.base_right = at(0.1f);
-    TEST_ASSERT_EQUAL_UINT(1u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_EQUAL_UINT(1u, goe_observation_open(&sight, &estimator, identity, &view));
     TEST_ASSERT_TRUE(sight.point[GOE_LEFT].usable && sight.point[GOE_RIGHT].usable);
     TEST_ASSERT_FALSE(sight.point[GOE_BASE_LEFT].usable || sight.point[GOE_BASE_RIGHT].usable || sight.base);
     start();
@@ -201,19 +202,19 @@ static void points_out_of_order_do_not_count(void) {
     view.right = at(0.2f);
     view.base_left = at(0.1f);
     view.base_right = at(0.3f);
-    TEST_ASSERT_EQUAL_UINT(1u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_EQUAL_UINT(1u, goe_observation_open(&sight, &estimator, identity, &view));
     TEST_ASSERT_FALSE(sight.point[GOE_LEFT].usable || sight.point[GOE_RIGHT].usable);
     TEST_ASSERT_TRUE(sight.base && sight.edge);
 }
 
 static void an_edge_takes_two_base_corners(void) {
-    goe_sight_t sight;
+    goe_observation_t sight;
     start();
     view.base_left = at(0.1f);
-    TEST_ASSERT_EQUAL_UINT(0u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator, identity, &view));
     TEST_ASSERT_FALSE(sight.base || sight.edge);
     view.base_near = at(0.2f);
-    TEST_ASSERT_EQUAL_UINT(0u, goe_sight_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator, identity, &view));
     TEST_ASSERT_FALSE(sight.base);
     TEST_ASSERT_TRUE(sight.edge);
 }

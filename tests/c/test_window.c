@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_window.h"
+#include "window/goe_fit.h"
 
 #define LENGTH 8
 #define MIN_BASELINE_M 0.1f
@@ -19,10 +19,10 @@ void tearDown(void) {}
 
 /* What an obstacle of width w at (x, z) from the track's first image gives from (dx, dz). */
 static void add(float x, float z, float w, float dx, float dz) {
-    goe_window_add(&window, LENGTH, dx, dz, (goe_row_t){(x - dx) / w, (z - dz) / w});
+    goe_fit_add(&window, LENGTH, dx, dz, (goe_row_t){(x - dx) / w, (z - dz) / w});
 }
 
-static goe_status_t solve(void) { return goe_window_solve(&window, LENGTH, MIN_BASELINE_M, &fit); }
+static goe_status_t solve(void) { return goe_fit_solve(&window, LENGTH, MIN_BASELINE_M, &fit); }
 
 static void check_failure(goe_status_t expected) {
     goe_estimate_t untouched;
@@ -79,14 +79,14 @@ static void the_baseline_limit_is_where_it_is_said_to_be(void) {
 
 static void an_image_that_does_not_grow_is_no_parallax(void) {
     for (int k = 0; k < LENGTH; k++) { /* very far away: 1/W = 0 */
-        goe_window_add(&window, LENGTH, 0.0f, 2.0f * (float)k, (goe_row_t){1.0f, 60.0f});
+        goe_fit_add(&window, LENGTH, 0.0f, 2.0f * (float)k, (goe_row_t){1.0f, 60.0f});
     }
     check_failure(GOE_NO_PARALLAX);
 }
 
 static void an_image_that_shrinks_is_no_parallax(void) {
     for (int k = 0; k < LENGTH; k++) { /* it flies ahead, faster than we do */
-        goe_window_add(&window, LENGTH, 0.0f, 2.0f * (float)k, (goe_row_t){1.0f, 60.0f + (float)k});
+        goe_fit_add(&window, LENGTH, 0.0f, 2.0f * (float)k, (goe_row_t){1.0f, 60.0f + (float)k});
     }
     check_failure(GOE_NO_PARALLAX);
 }
@@ -94,7 +94,7 @@ static void an_image_that_shrinks_is_no_parallax(void) {
 static void growth_below_the_rounding_of_floats_is_no_parallax(void) {
     for (int k = 0; k < LENGTH; k++) { /* one unit in the last place: Z0 = 9e5 m and W = 1.4e4 m, if it were believed */
         const float zeta = k < 6 ? check_next_away(64.0f) : 64.0f;
-        goe_window_add(&window, LENGTH, 0.0f, 0.0156f * (float)k, (goe_row_t){1.0f, zeta});
+        goe_fit_add(&window, LENGTH, 0.0f, 0.0156f * (float)k, (goe_row_t){1.0f, zeta});
     }
     check_failure(GOE_NO_PARALLAX);
 }
@@ -113,7 +113,7 @@ static void an_obstacle_abeam_or_behind_is_passed(void) {
 
 static void what_is_too_far_to_be_an_obstacle_is_no_parallax(void) {
     for (int k = 0; k < LENGTH; k++) { /* W = 2e6 m, and the camera moves 1e6 m: above the rounding limit */
-        goe_window_add(&window, LENGTH, 0.0f, 1.0e6f * (float)k, (goe_row_t){0.0f, 10.0f - 0.5f * (float)k});
+        goe_fit_add(&window, LENGTH, 0.0f, 1.0e6f * (float)k, (goe_row_t){0.0f, 10.0f - 0.5f * (float)k});
     }
     check_failure(GOE_NO_PARALLAX);
 }
@@ -146,9 +146,9 @@ static void the_count_of_points_saturates(void) {
 static void a_shorter_window_uses_its_own_length(void) {
     for (int k = 0; k < 7; k++) {
         const float wrong = k < 4 ? 9.0f : 0.0f;
-        goe_window_add(&window, 3, 0.0f, (float)k, (goe_row_t){1.0f + wrong, (50.0f - (float)k) / 2.0f});
+        goe_fit_add(&window, 3, 0.0f, (float)k, (goe_row_t){1.0f + wrong, (50.0f - (float)k) / 2.0f});
     }
-    CHECK_STATUS(GOE_OK, goe_window_solve(&window, 3, MIN_BASELINE_M, &fit));
+    CHECK_STATUS(GOE_OK, goe_fit_solve(&window, 3, MIN_BASELINE_M, &fit));
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4f, 2.0f, fit.width_m);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4f, 2.0f, fit.x0_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, window.point[3].dz_m);
@@ -158,7 +158,7 @@ static void a_shorter_window_uses_its_own_length(void) {
 static void hopeless_rows_have_a_finite_sigma(void) {
     for (int k = 0; k < LENGTH; k++) {
         const float wild = k % 2 == 0 ? 4.0e6f : -4.0e6f;
-        goe_window_add(&window, LENGTH, wild, 1.0e-2f * (float)k, (goe_row_t){-0.5f * wild, 2.0e5f});
+        goe_fit_add(&window, LENGTH, wild, 1.0e-2f * (float)k, (goe_row_t){-0.5f * wild, 2.0e5f});
     }
     CHECK_STATUS(GOE_OK, solve());
     TEST_ASSERT_TRUE(check_is_finite(fit.sigma.x0_m) && check_is_finite(fit.sigma.z0_m) &&

@@ -30,7 +30,7 @@ case $firmware in
         exit 2 ;;
 esac
 
-sources=("$root"/lib/*.c)
+sources=("$root"/lib/*.c "$root"/lib/*/*.c)
 shopt -s nullglob
 safety_tests=("$root"/tests/c/test_safety*.c)
 support=()
@@ -45,7 +45,7 @@ fi
 compile() {
     local compiler=$1
     shift
-    "$compiler" "$@" -Werror -c "${sources[@]}" || fail "$compiler $*"
+    "$compiler" "$@" -Werror -I"$root/lib" -c "${sources[@]}" || fail "$compiler $*"
     compiled=$((compiled + ${#sources[@]}))
 }
 

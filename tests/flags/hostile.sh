@@ -5,7 +5,7 @@ set -euo pipefail
 . "$(dirname "$0")/common.sh"
 here=$root/tests/flags
 warnings=(-Wall -Wextra -Wundef -Wshadow -Werror)
-sources=("$root"/lib/*.c)
+sources=("$root"/lib/*.c "$root"/lib/*/*.c)
 
 cd "$scratch"
 cat >header.cpp <<'END'

@@ -13,7 +13,7 @@ calls="$calls|sqrt|sqrtl|fabs|fabsf|fabsl|isnan|isinf|isfinite|isnormal|fpclassi
 headers='#include *<(stdio|stdlib|tgmath|complex|assert|errno|fenv)\.h>'
 
 bad=0
-for file in "$root"/lib/*.[ch]; do
+for file in "$root"/lib/*.[ch] "$root"/lib/*/*.[ch]; do
     stripped=$scratch/stripped
     gcc -fpreprocessed -dD -E -P -w "$file" >"$stripped"
     if grep -nE "\\b($types|$keywords)\\b|\\b($calls) *\\(" "$stripped" >"$scratch/found" ||
@@ -28,5 +28,5 @@ done
 # Every floating-point constant carries its f: a double constant would be caught by one of these.
 cd "$scratch"
 mapfile -t flags < <(known gcc -Wdouble-promotion -Wunsuffixed-float-constants -Wfloat-conversion -Wvla)
-gcc -std=c99 "${flags[@]}" -Werror -c "$root"/lib/*.c || fail "double precision or variable-length arrays in lib/"
+gcc -std=c99 "${flags[@]}" -Werror -I"$root/lib" -c "$root"/lib/*.c "$root"/lib/*/*.c || fail "double precision or variable-length arrays in lib/"
 echo "no forbidden word in $(find "$root/lib" -name '*.[ch]' | wc -l) files"

@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
 own=(-std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib" -I"$here")
-sources=("$root"/lib/*.c "$here/replay_main.c" "$here/replay.c" "$here/embedded_logs.c")
+sources=("$root"/lib/*.c "$root"/lib/*/*.c "$here/replay_main.c" "$here/replay.c" "$here/embedded_logs.c")
 failed=0
 ran=0
 

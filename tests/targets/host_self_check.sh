@@ -26,7 +26,7 @@ prove() {
     command -v "$compiler" >/dev/null || return 0
     rm -f "$scratch"/*.o
     # the program that judges is compiled plainly
-    (cd "$scratch" && "$compiler" "${flags[@]}" -c "$root"/lib/*.c)
+    (cd "$scratch" && "$compiler" "${flags[@]}" -c "$root"/lib/*.c "$root"/lib/*/*.c)
     # The program that judges is compiled plainly.
     # shellcheck disable=SC2086 # several flags or none
     "$compiler" -std=gnu99 -O1 -ffp-contract=off $machine "${define[@]}" -I"$root/lib" -I"$here" \

@@ -1,4 +1,4 @@
-"""Minimax polynomials of lib/goe_angle.c and lib/goe_normal.c: `python -m goe_tools.minimax` prints the constants and
+"""Minimax polynomials of goe_angle.c and goe_normal.c in lib/maths: `python -m goe_tools.minimax` prints the constants and
 their error bounds.
 
 Each angle function is written around its leading terms, with z = t^2:

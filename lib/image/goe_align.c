@@ -1,0 +1,53 @@
+/* Alignment: the ego-motion transformation of Section 2. SPDX-License-Identifier: MIT */
+#include "image/goe_align.h"
+
+#include <math.h>
+
+#include "image/goe_camera.h"
+
+#define FORWARD_MIN 0.05f /* third component of a unit ray in T: farther aside than 87 degrees nothing can be aligned */
+
+/* Feature i of an image and of a view: both hold them one after the other, in the same order. */
+static const goe_pixel_t *pixel_of(const goe_image_t *image, size_t i) {
+    const void *at = (const unsigned char *)image + offsetof(goe_image_t, left) + i * sizeof(goe_pixel_t);
+    return at;
+}
+
+static goe_point_t *point_of(goe_view_t *view, size_t i) {
+    void *at = (unsigned char *)view + i * sizeof(goe_point_t);
+    return at;
+}
+
+/* The rotation and the camera are read once: the compiler could not know that writing the points leaves them alone. */
+void goe_align_view(const goe_camera_t *camera, const float camera_to_trajectory[9], const goe_image_t *image,
+                    goe_view_t *view, goe_faults_t *faults) {
+    const float *r = camera_to_trajectory;
+    const float xx = r[0], xy = r[1], xz = r[2];
+    const float yx = r[3], yy = r[4], yz = r[5];
+    const float zx = r[6], zy = r[7], zz = r[8];
+    const float cx_px = camera->cx_px, cy_px = camera->cy_px, fx_px = camera->fx_px, fy_px = camera->fy_px;
+    const bool distorts = goe_camera_distorts(camera);
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        const goe_pixel_t *pixel = pixel_of(image, i);
+        goe_point_t *point = point_of(view, i);
+        point->usable = pixel->seen;
+        if (!pixel->seen) {
+            continue;
+        }
+        float x = (pixel->u_px - cx_px) / fx_px;
+        float y = (pixel->v_px - cy_px) / fy_px;
+        if (distorts && !goe_camera_undistort(camera, &x, &y)) {
+            point->usable = false;
+            goe_fault_note(faults, GOE_LENS_FAILED);
+            continue;
+        }
+        const float forward = zx * x + zy * y + zz;
+        if (forward <= FORWARD_MIN * sqrtf(x * x + y * y + 1.0f)) {
+            point->usable = false;
+            goe_fault_note(faults, GOE_BEHIND_CAMERA);
+            continue;
+        }
+        point->x = (xx * x + xy * y + xz) / forward;
+        point->y = (yx * x + yy * y + yz) / forward;
+    }
+}

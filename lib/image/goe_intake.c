@@ -1,0 +1,69 @@
+/* Intake. SPDX-License-Identifier: MIT */
+#include "image/goe_intake.h"
+
+#include "image/goe_ego_motion.h"
+#include "maths/goe_scalar.h"
+
+#define POSITION_LIMIT_M 1.0e6f
+#define HEIGHT_LIMIT_M 1.0e5f
+#define PIXEL_LIMIT_PX 1.0e5f
+#define ATTITUDE_LIMIT 2.0f       /* per element: keeps the squares finite */
+#define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
+#define NORM2_MAX (1.01f * 1.01f)
+
+static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+
+static uint32_t largest_of(const float v[3]) {
+    return larger(larger(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
+}
+
+static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
+    return pixel->seen ? larger(so_far, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px))) : so_far;
+}
+
+static uint32_t largest_pixel(const goe_image_t *image) {
+    uint32_t largest = with_pixel(0u, &image->left);
+    largest = with_pixel(largest, &image->right);
+    largest = with_pixel(largest, &image->top);
+    largest = with_pixel(largest, &image->base_left);
+    largest = with_pixel(largest, &image->base_near);
+    return with_pixel(largest, &image->base_right);
+}
+
+/* Not finite outranks out of range, which outranks a bad attitude. */
+static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {
+    const goe_pose_t *pose = &image->pose;
+    const uint32_t height = goe_magnitude(pose->height_m);
+    const uint32_t pixel = largest_pixel(image);
+    uint32_t position = largest_of(pose->position_ned_m);
+    if (reset && pose->reset_delta_known) {
+        position = larger(position, largest_of(pose->reset_delta_ned_m));
+    }
+    if (larger(larger(height, attitude), larger(position, pixel)) >= GOE_INFINITY_BITS) {
+        return GOE_NOT_FINITE;
+    }
+    const bool within = height <= goe_magnitude(HEIGHT_LIMIT_M) && position <= goe_magnitude(POSITION_LIMIT_M) &&
+                        pixel <= goe_magnitude(PIXEL_LIMIT_PX);
+    return within ? GOE_OK : GOE_OUT_OF_RANGE;
+}
+
+static bool is_unit(const float q[4], uint32_t largest) {
+    if (largest > goe_magnitude(ATTITUDE_LIMIT)) {
+        return false;
+    }
+    const float norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return norm2 >= NORM2_MIN && norm2 <= NORM2_MAX;
+}
+
+goe_status_t goe_intake_check(const goe_estimator_t *estimator, const goe_image_t *image) {
+    const float *q = image->pose.attitude;
+    const uint32_t attitude = larger(largest_of(q), goe_magnitude(q[3]));
+    const goe_status_t status = check_numbers(image, attitude, goe_ego_motion_reset(estimator, &image->pose));
+    if (status != GOE_OK) {
+        return status;
+    }
+    if (image->pose.time_us <= estimator->time_us) { /* GOE_TIME_UNKNOWN is the smallest of all times */
+        return GOE_BAD_TIME;
+    }
+    return is_unit(q, attitude) ? GOE_OK : GOE_BAD_ATTITUDE;
+}

@@ -1,0 +1,36 @@
+/* A box of which the silhouette alone is seen. SPDX-License-Identifier: MIT
+ *
+ * Two faces of a box end in two outer corners: whatever its sides are, the silhouette shows the line between these, the
+ * chord. The sides show only when a face turns away and the silhouette takes the corner that stood between. So: disc, then
+ * chord, then box. */
+#ifndef GOE_CHORD_H
+#define GOE_CHORD_H
+
+#include "refined/goe_gate.h"
+#include "refined/goe_refined.h"
+
+/* Whether the ends of what is taken for a disc lie at different depths: it is no disc. */
+bool goe_chord_is_skewed(const goe_filter_t *filter);
+
+/* Both return whether there was a change; the image that brings it is not used for more.
+ *
+ * Of a disc: takes it for a chord if that is clear. */
+bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *sight);
+
+/* Of a chord: when one of its ends has left the chord it learns that end anew (a face came into view) or becomes a box (a
+ * face turned away). */
+bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *sight);
+
+/* Before the rows of an image: the roof's nearest corner may stand before the chord, and must not tell the range. */
+void goe_chord_free_top(goe_filter_t *filter, const goe_observation_t *sight);
+
+/* Appends the rows of a chord. */
+void goe_chord_rows(const goe_observation_t *sight, goe_rows_t *rows);
+
+/* After the gate: keeps in mind by how much the ends leave the chord. */
+void goe_chord_follow(goe_filter_t *filter, const goe_verdict_t *verdict);
+
+/* Whether an end is leaving the chord, so that its refusal says nothing against the state. */
+bool goe_chord_is_left(const goe_filter_t *filter);
+
+#endif

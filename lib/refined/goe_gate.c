@@ -1,0 +1,136 @@
+/* Outlier gate and Huber weights. SPDX-License-Identifier: MIT
+ *
+ * The noise of the attitude moves all points of an image together. Therefore the middle one of the residuals along x, and of
+ * those along y, is judged by itself, and the others by their difference from it, in which that noise nearly cancels. */
+#include "refined/goe_gate.h"
+
+#include <math.h>
+
+#include "maths/goe_angle.h"
+#include "maths/goe_scalar.h"
+
+typedef struct {
+    size_t row[GOE_ROWS_MAX]; /* by residual */
+    size_t count;
+    size_t middle; /* row */
+} group_t;
+
+static float residual_of(const goe_rows_t *rows, size_t row) { return rows->matrix->column[GOE_RESIDUAL][row]; }
+
+/* A row along x is moved more by the attitude's error about Y than about X. */
+static bool is_along_x(const goe_rows_t *rows, size_t row) {
+    return goe_absolute(rows->matrix->column[0][row]) > goe_absolute(rows->matrix->column[1][row]);
+}
+
+static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
+    group->count = 0;
+    for (size_t i = 0; i < rows->count; i++) {
+        if (is_along_x(rows, i) != along_x) {
+            continue;
+        }
+        size_t at = group->count++;
+        for (; at > 0 && residual_of(rows, group->row[at - 1]) > residual_of(rows, i); at--) {
+            group->row[at] = group->row[at - 1];
+        }
+        group->row[at] = i;
+    }
+    const size_t half = group->count / 2;
+    const bool even = group->count > 0 && group->count % 2 == 0;
+    group->middle = group->count > 0 ? group->row[half] : 0;
+    if (even &&
+        goe_absolute(residual_of(rows, group->row[half - 1])) < goe_absolute(residual_of(rows, group->middle))) {
+        group->middle = group->row[half - 1];
+    }
+}
+
+/* Normalised square of a row's residual, or of the difference of two rows'. */
+static float innovation(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, size_t row,
+                        size_t middle) {
+    float weight[GOE_STATES];
+    const float white = settings->noise.attitude_white_deg * GOE_RAD_PER_DEG;
+    const float other = row == middle ? 0.0f : 1.0f;
+    const float *a = &rows->matrix->column[0][row];
+    const float *b = &rows->matrix->column[0][middle];
+    float attitude = 0.0f;
+    for (size_t c = 0; c < GOE_TEMPORARIES; c++) {
+        const float d = *a - other * *b;
+        attitude += d * d;
+        a += GOE_ROWS_MAX;
+        b += GOE_ROWS_MAX;
+    }
+    for (size_t c = 0; c < GOE_STATES; c++) {
+        weight[c] = *a - other * *b;
+        a += GOE_ROWS_MAX;
+        b += GOE_ROWS_MAX;
+    }
+    const float residual = *a - other * *b;
+    const float own = rows->variance[row] + other * rows->variance[middle];
+    const float turned =
+        weight[GOE_BX] * weight[GOE_BX] + weight[GOE_BY] * weight[GOE_BY] + weight[GOE_BZ] * weight[GOE_BZ];
+    const float gained = turned * filter->drift_rad2 + weight[GOE_A] * weight[GOE_A] * filter->walk2;
+    const float known = goe_srif_variance(&filter->inverse, weight) + gained;
+    return residual * residual / (own + white * white * attitude + known);
+}
+
+typedef struct {
+    float factor[GOE_FEATURES]; /* Huber weight of each feature */
+    goe_verdict_t verdict;
+} belief_t;
+
+/* Of two rows along x, the one that is not the middle. */
+static void hold(const goe_rows_t *rows, const group_t *group, size_t row, float squared, goe_verdict_t *verdict) {
+    const bool more = residual_of(rows, row) > residual_of(rows, group->middle);
+    verdict->held = rows->feature[row];
+    verdict->held_sigmas2 = squared;
+    verdict->held_outward = more == (verdict->held == GOE_RIGHT);
+}
+
+static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
+                  belief_t *belief) {
+    group_t group;
+    const float gate = settings->gate_sigma;
+    const float huber = settings->huber_sigma;
+    gather(rows, along_x, &group);
+    const float alone = group.count > 0 ? innovation(settings, filter, rows, group.middle, group.middle) : 0.0f;
+    const bool common = alone <= gate * gate; /* a middle that is off itself tells nothing of the others */
+    for (size_t i = 0; i < group.count; i++) {
+        const size_t row = group.row[i];
+        const size_t feature = rows->feature[row];
+        const float squared =
+            row == group.middle ? alone : innovation(settings, filter, rows, row, common ? group.middle : row);
+        if (along_x && group.count == 2 && row != group.middle) {
+            hold(rows, &group, row, squared, &belief->verdict);
+        }
+        if (squared > gate * gate) {
+            belief->verdict.refused |= 1u << feature;
+        } else if (squared > huber * huber) {
+            const float factor = huber / sqrtf(squared);
+            belief->factor[feature] = factor < belief->factor[feature] ? factor : belief->factor[feature];
+        }
+    }
+}
+
+static void scale_row(goe_matrix_t *matrix, size_t row, float weight) {
+    float *element = &matrix->column[0][row];
+    for (size_t c = 0; c < GOE_COLUMNS; c++) {
+        *element *= weight;
+        element += GOE_ROWS_MAX;
+    }
+}
+
+goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
+    belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
+    const float correlation = settings->noise.correlation;
+    const float repeated = (1.0f + correlation) / (1.0f - correlation);
+    judge(settings, filter, rows, true, &belief);
+    judge(settings, filter, rows, false, &belief);
+    for (size_t i = 0; i < rows->count; i++) {
+        const unsigned flag = 1u << rows->feature[i];
+        const bool refused = (belief.verdict.refused & flag) != 0;
+        const float weight = sqrtf(belief.factor[rows->feature[i]] / (rows->variance[i] * repeated));
+        belief.verdict.measured |= flag;
+        belief.verdict.rows += refused ? 0 : 1;
+        scale_row(rows->matrix, i, refused ? 0.0f : weight);
+    }
+    return belief.verdict;
+}

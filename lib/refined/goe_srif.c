@@ -1,0 +1,306 @@
+/* Square-root information filter: reflections, inverse, process noise. SPDX-License-Identifier: MIT
+ *
+ * The state is the linearisation point, so the right-hand side that belongs to R is always zero. The sign of R's diagonal is
+ * free; nothing depends on it. */
+#include "refined/goe_srif.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PIVOT_MIN 1.0e-12f /* of the diagonal: a covariance this near to singular is taken as if it were this far */
+
+/* -------------------------------------------------------------------------------------------------------- reflections -- */
+
+/* One column, held in registers. */
+typedef struct {
+    float v0, v1, v2, v3, v4, v5, v6, v7, v8;
+} pivot_t;
+
+static inline pivot_t load(const float *v) {
+    const pivot_t p = {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
+    return p;
+}
+
+static inline float dot(pivot_t p, pivot_t c, float sum) {
+    sum += p.v0 * c.v0;
+    sum += p.v1 * c.v1;
+    sum += p.v2 * c.v2;
+    sum += p.v3 * c.v3;
+    sum += p.v4 * c.v4;
+    sum += p.v5 * c.v5;
+    sum += p.v6 * c.v6;
+    sum += p.v7 * c.v7;
+    return sum + p.v8 * c.v8;
+}
+
+/* at = c + g p */
+static inline void store_sum(float *at, pivot_t c, float g, pivot_t p) {
+    at[0] = c.v0 + g * p.v0;
+    at[1] = c.v1 + g * p.v1;
+    at[2] = c.v2 + g * p.v2;
+    at[3] = c.v3 + g * p.v3;
+    at[4] = c.v4 + g * p.v4;
+    at[5] = c.v5 + g * p.v5;
+    at[6] = c.v6 + g * p.v6;
+    at[7] = c.v7 + g * p.v7;
+    at[8] = c.v8 + g * p.v8;
+}
+
+/* The reflection that takes (r, column) to (diagonal, 0): I + beta (u, column)(u, column)'. */
+typedef struct {
+    float diagonal, u, beta;
+} reflection_t;
+
+/* False if the column is 0 already. */
+static inline bool reflect(pivot_t p, float r, reflection_t *to) {
+    const float s = dot(p, p, 0.0f);
+    if (!(s > 0.0f)) {
+        return false;
+    }
+    const float norm = sqrtf(r * r + s);
+    to->diagonal = r > 0.0f ? -norm : norm;
+    to->u = r - to->diagonal;
+    to->beta = 1.0f / (to->diagonal * to->u);
+    return true;
+}
+
+/* Nothing is known of the temporaries beforehand but their sigma: their rows of the triangle are 0 until they are reached,
+ * and are not needed afterwards. */
+static void remove_temporaries(float root, goe_matrix_t *matrix) {
+    reflection_t to;
+    for (size_t j = 0; j < GOE_TEMPORARIES; j++) {
+        const pivot_t p = load(matrix->column[j]);
+        if (!reflect(p, root, &to)) {
+            continue;
+        }
+        for (size_t c = j + 1; c < GOE_COLUMNS; c++) {
+            const pivot_t column = load(matrix->column[c]);
+            store_sum(matrix->column[c], column, dot(p, column, 0.0f) * to.beta, p);
+        }
+    }
+}
+
+static void reflect_states(goe_triangle_t *root, goe_matrix_t *matrix, float right[GOE_STATES]) {
+    reflection_t to;
+    float *r = root->element;
+    for (size_t j = 0; j < GOE_STATES; j++) {
+        const pivot_t p = load(matrix->column[GOE_TEMPORARIES + j]);
+        right[j] = 0.0f;
+        if (!reflect(p, *r, &to)) {
+            r += GOE_STATES - j;
+            continue;
+        }
+        *r++ = to.diagonal;
+        for (size_t c = GOE_TEMPORARIES + j + 1; c < GOE_RESIDUAL; c++) {
+            const pivot_t column = load(matrix->column[c]);
+            const float g = dot(p, column, to.u * *r) * to.beta;
+            *r++ += g * to.u;
+            store_sum(matrix->column[c], column, g, p);
+        }
+        const pivot_t residual = load(matrix->column[GOE_RESIDUAL]);
+        const float g = dot(p, residual, 0.0f) * to.beta;
+        right[j] = g * to.u;
+        store_sum(matrix->column[GOE_RESIDUAL], residual, g, p);
+    }
+}
+
+/* R x = right, in place. */
+static void solve_back(const goe_triangle_t *root, float right[GOE_STATES]) {
+    for (size_t i = GOE_STATES; i-- > 0;) {
+        const float *r = &root->element[goe_srif_row(i)];
+        float g = right[i];
+        for (size_t j = i + 1; j < GOE_STATES; j++) {
+            g -= r[j] * right[j];
+        }
+        right[i] = g / r[i];
+    }
+}
+
+float goe_srif_update(goe_triangle_t *root, float temporaries_root, goe_matrix_t *matrix, float change[GOE_STATES]) {
+    remove_temporaries(temporaries_root, matrix);
+    reflect_states(root, matrix, change);
+    solve_back(root, change);
+    const pivot_t residual = load(matrix->column[GOE_RESIDUAL]);
+    return dot(residual, residual, 0.0f);
+}
+
+/* ------------------------------------------------------------------------------------------------------ process noise -- */
+
+/* A disturbance d of the state, x = x' + direction d, enters as a row (1/sigma) d = 0; Givens rotations then take it out of
+ * the triangle again. In terms of sigma, not 1/sigma: a tiny one must not overflow. */
+void goe_srif_spread(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
+                     float sigma) {
+    float row[GOE_STATES];
+    memset(row, 0, sizeof row);
+    for (size_t i = last + 1; i-- > 0;) {
+        float *r = &root->element[goe_srif_row(i)];
+        float b = -(r[last] * last_weight);
+        if (i <= first && first < last) {
+            b -= r[first] * first_weight;
+        }
+        const float t = sigma * b;
+        const float c = 1.0f / sqrtf(1.0f + t * t);
+        const float s = t * c;
+        sigma *= c;
+        for (size_t k = i; k < GOE_STATES; k++) {
+            const float p = row[k];
+            const float q = r[k];
+            row[k] = c * p + s * q;
+            r[k] = c * q - s * p;
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ inverse, covariance -- */
+
+static float dot_run(const float *a, const float *b, size_t count) {
+    float sum = 0.0f;
+    for (size_t i = 0; i < count; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+/* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. */
+void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse) {
+    float *v = inverse->element;
+    for (size_t j = 0; j < GOE_STATES; j++) {
+        v[j] = 1.0f / root->element[goe_srif_row(j) + j];
+        for (size_t i = j; i-- > 0;) {
+            const float *r = &root->element[goe_srif_row(i)];
+            v[i] = -(dot_run(&r[i + 1], &v[i + 1], j - i) * inverse->element[goe_inverse_column(i) + i]);
+        }
+        v += j + 1;
+    }
+}
+
+void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse) {
+    memset(inverse, 0, sizeof *inverse);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        inverse->element[goe_inverse_column(i) + i] = 1.0f / root->element[goe_srif_row(i) + i];
+    }
+}
+
+/* Written out: this is done for every row and every quantity of every image. */
+float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
+    const float *v = inverse->element;
+    const float w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3], w4 = weight[4];
+    const float w5 = weight[5], w6 = weight[6], w7 = weight[7], w8 = weight[8], w9 = weight[9];
+    float p = w0 * v[0];
+    float sum = p * p;
+    p = w0 * v[1] + w1 * v[2];
+    sum += p * p;
+    p = w0 * v[3] + w1 * v[4] + w2 * v[5];
+    sum += p * p;
+    p = w0 * v[6] + w1 * v[7] + w2 * v[8] + w3 * v[9];
+    sum += p * p;
+    p = w0 * v[10] + w1 * v[11] + w2 * v[12] + w3 * v[13] + w4 * v[14];
+    sum += p * p;
+    p = w0 * v[15] + w1 * v[16] + w2 * v[17] + w3 * v[18] + w4 * v[19] + w5 * v[20];
+    sum += p * p;
+    p = w0 * v[21] + w1 * v[22] + w2 * v[23] + w3 * v[24] + w4 * v[25] + w5 * v[26] + w6 * v[27];
+    sum += p * p;
+    p = w0 * v[28] + w1 * v[29] + w2 * v[30] + w3 * v[31] + w4 * v[32] + w5 * v[33] + w6 * v[34] + w7 * v[35];
+    sum += p * p;
+    p = w0 * v[36] + w1 * v[37] + w2 * v[38] + w3 * v[39] + w4 * v[40] + w5 * v[41] + w6 * v[42] + w7 * v[43] +
+        w8 * v[44];
+    sum += p * p;
+    p = w0 * v[45] + w1 * v[46] + w2 * v[47] + w3 * v[48] + w4 * v[49] + w5 * v[50] + w6 * v[51] + w7 * v[52] +
+        w8 * v[53] + w9 * v[54];
+    return sum + p * p;
+}
+
+void goe_srif_project(const goe_inverse_t *inverse, const float weight[GOE_STATES], float projected[GOE_STATES]) {
+    for (size_t j = 0; j < GOE_STATES; j++) {
+        projected[j] = dot_run(weight, &inverse->element[goe_inverse_column(j)], j + 1);
+    }
+}
+
+void goe_srif_marginal(const goe_inverse_t *inverse, float covariance[GOE_KEPT][GOE_KEPT]) {
+    memset(covariance, 0, GOE_KEPT * GOE_KEPT * sizeof(float));
+    for (size_t k = 0; k < GOE_STATES; k++) {
+        const float *v = &inverse->element[goe_inverse_column(k)];
+        const size_t last = k < GOE_KEPT ? k : GOE_KEPT - 1u;
+        for (size_t i = 0; i <= last; i++) {
+            for (size_t j = i; j <= last; j++) {
+                covariance[i][j] += v[i] * v[j];
+            }
+        }
+    }
+}
+
+/* Cholesky from the last column, C = U U' with U upper triangular: U is the inverse of R. */
+static void factorise(float c[GOE_KEPT][GOE_KEPT], goe_inverse_t *inverse) {
+    for (size_t j = GOE_KEPT; j-- > 0;) {
+        float pivot = c[j][j];
+        for (size_t k = j + 1; k < GOE_KEPT; k++) {
+            pivot -= c[j][k] * c[j][k];
+        }
+        const float least = PIVOT_MIN * c[j][j];
+        const float u = sqrtf(pivot > least ? pivot : least);
+        float *column = &inverse->element[goe_inverse_column(j)];
+        for (size_t i = 0; i < j; i++) {
+            float s = c[i][j];
+            for (size_t k = j + 1; k < GOE_KEPT; k++) {
+                s -= c[i][k] * c[j][k];
+            }
+            c[i][j] = s / u;
+            column[i] = c[i][j];
+        }
+        c[j][j] = u;
+        column[j] = u;
+    }
+}
+
+/* The inverse of U, row by row. */
+static void invert_kept(float u[GOE_KEPT][GOE_KEPT], goe_triangle_t *root) {
+    for (size_t j = 0; j < GOE_KEPT; j++) {
+        root->element[goe_srif_row(j) + j] = 1.0f / u[j][j];
+        for (size_t i = j; i-- > 0;) {
+            float sum = 0.0f;
+            for (size_t k = i + 1; k <= j; k++) {
+                sum += u[i][k] * root->element[goe_srif_row(k) + j];
+            }
+            root->element[goe_srif_row(i) + j] = -(sum * root->element[goe_srif_row(i) + i]);
+        }
+    }
+}
+
+void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],
+                              goe_triangle_t *root, goe_inverse_t *inverse) {
+    memset(root, 0, sizeof *root);
+    memset(inverse, 0, sizeof *inverse);
+    factorise(covariance, inverse);
+    invert_kept(covariance, root);
+    for (size_t i = GOE_KEPT; i < GOE_STATES; i++) {
+        inverse->element[goe_inverse_column(i) + i] = sigma[i - GOE_KEPT];
+        root->element[goe_srif_row(i) + i] = 1.0f / sigma[i - GOE_KEPT];
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ other states -- */
+
+/* R times the derivative is square from the changed states on: these rows go in anew, as if they were measured. */
+void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows) {
+    const size_t kept = GOE_STATES - GOE_CHANGED;
+    float change[GOE_STATES];
+    memset(rows, 0, sizeof *rows);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        float *r = &root->element[goe_srif_row(i)];
+        float row[GOE_CHANGED] = {0.0f};
+        for (size_t k = i > kept ? i : kept; k < GOE_STATES; k++) {
+            for (size_t j = 0; j < GOE_CHANGED; j++) {
+                row[j] += r[k] * old->by[k - kept][j];
+            }
+        }
+        if (i < kept) {
+            memcpy(&r[kept], row, sizeof row);
+            continue;
+        }
+        memset(&r[i], 0, (GOE_STATES - i) * sizeof r[0]);
+        for (size_t j = 0; j < GOE_CHANGED; j++) {
+            rows->column[GOE_TEMPORARIES + kept + j][i - kept] = row[j];
+        }
+    }
+    (void)goe_srif_update(root, 1.0f, rows, change);
+}

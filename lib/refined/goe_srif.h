@@ -1,0 +1,73 @@
+/* Square-root information: the triangle R and what is done to it. SPDX-License-Identifier: MIT */
+#ifndef GOE_SRIF_H
+#define GOE_SRIF_H
+
+#include "goe.h"
+
+/* Column of goe_matrix_t. Its nine rows: three corners, two each; left, right, top. */
+#define GOE_RESIDUAL (GOE_COLUMNS - 1)
+
+/* Element (i, j), i <= j, is element[goe_srif_row(i) + j]. */
+static inline size_t goe_srif_row(size_t i) { return i * (2u * GOE_STATES - 1u - i) / 2u; }
+
+/* Element (i, j), i <= j, of the inverse is element[goe_inverse_column(j) + i]. */
+static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
+
+/* Variance of one state. */
+static inline float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
+    float sum = 0.0f;
+    for (size_t j = state; j < GOE_STATES; j++) {
+        const float v = inverse->element[goe_inverse_column(j) + state];
+        sum += v * v;
+    }
+    return sum;
+}
+
+static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
+
+/* Rotates whitened rows into R by Householder reflections and solves for the change of the state; the rows' residual is
+ * measured minus predicted at the present state. temporaries_root: 1/sigma of the temporaries. *matrix is used up.
+ * Returns the squared norm that is left of the residuals: the normalised innovation squared. */
+float goe_srif_update(goe_triangle_t *root, float temporaries_root, goe_matrix_t *matrix, float change[GOE_STATES]);
+
+/* Adds variance sigma^2 along the states first and last, first <= last, with the weights of each; sigma > 0. For first = last
+ * the weight is last_weight. */
+void goe_srif_spread(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
+                     float sigma);
+
+/* The same of one state alone. */
+static inline void goe_srif_spread_state(goe_triangle_t *root, size_t state, float sigma) {
+    goe_srif_spread(root, state, 0.0f, state, 1.0f, sigma);
+}
+
+/* *inverse = R^-1. */
+void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse);
+
+/* The same of a diagonal R, for less. */
+void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse);
+
+/* Variance of w' x. */
+float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
+
+/* R^-1' w: its squared norm is that variance. */
+void goe_srif_project(const goe_inverse_t *inverse, const float weight[GOE_STATES], float projected[GOE_STATES]);
+
+/* Covariance of the first GOE_KEPT states; upper half. */
+#define GOE_KEPT 6
+void goe_srif_marginal(const goe_inverse_t *inverse, float covariance[GOE_KEPT][GOE_KEPT]);
+
+/* R and its inverse from the covariance of the first states, which is used up, and the sigmas of the others, which are
+ * independent of them. */
+void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],
+                              goe_triangle_t *root, goe_inverse_t *inverse);
+
+/* Derivatives of the last GOE_CHANGED states, by as many others that take their place. */
+#define GOE_CHANGED 6
+typedef struct {
+    float by[GOE_CHANGED][GOE_CHANGED]; /* [old][new] */
+} goe_substitution_t;
+
+/* R in the new states; *rows is used up. */
+void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows);
+
+#endif
