@@ -7,29 +7,18 @@
 
 #define FORWARD_MIN 0.05f /* third component of a unit ray in T: farther aside than 87 degrees nothing can be aligned */
 
-/* Feature i of an image and of a view: both hold them one after the other, in the same order. */
-static const goe_pixel_t *pixel_of(const goe_image_t *image, size_t i) {
-    const void *at = (const unsigned char *)image + offsetof(goe_image_t, left) + i * sizeof(goe_pixel_t);
-    return at;
-}
-
-static goe_point_t *point_of(goe_view_t *view, size_t i) {
-    void *at = (unsigned char *)view + i * sizeof(goe_point_t);
-    return at;
-}
-
 /* The rotation and the camera are read once: the compiler could not know that writing the points leaves them alone. */
-void goe_align_view(const goe_camera_t *camera, const float camera_to_trajectory[9], const goe_image_t *image,
-                    goe_view_t *view, goe_faults_t *faults) {
-    const float *r = camera_to_trajectory;
+void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
+    const goe_pixels_t pixels = goe_image_pixels(view->image);
+    const float *r = view->camera_to_trajectory;
     const float xx = r[0], xy = r[1], xz = r[2];
     const float yx = r[3], yy = r[4], yz = r[5];
     const float zx = r[6], zy = r[7], zz = r[8];
     const float cx_px = camera->cx_px, cy_px = camera->cy_px, fx_px = camera->fx_px, fy_px = camera->fy_px;
     const bool distorts = goe_camera_distorts(camera);
     for (size_t i = 0; i < GOE_FEATURES; i++) {
-        const goe_pixel_t *pixel = pixel_of(image, i);
-        goe_point_t *point = point_of(view, i);
+        const goe_pixel_t *pixel = pixels.at[i];
+        goe_point_t *point = &view->point[i];
         point->usable = pixel->seen;
         if (!pixel->seen) {
             continue;

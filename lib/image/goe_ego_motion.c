@@ -10,37 +10,38 @@
 #define LEVEL_NOSE_MIN 1.0e-3f /* horizontal part of the nose's unit vector below which it has no heading */
 
 /* T's Z axis in (north, east): the set heading, or where the nose points. */
-static void fix_heading(goe_estimator_t *estimator, const float body_to_ned[9]) {
+static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9]) {
     const float north = body_to_ned[0];
     const float east = body_to_ned[3];
     const float level = sqrtf(north * north + east * east);
-    if (!estimator->settings.heading_auto) {
-        goe_sincos_deg(estimator->settings.heading_deg, &estimator->heading_sin, &estimator->heading_cos);
+    if (!settings->heading_auto) {
+        goe_sincos_deg(settings->heading_deg, &motion->heading_sin, &motion->heading_cos);
     } else if (level < LEVEL_NOSE_MIN) {
-        estimator->heading_cos = 1.0f;
-        estimator->heading_sin = 0.0f;
+        motion->heading_cos = 1.0f;
+        motion->heading_sin = 0.0f;
     } else {
-        estimator->heading_cos = north / level;
-        estimator->heading_sin = east / level;
+        motion->heading_cos = north / level;
+        motion->heading_sin = east / level;
     }
 }
 
-static void camera_position(const goe_estimator_t *estimator, const goe_pose_t *pose, const float body_to_ned[9],
+static void camera_position(const goe_settings_t *settings, const goe_pose_t *pose, const float body_to_ned[9],
                             float position[2]) {
     float arm[3];
-    goe_rotation_apply(body_to_ned, estimator->settings.camera.offset_m, arm);
+    goe_rotation_apply(body_to_ned, settings->camera.offset_m, arm);
     position[0] = pose->position_ned_m[0] + arm[0];
     position[1] = pose->position_ned_m[1] + arm[1];
 }
 
 /* (NED -> T) (body -> NED) (camera -> body), column by column. Rows of NED -> T: X = (-sin, cos, 0), Y = (0, 0, 1),
  * Z = (cos, sin, 0): level, whatever the glide slope. */
-static void turn_into_trajectory(const goe_estimator_t *estimator, const float body_to_ned[9], float turned[9]) {
+static void turn_into_trajectory(const goe_motion_t *motion, const float body_to_ned[9], goe_view_t *view) {
     const float *b = body_to_ned;
-    const float c = estimator->heading_cos;
-    const float s = estimator->heading_sin;
+    float *turned = view->camera_to_trajectory;
+    const float c = motion->heading_cos;
+    const float s = motion->heading_sin;
     for (int i = 0; i < 3; i++) {
-        const float *m = &estimator->camera_to_body[i];
+        const float *m = &view->camera_to_body[i];
         const float north = b[0] * m[0] + b[1] * m[3] + b[2] * m[6];
         const float east = b[3] * m[0] + b[4] * m[3] + b[5] * m[6];
         turned[i] = c * east - s * north;
@@ -49,27 +50,28 @@ static void turn_into_trajectory(const goe_estimator_t *estimator, const float b
     }
 }
 
-void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, float camera_to_trajectory[9]) {
+void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view) {
+    const goe_pose_t *pose = &view->image->pose;
     float body_to_ned[9];
     float position[2];
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
-    camera_position(estimator, pose, body_to_ned, position);
-    if (!estimator->started) {
-        fix_heading(estimator, body_to_ned);
-        memcpy(estimator->origin_ne_m, position, sizeof position);
-        estimator->started = true;
-        estimator->start_time_us = pose->time_us;
-    } else if (goe_ego_motion_reset(estimator, pose)) {
+    camera_position(settings, pose, body_to_ned, position);
+    if (!motion->started) {
+        fix_heading(motion, settings, body_to_ned);
+        memcpy(motion->origin_ne_m, position, sizeof position);
+        motion->started = true;
+        motion->start_time_us = pose->time_us;
+    } else if (goe_motion_reset(motion, pose)) {
         for (int i = 0; i < 2; i++) {
-            estimator->origin_ne_m[i] += pose->reset_delta_ned_m[i];
+            motion->origin_ne_m[i] += pose->reset_delta_ned_m[i];
         }
     }
-    estimator->reset_count = pose->reset_count;
-    estimator->time_us = pose->time_us;
-    estimator->height_m = pose->height_m;
-    const float north = position[0] - estimator->origin_ne_m[0];
-    const float east = position[1] - estimator->origin_ne_m[1];
-    estimator->dx_m = estimator->heading_cos * east - estimator->heading_sin * north;
-    estimator->dz_m = estimator->heading_cos * north + estimator->heading_sin * east;
-    turn_into_trajectory(estimator, body_to_ned, camera_to_trajectory);
+    motion->reset_count = pose->reset_count;
+    motion->time_us = pose->time_us;
+    motion->height_m = pose->height_m;
+    const float north = position[0] - motion->origin_ne_m[0];
+    const float east = position[1] - motion->origin_ne_m[1];
+    motion->dx_m = motion->heading_cos * east - motion->heading_sin * north;
+    motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
+    turn_into_trajectory(motion, body_to_ned, view);
 }

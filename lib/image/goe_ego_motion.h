@@ -2,20 +2,28 @@
 #ifndef GOE_EGO_MOTION_H
 #define GOE_EGO_MOTION_H
 
-#include "goe.h"
+#include "image/goe_view.h"
 
-/* Takes the pose of an image: fixes T and its origin at the track's first image, compensates a reset of known delta,
- * and sets dx_m, dz_m (displacement of the camera since the first image, T axes).
- * camera_to_trajectory: rotation of this image's rays into T. */
-void goe_ego_motion_follow(goe_estimator_t *estimator, const goe_pose_t *pose, float camera_to_trajectory[9]);
+/* Takes the pose of view->image: fixes T and its origin at the track's first image, compensates a reset of known delta, and
+ * sets dx_m, dz_m (displacement of the camera since the first image, T axes). view->camera_to_body must be set;
+ * view->camera_to_trajectory is set: the rotation of this image's rays into T. */
+void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
 
 /* Whether the autopilot's filter jumped since the image before; the same by an unknown amount. */
-static inline bool goe_ego_motion_reset(const goe_estimator_t *estimator, const goe_pose_t *pose) {
-    return estimator->started && pose->reset_count != estimator->reset_count;
+static inline bool goe_motion_reset(const goe_motion_t *motion, const goe_pose_t *pose) {
+    return motion->started && pose->reset_count != motion->reset_count;
 }
 
-static inline bool goe_ego_motion_lost(const goe_estimator_t *estimator, const goe_pose_t *pose) {
-    return goe_ego_motion_reset(estimator, pose) && !pose->reset_delta_known;
+static inline bool goe_motion_lost(const goe_motion_t *motion, const goe_pose_t *pose) {
+    return goe_motion_reset(motion, pose) && !pose->reset_delta_known;
+}
+
+/* (X, Z) in T, relative to T's origin, to north and east. */
+static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float z_m, float *north_m, float *east_m) {
+    const float c = motion->heading_cos;
+    const float s = motion->heading_sin;
+    *north_m = motion->origin_ne_m[0] + (c * z_m - s * x_m);
+    *east_m = motion->origin_ne_m[1] + (s * z_m + c * x_m);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include "image/goe_intake.h"
 
 #include "image/goe_ego_motion.h"
+#include "image/goe_view.h"
 #include "maths/goe_scalar.h"
 
 #define POSITION_LIMIT_M 1.0e6f
@@ -17,17 +18,16 @@ static uint32_t largest_of(const float v[3]) {
     return larger(larger(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
 }
 
-static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
-    return pixel->seen ? larger(so_far, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px))) : so_far;
-}
-
 static uint32_t largest_pixel(const goe_image_t *image) {
-    uint32_t largest = with_pixel(0u, &image->left);
-    largest = with_pixel(largest, &image->right);
-    largest = with_pixel(largest, &image->top);
-    largest = with_pixel(largest, &image->base_left);
-    largest = with_pixel(largest, &image->base_near);
-    return with_pixel(largest, &image->base_right);
+    const goe_pixels_t pixels = goe_image_pixels(image);
+    uint32_t largest = 0u;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        const goe_pixel_t *pixel = pixels.at[i];
+        if (pixel->seen) {
+            largest = larger(largest, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px)));
+        }
+    }
+    return largest;
 }
 
 /* Not finite outranks out of range, which outranks a bad attitude. */
@@ -55,14 +55,14 @@ static bool is_unit(const float q[4], uint32_t largest) {
     return norm2 >= NORM2_MIN && norm2 <= NORM2_MAX;
 }
 
-goe_status_t goe_intake_check(const goe_estimator_t *estimator, const goe_image_t *image) {
+goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *image) {
     const float *q = image->pose.attitude;
     const uint32_t attitude = larger(largest_of(q), goe_magnitude(q[3]));
-    const goe_status_t status = check_numbers(image, attitude, goe_ego_motion_reset(estimator, &image->pose));
+    const goe_status_t status = check_numbers(image, attitude, goe_motion_reset(motion, &image->pose));
     if (status != GOE_OK) {
         return status;
     }
-    if (image->pose.time_us <= estimator->time_us) { /* GOE_TIME_UNKNOWN is the smallest of all times */
+    if (image->pose.time_us <= motion->time_us) { /* GOE_TIME_UNKNOWN is the smallest of all times */
         return GOE_BAD_TIME;
     }
     return is_unit(q, attitude) ? GOE_OK : GOE_BAD_ATTITUDE;

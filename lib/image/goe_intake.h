@@ -5,6 +5,6 @@
 #include "goe.h"
 
 /* GOE_OK, or why the whole image is refused: GOE_NOT_FINITE, GOE_OUT_OF_RANGE, GOE_BAD_TIME, GOE_BAD_ATTITUDE. */
-goe_status_t goe_intake_check(const goe_estimator_t *estimator, const goe_image_t *image);
+goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *image);
 
 #endif

@@ -1,4 +1,4 @@
-/* Rows of a box. SPDX-License-Identifier: MIT
+/* Rows, changes and quantities of a box. SPDX-License-Identifier: MIT
  *
  * Seen from above, lengths in units of Z0; P: middle of the front edge relative to the camera now.
  *
@@ -11,12 +11,22 @@
 #include <math.h>
 #include <string.h>
 
+#include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
 #define AHEAD_LEAST 0.01f  /* range below which a corner's direction is not compared */
 #define AHEAD_TINY 1.0e-3f /* ... or ordered */
 #define SUM_LEAST 1.0e-12f
-#define CURVATURE 2.0f  /* generous: the error is not a Gaussian one */
+#define CURVATURE 2.0f      /* generous: the error is not a Gaussian one */
+#define EXTENT_LEAST 0.03f  /* of the sum of all extents */
+#define DEPTH_LEAST 0.3f    /* sz over |sx| */
+#define EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names, in the state and in the report */
+#define LENGTH_FREED 2.0f   /* one sigma of the length, relative, when its face comes into view */
+#define EARLY 4.0f
+#define EARLY_MOST 4.0f
+#define OUTLINE_RAD 0.025f  /* one sigma of what a box by its outline misses: orientation */
+#define OUTLINE_SHARE 0.03f /* ... extents, of width and length together */
+#define SINE2_LEAST 1.0e-6f
 #define CLEARLY_PX 4.0f /* sigmas of a pixel by which one reading of the outline must fit better */
 
 enum { FRONT_LEFT, BACK_LEFT, BACK_RIGHT, FRONT_RIGHT, CORNERS }; /* clockwise */
@@ -28,54 +38,61 @@ static const float along_of[CORNERS] = {0.0f, 1.0f, 1.0f, 0.0f};
 
 typedef struct {
     float q, sx, fx, sz, fz; /* fz: see above */
-    float px, pz;            /* P */
+    goe_xz_t middle;         /* P */
     goe_depth_t depth;
-    float sign;                      /* of sx: the front edge comes nearer to the right (+) or to the left (-) */
-    float curvature;                 /* one sigma of what linearising the depths at an uncertain GOE_D misses */
-    float ground, top;               /* Y of the base and of the roof */
-    bool front, right;               /* which side of the box the camera is on */
-    bool far_half;                   /* it is nearer to the back edge */
+    float sign;        /* of sx: the front edge comes nearer to the right (+) or to the left (-) */
+    float curvature;   /* one sigma of what linearising the depths at an uncertain GOE_DEPTH_DIFFERENCE misses */
+    float ground, top; /* Y of the base and of the roof */
+    bool front, right; /* which side of the box the camera is on */
+    bool far_half;     /* it is nearer to the back edge */
     float depth_margin, side_margin; /* how far it is outside of the box along and across its axes, units of Z0 */
 } outline_t;
 
+static float sign_of(float x) { return x > 0.0f ? 1.0f : -1.0f; }
+
 goe_depth_t goe_box_depth(const float state[GOE_STATES]) {
     goe_depth_t depth;
-    const float d = state[GOE_D];
-    const float product = goe_absolute(state[GOE_SX]) * state[GOE_FX];
+    const float d = state[GOE_DEPTH_DIFFERENCE];
+    const float product = goe_absolute(state[GOE_SIDE_X]) * state[GOE_FRONT_X];
     const float sum = goe_larger(sqrtf(d * d + 4.0f * product), SUM_LEAST);
     /* the larger one by adding, the smaller one by the product: no cancellation */
     const float larger = 0.5f * (sum + goe_absolute(d));
     depth.sum = sum;
     depth.side = d > 0.0f ? larger : product / larger;
     depth.front = d > 0.0f ? product / larger : larger;
-    depth.by_extents[0] = (state[GOE_SX] > 0.0f ? state[GOE_FX] : -state[GOE_FX]) / sum;
-    depth.by_extents[1] = goe_absolute(state[GOE_SX]) / sum;
+    depth.by_extents[0] = (state[GOE_SIDE_X] > 0.0f ? state[GOE_FRONT_X] : -state[GOE_FRONT_X]) / sum;
+    depth.by_extents[1] = goe_absolute(state[GOE_SIDE_X]) / sum;
     depth.side_by_d = depth.side / sum;
     depth.front_by_d = -depth.front / sum;
     return depth;
 }
 
-static void describe(const goe_observation_t *sight, outline_t *o) {
-    const float *x = sight->state;
+void goe_box_enter(goe_filter_t *filter, goe_phase_t phase) {
+    filter->naming.exchanged = false;
+    filter->naming.decided = false;
+    goe_filter_enter(filter, phase);
+}
+
+static void describe(const goe_observation_t *obs, outline_t *o) {
+    const float *x = obs->state;
     o->depth = goe_box_depth(x);
-    o->q = x[GOE_Q];
-    o->sx = x[GOE_SX];
-    o->fx = x[GOE_FX];
+    o->q = x[GOE_INVERSE_RANGE];
+    o->sx = x[GOE_SIDE_X];
+    o->fx = x[GOE_FRONT_X];
     o->sz = o->depth.side;
     o->sign = o->sx > 0.0f ? 1.0f : -1.0f;
     o->fz = -o->sign * o->depth.front;
     o->curvature = CURVATURE * 2.0f * goe_absolute(o->sx) * o->fx / (o->depth.sum * o->depth.sum * o->depth.sum) *
-                   sight->depth_variance;
-    o->px = goe_observation_reference_x(sight);
-    o->pz = goe_observation_reference_z(sight);
-    o->ground = (sight->height_m + x[GOE_DH]) * o->q;
-    o->top = sight->height_m * o->q - x[GOE_E];
+                   obs->depth_variance;
+    o->middle = goe_observation_reference(obs);
+    o->ground = (obs->height_m + x[GOE_HEIGHT_BIAS]) * o->q;
+    o->top = goe_observation_roof(obs);
     const float length = sqrtf(o->sx * o->sx + o->sz * o->sz);
     const float vx = o->sx / length;
     const float vz = o->sz / length;
     const float width = o->fx / vz;
-    const float across = vx * o->pz - vz * o->px; /* of the camera, in the box's axes, from P */
-    const float along = -(vx * o->px + vz * o->pz);
+    const float across = vx * o->middle.z - vz * o->middle.x; /* of the camera, in the box's axes, from P */
+    const float along = -(vx * o->middle.x + vz * o->middle.z);
     o->front = -along > along - length;
     o->right = across > 0.0f;
     o->far_half = along >= 0.5f * length;
@@ -84,11 +101,11 @@ static void describe(const goe_observation_t *sight, outline_t *o) {
 }
 
 static float corner_x(const outline_t *o, size_t corner) {
-    return o->px + across_of[corner] * o->fx + along_of[corner] * o->sx;
+    return o->middle.x + across_of[corner] * o->fx + along_of[corner] * o->sx;
 }
 
 static float corner_z(const outline_t *o, size_t corner) {
-    return o->pz + across_of[corner] * o->fz + along_of[corner] * o->sz;
+    return o->middle.z + across_of[corner] * o->fz + along_of[corner] * o->sz;
 }
 
 /* ---------------------------------------------------------------------------------------------------- visible corners -- */
@@ -101,31 +118,31 @@ static void corners_of_faces(size_t face, bool two, size_t corner[3]) {
 }
 
 /* Sum of what the outer corners are off in the image. */
-static float misfit(const goe_observation_t *sight, const outline_t *o, const size_t corner[3]) {
+static float misfit(const goe_observation_t *obs, const outline_t *o, const size_t corner[3]) {
     float sum = 0.0f;
     for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i += 2) {
         const float z = corner_z(o, corner[i]);
         const float x = corner_x(o, corner[i]) / (z > AHEAD_LEAST ? z : AHEAD_LEAST);
-        sum += goe_absolute(sight->point[GOE_BASE_LEFT + i].x - x);
+        sum += goe_absolute(obs->point[GOE_POINT_BASE_LEFT + i].x - x);
     }
     return sum;
 }
 
-static void visible_corners(const goe_observation_t *sight, const outline_t *o, size_t corner[3]) {
+static void visible_corners(const goe_observation_t *obs, const outline_t *o, size_t corner[3]) {
     const size_t first_of_two = o->front ? (o->right ? FACE_FRONT : FACE_LEFT) : (o->right ? FACE_RIGHT : FACE_BACK);
-    if (sight->point[GOE_BASE_NEAR].usable) {
+    if (obs->point[GOE_POINT_BASE_NEAR].usable) {
         corners_of_faces(first_of_two, true, corner);
         return;
     }
     const size_t along = o->front ? FACE_FRONT : FACE_BACK;
     const size_t across = o->right ? FACE_RIGHT : FACE_LEFT;
     corners_of_faces(o->depth_margin > o->side_margin ? along : across, false, corner);
-    if (sight->deep && sight->base && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
+    if (obs->two_faces && obs->base && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
         /* one face, or two and the detector missed the corner between them: whichever fits clearly better */
         size_t both[3];
         corners_of_faces(first_of_two, true, both);
-        const float clearly = CLEARLY_PX * goe_observation_pixel(sight);
-        if (misfit(sight, o, both) + clearly < misfit(sight, o, corner)) {
+        const float clearly = CLEARLY_PX * goe_observation_pixel(obs);
+        if (misfit(obs, o, both) + clearly < misfit(obs, o, corner)) {
             memcpy(corner, both, sizeof both);
         }
     }
@@ -152,35 +169,30 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
 /* Derivatives by the place and the outline of a corner, from those by (X, Z); and what their linearisation may miss. */
-static void set_corner(goe_rows_t *rows, size_t row, const goe_observation_t *sight, const outline_t *o, size_t corner,
-                       const goe_gradient_t *g) {
+static void set_corner(goe_rows_t *rows, float by[GOE_STATES], const goe_observation_t *obs, const outline_t *o,
+                       size_t corner, const goe_gradient_t *g) {
     const float across = across_of[corner];
     const float along = along_of[corner];
     const float by_both = (along - across * o->sign) * g->z; /* by side and front depth as their sum moves them */
     const float missed = 0.5f * by_both * o->curvature;
-    goe_rows_set(rows, row, GOE_A, g->x);
-    goe_rows_set(rows, row, GOE_Q, -(g->x * sight->dx_m) - g->z * sight->dz_m);
-    goe_rows_set(rows, row, GOE_SX, along * g->x + by_both * o->depth.by_extents[0]);
-    goe_rows_set(rows, row, GOE_FX, across * g->x + by_both * o->depth.by_extents[1]);
-    goe_rows_set(rows, row, GOE_D, (along * o->depth.side_by_d - across * o->sign * o->depth.front_by_d) * g->z);
-    rows->variance[row] += missed * missed;
-}
-
-/* ... and by the height of what stands at Y = height q. */
-static void set_height(goe_rows_t *rows, size_t row, float y, float height_m) {
-    goe_rows_set(rows, row, GOE_Q, goe_rows_get(rows, row, GOE_Q) + y * height_m);
+    by[GOE_BEARING] = g->x;
+    by[GOE_INVERSE_RANGE] = goe_rows_by_range(obs, g->x, g->z);
+    by[GOE_SIDE_X] = along * g->x + by_both * o->depth.by_extents[0];
+    by[GOE_FRONT_X] = across * g->x + by_both * o->depth.by_extents[1];
+    by[GOE_DEPTH_DIFFERENCE] = (along * o->depth.side_by_d - across * o->sign * o->depth.front_by_d) * g->z;
+    rows->variance[rows->count - 1u] += missed * missed;
 }
 
 /* Two rows, the second free of the first one's noise. */
-static void add_base_corner(const goe_observation_t *sight, const outline_t *o, size_t feature, size_t corner,
+static void add_base_corner(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
                             goe_rows_t *rows) {
     goe_gradient_t gx;
     goe_gradient_t gy;
-    const float height_m = sight->height_m + sight->state[GOE_DH];
-    const goe_point_t *measured = &sight->point[feature];
+    const float height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
+    const goe_point_t *measured = &obs->point[feature];
     const goe_point_t seen =
-        goe_observation_project(sight, corner_x(o, corner), o->ground, corner_z(o, corner), &gx, &gy);
-    const goe_spread_t spread = goe_observation_spread(sight, feature);
+        goe_observation_project(obs, corner_x(o, corner), o->ground, corner_z(o, corner), &gx, &gy);
+    const goe_spread_t spread = goe_observation_spread(obs, feature);
     const float share = spread.xy / spread.xx;
     const float rx = measured->x - seen.x;
     const float ry = measured->y - seen.y - share * rx;
@@ -190,71 +202,274 @@ static void add_base_corner(const goe_observation_t *sight, const outline_t *o, 
     gy.ex -= share * gx.ex;
     gy.ey -= share * gx.ey;
     gy.ez -= share * gx.ez;
-    size_t row = goe_rows_add(rows, feature, rx, spread.xx, &gx);
-    set_corner(rows, row, sight, o, corner, &gx);
-    set_height(rows, row, gx.y, height_m);
-    goe_rows_set(rows, row, GOE_DH, gx.y * o->q);
-    row = goe_rows_add(rows, feature, ry, spread.yy - share * spread.xy, &gy);
-    set_corner(rows, row, sight, o, corner, &gy);
-    set_height(rows, row, gy.y, height_m);
-    goe_rows_set(rows, row, GOE_DH, gy.y * o->q);
+    float *by = goe_rows_add(rows, feature, rx, spread.xx, &gx);
+    set_corner(rows, by, obs, o, corner, &gx);
+    by[GOE_INVERSE_RANGE] += gx.y * height_m;
+    by[GOE_HEIGHT_BIAS] = gx.y * o->q;
+    by = goe_rows_add(rows, feature, ry, spread.yy - share * spread.xy, &gy);
+    set_corner(rows, by, obs, o, corner, &gy);
+    by[GOE_INVERSE_RANGE] += gy.y * height_m;
+    by[GOE_HEIGHT_BIAS] = gy.y * o->q;
 }
 
 /* The vertical edge over an outer corner, at the height at which it was measured. */
-static void add_silhouette(const goe_observation_t *sight, const outline_t *o, size_t feature, size_t corner,
+static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
                            goe_rows_t *rows) {
     goe_gradient_t gx;
     goe_gradient_t gy;
-    const goe_point_t *measured = &sight->point[feature];
+    const goe_point_t *measured = &obs->point[feature];
     if (!measured->usable) {
         return;
     }
     const float z = corner_z(o, corner);
-    const goe_point_t seen = goe_observation_project(sight, corner_x(o, corner), measured->y * z, z, &gx, &gy);
-    const float variance = goe_observation_spread(sight, feature).xx + goe_observation_size_variance(sight);
-    const size_t row = goe_rows_add(rows, feature, measured->x - seen.x, variance, &gx);
-    set_corner(rows, row, sight, o, corner, &gx);
+    const goe_point_t seen = goe_observation_project(obs, corner_x(o, corner), measured->y * z, z, &gx, &gy);
+    const float variance = goe_observation_spread(obs, feature).xx + goe_observation_size_variance(obs);
+    float *by = goe_rows_add(rows, feature, measured->x - seen.x, variance, &gx);
+    set_corner(rows, by, obs, o, corner, &gx);
 }
 
 /* The corner of the roof nearest to the camera; seen from above the highest in the image is the farthest. */
-static size_t top_corner(const goe_observation_t *sight, const outline_t *o) {
-    const bool highest = sight->settings->top_is_highest && o->top > 0.0f;
+static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
+    const bool highest = obs->settings->top_is_highest && o->top > 0.0f;
     const bool right = o->right != highest;
     const bool back = o->far_half != highest;
     return right ? (back ? BACK_RIGHT : FRONT_RIGHT) : (back ? BACK_LEFT : FRONT_LEFT);
 }
 
-static void add_top(const goe_observation_t *sight, const outline_t *o, goe_rows_t *rows) {
+static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t *rows) {
     goe_gradient_t gx;
     goe_gradient_t gy;
-    const goe_point_t *measured = &sight->point[GOE_TOP];
+    const goe_point_t *measured = &obs->point[GOE_POINT_TOP];
     if (!measured->usable) {
         return;
     }
-    const size_t corner = top_corner(sight, o);
-    const goe_point_t seen = goe_observation_project(sight, corner_x(o, corner), o->top, corner_z(o, corner), &gx, &gy);
-    const float variance = goe_observation_spread(sight, GOE_TOP).yy + goe_observation_size_variance(sight);
-    const size_t row = goe_rows_add(rows, GOE_TOP, measured->y - seen.y, variance, &gy);
-    set_corner(rows, row, sight, o, corner, &gy);
-    set_height(rows, row, gy.y, sight->height_m);
-    goe_rows_set(rows, row, GOE_E, -gy.y);
+    const size_t corner = top_corner(obs, o);
+    const goe_point_t seen = goe_observation_project(obs, corner_x(o, corner), o->top, corner_z(o, corner), &gx, &gy);
+    const float variance = goe_observation_spread(obs, GOE_POINT_TOP).yy + goe_observation_size_variance(obs);
+    float *by = goe_rows_add(rows, GOE_POINT_TOP, measured->y - seen.y, variance, &gy);
+    set_corner(rows, by, obs, o, corner, &gy);
+    by[GOE_INVERSE_RANGE] += gy.y * obs->height_m;
+    by[GOE_TOP] = -gy.y;
 }
 
-void goe_box_rows(const goe_observation_t *sight, goe_rows_t *rows) {
+void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     outline_t outline;
     size_t corner[3] = {FRONT_LEFT, FRONT_LEFT, FRONT_LEFT};
-    describe(sight, &outline);
-    if (sight->base || sight->point[GOE_BASE_NEAR].usable) {
-        visible_corners(sight, &outline, corner);
+    describe(obs, &outline);
+    if (obs->base || obs->point[GOE_POINT_BASE_NEAR].usable) {
+        visible_corners(obs, &outline, corner);
         for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i++) {
-            if (sight->point[GOE_BASE_LEFT + i].usable) {
-                add_base_corner(sight, &outline, GOE_BASE_LEFT + i, corner[i], rows);
+            if (obs->point[GOE_POINT_BASE_LEFT + i].usable) {
+                add_base_corner(obs, &outline, GOE_POINT_BASE_LEFT + i, corner[i], rows);
             }
         }
     } else {
         widest_corners(&outline, corner);
     }
-    add_silhouette(sight, &outline, GOE_LEFT, corner[OUTER_LEFT], rows);
-    add_silhouette(sight, &outline, GOE_RIGHT, corner[OUTER_RIGHT], rows);
-    add_top(sight, &outline, rows);
+    add_silhouette(obs, &outline, GOE_POINT_LEFT, corner[OUTER_LEFT], rows);
+    add_silhouette(obs, &outline, GOE_POINT_RIGHT, corner[OUTER_RIGHT], rows);
+    add_top(obs, &outline, rows);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- upkeep -- */
+
+/* Extents of too different size make a box that the next image cannot be linearised at. */
+void goe_box_clip(goe_filter_t *filter) {
+    float *x = filter->state;
+    const float least = EXTENT_LEAST * (goe_absolute(x[GOE_SIDE_X]) + goe_absolute(x[GOE_FRONT_X]) +
+                                        goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
+    x[GOE_FRONT_X] = goe_larger(x[GOE_FRONT_X], least);
+    x[GOE_DEPTH_DIFFERENCE] =
+        goe_larger(x[GOE_DEPTH_DIFFERENCE], DEPTH_LEAST * goe_absolute(x[GOE_SIDE_X]) - x[GOE_FRONT_X] / DEPTH_LEAST);
+    if (goe_box_depth(x).side < least) {
+        x[GOE_DEPTH_DIFFERENCE] = least - goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X] / least;
+    }
+}
+
+/* While one face is visible the other edge's length is unobservable; if it were free, relinearisation would pull it to zero.
+ * So it is held until its face comes into view. */
+static void free_length(goe_filter_t *filter, float side) {
+    goe_srif_inflate(&filter->root, GOE_SIDE_X, filter->state[GOE_SIDE_X], GOE_DEPTH_DIFFERENCE, side, LENGTH_FREED);
+    goe_filter_invert(filter);
+    filter->phase = GOE_PHASE_BOX; /* the same box: what counts its images goes on */
+}
+
+/* Front and side with each other's names. Doing it again undoes it. */
+static void exchange_state(float x[GOE_STATES]) {
+    const float sign = sign_of(x[GOE_SIDE_X]);
+    const float scale = 1.0f / (1.0f + 0.5f * x[GOE_DEPTH_DIFFERENCE]);
+    const float side = x[GOE_SIDE_X];
+    x[GOE_BEARING] = (x[GOE_BEARING] + 0.5f * (sign * x[GOE_FRONT_X] + side)) * scale;
+    x[GOE_INVERSE_RANGE] *= scale;
+    x[GOE_SIDE_X] = -sign * x[GOE_FRONT_X] * scale;
+    x[GOE_FRONT_X] = goe_absolute(side) * scale;
+    x[GOE_DEPTH_DIFFERENCE] = -x[GOE_DEPTH_DIFFERENCE] * scale;
+    x[GOE_TOP] *= scale;
+}
+
+/* R in the new states: the derivative of the old ones by them is that of the exchange back. */
+static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
+    goe_substitution_t old;
+    const float *is = filter->state;
+    const float sign = sign_of(is[GOE_SIDE_X]);
+    const float scale = 1.0f / (1.0f + 0.5f * is[GOE_DEPTH_DIFFERENCE]);
+    memset(&old, 0, sizeof old);
+    for (size_t k = 0; k < GOE_CHANGED; k++) {
+        old.by[k][GOE_OF_DEPTH] = -0.5f * scale * was[GOE_BEARING + k];
+    }
+    old.by[GOE_OF_DEPTH][GOE_OF_DEPTH] -= scale;
+    old.by[GOE_OF_BEARING][GOE_OF_SIDE] = 0.5f * scale;
+    old.by[GOE_OF_BEARING][GOE_OF_FRONT] = 0.5f * scale * sign;
+    old.by[GOE_OF_SIDE][GOE_OF_FRONT] = -scale * sign;
+    old.by[GOE_OF_FRONT][GOE_OF_SIDE] = scale * sign;
+    old.by[GOE_OF_BEARING][GOE_OF_BEARING] = scale;
+    old.by[GOE_OF_RANGE][GOE_OF_RANGE] = scale;
+    old.by[GOE_OF_TOP][GOE_OF_TOP] = scale;
+    goe_srif_substitute(&filter->root, &old, &filter->rows);
+}
+
+static void exchange_names(goe_filter_t *filter) {
+    float was[GOE_STATES];
+    memcpy(was, filter->state, sizeof was);
+    exchange_state(filter->state);
+    exchange_root(filter, was);
+    goe_filter_invert(filter);
+    filter->naming.exchanged = !filter->naming.exchanged;
+}
+
+bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs) {
+    const float side = goe_box_depth(filter->state).side;
+    if (filter->phase == GOE_PHASE_BOX_FACE && obs->base && obs->point[GOE_POINT_BASE_NEAR].usable) {
+        free_length(filter, side);
+        return true;
+    }
+    if (goe_absolute(filter->state[GOE_SIDE_X]) > EXCHANGE_SLOPE * side) {
+        exchange_names(filter);
+        return true;
+    }
+    return false;
+}
+
+/* --------------------------------------------------------------------------------------------------------- quantities -- */
+
+/* The edges of the state as vectors, the state's axes, units of Z0, and their lengths. */
+typedef struct {
+    goe_depth_t depth;
+    goe_xz_t side_edge, front_edge;
+    float side, front;
+} edges_t;
+
+static edges_t edges_of(const float x[GOE_STATES]) {
+    edges_t e;
+    e.depth = goe_box_depth(x);
+    e.side_edge.x = x[GOE_SIDE_X];
+    e.side_edge.z = e.depth.side;
+    e.front_edge.x = x[GOE_FRONT_X];
+    e.front_edge.z = -sign_of(x[GOE_SIDE_X]) * e.depth.front;
+    e.side = sqrtf(goe_xz_dot(e.side_edge, e.side_edge));
+    e.front = sqrtf(x[GOE_FRONT_X] * x[GOE_FRONT_X] + e.depth.front * e.depth.front);
+    return e;
+}
+
+void goe_box_name(goe_filter_t *filter) {
+    const edges_t e = edges_of(filter->state);
+    const goe_xz_t side = goe_filter_into_trajectory(filter, filter->naming.exchanged ? e.front_edge : e.side_edge);
+    const float slope = filter->naming.decided ? EXCHANGE_SLOPE : 1.0f;
+    if (goe_absolute(side.x) > slope * goe_absolute(side.z)) {
+        filter->naming.exchanged = !filter->naming.exchanged;
+    }
+    filter->naming.decided = true;
+}
+
+/* The reference point, and across fronts and along sides from there. */
+static goe_spot_t spot_of(const float x[GOE_STATES], const edges_t *e, float across, float along) {
+    goe_spot_t spot;
+    const float sign = sign_of(x[GOE_SIDE_X]);
+    const float both = along - across * sign;
+    spot.at.x = x[GOE_BEARING] + across * x[GOE_FRONT_X] + along * x[GOE_SIDE_X];
+    spot.at.z = 1.0f - across * sign * e->depth.front + along * e->depth.side;
+    spot.x_by[0] = along;
+    spot.x_by[1] = across;
+    spot.x_by[2] = 0.0f;
+    spot.z_by[0] = both * e->depth.by_extents[0];
+    spot.z_by[1] = both * e->depth.by_extents[1];
+    spot.z_by[2] = along * e->depth.side_by_d - across * sign * e->depth.front_by_d;
+    return spot;
+}
+
+/* Length of an edge, m: its own extent across, which is state `extent`, and its depth. */
+static void set_edge(goe_linear_t *length, const edges_t *e, bool side, float scale_m) {
+    const float size = side ? e->side : e->front;
+    const float across = side ? e->side_edge.x : e->front_edge.x;
+    const float by_depth = (side ? e->depth.side : e->depth.front) / size * scale_m;
+    length->value = scale_m * size;
+    length->by[GOE_SIDE_X] = by_depth * e->depth.by_extents[0];
+    length->by[GOE_FRONT_X] = by_depth * e->depth.by_extents[1];
+    length->by[GOE_DEPTH_DIFFERENCE] = by_depth * (side ? e->depth.side_by_d : e->depth.front_by_d);
+    length->by[side ? GOE_SIDE_X : GOE_FRONT_X] += across / size * scale_m;
+    length->by[GOE_INVERSE_RANGE] = -scale_m * scale_m * size;
+}
+
+/* Both edges turn together. */
+static void set_orientation(goe_linear_t *orientation, const edges_t *e, goe_xz_t length_axis) {
+    const float scale = 1.0f / (e->side * e->side);
+    const float by_depth = -e->side_edge.x * scale;
+    orientation->value = goe_arctan_rad(length_axis.x, length_axis.z);
+    orientation->by[GOE_SIDE_X] = e->depth.side * scale + by_depth * e->depth.by_extents[0];
+    orientation->by[GOE_FRONT_X] = by_depth * e->depth.by_extents[1];
+    orientation->by[GOE_DEPTH_DIFFERENCE] = by_depth * e->depth.side_by_d;
+}
+
+static float early_factor(const goe_filter_t *filter, const edges_t *e) {
+    const float relative = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE) / goe_square(e->depth.sum);
+    return 1.0f + EARLY * (relative < EARLY_MOST ? relative : EARLY_MOST);
+}
+
+void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
+    const float *x = filter->state;
+    const bool exchanged = filter->naming.exchanged;
+    const edges_t e = edges_of(x);
+    const goe_xz_t side = goe_filter_into_trajectory(filter, e.side_edge);
+    const goe_xz_t front = goe_filter_into_trajectory(filter, e.front_edge);
+    const float away = front.z < 0.0f ? 1.0f : -1.0f; /* the end of the front from which it leads away */
+    const float length = exchanged ? -away * e.front : (side.z < 0.0f ? -e.side : e.side);
+    const goe_spot_t reference = exchanged ? spot_of(x, &e, 0.5f * away, 0.5f) : spot_of(x, &e, 0.0f, 0.0f);
+    goe_shape_start(filter, x, &reference, shape);
+    shape->middle = spot_of(x, &e, 0.0f, 0.5f);
+    shape->length_axis.x = (exchanged ? front.x : side.x) / length;
+    shape->length_axis.z = (exchanged ? front.z : side.z) / length;
+    shape->early = early_factor(filter, &e);
+    set_orientation(&shape->quantity[GOE_ORIENTATION], &e, shape->length_axis);
+    set_edge(&shape->quantity[GOE_WIDTH], &e, exchanged, shape->scale_m);
+    set_edge(&shape->quantity[GOE_LENGTH], &e, !exchanged, shape->scale_m);
+}
+
+/* Of the side, seen at a small angle, only the product of length and angle shows. */
+static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
+    const float *x = filter->state;
+    const edges_t e = edges_of(x);
+    const float scale_m = 1.0f / x[GOE_INVERSE_RANGE];
+    const float vx = e.side_edge.x / e.side;
+    const float vz = e.side_edge.z / e.side;
+    const float px = x[GOE_BEARING] - camera_m.x / scale_m;
+    const float pz = 1.0f - camera_m.z / scale_m;
+    const float beside = goe_larger(goe_absolute(vz * px - vx * pz) - 0.5f * x[GOE_FRONT_X] / vz, 0.0f);
+    return goe_square(beside) / (px * px + pz * pz);
+}
+
+float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *shape, goe_xz_t camera_m, int quantity,
+                               float orientation_rad2) {
+    if (filter->phase != GOE_PHASE_BOX_OUTLINE || quantity < GOE_ORIENTATION || quantity > GOE_LENGTH) {
+        return 0.0f;
+    }
+    if (quantity == GOE_ORIENTATION) {
+        return goe_square(OUTLINE_RAD);
+    }
+    const float size2 =
+        goe_square(OUTLINE_SHARE * (shape->quantity[GOE_WIDTH].value + shape->quantity[GOE_LENGTH].value));
+    if ((quantity == GOE_LENGTH) == filter->naming.exchanged) { /* the front of the state */
+        return size2;
+    }
+    const float sine2 = side_share2(filter, camera_m);
+    return size2 + goe_square(shape->quantity[quantity].value) * orientation_rad2 / (sine2 + SINE2_LEAST);
 }

@@ -3,21 +3,42 @@
 #define GOE_BOX_H
 
 #include "refined/goe_observation.h"
+#include "refined/goe_shape.h"
 
-/* How deep the edges of a box reach, in units of Z0, and the derivatives by GOE_SX, GOE_FX, GOE_D:
- * side - front = GOE_D, and as the corner is square, side front = |GOE_SX| GOE_FX. */
+/* How deep the edges of a box reach, in units of Z0, and the derivatives by GOE_SIDE_X, GOE_FRONT_X, GOE_DEPTH_DIFFERENCE:
+ * side - front = GOE_DEPTH_DIFFERENCE, and as the corner is square, side front = |GOE_SIDE_X| GOE_FRONT_X. */
 typedef struct {
     float side, front; /* sz, |fz|; both >= 0 */
     float sum;
-    float by_extents[2]; /* of either, by GOE_SX and GOE_FX */
+    float by_extents[2]; /* of either, by GOE_SIDE_X and GOE_FRONT_X */
     float side_by_d, front_by_d;
 } goe_depth_t;
 
-#define GOE_EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names, in the state and in the answer */
-
 goe_depth_t goe_box_depth(const float state[GOE_STATES]);
 
+/* Enters one of the phases of a box, whose edges have no names yet. */
+void goe_box_enter(goe_filter_t *filter, goe_phase_t phase);
+
 /* Appends the rows of a box. */
-void goe_box_rows(const goe_observation_t *sight, goe_rows_t *rows);
+void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows);
+
+/* After an update: keeps the extents where the next image can be linearised, and names the edges: front and side keep their
+ * names until the side lies clearly across T's Z. */
+void goe_box_clip(goe_filter_t *filter);
+void goe_box_name(goe_filter_t *filter);
+
+/* Frees the length when a second face comes into view, and exchanges front and side if the side lies across. Returns whether
+ * there was a change; the image that brings it is not used for more. */
+bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs);
+
+/* Quantities. Orientation, width and length depend on the square of the corner: while GOE_DEPTH_DIFFERENCE is not known well
+ * their true error is larger than their derivatives tell, by goe_shape_t.early. */
+void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape);
+
+/* Variance of orientation (rad^2), width and length (m^2) beyond that of the state, of a box that was found by its outline:
+ * corners change unnoticed for some images. camera_m: the camera since the filter's start (goe_filter_camera).
+ * orientation_rad2: variance of the orientation, this included. */
+float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *shape, goe_xz_t camera_m, int quantity,
+                               float orientation_rad2);
 
 #endif

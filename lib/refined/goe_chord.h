@@ -7,30 +7,30 @@
 #define GOE_CHORD_H
 
 #include "refined/goe_gate.h"
-#include "refined/goe_refined.h"
-
-/* Whether the ends of what is taken for a disc lie at different depths: it is no disc. */
-bool goe_chord_is_skewed(const goe_filter_t *filter);
+#include "refined/goe_observation.h"
+#include "refined/goe_shape.h"
 
 /* Both return whether there was a change; the image that brings it is not used for more.
  *
  * Of a disc: takes it for a chord if that is clear. */
-bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *sight);
+bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Of a chord: when one of its ends has left the chord it learns that end anew (a face came into view) or becomes a box (a
  * face turned away). */
-bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *sight);
+bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Before the rows of an image: the roof's nearest corner may stand before the chord, and must not tell the range. */
-void goe_chord_free_top(goe_filter_t *filter, const goe_observation_t *sight);
+void goe_chord_free_top(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Appends the rows of a chord. */
-void goe_chord_rows(const goe_observation_t *sight, goe_rows_t *rows);
+void goe_chord_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After the gate: keeps in mind by how much the ends leave the chord. */
 void goe_chord_follow(goe_filter_t *filter, const goe_verdict_t *verdict);
 
 /* Whether an end is leaving the chord, so that its refusal says nothing against the state. */
 bool goe_chord_is_left(const goe_filter_t *filter);
+
+void goe_chord_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 #endif

@@ -3,12 +3,22 @@
 #define GOE_DISC_H
 
 #include "refined/goe_observation.h"
+#include "refined/goe_shape.h"
+
+/* First guess: state and root from one image. False if it shows no width, or the guess is out of range. */
+bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
 
 /* Appends the rows of a disc. If base corners are seen, what is taken for a disc is a box whose orientation is not known
  * yet: then they tell the range over flat ground. */
-void goe_disc_rows(const goe_observation_t *sight, goe_rows_t *rows);
+void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
-/* First guess: state and root from one image. False if it shows no width, or the guess is out of range. */
-bool goe_disc_start(const goe_observation_t *sight, float state[GOE_STATES], goe_triangle_t *root);
+/* Whether the ends of what is taken for a disc lie at different depths: it is no disc. */
+bool goe_disc_is_skewed(const goe_filter_t *filter);
+
+/* Quantities, under the condition that the disc has no skew (GOE_SIDE_X = 0). */
+void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape);
+
+/* The same condition on a derivative in terms of independent unit errors (goe_srif_project). */
+void goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES]);
 
 #endif

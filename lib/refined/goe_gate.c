@@ -15,11 +15,11 @@ typedef struct {
     size_t middle; /* row */
 } group_t;
 
-static float residual_of(const goe_rows_t *rows, size_t row) { return rows->matrix->column[GOE_RESIDUAL][row]; }
+static float residual_of(const goe_rows_t *rows, size_t row) { return rows->matrix->row[row][GOE_RESIDUAL]; }
 
 /* A row along x is moved more by the attitude's error about Y than about X. */
 static bool is_along_x(const goe_rows_t *rows, size_t row) {
-    return goe_absolute(rows->matrix->column[0][row]) > goe_absolute(rows->matrix->column[1][row]);
+    return goe_absolute(rows->matrix->row[row][0]) > goe_absolute(rows->matrix->row[row][1]);
 }
 
 static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
@@ -49,25 +49,21 @@ static float innovation(const goe_settings_t *settings, const goe_filter_t *filt
     float weight[GOE_STATES];
     const float white = settings->noise.attitude_white_deg * GOE_RAD_PER_DEG;
     const float other = row == middle ? 0.0f : 1.0f;
-    const float *a = &rows->matrix->column[0][row];
-    const float *b = &rows->matrix->column[0][middle];
+    const float *a = rows->matrix->row[row];
+    const float *b = rows->matrix->row[middle];
     float attitude = 0.0f;
-    for (size_t c = 0; c < GOE_TEMPORARIES; c++) {
-        const float d = *a - other * *b;
+    for (size_t c = 0; c < GOE_NUISANCES; c++) {
+        const float d = a[c] - other * b[c];
         attitude += d * d;
-        a += GOE_ROWS_MAX;
-        b += GOE_ROWS_MAX;
     }
     for (size_t c = 0; c < GOE_STATES; c++) {
-        weight[c] = *a - other * *b;
-        a += GOE_ROWS_MAX;
-        b += GOE_ROWS_MAX;
+        weight[c] = a[GOE_STATE_COLUMN + c] - other * b[GOE_STATE_COLUMN + c];
     }
-    const float residual = *a - other * *b;
+    const float residual = a[GOE_RESIDUAL] - other * b[GOE_RESIDUAL];
     const float own = rows->variance[row] + other * rows->variance[middle];
-    const float turned =
-        weight[GOE_BX] * weight[GOE_BX] + weight[GOE_BY] * weight[GOE_BY] + weight[GOE_BZ] * weight[GOE_BZ];
-    const float gained = turned * filter->drift_rad2 + weight[GOE_A] * weight[GOE_A] * filter->walk2;
+    const float turned = weight[GOE_BIAS_X] * weight[GOE_BIAS_X] + weight[GOE_BIAS_Y] * weight[GOE_BIAS_Y] +
+                         weight[GOE_BIAS_Z] * weight[GOE_BIAS_Z];
+    const float gained = turned * filter->drift_rad2 + weight[GOE_BEARING] * weight[GOE_BEARING] * filter->walk2;
     const float known = goe_srif_variance(&filter->inverse, weight) + gained;
     return residual * residual / (own + white * white * attitude + known);
 }
@@ -82,7 +78,7 @@ static void hold(const goe_rows_t *rows, const group_t *group, size_t row, float
     const bool more = residual_of(rows, row) > residual_of(rows, group->middle);
     verdict->held = rows->feature[row];
     verdict->held_sigmas2 = squared;
-    verdict->held_outward = more == (verdict->held == GOE_RIGHT);
+    verdict->held_outward = more == (verdict->held == GOE_POINT_RIGHT);
 }
 
 static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
@@ -110,13 +106,13 @@ static void judge(const goe_settings_t *settings, const goe_filter_t *filter, co
     }
 }
 
-static void scale_row(goe_matrix_t *matrix, size_t row, float weight) {
-    float *element = &matrix->column[0][row];
+static void scale_row(float row[GOE_COLUMNS], float weight) {
     for (size_t c = 0; c < GOE_COLUMNS; c++) {
-        *element *= weight;
-        element += GOE_ROWS_MAX;
+        row[c] *= weight;
     }
 }
+
+GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);
 
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
     belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
@@ -130,7 +126,7 @@ goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t 
         const float weight = sqrtf(belief.factor[rows->feature[i]] / (rows->variance[i] * repeated));
         belief.verdict.measured |= flag;
         belief.verdict.rows += refused ? 0 : 1;
-        scale_row(rows->matrix, i, refused ? 0.0f : weight);
+        scale_row(rows->matrix->row[i], refused ? 0.0f : weight);
     }
     return belief.verdict;
 }

@@ -1,5 +1,7 @@
-/* Projection under a small attitude bias, noise of the points. SPDX-License-Identifier: MIT */
+/* The image in the state's axes, projection under a small attitude bias, noise of the points, rows. SPDX-License-Identifier: MIT */
 #include "refined/goe_observation.h"
+
+#include <string.h>
 
 #define ABEAM 0.02f           /* third component of an aligned point's ray after the turn */
 #define FORWARD_LEAST 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
@@ -14,28 +16,29 @@ static bool in_order(goe_point_t *left, goe_point_t *right) {
     return true;
 }
 
-static unsigned put_in_order(goe_observation_t *sight, goe_view_t *view) {
-    const void *points = view; /* one after the other, in the order of the features */
-    const bool silhouette = in_order(&view->left, &view->right);
-    const bool base = in_order(&view->base_left, &view->base_right);
-    const bool left = view->base_left.usable;
-    const bool right = view->base_right.usable;
-    sight->base = left && right;
-    sight->edge = sight->base || (view->base_near.usable && (left || right));
-    sight->point = points;
+static unsigned put_in_order(goe_observation_t *obs) {
+    goe_point_t *p = obs->point;
+    const bool silhouette = in_order(&p[GOE_POINT_LEFT], &p[GOE_POINT_RIGHT]);
+    const bool base = in_order(&p[GOE_POINT_BASE_LEFT], &p[GOE_POINT_BASE_RIGHT]);
+    const bool left = p[GOE_POINT_BASE_LEFT].usable;
+    const bool right = p[GOE_POINT_BASE_RIGHT].usable;
+    obs->base = left && right;
+    obs->edge = obs->base || (p[GOE_POINT_BASE_NEAR].usable && (left || right));
     return (silhouette ? 0u : 1u) + (base ? 0u : 1u);
 }
 
-/* About the vertical: X = c x - s z, Z = s x + c z. */
-static void turn_points(goe_view_t *view, float c, float s) {
-    void *points = view;
-    goe_point_t *p = points;
+/* The view's points about the vertical. Base corners that proved to be none are left out. */
+static void turn_points(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
+    const float c = filter->axes.turn_cos;
+    const float s = filter->axes.turn_sin;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
-        const float forward = p[i].usable ? s * p[i].x + c : 0.0f;
-        p[i].usable = forward > ABEAM;
-        if (p[i].usable) {
-            p[i].x = (c * p[i].x - s) / forward;
-            p[i].y = p[i].y / forward;
+        goe_point_t *p = &obs->point[i];
+        *p = view->point[i];
+        const float forward = p->usable ? s * p->x + c : 0.0f;
+        p->usable = forward > ABEAM && !(i >= GOE_POINT_BASE_LEFT && filter->health.base_refused);
+        if (p->usable) {
+            p->x = (c * p->x - s) / forward;
+            p->y = p->y / forward;
         }
     }
 }
@@ -49,47 +52,43 @@ static void turn_rotation(const float from[9], float c, float s, float to[9]) {
 }
 
 /* body -> axes = (camera -> axes)(camera -> body)' */
-static void find_body(goe_observation_t *sight, const float camera_to_body[9]) {
-    const float *t = sight->camera_to_axes;
+static void find_body(goe_observation_t *obs, const float camera_to_body[9]) {
+    const float *t = obs->camera_to_axes;
     for (size_t j = 0; j < 3; j++) {
         const float *b = &camera_to_body[3 * j];
         for (size_t i = 0; i < 3; i++) {
-            sight->body_to_axes[3 * i + j] = t[3 * i] * b[0] + t[3 * i + 1] * b[1] + t[3 * i + 2] * b[2];
+            obs->body_to_axes[3 * i + j] = t[3 * i] * b[0] + t[3 * i + 1] * b[1] + t[3 * i + 2] * b[2];
         }
     }
 }
 
-unsigned goe_observation_open(goe_observation_t *sight, const goe_estimator_t *estimator,
-                              const float camera_to_trajectory[9], goe_view_t *view) {
-    const float c = estimator->filter.turn_cos;
-    const float s = estimator->filter.turn_sin;
-    sight->settings = &estimator->settings;
-    sight->state = estimator->filter.state;
-    turn_rotation(camera_to_trajectory, c, s, sight->camera_to_axes);
-    turn_points(view, c, s);
-    find_body(sight, estimator->camera_to_body);
-    const float dx_m = estimator->dx_m - estimator->filter.start_dx_m;
-    const float dz_m = estimator->dz_m - estimator->filter.start_dz_m;
-    sight->dx_m = c * dx_m - s * dz_m;
-    sight->dz_m = s * dx_m + c * dz_m;
-    sight->height_m = estimator->height_m;
-    sight->depth_variance = 0.0f;
-    return put_in_order(sight, view);
+unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
+                              const goe_view_t *view) {
+    obs->settings = settings;
+    obs->state = filter->state;
+    turn_points(obs, filter, view);
+    turn_rotation(view->camera_to_trajectory, filter->axes.turn_cos, filter->axes.turn_sin, obs->camera_to_axes);
+    find_body(obs, view->camera_to_body);
+    obs->camera_m = goe_filter_camera(filter, view->motion);
+    obs->height_m = view->motion->height_m;
+    obs->depth_variance = 0.0f;
+    obs->two_faces = false;
+    return put_in_order(obs);
 }
 
-void goe_observation_look(goe_observation_t *sight) {
-    const float *m = sight->body_to_axes;
-    const float *b = &sight->state[GOE_BX];
-    sight->ex = m[0] * b[0] + m[1] * b[1] + m[2] * b[2];
-    sight->ey = m[3] * b[0] + m[4] * b[1] + m[5] * b[2];
-    sight->ez = m[6] * b[0] + m[7] * b[1] + m[8] * b[2];
+void goe_observation_linearise(goe_observation_t *obs) {
+    const float *m = obs->body_to_axes;
+    const float *b = &obs->state[GOE_BIAS_X];
+    obs->ex = m[0] * b[0] + m[1] * b[1] + m[2] * b[2];
+    obs->ey = m[3] * b[0] + m[4] * b[1] + m[5] * b[2];
+    obs->ez = m[6] * b[0] + m[7] * b[1] + m[8] * b[2];
 }
 
-goe_point_t goe_observation_project(const goe_observation_t *sight, float x, float y, float z, goe_gradient_t *of_x,
+goe_point_t goe_observation_project(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x,
                                     goe_gradient_t *of_y) {
-    const float ex = sight->ex;
-    const float ey = sight->ey;
-    const float ez = sight->ez;
+    const float ex = obs->ex;
+    const float ey = obs->ey;
+    const float ez = obs->ez;
     const float turned_z = z + ex * y - ey * x;
     const float reciprocal = 1.0f / (turned_z < FORWARD_LEAST ? FORWARD_LEAST : turned_z);
     goe_point_t seen;
@@ -111,22 +110,22 @@ goe_point_t goe_observation_project(const goe_observation_t *sight, float x, flo
     return seen;
 }
 
-goe_point_t goe_observation_unbiased(const goe_observation_t *sight, size_t feature) {
-    const goe_point_t *p = &sight->point[feature];
+goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t feature) {
+    const goe_point_t *p = &obs->point[feature];
     goe_point_t q = *p;
-    q.x = p->x - sight->ey * (1.0f + p->x * p->x) + sight->ez * p->y + sight->ex * p->x * p->y;
-    q.y = p->y + sight->ex * (1.0f + p->y * p->y) - sight->ez * p->x - sight->ey * p->x * p->y;
+    q.x = p->x - obs->ey * (1.0f + p->x * p->x) + obs->ez * p->y + obs->ex * p->x * p->y;
+    q.y = p->y + obs->ex * (1.0f + p->y * p->y) - obs->ez * p->x - obs->ey * p->x * p->y;
     return q;
 }
 
 /* Derivative of the aligned point n1/n3, n2/n3, n = H (u, v, 1), by the pixel; 1/n3 is the third component of H'(x, y, 1). The
  * lens is left out: its scale is good to a few percent. */
-goe_spread_t goe_observation_spread(const goe_observation_t *sight, size_t feature) {
-    const float *h = sight->camera_to_axes;
-    const goe_point_t *p = &sight->point[feature];
-    const float scale = (h[2] * p->x + h[5] * p->y + h[8]) * sight->settings->noise.pixel_px;
-    const float u = scale / sight->settings->camera.fx_px;
-    const float v = scale / sight->settings->camera.fy_px;
+goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature) {
+    const float *h = obs->camera_to_axes;
+    const goe_point_t *p = &obs->point[feature];
+    const float scale = (h[2] * p->x + h[5] * p->y + h[8]) * obs->settings->noise.pixel_px;
+    const float u = scale / obs->settings->camera.fx_px;
+    const float v = scale / obs->settings->camera.fy_px;
     const float xu = (h[0] - p->x * h[6]) * u;
     const float xv = (h[1] - p->x * h[7]) * v;
     const float yu = (h[3] - p->y * h[6]) * u;
@@ -135,51 +134,53 @@ goe_spread_t goe_observation_spread(const goe_observation_t *sight, size_t featu
     return spread;
 }
 
-float goe_observation_size_variance(const goe_observation_t *sight) {
-    const goe_point_t *left = &sight->point[GOE_LEFT];
-    const goe_point_t *right = &sight->point[GOE_RIGHT];
+float goe_observation_size_variance(const goe_observation_t *obs) {
+    const goe_point_t *left = &obs->point[GOE_POINT_LEFT];
+    const goe_point_t *right = &obs->point[GOE_POINT_RIGHT];
     if (!left->usable || !right->usable) {
         return 0.0f;
     }
-    const float sigma = sight->settings->noise.size_share * (right->x - left->x);
+    const float sigma = obs->settings->noise.size_share * (right->x - left->x);
     return sigma * sigma;
 }
+
+/* ------------------------------------------------------------------------------------------------------------ rows -- */
 
 void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix) {
     rows->matrix = matrix;
     rows->count = 0;
 }
 
-void goe_rows_end(goe_rows_t *rows) {
-    for (size_t row = rows->count; row < GOE_ROWS_MAX; row++) {
-        for (size_t c = 0; c < GOE_COLUMNS; c++) {
-            rows->matrix->column[c][row] = 0.0f;
-        }
+float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float residual, float variance,
+                    const goe_gradient_t *gradient) {
+    const size_t at = rows->count++;
+    float *row = rows->matrix->row[at];
+    float *by_state = &row[GOE_STATE_COLUMN];
+    rows->variance[at] = variance;
+    rows->feature[at] = (uint8_t)feature;
+    row[0] = gradient->ey;
+    row[1] = gradient->ex;
+    row[2] = gradient->ez;
+    row[GOE_RESIDUAL] = residual;
+    memset(by_state, 0, GOE_STATES * sizeof by_state[0]);
+    return by_state;
+}
+
+GOE_STATIC_ASSERT(GOE_NUISANCES == 3, the_nuisances_are_the_attitude_about_y_x_z);
+
+static void turn_attitude(float *row, const float body_to_axes[9]) {
+    const float *m = body_to_axes;
+    const float ey = row[0];
+    const float ex = row[1];
+    const float ez = row[2];
+    for (size_t j = 0; j < 3; j++) {
+        row[GOE_STATE_COLUMN + GOE_BIAS_X + j] = ex * m[j] + ey * m[3 + j] + ez * m[6 + j];
     }
 }
 
-size_t goe_rows_add(goe_rows_t *rows, size_t feature, float residual, float variance, const goe_gradient_t *gradient) {
-    const size_t row = rows->count++;
-    for (size_t state = GOE_DH; state < GOE_STATES; state++) {
-        goe_rows_set(rows, row, state, 0.0f);
-    }
-    rows->matrix->column[0][row] = gradient->ey;
-    rows->matrix->column[1][row] = gradient->ex;
-    rows->matrix->column[2][row] = gradient->ez;
-    rows->matrix->column[GOE_RESIDUAL][row] = residual;
-    rows->variance[row] = variance;
-    rows->feature[row] = (uint8_t)feature;
-    return row;
-}
-
-void goe_rows_turn(goe_rows_t *rows, const goe_observation_t *sight) {
-    const float *m = sight->body_to_axes;
+void goe_rows_end(goe_rows_t *rows, const goe_observation_t *obs) {
     for (size_t i = 0; i < rows->count; i++) {
-        const float ey = rows->matrix->column[0][i];
-        const float ex = rows->matrix->column[1][i];
-        const float ez = rows->matrix->column[2][i];
-        for (size_t j = 0; j < 3; j++) {
-            goe_rows_set(rows, i, GOE_BX + j, ex * m[j] + ey * m[3 + j] + ez * m[6 + j]);
-        }
+        turn_attitude(rows->matrix->row[i], obs->body_to_axes);
     }
+    memset(rows->matrix->row[rows->count], 0, (GOE_ROWS_MAX - rows->count) * sizeof rows->matrix->row[0]);
 }

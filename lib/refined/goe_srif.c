@@ -1,7 +1,6 @@
 /* Square-root information filter: reflections, inverse, process noise. SPDX-License-Identifier: MIT
  *
- * The state is the linearisation point, so the right-hand side that belongs to R is always zero. The sign of R's diagonal is
- * free; nothing depends on it. */
+ * The sign of the diagonal of R is free; nothing depends on it. */
 #include "refined/goe_srif.h"
 
 #include <math.h>
@@ -11,17 +10,21 @@
 
 /* -------------------------------------------------------------------------------------------------------- reflections -- */
 
-/* One column, held in registers. */
+/* Element k of a column lies in row k. The kernels hold one column of all rows in registers. */
+#define STEP GOE_COLUMNS
+GOE_STATIC_ASSERT(GOE_ROWS_MAX == 9, the_kernels_hold_nine_rows);
+
 typedef struct {
     float v0, v1, v2, v3, v4, v5, v6, v7, v8;
-} pivot_t;
+} column_t;
 
-static inline pivot_t load(const float *v) {
-    const pivot_t p = {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
-    return p;
+static inline column_t load(const float *v) {
+    const column_t c = {v[0],        v[STEP],     v[2 * STEP], v[3 * STEP], v[4 * STEP],
+                        v[5 * STEP], v[6 * STEP], v[7 * STEP], v[8 * STEP]};
+    return c;
 }
 
-static inline float dot(pivot_t p, pivot_t c, float sum) {
+static inline float dot(column_t p, column_t c, float sum) {
     sum += p.v0 * c.v0;
     sum += p.v1 * c.v1;
     sum += p.v2 * c.v2;
@@ -34,16 +37,16 @@ static inline float dot(pivot_t p, pivot_t c, float sum) {
 }
 
 /* at = c + g p */
-static inline void store_sum(float *at, pivot_t c, float g, pivot_t p) {
+static inline void store_sum(float *at, column_t c, float g, column_t p) {
     at[0] = c.v0 + g * p.v0;
-    at[1] = c.v1 + g * p.v1;
-    at[2] = c.v2 + g * p.v2;
-    at[3] = c.v3 + g * p.v3;
-    at[4] = c.v4 + g * p.v4;
-    at[5] = c.v5 + g * p.v5;
-    at[6] = c.v6 + g * p.v6;
-    at[7] = c.v7 + g * p.v7;
-    at[8] = c.v8 + g * p.v8;
+    at[STEP] = c.v1 + g * p.v1;
+    at[2 * STEP] = c.v2 + g * p.v2;
+    at[3 * STEP] = c.v3 + g * p.v3;
+    at[4 * STEP] = c.v4 + g * p.v4;
+    at[5 * STEP] = c.v5 + g * p.v5;
+    at[6 * STEP] = c.v6 + g * p.v6;
+    at[7 * STEP] = c.v7 + g * p.v7;
+    at[8 * STEP] = c.v8 + g * p.v8;
 }
 
 /* The reflection that takes (r, column) to (diagonal, 0): I + beta (u, column)(u, column)'. */
@@ -52,7 +55,7 @@ typedef struct {
 } reflection_t;
 
 /* False if the column is 0 already. */
-static inline bool reflect(pivot_t p, float r, reflection_t *to) {
+static inline bool reflect(column_t p, float r, reflection_t *to) {
     const float s = dot(p, p, 0.0f);
     if (!(s > 0.0f)) {
         return false;
@@ -64,18 +67,18 @@ static inline bool reflect(pivot_t p, float r, reflection_t *to) {
     return true;
 }
 
-/* Nothing is known of the temporaries beforehand but their sigma: their rows of the triangle are 0 until they are reached,
+/* Nothing is known of the nuisances beforehand but their sigma: their rows of the triangle are 0 until they are reached,
  * and are not needed afterwards. */
-static void remove_temporaries(float root, goe_matrix_t *matrix) {
+static void remove_nuisances(float root, goe_matrix_t *matrix) {
     reflection_t to;
-    for (size_t j = 0; j < GOE_TEMPORARIES; j++) {
-        const pivot_t p = load(matrix->column[j]);
+    for (size_t j = 0; j < GOE_NUISANCES; j++) {
+        const column_t p = load(&matrix->row[0][j]);
         if (!reflect(p, root, &to)) {
             continue;
         }
         for (size_t c = j + 1; c < GOE_COLUMNS; c++) {
-            const pivot_t column = load(matrix->column[c]);
-            store_sum(matrix->column[c], column, dot(p, column, 0.0f) * to.beta, p);
+            const column_t column = load(&matrix->row[0][c]);
+            store_sum(&matrix->row[0][c], column, dot(p, column, 0.0f) * to.beta, p);
         }
     }
 }
@@ -84,23 +87,23 @@ static void reflect_states(goe_triangle_t *root, goe_matrix_t *matrix, float rig
     reflection_t to;
     float *r = root->element;
     for (size_t j = 0; j < GOE_STATES; j++) {
-        const pivot_t p = load(matrix->column[GOE_TEMPORARIES + j]);
+        const column_t p = load(&matrix->row[0][GOE_STATE_COLUMN + j]);
         right[j] = 0.0f;
         if (!reflect(p, *r, &to)) {
             r += GOE_STATES - j;
             continue;
         }
         *r++ = to.diagonal;
-        for (size_t c = GOE_TEMPORARIES + j + 1; c < GOE_RESIDUAL; c++) {
-            const pivot_t column = load(matrix->column[c]);
+        for (size_t c = GOE_STATE_COLUMN + j + 1; c < GOE_RESIDUAL; c++) {
+            const column_t column = load(&matrix->row[0][c]);
             const float g = dot(p, column, to.u * *r) * to.beta;
             *r++ += g * to.u;
-            store_sum(matrix->column[c], column, g, p);
+            store_sum(&matrix->row[0][c], column, g, p);
         }
-        const pivot_t residual = load(matrix->column[GOE_RESIDUAL]);
+        const column_t residual = load(&matrix->row[0][GOE_RESIDUAL]);
         const float g = dot(p, residual, 0.0f) * to.beta;
         right[j] = g * to.u;
-        store_sum(matrix->column[GOE_RESIDUAL], residual, g, p);
+        store_sum(&matrix->row[0][GOE_RESIDUAL], residual, g, p);
     }
 }
 
@@ -116,11 +119,11 @@ static void solve_back(const goe_triangle_t *root, float right[GOE_STATES]) {
     }
 }
 
-float goe_srif_update(goe_triangle_t *root, float temporaries_root, goe_matrix_t *matrix, float change[GOE_STATES]) {
-    remove_temporaries(temporaries_root, matrix);
+float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]) {
+    remove_nuisances(nuisance_root, matrix);
     reflect_states(root, matrix, change);
     solve_back(root, change);
-    const pivot_t residual = load(matrix->column[GOE_RESIDUAL]);
+    const column_t residual = load(&matrix->row[0][GOE_RESIDUAL]);
     return dot(residual, residual, 0.0f);
 }
 
@@ -128,8 +131,8 @@ float goe_srif_update(goe_triangle_t *root, float temporaries_root, goe_matrix_t
 
 /* A disturbance d of the state, x = x' + direction d, enters as a row (1/sigma) d = 0; Givens rotations then take it out of
  * the triangle again. In terms of sigma, not 1/sigma: a tiny one must not overflow. */
-void goe_srif_spread(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
-                     float sigma) {
+void goe_srif_inflate(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
+                      float sigma) {
     float row[GOE_STATES];
     memset(row, 0, sizeof row);
     for (size_t i = last + 1; i-- > 0;) {
@@ -161,6 +164,15 @@ static float dot_run(const float *a, const float *b, size_t count) {
     return sum;
 }
 
+float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
+    float sum = 0.0f;
+    for (size_t j = state; j < GOE_STATES; j++) {
+        const float v = inverse->element[goe_inverse_column(j) + state];
+        sum += v * v;
+    }
+    return sum;
+}
+
 /* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. */
 void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse) {
     float *v = inverse->element;
@@ -180,6 +192,8 @@ void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse
         inverse->element[goe_inverse_column(i) + i] = 1.0f / root->element[goe_srif_row(i) + i];
     }
 }
+
+GOE_STATIC_ASSERT(GOE_STATES == 10, the_variance_is_written_out_for_ten_states);
 
 /* Written out: this is done for every row and every quantity of every image. */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
@@ -280,6 +294,8 @@ void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float 
 
 /* ------------------------------------------------------------------------------------------------------ other states -- */
 
+GOE_STATIC_ASSERT(GOE_CHANGED <= GOE_ROWS_MAX && GOE_CHANGED < GOE_STATES, the_changed_states_fit_into_the_rows);
+
 /* R times the derivative is square from the changed states on: these rows go in anew, as if they were measured. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows) {
     const size_t kept = GOE_STATES - GOE_CHANGED;
@@ -299,7 +315,7 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
         }
         memset(&r[i], 0, (GOE_STATES - i) * sizeof r[0]);
         for (size_t j = 0; j < GOE_CHANGED; j++) {
-            rows->column[GOE_TEMPORARIES + kept + j][i - kept] = row[j];
+            rows->row[i - kept][GOE_STATE_COLUMN + kept + j] = row[j];
         }
     }
     (void)goe_srif_update(root, 1.0f, rows, change);

@@ -1,10 +1,15 @@
-/* Square-root information: the triangle R and what is done to it. SPDX-License-Identifier: MIT */
+/* Square-root information filter: the triangle R and what is done to it. SPDX-License-Identifier: MIT
+ *
+ * R'R is the information of the state, R^-1 R^-1' its covariance; G. J. Bierman, "Factorization Methods for Discrete
+ * Sequential Estimation" (1977), chapters V and VI. The state is the linearisation point, so the right-hand side that
+ * belongs to R is always zero. */
 #ifndef GOE_SRIF_H
 #define GOE_SRIF_H
 
 #include "goe.h"
 
-/* Column of goe_matrix_t. Its nine rows: three corners, two each; left, right, top. */
+/* Columns of a row of goe_matrix_t: the image's own nuisances, the states, the residual (measured minus predicted). */
+#define GOE_STATE_COLUMN GOE_NUISANCES
 #define GOE_RESIDUAL (GOE_COLUMNS - 1)
 
 /* Element (i, j), i <= j, is element[goe_srif_row(i) + j]. */
@@ -13,38 +18,26 @@ static inline size_t goe_srif_row(size_t i) { return i * (2u * GOE_STATES - 1u -
 /* Element (i, j), i <= j, of the inverse is element[goe_inverse_column(j) + i]. */
 static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
 
-/* Variance of one state. */
-static inline float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
-    float sum = 0.0f;
-    for (size_t j = state; j < GOE_STATES; j++) {
-        const float v = inverse->element[goe_inverse_column(j) + state];
-        sum += v * v;
-    }
-    return sum;
-}
-
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
-/* Rotates whitened rows into R by Householder reflections and solves for the change of the state; the rows' residual is
- * measured minus predicted at the present state. temporaries_root: 1/sigma of the temporaries. *matrix is used up.
- * Returns the squared norm that is left of the residuals: the normalised innovation squared. */
-float goe_srif_update(goe_triangle_t *root, float temporaries_root, goe_matrix_t *matrix, float change[GOE_STATES]);
+/* Rotates whitened rows into R by Householder reflections and solves for the change of the state. nuisance_root: 1/sigma of
+ * the nuisances. *matrix is used up. Returns the squared norm that is left of the residuals: the normalised innovation
+ * squared. */
+float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]);
 
 /* Adds variance sigma^2 along the states first and last, first <= last, with the weights of each; sigma > 0. For first = last
  * the weight is last_weight. */
-void goe_srif_spread(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
-                     float sigma);
-
-/* The same of one state alone. */
-static inline void goe_srif_spread_state(goe_triangle_t *root, size_t state, float sigma) {
-    goe_srif_spread(root, state, 0.0f, state, 1.0f, sigma);
-}
+void goe_srif_inflate(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
+                      float sigma);
 
 /* *inverse = R^-1. */
 void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse);
 
 /* The same of a diagonal R, for less. */
 void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse);
+
+/* Variance of one state. */
+float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
 
 /* Variance of w' x. */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);

@@ -17,46 +17,46 @@ static float heading_deg(const goe_point_t *a, const goe_point_t *b) {
     return goe_fold_deg(rad * GOE_DEG_PER_RAD);
 }
 
-/* edge->left and edge->right are usable; from_px and to_px are their pixels. */
-static void measure_edge(const goe_settings_t *settings, const goe_pixel_t *from_px, const goe_pixel_t *to_px,
+/* edge->left and edge->right are usable; from and to are their pixels. */
+static void measure_edge(const goe_settings_t *settings, const goe_pixel_t *from, const goe_pixel_t *to,
                          goe_edge_t *edge) {
     const goe_point_t *left = edge->left;
     const goe_point_t *right = edge->right;
-    const float du = to_px->u_px - from_px->u_px;
-    const float dv = to_px->v_px - from_px->v_px;
+    const float du = to->u_px - from->u_px;
+    const float dv = to->v_px - from->v_px;
     const float rise_px = goe_absolute(right->y - left->y) * settings->camera.fx_px;
     edge->counts = du * du + dv * dv > settings->edge_min_px * settings->edge_min_px;
     edge->has_heading = edge->counts && rise_px > settings->orientation_min_px;
     edge->heading_deg = edge->has_heading ? heading_deg(left, right) : 0.0f;
 }
 
-static void add_edge(const goe_settings_t *settings, const goe_pixel_t *from_px, const goe_point_t *from,
-                     const goe_pixel_t *to_px, const goe_point_t *to, goe_edges_t *edges) {
-    if (from->usable && to->usable) {
+static void add_edge(const goe_settings_t *settings, const goe_view_t *view, goe_feature_t from, goe_feature_t to,
+                     goe_edges_t *edges) {
+    if (view->point[from].usable && view->point[to].usable) {
+        const goe_pixels_t pixels = goe_image_pixels(view->image);
         goe_edge_t *edge = &edges->edge[edges->count++];
-        edge->left = from;
-        edge->right = to;
-        measure_edge(settings, from_px, to_px, edge);
+        edge->left = &view->point[from];
+        edge->right = &view->point[to];
+        measure_edge(settings, pixels.at[from], pixels.at[to], edge);
     }
 }
 
-goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_image_t *image, const goe_view_t *view,
-                           goe_edges_t *edges) {
-    const goe_point_t *left = &view->base_left;
-    const goe_point_t *corner = &view->base_near;
-    const goe_point_t *right = &view->base_right;
+goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_view_t *view, goe_edges_t *edges) {
+    const goe_point_t *left = &view->point[GOE_POINT_BASE_LEFT];
+    const goe_point_t *corner = &view->point[GOE_POINT_BASE_NEAR];
+    const goe_point_t *right = &view->point[GOE_POINT_BASE_RIGHT];
     edges->count = 0;
     if (corner->usable) {
         if (!in_order(left, corner) || !in_order(corner, right)) {
             return GOE_SWAPPED;
         }
-        add_edge(settings, &image->base_left, left, &image->base_near, corner, edges);
-        add_edge(settings, &image->base_near, corner, &image->base_right, right, edges);
+        add_edge(settings, view, GOE_POINT_BASE_LEFT, GOE_POINT_BASE_NEAR, edges);
+        add_edge(settings, view, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_RIGHT, edges);
     } else {
         if (!in_order(left, right)) {
             return GOE_SWAPPED;
         }
-        add_edge(settings, &image->base_left, left, &image->base_right, right, edges);
+        add_edge(settings, view, GOE_POINT_BASE_LEFT, GOE_POINT_BASE_RIGHT, edges);
     }
     return GOE_OK;
 }

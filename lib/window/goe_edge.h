@@ -2,7 +2,7 @@
 #ifndef GOE_EDGE_H
 #define GOE_EDGE_H
 
-#include "image/goe_align.h"
+#include "image/goe_view.h"
 
 typedef struct {
     const goe_point_t *left, *right; /* end points in image order */
@@ -18,7 +18,6 @@ typedef struct {
 
 /* Finds the edges between the usable base corners. GOE_OK, or GOE_SWAPPED if the corners are not in image order: then
  * there are no edges. The edges point into view. */
-goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_image_t *image, const goe_view_t *view,
-                           goe_edges_t *edges);
+goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_view_t *view, goe_edges_t *edges);
 
 #endif

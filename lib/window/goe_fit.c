@@ -20,14 +20,14 @@ typedef struct {
     float largest_dz_m;
 } moments_t;
 
-static void sum_means(const goe_window_point_t *points, int length, moments_t *m) {
-    const goe_window_point_t *end = points + length;
+static void sum_means(const goe_fit_point_t *points, int length, moments_t *m) {
+    const goe_fit_point_t *end = points + length;
     float dx_m = 0.0f;
     float dz_m = 0.0f;
     float xi = 0.0f;
     float zeta = 0.0f;
     float largest_dz_m = points->dz_m;
-    for (const goe_window_point_t *p = points; p != end; p++) {
+    for (const goe_fit_point_t *p = points; p != end; p++) {
         dx_m += p->dx_m;
         dz_m += p->dz_m;
         xi += p->xi;
@@ -42,12 +42,12 @@ static void sum_means(const goe_window_point_t *points, int length, moments_t *m
     m->largest_dz_m = largest_dz_m;
 }
 
-static void sum_products(const goe_window_point_t *points, int length, moments_t *m) {
-    const goe_window_point_t *end = points + length;
+static void sum_products(const goe_fit_point_t *points, int length, moments_t *m) {
+    const goe_fit_point_t *end = points + length;
     const moments_t mean = *m; /* a copy, so that the compiler may keep it in registers */
     float spread_m2 = 0.0f;
     float mixed_m = 0.0f;
-    for (const goe_window_point_t *p = points; p != end; p++) {
+    for (const goe_fit_point_t *p = points; p != end; p++) {
         const float x = p->dx_m - mean.dx_m;
         const float z = p->dz_m - mean.dz_m;
         spread_m2 += x * x + z * z;
@@ -57,10 +57,10 @@ static void sum_products(const goe_window_point_t *points, int length, moments_t
     m->mixed_m = mixed_m;
 }
 
-static float squared_residuals(const goe_window_point_t *points, int length, const moments_t *m, float inverse_width) {
-    const goe_window_point_t *end = points + length;
+static float squared_residuals(const goe_fit_point_t *points, int length, const moments_t *m, float inverse_width) {
+    const goe_fit_point_t *end = points + length;
     float sum = 0.0f;
-    for (const goe_window_point_t *p = points; p != end; p++) {
+    for (const goe_fit_point_t *p = points; p != end; p++) {
         const float x = (p->xi - m->xi) + inverse_width * (p->dx_m - m->dx_m);
         const float z = (p->zeta - m->zeta) + inverse_width * (p->dz_m - m->dz_m);
         sum += x * x + z * z;
@@ -83,10 +83,10 @@ static void set_sigmas(const moments_t *m, int length, float squares, goe_estima
     fit->sigma.z_m = fit->sigma.z0_m;
 }
 
-goe_status_t goe_fit_solve(const goe_window_t *window, int length, float min_baseline_m, goe_estimate_t *fit) {
+goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_baseline_m, goe_estimate_t *fit) {
     moments_t m;
-    sum_means(window->point, length, &m);
-    sum_products(window->point, length, &m);
+    sum_means(ring->point, length, &m);
+    sum_products(ring->point, length, &m);
     const float baseline_m = sqrtf(m.spread_m2);
     if (baseline_m < min_baseline_m) {
         return GOE_NO_BASELINE;
@@ -108,6 +108,6 @@ goe_status_t goe_fit_solve(const goe_window_t *window, int length, float min_bas
     fit->z0_m = z0_m;
     fit->width_m = width_m;
     fit->baseline_m = baseline_m;
-    set_sigmas(&m, length, squared_residuals(window->point, length, &m, inverse_width), fit);
+    set_sigmas(&m, length, squared_residuals(ring->point, length, &m, inverse_width), fit);
     return GOE_OK;
 }

@@ -5,20 +5,20 @@
 #include "window/goe_projection.h"
 
 /* Adds a row; the oldest of `length` rows leaves. */
-static inline void goe_fit_add(goe_window_t *window, int length, float dx_m, float dz_m, goe_row_t row) {
-    const int at = window->next;
-    goe_window_point_t *point = &window->point[at];
+static inline void goe_fit_add(goe_fit_ring_t *ring, int length, float dx_m, float dz_m, goe_row_t row) {
+    const int at = ring->next;
+    goe_fit_point_t *point = &ring->point[at];
     point->dx_m = dx_m;
     point->dz_m = dz_m;
     point->xi = row.xi;
     point->zeta = row.zeta;
-    window->next = (int16_t)(at + 1 < length ? at + 1 : 0);
-    window->count = (int16_t)(window->count < INT16_MAX ? window->count + 1 : INT16_MAX);
+    ring->next = (int16_t)(at + 1 < length ? at + 1 : 0);
+    ring->count = (int16_t)(ring->count < INT16_MAX ? ring->count + 1 : INT16_MAX);
 }
 
 /* Solves (5) over the newest `length` rows, which must be there. GOE_OK with x0, z0, width, residual,
  * baseline and their sigmas set, or with *fit untouched GOE_NO_BASELINE,
  * GOE_NO_PARALLAX or GOE_PASSED. */
-goe_status_t goe_fit_solve(const goe_window_t *window, int length, float min_baseline_m, goe_estimate_t *fit);
+goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_baseline_m, goe_estimate_t *fit);
 
 #endif

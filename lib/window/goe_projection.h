@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "image/goe_align.h"
+#include "image/goe_view.h"
 
 #define GOE_FORWARD_MIN 0.05f /* third component of a unit ray in T, as in the alignment */
 

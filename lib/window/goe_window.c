@@ -1,14 +1,16 @@
-/* The paper's method: one image through (1) to (8). SPDX-License-Identifier: MIT
+/* The window method: one image through (1) to (8). SPDX-License-Identifier: MIT
  *
- *   aligned points -> disc row ------------------> window -> length, height -> estimate
+ *   aligned points -> disc row -------------------> fit -> length, height -> estimate
  *                 \-> edges -> orientation -> line row -/
  */
 #include "window/goe_window.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "image/goe_ego_motion.h"
 #include "maths/goe_angle.h"
-#include "refined/goe_answer.h"
+#include "maths/goe_scalar.h"
 #include "window/goe_edge.h"
 #include "window/goe_extent.h"
 #include "window/goe_fit.h"
@@ -18,41 +20,52 @@
 
 /* What one image contributes, on its way through the chain. */
 typedef struct {
+    const goe_settings_t *settings;
     const goe_view_t *view;
     goe_edges_t edges;
     goe_faces_t faces;
     goe_turn_t turn;  /* filtered orientation */
     goe_span_t front; /* holds if line_row */
     goe_faults_t faults;
-    bool disc_row, line_row; /* the image added a row to that model's window */
+    bool disc_row, line_row; /* the image added a row to that model's ring */
 } frame_t;
+
+void goe_window_clear(goe_window_t *window) {
+    memset(window, 0, sizeof *window);
+    window->solved_time_us = GOE_TIME_UNKNOWN;
+}
 
 /* ------------------------------------------------------------------------------------------------- rows of one image -- */
 
-static goe_status_t add_disc_row(goe_estimator_t *estimator, frame_t *frame) {
+static void add_row(goe_fit_ring_t *ring, const frame_t *frame, goe_row_t row) {
+    goe_fit_add(ring, frame->settings->window, frame->view->motion->dx_m, frame->view->motion->dz_m, row);
+}
+
+static goe_status_t add_disc_row(goe_window_t *window, frame_t *frame) {
     goe_row_t row;
-    if (estimator->settings.model == GOE_MODEL_LINE || !frame->view->left.usable || !frame->view->right.usable) {
+    const goe_point_t *left = &frame->view->point[GOE_POINT_LEFT];
+    const goe_point_t *right = &frame->view->point[GOE_POINT_RIGHT];
+    if (frame->settings->model == GOE_MODEL_LINE || !left->usable || !right->usable) {
         return GOE_OK;
     }
-    const goe_status_t fault = goe_projection_disc(&frame->view->left, &frame->view->right, &row);
+    const goe_status_t fault = goe_projection_disc(left, right, &row);
     if (fault == GOE_OK) {
-        goe_fit_add(&estimator->disc, estimator->settings.window, estimator->dx_m, estimator->dz_m, row);
+        add_row(&window->disc, frame, row);
         frame->disc_row = true;
     }
     return fault;
 }
 
-static void find_faces(goe_estimator_t *estimator, const goe_image_t *image, frame_t *frame) {
-    if (estimator->settings.model == GOE_MODEL_DISC) {
+static void find_faces(goe_window_t *window, frame_t *frame) {
+    if (frame->settings->model == GOE_MODEL_DISC) {
         return;
     }
-    goe_fault_note(&frame->faults, goe_edge_find(&estimator->settings, image, frame->view, &frame->edges));
-    goe_orientation_update(&estimator->orientation, &frame->edges, estimator->settings.orientation_memory,
-                           &frame->faces);
-    goe_sincos_deg(estimator->orientation.filtered_deg, &frame->turn.s, &frame->turn.c);
+    goe_fault_note(&frame->faults, goe_edge_find(frame->settings, frame->view, &frame->edges));
+    goe_orientation_update(&window->orientation, &frame->edges, frame->settings->orientation_memory, &frame->faces);
+    goe_sincos_deg(window->orientation.filtered_deg, &frame->turn.s, &frame->turn.c);
 }
 
-static void add_line_row(goe_estimator_t *estimator, frame_t *frame) {
+static void add_line_row(goe_window_t *window, frame_t *frame) {
     goe_row_t row;
     const goe_edge_t *front = frame->faces.front;
     if (!frame->faces.measured || !front || !front->counts) {
@@ -61,7 +74,7 @@ static void add_line_row(goe_estimator_t *estimator, frame_t *frame) {
     const goe_status_t fault = goe_projection_line(front->left, front->right, frame->turn, &frame->front, &row);
     goe_fault_note(&frame->faults, fault);
     if (fault == GOE_OK) {
-        goe_fit_add(&estimator->line, estimator->settings.window, estimator->dx_m, estimator->dz_m, row);
+        add_row(&window->line, frame, row);
         frame->line_row = true;
     }
 }
@@ -73,37 +86,37 @@ static int line_points_needed(const goe_settings_t *settings) {
 }
 
 /* The model to report: Section 4 of the paper, disc until enough line points are there. */
-static goe_model_t reported_model(const goe_estimator_t *estimator) {
-    if (estimator->settings.model != GOE_MODEL_AUTO) {
-        return estimator->settings.model;
+static goe_model_t reported_model(const goe_window_t *window, const goe_settings_t *settings) {
+    if (settings->model != GOE_MODEL_AUTO) {
+        return settings->model;
     }
-    return estimator->line.count >= line_points_needed(&estimator->settings) ? GOE_MODEL_LINE : GOE_MODEL_DISC;
+    return window->line.count >= line_points_needed(settings) ? GOE_MODEL_LINE : GOE_MODEL_DISC;
 }
 
-static void take_fit(goe_estimator_t *estimator, goe_model_t model) {
-    goe_estimate_t *estimate = &estimator->estimate;
+static void take_fit(goe_window_t *window, const frame_t *frame, goe_model_t model) {
+    goe_estimate_t *estimate = &window->estimate;
     estimate->method = GOE_METHOD_WINDOW;
     estimate->model = model;
     estimate->valid |= GOE_HAS_POSITION | GOE_HAS_WIDTH;
     estimate->fresh = true;
-    estimate->points = estimator->settings.window;
-    estimator->solved_time_us = estimator->time_us;
+    estimate->points = frame->settings->window;
+    window->solved_time_us = frame->view->motion->time_us;
 }
 
 /* GOE_OK: solved. GOE_COLLECTING, GOE_HELD: nothing to solve. Otherwise why there is no solution. */
-static goe_status_t solve(goe_estimator_t *estimator, const frame_t *frame) {
-    const goe_model_t model = reported_model(estimator);
-    const goe_window_t *window = model == GOE_MODEL_LINE ? &estimator->line : &estimator->disc;
-    const int length = estimator->settings.window;
-    if (window->count < length) {
+static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
+    const goe_model_t model = reported_model(window, frame->settings);
+    const goe_fit_ring_t *ring = model == GOE_MODEL_LINE ? &window->line : &window->disc;
+    const int length = frame->settings->window;
+    if (ring->count < length) {
         return GOE_COLLECTING;
     }
     if (!(model == GOE_MODEL_LINE ? frame->line_row : frame->disc_row)) {
         return GOE_HELD;
     }
-    const goe_status_t status = goe_fit_solve(window, length, estimator->settings.min_baseline_m, &estimator->estimate);
+    const goe_status_t status = goe_fit_solve(ring, length, frame->settings->min_baseline_m, &window->estimate);
     if (status == GOE_OK) {
-        take_fit(estimator, model);
+        take_fit(window, frame, model);
     }
     return status;
 }
@@ -111,54 +124,56 @@ static goe_status_t solve(goe_estimator_t *estimator, const frame_t *frame) {
 /* ------------------------------------------------------------------------------------------- what hangs on a solution -- */
 
 /* The reference point relative to the camera at this image. */
-static void follow_motion(goe_estimator_t *estimator) {
-    goe_estimate_t *estimate = &estimator->estimate;
+static void follow_motion(goe_estimate_t *estimate, const goe_motion_t *motion) {
     if (estimate->valid & GOE_HAS_POSITION) {
-        estimate->x_m = estimate->x0_m - estimator->dx_m;
-        estimate->z_m = estimate->z0_m - estimator->dz_m;
+        estimate->x_m = estimate->x0_m - motion->dx_m;
+        estimate->z_m = estimate->z0_m - motion->dz_m;
     }
 }
 
 /* Takes one image's length or height into its sliding mean. A mean that is not positive is no answer. */
-static void take_extent(goe_estimator_t *estimator, goe_mean_t *mean, const goe_extent_t *extent, unsigned has,
+static void take_extent(goe_mean_t *mean, int length, const goe_extent_t *extent, unsigned has, unsigned *valid,
                         float *value_m, float *sigma_m) {
-    const goe_average_t average = goe_mean_add(mean, estimator->settings.window, extent->value_m);
+    const goe_average_t average = goe_mean_add(mean, length, extent->value_m);
     const bool answers = average.mean > 0.0f;
     *value_m = answers ? average.mean : 0.0f;
     *sigma_m = answers ? sqrtf(average.variance + extent->variance_m2) : 0.0f;
-    if (answers) {
-        estimator->estimate.valid |= has;
-    } else {
-        estimator->estimate.valid &= ~has;
-    }
+    *valid = answers ? *valid | has : *valid & ~has;
 }
 
-static void measure_extents(goe_estimator_t *estimator, const goe_image_t *image, frame_t *frame) {
-    goe_estimate_t *estimate = &estimator->estimate;
+static void measure_length(goe_window_t *window, frame_t *frame) {
+    goe_estimate_t *estimate = &window->estimate;
     goe_extent_t extent;
-    if (estimate->model == GOE_MODEL_LINE && frame->faces.side) {
-        const float min_x = estimator->settings.side_min_px / estimator->settings.camera.fx_px;
-        const goe_status_t fault =
-            goe_extent_length(&frame->faces, &frame->front, frame->turn, estimate, min_x, &extent);
-        goe_fault_note(&frame->faults, fault);
-        if (fault == GOE_OK) {
-            take_extent(estimator, &estimator->length, &extent, GOE_HAS_LENGTH, &estimate->length_m,
-                        &estimate->sigma.length_m);
-        }
+    if (estimate->model != GOE_MODEL_LINE || !frame->faces.side) {
+        return;
     }
-    if (frame->view->top.usable) {
-        const goe_status_t fault = goe_extent_height(&frame->view->top, image->pose.height_m, estimate, &extent);
-        goe_fault_note(&frame->faults, fault);
-        if (fault == GOE_OK) {
-            take_extent(estimator, &estimator->height, &extent, GOE_HAS_HEIGHT, &estimate->height_m,
-                        &estimate->sigma.height_m);
-        }
+    const float min_x = frame->settings->side_min_px / frame->settings->camera.fx_px;
+    const goe_status_t fault = goe_extent_length(&frame->faces, &frame->front, frame->turn, estimate, min_x, &extent);
+    goe_fault_note(&frame->faults, fault);
+    if (fault == GOE_OK) {
+        take_extent(&window->length, frame->settings->window, &extent, GOE_HAS_LENGTH, &estimate->valid,
+                    &estimate->length_m, &estimate->sigma.length_m);
     }
 }
 
-static void tell_orientation(goe_estimator_t *estimator, goe_turn_t turn) {
-    const goe_orientation_t *orientation = &estimator->orientation;
-    goe_estimate_t *estimate = &estimator->estimate;
+static void measure_height(goe_window_t *window, frame_t *frame) {
+    goe_estimate_t *estimate = &window->estimate;
+    const goe_point_t *top = &frame->view->point[GOE_POINT_TOP];
+    goe_extent_t extent;
+    if (!top->usable) {
+        return;
+    }
+    const goe_status_t fault = goe_extent_height(top, frame->view->motion->height_m, estimate, &extent);
+    goe_fault_note(&frame->faults, fault);
+    if (fault == GOE_OK) {
+        take_extent(&window->height, frame->settings->window, &extent, GOE_HAS_HEIGHT, &estimate->valid,
+                    &estimate->height_m, &estimate->sigma.height_m);
+    }
+}
+
+static void report_orientation(goe_window_t *window, goe_turn_t turn) {
+    const goe_orientation_t *orientation = &window->orientation;
+    goe_estimate_t *estimate = &window->estimate;
     if (orientation->count == 0) {
         return;
     }
@@ -173,24 +188,26 @@ static void tell_orientation(goe_estimator_t *estimator, goe_turn_t turn) {
     estimate->sigma.orientation_deg = goe_orientation_sigma_deg(orientation);
 }
 
+static void clear_center(goe_estimate_t *estimate) {
+    estimate->valid &= ~GOE_HAS_CENTER;
+    estimate->center_north_m = 0.0f;
+    estimate->center_east_m = 0.0f;
+    estimate->sigma.center_north_m = 0.0f;
+    estimate->sigma.center_east_m = 0.0f;
+}
+
 /* Middle of the base: a disc's reference point; half a length behind a box's front edge. */
-static void tell_center(goe_estimator_t *estimator) {
-    goe_estimate_t *estimate = &estimator->estimate;
+static void report_center(goe_estimate_t *estimate, const goe_motion_t *motion) {
     const goe_sigma_t *sigma = &estimate->sigma;
-    const float c = estimator->heading_cos;
-    const float s = estimator->heading_sin;
+    const float c = motion->heading_cos;
+    const float s = motion->heading_sin;
     float x_m = estimate->x0_m;
     float z_m = estimate->z0_m;
     float variance_x = sigma->x0_m * sigma->x0_m;
     float variance_z = sigma->z0_m * sigma->z0_m;
-    const bool known = (estimate->valid & GOE_HAS_POSITION) &&
-                       (estimate->model == GOE_MODEL_DISC || (estimate->valid & GOE_HAS_LENGTH));
-    if (!known) {
-        estimate->valid &= ~GOE_HAS_CENTER;
-        estimate->center_north_m = 0.0f;
-        estimate->center_east_m = 0.0f;
-        estimate->sigma.center_north_m = 0.0f;
-        estimate->sigma.center_east_m = 0.0f;
+    if (!(estimate->valid & GOE_HAS_POSITION) ||
+        !(estimate->model == GOE_MODEL_DISC || (estimate->valid & GOE_HAS_LENGTH))) {
+        clear_center(estimate);
         return;
     }
     if (estimate->model == GOE_MODEL_LINE) {
@@ -202,7 +219,7 @@ static void tell_center(goe_estimator_t *estimator) {
         variance_z += half_z * half_z * sigma->length_m * sigma->length_m;
     }
     estimate->valid |= GOE_HAS_CENTER;
-    goe_answer_place(estimator, x_m, z_m, &estimate->center_north_m, &estimate->center_east_m);
+    goe_motion_place(motion, x_m, z_m, &estimate->center_north_m, &estimate->center_east_m);
     estimate->sigma.center_north_m = sqrtf(c * c * variance_z + s * s * variance_x);
     estimate->sigma.center_east_m = sqrtf(s * s * variance_z + c * c * variance_x);
 }
@@ -210,8 +227,7 @@ static void tell_center(goe_estimator_t *estimator) {
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
 /* What to say of an image that was taken. */
-static goe_status_t judge(const goe_estimator_t *estimator, const goe_image_t *image, const frame_t *frame,
-                          goe_status_t solving) {
+static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
     if (solving == GOE_OK) {
         return frame->faults.first == GOE_OK ? GOE_OK : GOE_PARTIAL;
     }
@@ -222,17 +238,19 @@ static goe_status_t judge(const goe_estimator_t *estimator, const goe_image_t *i
     if (frame->faults.first != GOE_OK) {
         return frame->faults.first;
     }
-    if (!goe_image_seen(image)) {
+    if (!goe_image_seen(frame->view->image)) {
         return GOE_NOTHING_SEEN;
     }
-    if (estimator->settings.model == GOE_MODEL_LINE && frame->edges.count > 0 && !frame->line_row) {
+    if (frame->settings->model == GOE_MODEL_LINE && frame->edges.count > 0 && !frame->line_row) {
         goe_count_cause(frame->faults.causes, GOE_NO_EDGE);
         return GOE_NO_EDGE;
     }
     return solving;
 }
 
-static void start_frame(frame_t *frame, const goe_view_t *view, const goe_faults_t *faults) {
+static void start_frame(frame_t *frame, const goe_settings_t *settings, const goe_view_t *view,
+                        const goe_faults_t *faults) {
+    frame->settings = settings;
     frame->view = view;
     frame->faults = *faults;
     frame->edges.count = 0;
@@ -245,25 +263,26 @@ static void start_frame(frame_t *frame, const goe_view_t *view, const goe_faults
     frame->line_row = false;
 }
 
-goe_status_t goe_window_update(goe_estimator_t *estimator, const goe_image_t *image, const goe_view_t *view,
+goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *settings, const goe_view_t *view,
                                goe_window_task_t task, const goe_faults_t *faults) {
     frame_t frame;
-    start_frame(&frame, view, faults);
-    const goe_status_t fault = add_disc_row(estimator, &frame);
-    estimator->estimate.fresh = false;
+    start_frame(&frame, settings, view, faults);
+    const goe_status_t fault = add_disc_row(window, &frame);
+    window->estimate.fresh = false;
     if (task == GOE_WINDOW_COLLECTS) {
         return GOE_HELD;
     }
     goe_fault_note(&frame.faults, fault);
-    find_faces(estimator, image, &frame);
-    add_line_row(estimator, &frame);
+    find_faces(window, &frame);
+    add_line_row(window, &frame);
 
-    const goe_status_t solving = solve(estimator, &frame);
-    follow_motion(estimator);
-    tell_orientation(estimator, frame.turn);
+    const goe_status_t solving = solve(window, &frame);
+    follow_motion(&window->estimate, view->motion);
+    report_orientation(window, frame.turn);
     if (solving == GOE_OK) {
-        measure_extents(estimator, image, &frame);
+        measure_length(window, &frame);
+        measure_height(window, &frame);
     }
-    tell_center(estimator);
-    return judge(estimator, image, &frame, solving);
+    report_center(&window->estimate, view->motion);
+    return judge(&frame, solving);
 }

@@ -99,8 +99,9 @@ goe_noise_t case_noise(const sensor_noise_t *sensors) {
 /* The condition is asked of the very points that were solved; only the library's own window knows them. The refined
  * method does not answer by (5). */
 static double condition_behind(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
-    const goe_window_t *window = estimate->model == GOE_MODEL_LINE ? &estimator->line : &estimator->disc;
-    return estimate->fresh ? window_condition(window->point, estimate->points) : (double)NAN;
+    const goe_window_t *window = &estimator->window;
+    const goe_fit_ring_t *ring = estimate->model == GOE_MODEL_LINE ? &window->line : &window->disc;
+    return estimate->fresh ? window_condition(ring->point, estimate->points) : (double)NAN;
 }
 
 const char *case_run(const flight_case_t *setup, const flight_log_t *log, case_setting_t setting,

@@ -186,7 +186,7 @@ bool case_statistics(const flight_log_t *log, const case_sample_t *samples, goe_
 /* The rows are (1, 0, -dX) and (0, 1, -dZ), so A'A = [N 0 -a; 0 N -b; -a -b q] with the sums a, b of dX, dZ and q of their
  * squares. One eigenvalue is N; the others are those of [N -r; -r q], r^2 = a^2 + b^2, and lie on both sides of it. Their
  * product is N q - r^2 = N D with D the squared spread of the baseline, formed from deviations: nothing cancels. */
-double window_condition(const goe_window_point_t *points, int count) {
+double window_condition(const goe_fit_point_t *points, int count) {
     const double n = (double)count;
     double a = 0.0, b = 0.0, q = 0.0, spread = 0.0;
     for (int i = 0; i < count; i++) {

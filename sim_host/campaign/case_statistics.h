@@ -62,6 +62,6 @@ bool case_statistics(const flight_log_t *log, const case_sample_t *samples, goe_
 /* Condition number (largest over smallest singular value) of the 2N x 3 matrix of (5) with its columns as the paper writes
  * them: for X0/W, Z0/W and 1/W. A rotation of the pairs of rows leaves singular values as they are, so the orientation
  * drops out. N: count of points. Infinite without a baseline. */
-double window_condition(const goe_window_point_t *points, int count);
+double window_condition(const goe_fit_point_t *points, int count);
 
 #endif

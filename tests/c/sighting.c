@@ -44,9 +44,8 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting->settings.camera.fy_px = 850.0f;
     sighting->sight.settings = &sighting->settings;
     sighting->sight.state = sighting->state;
-    sighting->sight.point = sighting->point;
-    sighting->sight.dx_m = 3.0f;
-    sighting->sight.dz_m = 25.0f;
+    sighting->sight.camera_m.x = 3.0f;
+    sighting->sight.camera_m.z = 25.0f;
     sighting->sight.height_m = 20.0f;
     any_rotation(random, 0.35, sighting->sight.camera_to_axes);
     any_rotation(random, 3.14, sighting->sight.body_to_axes);
@@ -56,7 +55,7 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting_look(sighting);
 }
 
-void sighting_look(sighting_t *sighting) { goe_observation_look(&sighting->sight); }
+void sighting_look(sighting_t *sighting) { goe_observation_linearise(&sighting->sight); }
 
 /* A ray r of the told axes is r + e x r in the true ones, and the other way round with the other sign. */
 void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
@@ -76,14 +75,14 @@ void sighting_project(const sighting_t *sighting, const double state[GOE_STATES]
 double sighting_place(sighting_t *sighting, check_random_t *random) {
     sighting_start(sighting, random);
     const double z0_m = check_random_between(random, 60.0, 200.0);
-    sighting->state[GOE_DH] = (float)check_random_between(random, -1.0, 1.0);
-    sighting->state[GOE_A] = (float)check_random_between(random, -0.5, 0.5);
-    sighting->state[GOE_Q] = (float)(1.0 / z0_m);
+    sighting->state[GOE_HEIGHT_BIAS] = (float)check_random_between(random, -1.0, 1.0);
+    sighting->state[GOE_BEARING] = (float)check_random_between(random, -0.5, 0.5);
+    sighting->state[GOE_INVERSE_RANGE] = (float)(1.0 / z0_m);
     return z0_m;
 }
 
 void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, double truth[GOE_STATES]) {
-    sighting->state[GOE_E] = (float)(check_random_between(random, 2.0, 60.0) / z0_m);
+    sighting->state[GOE_TOP] = (float)(check_random_between(random, 2.0, 60.0) / z0_m);
     sighting->settings.top_is_highest = check_random_bits(random) % 2u != 0u;
     for (int i = 0; i < GOE_STATES; i++) {
         truth[i] = (double)sighting->state[i];
@@ -93,8 +92,7 @@ void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, 
 
 void sighting_check_rows(sighting_t *sighting, sighting_predict_t predict) {
     double state[GOE_STATES];
-    goe_rows_turn(&sighting->rows, &sighting->sight);
-    goe_rows_end(&sighting->rows);
+    goe_rows_end(&sighting->rows, &sighting->sight);
     for (int i = 0; i < GOE_STATES; i++) {
         state[i] = (double)sighting->state[i];
     }
@@ -103,10 +101,10 @@ void sighting_check_rows(sighting_t *sighting, sighting_predict_t predict) {
         double largest = 1.0;
         TEST_ASSERT_TRUE(sighting->rows.variance[row] > 0.0f);
         const double steep =
-            1.0 + fabs((double)sighting->matrix.column[0][row]) + fabs((double)sighting->matrix.column[1][row]);
-        CHECK_CLOSE(RESIDUAL_BOUND * steep, 0.0, sighting->matrix.column[GOE_RESIDUAL][row]);
+            1.0 + fabs((double)sighting->matrix.row[row][0]) + fabs((double)sighting->matrix.row[row][1]);
+        CHECK_CLOSE(RESIDUAL_BOUND * steep, 0.0, sighting->matrix.row[row][GOE_RESIDUAL]);
         for (int i = 0; i < GOE_STATES; i++) {
-            const double step = i == GOE_Q ? STEP * 1.0e-2 : i == GOE_DH ? STEP * 1.0e2 : STEP;
+            const double step = i == GOE_INVERSE_RANGE ? STEP * 1.0e-2 : i == GOE_HEIGHT_BIAS ? STEP * 1.0e2 : STEP;
             double up[GOE_STATES];
             double down[GOE_STATES];
             memcpy(up, state, sizeof up);
@@ -114,16 +112,16 @@ void sighting_check_rows(sighting_t *sighting, sighting_predict_t predict) {
             up[i] += step;
             down[i] -= step;
             slope[i] = (predict(sighting, up, row) - predict(sighting, down, row)) / (2.0 * step);
-            largest = fabs(slope[i]) > largest && i != GOE_Q ? fabs(slope[i]) : largest;
+            largest = fabs(slope[i]) > largest && i != GOE_INVERSE_RANGE ? fabs(slope[i]) : largest;
         }
         for (size_t i = 0; i < GOE_STATES; i++) {
-            const double scale = i == GOE_Q ? 100.0 * largest : largest;
-            CHECK_CLOSE(SLOPE_BOUND * scale, slope[i], goe_rows_get(&sighting->rows, row, i));
+            const double scale = i == GOE_INVERSE_RANGE ? 100.0 * largest : largest;
+            CHECK_CLOSE(SLOPE_BOUND * scale, slope[i], sighting->matrix.row[row][GOE_STATE_COLUMN + i]);
         }
     }
     for (size_t row = sighting->rows.count; row < GOE_ROWS_MAX; row++) {
         for (size_t c = 0; c < GOE_COLUMNS; c++) {
-            TEST_ASSERT_EQUAL_FLOAT(0.0f, sighting->matrix.column[c][row]);
+            TEST_ASSERT_EQUAL_FLOAT(0.0f, sighting->matrix.row[row][c]);
         }
     }
 }

@@ -9,7 +9,6 @@
 typedef struct {
     goe_settings_t settings;
     float state[GOE_STATES];
-    goe_point_t point[GOE_FEATURES];
     goe_observation_t sight;
     goe_matrix_t matrix;
     goe_rows_t rows;

@@ -27,6 +27,12 @@ void tearDown(void) {}
 
 static const float unturned[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f};
 
+static void align(const float camera_to_trajectory[9]) {
+    memcpy(view.camera_to_trajectory, camera_to_trajectory, sizeof view.camera_to_trajectory);
+    view.image = &image;
+    goe_align_points(&camera, &view, &faults);
+}
+
 static void see(goe_pixel_t *pixel, float u, float v) {
     pixel->u_px = u;
     pixel->v_px = v;
@@ -46,23 +52,24 @@ static void every_feature_has_its_own_place(void) {
     see(&image.base_left, 320.0f + 400.0f, 240.0f + 200.0f);
     see(&image.base_near, 320.0f + 500.0f, 240.0f + 250.0f);
     see(&image.base_right, 320.0f + 600.0f, 240.0f + 300.0f);
-    goe_align_view(&camera, unturned, &image, &view, &faults);
-    check_point(0.1f, 0.1f, &view.left);
-    check_point(0.2f, 0.2f, &view.right);
-    check_point(0.3f, 0.3f, &view.top);
-    check_point(0.4f, 0.4f, &view.base_left);
-    check_point(0.5f, 0.5f, &view.base_near);
-    check_point(0.6f, 0.6f, &view.base_right);
+    align(unturned);
+    check_point(0.1f, 0.1f, &view.point[GOE_POINT_LEFT]);
+    check_point(0.2f, 0.2f, &view.point[GOE_POINT_RIGHT]);
+    check_point(0.3f, 0.3f, &view.point[GOE_POINT_TOP]);
+    check_point(0.4f, 0.4f, &view.point[GOE_POINT_BASE_LEFT]);
+    check_point(0.5f, 0.5f, &view.point[GOE_POINT_BASE_NEAR]);
+    check_point(0.6f, 0.6f, &view.point[GOE_POINT_BASE_RIGHT]);
     CHECK_STATUS(GOE_OK, faults.first);
 }
 
 static void what_is_not_seen_is_not_usable(void) {
     see(&image.top, 320.0f, 240.0f);
     image.left.u_px = check_from_bits(0x7FC00000u); /* not read */
-    goe_align_view(&camera, unturned, &image, &view, &faults);
-    TEST_ASSERT_FALSE(view.left.usable || view.right.usable || view.base_left.usable || view.base_near.usable ||
-                      view.base_right.usable);
-    check_point(0.0f, 0.0f, &view.top);
+    align(unturned);
+    TEST_ASSERT_FALSE(view.point[GOE_POINT_LEFT].usable || view.point[GOE_POINT_RIGHT].usable ||
+                      view.point[GOE_POINT_BASE_LEFT].usable || view.point[GOE_POINT_BASE_NEAR].usable ||
+                      view.point[GOE_POINT_BASE_RIGHT].usable);
+    check_point(0.0f, 0.0f, &view.point[GOE_POINT_TOP]);
     CHECK_STATUS(GOE_OK, faults.first);
 }
 
@@ -83,8 +90,8 @@ static void own_rotation_is_taken_out(void) {
     }
     goe_rotation_apply(t_to_camera, point_in_t, seen);
     see(&image.top, 320.0f + 1000.0f * seen[0] / seen[2], 240.0f + 500.0f * seen[1] / seen[2]);
-    goe_align_view(&camera, camera_to_t, &image, &view, &faults);
-    check_point(-0.12f, 0.2f, &view.top);
+    align(camera_to_t);
+    check_point(-0.12f, 0.2f, &view.point[GOE_POINT_TOP]);
 }
 
 /* The third component in T may be 0.05 of the norm: 87.13 degrees aside. */
@@ -94,11 +101,11 @@ static void a_ray_too_far_aside_is_behind_the_camera(void) {
     see(&image.left, 320.0f - 1000.0f * 0.0502f, 240.0f);
     see(&image.right, 320.0f - 1000.0f * 0.0498f, 240.0f);
     see(&image.top, 320.0f + 1000.0f * 0.5f, 240.0f); /* backwards */
-    goe_align_view(&camera, to_the_right, &image, &view, &faults);
-    TEST_ASSERT_TRUE(view.left.usable);
-    TEST_ASSERT_FLOAT_WITHIN(0.01f, 1.0f / 0.0502f, view.left.x);
-    TEST_ASSERT_FALSE(view.right.usable);
-    TEST_ASSERT_FALSE(view.top.usable);
+    align(to_the_right);
+    TEST_ASSERT_TRUE(view.point[GOE_POINT_LEFT].usable);
+    TEST_ASSERT_FLOAT_WITHIN(0.01f, 1.0f / 0.0502f, view.point[GOE_POINT_LEFT].x);
+    TEST_ASSERT_FALSE(view.point[GOE_POINT_RIGHT].usable);
+    TEST_ASSERT_FALSE(view.point[GOE_POINT_TOP].usable);
     CHECK_STATUS(GOE_BEHIND_CAMERA, faults.first);
     TEST_ASSERT_EQUAL_UINT32(2u, causes[-GOE_BEHIND_CAMERA]);
 }
@@ -107,9 +114,9 @@ static void a_lens_that_cannot_be_inverted_loses_its_pixel_only(void) {
     camera.k1 = -0.5f;
     see(&image.left, 320.0f + 900.0f, 240.0f);
     see(&image.right, 320.0f + 100.0f, 240.0f);
-    goe_align_view(&camera, unturned, &image, &view, &faults);
-    TEST_ASSERT_FALSE(view.left.usable);
-    TEST_ASSERT_TRUE(view.right.usable);
+    align(unturned);
+    TEST_ASSERT_FALSE(view.point[GOE_POINT_LEFT].usable);
+    TEST_ASSERT_TRUE(view.point[GOE_POINT_RIGHT].usable);
     CHECK_STATUS(GOE_LENS_FAILED, faults.first);
     TEST_ASSERT_EQUAL_UINT32(1u, causes[-GOE_LENS_FAILED]);
 }
@@ -118,7 +125,7 @@ static void counters_saturate(void) {
     causes[-GOE_LENS_FAILED] = UINT32_MAX;
     camera.k1 = -0.5f;
     see(&image.left, 320.0f + 900.0f, 240.0f);
-    goe_align_view(&camera, unturned, &image, &view, &faults);
+    align(unturned);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, causes[-GOE_LENS_FAILED]);
 }
 

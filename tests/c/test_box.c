@@ -32,15 +32,15 @@ void tearDown(void) {}
 
 /* Corners now, in units of Z0. The side's depth solves side - front = d, side front = |sx| fx. */
 static void corners_of(const double state[GOE_STATES], corner_t corner[4]) {
-    const double d = state[GOE_D];
-    const double side = 0.5 * (d + sqrt(d * d + 4.0 * fabs(state[GOE_SX]) * state[GOE_FX]));
-    const double front = -state[GOE_FX] * state[GOE_SX] / side;
-    const double px = state[GOE_A] - (double)sighting.sight.dx_m * state[GOE_Q];
-    const double pz = 1.0 - (double)sighting.sight.dz_m * state[GOE_Q];
+    const double d = state[GOE_DEPTH_DIFFERENCE];
+    const double side = 0.5 * (d + sqrt(d * d + 4.0 * fabs(state[GOE_SIDE_X]) * state[GOE_FRONT_X]));
+    const double front = -state[GOE_FRONT_X] * state[GOE_SIDE_X] / side;
+    const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
+    const double pz = 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE];
     for (int i = 0; i < 4; i++) {
         const double across = i == BR || i == FR ? 0.5 : -0.5;
         const double along = i == BL || i == BR ? 1.0 : 0.0;
-        corner[i].x = px + across * state[GOE_FX] + along * state[GOE_SX];
+        corner[i].x = px + across * state[GOE_FRONT_X] + along * state[GOE_SIDE_X];
         corner[i].z = pz + across * front + along * side;
     }
 }
@@ -101,14 +101,15 @@ static bool find_top(const corner_t corner[4], bool farthest, int *found) {
 
 static double height_of(const double state[GOE_STATES], int feature) {
     const double h = (double)sighting.sight.height_m;
-    return feature == GOE_TOP ? h * state[GOE_Q] - state[GOE_E] : (h + state[GOE_DH]) * state[GOE_Q];
+    return feature == GOE_POINT_TOP ? h * state[GOE_INVERSE_RANGE] - state[GOE_TOP]
+                                    : (h + state[GOE_HEIGHT_BIAS]) * state[GOE_INVERSE_RANGE];
 }
 
 static void see(const double state[GOE_STATES], int feature, double seen[2]) {
     corner_t corner[4];
     corners_of(state, corner);
     const corner_t at = corner[seen_at[feature]];
-    const bool silhouette = feature == GOE_LEFT || feature == GOE_RIGHT;
+    const bool silhouette = feature == GOE_POINT_LEFT || feature == GOE_POINT_RIGHT;
     const double y = silhouette ? held_y[feature] : height_of(state, feature);
     const double point[3] = {at.x, y, at.z};
     sighting_project(&sighting, state, point, seen);
@@ -121,7 +122,7 @@ static double predict(const sighting_t *of, const double state[GOE_STATES], size
     if (!along_y[row]) {
         return seen[0];
     }
-    if (feature == GOE_TOP) {
+    if (feature == GOE_POINT_TOP) {
         return seen[1];
     }
     const goe_spread_t spread = goe_observation_spread(&of->sight, feature);
@@ -139,19 +140,19 @@ static void any_box(corner_t corner[4]) {
         const double z0_m = check_random_between(&any, 40.0, 150.0);
         const double w = check_random_between(&any, 2.0, 20.0) / z0_m;
         const double l = check_random_between(&any, 2.0, 20.0) / z0_m;
-        sighting.state[GOE_DH] = (float)check_random_between(&any, -1.0, 1.0);
-        sighting.state[GOE_A] = (float)check_random_between(&any, -0.6, 0.6);
-        sighting.state[GOE_Q] = (float)(1.0 / z0_m);
-        sighting.state[GOE_SX] = (float)(l * sin(b));
-        sighting.state[GOE_FX] = (float)(w * cos(b));
-        sighting.state[GOE_D] = (float)(l * cos(b) - w * fabs(sin(b)));
-        sighting.state[GOE_E] = (float)(check_random_between(&any, 2.0, 40.0) / z0_m);
+        sighting.state[GOE_HEIGHT_BIAS] = (float)check_random_between(&any, -1.0, 1.0);
+        sighting.state[GOE_BEARING] = (float)check_random_between(&any, -0.6, 0.6);
+        sighting.state[GOE_INVERSE_RANGE] = (float)(1.0 / z0_m);
+        sighting.state[GOE_SIDE_X] = (float)(l * sin(b));
+        sighting.state[GOE_FRONT_X] = (float)(w * cos(b));
+        sighting.state[GOE_DEPTH_DIFFERENCE] = (float)(l * cos(b) - w * fabs(sin(b)));
+        sighting.state[GOE_TOP] = (float)(check_random_between(&any, 2.0, 40.0) / z0_m);
         sighting.settings.top_is_highest = check_random_bits(&any) % 2u != 0u;
         for (int i = 0; i < GOE_STATES; i++) {
             truth[i] = (double)sighting.state[i];
         }
         corners_of(truth, corner);
-        ahead = fabs(truth[GOE_SX]) > 1.0e-4; /* at 0 the depths have a kink */
+        ahead = fabs(truth[GOE_SIDE_X]) > 1.0e-4; /* at 0 the depths have a kink */
         for (int i = 0; i < 4; i++) {
             ahead = ahead && corner[i].z > 0.15;
         }
@@ -170,18 +171,19 @@ static void measure(int feature, int corner) {
     corner_t corners[4];
     corners_of(truth, corners);
     seen_at[feature] = corner;
-    sighting.point[feature].y = (float)check_random_between(&any, -0.15, 0.15);
-    held_y[feature] = (double)sighting.point[feature].y * corners[corner].z;
+    sighting.sight.point[feature].y = (float)check_random_between(&any, -0.15, 0.15);
+    held_y[feature] = (double)sighting.sight.point[feature].y * corners[corner].z;
     see(truth, feature, seen);
-    sighting.point[feature].x = (float)seen[0];
-    if (feature != GOE_LEFT && feature != GOE_RIGHT) {
-        sighting.point[feature].y = (float)seen[1];
+    sighting.sight.point[feature].x = (float)seen[0];
+    if (feature != GOE_POINT_LEFT && feature != GOE_POINT_RIGHT) {
+        sighting.sight.point[feature].y = (float)seen[1];
     }
-    sighting.point[feature].usable = true;
+    sighting.sight.point[feature].usable = true;
 }
 
 static void check_rows(void) {
-    sighting.sight.base = sighting.point[GOE_BASE_LEFT].usable && sighting.point[GOE_BASE_RIGHT].usable;
+    sighting.sight.base =
+        sighting.sight.point[GOE_POINT_BASE_LEFT].usable && sighting.sight.point[GOE_POINT_BASE_RIGHT].usable;
     sighting.sight.edge = sighting.sight.base;
     goe_rows_clear(&sighting.rows, &sighting.matrix);
     goe_box_rows(&sighting.sight, &sighting.rows);
@@ -194,7 +196,7 @@ static void check_rows(void) {
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
-static const int faces_to_feature[3] = {GOE_BASE_LEFT, GOE_BASE_NEAR, GOE_BASE_RIGHT};
+static const int faces_to_feature[3] = {GOE_POINT_BASE_LEFT, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_RIGHT};
 
 /* GIVEN boxes of any size, side and orientation WHEN all that can be seen is measured where brute force puts it THEN all
  * residuals are 0, so that the same corners were taken, and all derivatives are those of the projection. */
@@ -207,7 +209,7 @@ static void rows_are_those_of_the_corners_that_are_seen(void) {
         int count;
         int top;
         any_box(corner);
-        const bool farthest = sighting.settings.top_is_highest && height_of(truth, GOE_TOP) > 0.0;
+        const bool farthest = sighting.settings.top_is_highest && height_of(truth, GOE_POINT_TOP) > 0.0;
         if (!find_visible(corner, visible, &count) || !find_top(corner, farthest, &top)) {
             continue;
         }
@@ -220,12 +222,12 @@ static void rows_are_those_of_the_corners_that_are_seen(void) {
             expect_row(faces_to_feature[i], false);
             expect_row(faces_to_feature[i], true);
         }
-        measure(GOE_LEFT, visible[0]);
-        expect_row(GOE_LEFT, false);
-        measure(GOE_RIGHT, visible[count - 1]);
-        expect_row(GOE_RIGHT, false);
-        measure(GOE_TOP, top);
-        expect_row(GOE_TOP, true);
+        measure(GOE_POINT_LEFT, visible[0]);
+        expect_row(GOE_POINT_LEFT, false);
+        measure(GOE_POINT_RIGHT, visible[count - 1]);
+        expect_row(GOE_POINT_RIGHT, false);
+        measure(GOE_POINT_TOP, top);
+        expect_row(GOE_POINT_TOP, true);
         check_rows();
         faces[count - 1]++;
     }
@@ -247,10 +249,10 @@ static void a_silhouette_alone_takes_the_outermost_corners(void) {
             right = corner[i].x / corner[i].z > corner[right].x / corner[right].z ? i : right;
         }
         expected_rows = 0;
-        measure(GOE_LEFT, left);
-        expect_row(GOE_LEFT, false);
-        measure(GOE_RIGHT, right);
-        expect_row(GOE_RIGHT, false);
+        measure(GOE_POINT_LEFT, left);
+        expect_row(GOE_POINT_LEFT, false);
+        measure(GOE_POINT_RIGHT, right);
+        expect_row(GOE_POINT_RIGHT, false);
         check_rows();
     }
 }
@@ -268,7 +270,7 @@ static void a_missed_near_corner_is_told_from_a_single_face(void) {
         memset(sighting.state, 0, 3 * sizeof sighting.state[0]); /* unbiased: the fits are compared without it */
         memset(truth, 0, 3 * sizeof truth[0]);
         sighting_look(&sighting);
-        sighting.sight.deep = true;
+        sighting.sight.two_faces = true;
         sighting.settings.noise.pixel_px = 0.2f;
         const double clearly = 6.0 * 0.2 / 914.0;
         if (!find_visible(corner, visible, &count) || count != 3) {
@@ -301,12 +303,12 @@ static void depths_solve_their_equations(void) {
     any = check_random_start("depths");
     for (int n = 0; n < CASES; n++) {
         float state[GOE_STATES] = {0.0f};
-        state[GOE_SX] = (float)check_random_between(&any, -0.3, 0.3);
-        state[GOE_FX] = (float)check_random_between(&any, 0.001, 0.3);
-        state[GOE_D] = (float)check_random_between(&any, -0.3, 0.3);
+        state[GOE_SIDE_X] = (float)check_random_between(&any, -0.3, 0.3);
+        state[GOE_FRONT_X] = (float)check_random_between(&any, 0.001, 0.3);
+        state[GOE_DEPTH_DIFFERENCE] = (float)check_random_between(&any, -0.3, 0.3);
         const goe_depth_t depth = goe_box_depth(state);
-        const double product = fabs((double)state[GOE_SX]) * (double)state[GOE_FX];
-        CHECK_CLOSE(1.0e-7, state[GOE_D], (double)depth.side - (double)depth.front);
+        const double product = fabs((double)state[GOE_SIDE_X]) * (double)state[GOE_FRONT_X];
+        CHECK_CLOSE(1.0e-7, state[GOE_DEPTH_DIFFERENCE], (double)depth.side - (double)depth.front);
         CHECK_CLOSE(1.0e-6 * product + 1.0e-12, product, (double)depth.side * (double)depth.front);
         TEST_ASSERT_TRUE(depth.side >= 0.0f && depth.front >= 0.0f);
     }

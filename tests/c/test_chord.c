@@ -74,22 +74,22 @@ static bool was_in(goe_phase_t phase) { return (phases >> phase & 1u) != 0u; }
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
 static double end_z(const double state[GOE_STATES], double side) {
-    return 1.0 - (double)sighting.sight.dz_m * state[GOE_Q] + side * state[GOE_SX];
+    return 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE] + side * state[GOE_SIDE_X];
 }
 
 /* Left, right: the end's x at the measured height, which is taken as known; top: the y of the nearer end, or of the farther one if the highest. */
 static double see(const double state[GOE_STATES], size_t feature) {
-    const double px = state[GOE_A] - (double)sighting.sight.dx_m * state[GOE_Q];
-    const double pz = 1.0 - (double)sighting.sight.dz_m * state[GOE_Q];
-    const double y = (double)sighting.sight.height_m * state[GOE_Q] - state[GOE_E];
+    const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
+    const double pz = 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE];
+    const double y = (double)sighting.sight.height_m * state[GOE_INVERSE_RANGE] - state[GOE_TOP];
     const bool highest = sighting.settings.top_is_highest && y > 0.0;
-    const bool right_is_near = px * state[GOE_FX] + pz * state[GOE_SX] < 0.0;
-    const double side = (feature == GOE_TOP ? right_is_near != highest : feature == GOE_RIGHT) ? 0.5 : -0.5;
-    const double held = (double)sighting.point[feature].y * end_z(truth, side);
-    const double point[3] = {px + side * state[GOE_FX], feature == GOE_TOP ? y : held, end_z(state, side)};
+    const bool right_is_near = px * state[GOE_FRONT_X] + pz * state[GOE_SIDE_X] < 0.0;
+    const double side = (feature == GOE_POINT_TOP ? right_is_near != highest : feature == GOE_POINT_RIGHT) ? 0.5 : -0.5;
+    const double held = (double)sighting.sight.point[feature].y * end_z(truth, side);
+    const double point[3] = {px + side * state[GOE_FRONT_X], feature == GOE_POINT_TOP ? y : held, end_z(state, side)};
     double seen[2];
     sighting_project(&sighting, state, point, seen);
-    return seen[feature == GOE_TOP ? 1 : 0];
+    return seen[feature == GOE_POINT_TOP ? 1 : 0];
 }
 
 static double predict(const sighting_t *of, const double state[GOE_STATES], size_t row) {
@@ -99,19 +99,19 @@ static double predict(const sighting_t *of, const double state[GOE_STATES], size
 
 static void any_chord(void) {
     const double z0_m = sighting_place(&sighting, &any);
-    sighting.state[GOE_SX] = (float)(check_random_between(&any, -12.0, 12.0) / z0_m);
-    sighting.state[GOE_FX] = (float)(check_random_between(&any, 1.0, 25.0) / z0_m);
+    sighting.state[GOE_SIDE_X] = (float)(check_random_between(&any, -12.0, 12.0) / z0_m);
+    sighting.state[GOE_FRONT_X] = (float)(check_random_between(&any, 1.0, 25.0) / z0_m);
     sighting_finish(&sighting, &any, z0_m, truth);
     expected_rows = 0;
 }
 
 /* The features in the order of the rows. */
 static void measure(size_t feature) {
-    goe_point_t *point = &sighting.point[feature];
+    goe_point_t *point = &sighting.sight.point[feature];
     point->usable = true;
     point->x = 0.0f;
     point->y = (float)check_random_between(&any, -0.2, 0.2);
-    *(feature == GOE_TOP ? &point->y : &point->x) = (float)see(truth, feature);
+    *(feature == GOE_POINT_TOP ? &point->y : &point->x) = (float)see(truth, feature);
     kind[expected_rows++] = feature;
 }
 
@@ -121,12 +121,12 @@ static void rows_are_those_of_the_ends(void) {
     any = check_random_start("chords");
     for (int n = 0; n < CASES; n++) {
         any_chord();
-        for (size_t feature = GOE_LEFT; feature <= GOE_TOP; feature++) {
+        for (size_t feature = GOE_POINT_LEFT; feature <= GOE_POINT_TOP; feature++) {
             if (n % 4 == 0 || n % 4 == (int)feature + 1) {
                 measure(feature);
             }
         }
-        sighting.point[GOE_BASE_NEAR].usable = true;
+        sighting.sight.point[GOE_POINT_BASE_NEAR].usable = true;
         goe_rows_clear(&sighting.rows, &sighting.matrix);
         goe_chord_rows(&sighting.sight, &sighting.rows);
         TEST_ASSERT_EQUAL_size_t(expected_rows, sighting.rows.count);
@@ -182,7 +182,7 @@ static void a_box_comes_out_of_its_silhouette(void) {
         for (int k = 0; k < IMAGES; k++) {
             see_silhouette(k, 0.0);
             TEST_ASSERT_FALSE(estimate.suspect);
-            if (estimator.filter.phase == GOE_PHASE_CHORD && estimator.filter.since > 20 && estimate.fresh &&
+            if (estimator.filter.phase == GOE_PHASE_CHORD && estimator.filter.phase_images > 20 && estimate.fresh &&
                 !goe_chord_is_left(&estimator.filter)) {
                 check_chord();
             }
@@ -250,7 +250,7 @@ static void base_corners_end_the_chord(void) {
         scene_image(&scene, k, &image, NULL);
         update();
     }
-    TEST_ASSERT_FALSE(estimator.filter.outline);
+    TEST_ASSERT_NOT_EQUAL(GOE_PHASE_BOX_OUTLINE, estimator.filter.phase);
     check_box(1.0e-3);
 }
 
@@ -337,7 +337,7 @@ static void noise_does_not_make_corners_false(void) {
         update();
     }
     TEST_ASSERT_TRUE(suspected);
-    TEST_ASSERT_FALSE(estimator.filter.base_refused);
+    TEST_ASSERT_FALSE(estimator.filter.health.base_refused);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
 }
 

@@ -24,29 +24,30 @@ void tearDown(void) {}
  * the highest; base corners: a point of the centre's range on the ground. */
 static double see(const double state[GOE_STATES], size_t feature) {
     const double h = (double)sighting.sight.height_m;
-    const double px = state[GOE_A] - (double)sighting.sight.dx_m * state[GOE_Q];
-    const double pz = 1.0 - (double)sighting.sight.dz_m * state[GOE_Q];
+    const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
+    const double pz = 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE];
     const double distance = sqrt(px * px + pz * pz);
-    const double radius = 0.5 * state[GOE_FX];
+    const double radius = 0.5 * state[GOE_FRONT_X];
     double seen[2];
-    if (feature == GOE_LEFT || feature == GOE_RIGHT) {
+    if (feature == GOE_POINT_LEFT || feature == GOE_POINT_RIGHT) {
         const double half = asin(radius / distance);
-        const double azimuth = atan2(px, pz) + (feature == GOE_LEFT ? -half : half);
+        const double azimuth = atan2(px, pz) + (feature == GOE_POINT_LEFT ? -half : half);
         /* without base corners: half the skew deeper */
-        const double half_skew = sighting.sight.base ? 0.0 : (feature == GOE_LEFT ? -0.5 : 0.5) * state[GOE_SX];
-        const double ray[3] = {tan(azimuth) * (1.0 - half_skew / pz), (double)sighting.point[feature].y, 1.0};
+        const double half_skew =
+            sighting.sight.base ? 0.0 : (feature == GOE_POINT_LEFT ? -0.5 : 0.5) * state[GOE_SIDE_X];
+        const double ray[3] = {tan(azimuth) * (1.0 - half_skew / pz), (double)sighting.sight.point[feature].y, 1.0};
         sighting_project(&sighting, state, ray, seen);
         return seen[0];
     }
-    if (feature == GOE_TOP) {
-        const double y = h * state[GOE_Q] - state[GOE_E];
+    if (feature == GOE_POINT_TOP) {
+        const double y = h * state[GOE_INVERSE_RANGE] - state[GOE_TOP];
         const bool farthest = sighting.settings.top_is_highest && y > 0.0;
         const double share = (distance + (farthest ? radius : -radius)) / distance;
         const double rim[3] = {px * share, y, pz * share};
         sighting_project(&sighting, state, rim, seen);
         return seen[1];
     }
-    const double ground[3] = {px, (h + state[GOE_DH]) * state[GOE_Q], pz};
+    const double ground[3] = {px, (h + state[GOE_HEIGHT_BIAS]) * state[GOE_INVERSE_RANGE], pz};
     sighting_project(&sighting, state, ground, seen);
     return seen[1];
 }
@@ -60,17 +61,17 @@ static double predict(const sighting_t *of, const double state[GOE_STATES], size
 
 static void any_disc(void) {
     const double z0_m = sighting_place(&sighting, &any);
-    sighting.state[GOE_FX] = (float)(check_random_between(&any, 0.5, 25.0) / z0_m);
+    sighting.state[GOE_FRONT_X] = (float)(check_random_between(&any, 0.5, 25.0) / z0_m);
     sighting_finish(&sighting, &any, z0_m, truth);
     expected_rows = 0;
 }
 
 static void measure(size_t feature) {
-    goe_point_t *point = &sighting.point[feature];
+    goe_point_t *point = &sighting.sight.point[feature];
     point->usable = true;
     point->x = 0.0f;
     point->y = (float)check_random_between(&any, -0.2, 0.2);
-    if (feature == GOE_LEFT || feature == GOE_RIGHT) {
+    if (feature == GOE_POINT_LEFT || feature == GOE_POINT_RIGHT) {
         point->x = (float)see(truth, feature);
     } else {
         point->y = (float)see(truth, feature);
@@ -79,7 +80,8 @@ static void measure(size_t feature) {
 }
 
 static void check_rows(void) {
-    sighting.sight.base = sighting.point[GOE_BASE_LEFT].usable && sighting.point[GOE_BASE_RIGHT].usable;
+    sighting.sight.base =
+        sighting.sight.point[GOE_POINT_BASE_LEFT].usable && sighting.sight.point[GOE_POINT_BASE_RIGHT].usable;
     goe_rows_clear(&sighting.rows, &sighting.matrix);
     goe_disc_rows(&sighting.sight, &sighting.rows);
     TEST_ASSERT_EQUAL_size_t(expected_rows, sighting.rows.count);
@@ -97,19 +99,19 @@ static void rows_are_those_of_tangents_and_rim(void) {
     any = check_random_start("discs");
     for (int n = 0; n < CASES; n++) {
         any_disc();
-        measure(GOE_LEFT);
-        measure(GOE_RIGHT);
-        measure(GOE_TOP);
+        measure(GOE_POINT_LEFT);
+        measure(GOE_POINT_RIGHT);
+        measure(GOE_POINT_TOP);
         if (n % 2) {
-            measure(GOE_BASE_LEFT);
-            measure(GOE_BASE_RIGHT);
+            measure(GOE_POINT_BASE_LEFT);
+            measure(GOE_POINT_BASE_RIGHT);
         }
         check_rows();
     }
 }
 
 static void each_feature_alone_gives_its_row(void) {
-    static const size_t features[] = {GOE_LEFT, GOE_RIGHT, GOE_TOP};
+    static const size_t features[] = {GOE_POINT_LEFT, GOE_POINT_RIGHT, GOE_POINT_TOP};
     any = check_random_start("alone");
     for (int n = 0; n < 300; n++) {
         any_disc();
@@ -123,9 +125,9 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
     float variance[2][3];
     any = check_random_start("variance");
     any_disc();
-    measure(GOE_LEFT);
-    measure(GOE_RIGHT);
-    measure(GOE_TOP);
+    measure(GOE_POINT_LEFT);
+    measure(GOE_POINT_RIGHT);
+    measure(GOE_POINT_TOP);
     for (int i = 0; i < 2; i++) {
         sighting.settings.noise.shape_share = i ? 0.12f : 0.0f;
         sighting.settings.noise.size_share = i ? 0.05f : 0.0f;
@@ -133,7 +135,8 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
         goe_disc_rows(&sighting.sight, &sighting.rows);
         memcpy(variance[i], sighting.rows.variance, sizeof variance[i]);
     }
-    const double width = (double)sighting.point[GOE_RIGHT].x - (double)sighting.point[GOE_LEFT].x;
+    const double width =
+        (double)sighting.sight.point[GOE_POINT_RIGHT].x - (double)sighting.sight.point[GOE_POINT_LEFT].x;
     for (int row = 0; row < 3; row++) {
         const double added = 0.0169 * width * width; /* 0.12^2 + 0.05^2 */
         CHECK_CLOSE(1.0e-4 * added, added, (double)variance[1][row] - (double)variance[0][row]);
@@ -151,17 +154,18 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
         memset(sighting.state, 0, 3 * sizeof sighting.state[0]);
         memset(truth, 0, 3 * sizeof truth[0]);
         sighting_look(&sighting);
-        sighting.settings.typical_size_m = sighting.state[GOE_FX] / sighting.state[GOE_Q];
-        measure(GOE_LEFT);
-        measure(GOE_RIGHT);
-        measure(GOE_TOP);
+        sighting.settings.typical_size_m = sighting.state[GOE_FRONT_X] / sighting.state[GOE_INVERSE_RANGE];
+        measure(GOE_POINT_LEFT);
+        measure(GOE_POINT_RIGHT);
+        measure(GOE_POINT_TOP);
         sighting.sight.base = false;
         TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, state, &root));
-        const double px = truth[GOE_A] - 3.0 * truth[GOE_Q]; /* chord and diameter differ by their ratio squared */
-        const double pz = 1.0 - 25.0 * truth[GOE_Q];
-        const double narrow = truth[GOE_FX] * truth[GOE_FX] / (px * px + pz * pz);
-        CHECK_CLOSE(0.01 + 2.0 * narrow, 0.0, (double)state[GOE_Q] / truth[GOE_Q] - 1.0);
-        CHECK_CLOSE(0.01 + 2.0 * narrow, truth[GOE_A], state[GOE_A]);
+        const double px =
+            truth[GOE_BEARING] - 3.0 * truth[GOE_INVERSE_RANGE]; /* chord and diameter differ by their ratio squared */
+        const double pz = 1.0 - 25.0 * truth[GOE_INVERSE_RANGE];
+        const double narrow = truth[GOE_FRONT_X] * truth[GOE_FRONT_X] / (px * px + pz * pz);
+        CHECK_CLOSE(0.01 + 2.0 * narrow, 0.0, (double)state[GOE_INVERSE_RANGE] / truth[GOE_INVERSE_RANGE] - 1.0);
+        CHECK_CLOSE(0.01 + 2.0 * narrow, truth[GOE_BEARING], state[GOE_BEARING]);
         for (size_t i = 0; i < GOE_STATES; i++) {
             TEST_ASSERT_TRUE(*goe_srif_at(&root, i, i) > 0.0f);
         }
@@ -174,10 +178,10 @@ static void no_width_is_no_start(void) {
     any = check_random_start("no start");
     any_disc();
     sighting.sight.base = false;
-    measure(GOE_LEFT);
+    measure(GOE_POINT_LEFT);
     TEST_ASSERT_FALSE(goe_disc_start(&sighting.sight, state, &root));
-    measure(GOE_RIGHT);
-    sighting.point[GOE_RIGHT].x = sighting.point[GOE_LEFT].x;
+    measure(GOE_POINT_RIGHT);
+    sighting.sight.point[GOE_POINT_RIGHT].x = sighting.sight.point[GOE_POINT_LEFT].x;
     TEST_ASSERT_FALSE(goe_disc_start(&sighting.sight, state, &root));
 }
 

@@ -18,6 +18,7 @@ void setUp(void) {
     settings.camera.fy_px = 1024.0f;
     memset(&image, 0, sizeof image);
     memset(&view, 0, sizeof view);
+    view.image = &image;
     memset(&edges, 0xA5, sizeof edges);
 }
 void tearDown(void) {}
@@ -27,11 +28,11 @@ static void set_corner(goe_pixel_t *pixel, goe_point_t *point, float x, float y)
     *pixel = (goe_pixel_t){1024.0f * x, 1024.0f * y, true};
 }
 
-static void set_left(float x, float y) { set_corner(&image.base_left, &view.base_left, x, y); }
-static void set_near(float x, float y) { set_corner(&image.base_near, &view.base_near, x, y); }
-static void set_right(float x, float y) { set_corner(&image.base_right, &view.base_right, x, y); }
+static void set_left(float x, float y) { set_corner(&image.base_left, &view.point[GOE_POINT_BASE_LEFT], x, y); }
+static void set_near(float x, float y) { set_corner(&image.base_near, &view.point[GOE_POINT_BASE_NEAR], x, y); }
+static void set_right(float x, float y) { set_corner(&image.base_right, &view.point[GOE_POINT_BASE_RIGHT], x, y); }
 
-static goe_status_t find(void) { return goe_edge_find(&settings, &image, &view, &edges); }
+static goe_status_t find(void) { return goe_edge_find(&settings, &view, &edges); }
 
 static void two_edges_meet_at_the_near_corner(void) {
     set_left(-0.2f, 0.1f);
@@ -39,10 +40,10 @@ static void two_edges_meet_at_the_near_corner(void) {
     set_right(0.1f, 0.15f);
     CHECK_STATUS(GOE_OK, find());
     TEST_ASSERT_EQUAL_INT(2, edges.count);
-    TEST_ASSERT_EQUAL_PTR(&view.base_left, edges.edge[0].left);
-    TEST_ASSERT_EQUAL_PTR(&view.base_near, edges.edge[0].right);
-    TEST_ASSERT_EQUAL_PTR(&view.base_near, edges.edge[1].left);
-    TEST_ASSERT_EQUAL_PTR(&view.base_right, edges.edge[1].right);
+    TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_LEFT], edges.edge[0].left);
+    TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_NEAR], edges.edge[0].right);
+    TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_NEAR], edges.edge[1].left);
+    TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_RIGHT], edges.edge[1].right);
 }
 
 static void without_a_near_corner_there_is_one_edge(void) {
@@ -50,8 +51,8 @@ static void without_a_near_corner_there_is_one_edge(void) {
     set_right(0.1f, 0.15f);
     CHECK_STATUS(GOE_OK, find());
     TEST_ASSERT_EQUAL_INT(1, edges.count);
-    TEST_ASSERT_EQUAL_PTR(&view.base_left, edges.edge[0].left);
-    TEST_ASSERT_EQUAL_PTR(&view.base_right, edges.edge[0].right);
+    TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_LEFT], edges.edge[0].left);
+    TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_RIGHT], edges.edge[0].right);
 }
 
 static void an_edge_needs_both_its_ends(void) {
@@ -63,8 +64,8 @@ static void an_edge_needs_both_its_ends(void) {
     set_right(0.1f, 0.1f);
     CHECK_STATUS(GOE_OK, find());
     TEST_ASSERT_EQUAL_INT(1, edges.count);
-    TEST_ASSERT_EQUAL_PTR(&view.base_near, edges.edge[0].left);
-    view.base_near.usable = false;
+    TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_NEAR], edges.edge[0].left);
+    view.point[GOE_POINT_BASE_NEAR].usable = false;
     CHECK_STATUS(GOE_OK, find());
     TEST_ASSERT_EQUAL_INT(0, edges.count);
 }
@@ -77,7 +78,7 @@ static void corners_out_of_order_give_no_edge(void) {
     TEST_ASSERT_EQUAL_INT(0, edges.count);
     set_near(0.2f, 0.2f);
     CHECK_STATUS(GOE_SWAPPED, find());
-    view.base_near.usable = false;
+    view.point[GOE_POINT_BASE_NEAR].usable = false;
     CHECK_STATUS(GOE_OK, find());
     set_left(0.11f, 0.1f);
     CHECK_STATUS(GOE_SWAPPED, find());

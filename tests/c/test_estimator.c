@@ -477,7 +477,7 @@ static void the_first_image_needs_a_time(void) {
     scene_image(&scene, 0, &image, NULL);
     image.pose.time_us = GOE_TIME_UNKNOWN;
     CHECK_STATUS(GOE_BAD_TIME, update());
-    TEST_ASSERT_FALSE(estimator.started);
+    TEST_ASSERT_FALSE(estimator.motion.started);
 }
 
 static void a_quaternion_may_be_off_by_one_percent(void) {
@@ -538,7 +538,7 @@ static void null_pointers_are_refused(void) {
     TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_update(&estimator, &image, NULL));
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_reset(NULL));
-    TEST_ASSERT_FALSE(estimator.started);
+    TEST_ASSERT_FALSE(estimator.motion.started);
 }
 
 static void an_estimator_must_be_initialised(void) {
@@ -640,8 +640,8 @@ static void a_vertical_nose_takes_north(void) {
     image.pose.attitude[3] = -0.5f;
     /* rotation of 120 degrees about (1, 1, -1): forward goes to -down, with no level part */
     CHECK_STATUS(GOE_NOTHING_SEEN, update());
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, estimator.heading_cos);
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, estimator.heading_sin);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, estimator.motion.heading_cos);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, estimator.motion.heading_sin);
 }
 
 int main(void) {

@@ -41,26 +41,26 @@ void setUp(void) {
     }
     goe_rows_clear(&rows, &matrix);
     for (size_t i = 0; i < GOE_FEATURES; i++) {
-        if (i != GOE_TOP) {
+        if (i != GOE_POINT_TOP) {
             add_row(i, false);
         }
-        if (i != GOE_LEFT && i != GOE_RIGHT) {
+        if (i != GOE_POINT_LEFT && i != GOE_POINT_RIGHT) {
             add_row(i, true);
         }
     }
-    goe_rows_end(&rows);
+    memset(matrix.row[rows.count], 0, (GOE_ROWS_MAX - rows.count) * sizeof matrix.row[0]);
 }
 void tearDown(void) {}
 
-static float *residual(size_t row) { return &matrix.column[GOE_RESIDUAL][row]; }
+static float *residual(size_t row) { return &matrix.row[row][GOE_RESIDUAL]; }
 
-static bool is_along_y(size_t row) { return fabsf(matrix.column[1][row]) > 0.5f; }
+static bool is_along_y(size_t row) { return fabsf(matrix.row[row][1]) > 0.5f; }
 
 /* The whole image turned by an attitude error. */
 static void turn(double ex, double ey, double ez) {
     for (size_t i = 0; i < rows.count; i++) {
-        *residual(i) += (float)((double)matrix.column[0][i] * ey + (double)matrix.column[1][i] * ex +
-                                (double)matrix.column[2][i] * ez);
+        *residual(i) +=
+            (float)((double)matrix.row[i][0] * ey + (double)matrix.row[i][1] * ex + (double)matrix.row[i][2] * ez);
     }
 }
 
@@ -68,8 +68,8 @@ static void apply(void) { verdict = goe_gate_apply(&settings, &filter, &rows); }
 
 /* Weight of a row after the gate: what its first column was multiplied with. */
 static double weight_of(size_t row, const goe_matrix_t *before) {
-    const int c = fabsf(before->column[0][row]) > fabsf(before->column[1][row]) ? 0 : 1;
-    return (double)matrix.column[c][row] / (double)before->column[c][row];
+    const int c = fabsf(before->row[row][0]) > fabsf(before->row[row][1]) ? 0 : 1;
+    return (double)matrix.row[row][c] / (double)before->row[row][c];
 }
 
 static void check_weights(const goe_matrix_t *before, size_t but_feature, double share) {
@@ -114,7 +114,7 @@ static void one_outlier_is_refused_alone(void) {
                 const bool out = moved > 0 && rows.feature[i] == feature;
                 float sum = 0.0f;
                 for (size_t c = 0; c < GOE_COLUMNS; c++) {
-                    sum += fabsf(matrix.column[c][i]);
+                    sum += fabsf(matrix.row[i][c]);
                 }
                 TEST_ASSERT_TRUE(out ? sum == 0.0f : sum > 100.0f);
             }
@@ -157,7 +157,7 @@ static void an_outlier_is_found_in_a_shifted_image(void) {
  * weight^2 = huber / residual. */
 static void a_suspicious_point_counts_less(void) {
     static const double normalised[] = {2.4, 3.0, 4.0, 4.9};
-    const size_t feature = GOE_BASE_NEAR;
+    const size_t feature = GOE_POINT_BASE_NEAR;
     for (int n = 0; n < 4; n++) {
         setUp();
         settings.noise.attitude_white_deg = 1.0e-4f;
@@ -205,9 +205,9 @@ static void an_unsure_state_opens_the_gate(void) {
     for (int n = 0; n < 3; n++) {
         setUp();
         *residual(0) = (float)(15.0 / FOCAL_PX);
-        goe_rows_set(&rows, 0, GOE_A, 1.0f);
+        matrix.row[0][GOE_STATE_COLUMN + GOE_BEARING] = 1.0f;
         if (n == 1) {
-            filter.inverse.element[goe_inverse_column(GOE_A) + GOE_A] = 0.01f;
+            filter.inverse.element[goe_inverse_column(GOE_BEARING) + GOE_BEARING] = 0.01f;
         } else if (n == 2) {
             filter.walk2 = 1.0e-4f;
         }

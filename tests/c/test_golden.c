@@ -61,7 +61,7 @@ static void rays(void) {
 static void windows(void) {
     for (size_t i = 0; i < COUNT_OF(golden_window); i++) {
         const golden_window_t *g = &golden_window[i];
-        goe_window_t window;
+        goe_fit_ring_t window;
         goe_estimate_t fit;
         memset(&window, 0, sizeof window);
         for (int k = 0; k < g->length; k++) {

@@ -160,8 +160,8 @@ static void jumps_are_never_motion(void) {
         status = goe_update(&jumped, &image, &estimate_jumped);
     }
     CHECK_STATUS(GOE_NO_BASELINE, status);
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, jumped.dz_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, jumped.dx_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, jumped.motion.dz_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, jumped.motion.dx_m);
 }
 
 /* A jump is told "since the image before", so one that comes with a refused image is told again with the next. */

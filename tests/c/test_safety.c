@@ -157,8 +157,8 @@ static void check_refined(const goe_estimate_t *e) {
     if (!e->fresh) { /* of a filter that may have started anew since */
         return;
     }
-    const double x_m = (double)e->x0_m - (double)memory.estimator.filter.start_dx_m;
-    const double z_m = (double)e->z0_m - (double)memory.estimator.filter.start_dz_m;
+    const double x_m = (double)e->x0_m - (double)memory.estimator.filter.axes.start_dx_m;
+    const double z_m = (double)e->z0_m - (double)memory.estimator.filter.axes.start_dz_m;
     const float range_m = (float)sqrt(x_m * x_m + z_m * z_m);
     TEST_ASSERT_FALSE(is_zero(&range_m));
     TEST_ASSERT_TRUE(within(&e->x0_m, 1.0e6f) && within(&e->z0_m, 1.0e6f) && within(&s->x0_m, 1.0e6f));
@@ -252,9 +252,10 @@ static void check_estimate(void) {
 }
 
 static void check_filter(const goe_filter_t *filter) {
-    TEST_ASSERT_TRUE(filter->phase <= 3u);
-    TEST_ASSERT_TRUE(filter->images >= 0 && filter->nis_rows >= 0);
-    const float sums[] = {filter->level, filter->nis, filter->misfit, filter->outward, filter->turning};
+    TEST_ASSERT_TRUE(filter->phase <= 5u);
+    TEST_ASSERT_TRUE(filter->health.images >= 0 && filter->health.nis_rows >= 0);
+    const float sums[] = {filter->health.recent_nis, filter->health.nis, filter->health.mean_nis,
+                          filter->leaving.outward, filter->leaving.turning};
     check_finite(sums, 5, "residuals");
     if (filter->phase != 0u) { /* otherwise the next image starts it anew */
         check_finite(filter->state, GOE_STATES, "state");
@@ -265,19 +266,19 @@ static void check_filter(const goe_filter_t *filter) {
 static void check_state(void) {
     const goe_estimator_t *e = &memory.estimator;
     check_finite(e->camera_to_body, 9, "mounting");
-    check_finite(&e->heading_cos, 2, "heading");
-    check_finite(e->origin_ne_m, 2, "origin");
-    check_finite(&e->dx_m, 2, "displacement");
-    check_finite(&e->disc.point[0].dx_m, 4 * GOE_WINDOW_MAX, "disc window");
-    check_finite(&e->line.point[0].dx_m, 4 * GOE_WINDOW_MAX, "line window");
-    check_finite(e->length.value, GOE_WINDOW_MAX, "lengths");
-    check_finite(e->height.value, GOE_WINDOW_MAX, "heights");
-    check_finite(&e->orientation.filtered_deg, 3, "orientation");
+    check_finite(&e->motion.heading_cos, 2, "heading");
+    check_finite(e->motion.origin_ne_m, 2, "origin");
+    check_finite(&e->motion.dx_m, 2, "displacement");
+    check_finite(&e->window.disc.point[0].dx_m, 4 * GOE_WINDOW_MAX, "disc window");
+    check_finite(&e->window.line.point[0].dx_m, 4 * GOE_WINDOW_MAX, "line window");
+    check_finite(e->window.length.value, GOE_WINDOW_MAX, "lengths");
+    check_finite(e->window.height.value, GOE_WINDOW_MAX, "heights");
+    check_finite(&e->window.orientation.filtered_deg, 3, "orientation");
     check_filter(&e->filter);
-    TEST_ASSERT_TRUE(e->disc.next >= 0 && e->disc.next < e->settings.window);
-    TEST_ASSERT_TRUE(e->line.next >= 0 && e->line.next < e->settings.window);
-    TEST_ASSERT_TRUE(e->length.next >= 0 && e->length.next < e->settings.window);
-    TEST_ASSERT_TRUE(e->height.next >= 0 && e->height.next < e->settings.window);
+    TEST_ASSERT_TRUE(e->window.disc.next >= 0 && e->window.disc.next < e->settings.window);
+    TEST_ASSERT_TRUE(e->window.line.next >= 0 && e->window.line.next < e->settings.window);
+    TEST_ASSERT_TRUE(e->window.length.next >= 0 && e->window.length.next < e->settings.window);
+    TEST_ASSERT_TRUE(e->window.height.next >= 0 && e->window.height.next < e->settings.window);
 }
 
 static void update_and_check(const goe_image_t *image) {
@@ -507,7 +508,7 @@ static void extremes_do_no_harm(void) {
         now += one_in(100) && now > INT64_MIN ? -1 : one_in(100) ? INT64_C(1) << 60 : 1 + (int64_t)below(100000);
         now = now > (INT64_C(1) << 62) ? INT64_C(1) << 62 : now;
         image.pose.time_us = now;
-        image.pose.reset_count = (uint8_t)(one_in(40) ? below(256) : memory.estimator.reset_count);
+        image.pose.reset_count = (uint8_t)(one_in(40) ? below(256) : memory.estimator.motion.reset_count);
         image.pose.reset_delta_known = one_in(2);
         update_and_check(&image);
     }

@@ -43,7 +43,7 @@ static float magnitude_up_to(double limit) { return (float)fabs((double)up_to(li
 
 /* Any answer within the ranges that the library keeps. */
 static void give_any_answer(void) {
-    goe_estimate_t *e = &estimator.estimate;
+    goe_estimate_t *e = &estimator.window.estimate;
     const double orientation = check_random_between(&any, -90.0, 90.0);
     const double b = (below(4u) ? orientation : (double)((int)below(4u) - 1) * 45.0) * 0.017453292519943295;
     memset(e, 0, sizeof *e);
@@ -65,11 +65,11 @@ static void give_any_answer(void) {
         sigma[i] = magnitude_up_to(1e9);
     }
     e->sigma.orientation_deg = magnitude_up_to(90.0);
-    estimator.heading_cos = 1.0f;
-    estimator.height_m = up_to(1e5);
+    estimator.motion.heading_cos = 1.0f;
+    estimator.motion.height_m = up_to(1e5);
     if (below(2u)) {
-        estimator.heading_cos = (float)cos(b * 4.0);
-        estimator.heading_sin = (float)sin(b * 4.0);
+        estimator.motion.heading_cos = (float)cos(b * 4.0);
+        estimator.motion.heading_sin = (float)sin(b * 4.0);
     }
 }
 

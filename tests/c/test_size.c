@@ -14,7 +14,7 @@ static void an_estimator_takes_two_kibibytes_at_the_default_window(void) {
 }
 
 static void each_point_of_the_window_takes_40_bytes(void) {
-    const size_t windows = 2u * sizeof(goe_window_t) + 2u * sizeof(goe_mean_t);
+    const size_t windows = 2u * sizeof(goe_fit_ring_t) + 2u * sizeof(goe_mean_t);
     const size_t rings = 4u * 2u * sizeof(int16_t);
     TEST_ASSERT_EQUAL_size_t(BYTES_PER_POINT * GOE_WINDOW_MAX + rings, windows);
 }

@@ -1,10 +1,10 @@
 /* The library's own: closed form, with all its checks and the sigmas of the answer. SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "window/goe_fit.h"
 #include "peer.h"
+#include "window/goe_fit.h"
 
-static goe_window_t rows;
+static goe_fit_ring_t rows;
 
 void peer_prepare(const peer_window_t *window) {
     memset(&rows, 0, sizeof rows);

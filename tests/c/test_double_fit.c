@@ -20,7 +20,7 @@ void tearDown(void) {}
 
 /* Rows of an obstacle with relative noise on m/S and m x/S, as the dense system and as the library wants them. */
 static void make_rows(const case_t *given, double noise, check_random_t *random, reference_row_t rows[LENGTH],
-                      goe_window_t *window) {
+                      goe_fit_ring_t *window) {
     const double s = sin(given->b_deg * RAD_PER_DEG);
     const double c = cos(given->b_deg * RAD_PER_DEG);
     memset(window, 0, sizeof *window);
@@ -50,7 +50,7 @@ static void the_fit_is_that_of_the_dense_system(void) {
                               check_random_between(&random, 1.0, 30.0),     check_random_between(&random, -90.0, 90.0),
                               check_random_between(&random, -2.0, 2.0),     check_random_between(&random, 0.5, 4.0)};
         reference_row_t rows[LENGTH];
-        goe_window_t window;
+        goe_fit_ring_t window;
         goe_estimate_t fit;
         const double baseline = sqrt(42.0 * (given.step_x * given.step_x + given.step_z * given.step_z));
         make_rows(&given, 0.02 * baseline / given.width, &random, rows, &window);
@@ -84,7 +84,7 @@ static void the_sigmas_are_the_scatter(void) {
     double variance[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < DRAWS; i++) {
         reference_row_t rows[LENGTH];
-        goe_window_t window;
+        goe_fit_ring_t window;
         goe_estimate_t fit;
         make_rows(&given, 0.01, &random, rows, &window);
         CHECK_STATUS(GOE_OK, goe_fit_solve(&window, LENGTH, 0.1f, &fit));

@@ -132,13 +132,13 @@ static void the_spread_is_that_of_the_alignment(void) {
         const double u = check_random_between(&any, -600.0, 600.0);
         const double v = check_random_between(&any, -500.0, 500.0);
         align(&sighting, u, v, aligned);
-        sighting.point[GOE_TOP] = (goe_point_t){(float)aligned[0], (float)aligned[1], true};
+        sighting.sight.point[GOE_POINT_TOP] = (goe_point_t){(float)aligned[0], (float)aligned[1], true};
         differentiate(&sighting, u, v, by_u, by_v);
         const double variance = (double)sighting.settings.noise.pixel_px * (double)sighting.settings.noise.pixel_px;
         const double xx = variance * (by_u[0] * by_u[0] + by_v[0] * by_v[0]);
         const double xy = variance * (by_u[0] * by_u[1] + by_v[0] * by_v[1]);
         const double yy = variance * (by_u[1] * by_u[1] + by_v[1] * by_v[1]);
-        const goe_spread_t told = goe_observation_spread(&sighting.sight, GOE_TOP);
+        const goe_spread_t told = goe_observation_spread(&sighting.sight, GOE_POINT_TOP);
         CHECK_CLOSE(1.0e-5 * xx, xx, told.xx);
         CHECK_CLOSE(1.0e-5 * sqrt(xx * yy), xy, told.xy);
         CHECK_CLOSE(1.0e-5 * yy, yy, told.yy);
@@ -149,10 +149,10 @@ static void size_noise_is_a_share_of_the_width(void) {
     any = check_random_start("size");
     sighting_start(&sighting, &any);
     sighting.settings.noise.size_share = 0.03f;
-    sighting.point[GOE_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
-    sighting.point[GOE_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
+    sighting.sight.point[GOE_POINT_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
+    sighting.sight.point[GOE_POINT_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
     CHECK_CLOSE(1.0e-10, 3.6e-5, goe_observation_size_variance(&sighting.sight));
-    sighting.point[GOE_RIGHT].usable = false; /* no width is seen */
+    sighting.sight.point[GOE_POINT_RIGHT].usable = false; /* no width is seen */
     CHECK_SAME(0.0f, goe_observation_size_variance(&sighting.sight));
 }
 
@@ -171,13 +171,16 @@ static void start(void) {
     settings.camera.mount_pitch_deg = 10.0f;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     memset(&view, 0, sizeof view);
+    memcpy(view.camera_to_trajectory, identity, sizeof identity);
+    view.motion = &estimator.motion;
+    view.camera_to_body = estimator.camera_to_body;
 }
 
 /* The camera's mounting taken back: a ray along the camera's axis is that of the body's mounting. */
 static void the_body_is_where_the_mounting_puts_it(void) {
     goe_observation_t sight;
     start();
-    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator, identity, &view));
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) { /* identity = camera to axes: body to axes is the mounting's inverse */
             CHECK_CLOSE(1.0e-6, estimator.camera_to_body[3 * j + i], sight.body_to_axes[3 * i + j]);
@@ -190,31 +193,32 @@ static goe_point_t at(float x) { return (goe_point_t){x, 0.1f, true}; }
 static void points_out_of_order_do_not_count(void) {
     goe_observation_t sight;
     start();
-    view.left = at(0.1f);
-    view.right = at(0.2f);
-    view.base_left = at(0.3f);
-    view.base_right = at(0.1f);
-    TEST_ASSERT_EQUAL_UINT(1u, goe_observation_open(&sight, &estimator, identity, &view));
-    TEST_ASSERT_TRUE(sight.point[GOE_LEFT].usable && sight.point[GOE_RIGHT].usable);
-    TEST_ASSERT_FALSE(sight.point[GOE_BASE_LEFT].usable || sight.point[GOE_BASE_RIGHT].usable || sight.base);
+    view.point[GOE_POINT_LEFT] = at(0.1f);
+    view.point[GOE_POINT_RIGHT] = at(0.2f);
+    view.point[GOE_POINT_BASE_LEFT] = at(0.3f);
+    view.point[GOE_POINT_BASE_RIGHT] = at(0.1f);
+    TEST_ASSERT_EQUAL_UINT(1u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    TEST_ASSERT_TRUE(sight.point[GOE_POINT_LEFT].usable && sight.point[GOE_POINT_RIGHT].usable);
+    TEST_ASSERT_FALSE(sight.point[GOE_POINT_BASE_LEFT].usable || sight.point[GOE_POINT_BASE_RIGHT].usable ||
+                      sight.base);
     start();
-    view.left = at(0.2f);
-    view.right = at(0.2f);
-    view.base_left = at(0.1f);
-    view.base_right = at(0.3f);
-    TEST_ASSERT_EQUAL_UINT(1u, goe_observation_open(&sight, &estimator, identity, &view));
-    TEST_ASSERT_FALSE(sight.point[GOE_LEFT].usable || sight.point[GOE_RIGHT].usable);
+    view.point[GOE_POINT_LEFT] = at(0.2f);
+    view.point[GOE_POINT_RIGHT] = at(0.2f);
+    view.point[GOE_POINT_BASE_LEFT] = at(0.1f);
+    view.point[GOE_POINT_BASE_RIGHT] = at(0.3f);
+    TEST_ASSERT_EQUAL_UINT(1u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    TEST_ASSERT_FALSE(sight.point[GOE_POINT_LEFT].usable || sight.point[GOE_POINT_RIGHT].usable);
     TEST_ASSERT_TRUE(sight.base && sight.edge);
 }
 
 static void an_edge_takes_two_base_corners(void) {
     goe_observation_t sight;
     start();
-    view.base_left = at(0.1f);
-    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator, identity, &view));
+    view.point[GOE_POINT_BASE_LEFT] = at(0.1f);
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     TEST_ASSERT_FALSE(sight.base || sight.edge);
-    view.base_near = at(0.2f);
-    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator, identity, &view));
+    view.point[GOE_POINT_BASE_NEAR] = at(0.2f);
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     TEST_ASSERT_FALSE(sight.base);
     TEST_ASSERT_TRUE(sight.edge);
 }

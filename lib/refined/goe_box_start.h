@@ -1,12 +1,12 @@
-/* First guess of a box from the base corners of one image. SPDX-License-Identifier: MIT */
-#ifndef GOE_FOOTPRINT_H
-#define GOE_FOOTPRINT_H
+/* The start of a box from base corners. SPDX-License-Identifier: MIT */
+#ifndef GOE_BOX_START_H
+#define GOE_BOX_START_H
 
 #include "refined/goe_observation.h"
 
 /* Ground plan of a box. */
 typedef struct {
-    float turn_cos, turn_sin;         /* the axes of all that follows: those of the sight turned by this */
+    float turn_cos, turn_sin;         /* the axes of all that follows: those of the observation turned by this */
     float orientation_rad, sigma_rad; /* of the side; only of one face */
     float left, right;                /* lateral extents, focal lengths; only of two faces */
     float sine, cosine;
@@ -16,12 +16,16 @@ typedef struct {
 
 /* From the lateral extents of two faces, with the depth of both taken as the same: in the axes of the line of sight to the
  * near corner. The range is the state's. False if a corner is not seen, or a face is too narrow to be told from noise. */
-bool goe_footprint_two_faces(const goe_observation_t *sight, goe_footprint_t *box);
+bool goe_footprint_two_faces(const goe_observation_t *obs, goe_footprint_t *box);
 
 /* From the direction of the one face that is seen, which becomes the front or the side, whichever it is nearer to; the
  * other extent is guessed. The range is the state's, the corners' y tell differences, so that the pitch bias drops out.
  * False if the image does not tell: no two outer base corners, corners in no possible place, or orientation known worse
  * than to 0.2 rad. */
-bool goe_footprint_one_face(const goe_observation_t *sight, goe_footprint_t *box);
+bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box);
+
+/* Of a disc or a chord: becomes a box as soon as two faces are seen, or enough images agree on the direction of one. Returns
+ * whether it did; the image that brings it is not used for more. */
+bool goe_box_start(goe_filter_t *filter, const goe_observation_t *obs);
 
 #endif

@@ -128,7 +128,7 @@ static void random_matrix(size_t rows, goe_matrix_t *matrix) {
     for (size_t c = 0; c < GOE_COLUMNS; c++) {
         const double size = c == GOE_RESIDUAL ? 1.0 : pow(10.0, check_random_between(&any, 0.0, 3.0));
         for (size_t i = 0; i < rows; i++) {
-            matrix->column[c][i] = (float)(size * check_random_normal(&any));
+            matrix->row[i][c] = (float)(size * check_random_normal(&any));
         }
     }
 }
@@ -142,15 +142,14 @@ typedef struct {
 } solution_t;
 
 /* Unit noise of the rows, and the temporaries': S = I + B B'/t^2. */
-static dense_t noise_of(const goe_matrix_t *matrix, double temporaries_root) {
+static dense_t noise_of(const goe_matrix_t *matrix, double nuisance_root) {
     dense_t s;
     memset(&s, 0, sizeof s);
     for (int i = 0; i < ROWS; i++) {
         for (int j = 0; j < ROWS; j++) {
             s.m[i][j] = i == j ? 1.0 : 0.0;
-            for (int c = 0; c < GOE_TEMPORARIES; c++) {
-                s.m[i][j] +=
-                    (double)matrix->column[c][i] * (double)matrix->column[c][j] / (temporaries_root * temporaries_root);
+            for (int c = 0; c < GOE_NUISANCES; c++) {
+                s.m[i][j] += (double)matrix->row[i][c] * (double)matrix->row[j][c] / (nuisance_root * nuisance_root);
             }
         }
     }
@@ -158,22 +157,24 @@ static dense_t noise_of(const goe_matrix_t *matrix, double temporaries_root) {
 }
 
 /* R'R + A'S^-1A, its solution for A'S^-1r, and what is left: e'S^-1e + x'R'Rx, e = r - Ax. */
-static solution_t solve(const goe_triangle_t *root, double temporaries_root, const goe_matrix_t *matrix) {
-    const dense_t weight = inverted(noise_of(matrix, temporaries_root), ROWS);
+static solution_t solve(const goe_triangle_t *root, double nuisance_root, const goe_matrix_t *matrix) {
+    const dense_t weight = inverted(noise_of(matrix, nuisance_root), ROWS);
     const dense_t prior = information_of(root);
     solution_t s;
     double right[N];
     double left_over[ROWS];
     s.information = prior;
     for (int i = 0; i < N; i++) {
-        const float *a = matrix->column[GOE_TEMPORARIES + i];
+        float a[ROWS];
+        for (int k = 0; k < ROWS; k++) {
+            a[k] = matrix->row[k][GOE_STATE_COLUMN + i];
+        }
         right[i] = 0.0;
         for (int k = 0; k < ROWS; k++) {
             for (int l = 0; l < ROWS; l++) {
-                right[i] += (double)a[k] * weight.m[k][l] * (double)matrix->column[GOE_RESIDUAL][l];
+                right[i] += (double)a[k] * weight.m[k][l] * (double)matrix->row[l][GOE_RESIDUAL];
                 for (int j = 0; j < N; j++) {
-                    s.information.m[i][j] +=
-                        (double)a[k] * weight.m[k][l] * (double)matrix->column[GOE_TEMPORARIES + j][l];
+                    s.information.m[i][j] += (double)a[k] * weight.m[k][l] * (double)matrix->row[l][GOE_NUISANCES + j];
                 }
             }
         }
@@ -187,9 +188,9 @@ static solution_t solve(const goe_triangle_t *root, double temporaries_root, con
     }
     s.nis = 0.0;
     for (int k = 0; k < ROWS; k++) {
-        left_over[k] = (double)matrix->column[GOE_RESIDUAL][k];
+        left_over[k] = (double)matrix->row[k][GOE_RESIDUAL];
         for (int j = 0; j < N; j++) {
-            left_over[k] -= (double)matrix->column[GOE_TEMPORARIES + j][k] * s.change[j];
+            left_over[k] -= (double)matrix->row[k][GOE_NUISANCES + j] * s.change[j];
         }
     }
     for (int k = 0; k < ROWS; k++) {
@@ -205,11 +206,11 @@ static solution_t solve(const goe_triangle_t *root, double temporaries_root, con
     return s;
 }
 
-static void check_update(goe_triangle_t *root, double temporaries_root, goe_matrix_t *matrix) {
-    const solution_t expected = solve(root, temporaries_root, matrix);
+static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_t *matrix) {
+    const solution_t expected = solve(root, nuisance_root, matrix);
     const dense_t covariance = inverted(expected.information, N);
     float change[N];
-    const float nis = goe_srif_update(root, (float)temporaries_root, matrix, change);
+    const float nis = goe_srif_update(root, (float)nuisance_root, matrix, change);
     const dense_t information = information_of(root);
     check_alike(SHARE, &expected.information, &information);
     for (int i = 0; i < N; i++) {
@@ -250,24 +251,24 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
         goe_matrix_t drawn = matrix;
         float noise[N];
         float change[N];
-        float temporaries[GOE_TEMPORARIES];
+        float temporaries[GOE_NUISANCES];
         for (size_t i = 0; i < N; i++) {
             noise[i] = normal();
         }
-        for (size_t i = 0; i < GOE_TEMPORARIES; i++) {
+        for (size_t i = 0; i < GOE_NUISANCES; i++) {
             temporaries[i] = normal() / 20.0f;
         }
         for (size_t k = 0; k < rows; k++) {
             double r = (double)normal();
-            for (size_t c = 0; c < GOE_TEMPORARIES; c++) {
-                r += (double)matrix.column[c][k] * (double)temporaries[c];
+            for (size_t c = 0; c < GOE_NUISANCES; c++) {
+                r += (double)matrix.row[k][c] * (double)temporaries[c];
             }
             for (size_t i = 0; i < N; i++) { /* a state off by R^-1 noise */
                 for (size_t j = i; j < N; j++) {
-                    r += (double)matrix.column[GOE_TEMPORARIES + i][k] * v.m[i][j] * (double)noise[j];
+                    r += (double)matrix.row[k][GOE_NUISANCES + i] * v.m[i][j] * (double)noise[j];
                 }
             }
-            drawn.column[GOE_RESIDUAL][k] = (float)r;
+            drawn.row[k][GOE_RESIDUAL] = (float)r;
         }
         sum += (double)goe_srif_update(&updated, 20.0f, &drawn, change);
     }
@@ -298,7 +299,7 @@ static void a_row_without_derivatives_is_left_over(void) {
     float change[N];
     random_root(&root);
     memset(&matrix, 0, sizeof matrix);
-    matrix.column[GOE_RESIDUAL][4] = 3.0f;
+    matrix.row[4][GOE_RESIDUAL] = 3.0f;
     CHECK_SAME(9.0f, goe_srif_update(&root, 100.0f, &matrix, change));
 }
 
@@ -344,7 +345,7 @@ static void check_spread(size_t first, float first_weight, size_t last, float la
             expected.m[i][j] += (double)sigma * (double)sigma * direction[i] * direction[j];
         }
     }
-    goe_srif_spread(&root, first, first_weight, last, last_weight, sigma);
+    goe_srif_inflate(&root, first, first_weight, last, last_weight, sigma);
     const dense_t actual = covariance_of(&root);
     check_alike(5.0 * SHARE, &expected, &actual);
 }
@@ -370,8 +371,8 @@ static void a_tiny_sigma_changes_nothing(void) {
         goe_triangle_t root;
         random_root(&root);
         const dense_t before = information_of(&root);
-        goe_srif_spread(&root, 0, 0.0f, 0, 1.0f, tiny[i]);
-        goe_srif_spread(&root, 2, 1.0f, 6, -0.5f, tiny[i]);
+        goe_srif_inflate(&root, 0, 0.0f, 0, 1.0f, tiny[i]);
+        goe_srif_inflate(&root, 2, 1.0f, 6, -0.5f, tiny[i]);
         const dense_t after = information_of(&root);
         check_alike(SHARE, &before, &after);
     }

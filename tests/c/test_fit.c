@@ -8,7 +8,7 @@
 #define LENGTH 8
 #define MIN_BASELINE_M 0.1f
 
-static goe_window_t window;
+static goe_fit_ring_t window;
 static goe_estimate_t fit;
 
 void setUp(void) {

@@ -1,5 +1,5 @@
 /* First guess of a box from exact base corners. SPDX-License-Identifier: MIT */
-#include "refined/goe_footprint.h"
+#include "refined/goe_box_start.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,15 +25,16 @@ void tearDown(void) {}
 static void look_from(double range_m) {
     sighting_start(&sighting, &any);
     memset(sighting.state, 0, sizeof sighting.state);
-    sighting.state[GOE_Q] = (float)(1.0 / (range_m + 25.0));
+    sighting.state[GOE_INVERSE_RANGE] = (float)(1.0 / (range_m + 25.0));
     sighting_look(&sighting);
 }
 
 static void measure(size_t feature, place_t at) {
-    sighting.point[feature].x = (float)(at.x / at.z);
-    sighting.point[feature].y = (float)(20.0 / at.z);
-    sighting.point[feature].usable = true;
-    sighting.sight.base = sighting.point[GOE_BASE_LEFT].usable && sighting.point[GOE_BASE_RIGHT].usable;
+    sighting.sight.point[feature].x = (float)(at.x / at.z);
+    sighting.sight.point[feature].y = (float)(20.0 / at.z);
+    sighting.sight.point[feature].usable = true;
+    sighting.sight.base =
+        sighting.sight.point[GOE_POINT_BASE_LEFT].usable && sighting.sight.point[GOE_POINT_BASE_RIGHT].usable;
     sighting.sight.edge = sighting.sight.base;
 }
 
@@ -55,8 +56,8 @@ static double length_of(const goe_footprint_t *of) { return (double)of->length /
 /* The face from `left` to `right`, with the harmonic mean of both ranges as the state's. */
 static void show_face(place_t left, place_t right) {
     look_from(2.0 / (1.0 / left.z + 1.0 / right.z));
-    measure(GOE_BASE_LEFT, left);
-    measure(GOE_BASE_RIGHT, right);
+    measure(GOE_POINT_BASE_LEFT, left);
+    measure(GOE_POINT_BASE_RIGHT, right);
 }
 
 /* GIVEN the front of any box, exact corners and range THEN orientation, width and reference point are exact. */
@@ -119,9 +120,9 @@ static void the_sigma_covers_the_noise(void) {
     for (int n = 0; n < draws; n++) {
         show_face((place_t){-6.0, 51.0}, (place_t){2.0, 49.0});
         sighting.settings.noise.pixel_px = 0.3f;
-        for (size_t i = GOE_BASE_LEFT; i <= GOE_BASE_RIGHT; i += 2) {
-            sighting.point[i].x += (float)(0.3 / 914.0 * check_random_normal(&any));
-            sighting.point[i].y += (float)(0.3 / 914.0 * check_random_normal(&any));
+        for (size_t i = GOE_POINT_BASE_LEFT; i <= GOE_POINT_BASE_RIGHT; i += 2) {
+            sighting.sight.point[i].x += (float)(0.3 / 914.0 * check_random_normal(&any));
+            sighting.sight.point[i].y += (float)(0.3 / 914.0 * check_random_normal(&any));
         }
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const double error = (double)box.orientation_rad - atan2(2.0, 8.0);
@@ -145,7 +146,7 @@ static void show_two_faces(double left_m, double right_m, double range_m, double
     look_from(range_m * c);
     for (size_t i = 0; i < 3; i++) {
         const place_t turned = {c * corners[i].x + s * corners[i].z, c * corners[i].z - s * corners[i].x};
-        measure(GOE_BASE_LEFT + i, turned);
+        measure(GOE_POINT_BASE_LEFT + i, turned);
     }
 }
 
@@ -207,16 +208,16 @@ static void what_one_face_does_not_tell_is_refused(void) {
     sighting.sight.height_m = 0.2f; /* on the ground: no depth */
     TEST_ASSERT_FALSE(one_face());
     good_face();
-    sighting.state[GOE_DH] = -19.8f;
+    sighting.state[GOE_HEIGHT_BIAS] = -19.8f;
     TEST_ASSERT_FALSE(one_face());
     good_face();
-    sighting.state[GOE_Q] = 1.0f / 25.5f; /* the obstacle is passed */
+    sighting.state[GOE_INVERSE_RANGE] = 1.0f / 25.5f; /* the obstacle is passed */
     TEST_ASSERT_FALSE(one_face());
     good_face();
-    sighting.state[GOE_Q] = -0.01f;
+    sighting.state[GOE_INVERSE_RANGE] = -0.01f;
     TEST_ASSERT_FALSE(one_face());
     good_face();
-    sighting.point[GOE_BASE_RIGHT].y *= 3.0f; /* no corner is that near */
+    sighting.sight.point[GOE_POINT_BASE_RIGHT].y *= 3.0f; /* no corner is that near */
     TEST_ASSERT_FALSE(one_face());
     good_face();
     sighting.settings.noise.pixel_px = 20.0f; /* orientation worse than 0.2 rad */
@@ -231,16 +232,18 @@ static void what_two_faces_do_not_tell_is_refused(void) {
     sighting.sight.base = false;
     TEST_ASSERT_FALSE(two_faces());
     good_box();
-    sighting.point[GOE_BASE_NEAR].usable = false;
+    sighting.sight.point[GOE_POINT_BASE_NEAR].usable = false;
     TEST_ASSERT_FALSE(two_faces());
     good_box();
-    sighting.point[GOE_BASE_NEAR].x = sighting.point[GOE_BASE_RIGHT].x - 0.5f / 914.0f; /* a face of half a pixel */
+    sighting.sight.point[GOE_POINT_BASE_NEAR].x =
+        sighting.sight.point[GOE_POINT_BASE_RIGHT].x - 0.5f / 914.0f; /* a face of half a pixel */
     TEST_ASSERT_FALSE(two_faces());
     good_box();
-    sighting.point[GOE_BASE_NEAR].x = sighting.point[GOE_BASE_RIGHT].x + 0.01f; /* not between */
+    sighting.sight.point[GOE_POINT_BASE_NEAR].x =
+        sighting.sight.point[GOE_POINT_BASE_RIGHT].x + 0.01f; /* not between */
     TEST_ASSERT_FALSE(two_faces());
     good_box();
-    sighting.state[GOE_Q] = 1.0f / 25.5f;
+    sighting.state[GOE_INVERSE_RANGE] = 1.0f / 25.5f;
     TEST_ASSERT_FALSE(two_faces());
     show_two_faces(30.0, 30.0, 60.0, 0.1);
     TEST_ASSERT_FALSE(two_faces());

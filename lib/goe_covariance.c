@@ -1,0 +1,67 @@
+/* Covariance. SPDX-License-Identifier: MIT */
+#include "goe_covariance.h"
+
+#include <string.h>
+
+#include "maths/goe_angle.h"
+
+const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
+    return estimator->settings.method == GOE_METHOD_REFINED ? &estimator->estimate : &estimator->window.estimate;
+}
+
+/* The filter is as it was when it gave the estimate; it may be another's since. */
+static bool is_of_filter(const goe_estimate_t *estimate) {
+    return estimate->method == GOE_METHOD_REFINED && estimate->fresh;
+}
+
+float goe_latest_height_bias(const goe_estimator_t *estimator) {
+    return is_of_filter(goe_latest_estimate(estimator)) ? estimator->filter.state[GOE_HEIGHT_BIAS] : 0.0f;
+}
+
+static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
+    const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
+                                      sigma->width_m, sigma->length_m, sigma->height_m};
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        covariance[i][i] = of[i] * of[i];
+    }
+}
+
+static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
+                                                GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
+
+static void keep_valid(unsigned valid, goe_covariance_t covariance) {
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        for (int j = 0; j < GOE_QUANTITIES; j++) {
+            const float scale =
+                (i == GOE_ORIENTATION ? GOE_DEG_PER_RAD : 1.0f) * (j == GOE_ORIENTATION ? GOE_DEG_PER_RAD : 1.0f);
+            const bool known = (valid & bit_of[i]) && (valid & bit_of[j]);
+            covariance[i][j] = known ? covariance[i][j] * scale : 0.0f;
+        }
+    }
+}
+
+void goe_latest_covariance(const goe_estimator_t *estimator, goe_zero_t zero, goe_covariance_t covariance) {
+    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    memset(covariance, 0, sizeof(goe_covariance_t));
+    if (is_of_filter(estimate)) {
+        goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, zero, covariance);
+        keep_valid(estimate->valid, covariance);
+    } else {
+        covariance_of_sigmas(&estimate->sigma, covariance);
+    }
+}
+
+goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+    if (!covariance) {
+        return GOE_BAD_ARGUMENT;
+    }
+    memset(covariance, 0, sizeof(goe_covariance_t));
+    if (!estimator || estimator->ready != GOE_READY) {
+        return estimator ? GOE_NOT_INITIALISED : GOE_BAD_ARGUMENT;
+    }
+    if (!(goe_latest_estimate(estimator)->valid & GOE_HAS_POSITION)) {
+        return GOE_COLLECTING;
+    }
+    goe_latest_covariance(estimator, GOE_FROM_GROUND, covariance);
+    return GOE_OK;
+}

@@ -1,0 +1,152 @@
+/* The estimator's memory. Private to the library; in a header because the caller owns the memory. Included by goe.h alone.
+ * SPDX-License-Identifier: MIT
+ *
+ * Each type is written by the one file that is named at it. */
+#ifndef GOE_STATE_H
+#define GOE_STATE_H
+
+#ifndef GOE_H
+#error "include goe.h, which includes this"
+#endif
+
+/* C99 has no _Static_assert: a negative array size does not compile. */
+#define GOE_STATIC_ASSERT(condition, what) typedef char goe_assert_##what[(condition) ? 1 : -1]
+
+/* ----------------------------------------------------------------------------------------------------------- image -- */
+
+/* image/goe_ego_motion.c: own motion over the track. */
+typedef struct {
+    int64_t time_us, start_time_us; /* latest and first image of the track */
+    float heading_cos, heading_sin; /* of T's Z axis, from north */
+    float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
+    float dx_m, dz_m;               /* camera since then, T axes */
+    float height_m;                 /* camera above ground, latest image */
+    bool started;                   /* a first image was taken; the fields above hold */
+    uint8_t reset_count;
+} goe_motion_t;
+
+/* ---------------------------------------------------------------------------------------------------------- window -- */
+
+/* window/goe_fit.h: what one image gives to one model, and the newest of these in a ring. */
+typedef struct {
+    float dx_m, dz_m; /* camera since the track's first image, T axes */
+    float xi, zeta;   /* rows of (5), turned back into T */
+} goe_fit_point_t;
+
+typedef struct {
+    goe_fit_point_t point[GOE_WINDOW_MAX];
+    int16_t next, count; /* count: points that ever came, saturating */
+} goe_fit_ring_t;
+
+typedef struct { /* window/goe_mean.c: sliding mean */
+    float value[GOE_WINDOW_MAX];
+    int16_t next, count;
+} goe_mean_t;
+
+typedef struct { /* window/goe_orientation.c */
+    float filtered_deg, raw_deg;
+    float variance_deg2; /* of one image's orientation about the filtered one */
+    int count;           /* saturates at orientation_memory */
+} goe_orientation_t;
+
+typedef struct {            /* window/goe_window.c */
+    int64_t solved_time_us; /* image of the last solution */
+    goe_fit_ring_t disc, line;
+    goe_mean_t length, height;
+    goe_orientation_t orientation;
+    goe_estimate_t estimate;
+} goe_window_t;
+
+/* --------------------------------------------------------------------------------------------------------- refined -- */
+
+#define GOE_STATES 10
+#define GOE_FEATURES 6
+
+typedef struct { /* upper triangular matrix of GOE_STATES, row by row */
+    float element[GOE_STATES * (GOE_STATES + 1) / 2];
+} goe_triangle_t;
+
+typedef struct { /* the inverse of one, column by column */
+    float element[GOE_STATES * (GOE_STATES + 1) / 2];
+} goe_inverse_t;
+
+/* Rows of a measurement: by the nuisances of the image (its own attitude noise about three axes), by the states, and the
+ * residual. */
+#define GOE_NUISANCES 3
+#define GOE_COLUMNS (GOE_NUISANCES + GOE_STATES + 1)
+#define GOE_ROWS_MAX 9 /* three corners, two each; left, right, top */
+
+typedef struct {
+    float row[GOE_ROWS_MAX][GOE_COLUMNS];
+} goe_matrix_t;
+
+typedef struct
+{ /* refined/goe_filter.c: the axes of the state, with their origin at the camera at the filter's start */
+    float turn_cos, turn_sin;     /* T turned by this about the vertical, clockwise seen from above */
+    float start_dx_m, start_dz_m; /* that camera in T */
+} goe_axes_t;
+
+typedef struct { /* refined/goe_box_start.c: the box that the images before saw */
+    float extent
+        [2];   /* of two faces: their lateral extents, focal lengths; of one face: its orientation, rad, and nothing */
+    bool both; /* of two faces */
+    uint8_t agreeing; /* images in a row */
+} goe_candidate_t;
+
+typedef struct {   /* refined/goe_chord.c: sliding means, sigmas */
+    float outward; /* by how much the chord's ends leave it outwards */
+    float turning; /* ... to the right */
+} goe_leaving_t;
+
+typedef struct {    /* refined/goe_box.c: what the report calls the edges of a box */
+    bool exchanged; /* it calls front what the state calls side */
+    bool decided;
+} goe_naming_t;
+
+#define GOE_NIS_NONE (-1.0f)
+
+typedef struct {      /* refined/goe_health.c: how the images fit */
+    float nis;        /* normalised innovation squared of the latest image */
+    float mean_nis;   /* of nis over rows: running mean over the track */
+    float recent_nis; /* ... over some ten images of the filter's present phase; GOE_NIS_NONE: not begun */
+    int16_t nis_rows;
+    int16_t images;                /* of the track that gave rows, saturating */
+    uint8_t refused[GOE_FEATURES]; /* images in a row in which this feature was refused */
+    uint8_t poor;                  /* images in a row in which half of the points were */
+    uint8_t failed;                /* times that a box proved wrong */
+    bool base_refused;             /* base corners proved to be none: they are not used */
+} goe_health_t;
+
+typedef struct {
+    int64_t time_us;         /* of the latest image that the filter took */
+    float state[GOE_STATES]; /* by goe_state_index_t */
+    goe_triangle_t root;     /* R: R'R is the information of the state */
+    goe_inverse_t inverse;   /* of R, after the latest image: R^-1 R^-1' is the covariance */
+    float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since */
+    goe_matrix_t rows;       /* of the image at hand */
+    goe_axes_t axes;
+    goe_candidate_t candidate;
+    goe_leaving_t leaving;
+    goe_health_t health;
+    goe_naming_t naming;
+    uint8_t phase;        /* goe_phase_t */
+    uint8_t phase_images; /* images of the phase, saturating */
+    uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
+    bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
+} goe_filter_t;
+
+/* ------------------------------------------------------------------------------------------------------- estimator -- */
+
+typedef struct {
+    goe_motion_t motion;
+    goe_window_t window;
+    goe_filter_t filter;
+    int64_t estimate_time_us; /* image behind the estimate */
+    goe_estimate_t estimate;  /* after the latest image, by whatever method */
+    goe_settings_t settings;
+    float camera_to_body[9];
+    uint32_t causes[GOE_CAUSES];
+    uint32_t ready; /* tells an initialised estimator from any other memory */
+} goe_estimator_t;
+
+#endif

@@ -1,0 +1,33 @@
+/* Sigmas and probabilities to first order. SPDX-License-Identifier: MIT */
+#include "hazard/goe_affine.h"
+
+#include <math.h>
+
+#include "maths/goe_normal.h"
+#include "maths/goe_scalar.h"
+
+#define SIGMA_LEAST 1.0e-6f
+#define MOST 1.0e9f /* of any number reported */
+
+float goe_bounded(float x) { return goe_within(x, MOST) ? x : (x < 0.0f ? -MOST : MOST); }
+
+float goe_affine_product(const goe_affine_t *a, const goe_affine_t *b, goe_covariance_t covariance) {
+    float sum = 0.0f;
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        float row = 0.0f;
+        for (int j = 0; j < GOE_QUANTITIES; j++) {
+            row += covariance[i][j] * b->by[j];
+        }
+        sum += a->by[i] * row;
+    }
+    return sum;
+}
+
+float goe_affine_sigma(const goe_affine_t *affine, goe_covariance_t covariance) {
+    const float variance = goe_affine_product(affine, affine, covariance);
+    return variance > 0.0f ? goe_bounded(sqrtf(variance)) : 0.0f;
+}
+
+float goe_affine_below(const goe_affine_t *affine, float limit, goe_covariance_t covariance) {
+    return goe_normal_below((limit - affine->value) / goe_larger(goe_affine_sigma(affine, covariance), SIGMA_LEAST));
+}

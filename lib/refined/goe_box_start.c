@@ -1,0 +1,268 @@
+/* The first guess of a box, the images that must agree on it, and its start. SPDX-License-Identifier: MIT */
+#include "refined/goe_box_start.h"
+
+#include <math.h>
+
+#include "maths/goe_angle.h"
+#include "maths/goe_scalar.h"
+#include "refined/goe_box.h"
+
+#define RANGE_LEAST_M 1.0f
+#define HEIGHT_LEAST_M 0.3f /* camera over ground: lower the corners' y say nothing */
+#define NEARER_MOST 1.7f    /* 1/range of a corner over the state's 1/range */
+#define FARTHER_MOST 0.6f
+#define POINT_NOISE 1.5f  /* one sigma of a difference of two points, in those of a pixel */
+#define SURE_SIGMAS2 4.0f /* a difference in depth counts only as far as it exceeds 2 sigma, or luck would pass */
+#define EDGE_LEAST_M2 1.0e-6f
+#define SIGMA_MOST_RAD 0.2f
+#define SIZE_MOST 0.4f /* of the range */
+#define SIZE_LEAST_M 0.05f
+#define QUARTER_TURN_RAD 1.57079633f
+#define ONE_FACE_IMAGES 3   /* that must agree before a box starts from one face */
+#define TWO_FACES_IMAGES 2  /* ... from two */
+#define AGREEING_PX 7.0f    /* sigmas of a pixel by which the extents of two images may differ */
+#define AGREEING_SHARE 0.1f /* ... and share of the whole */
+#define RANGE_SHARE 0.1f    /* one sigma of the range over it */
+#define AGREEING_SIGMAS2 9.0f
+#define SIZE_FREEDOM 2.0f  /* one sigma of the extents at the start, in the larger side */
+#define DEPTH_FREEDOM 4.0f /* ... of the depth difference */
+#define DEPTH_HELD 0.01f   /* ... if one face alone is seen */
+#define FACE_LEAST_PX 3.0f /* lateral extent of a face, in sigmas of a pixel */
+
+/* Into the state's scale; reference: middle of the front edge from the camera, in the footprint's axes. False if it is out of
+ * bounds. */
+static bool scale(const goe_observation_t *obs, goe_xz_t reference, float width_m, float length_m, float range_m,
+                  goe_footprint_t *box) {
+    const float c = box->turn_cos;
+    const float s = box->turn_sin;
+    const float z0_m = reference.z + s * obs->camera_m.x + c * obs->camera_m.z;
+    if (!(z0_m >= RANGE_LEAST_M) || goe_larger(width_m, length_m) > SIZE_MOST * range_m) {
+        return false;
+    }
+    box->q = 1.0f / z0_m;
+    box->a = (reference.x + c * obs->camera_m.x - s * obs->camera_m.z) * box->q;
+    box->width = goe_larger(width_m, SIZE_LEAST_M) * box->q;
+    box->length = goe_larger(length_m, SIZE_LEAST_M) * box->q;
+    return true;
+}
+
+static float range_of(const goe_observation_t *obs) { return 1.0f / obs->state[GOE_INVERSE_RANGE] - obs->camera_m.z; }
+
+/* ----------------------------------------------------------------------------------------------------------- two faces -- */
+
+bool goe_footprint_two_faces(const goe_observation_t *obs, goe_footprint_t *box) {
+    const float range_m = range_of(obs);
+    if (!obs->base || !obs->point[GOE_POINT_BASE_NEAR].usable || !(range_m >= RANGE_LEAST_M)) {
+        return false;
+    }
+    const float corner = goe_observation_unbiased(obs, GOE_POINT_BASE_NEAR).x;
+    const float c = 1.0f / sqrtf(1.0f + corner * corner);
+    box->left = corner - goe_observation_unbiased(obs, GOE_POINT_BASE_LEFT).x;
+    box->right = goe_observation_unbiased(obs, GOE_POINT_BASE_RIGHT).x - corner;
+    const float left_m = box->left * range_m * c;
+    const float right_m = box->right * range_m * c;
+    const float least_m = left_m < right_m ? left_m : right_m;
+    if (!(least_m > FACE_LEAST_PX * goe_observation_pixel(obs) * range_m)) {
+        return false;
+    }
+    /* side (right_m, deep_m) and front (left_m, -deep_m) are square to each other; or the names exchanged */
+    const float deep_m = sqrtf(left_m * right_m);
+    const float on_left_m = sqrtf(left_m * left_m + deep_m * deep_m);
+    const float on_right_m = sqrtf(right_m * right_m + deep_m * deep_m);
+    const bool exchange = right_m > deep_m;
+    const goe_xz_t reference = {exchange ? 0.5f * right_m : -0.5f * left_m, range_m / c + 0.5f * deep_m};
+    box->turn_cos = c;
+    box->turn_sin = corner * c;
+    box->sine = exchange ? -left_m / on_left_m : right_m / on_right_m;
+    box->cosine = exchange ? deep_m / on_left_m : deep_m / on_right_m;
+    return scale(obs, reference, exchange ? on_right_m : on_left_m, exchange ? on_left_m : on_right_m, range_m, box);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ one face -- */
+
+typedef struct {
+    goe_xz_t left, right;
+    float range_m, height_m;
+} face_t;
+
+/* False if an end lies in no possible place. */
+static bool place_end(const goe_point_t *point, float mean_y, const face_t *face, goe_xz_t *end) {
+    const float nearness = 1.0f / face->range_m;
+    const float inverse = nearness + (point->y - mean_y) / face->height_m;
+    if (!(inverse >= FARTHER_MOST * nearness && inverse <= NEARER_MOST * nearness)) {
+        return false;
+    }
+    end->z = 1.0f / inverse;
+    end->x = point->x * end->z;
+    return true;
+}
+
+static bool place_face(const goe_observation_t *obs, face_t *face) {
+    const goe_point_t left = goe_observation_unbiased(obs, GOE_POINT_BASE_LEFT);
+    const goe_point_t right = goe_observation_unbiased(obs, GOE_POINT_BASE_RIGHT);
+    const float mean_y = 0.5f * (left.y + right.y);
+    return place_end(&left, mean_y, face, &face->left) && place_end(&right, mean_y, face, &face->right);
+}
+
+/* One sigma of the orientation that an edge tells, rad. */
+static float edge_sigma(const goe_observation_t *obs, const face_t *face, float x, float z) {
+    const float pixel = goe_observation_pixel(obs) * POINT_NOISE;
+    const float deep = face->range_m * face->range_m / face->height_m * pixel;
+    const float wide = face->range_m * pixel;
+    const float tilt =
+        face->range_m / face->height_m * (obs->settings->noise.attitude_bias_deg * GOE_RAD_PER_DEG) * x * x;
+    const float noise = sqrtf(deep * x * (deep * x) + wide * z * (wide * z) + tilt * tilt);
+    const float sure = z * z - SURE_SIGMAS2 * deep * deep;
+    return noise / goe_larger(x * x + goe_larger(sure, 0.0f), EDGE_LEAST_M2);
+}
+
+/* An edge that lies more across than along is the front, any other the side. */
+static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m, goe_footprint_t *box) {
+    const bool front = goe_absolute(x) > goe_absolute(z);
+    const float across = front ? -z : x;
+    const float along = front ? x : z;
+    const float sign = along < 0.0f ? -1.0f : 1.0f;
+    box->sine = sign * across / size_m;
+    box->cosine = sign * along / size_m;
+    box->orientation_rad = goe_arctan_rad(sign * across, sign * along);
+    if (front) {
+        const goe_xz_t middle = {0.5f * (face->left.x + face->right.x), 0.5f * (face->left.z + face->right.z)};
+        return middle;
+    }
+    /* the near end of the side is a corner of the front: the right one if the side is seen to the right of it */
+    const bool left_is_near = face->left.z < face->right.z;
+    const goe_xz_t corner = left_is_near ? face->left : face->right;
+    const float half_m = left_is_near ? 0.5f * size_m : -0.5f * size_m;
+    const goe_xz_t middle = {corner.x - half_m * box->cosine, corner.z + half_m * box->sine};
+    return middle;
+}
+
+bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box) {
+    face_t face;
+    face.range_m = range_of(obs);
+    face.height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
+    if (!obs->base || !(face.range_m >= RANGE_LEAST_M) || !(obs->height_m >= HEIGHT_LEAST_M) ||
+        !(face.height_m >= HEIGHT_LEAST_M) || !place_face(obs, &face)) {
+        return false;
+    }
+    const float x = face.right.x - face.left.x;
+    const float z = face.right.z - face.left.z;
+    box->turn_cos = 1.0f;
+    box->turn_sin = 0.0f;
+    box->sigma_rad = edge_sigma(obs, &face, x, z);
+    if (!(x * x + z * z >= EDGE_LEAST_M2) || !(box->sigma_rad < SIGMA_MOST_RAD)) {
+        return false;
+    }
+    const float size_m = sqrtf(x * x + z * z);
+    const goe_xz_t reference = measure_face(&face, x, z, size_m, box);
+    return scale(obs, reference, size_m, size_m, face.range_m, box);
+}
+
+/* --------------------------------------------------------------------------------------------------------- agreement -- */
+
+/* Difference of two orientations, each within a quarter turn of Z, that may have front and side exchanged. */
+static float difference_rad(float a, float b) {
+    const float d = a - b;
+    if (d > 0.5f * QUARTER_TURN_RAD) {
+        return d - QUARTER_TURN_RAD;
+    }
+    return d < -0.5f * QUARTER_TURN_RAD ? d + QUARTER_TURN_RAD : d;
+}
+
+/* One image alone may be lucky. */
+static bool one_face_agrees(goe_filter_t *filter, const goe_footprint_t *box) {
+    const float d = difference_rad(box->orientation_rad, filter->candidate.extent[0]);
+    const bool agrees = filter->candidate.agreeing > 0 && goe_square(d) < AGREEING_SIGMAS2 * goe_square(box->sigma_rad);
+    filter->candidate.agreeing = (uint8_t)(agrees ? filter->candidate.agreeing + 1 : 1);
+    filter->candidate.extent[0] = box->orientation_rad;
+    return filter->candidate.agreeing >= ONE_FACE_IMAGES;
+}
+
+/* An outlier must not become the start, and range and depth multiply in the image: the range must be known. */
+static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, const goe_footprint_t *box) {
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float most = RANGE_SHARE * q * goe_observation_reference(obs).z;
+    const float tolerance = AGREEING_PX * goe_observation_pixel(obs) + AGREEING_SHARE * (box->left + box->right);
+    const bool agree = filter->candidate.agreeing > 0 &&
+                       goe_absolute(box->left - filter->candidate.extent[0]) < tolerance &&
+                       goe_absolute(box->right - filter->candidate.extent[1]) < tolerance;
+    filter->candidate.agreeing = (uint8_t)(agree ? filter->candidate.agreeing + 1 : 1);
+    filter->candidate.extent[0] = box->left;
+    filter->candidate.extent[1] = box->right;
+    if (goe_filter_variance(filter, GOE_INVERSE_RANGE) > most * most) {
+        filter->candidate.agreeing = 0;
+    }
+    return filter->candidate.agreeing >= TWO_FACES_IMAGES;
+}
+
+static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_footprint_t *box) {
+    const bool both = obs->point[GOE_POINT_BASE_NEAR].usable;
+    if (both != filter->candidate.both) { /* what the images before told is no candidate of this kind */
+        filter->candidate.both = both;
+        filter->candidate.agreeing = 0;
+    }
+    if (!(both ? goe_footprint_two_faces(obs, box) : goe_footprint_one_face(obs, box))) {
+        filter->candidate.agreeing = 0;
+        return false;
+    }
+    return both ? two_faces_agree(filter, obs, box) : one_face_agrees(filter, box);
+}
+
+/* --------------------------------------------------------------------------------------------------------------- start -- */
+
+/* GOE_BEARING and GOE_INVERSE_RANGE of a covariance, about axes turned by the angle of c, s: a' = (a c - s) m, q' = q m, m = 1/(a s + c). */
+static void turn_covariance(const float x[GOE_STATES], float c, float s, float covariance[GOE_KEPT][GOE_KEPT]) {
+    const float m = 1.0f / (x[GOE_BEARING] * s + c);
+    const float shear = x[GOE_INVERSE_RANGE] * s * m;
+    for (size_t i = 0; i < GOE_BEARING; i++) {
+        covariance[i][GOE_INVERSE_RANGE] = m * (covariance[i][GOE_INVERSE_RANGE] - shear * covariance[i][GOE_BEARING]);
+        covariance[i][GOE_BEARING] *= m * m;
+    }
+    const float aa = covariance[GOE_BEARING][GOE_BEARING];
+    const float aq = covariance[GOE_BEARING][GOE_INVERSE_RANGE] - shear * aa;
+    const float qq =
+        covariance[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] - shear * (covariance[GOE_BEARING][GOE_INVERSE_RANGE] + aq);
+    covariance[GOE_BEARING][GOE_BEARING] = goe_square(m * m) * aa;
+    covariance[GOE_BEARING][GOE_INVERSE_RANGE] = m * m * m * aq;
+    covariance[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] = m * m * qq;
+}
+
+/* From a disc to the box of the footprint. The nuisances and the range keep their covariance; the reference moves by up to
+ * the box's size, and the disc was only a stand-in. both: two faces are seen. */
+static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool both) {
+    float c[GOE_KEPT][GOE_KEPT];
+    float *x = filter->state;
+    const float size = goe_larger(box->width, box->length);
+    goe_srif_marginal(&filter->inverse, c);
+    for (size_t i = GOE_BIAS_X; i <= GOE_BIAS_Z; i++) {
+        c[i][i] += filter->drift_rad2;
+    }
+    c[GOE_BEARING][GOE_BEARING] += filter->walk2;
+    turn_covariance(x, box->turn_cos, box->turn_sin, c);
+    c[GOE_BEARING][GOE_BEARING] = 4.0f * c[GOE_BEARING][GOE_BEARING] + goe_square(4.0f * size) + 1.0e-6f;
+    c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] =
+        2.0f * c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] + goe_square(size * box->q);
+    x[GOE_TOP] *= box->q / x[GOE_INVERSE_RANGE];
+    x[GOE_BEARING] = box->a;
+    x[GOE_INVERSE_RANGE] = box->q;
+    x[GOE_SIDE_X] = box->length * box->sine;
+    x[GOE_FRONT_X] = box->width * box->cosine;
+    x[GOE_DEPTH_DIFFERENCE] = box->length * box->cosine - box->width * goe_absolute(box->sine);
+    const float sigma[GOE_STATES - GOE_KEPT] = {SIZE_FREEDOM * size, SIZE_FREEDOM * size,
+                                                (both ? DEPTH_FREEDOM : DEPTH_HELD) * size,
+                                                SIZE_FREEDOM * goe_larger(goe_absolute(x[GOE_TOP]), size)};
+    goe_srif_from_covariance(c, sigma, &filter->root, &filter->inverse);
+    goe_filter_settle(filter);
+    filter->axes.turn_cos = box->turn_cos;
+    filter->axes.turn_sin = box->turn_sin;
+    goe_box_enter(filter, both ? GOE_PHASE_BOX : GOE_PHASE_BOX_FACE);
+}
+
+bool goe_box_start(goe_filter_t *filter, const goe_observation_t *obs) {
+    goe_footprint_t box;
+    if (!obs->base || obs->settings->model == GOE_MODEL_DISC || !find_box(filter, obs, &box)) {
+        return false;
+    }
+    start_box(filter, &box, obs->point[GOE_POINT_BASE_NEAR].usable);
+    return true;
+}

@@ -1,0 +1,43 @@
+/* Phase, root with inverse, axes. SPDX-License-Identifier: MIT */
+#include "refined/goe_filter.h"
+
+#include <string.h>
+
+bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings) {
+    return filter->phase >= (settings->model == GOE_MODEL_LINE ? GOE_PHASE_BOX_FACE : GOE_PHASE_DISC);
+}
+
+void goe_filter_clear(goe_filter_t *filter) {
+    memset(filter, 0, sizeof *filter);
+    filter->axes.turn_cos = 1.0f;
+}
+
+void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase) {
+    filter->phase = (uint8_t)phase;
+    filter->phase_images = 0;
+    filter->known = 0;
+    filter->candidate.agreeing = 0;
+    filter->health.poor = 0;
+    filter->health.recent_nis = GOE_NIS_NONE; /* the first image of a phase does not count */
+}
+
+void goe_filter_settle(goe_filter_t *filter) {
+    filter->drift_rad2 = 0.0f;
+    filter->walk2 = 0.0f;
+}
+
+void goe_filter_invert(goe_filter_t *filter) {
+    goe_srif_invert(&filter->root, &filter->inverse);
+    goe_filter_settle(filter);
+}
+
+void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) {
+    goe_srif_inflate(&filter->root, state, 0.0f, state, 1.0f, sigma);
+}
+
+void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
+    filter->axes.turn_cos = 1.0f;
+    filter->axes.turn_sin = 0.0f;
+    filter->axes.start_dx_m = motion->dx_m;
+    filter->axes.start_dz_m = motion->dz_m;
+}

@@ -1,0 +1,110 @@
+/* The filter's state, its phase, its root with the inverse, and the axes in which it is counted.
+ * SPDX-License-Identifier: MIT */
+#ifndef GOE_FILTER_H
+#define GOE_FILTER_H
+
+#include "maths/goe_xz.h"
+#include "refined/goe_srif.h"
+
+/* The states. All lengths are in units of Z0, the range of the reference point at the filter's start, in which the image is
+ * nearly linear. X, Z: the state's axes, see goe_axes_t. "Side" is the edge of length L, "front" that of width W, b the side's
+ * angle from Z. */
+typedef enum {
+    GOE_BIAS_X, /* attitude bias about body x, y, z: small rotation from the given to the true attitude, rad */
+    GOE_BIAS_Y,
+    GOE_BIAS_Z,
+    GOE_HEIGHT_BIAS,   /* true minus given height of the camera above the obstacle's ground, m */
+    GOE_BEARING,       /* X0/Z0 */
+    GOE_INVERSE_RANGE, /* 1/Z0, 1/m */
+    GOE_SIDE_X,  /* box: L sin(b)/Z0. Disc and chord: how much deeper the right end lies than the left one, over Z0;
+                          0 of a true disc */
+    GOE_FRONT_X, /* box: W cos(b)/Z0; disc: diameter/Z0; chord: how much farther to the right its right end lies */
+    GOE_DEPTH_DIFFERENCE, /* box: (L cos(b) - W |sin(b)|)/Z0: how much deeper the side reaches than the front; otherwise
+                             idle */
+    GOE_TOP,              /* (H - GOE_HEIGHT_BIAS)/Z0: the top above the altimeter's own zero */
+    GOE_STATE_COUNT
+} goe_state_index_t;
+
+GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
+
+/* Places of the states in goe_substitution_t. */
+enum { GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH, GOE_OF_TOP };
+
+GOE_STATIC_ASSERT(GOE_BEARING + GOE_CHANGED == GOE_STATES && GOE_BEARING + GOE_OF_TOP == GOE_TOP,
+                  the_last_states_are_those_that_change);
+GOE_STATIC_ASSERT(GOE_KEPT == GOE_SIDE_X, the_first_states_are_those_that_are_kept);
+
+/* The phases, and what leads from one to the next.
+ *
+ *                     left and right seen
+ *             NONE ------------------------> DISC
+ *              ^                              |  \ deeper at one end, range known, no base edge: goe_chord_start
+ *              |                              |   \-> CHORD -- an end has left it, a face came into view: learns that end
+ *   captured,  |   base corners agree:        |         |  \    anew, stays
+ *   not sane   |   goe_box_start              |<--------/   \ ... a face turned away: goe_chord_change
+ *   (health)   |                     one face | two faces    \
+ *              |                         v        v           v
+ *              |                     BOX_FACE -> BOX     BOX_OUTLINE
+ *              |                      second face in view: goe_box_change
+ *              \--- from every phase
+ *
+ * A box may also exchange the names of front and side, without leaving its phase (goe_box_change). */
+typedef enum {
+    GOE_PHASE_NONE,       /* not started */
+    GOE_PHASE_DISC,       /* a disc, also as a stand-in for a box whose orientation is not known yet */
+    GOE_PHASE_CHORD,      /* the line between the silhouette's ends: a box of which no base corner was seen */
+    GOE_PHASE_BOX_FACE,   /* a box of which one face was seen: its length is held, not estimated */
+    GOE_PHASE_BOX,        /* a box by its base corners */
+    GOE_PHASE_BOX_OUTLINE /* a box by its silhouette alone */
+} goe_phase_t;
+
+static inline goe_phase_t goe_filter_phase(const goe_filter_t *filter) { return (goe_phase_t)filter->phase; }
+static inline bool goe_filter_is_box(const goe_filter_t *filter) { return filter->phase >= GOE_PHASE_BOX_FACE; }
+
+/* Whether the phase is one that the settings let be reported: a forced line is a box, and no disc before it. */
+bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings);
+
+/* Forgets the track. */
+void goe_filter_clear(goe_filter_t *filter);
+
+/* Enters a phase: what counts images of the phase begins anew. */
+void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase);
+
+/* Images in a row; saturates. Returns the new count. */
+static inline unsigned goe_count_image(uint8_t *count) {
+    *count = (uint8_t)(*count < UINT8_MAX ? *count + 1 : UINT8_MAX);
+    return *count;
+}
+
+/* ------------------------------------------------------------------------------------------------ root and inverse -- */
+
+/* The inverse is that of R now: what was added to its variance since is in it. */
+void goe_filter_settle(goe_filter_t *filter);
+
+/* Brings the inverse up to date with R. */
+void goe_filter_invert(goe_filter_t *filter);
+
+/* Adds the variance sigma^2 to a state; sigma > 0. */
+void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma);
+
+static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state) {
+    return goe_inverse_variance(&filter->inverse, state);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ axes -- */
+
+/* The state's axes become T's, with their origin at the camera now. */
+void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);
+
+/* The camera since the filter's start, the state's axes, m. */
+static inline goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion) {
+    const goe_xz_t since = {motion->dx_m - filter->axes.start_dx_m, motion->dz_m - filter->axes.start_dz_m};
+    return goe_xz_into(since, filter->axes.turn_cos, filter->axes.turn_sin);
+}
+
+/* A direction out of the state's axes into T's. */
+static inline goe_xz_t goe_filter_into_trajectory(const goe_filter_t *filter, goe_xz_t v) {
+    return goe_xz_out_of(v, filter->axes.turn_cos, filter->axes.turn_sin);
+}
+
+#endif

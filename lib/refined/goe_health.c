@@ -1,0 +1,137 @@
+/* Fit of the images, and recovery. SPDX-License-Identifier: MIT */
+#include "refined/goe_health.h"
+
+#include "maths/goe_scalar.h"
+#include "refined/goe_chord.h"
+
+#define RECENT_MEMORY 0.125f /* of one image in recent_nis */
+#define MEAN_IMAGES 64       /* that mean_nis remembers */
+#define MEAN_SEEDS 8         /* images of NIS 0 that it is begun with: the first ones alone say little */
+#define RATIO_MOST 20.0f     /* of NIS over rows of one image: one outlier must not decide */
+#define RECENT_MOST 6.0f     /* recent_nis that only a captured state reaches */
+#define POOR_IMAGES 3
+#define REFUSED_IMAGES 4 /* images in a row in which a point is refused before the state is doubted */
+#define REFUSED_ENDS 8   /* the same while an end may leave the chord */
+#define REFUSED_TOPS 3
+#define EARLY_IMAGES 32 /* of the track: what does not fit in them began with an outlier */
+#define FAILURES_MOST 2 /* times that a box of base corners may prove wrong */
+#define TOP_FREEDOM 2.0f
+#define STATE_MOST 1.0e6f
+#define NIS_MOST 1.0e6f
+
+/* ---------------------------------------------------------------------------------------------------------- means -- */
+
+static void average(float *mean, float ratio, float memory) {
+    *mean += ((ratio < RATIO_MOST ? ratio : RATIO_MOST) - *mean) * memory;
+}
+
+static unsigned bits_of(unsigned set) {
+    unsigned count = 0;
+    for (; set != 0; set &= set - 1u) {
+        count++;
+    }
+    return count;
+}
+
+/* Half of the points or more do not fit. */
+static bool is_poor(goe_verdict_t verdict) {
+    return verdict.measured != 0 && 2u * bits_of(verdict.refused) >= bits_of(verdict.measured);
+}
+
+static void average_track(goe_health_t *health, float ratio) {
+    health->images = (int16_t)(health->images < INT16_MAX ? health->images + 1 : INT16_MAX);
+    const int heard = health->images + MEAN_SEEDS;
+    average(&health->mean_nis, ratio, 1.0f / (float)(heard < MEAN_IMAGES ? heard : MEAN_IMAGES));
+}
+
+void goe_health_expect(goe_health_t *health) {
+    health->nis = 0.0f;
+    health->nis_rows = 0;
+}
+
+void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis) {
+    health->nis = goe_within(nis, NIS_MOST) ? nis : NIS_MOST;
+    health->nis_rows = (int16_t)verdict.rows;
+    const float ratio = health->nis / (float)verdict.rows;
+    average_track(health, is_poor(verdict) ? RATIO_MOST : ratio); /* what is left fits, and says nothing */
+    if (health->recent_nis < 0.0f) {
+        health->recent_nis = 1.0f;
+    } else {
+        average(&health->recent_nis, ratio, RECENT_MEMORY);
+    }
+}
+
+void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict) {
+    if (verdict.measured != 0) {
+        average_track(health, RATIO_MOST);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------------- recovery -- */
+
+/* A point that is refused image after image: the state was captured by an outlier, not the other way round. */
+static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
+    goe_health_t *health = &filter->health;
+    const bool chord = filter->phase == GOE_PHASE_CHORD;
+    const unsigned most = chord ? REFUSED_ENDS : REFUSED_IMAGES;
+    bool captured = false;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        const unsigned flag = 1u << i;
+        if ((verdict.refused & flag) != 0) {
+            captured = goe_count_image(&health->refused[i]) >= most || captured;
+        } else if ((verdict.measured & flag) != 0) {
+            health->refused[i] = 0;
+        }
+    }
+    if (is_poor(verdict)) {
+        captured = goe_count_image(&health->poor) >= POOR_IMAGES || captured;
+    } else if (verdict.measured != 0) {
+        health->poor = 0;
+    }
+    if (chord && goe_chord_is_left(filter)) {
+        health->poor = 0;
+        return false;
+    }
+    return captured;
+}
+
+/* The top alone hangs on nothing else. */
+static void free_top(goe_filter_t *filter) {
+    const float *x = filter->state;
+    const float size =
+        goe_larger(goe_absolute(x[GOE_TOP]), goe_larger(x[GOE_FRONT_X], goe_absolute(x[GOE_DEPTH_DIFFERENCE])));
+    goe_filter_inflate(filter, GOE_TOP, TOP_FREEDOM * size);
+    filter->health.refused[GOE_POINT_TOP] = 0;
+}
+
+static bool is_sane(const goe_filter_t *filter) {
+    bool sane = filter->state[GOE_FRONT_X] > 0.0f;
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        sane = goe_within(filter->state[i], STATE_MOST) &&
+               goe_magnitude(filter->root.element[goe_srif_row(i) + i]) < GOE_INFINITY_BITS && sane;
+    }
+    return sane;
+}
+
+/* A box of base corners that proved wrong more than once: they are those of something else. Residuals alone do not decide:
+ * noise that is given too small must not cost a true box its corners. */
+static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) {
+    const bool by_corners = filter->phase == GOE_PHASE_BOX || filter->phase == GOE_PHASE_BOX_FACE;
+    if (by_corners && settings->model == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
+        filter->health.base_refused = goe_count_image(&filter->health.failed) >= FAILURES_MOST;
+    }
+}
+
+bool goe_health_is_lost(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict) {
+    goe_health_t *health = &filter->health;
+    const bool captured = is_captured(filter, verdict);
+    if (health->refused[GOE_POINT_TOP] >= REFUSED_TOPS) {
+        free_top(filter);
+    }
+    if (!captured && !(health->recent_nis > RECENT_MOST) && is_sane(filter)) {
+        return false;
+    }
+    count_failure(filter, settings);
+    memset(health->refused, 0, sizeof health->refused);
+    return true;
+}

@@ -1,0 +1,217 @@
+/* Sigmas, covariance, validity. SPDX-License-Identifier: MIT */
+#include "refined/goe_quantities.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "image/goe_ego_motion.h"
+#include "maths/goe_scalar.h"
+#include "refined/goe_box.h"
+#include "refined/goe_disc.h"
+#include "refined/goe_model.h"
+
+#define RANGE_SHARE 0.25f   /* sigma over value up to which the range is reported */
+#define EXTENT_SHARE 0.3f   /* ... width, length and height */
+#define HEIGHT_LEAST_M 2.0f /* a lower obstacle's height may be off by the share of this */
+#define ORIENTATION_MOST_RAD 0.174532925f
+#define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
+#define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
+#define PATH_LEAST_M 0.1f
+#define S_PER_US 1.0e-6f
+#define TIME_MOST_US 4000000000u
+#define METRES_MOST 1.0e6f
+
+static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION && quantity <= GOE_LENGTH; }
+
+/* ------------------------------------------------------------------------------------------------------------- drift -- */
+
+/* Constant velocity errors scale and turn the flown path, and the obstacle with it: no image shows that. */
+typedef struct {
+    float share; /* of lengths, and rad */
+    float walk_m2;
+} drift_t;
+
+static drift_t drift_of(const goe_noise_t *noise, const goe_motion_t *motion) {
+    const uint64_t us = (uint64_t)motion->time_us - (uint64_t)motion->start_time_us;
+    const float s = (float)(uint32_t)(us < TIME_MOST_US ? us : TIME_MOST_US) * S_PER_US;
+    const float path_m = sqrtf(goe_square(motion->dx_m) + goe_square(motion->dz_m));
+    const drift_t drift = {noise->velocity_bias_m_s * s / (path_m > PATH_LEAST_M ? path_m : PATH_LEAST_M),
+                           goe_square(noise->position_walk_m) * s};
+    return drift;
+}
+
+static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe_shape_t *shape, bool box,
+                            int quantity) {
+    const float share2 = goe_square(drift.share);
+    const float value = shape->quantity[quantity].value;
+    switch (quantity) {
+        case GOE_X0:
+        case GOE_Z0:
+            return share2 * goe_square(shape->quantity[GOE_Z0].value) + drift.walk_m2 + shape->place_m2;
+        case GOE_ORIENTATION:
+            return box ? share2 : 0.0f;
+        case GOE_HEIGHT:
+            return share2 * goe_larger(goe_square(value), goe_square(value - motion->height_m));
+        default:
+            return share2 * goe_square(value);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- variance -- */
+
+/* Derivative in terms of independent unit errors: its squared norm is the variance. */
+static void project(const goe_filter_t *filter, const float by[GOE_STATES], float projected[GOE_STATES]) {
+    goe_srif_project(&filter->inverse, by, projected);
+    if (filter->phase == GOE_PHASE_DISC) {
+        goe_disc_condition(filter, projected);
+    }
+}
+
+static float variance_of(const goe_filter_t *filter, const float by[GOE_STATES]) {
+    float projected[GOE_STATES];
+    float sum = 0.0f;
+    if (filter->phase != GOE_PHASE_DISC) {
+        return goe_srif_variance(&filter->inverse, by);
+    }
+    project(filter, by, projected);
+    for (size_t j = 0; j < GOE_STATES; j++) {
+        sum += projected[j] * projected[j];
+    }
+    return sum;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- validity -- */
+
+/* Within a share of the value, and finite, by the bits. */
+static bool is_known(float value, float sigma, float least, float share) {
+    const float size = goe_larger(goe_absolute(value), least);
+    return goe_within(value, METRES_MOST) && goe_within(size, METRES_MOST) && goe_within(sigma, share * size);
+}
+
+static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
+    return q->value[quantity] > 0.0f && is_known(q->value[quantity], q->sigma[quantity], least, EXTENT_SHARE);
+}
+
+static bool is_position(const goe_filter_t *filter, const goe_quantities_t *q) {
+    return goe_within(q->value[GOE_X0] + filter->axes.start_dx_m, METRES_MOST) &&
+           goe_within(q->value[GOE_Z0] + filter->axes.start_dz_m, METRES_MOST) &&
+           goe_within(q->sigma[GOE_X0], RANGE_SHARE * q->value[GOE_Z0]) &&
+           is_known(q->value[GOE_Z0], q->sigma[GOE_Z0], 0.0f, RANGE_SHARE);
+}
+
+/* The extents of a box by its outline count only after some images, and if these fit. */
+static bool knows_extents(const goe_filter_t *filter) {
+    return filter->phase != GOE_PHASE_BOX_OUTLINE ||
+           !(filter->phase_images < OUTLINE_IMAGES || filter->health.recent_nis > OUTLINE_NIS);
+}
+
+static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t *q) {
+    unsigned known = 0;
+    if ((q->box || !filter->stand_in) && is_extent(q, GOE_WIDTH, 0.0f)) {
+        known |= GOE_HAS_WIDTH;
+    }
+    if (q->box && filter->phase != GOE_PHASE_BOX_FACE && is_extent(q, GOE_LENGTH, 0.0f)) {
+        known |= GOE_HAS_LENGTH;
+    }
+    if (q->box && goe_within(q->sigma[GOE_ORIENTATION], ORIENTATION_MOST_RAD)) {
+        known |= GOE_HAS_ORIENTATION;
+    }
+    return known;
+}
+
+/* Which of the quantities this image knows well enough; values count from the filter's start. */
+static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q) {
+    if (!is_position(filter, q)) {
+        return 0;
+    }
+    return GOE_HAS_POSITION | (is_extent(q, GOE_HEIGHT, HEIGHT_LEAST_M) ? GOE_HAS_HEIGHT : 0u) |
+           (knows_extents(filter) ? known_extents(filter, q) : 0u);
+}
+
+/* --------------------------------------------------------------------------------------------------------- quantities -- */
+
+static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape,
+                           drift_t drift, goe_quantities_t *q) {
+    const goe_xz_t camera_m = {motion->dx_m, motion->dz_m};
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        const float variance =
+            variance_of(filter, shape->quantity[i].by) * (depends_on_corner(i) ? shape->early : 1.0f) +
+            drift_variance(motion, drift, shape, q->box, i);
+        q->value[i] = shape->quantity[i].value;
+        q->sigma[i] = sqrtf(
+            variance + goe_box_outline_variance(filter, shape, camera_m, i, goe_square(q->sigma[GOE_ORIENTATION])));
+    }
+}
+
+/* The middle of the base, in north and east. */
+static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape, drift_t drift,
+                       goe_quantities_t *q) {
+    const goe_xz_t place = goe_filter_into_trajectory(filter, shape->middle.at);
+    /* from the state's axes to north: the heading of T and the turn */
+    const float c = motion->heading_cos * filter->axes.turn_cos - motion->heading_sin * filter->axes.turn_sin;
+    const float s = motion->heading_sin * filter->axes.turn_cos + motion->heading_cos * filter->axes.turn_sin;
+    float by[GOE_STATES] = {0.0f};
+    goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m,
+                     place.z * shape->scale_m + filter->axes.start_dz_m, &q->center_m[0], &q->center_m[1]);
+    for (int i = 0; i < 2; i++) {
+        goe_shape_place(&shape->middle, shape->scale_m, i == 0 ? -s : c, i == 0 ? c : s, by);
+        q->center_sd_m[i] = sqrtf(variance_of(filter, by) + drift_variance(motion, drift, shape, q->box, GOE_Z0));
+    }
+    if (goe_within(q->center_sd_m[0], METRES_MOST) && goe_within(q->center_sd_m[1], METRES_MOST)) {
+        q->known |= GOE_HAS_CENTER;
+    }
+}
+
+void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                         goe_quantities_t *quantities) {
+    goe_quantities_t *q = quantities;
+    goe_shape_t shape;
+    memset(q, 0, sizeof *q);
+    goe_model_shape(filter, &shape);
+    if (!(filter->state[GOE_INVERSE_RANGE] > 0.0f) || !(shape.scale_m > 0.0f)) {
+        return;
+    }
+    const drift_t drift = drift_of(&settings->noise, motion);
+    q->box = goe_filter_is_box(filter);
+    q->length_axis = shape.length_axis;
+    set_quantities(filter, motion, &shape, drift, q);
+    q->now = known_now(filter, q);
+    q->known = q->now & filter->known;
+    q->value[GOE_X0] += filter->axes.start_dx_m;
+    q->value[GOE_Z0] += filter->axes.start_dz_m;
+    if ((q->known & GOE_HAS_POSITION) && (!q->box || (q->known & GOE_HAS_LENGTH))) {
+        set_center(filter, motion, &shape, drift, q);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- covariance -- */
+
+void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                               goe_zero_t zero, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+    float root[GOE_QUANTITIES][GOE_STATES];
+    goe_shape_t shape;
+    const goe_xz_t camera_m = {motion->dx_m, motion->dz_m};
+    const drift_t drift = drift_of(&settings->noise, motion);
+    goe_model_shape(filter, &shape);
+    if (zero == GOE_FROM_DATUM) {
+        shape.quantity[GOE_HEIGHT].by[GOE_HEIGHT_BIAS] = 0.0f;
+    }
+    const float early = sqrtf(shape.early);
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        project(filter, shape.quantity[i].by, root[i]);
+        const float factor = depends_on_corner(i) ? early : 1.0f;
+        for (int k = 0; k < GOE_STATES; k++) {
+            root[i][k] *= factor;
+        }
+        for (int j = 0; j <= i; j++) {
+            float sum = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
+            for (int k = 0; k < GOE_STATES; k++) {
+                sum += root[i][k] * root[j][k];
+            }
+            covariance[i][j] = sum;
+            covariance[j][i] = sum;
+        }
+        covariance[i][i] +=
+            goe_box_outline_variance(filter, &shape, camera_m, i, covariance[GOE_ORIENTATION][GOE_ORIENTATION]);
+    }
+}

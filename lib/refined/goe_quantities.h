@@ -1,0 +1,32 @@
+/* From the filter's state to the quantities of an estimate, their sigmas, and which are known well enough.
+ * SPDX-License-Identifier: MIT */
+#ifndef GOE_QUANTITIES_H
+#define GOE_QUANTITIES_H
+
+#include "refined/goe_shape.h"
+
+/* From what the top's height is counted. */
+typedef enum {
+    GOE_FROM_GROUND, /* of the obstacle */
+    GOE_FROM_DATUM   /* the altimeter's zero: its constant error cancels between camera and top */
+} goe_zero_t;
+
+typedef struct {
+    unsigned now;                /* GOE_HAS_...: what the latest image knows well enough ... */
+    unsigned known;              /* ... and the one before knew, too; 0: the rest does not hold */
+    float value[GOE_QUANTITIES]; /* X0, Z0 from the track's first image, T axes; m, orientation in rad */
+    float sigma[GOE_QUANTITIES];
+    goe_xz_t length_axis;              /* unit vector, T axes */
+    float center_m[2], center_sd_m[2]; /* north, east; holds with GOE_HAS_CENTER */
+    bool box;
+} goe_quantities_t;
+
+/* What the latest image that the filter took knows. */
+void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                         goe_quantities_t *quantities);
+
+/* Covariance of the six quantities, metres and radians, of the filter's present state. */
+void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                               goe_zero_t zero, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
+
+#endif

@@ -1,0 +1,91 @@
+/* Report. SPDX-License-Identifier: MIT */
+#include "refined/goe_report.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "maths/goe_angle.h"
+#include "maths/goe_scalar.h"
+#include "refined/goe_disc.h"
+
+#define SUSPECT_IMAGES 8 /* fewer say nothing */
+
+static void report_position(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
+    estimate->x0_m = q->value[GOE_X0];
+    estimate->z0_m = q->value[GOE_Z0];
+    estimate->sigma.x0_m = q->sigma[GOE_X0];
+    estimate->sigma.z0_m = q->sigma[GOE_Z0];
+    estimate->x_m = estimate->x0_m - motion->dx_m;
+    estimate->z_m = estimate->z0_m - motion->dz_m;
+    estimate->sigma.x_m = estimate->sigma.x0_m;
+    estimate->sigma.z_m = estimate->sigma.z0_m;
+    estimate->baseline_m = sqrtf(goe_square(motion->dx_m) + goe_square(motion->dz_m));
+}
+
+static void report_orientation(const goe_quantities_t *q, goe_estimate_t *estimate) {
+    estimate->orientation_deg = goe_fold_deg(q->value[GOE_ORIENTATION] * GOE_DEG_PER_RAD);
+    estimate->sigma.orientation_deg = q->sigma[GOE_ORIENTATION] * GOE_DEG_PER_RAD;
+    estimate->other_side_deg = goe_fold_deg(estimate->orientation_deg + 90.0f);
+    estimate->orientation_raw_deg = estimate->orientation_deg;
+    estimate->length_axis[0] = q->length_axis.x;
+    estimate->length_axis[1] = q->length_axis.z;
+    estimate->width_axis[0] = q->length_axis.z;
+    estimate->width_axis[1] = -q->length_axis.x;
+}
+
+static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
+    estimate->model = q->box ? GOE_MODEL_BOX : GOE_MODEL_DISC;
+    estimate->fresh = true;
+    estimate->valid = q->known;
+    report_position(q, motion, estimate);
+    if (q->known & GOE_HAS_WIDTH) {
+        estimate->width_m = q->value[GOE_WIDTH];
+        estimate->sigma.width_m = q->sigma[GOE_WIDTH];
+    }
+    if (q->known & GOE_HAS_LENGTH) {
+        estimate->length_m = q->value[GOE_LENGTH];
+        estimate->sigma.length_m = q->sigma[GOE_LENGTH];
+    }
+    if (q->known & GOE_HAS_HEIGHT) {
+        estimate->height_m = q->value[GOE_HEIGHT];
+        estimate->sigma.height_m = q->sigma[GOE_HEIGHT];
+    }
+    if (q->known & GOE_HAS_ORIENTATION) {
+        report_orientation(q, estimate);
+    }
+    if (q->known & GOE_HAS_CENTER) {
+        estimate->center_north_m = q->center_m[0];
+        estimate->center_east_m = q->center_m[1];
+        estimate->sigma.center_north_m = q->center_sd_m[0];
+        estimate->sigma.center_east_m = q->center_sd_m[1];
+    }
+}
+
+bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_t *motion, goe_estimate_t *estimate) {
+    const bool is_known = (quantities->known & GOE_HAS_POSITION) != 0;
+    if (is_known || !(estimate->valid & GOE_HAS_POSITION)) {
+        memset(estimate, 0, sizeof *estimate);
+        estimate->method = GOE_METHOD_REFINED;
+    }
+    if (is_known) {
+        report_known(quantities, motion, estimate);
+    }
+    return is_known;
+}
+
+/* A disc was asked for, and it is none. */
+static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings) {
+    return settings->model == GOE_MODEL_DISC && filter->phase == GOE_PHASE_DISC && goe_disc_is_skewed(filter);
+}
+
+void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, goe_estimate_t *estimate) {
+    const goe_health_t *health = &filter->health;
+    estimate->suspect = (health->images >= SUSPECT_IMAGES && health->mean_nis > settings->misfit_max) ||
+                        health->base_refused || is_forced(filter, settings);
+    if (estimate->method == GOE_METHOD_REFINED) {
+        estimate->points = health->images;
+        estimate->nis = health->nis;
+        estimate->nis_rows = health->nis_rows;
+        estimate->misfit = health->mean_nis;
+    }
+}

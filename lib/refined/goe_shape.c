@@ -1,0 +1,43 @@
+/* What all models' quantities have alike. SPDX-License-Identifier: MIT */
+#include "refined/goe_shape.h"
+
+#include <string.h>
+
+void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]) {
+    by[GOE_BEARING] = by_x * scale_m;
+    by[GOE_INVERSE_RANGE] = -scale_m * scale_m * (by_x * spot->at.x + by_z * spot->at.z);
+    for (size_t i = 0; i < 3; i++) {
+        by[GOE_SIDE_X + i] = scale_m * (by_x * spot->x_by[i] + by_z * spot->z_by[i]);
+    }
+}
+
+void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], const goe_spot_t *reference,
+                     goe_shape_t *shape) {
+    const float c = filter->axes.turn_cos;
+    const float s = filter->axes.turn_sin;
+    const float scale_m = 1.0f / x[GOE_INVERSE_RANGE];
+    const goe_xz_t place = goe_filter_into_trajectory(filter, reference->at);
+    goe_linear_t *height = &shape->quantity[GOE_HEIGHT];
+    memset(shape, 0, sizeof *shape);
+    shape->scale_m = scale_m;
+    shape->early = 1.0f;
+    shape->length_axis.z = 1.0f;
+    shape->quantity[GOE_X0].value = place.x * scale_m;
+    shape->quantity[GOE_Z0].value = place.z * scale_m;
+    goe_shape_place(reference, scale_m, c, s, shape->quantity[GOE_X0].by);
+    goe_shape_place(reference, scale_m, -s, c, shape->quantity[GOE_Z0].by);
+    height->value = x[GOE_TOP] * scale_m + x[GOE_HEIGHT_BIAS];
+    height->by[GOE_INVERSE_RANGE] = -scale_m * scale_m * x[GOE_TOP];
+    height->by[GOE_HEIGHT_BIAS] = 1.0f;
+    height->by[GOE_TOP] = scale_m;
+}
+
+void goe_shape_line(const goe_filter_t *filter, const float x[GOE_STATES], goe_shape_t *shape) {
+    const goe_spot_t middle = {{x[GOE_BEARING], 1.0f}, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+    goe_linear_t *width = &shape->quantity[GOE_WIDTH];
+    goe_shape_start(filter, x, &middle, shape);
+    shape->middle = middle;
+    width->value = x[GOE_FRONT_X] * shape->scale_m;
+    width->by[GOE_INVERSE_RANGE] = -shape->scale_m * width->value;
+    width->by[GOE_FRONT_X] = shape->scale_m;
+}

@@ -1,0 +1,46 @@
+/* What the state says of the obstacle: quantities with their derivatives by the states. Each model fills it.
+ * SPDX-License-Identifier: MIT */
+#ifndef GOE_SHAPE_H
+#define GOE_SHAPE_H
+
+#include "refined/goe_filter.h"
+
+/* A quantity and its derivatives by the states. */
+typedef struct {
+    float value;
+    float by[GOE_STATES];
+} goe_linear_t;
+
+/* A place seen from above, in the state's axes and units of Z0, with its derivatives by GOE_SIDE_X, GOE_FRONT_X and
+ * GOE_DEPTH_DIFFERENCE; that of x by GOE_BEARING is 1. */
+typedef struct {
+    goe_xz_t at;
+    float x_by[3], z_by[3];
+} goe_spot_t;
+
+GOE_STATIC_ASSERT(GOE_FRONT_X == GOE_SIDE_X + 1 && GOE_DEPTH_DIFFERENCE == GOE_SIDE_X + 2,
+                  the_extents_follow_each_other);
+
+typedef struct {
+    /* X0, Z0: reference point in T's axes, from the camera at the filter's start, m; width, length, height: m; orientation:
+     * rad. Orientation and length are 0 but of a box */
+    goe_linear_t quantity[GOE_QUANTITIES];
+    goe_spot_t middle;    /* of the base */
+    goe_xz_t length_axis; /* unit vector, T axes; along the edge that is reported as side */
+    float scale_m;        /* Z0: the unit of the state */
+    float place_m2;       /* variance of the centre beyond that of the state */
+    float early;          /* factor on the variance of orientation, width and length, see goe_box_shape() */
+} goe_shape_t;
+
+/* Sets by[] to the derivatives of by_x X + by_z Z of a spot, metres, X and Z in the state's axes. */
+void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]);
+
+/* What all models have alike, from the state x (the filter's own, or that under a condition): scale, height, and X0, Z0 of
+ * the reference point. The rest becomes 0. */
+void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], const goe_spot_t *reference,
+                     goe_shape_t *shape);
+
+/* ... and of a disc or a chord: the width, and the middle, which is the reference point. */
+void goe_shape_line(const goe_filter_t *filter, const float x[GOE_STATES], goe_shape_t *shape);
+
+#endif
