@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Flies a scenario with JSBSim and writes it as an observation log: a cross-check against another flight model.
 
 JSBSim's stock model glider (minisgs) gets ballast, a motor and an airbrake, and a small autopilot flies it straight
@@ -6,7 +5,7 @@ along the course, down the slope, at the given speed. Its true pose, recorded at
 `goe_sim --flight`, which looks at the obstacle from it: geometry, camera and pixel noise are the simulator's, the
 motion is JSBSim's.
 
-    python -m goe_tools.jsbsim_flight --goe-sim build/sim_host/goe_sim --out log -- \
+    python -m goe_tools jsbsim_flight --goe-sim build/sim_host/goe_sim --out log -- \
         --obstacle building --alpha -20 --noise rounding
 
 What follows `--` goes to goe_sim. Needs the Python package jsbsim.
@@ -232,8 +231,7 @@ def write_recording(path: Path, rows: list[list[float]]) -> None:
             writer.writerow(values + values[1:])
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--goe-sim", default=shutil.which("goe_sim"), help="the program (default: from the PATH)")
     parser.add_argument("--out", type=Path, required=True, help="folder of the log")
     parser.add_argument("--recording", type=Path, help="keep the recorded flight in this file")
@@ -246,9 +244,11 @@ def main() -> int:
     parser.add_argument("--wind", choices=sorted(WIND_AT_20FT_KNOTS), default="none", help="JSBSim's own turbulence")
     parser.add_argument("--seed", type=int, default=1, help="of turbulence and pixel noise (default: 1)")
     parser.add_argument("rest", nargs="*", help="options of goe_sim, after --")
-    args = parser.parse_args()
+
+
+def run(args: argparse.Namespace) -> int:
     if args.goe_sim is None:
-        parser.error("--goe-sim is needed: goe_sim is not in the PATH")
+        raise ValueError("--goe-sim is needed: goe_sim is not in the PATH")
     plan = Plan(
         args.speed, math.radians(args.course), math.radians(args.glide), args.altitude, args.reach, args.run, args.wind,
         args.seed,
@@ -256,7 +256,7 @@ def main() -> int:
     try:
         rows = fly(plan)
     except ImportError:
-        parser.error("the Python package jsbsim is needed")
+        raise ValueError("the Python package jsbsim is needed") from None
     except RuntimeError as error:
         print(f"jsbsim_flight: {error}", file=sys.stderr)
         return 1
@@ -267,7 +267,3 @@ def main() -> int:
                    args.speed * args.reach, "--reach", args.reach, "--run", args.run, "--seed", args.seed,
                    "--out", args.out, *args.rest]  # fmt: skip
         return subprocess.run([str(word) for word in command], check=False).returncode
-
-
-if __name__ == "__main__":
-    sys.exit(main())

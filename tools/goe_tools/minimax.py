@@ -1,4 +1,4 @@
-"""Minimax polynomials of lib/goe_angle.c and lib/goe_normal.c: `python -m goe_tools.minimax` prints the constants and
+"""Minimax polynomials of lib/goe_angle.c and lib/goe_normal.c: `python -m goe_tools minimax` prints the constants and
 their error bounds.
 
 Each angle function is written around its leading terms, with z = t^2:
@@ -16,6 +16,7 @@ A, S, C and N are the polynomials whose largest weighted error is smallest (Reme
 
 from __future__ import annotations
 
+import argparse
 from dataclasses import dataclass
 from math import erfc
 from typing import Callable
@@ -130,14 +131,15 @@ def remez(problem: Problem) -> Polynomial:
     return Polynomial(coefficients, float(np.abs(error).max()))
 
 
-def main() -> None:
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """There are none."""
+
+
+def run(arguments: argparse.Namespace) -> int:
     """Prints the constants as they stand in the C sources."""
     for problem in PROBLEMS:
         polynomial = remez(problem)
         for number, coefficient in enumerate(polynomial.coefficients, start=1):
             print(f"#define {problem.name}_{number} {abs(coefficient):.9g}f")
         print(f"/* {problem.name}: largest error {polynomial.bound:.1e} */")
-
-
-if __name__ == "__main__":
-    main()
+    return 0
