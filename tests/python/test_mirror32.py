@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools import minimax, mirror32
-from goe_tools.compare import MAX_RELATIVE, relative_difference
-from goe_tools.estimate import Settings
-from goe_tools.mirror32 import F, Mirror32, arctan_rad, fold_deg, sincos_deg
-from goe_tools.obslog import Camera, ObservationLog
-from goe_tools.reference64 import Reference64
-from goe_tools.scene import Scene, make_log
+from goe_tools.logs.obslog import Camera, ObservationLog
+from goe_tools.logs.scene import Scene, make_log
+from goe_tools.reference import minimax, mirror32
+from goe_tools.reference.compare import MAX_RELATIVE, relative_difference
+from goe_tools.reference.mirror32 import F, Mirror32, arctan_rad, fold_deg, sincos_deg
+from goe_tools.reference.reference64 import Reference64
+from goe_tools.reference.settings import Settings
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -8,11 +8,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from goe_tools.estimate import Settings
-from goe_tools.gates import Gates
-from goe_tools.mirror32 import Mirror32
-from goe_tools.obslog import Camera, Frame, ObservationLog
-from goe_tools.reference64 import (
+from goe_tools.logs.obslog import Camera, Frame, ObservationLog
+from goe_tools.logs.scene import (
+    CAMERA_AXES_IN_BODY,
+    Scene,
+    distort,
+    make_log,
+    quaternion_of,
+    yaw_pitch_roll,
+)
+from goe_tools.reference.gates import Gates
+from goe_tools.reference.mirror32 import Mirror32
+from goe_tools.reference.reference64 import (
     Reference64,
     Report,
     Row,
@@ -21,14 +28,7 @@ from goe_tools.reference64 import (
     solve,
     undistort,
 )
-from goe_tools.scene import (
-    CAMERA_AXES_IN_BODY,
-    Scene,
-    distort,
-    make_log,
-    quaternion_of,
-    yaw_pitch_roll,
-)
+from goe_tools.reference.settings import Settings
 
 
 def fly(log: ObservationLog, **settings: object) -> list[Report]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.obslog import LogError
+from goe_tools.logs.obslog import LogError
 from goe_tools.report import page, prose, refined_prose, terminal
 from goe_tools.report import refined as rf
 from goe_tools.report import statistics as st

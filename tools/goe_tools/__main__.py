@@ -7,22 +7,22 @@ import importlib
 import sys
 from collections.abc import Sequence
 
-from .obslog import LogError
+from .logs.obslog import LogError
 
 COMMANDS = {  # name: module with add_arguments and run, and what it does
     "bound": (".optimum.bound", "print the Cramer-Rao bound of a log with truth"),
-    "scene": (".scene", "write a synthetic observation log of a box or a cylinder"),
-    "embed_logs": (".embed_logs", "write or check the synthetic logs that the target images carry"),
-    "compare": (".compare", "run goe_replay over logs and compare it with both references"),
-    "golden": (".golden", "write or check the C headers with the unit tests' reference data"),
-    "jsbsim_flight": (".jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
+    "scene": (".logs.scene", "write a synthetic observation log of a box or a cylinder"),
+    "embed_logs": (".logs.embed_logs", "write or check the synthetic logs that the target images carry"),
+    "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
+    "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),
+    "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
     "ledger": (".ledger", "measure what the library costs on each target"),
     "goals": (".optimum.goals", "print what the project promises beside what is reached"),
-    "minimax": (".minimax", "print the constants of the library's polynomials and their error bounds"),
+    "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
     "offline": (".optimum.offline", "fit all images of a log with truth at once"),
     "peers": (".peers", "hold the window solve against other solvers"),
     "report": (".report", "write the campaign's report and print Table 3"),
-    "table": (".table", "print estimates as a table that a pilot can read"),
+    "table": (".logs.table", "print estimates as a table that a pilot can read"),
 }
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C

@@ -18,9 +18,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..obslog import FEATURES, Camera, Frame, LogError, ObservationLog, Truth, read_log
+from ..logs.obslog import FEATURES, Camera, Frame, LogError, ObservationLog, Truth, read_log
+from ..places import ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 RECORDED_FOLDER = ROOT.parent / "shared" / "data" / "flights"
 KITTI_FOLDER = ROOT.parent / "shared" / "data" / "kitti"
 

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .flights import ROOT, Flight, Noise
+from ..places import ROOT
+from .flights import Flight, Noise
 
 LIBRARY_NAMES = ("libgoe_batch.so", "libgoe_batch.dylib")
 METHODS = {"window": 1, "refined": 2}

@@ -25,7 +25,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..obslog import Camera
+from ..logs.obslog import Camera
 from .flights import (
     BASE_LEFT,
     BASE_NEAR,

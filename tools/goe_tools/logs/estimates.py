@@ -1,4 +1,4 @@
-"""What an estimator says of one image: shared by both references, the comparison and the table.
+"""What an estimator says of one image, and the file that goe_replay writes of it.
 
 Column names and order are those of goe_replay's output.
 """
@@ -34,20 +34,6 @@ def sigma_name(quantity: str) -> str:
 
 SIGMAS = tuple(sigma_name(quantity) for quantity in QUANTITIES)
 NUMBERS = tuple(name for quantity in QUANTITIES for name in (quantity, sigma_name(quantity)))
-
-
-@dataclass
-class Settings:
-    """The library's settings beside the camera; defaults are the paper's."""
-
-    model: str = "auto"  # auto, disc, line
-    window: int = 8
-    line_points: int = 8
-    edge_min_px: float = 10.0
-    orientation_min_px: float = 2.0
-    side_min_px: float = 10.0
-    orientation_memory: int = 20
-    min_baseline_m: float = 0.1
 
 
 @dataclass

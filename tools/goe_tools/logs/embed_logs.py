@@ -1,8 +1,8 @@
 """Embedded logs: synthetic tracks as C arrays for the replay images that run on every target.
 
 Writes ``embedded_logs.c``. Numbers are stored as the bits of IEEE 754 singles, so that no compiler reads them
-differently and a NaN stays the NaN it is. All tracks come from goe_tools.scene: nothing recorded, nothing random but
-seeded noise.
+differently and a NaN stays the NaN it is. All tracks come from ``scene``: nothing recorded, nothing random but seeded
+noise.
 
     corner       a box met at its corner, whole pixels, oscillating attitude, all six features: read by each model
     kitti_like   a parked car passed at 9 m/s, boxes of a detector (0.7 px and 2.5 % of the width, one-sigma)

@@ -18,9 +18,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .estimate import QUANTITIES, Estimate, Settings, sigma_name
+from ..logs.estimates import QUANTITIES, Estimate, sigma_name
+from ..logs.obslog import FEATURES, Camera, Frame, Pixel
 from .gates import UNIT_ROUNDOFF, Gates
-from .obslog import FEATURES, Camera, Frame, Pixel
+from .settings import Settings
 
 POSITION_LIMIT_M = 1e6
 HEIGHT_LIMIT_M = 1e5

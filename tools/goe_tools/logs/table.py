@@ -10,7 +10,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from .estimate import Estimate, read_estimates, sigma_name
+from .estimates import Estimate, read_estimates, sigma_name
 from .obslog import LogError, Truth, read_truth
 
 DEFAULT_ROWS = 12

@@ -40,10 +40,12 @@ from rich.console import Console
 from rich.table import Table
 from tqdm import tqdm
 
-from .estimate import NUMBERS, QUANTITIES, Estimate, Settings, read_estimates, sigma_name
+from ..logs.estimates import NUMBERS, QUANTITIES, Estimate, read_estimates, sigma_name
+from ..logs.obslog import LogError, ObservationLog, read_log
+from ..places import ROOT
 from .mirror32 import Mirror32
-from .obslog import LogError, ObservationLog, read_log
 from .reference64 import Reference64, Report
+from .settings import Settings
 
 MIN_SAME_BITS = 0.999  # share of values
 MAX_ULP = 4
@@ -274,7 +276,7 @@ def find_replay(given: Path | None) -> Path:
         return given
     if os.environ.get("GOE_REPLAY"):
         return Path(os.environ["GOE_REPLAY"])
-    for root in (Path.cwd(), Path(__file__).resolve().parents[2]):
+    for root in (Path.cwd(), ROOT):
         for candidate in CANDIDATES:
             if (root / candidate).is_file():
                 return root / candidate

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .estimate import NUMBERS, Estimate, Settings
-from .obslog import FEATURES, Camera, Frame
+from ..logs.estimates import NUMBERS, Estimate
+from ..logs.obslog import FEATURES, Camera, Frame
+from .settings import Settings
 
 F = np.float32
 Decisions = dict[str, bool]

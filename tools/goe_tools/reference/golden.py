@@ -19,18 +19,20 @@ from pathlib import Path
 
 import numpy as np
 
-from .estimate import NUMBERS, Settings
+from ..logs.estimates import NUMBERS
+from ..logs.obslog import FEATURES, Camera, Frame, read_log
+from ..logs.scene import distort
+from ..places import ROOT
 from .gates import Gates
 from .mirror32 import Mirror32
-from .obslog import FEATURES, Camera, Frame, read_log
 from .reference64 import Row, solve
-from .scene import distort
+from .settings import Settings
 
 SEED = 20190917
 ARCTAN_CASES, SINCOS_CASES, LENS_CASES, WINDOW_CASES = 240, 200, 24, 48
 DOUBLE_TOLERANCE = 1e-9
 EXIT_DIFFERENT = 1
-CORNER = Path(__file__).resolve().parents[2] / "tests" / "data" / "corner"
+CORNER = ROOT / "tests" / "data" / "corner"
 VALID = {
     "GOE_HAS_POSITION": "x0_m",
     "GOE_HAS_LENGTH": "length_m",
