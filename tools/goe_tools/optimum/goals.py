@@ -21,12 +21,12 @@ from typing import TypeVar
 import numpy as np
 from tqdm import tqdm
 
-from ..report.statistics import FRACTION, MOST, PAPER_TABLE3, TABLE3_QUANTITIES, holding_range
 from . import flights as fl
 from . import offline
 from .bound import bound
 from .judge import DISC_QUANTITIES, HEIGHT, LENGTH, ORIENTATION, WIDTH, X0, Z0, Judgement, judge, renamed_sigma
 from .library import METHODS, Track, estimate, library_path, settings_of
+from .paper_table3 import FRACTION, MOST, PAPER_TABLE3, TABLE3_QUANTITIES, holding_range
 from .precision import Rounding, rounding_of
 
 NAMES = ("X0", "Z0", "orientation", "W", "L", "H")

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
+from ..optimum import paper_table3 as t3
 from . import statistics as st
 from .data import Campaign, Cases
 from .drawing import Draw, FigureSpec, panels
@@ -148,7 +149,7 @@ def describe_sorted_errors(quantity: str, model: str) -> Callable[[Campaign], tu
             )
             said.append(
                 f"{NAMES[cell.obstacle]}, {len(mean)} cases: means from {number(float(np.min(mean)))} to "
-                f"{number(float(np.max(mean)))} {unit}, {st.MOST:.0%} of the bars within ±{number(cell.bars)} {unit}"
+                f"{number(float(np.max(mean)))} {unit}, {t3.MOST:.0%} of the bars within ±{number(cell.bars)} {unit}"
             )
         caption = f"Farthest from zero: {'; '.join(longest)}."
         start = f"Sorted mean errors of the {QUANTITY_NAMES[quantity]} with two-sigma bars, {model} model. "
@@ -233,7 +234,7 @@ def describe_orientation(campaign: Campaign) -> tuple[str, str]:
     error = series["orientation_deg"] - float(run["alpha_deg"][0])
     raw = _fold(series["orientation_raw_deg"] - float(run["alpha_deg"][0]))
     there = error[np.isfinite(error)]
-    last = there[int(len(there) * (1.0 - st.FRACTION)) :]
+    last = there[int(len(there) * (1.0 - t3.FRACTION)) :]
     start, end = (there[0], there[-1]) if len(there) else (math.nan, math.nan)
     spread = float(np.nanstd(raw[np.isfinite(raw)][-len(last) :])) if len(last) else math.nan
     caption = (
@@ -247,7 +248,7 @@ def describe_orientation(campaign: Campaign) -> tuple[str, str]:
         f"Orientation of the building over time, true value −20 degrees. The filtered side-edge angle starts "
         f"{number(start)} "
         f"degrees off and ends {number(end)} degrees off; single images scatter by {number(spread)} degrees (standard "
-        f"deviation) over the last {st.FRACTION:.0%} of the run. The other side is seen near 70 degrees."
+        f"deviation) over the last {t3.FRACTION:.0%} of the run. The other side is seen near 70 degrees."
     )
     return caption, alt
 
@@ -368,7 +369,7 @@ FACTOR_TITLES = {
 
 
 def conditioning_rows(campaign: Campaign) -> Cases:
-    rows = campaign.cases.select(study="conditioning", fraction=st.FRACTION)
+    rows = campaign.cases.select(study="conditioning", fraction=t3.FRACTION)
     return rows.where((rows["model"] == "auto") | (rows["obstacle"] == "cylinder"))
 
 
@@ -505,7 +506,7 @@ def draw_condition_scatter(campaign: Campaign, narrow: bool) -> Figure | None:
 
 def scatter_rows(campaign: Campaign) -> Cases:
     """Runs of the paper's and of the conditioning study whose condition is known."""
-    rows = campaign.cases.select(study=("paper", "conditioning"), fraction=st.FRACTION)
+    rows = campaign.cases.select(study=("paper", "conditioning"), fraction=t3.FRACTION)
     return rows.where(((rows["model"] == "auto") | (rows["obstacle"] == "cylinder")) & np.isfinite(rows["condition"]))
 
 

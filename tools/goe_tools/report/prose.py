@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..optimum import paper_table3 as t3
 from . import statistics as st
 from .data import IN_PERCENT, Campaign, Cases
 from .style import NAMES, SYMBOLS, UNITS, number, with_unit
@@ -183,7 +184,7 @@ def _is_of_small_truth(cell: st.Cell) -> bool:
 
 def _pure_range(cell: st.Cell) -> float:
     """The range of the runs that are line throughout."""
-    return st.holding_range(cell.errors.extent[cell.errors.runs["fresh_line_share"] >= st.PURE])
+    return t3.holding_range(cell.errors.extent[cell.errors.runs["fresh_line_share"] >= st.PURE])
 
 
 def _is_mixture(cell: st.Cell) -> bool:
@@ -286,7 +287,7 @@ def _explain_small_truth(cell: st.Cell) -> str:
         f"{number(float(np.median(truth[outside])))} m in "
         f"the runs outside the range (median), {number(float(np.median(truth[~outside])))} m in those inside. "
         "In metres, "
-        f"{st.MOST:.0%} of all bars keep to ±{number(st.holding_range(metres))} m."
+        f"{t3.MOST:.0%} of all bars keep to ±{number(t3.holding_range(metres))} m."
     )
 
 
@@ -310,7 +311,7 @@ def _evidence_of_part(cases: Cases, cells: list[st.Cell]) -> list[str]:
 
 def _evidence_of_window(cases: Cases, cells: list[st.Cell]) -> list[str]:
     """Does a longer window help, as it must if the cause is scatter?"""
-    rows = cases.select(study="conditioning", fraction=st.FRACTION)
+    rows = cases.select(study="conditioning", fraction=t3.FRACTION)
     windows = rows.levels("window") if len(rows) else []
     usual = float(np.median(cells[0].errors.runs["window"]))
     if usual not in windows or windows[-1] <= usual:
@@ -332,7 +333,7 @@ def _evidence_of_window(cases: Cases, cells: list[st.Cell]) -> list[str]:
 
 def _evidence_of_wind(cases: Cases, cells: list[st.Cell]) -> list[str]:
     """Do the lasting errors go away where the aircraft shakes, as they must if they come from whole pixels?"""
-    wind = cases.select(study="wind", fraction=st.FRACTION)
+    wind = cases.select(study="wind", fraction=t3.FRACTION)
     if not len(wind):
         return []
     said = []
@@ -357,7 +358,7 @@ def _evidence_of_wind(cases: Cases, cells: list[st.Cell]) -> list[str]:
 def missing(cases: Cases) -> list[str]:
     """Runs that do not count in Table 3."""
     said = []
-    for obstacle, model in st.PAPER_TABLE3:
+    for obstacle, model in t3.PAPER_TABLE3:
         flown = st.flown_runs(cases, obstacle, model)
         counted = st.paper_runs(cases, obstacle, model)
         name = f"{NAMES[obstacle].lower()}/{model}"
@@ -367,7 +368,7 @@ def missing(cases: Cases) -> list[str]:
                 "its 8 points "
                 "and stay with the disc."
             )
-        for quantity in st.TABLE3_QUANTITIES:
+        for quantity in t3.TABLE3_QUANTITIES:
             if quantity == "length" and model == "disc":
                 continue
             errors = st.errors_of(counted, quantity)
@@ -416,7 +417,7 @@ def studies(cases: Cases) -> list[str]:
 
 def outliers(campaign: Campaign) -> str:
     """The paper's open question: are its outliers the badly conditioned runs?"""
-    runs = campaign.cases.select(study="paper", fraction=st.FRACTION)
+    runs = campaign.cases.select(study="paper", fraction=t3.FRACTION)
     runs = runs.where(((runs["model"] == "auto") | (runs["obstacle"] == "cylinder")) & np.isfinite(runs["condition"]))
     count, bad, shares = 0, 0, []
     for obstacle in runs.levels("obstacle"):
@@ -441,7 +442,7 @@ def outliers(campaign: Campaign) -> str:
 
 def condition_effect(campaign: Campaign) -> str:
     """Does the condition number, as the paper would form it, tell good runs from bad ones?"""
-    runs = campaign.cases.select(study="paper", fraction=st.FRACTION)
+    runs = campaign.cases.select(study="paper", fraction=t3.FRACTION)
     runs = runs.where((runs["model"] == "auto") | (runs["obstacle"] == "cylinder"))
     there = np.isfinite(runs["condition"]) & np.isfinite(runs["z0_rmse_pct"])
     if np.sum(there) < 5:
@@ -468,7 +469,7 @@ def condition_effect(campaign: Campaign) -> str:
 
 
 def window_effect(campaign: Campaign) -> str:
-    rows = campaign.cases.select(study="conditioning", fraction=st.FRACTION)
+    rows = campaign.cases.select(study="conditioning", fraction=t3.FRACTION)
     windows = [w for w in rows.levels("window")] if len(rows) else []
     if len(windows) < 2:
         return ""
@@ -485,8 +486,8 @@ def fraction_effect(cases: Cases) -> str:
     """How Table 3 depends on the part of the run, in one sentence."""
     levels = cases.levels("fraction")
     ratios = []
-    for obstacle, model in st.PAPER_TABLE3:
-        for quantity in st.TABLE3_QUANTITIES:
+    for obstacle, model in t3.PAPER_TABLE3:
+        for quantity in t3.TABLE3_QUANTITIES:
             short, long = (st.make_cell(cases, obstacle, model, quantity, level) for level in (levels[0], levels[-1]))
             if short is not None and long is not None and long.bars > 0.0:
                 ratios.append(short.bars / long.bars)

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from ..optimum import paper_table3 as t3
 from . import refined as rf
-from . import statistics as st
 from .data import Campaign
 from .goals_file import GoalRow, Goals
 from .prose import listed, plural
@@ -304,6 +304,6 @@ def lead(campaign: Campaign) -> str:
     median = float(np.median([cell.factor for cell in cells]))
     return (
         f"The library's own method, refined, answers with ranges {number(median)} times narrower than the paper's in "
-        f"the median of the {len(cells)} numbers of Table 3, over the last {st.FRACTION * 100:.0f} % of the same "
+        f"the median of the {len(cells)} numbers of Table 3, over the last {t3.FRACTION * 100:.0f} % of the same "
         "flights."
     )
