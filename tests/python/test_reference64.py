@@ -9,14 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from goe_tools.logs.obslog import Camera, Frame, ObservationLog
-from goe_tools.logs.scene import (
-    CAMERA_AXES_IN_BODY,
-    Scene,
-    distort,
-    make_log,
-    quaternion_of,
-    yaw_pitch_roll,
-)
+from goe_tools.logs.projection import CAMERA_AXES_IN_BODY, distort, quaternion_of, yaw_pitch_roll
+from goe_tools.logs.scene import Scene, make_log
 from goe_tools.reference.gates import Gates
 from goe_tools.reference.mirror32 import Mirror32
 from goe_tools.reference.reference64 import (

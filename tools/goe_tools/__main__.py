@@ -11,7 +11,7 @@ from .logs.obslog import LogError
 
 COMMANDS = {  # name: module with add_arguments and run, and what it does
     "bound": (".optimum.bound", "print the Cramer-Rao bound of a log with truth"),
-    "scene": (".logs.scene", "write a synthetic observation log of a box or a cylinder"),
+    "scene": (".logs.scene_command", "write a synthetic observation log of a box or a cylinder"),
     "embed_logs": (".logs.embed_logs", "write or check the synthetic logs that the target images carry"),
     "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
     "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),

@@ -11,27 +11,15 @@ faces are given.
 
 from __future__ import annotations
 
-import argparse
 import math
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
-from .obslog import Camera, Frame, LogError, ObservationLog, Pixel, Truth, write_log
+from .obslog import Camera, Frame, ObservationLog, Pixel, Truth
+from .projection import CAMERA_AXES_IN_BODY, Pose, project, quaternion_of, yaw_pitch_roll
 
 GRAVITY_MPS2 = 9.80665
-MIN_DEPTH_FRACTION = 0.05  # of the ray's length: below this a point counts as out of view
-LENS_SAMPLES = 33
-LENS_SLOPE_MIN = 0.2  # of d(distorted radius)/d(radius); a lens model that flat has left its valid field
-
-# name: shape, W, L, H in metres (of the cylinder: diameter, diameter, height)
-PRESETS = {
-    "cylinder": ("cylinder", 6.0, 6.0, 30.0),
-    "building": ("box", 15.0, 40.0, 89.0),
-    "truck": ("box", 2.5, 7.0, 2.5),
-    "long-truck": ("box", 2.5, 18.0, 4.0),
-}
 
 
 @dataclass
@@ -67,80 +55,6 @@ class Scene:
     id: int = 1
     t0_s: float = 0.0
     camera: Camera = field(default_factory=lambda: Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0))
-
-
-def rotation(axis: int, angle_rad: float) -> np.ndarray:
-    """Right-handed rotation by an angle about axis 0, 1 or 2; 3 x 3."""
-    c, s = math.cos(angle_rad), math.sin(angle_rad)
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    result = np.eye(3)
-    result[i, i] = result[j, j] = c
-    result[i, j], result[j, i] = -s, s
-    return result
-
-
-def yaw_pitch_roll(yaw_deg: float, pitch_deg: float, roll_deg: float) -> np.ndarray:
-    """Z-Y'-X'' rotation matrix; 3 x 3."""
-    return (
-        rotation(2, math.radians(yaw_deg)) @ rotation(1, math.radians(pitch_deg)) @ rotation(0, math.radians(roll_deg))
-    )
-
-
-def quaternion_of(matrix: np.ndarray) -> tuple[float, float, float, float]:
-    """The unit quaternion (w, x, y, z), w >= 0, of a rotation matrix (largest-component method)."""
-    m = matrix
-    squares = np.array(
-        [
-            1.0 + m[0, 0] + m[1, 1] + m[2, 2],
-            1.0 + m[0, 0] - m[1, 1] - m[2, 2],
-            1.0 - m[0, 0] + m[1, 1] - m[2, 2],
-            1.0 - m[0, 0] - m[1, 1] + m[2, 2],
-        ]
-    )
-    products = {
-        (0, 1): m[2, 1] - m[1, 2],
-        (0, 2): m[0, 2] - m[2, 0],
-        (0, 3): m[1, 0] - m[0, 1],
-        (1, 2): m[0, 1] + m[1, 0],
-        (1, 3): m[0, 2] + m[2, 0],
-        (2, 3): m[1, 2] + m[2, 1],
-    }
-    big = int(np.argmax(squares))
-    scale = 2.0 * math.sqrt(squares[big])
-    q = np.array([scale / 4.0 if i == big else products[tuple(sorted((i, big)))] / scale for i in range(4)])
-    if q[0] < 0.0:
-        q = -q
-    q /= np.linalg.norm(q)
-    return tuple(float(value) for value in q)  # type: ignore[return-value]
-
-
-def distort(camera: Camera, x: float, y: float) -> tuple[float, float]:
-    """Brown-Conrady distortion of a normalised image point, OpenCV's order of the coefficients."""
-    r2 = x * x + y * y
-    radial = 1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3))
-    return (
-        x * radial + 2.0 * camera.p1 * x * y + camera.p2 * (r2 + 2.0 * x * x),
-        y * radial + camera.p1 * (r2 + 2.0 * y * y) + 2.0 * camera.p2 * x * y,
-    )
-
-
-def lens_bends_back(camera: Camera, x: float, y: float) -> bool:
-    """Whether the lens model has turned around before this point, so that a farther ray would meet the same pixel."""
-    r2 = np.linspace(0.0, x * x + y * y, LENS_SAMPLES)
-    return bool(np.any(1.0 + r2 * (3.0 * camera.k1 + r2 * (5.0 * camera.k2 + 7.0 * r2 * camera.k3)) <= LENS_SLOPE_MIN))
-
-
-@dataclass
-class Pose:
-    """Vehicle and camera at one time. ``ned_from_camera`` turns camera axes into NED."""
-
-    vehicle_ned_m: np.ndarray
-    ned_from_body: np.ndarray
-    camera_ned_m: np.ndarray
-    ned_from_camera: np.ndarray
-
-
-CAMERA_AXES_IN_BODY = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # un-mounted: z forward, x right
 
 
 def pose_at(scene: Scene, t: float) -> Pose:
@@ -180,22 +94,6 @@ def pose_at(scene: Scene, t: float) -> Pose:
     vehicle = np.array([north, east, down])
     offset = np.array([camera.offset_x_m, camera.offset_y_m, camera.offset_z_m])
     return Pose(vehicle, ned_from_body, vehicle + ned_from_body @ offset, ned_from_body @ mount @ CAMERA_AXES_IN_BODY)
-
-
-def project(camera: Camera, pose: Pose, point_ned_m: np.ndarray, clip: bool = False) -> Pixel | None:
-    """The pixel of a point in NED; None if it lies behind the image plane, where the lens
-    model holds no more, or, with clip, outside the image."""
-    ray = pose.ned_from_camera.T @ (np.asarray(point_ned_m) - pose.camera_ned_m)
-    if ray[2] <= MIN_DEPTH_FRACTION * np.linalg.norm(ray):
-        return None
-    x, y = ray[0] / ray[2], ray[1] / ray[2]
-    if lens_bends_back(camera, x, y):
-        return None
-    x, y = distort(camera, x, y)
-    u, v = camera.fx * x + camera.cx, camera.fy * y + camera.cy
-    if clip and not (0.0 <= u <= camera.width and 0.0 <= v <= camera.height):
-        return None
-    return float(u), float(v)
 
 
 @dataclass
@@ -356,190 +254,3 @@ def make_log(scene: Scene) -> ObservationLog:
         },
     )
     return ObservationLog(scene.camera, frames, {scene.id: truth})
-
-
-# -------------------------------------------------------------------------------------------------------------- shell
-
-
-def _numbers(text: str, count: int) -> tuple[float, ...]:
-    parts = text.split(",")
-    if len(parts) != count:
-        raise argparse.ArgumentTypeError(f"'{text}': {count} numbers with commas between them are needed")
-    try:
-        values = tuple(float(part) for part in parts)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}': not numbers") from None
-    if not all(math.isfinite(value) for value in values):
-        raise argparse.ArgumentTypeError(f"'{text}': not finite")
-    return values
-
-
-def _obstacle(text: str) -> tuple[str, float, float, float]:
-    if text in PRESETS:
-        return PRESETS[text]
-    kind, _, sizes = text.partition(":")
-    if kind == "box":
-        shape = ("box", *_numbers(sizes, 3))
-    elif kind == "disc":
-        diameter, height = _numbers(sizes, 2)
-        shape = ("cylinder", diameter, diameter, height)
-    else:
-        raise argparse.ArgumentTypeError(f"'{text}': one of {', '.join(PRESETS)}, box:W,L,H or disc:D,H")
-    if min(shape[1:]) <= 0.0:  # type: ignore[type-var]
-        raise argparse.ArgumentTypeError(f"'{text}': sizes must be positive")
-    return shape  # type: ignore[return-value]
-
-
-def _path(text: str) -> dict[str, object]:
-    kind, _, rest = text.partition(":")
-    if text == "straight":
-        return {"path": "straight"}
-    if kind == "arc":
-        (radius,) = _numbers(rest, 1)
-        if radius != 0.0:
-            return {"path": "arc", "arc_radius_m": radius}
-    if kind == "weave":
-        amplitude, period = _numbers(rest, 2)
-        if period > 0.0:
-            return {"path": "weave", "weave_amplitude_m": amplitude, "weave_period_s": period}
-    raise argparse.ArgumentTypeError(f"'{text}': straight, arc:R (m, positive right) or weave:A,T (m, s)")
-
-
-def _speed_profile(text: str) -> float:
-    kind, _, rest = text.partition(":")
-    if text == "constant":
-        return 0.0
-    if kind == "ramp":
-        return _numbers(rest, 1)[0]
-    raise argparse.ArgumentTypeError(f"'{text}': constant or ramp:A (m/s^2)")
-
-
-def _noise(text: str) -> dict[str, object]:
-    kind, _, rest = text.partition(":")
-    if text == "none":
-        return {}
-    if text == "rounding":
-        return {"rounding": "pixel"}
-    if kind == "pixel":
-        return {"pixel_sigma_px": _numbers(rest, 1)[0]}
-    raise argparse.ArgumentTypeError(f"'{text}': none, rounding or pixel:SIGMA (px)")
-
-
-def _heading(text: str) -> float | None:
-    return None if text == "auto" else _numbers(text, 1)[0]
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add(
-        "--obstacle",
-        type=_obstacle,
-        default=PRESETS["truck"],
-        metavar="WHAT",
-        help=f"{', '.join(PRESETS)}, box:W,L,H or disc:D,H (m); default truck",
-    )
-    add("--x0", type=float, default=-12.0, metavar="M", help="reference point right of the start (default -12)")
-    add("--z0", type=float, metavar="M", help="reference point ahead of the start (default: speed times reach)")
-    add("--reach", type=float, default=12.0, metavar="S", help="time to come abeam at the first speed (default 12)")
-    add("--run", type=float, default=10.0, metavar="S", help="duration of the log (default 10)")
-    add("--alpha", type=float, default=0.0, metavar="DEG", help="length axis from the flight direction (default 0)")
-    add("--altitude", type=float, default=20.0, metavar="M", help="above the ground at the start (default 20)")
-    add("--glide", type=float, default=0.0, metavar="DEG", help="descent angle (default 0)")
-    add("--speed", type=float, default=17.0, metavar="MPS", help="default 17")
-    add("--fps", type=float, default=8.0, metavar="HZ", help="images per second (default 8)")
-    add("--course", type=float, default=0.0, metavar="DEG", help="direction of flight at the start (default 0: north)")
-    add(
-        "--path",
-        type=_path,
-        default={"path": "straight"},
-        metavar="P",
-        help="straight, arc:R (m, positive: right) or weave:A,T (m, s)",
-    )
-    add("--speed-profile", type=_speed_profile, default=0.0, metavar="P", help="constant or ramp:A (m/s^2)")
-    add("--pitch", type=float, default=0.0, metavar="DEG", help="constant pitch on top of the glide path's")
-    add("--wobble", type=float, default=0.0, metavar="DEG", help="amplitude of an attitude oscillation (default 0)")
-    add("--noise", type=_noise, default={}, metavar="N", help="none, rounding (whole pixels) or pixel:SIGMA (px)")
-    add("--seed", type=int, default=1, metavar="N", help="of the pixel noise (default 1)")
-    add("--clip", action="store_true", help="points outside the image are not measured")
-    add(
-        "--start",
-        type=lambda text: _numbers(text, 3),
-        default=(0.0, 0.0, 0.0),
-        metavar="N,E,D",
-        help="NED of the ground point under the start (m)",
-    )
-    add("--t0", type=float, default=0.0, metavar="S", help="time stamp of the first image (default 0)")
-    add("--id", type=int, default=1, metavar="N", help="track id (default 1)")
-    add("--image", type=lambda text: _numbers(text, 2), default=(1280.0, 1280.0), metavar="W,H", help="px")
-    add("--focal", type=float, default=914.0, metavar="PX", help="focal length (default 914)")
-    add("--yaw-camera", type=float, default=0.0, metavar="DEG", help="mounting, negative looks left (default 0)")
-    add("--pitch-camera", type=float, default=0.0, metavar="DEG", help="mounting, positive looks up (default 0)")
-    add("--roll-camera", type=float, default=0.0, metavar="DEG", help="mounting (default 0)")
-    add("--lens", type=lambda text: _numbers(text, 5), default=(0.0,) * 5, metavar="K1,K2,P1,P2,K3", help="distortion")
-    add(
-        "--offset",
-        type=lambda text: _numbers(text, 3),
-        default=(0.0,) * 3,
-        metavar="X,Y,Z",
-        help="camera in body axes (m)",
-    )
-    add("--t-heading", type=_heading, default=None, metavar="DEG", help="T's Z axis; default auto: the first yaw")
-    add("--out", type=Path, required=True, metavar="DIR", help="folder to write")
-
-
-def scene_of(arguments: argparse.Namespace) -> Scene:
-    """The scene that a command line asks for."""
-    shape, width, length, height = arguments.obstacle
-    camera = Camera(
-        arguments.image[0],
-        arguments.image[1],
-        arguments.focal,
-        arguments.focal,
-        0.5 * arguments.image[0],
-        0.5 * arguments.image[1],
-        *arguments.lens,
-        mount_roll_deg=arguments.roll_camera,
-        mount_pitch_deg=arguments.pitch_camera,
-        mount_yaw_deg=arguments.yaw_camera,
-        offset_x_m=arguments.offset[0],
-        offset_y_m=arguments.offset[1],
-        offset_z_m=arguments.offset[2],
-        heading_deg=arguments.t_heading,
-    )
-    return Scene(
-        shape=shape,
-        width_m=width,
-        length_m=length,
-        height_m=height,
-        x0_m=arguments.x0,
-        z0_m=arguments.speed * arguments.reach if arguments.z0 is None else arguments.z0,
-        alpha_deg=arguments.alpha,
-        run_s=arguments.run,
-        fps_hz=arguments.fps,
-        speed_mps=arguments.speed,
-        acceleration_mps2=arguments.speed_profile,
-        course_deg=arguments.course,
-        altitude_m=arguments.altitude,
-        glide_deg=arguments.glide,
-        pitch_deg=arguments.pitch,
-        wobble_deg=arguments.wobble,
-        start_ne_m=(arguments.start[0], arguments.start[1]),
-        ground_d_m=arguments.start[2],
-        seed=arguments.seed,
-        clip=arguments.clip,
-        id=arguments.id,
-        t0_s=arguments.t0,
-        camera=camera,
-        **arguments.path,
-        **arguments.noise,
-    )
-
-
-def run(arguments: argparse.Namespace) -> int:
-    log = make_log(scene_of(arguments))
-    try:
-        write_log(arguments.out, log, "made by goe_tools scene")
-    except OSError as error:
-        raise LogError(arguments.out, 0, "", error.strerror or str(error)) from None
-    print(f"{arguments.out}: {len(log.frames)} rows")
-    return 0

@@ -21,7 +21,7 @@ import numpy as np
 
 from ..logs.estimates import NUMBERS
 from ..logs.obslog import FEATURES, Camera, Frame, read_log
-from ..logs.scene import distort
+from ..logs.projection import distort
 from ..places import ROOT
 from .gates import Gates
 from .mirror32 import Mirror32
