@@ -13,15 +13,9 @@ from goe_tools.logs.projection import CAMERA_AXES_IN_BODY, distort, quaternion_o
 from goe_tools.logs.scene import Scene, make_log
 from goe_tools.reference.gates import Gates
 from goe_tools.reference.mirror32 import Mirror32
-from goe_tools.reference.reference64 import (
-    Reference64,
-    Report,
-    Row,
-    mounting_rotation,
-    quaternion_rotation,
-    solve,
-    undistort,
-)
+from goe_tools.reference.reference64 import Reference64, Report
+from goe_tools.reference.reference64.geometry import mounting_rotation, quaternion_rotation, undistort
+from goe_tools.reference.reference64.window import Row, solve
 from goe_tools.reference.settings import Settings
 
 

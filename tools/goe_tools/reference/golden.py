@@ -25,7 +25,7 @@ from ..logs.projection import distort
 from ..places import ROOT
 from .gates import Gates
 from .mirror32 import Mirror32
-from .reference64 import Row, solve
+from .reference64.window import Row, solve
 from .settings import Settings
 
 SEED = 20190917

@@ -1,292 +1,27 @@
-"""The paper's chain in float64: the independent reference of the library.
-
-Deliberately unlike the library wherever the mathematics allows: rotations are composed from elementary ones, angles
-come from numpy's trigonometric functions, (1) is evaluated as printed (its fraction the right way up), the rows of (5)
-are kept as the paper writes them, unrotated, the 2N x 3 system in X0/W, Z0/W, 1/W goes to numpy.linalg.lstsq, and the
-sigmas come from inv(A^T A) by error propagation.
-
-Frames as in goe.h: NED earth, FRD body, camera x right, y down, z forward; T with X right, Y down, Z along the flight
-direction, level. Units: m, rad inside, degrees outside. Aligned points (x, y) are in units of the focal length.
-"""
+"""One obstacle's estimator: the paper's chain from an image to an estimate, step by step."""
 
 from __future__ import annotations
 
 import math
-from collections import deque
-from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..logs.estimates import QUANTITIES, Estimate, sigma_name
-from ..logs.obslog import FEATURES, Camera, Frame, Pixel
-from .gates import UNIT_ROUNDOFF, Gates
-from .settings import Settings
+from ...logs.estimates import QUANTITIES, Estimate, sigma_name
+from ...logs.obslog import FEATURES, Camera, Frame, Pixel
+from ..gates import UNIT_ROUNDOFF, Gates
+from ..settings import Settings
+from .geometry import FORWARD_MIN, chosen_end, fold, mounting_rotation, quaternion_rotation, turned, undistort
+from .track import Edge, Mean, Report, Track, View
+from .window import Fit, Row, solve
 
 POSITION_LIMIT_M = 1e6
 HEIGHT_LIMIT_M = 1e5
 PIXEL_LIMIT_PX = 1e5
 NORM_TOLERANCE = 0.01
 NOSE_MIN = 1e-3
-FORWARD_MIN = 0.05
 WIDTH_MIN = 1e-4
 AMBIGUOUS_DEG = 30.0
-PARALLAX_MIN = 1e-6
-LIMIT_M = 1e6
-AGE_LIMIT_S = 4000.0
-RAY_LIMIT = 20.0
-RADIAL_MIN = 0.05
-RADIAL_MAX = 1e6
-UNDISTORT_ROUNDS = 20
-UNDISTORT_FAILED = 1e-4
 POINT_ROUNDOFF = UNIT_ROUNDOFF  # of an aligned coordinate in float32, relative to 1 + |coordinate|
-
-
-@dataclass
-class Row:
-    """The two rows of (5) of one image, as the paper writes them."""
-
-    forward: float  # m/S
-    aside: float  # m x/S
-    cos_b: float
-    sin_b: float
-    dx_m: float
-    dz_m: float
-    roundoff: float = 0.0  # what float32 arithmetic would do to m/S and m x/S
-    roundoff_m: float = 0.0  # ... and to dX and dZ
-
-
-@dataclass
-class Fit:
-    x0_m: float
-    z0_m: float
-    width_m: float
-    sigma: dict[str, float]  # x0_m, z0_m, width_m
-    roundoff: dict[str, float]  # the same from rounding of the rows alone
-    residual: float
-    baseline_m: float
-
-    @property
-    def ratio(self) -> float:
-        """Conditioning of the solution."""
-        return self.baseline_m / self.width_m
-
-
-@dataclass
-class Edge:
-    left: tuple[float, float]
-    right: tuple[float, float]
-    counts: bool
-    heading_deg: float | None  # None: no orientation
-    roundoff_deg: float = 0.0
-
-
-@dataclass
-class Mean:
-    """Sliding mean. Beside each value: baseline / W of the solution that it was made of."""
-
-    values: deque[float]
-    ratios: deque[float]
-
-    @classmethod
-    def of(cls, length: int) -> Mean:
-        return cls(deque(maxlen=length), deque(maxlen=length))
-
-    def add(self, value: float, ratio: float) -> tuple[float, float]:
-        """Mean of the newest values, and its variance from their spread (0 of a single one)."""
-        self.values.append(value)
-        self.ratios.append(ratio)
-        n = len(self.values)
-        return float(np.mean(self.values)), float(np.var(self.values, ddof=1)) / n if n > 1 else 0.0
-
-
-@dataclass
-class Track:
-    """What one obstacle's track has collected."""
-
-    settings: Settings
-    heading: tuple[float, float] = (1.0, 0.0)  # cosine and sine of the heading of T's Z axis
-    origin_m: np.ndarray | None = None
-    dx_m: float = 0.0
-    dz_m: float = 0.0
-    roundoff_m: float = 0.0  # of dX, dZ in float32: that of the NED positions they are differences of
-    time_us: int | None = None
-    solved_us: int | None = None
-    rows: dict[str, deque[Row]] = field(init=False)
-    line_points: int = 0
-    length: Mean = field(init=False)
-    height: Mean = field(init=False)
-    angle_deg: float = 0.0
-    angle_variance: float = 0.0
-    angles: int = 0
-    model: str = "none"
-    fit: Fit | None = None
-    extents: dict[str, tuple[float, float, float]] = field(default_factory=dict)  # value, sigma, rounding
-    angle_roundoff_deg: float = 0.0
-
-    def __post_init__(self) -> None:
-        window = self.settings.window
-        self.rows = {"disc": deque(maxlen=window), "line": deque(maxlen=window)}
-        self.length = Mean.of(window)
-        self.height = Mean.of(window)
-
-
-@dataclass
-class Report:
-    """One image's answer with what the comparison needs beside it."""
-
-    estimate: Estimate
-    gates: Gates
-    roundoff: dict[str, float]  # by quantity: the sigma that float32 rounding alone would show
-    conditioning: dict[str, float]  # by quantity: smallest baseline / W of the solutions that it was made of; 0: none
-    residual: float
-    camera_height_m: float
-
-
-# ---------------------------------------------------------------------------------------------------- one function each
-
-
-def quaternion_rotation(q: Sequence[float]) -> np.ndarray:
-    """Body -> NED, from the axis and the angle of the quaternion (Rodrigues)."""
-    w, vector = q[0], np.asarray(q[1:], dtype=float)
-    length = float(np.linalg.norm(vector))
-    if length == 0.0:
-        return np.eye(3)
-    x, y, z = vector / length
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = 2.0 * math.atan2(length, w)
-    return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * (cross @ cross)
-
-
-def mounting_rotation(camera: Camera) -> np.ndarray:
-    """Camera -> body: the columns are the camera's axes in body, turned by yaw, pitch and roll."""
-    yaw, pitch, roll = np.radians([camera.mount_yaw_deg, camera.mount_pitch_deg, camera.mount_roll_deg])
-    about_z = np.array([[np.cos(yaw), -np.sin(yaw), 0.0], [np.sin(yaw), np.cos(yaw), 0.0], [0.0, 0.0, 1.0]])
-    about_y = np.array([[np.cos(pitch), 0.0, np.sin(pitch)], [0.0, 1.0, 0.0], [-np.sin(pitch), 0.0, np.cos(pitch)]])
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(roll), -np.sin(roll)], [0.0, np.sin(roll), np.cos(roll)]])
-    turn = about_z @ about_y @ about_x
-    return np.column_stack([turn[:, 1], turn[:, 2], turn[:, 0]])
-
-
-def undistort(camera: Camera, x: float, y: float) -> tuple[float, float, bool, float]:
-    """Inverts the lens by fixed-point iteration: x, y, whether it converged, and how near that was to a limit."""
-    if not any((camera.k1, camera.k2, camera.p1, camera.p2, camera.k3)):
-        return x, y, True, math.inf
-    point, distorted, step, near = np.array([x, y]), np.array([x, y]), 0.0, math.inf
-    for _ in range(UNDISTORT_ROUNDS):
-        r2 = float(point @ point)
-        radial = 1.0 + camera.k1 * r2 + camera.k2 * r2**2 + camera.k3 * r2**3
-        near = min(near, abs(radial - RADIAL_MIN), abs(abs(radial) - RADIAL_MAX) / RADIAL_MAX)
-        if not RADIAL_MIN <= radial <= RADIAL_MAX:
-            return x, y, False, near
-        px, py = point
-        tangential = np.array(
-            [
-                2.0 * camera.p1 * px * py + camera.p2 * (r2 + 2.0 * px**2),
-                camera.p1 * (r2 + 2.0 * py**2) + 2.0 * camera.p2 * px * py,
-            ]
-        )
-        after = (distorted - tangential) / radial
-        near = min(near, float(np.min(np.abs(np.abs(after) - RAY_LIMIT))) / RAY_LIMIT)
-        if float(np.max(np.abs(after))) > RAY_LIMIT:
-            return x, y, False, near
-        step = float(np.max(np.abs(after - point)))
-        point = after
-    near = min(near, abs(step - UNDISTORT_FAILED))
-    return float(point[0]), float(point[1]), step <= UNDISTORT_FAILED, near
-
-
-def fold(deg: float) -> float:
-    """The angle of the same undirected line in (-90, 90]."""
-    return deg - 180.0 * math.ceil((deg - 90.0) / 180.0)
-
-
-def chosen_end(gates: Gates, name: str, deg: float, size: float = 180.0) -> float:
-    """An angle in (-90, 90]. Which of the two ends it takes near 90 is a decision. size: of the angle's operands."""
-    if abs(deg) > 45.0:
-        positive = gates.decide(name, deg > 0.0, 90.0 - abs(deg), size)
-        if positive != (deg > 0.0):
-            return deg + (180.0 if positive else -180.0)
-    return deg
-
-
-def turned(gates: Gates, name: str, x: float, cos_b: float, sin_b: float) -> float | None:
-    """(4): the aligned point seen by a camera turned by b. None: not ahead of it."""
-    norm = math.hypot(1.0, x)
-    forward = cos_b + x * sin_b
-    if not gates.decide(name, forward > FORWARD_MIN * norm, forward - FORWARD_MIN * norm, 2.0 * norm):
-        return None
-    return math.tan(math.atan(x) - math.atan2(sin_b, cos_b))
-
-
-def solve(rows: Sequence[Row], min_baseline_m: float, gates: Gates) -> tuple[str, Fit | None]:
-    """(5) over a window: ("ok", fit) or (why not, None)."""
-    n = len(rows)
-    system, right = np.empty((2 * n, 3)), np.empty(2 * n)
-    for k, row in enumerate(rows):
-        c, s = row.cos_b, row.sin_b
-        system[2 * k] = s, c, -(s * row.dx_m + c * row.dz_m)
-        system[2 * k + 1] = c, -s, -(c * row.dx_m - s * row.dz_m)
-        right[2 * k : 2 * k + 2] = row.forward, row.aside
-    path = np.array([[row.dx_m, row.dz_m] for row in rows])
-    baseline = float(np.linalg.norm(path - path.mean(axis=0)))
-    reach = float(np.max(np.abs(path)))
-    if gates.decide("baseline", baseline < min_baseline_m, baseline - min_baseline_m, baseline + reach):
-        return "no_baseline", None
-    unknowns = np.linalg.lstsq(system, right, rcond=None)[0]
-    p, q, r = (float(value) for value in unknowns)
-    turned_rows = [
-        (row.cos_b * row.aside + row.sin_b * row.forward, row.cos_b * row.forward - row.sin_b * row.aside)
-        for row in rows
-    ]
-    largest = float(np.max(np.abs(turned_rows)))
-    middle = float(np.sum(np.abs(np.mean(turned_rows, axis=0))))
-    roundoff = math.sqrt(float(np.mean([row.roundoff**2 + (row.roundoff_m * r) ** 2 for row in rows])))
-    change, least = r * baseline, PARALLAX_MIN * (1.0 + middle)
-    row_size = roundoff / UNIT_ROUNDOFF + largest
-    if gates.decide("parallax", change <= least, change - least, row_size):
-        return "no_parallax", None
-    width, x0, z0 = 1.0 / r, p / r, q / r
-    inverse = np.linalg.inv(system.T @ system)
-    gradients = {
-        "width_m": np.array([0.0, 0.0, -1.0 / r**2]),
-        "x0_m": np.array([1.0 / r, 0.0, -p / r**2]),
-        "z0_m": np.array([0.0, 1.0 / r, -q / r**2]),
-    }
-    spread = {name: math.sqrt(float(gradient @ inverse @ gradient)) for name, gradient in gradients.items()}
-    largest_m = max(abs(width), abs(x0), abs(z0))
-    if gates.decide("limit", largest_m > LIMIT_M, largest_m - LIMIT_M, LIMIT_M * (1.0 + row_size / change)):
-        return "no_parallax", None
-    ahead = z0 - float(path[:, 1].max())
-    if gates.decide("passed", ahead <= 0.0, ahead, abs(z0) + reach + spread["z0_m"] * row_size):
-        return "passed", None
-    residuals = right - system @ unknowns
-    squares = float(residuals @ residuals)
-    sigma = math.sqrt(squares / (2 * n - 3))
-    return "ok", Fit(
-        x0,
-        z0,
-        width,
-        {name: sigma * value for name, value in spread.items()},
-        {name: roundoff * value for name, value in spread.items()},
-        math.sqrt(squares / (2 * n)),
-        baseline,
-    )
-
-
-# ------------------------------------------------------------------------------------------------------------ estimator
-
-
-@dataclass
-class View:
-    """Aligned points of the usable features, and the edges of the base."""
-
-    points: dict[str, tuple[float, float]] = field(default_factory=dict)
-    edges: list[Edge] = field(default_factory=list)
-    front: Edge | None = None
-    side: Edge | None = None
-    side_is_right: bool = False
-    measured: bool = False
 
 
 class Reference64:
@@ -511,7 +246,7 @@ class Reference64:
             return "held"
         status, fit = solve(rows, self.settings.min_baseline_m, gates)
         if fit is not None:
-            track.fit, track.model, track.solved_us = fit, model, track.time_us
+            track.fit, track.model = fit, model
         return status
 
     def _take_extent(
@@ -674,14 +409,3 @@ class Reference64:
         if self.settings.model == "line" and view.edges and not added["line"]:
             return "no_edge"
         return solving
-
-
-def run_log(camera: Camera, frames: Sequence[Frame], settings: Settings | None = None) -> list[Report]:
-    """Runs every track of a log; one report per frame, in the log's order."""
-    estimators: dict[int, Reference64] = {}
-    reports = []
-    for frame in frames:
-        if frame.id not in estimators:
-            estimators[frame.id] = Reference64(camera, settings)
-        reports.append(estimators[frame.id].update(frame))
-    return reports
