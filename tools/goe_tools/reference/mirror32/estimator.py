@@ -1,426 +1,21 @@
-"""The library's arithmetic in float32, operation by operation, in the order of the C sources.
-
-Every number is a numpy.float32 and every operation rounds to float32, so that the results carry the same bits as the
-C library's, built with its own flags. One section per C file; the names are the C names without their prefix.
-Decisions at thresholds are noted by name (Gates), so that the float64 reference can be compared decision by decision.
-"""
+"""One obstacle's estimator: the library's chain from an image to an estimate, step by step."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..logs.estimates import NUMBERS, Estimate
-from ..logs.obslog import FEATURES, Camera, Frame
-from .settings import Settings
-
-F = np.float32
-Decisions = dict[str, bool]
-
-ZERO, HALF, ONE, TWO = F(0.0), F(0.5), F(1.0), F(2.0)
-
-
-def magnitude(x: np.float32) -> int:
-    """Bits of |x|, which order as the magnitudes do."""
-    return int(F(x).view(np.uint32)) & 0x7FFFFFFF
-
-
-def within(x: np.float32, limit: np.float32) -> bool:
-    return magnitude(x) <= magnitude(limit)
-
-
-def larger(a: np.float32, b: np.float32) -> np.float32:
-    return a if a > b else b
-
-
-# ---------------------------------------------------------------------------------------------------------- goe_angle.c
-
-TAN_PI_8 = F(0.414213562)
-ATAN = (F(0.333327567), F(0.199718793), F(0.138244538), F(0.0790259837))
-SIN = (F(0.166666507), F(0.00833197866), F(0.000194956362))
-COS = (F(0.0416666469), F(0.00138873675), F(2.44384516e-05))
-QUARTER_PI_RAD, HALF_PI_RAD = F(0.785398163), F(1.57079633)
-DEG_PER_RAD, RAD_PER_DEG = F(57.2957795), F(0.0174532925)
-NINETY, HALF_TURN = F(90.0), F(180.0)
-PER_NINETY = ONE / NINETY
-
-
-def arctan_of_fraction(t: np.float32) -> np.float32:
-    z = t * t
-    return t - t * (z * (ATAN[0] - z * (ATAN[1] - z * (ATAN[2] - z * ATAN[3]))))
-
-
-def arctan_of_unit(t: np.float32) -> np.float32:
-    if t <= TAN_PI_8:
-        return arctan_of_fraction(t)
-    return QUARTER_PI_RAD + arctan_of_fraction((t - ONE) / (t + ONE))
-
-
-def arctan_rad(y: np.float32, x: np.float32) -> np.float32:
-    size = np.abs(y)
-    angle = arctan_of_unit(size / x) if size <= x else HALF_PI_RAD - arctan_of_unit(x / size)
-    return -angle if y < ZERO else angle
-
-
-def sincos_deg(deg: np.float32) -> tuple[np.float32, np.float32]:
-    quarter = int(deg * PER_NINETY + (-HALF if deg < ZERO else HALF))
-    t = (deg - F(quarter) * NINETY) * RAD_PER_DEG
-    z = t * t
-    s = t - t * (z * (SIN[0] - z * (SIN[1] - z * SIN[2])))
-    c = ONE - HALF * z + z * z * (COS[0] - z * (COS[1] - z * COS[2]))
-    return ((s, c), (c, -s), (-s, -c), (-c, s))[quarter & 3]
-
-
-def fold_deg(deg: np.float32) -> np.float32:
-    if deg > NINETY:
-        return deg - HALF_TURN
-    return deg + HALF_TURN if deg <= -NINETY else deg
-
-
-def note_end(taken: Decisions, name: str, deg: np.float32) -> np.float32:
-    """Notes near which end of (-90, 90] an angle lies, if near any."""
-    if abs(deg) > 45.0:
-        taken[name] = bool(deg > ZERO)
-    return deg
-
-
-# ------------------------------------------------------------------------------------------------------- goe_rotation.c
-
-Matrix = list[np.float32]  # 3 x 3, row by row
-
-
-def rotation_from_quaternion(q: Sequence[np.float32]) -> Matrix:
-    w, x, y, z = q
-    s = TWO / (w * w + x * x + y * y + z * z)
-    return [
-        ONE - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),
-        s * (x * y + w * z), ONE - s * (x * x + z * z), s * (y * z - w * x),
-        s * (x * z - w * y), s * (y * z + w * x), ONE - s * (x * x + y * y),
-    ]  # fmt: skip
-
-
-def rotation_from_euler(yaw_deg: np.float32, pitch_deg: np.float32, roll_deg: np.float32) -> Matrix:
-    sy, cy = sincos_deg(yaw_deg)
-    sp, cp = sincos_deg(pitch_deg)
-    sr, cr = sincos_deg(roll_deg)
-    return [
-        cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
-        sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
-        -sp, cp * sr, cp * cr,
-    ]  # fmt: skip
-
-
-def rotation_multiply(a: Matrix, b: Matrix) -> Matrix:
-    return [
-        a[3 * row] * b[column] + a[3 * row + 1] * b[3 + column] + a[3 * row + 2] * b[6 + column]
-        for row in range(3)
-        for column in range(3)
-    ]
-
-
-def rotation_apply(r: Matrix, v: Sequence[np.float32]) -> list[np.float32]:
-    return [r[3 * row] * v[0] + r[3 * row + 1] * v[1] + r[3 * row + 2] * v[2] for row in range(3)]
-
-
-# --------------------------------------------------------------------------------------------------------- goe_camera.c
-
-UNDISTORT_ROUNDS = 20
-UNDISTORT_DONE, UNDISTORT_FAILED = F(1.0e-7), F(1.0e-4)
-RAY_LIMIT, RADIAL_MIN, RADIAL_MAX = F(20.0), F(0.05), F(1.0e6)
-
-
-@dataclass
-class Camera32:
-    """The camera settings as floats."""
-
-    fx: np.float32
-    fy: np.float32
-    cx: np.float32
-    cy: np.float32
-    k1: np.float32
-    k2: np.float32
-    p1: np.float32
-    p2: np.float32
-    k3: np.float32
-    offset_m: list[np.float32]
-    camera_to_body: Matrix
-
-
-def camera_of(camera: Camera) -> Camera32:
-    turn = rotation_from_euler(F(camera.mount_yaw_deg), F(camera.mount_pitch_deg), F(camera.mount_roll_deg))
-    mounting = [turn[3 * row + column] for row in range(3) for column in (1, 2, 0)]
-    numbers = [F(getattr(camera, name)) for name in ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")]
-    return Camera32(*numbers, [F(camera.offset_x_m), F(camera.offset_y_m), F(camera.offset_z_m)], mounting)
-
-
-def undistort(lens: Camera32, distorted_x: np.float32, distorted_y: np.float32) -> tuple[np.float32, np.float32] | None:
-    x, y, step = distorted_x, distorted_y, ZERO
-    for _ in range(UNDISTORT_ROUNDS):
-        r2 = x * x + y * y
-        radial = ONE + r2 * (lens.k1 + r2 * (lens.k2 + r2 * lens.k3))
-        if not within(radial, RADIAL_MAX) or radial < RADIAL_MIN:
-            return None
-        tangential_x = TWO * lens.p1 * x * y + lens.p2 * (r2 + TWO * x * x)
-        tangential_y = lens.p1 * (r2 + TWO * y * y) + TWO * lens.p2 * x * y
-        next_x = (distorted_x - tangential_x) / radial
-        next_y = (distorted_y - tangential_y) / radial
-        if not within(next_x, RAY_LIMIT) or not within(next_y, RAY_LIMIT):
-            return None
-        step = larger(np.abs(next_x - x), np.abs(next_y - y))
-        x, y = next_x, next_y
-        if step <= UNDISTORT_DONE:
-            break
-    return (x, y) if step <= UNDISTORT_FAILED else None
-
-
-def camera_ray(camera: Camera32, u_px: np.float32, v_px: np.float32) -> tuple[np.float32, np.float32] | None:
-    x, y = (u_px - camera.cx) / camera.fx, (v_px - camera.cy) / camera.fy
-    if any(magnitude(k) != 0 for k in (camera.k1, camera.k2, camera.p1, camera.p2, camera.k3)):
-        return undistort(camera, x, y)
-    return x, y
-
-
-# ---------------------------------------------------------------------------------------------------------- goe_align.c
-
-FORWARD_MIN = F(0.05)
-
-
-@dataclass
-class Point:
-    x: np.float32
-    y: np.float32
-    u_px: np.float32
-    v_px: np.float32
-
-
-def align(
-    camera: Camera32, camera_to_trajectory: Matrix, u_px: np.float32, v_px: np.float32
-) -> tuple[str, Point | None]:
-    ray = camera_ray(camera, u_px, v_px)
-    if ray is None:
-        return "lens_failed", None
-    x, y = ray
-    norm = np.sqrt(x * x + y * y + ONE)
-    turned = rotation_apply(camera_to_trajectory, (x, y, ONE))
-    if turned[2] <= FORWARD_MIN * norm:
-        return "behind_camera", None
-    return "ok", Point(turned[0] / turned[2], turned[1] / turned[2], u_px, v_px)
-
-
-# ----------------------------------------------------------------------------------------------------- goe_projection.c
-
-WIDTH_MIN = F(1.0e-4)
-SIXTEENTH = ONE / F(16.0)
-
-
-def projection_disc(left: Point, right: Point) -> tuple[np.float32, np.float32] | None:
-    """(2): (xi, zeta), or None."""
-    raw_size = right.x - left.x
-    if not raw_size > WIDTH_MIN:
-        return None
-    cos_left = ONE / np.sqrt(ONE + left.x * left.x)
-    cos_right = ONE / np.sqrt(ONE + right.x * right.x)
-    size = raw_size * (cos_left + cos_right)
-    x = HALF * (left.x + right.x) * (ONE - size * size * SIXTEENTH)
-    zeta = TWO / size
-    return x * zeta, zeta
-
-
-def projection_turn(point: Point, s: np.float32, c: np.float32) -> np.float32 | None:
-    """(4)"""
-    forward = c + point.x * s
-    if not forward > FORWARD_MIN * np.sqrt(ONE + point.x * point.x):
-        return None
-    return (point.x * c - s) / forward
-
-
-# ----------------------------------------------------------------------------------------------------------- goe_edge.c
-
-
-@dataclass
-class Edge:
-    left: Point
-    right: Point
-    counts: bool
-    has_heading: bool
-    heading_deg: np.float32
-
-
-def heading_deg(a: Point, b: Point) -> np.float32:
-    """(1)"""
-    x = a.x * b.y - a.y * b.x
-    z = b.y - a.y
-    rad = arctan_rad(-x, -z) if z < ZERO else arctan_rad(x, z)
-    return fold_deg(rad * DEG_PER_RAD)
-
-
-# --------------------------------------------------------------------------------------------------------- goe_window.c
-
-PARALLAX_MIN, LIMIT_M, SIGMA_LIMIT_M = F(1.0e-6), F(1.0e6), F(1.0e9)
-COUNT_MAX = 32767
-
-
-@dataclass
-class Window:
-    """A ring, as in C: the order of summation is the order in memory."""
-
-    dx_m: list[np.float32]
-    dz_m: list[np.float32]
-    xi: list[np.float32]
-    zeta: list[np.float32]
-    next: int = 0
-    count: int = 0
-
-    @classmethod
-    def of(cls, length: int) -> Window:
-        return cls([ZERO] * length, [ZERO] * length, [ZERO] * length, [ZERO] * length)
-
-    def add(self, dx_m: np.float32, dz_m: np.float32, row: tuple[np.float32, np.float32]) -> None:
-        at, length = self.next, len(self.xi)
-        self.dx_m[at], self.dz_m[at] = dx_m, dz_m
-        self.xi[at], self.zeta[at] = row
-        self.next = at + 1 if at + 1 < length else 0
-        self.count = min(self.count + 1, COUNT_MAX)
-
-
-@dataclass
-class Fit:
-    x0_m: np.float32
-    z0_m: np.float32
-    width_m: np.float32
-    sigma_x0_m: np.float32
-    sigma_z0_m: np.float32
-    sigma_width_m: np.float32
-    residual: np.float32
-    baseline_m: np.float32
-
-
-def bounded(sigma_m: np.float32) -> np.float32:
-    return sigma_m if sigma_m < SIGMA_LIMIT_M else SIGMA_LIMIT_M
-
-
-def window_solve(window: Window, min_baseline_m: np.float32, taken: Decisions) -> tuple[str, Fit | None]:
-    """(5) in closed form."""
-    length = len(window.xi)
-    mean_dx = mean_dz = mean_xi = mean_zeta = ZERO
-    largest_dz = window.dz_m[0]
-    share = ONE / F(length)
-    for k in range(length):
-        mean_dx = mean_dx + window.dx_m[k]
-        mean_dz = mean_dz + window.dz_m[k]
-        mean_xi = mean_xi + window.xi[k]
-        mean_zeta = mean_zeta + window.zeta[k]
-        largest_dz = larger(largest_dz, window.dz_m[k])
-    mean_dx, mean_dz, mean_xi, mean_zeta = mean_dx * share, mean_dz * share, mean_xi * share, mean_zeta * share
-    spread_m2 = mixed_m = ZERO
-    for k in range(length):
-        x = window.dx_m[k] - mean_dx
-        z = window.dz_m[k] - mean_dz
-        spread_m2 = spread_m2 + (x * x + z * z)
-        mixed_m = mixed_m + (x * (window.xi[k] - mean_xi) + z * (window.zeta[k] - mean_zeta))
-
-    baseline_m = np.sqrt(spread_m2)
-    taken["baseline"] = bool(baseline_m < min_baseline_m)
-    if taken["baseline"]:
-        return "no_baseline", None
-    inverse_width = -mixed_m / spread_m2
-    taken["parallax"] = bool(inverse_width * baseline_m <= PARALLAX_MIN * (ONE + np.abs(mean_xi) + np.abs(mean_zeta)))
-    if taken["parallax"]:
-        return "no_parallax", None
-    width_m = ONE / inverse_width
-    x0_m = width_m * mean_xi + mean_dx
-    z0_m = width_m * mean_zeta + mean_dz
-    taken["limit"] = not (within(width_m, LIMIT_M) and within(x0_m, LIMIT_M) and within(z0_m, LIMIT_M))
-    if taken["limit"]:
-        return "no_parallax", None
-    taken["passed"] = bool(z0_m <= largest_dz)
-    if taken["passed"]:
-        return "passed", None
-
-    squares = ZERO
-    for k in range(length):
-        x = (window.xi[k] - mean_xi) + inverse_width * (window.dx_m[k] - mean_dx)
-        z = (window.zeta[k] - mean_zeta) + inverse_width * (window.dz_m[k] - mean_dz)
-        squares = squares + (x * x + z * z)
-    s2 = squares / F(2 * length - 3)
-    mean = s2 / F(length)
-    slope = width_m * width_m * (s2 / spread_m2)
-    return "ok", Fit(
-        x0_m,
-        z0_m,
-        width_m,
-        bounded(width_m * np.sqrt(mean + mean_xi * mean_xi * slope)),
-        bounded(width_m * np.sqrt(mean + mean_zeta * mean_zeta * slope)),
-        bounded(width_m * np.sqrt(slope)),
-        np.sqrt(squares / F(2 * length)),
-        baseline_m,
-    )
-
-
-# ----------------------------------------------------------------------------------------------------------- goe_mean.c
-
-
-@dataclass
-class Mean:
-    value: list[np.float32]
-    next: int = 0
-    count: int = 0
-
-    def add(self, value: np.float32) -> tuple[np.float32, np.float32]:
-        """Mean and its variance."""
-        length = len(self.value)
-        self.value[self.next] = value
-        self.next = self.next + 1 if self.next + 1 < length else 0
-        self.count = self.count + 1 if self.count < length else length
-        n = self.count
-        mean = squares = ZERO
-        for k in range(n):
-            mean = mean + self.value[k]
-        mean = mean / F(n)
-        for k in range(n):
-            off = self.value[k] - mean
-            squares = squares + off * off
-        return mean, squares / F((n - 1) * n) if n > 1 else ZERO
-
-
-# --------------------------------------------------------------------------------------------------------- goe_intake.c
-
-POSITION_LIMIT_M, HEIGHT_LIMIT_M, PIXEL_LIMIT_PX, ATTITUDE_LIMIT = F(1.0e6), F(1.0e5), F(1.0e5), F(2.0)
-NORM2_MIN, NORM2_MAX = F(0.99) * F(0.99), F(1.01) * F(1.01)
-INFINITY_BITS = 0x7F800000
-
-
-@dataclass
-class Pose:
-    time_us: int | None
-    position_ned_m: list[np.float32]
-    height_m: np.float32
-    attitude: list[np.float32]
-
-
-def intake_check(
-    pose: Pose, pixels: dict[str, tuple[np.float32, np.float32]], last_time_us: int | None, taken: Decisions
-) -> str:
-    limits = [(pose.height_m, HEIGHT_LIMIT_M)]
-    limits += [(value, POSITION_LIMIT_M) for value in pose.position_ned_m]
-    limits += [(value, PIXEL_LIMIT_PX) for pixel in pixels.values() for value in pixel]
-    q = pose.attitude
-    if any(magnitude(value) >= INFINITY_BITS for value in [*q, *(value for value, _ in limits)]):
-        return "not_finite"
-    if any(magnitude(value) > magnitude(limit) for value, limit in limits):
-        return "out_of_range"
-    if pose.time_us is None or (last_time_us is not None and pose.time_us <= last_time_us):
-        return "bad_time"
-    if any(magnitude(value) > magnitude(ATTITUDE_LIMIT) for value in q):
-        return "bad_attitude"
-    norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
-    taken["attitude"] = bool(norm2 < NORM2_MIN or norm2 > NORM2_MAX)
-    return "bad_attitude" if taken["attitude"] else "ok"
-
-
-# ------------------------------------------------------------------------------------------------------ goe_estimator.c
+from ...logs.estimates import NUMBERS, Estimate
+from ...logs.obslog import FEATURES, Camera, Frame
+from ..settings import Settings
+from .angle import NINETY, fold_deg, note_end, sincos_deg
+from .camera import Point, align, camera_of
+from .intake import Pose, intake_check
+from .projection import WIDTH_MIN, Edge, heading_deg, projection_disc, projection_turn
+from .rotation import Matrix, rotation_apply, rotation_from_quaternion, rotation_multiply
+from .single import HALF, ONE, ZERO, Decisions, F
+from .window import Mean, Window, window_solve
 
 LEVEL_NOSE_MIN = F(1.0e-3)
 AMBIGUOUS_DEG = F(30.0)
@@ -476,7 +71,7 @@ class Mirror32:
         self.told = Told()
         self.taken: Decisions = {}
 
-    # goe_ego_motion.c
+    # -- ego motion
 
     def _follow(self, pose: Pose) -> Matrix:
         body_to_ned = rotation_from_quaternion(pose.attitude)
@@ -513,7 +108,7 @@ class Mirror32:
         else:
             self.heading_cos, self.heading_sin = north / level, east / level
 
-    # goe_align.c, goe_projection.c: rows
+    # -- aligned points and rows
 
     def _align_view(self, turn: Matrix, pixels: dict[str, tuple[np.float32, np.float32]], view: View) -> None:
         for feature, (u_px, v_px) in pixels.items():
@@ -568,7 +163,7 @@ class Mirror32:
         self.line.add(self.dx_m, self.dz_m, row)
         view.line_row = True
 
-    # goe_edge.c
+    # -- edges
 
     def _find_edges(self, view: View) -> None:
         points = view.points
@@ -598,7 +193,7 @@ class Mirror32:
         heading = heading_deg(left, right) if has_heading else ZERO
         return Edge(left, right, counts, has_heading, heading)
 
-    # goe_orientation.c
+    # -- orientation
 
     def _hypothesis_deg(self, side: Edge | None, front: Edge | None) -> np.float32:
         if side is not None and side.has_heading:
@@ -640,7 +235,7 @@ class Mirror32:
         self.filtered_deg = note_end(self.taken, "end:filter", fold_deg(before + step * gain))
         self.variance_deg2 = self.variance_deg2 + (step * step - self.variance_deg2) * gain
 
-    # goe_extent.c
+    # -- length and height
 
     def _measure_length(self, view: View) -> None:
         values, c, s = self.told.values, view.turn_c, view.turn_s
@@ -685,7 +280,7 @@ class Mirror32:
             self.told.values.pop(f"{name}_m", None)
             self.told.values.pop(f"{name}_sd_m", None)
 
-    # goe_estimator.c
+    # -- solution and estimate
 
     def _solve(self, view: View) -> str:
         model = self.settings.model
