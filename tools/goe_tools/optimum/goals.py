@@ -21,9 +21,16 @@ from typing import TypeVar
 import numpy as np
 from tqdm import tqdm
 
-from . import flights as fl
 from . import offline
 from .bound import bound
+from .flights.flight import QUANTITIES, Flight, Obstacle
+from .flights.logged import KITTI_FOLDER, kitti_flights
+from .flights.measured import measure
+from .flights.noise import NOISES, Noise
+from .flights.recorded import RECORDED_FOLDER, recorded_scenes
+from .flights.rotations import fold
+from .flights.scene import Scene
+from .flights.simulated import paper_scenes, random_scenes
 from .judge import DISC_QUANTITIES, HEIGHT, LENGTH, ORIENTATION, WIDTH, X0, Z0, Judgement, judge, renamed_sigma
 from .library import METHODS, Track, estimate, library_path, settings_of
 from .paper_table3 import FRACTION, MOST, PAPER_TABLE3, TABLE3_QUANTITIES, holding_range
@@ -101,8 +108,8 @@ FULL = Amount(
 
 @dataclass
 class Task:
-    scene: fl.Scene
-    noise: fl.Noise
+    scene: Scene
+    noise: Noise
     seed: tuple[int, int]
     bound: bool = False
     offline: bool = False
@@ -115,7 +122,7 @@ class Outcome:
 
     name: str
     group: str
-    truth: fl.Obstacle
+    truth: Obstacle
     time_s: np.ndarray
     reach_s: float
     refined: Judgement
@@ -149,7 +156,7 @@ def _misfit_most(track: Track) -> float:
     return float(track.misfit[np.cumsum(track.nis_rows > 0) >= SUSPECT_IMAGES].max(initial=0.0))
 
 
-def outcome_of(flight: fl.Flight) -> Outcome:
+def outcome_of(flight: Flight) -> Outcome:
     """Runs both methods over a flight."""
     track = estimate(flight)
     position = track.valid[:, Z0]
@@ -163,7 +170,7 @@ def outcome_of(flight: fl.Flight) -> Outcome:
 
 
 def perform(task: Task) -> Outcome:
-    flight = fl.measure(task.scene, task.noise, task.seed)
+    flight = measure(task.scene, task.noise, task.seed)
     result = outcome_of(flight)
     result.seed = task.seed
     if task.bound:
@@ -177,9 +184,9 @@ def perform(task: Task) -> Outcome:
     return result
 
 
-def _offline_error(flight: fl.Flight) -> np.ndarray:
+def _offline_error(flight: Flight) -> np.ndarray:
     error = offline.fit(flight).values - flight.truth.values
-    error[ORIENTATION] = fl.fold(error[ORIENTATION])
+    error[ORIENTATION] = fold(error[ORIENTATION])
     return np.where(True if flight.truth.kind == "box" else DISC_QUANTITIES, error, np.nan)
 
 
@@ -379,9 +386,9 @@ def suspect_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
 
 
 def _tasks(noise: str, seeds: int, amount: Amount, **options: object) -> list[Task]:
-    scenes = fl.paper_scenes() + fl.random_scenes(amount.random)
+    scenes = paper_scenes() + random_scenes(amount.random)
     return [
-        Task(scene, fl.NOISES[noise], (seed, number), **options)  # type: ignore[arg-type]
+        Task(scene, NOISES[noise], (seed, number), **options)  # type: ignore[arg-type]
         for seed in range(1, seeds + 1)
         for number, scene in enumerate(scenes)
     ]
@@ -416,7 +423,7 @@ def field_group(group: str, amount: Amount) -> list[Goal]:
 def recorded_group(group: str, amount: Amount) -> list[Goal]:
     """Recorded flights of real autopilots past obstacles put there."""
     result: list[Goal] = []
-    scenes = [s for seed in range(amount.recorded_seeds) for s in fl.recorded_scenes(amount.recorded, seed=seed + 1)]
+    scenes = [s for seed in range(amount.recorded_seeds) for s in recorded_scenes(amount.recorded, seed=seed + 1)]
     for autopilot in sorted({scene.group for scene in scenes}):
         tasks = [
             Task(scene, scene.noise, (1, number)) for number, scene in enumerate(scenes) if scene.group == autopilot
@@ -455,7 +462,7 @@ TABLE3_NUMBERS = dict(zip(TABLE3_QUANTITIES, (Z0, X0, WIDTH, LENGTH, HEIGHT)))
 
 def _bound_when_judged(task: Task) -> np.ndarray:
     """(6,) two sigma of the Cramer-Rao bound at the time from which Table 3 judges, in its units."""
-    flight = fl.measure(task.scene, task.noise, task.seed)
+    flight = measure(task.scene, task.noise, task.seed)
     seen = flight.seen.copy()
     seen[int((1 - FRACTION) * len(seen)) :] = False
     sigma = bound(replace(flight, seen=seen)).sigma
@@ -480,7 +487,7 @@ def table3_bounds(group: str, tasks: Sequence[Task], outcomes: Sequence[Outcome]
 
 def table3_group(group: str, amount: Amount) -> list[Goal]:
     """Table 3 of the paper on its own 156 cases: whole pixels, no other error."""
-    tasks = [Task(scene, fl.NOISES["rounding"], (1, number)) for number, scene in enumerate(fl.paper_scenes())]
+    tasks = [Task(scene, NOISES["rounding"], (1, number)) for number, scene in enumerate(paper_scenes())]
     outcomes = _perform_all(tasks, amount, group)
     result = []
     for obstacle, chosen in _by_obstacle(outcomes).items():
@@ -509,7 +516,7 @@ def early_group(group: str, amount: Amount) -> list[Goal]:
     """How soon the range is known: the time that is left to fly around."""
     result = []
     for noise in ("rounding", "field"):
-        tasks = [Task(scene, fl.NOISES[noise], (1, number)) for number, scene in enumerate(fl.paper_scenes())]
+        tasks = [Task(scene, NOISES[noise], (1, number)) for number, scene in enumerate(paper_scenes())]
         outcomes = _perform_all(tasks, amount, f"{group} {noise}")
         criteria: dict[str, Callable[[Outcome], np.ndarray]] = {
             "refined, own 2 sigma": lambda o: 2 * o.refined.sigma[:, Z0] < KNOWN_SHARE * o.truth.z0_m,
@@ -554,7 +561,7 @@ def flag_goals(group: str, static: Sequence[Outcome], moving: Sequence[Outcome])
 
 def kitti_group(group: str, amount: Amount) -> list[Goal]:
     """KITTI's cars, detector boxes and all."""
-    flights = [f for f in fl.kitti_flights() if f.path_m() > KITTI_PATH_M]
+    flights = [f for f in kitti_flights() if f.path_m() > KITTI_PATH_M]
     if not flights:
         return []
     progress = tqdm(flights, desc=group, disable=None, leave=False)
@@ -588,7 +595,7 @@ def kitti_group(group: str, amount: Amount) -> list[Goal]:
 
 
 def _rounding(task: Task) -> Rounding:
-    return rounding_of(fl.measure(task.scene, task.noise, task.seed))
+    return rounding_of(measure(task.scene, task.noise, task.seed))
 
 
 def float32_group(group: str, amount: Amount) -> list[Goal]:
@@ -615,7 +622,7 @@ def float32_group(group: str, amount: Amount) -> list[Goal]:
     return result
 
 
-def _rival_errors(flight: fl.Flight) -> dict[str, np.ndarray]:
+def _rival_errors(flight: Flight) -> dict[str, np.ndarray]:
     """Errors (6,) of the rivals at the end of a flight; nothing where they are not installed."""
     try:
         from . import rivals
@@ -629,22 +636,22 @@ def _rival_errors(flight: fl.Flight) -> dict[str, np.ndarray]:
     return result
 
 
-def _rival_error(flight: fl.Flight, told: dict[str, float]) -> np.ndarray:
+def _rival_error(flight: Flight, told: dict[str, float]) -> np.ndarray:
     from .judge import renamed
 
-    values = np.array([told.get(name, math.nan) for name in fl.QUANTITIES])
+    values = np.array([told.get(name, math.nan) for name in QUANTITIES])
     truth, box = flight.truth, flight.truth.kind == "box"
     error = values - truth.values
     if not box:
         error[~DISC_QUANTITIES] = np.nan
     elif told.get("box", 0.0) > 0.5:
-        if abs(fl.fold(error[ORIENTATION])) > math.pi / 4:
+        if abs(fold(error[ORIENTATION])) > math.pi / 4:
             others = [values - renamed(truth.values, side) for side in (-1, 1)]
             error = min(others, key=lambda e: abs(e[X0]) + abs(e[Z0]))
     else:
         error[:2] = values[:2] - truth.corners().mean(0)
         error[2:] = np.nan
-    error[ORIENTATION] = fl.fold(error[ORIENTATION])
+    error[ORIENTATION] = fold(error[ORIENTATION])
     return error
 
 
@@ -679,8 +686,8 @@ GROUPS: dict[str, Callable[[str, Amount], list[Goal]]] = {
 }
 ABSENT = {
     "float32": "the target goe_batch_double is not built",
-    "recorded": f"no flights in {fl.RECORDED_FOLDER}",
-    "kitti": f"no logs in {fl.KITTI_FOLDER}",
+    "recorded": f"no flights in {RECORDED_FOLDER}",
+    "kitti": f"no logs in {KITTI_FOLDER}",
     "rivals": "the rivals are not there",
 }
 

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from ..places import ROOT
-from .flights import Flight, Noise
+from .flights.flight import Flight
+from .flights.noise import Noise
 
 LIBRARY_NAMES = ("libgoe_batch.so", "libgoe_batch.dylib")
 METHODS = {"window": 1, "refined": 2}
