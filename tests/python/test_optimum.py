@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.optimum import goals, model
+from goe_tools.optimum import model
 from goe_tools.optimum.bound import bound
 from goe_tools.optimum.flights.flight import LEFT, RIGHT, TOP, Obstacle
 from goe_tools.optimum.flights.logged import from_log
@@ -19,6 +19,9 @@ from goe_tools.optimum.flights.noise import FIELD, NOISES, Noise
 from goe_tools.optimum.flights.rotations import multiply, small_rotations
 from goe_tools.optimum.flights.scene import Scene
 from goe_tools.optimum.flights.simulated import Course, paper_scenes, pinhole, simulate
+from goe_tools.optimum.goals import command
+from goe_tools.optimum.goals.goal import Goal
+from goe_tools.optimum.goals.kitti import caught
 from goe_tools.optimum.judge import judge, renamed, renamed_sigma
 from goe_tools.optimum.library import MODEL_BOX, MODEL_DISC, Track, estimate, library_path, settings_of
 
@@ -295,7 +298,7 @@ def test_the_library_over_a_flight(built: Path) -> None:
 
 
 def test_a_goal_is_met_within_its_range() -> None:
-    goal = goals.Goal("g", "n", "1", {"X0": 1.0, "Z0": 3.0}, (0.0, 2.0), ("X0",))
+    goal = Goal("g", "n", "1", {"X0": 1.0, "Z0": 3.0}, (0.0, 2.0), ("X0",))
     assert goal.met and not replace(goal, asked=("X0", "Z0")).met
     assert replace(goal, asked=("X0", "Z0")).missed == ("Z0",)
     assert replace(goal, asked=()).met is None
@@ -304,8 +307,8 @@ def test_a_goal_is_met_within_its_range() -> None:
 
 def test_caught_at_a_share_of_false_flags() -> None:
     static, moving = np.arange(10.0), np.array([8.5, 9.5, 20.0, 1.0])
-    assert goals.caught(static, moving, 0.0) == 50.0
-    assert goals.caught(static, moving, 0.1) == 75.0
+    assert caught(static, moving, 0.0) == 50.0
+    assert caught(static, moving, 0.1) == 75.0
 
 
 def test_goals_of_table3(built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -324,9 +327,9 @@ def test_goals_says_what_it_does_not_know(built: Path, capsys: pytest.CaptureFix
 
 
 def test_an_interrupt_ends_with_a_word(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    def interrupted(*_: object) -> list[goals.Goal]:
+    def interrupted(*_: object) -> list[Goal]:
         raise KeyboardInterrupt
 
-    monkeypatch.setitem(goals.GROUPS, "field", interrupted)
+    monkeypatch.setitem(command.GROUPS, "field", interrupted)
     assert main(["goals", "--quick", "--only", "field"]) == 130
     assert capsys.readouterr().err.splitlines()[-1] == "goe_tools goals: interrupted"
