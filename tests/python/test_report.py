@@ -14,12 +14,14 @@ import numpy as np
 import pytest
 from goe_tools.logs.obslog import LogError
 from goe_tools.optimum import paper_table3 as t3
-from goe_tools.report import page, prose, refined_prose, terminal
+from goe_tools.report import page, terminal
 from goe_tools.report import refined as rf
 from goe_tools.report import statistics as st
 from goe_tools.report.data import Campaign, Cases, read_campaign
 from goe_tools.report.figures import FIGURES
 from goe_tools.report.goals_file import read_goals
+from goe_tools.report.prose import misses, table3
+from goe_tools.report.prose import refined as refined_prose
 from goe_tools.report.style import number
 from rich.console import Console
 from synthetic_campaign import write_campaign, write_goals
@@ -137,7 +139,7 @@ def test_zero_truth_has_no_percentage_and_is_told(campaign: Campaign) -> None:
     cell = st.make_cell(campaign.cases, "cylinder", "disc", "x0")
     assert cell is not None
     assert (len(cell.errors.mean), cell.errors.without_percent, cell.errors.without_estimate) == (4, 2, 0)
-    assert any("cylinder/disc: 2 runs with X₀ = 0" in sentence for sentence in prose.missing(campaign.cases))
+    assert any("cylinder/disc: 2 runs with X₀ = 0" in sentence for sentence in table3.missing(campaign.cases))
 
 
 def test_rank_correlation() -> None:
@@ -175,8 +177,8 @@ def test_studies_are_compared_with_the_same_cases(campaign: Campaign) -> None:
 
 
 def test_misses_are_told_with_a_reason(campaign: Campaign) -> None:
-    cells = [c for c in prose.paper_cells(campaign.cases) if c.verdict in (st.WORSE, st.MEANS_ONLY)]
-    causes = prose.causes(campaign.cases)
+    cells = [c for c in table3.paper_cells(campaign.cases) if c.verdict in (st.WORSE, st.MEANS_ONLY)]
+    causes = misses.causes(campaign.cases)
     assert len(cells) > 3
     assert sum(len(cause.findings) for cause in causes) == len(cells)
     assert all(cause.sentences and cause.title for cause in causes)
@@ -189,7 +191,7 @@ def test_small_truth_is_found_as_the_reason() -> None:
     columns = {"case": ones, "x0_truth": truth, "x0_mean": ones, "x0_two_sigma": ones, "fresh_line_share": ones}
     found = st.Errors(Cases(columns), 100.0 / truth, 100.0 / truth, 0, 0)
     cell = st.Cell("truck", "line", "x0", t3.PaperRange(20.0), found, 100.0, 50.0, st.WORSE)
-    assert prose.likely_cause(cell) == prose.SMALL_TRUTH
+    assert misses.likely_cause(cell) == misses.SMALL_TRUTH
 
 
 # ------------------------------------------------------------------------------------------------ the refined method

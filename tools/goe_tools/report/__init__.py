@@ -3,11 +3,10 @@
 data        what goe_campaign wrote
 goals_file  what the goals command wrote
 statistics  ranges, verdicts, comparisons of studies
-prose       sentences that follow from the numbers
+refined     the same of the refined method
 style       colours, sizes, names
-drawing     what all figures share
+prose       sentences that follow from the numbers
 figures     the paper's figures 5 to 14 and our own
-refined, refined_prose, refined_figures    the section on the refined method
 page        the HTML page and the files beside it
 terminal    Table 3 as plain text
 """

@@ -16,14 +16,14 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
 from ..optimum import paper_table3 as t3
-from . import prose
 from . import refined as rf
-from . import refined_prose as rp
 from . import statistics as st
 from .data import Campaign
-from .drawing import render
 from .figures import FIGURES
+from .figures.drawing import render
 from .goals_file import QUANTITIES, GoalRow, Goals
+from .prose import misses, studies, table3
+from .prose import refined as rp
 from .style import COLOURS, GOAL_SYMBOLS, NAMES, SYMBOLS, UNITS, number
 
 VERDICT_MARKS = {
@@ -313,18 +313,18 @@ def render_page(campaign: Campaign, figures: list[PageFigure]) -> str:
         quantities=[(SYMBOLS[q], UNITS[q]) for q in t3.TABLE3_QUANTITIES],
         study_quantities=[(SYMBOLS[q], UNITS[q]) for q in st.STUDY_QUANTITIES],
         table3=_table3(campaign),
-        summary=prose.summary(cases),
-        causes=prose.causes(cases),
-        better=prose.better(cases),
-        missing=prose.missing(cases),
+        summary=table3.summary(cases),
+        causes=misses.causes(cases),
+        better=table3.better(cases),
+        missing=table3.missing(cases),
         fractions=_fractions(campaign),
-        fraction_effect=prose.fraction_effect(cases),
+        fraction_effect=table3.fraction_effect(cases),
         studies=_studies(campaign),
-        study_sentences=prose.studies(cases),
-        outliers=prose.outliers(campaign),
-        condition_effect=prose.condition_effect(campaign),
+        study_sentences=studies.studies(cases),
+        outliers=studies.outliers(campaign),
+        condition_effect=studies.condition_effect(campaign),
         line_apart=st.line_apart(cases),
-        window_effect=prose.window_effect(campaign),
+        window_effect=studies.window_effect(campaign),
         refined=_refined(campaign),
         real=rp.real_data(campaign),
         goal_symbols=[GOAL_SYMBOLS[name] for name in QUANTITIES],

@@ -12,9 +12,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from .data import Campaign
-from .style import DPI, NARROW_IN, RC, WIDE_IN
+from ..data import Campaign
+from ..style import COLOURS, DPI, MARKERS, NAMES, NARROW_IN, OBSTACLES, RC, WIDE_IN
 
 Draw = Callable[[Campaign, bool], "Figure | None"]
 
@@ -43,6 +44,21 @@ def panels(count: int, narrow: bool, height: float, widths: list[float] | None =
         figure, axes = plt.subplots(1, count, figsize=(WIDE_IN, height), squeeze=False, gridspec_kw=ratios)
         figure.subplots_adjust(left=0.068, right=0.99, top=1.0 - 0.62 / height, bottom=0.5 / height, wspace=0.26)
     return figure, list(axes.ravel())
+
+
+def obstacle_handles(which: tuple[str, ...] = OBSTACLES, line: bool = False) -> list[Line2D]:
+    return [
+        Line2D(
+            [],
+            [],
+            linestyle="-" if line else "none",
+            marker=MARKERS[o],
+            markersize=4.5,
+            color=COLOURS[o],
+            label=NAMES[o],
+        )
+        for o in which
+    ]
 
 
 def render(campaign: Campaign, spec: FigureSpec, narrow: bool, formats: Sequence[str]) -> dict[str, bytes]:

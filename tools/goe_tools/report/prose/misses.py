@@ -1,25 +1,23 @@
-"""Sentences that follow from the numbers: what is not reproduced, by how much, and the most likely reason."""
+"""What of Table 3 is not reproduced, by how much, and the most likely reason."""
 
 from __future__ import annotations
 
 import math
-from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..optimum import paper_table3 as t3
-from . import statistics as st
-from .data import IN_PERCENT, Campaign, Cases
-from .style import NAMES, SYMBOLS, UNITS, number, with_unit
+from ...optimum import paper_table3 as t3
+from .. import statistics as st
+from ..data import IN_PERCENT, Cases
+from ..style import NAMES, SYMBOLS, UNITS, number, with_unit
+from .table3 import paper_cells
+from .words import listed
 
 LARGE_TRUTH_RATIO = 0.6  # truths of the runs outside this much smaller than inside: percent of a small number
-HARDER, EASIER = 1.3, 0.9  # a study's error against straight flight
 MUCH_CLOSER = 0.6  # a range this much smaller without something speaks for that as the cause
 SAME_SHARE = 1.25  # percentages of two quantities within this factor of each other: one common error
 BIAS_RATIO = 0.67  # mean error over two sigma below this: scatter
-
-
 MIXED, SHARED_SCALE, SMALL_TRUTH, SCATTER, HEIGHT_POINT, NO_DISC, SUM_OF_ERRORS, LASTING = (
     "mixed", "shared scale", "small truth", "scatter", "height point", "no disc", "sum of errors", "lasting",
 )  # fmt: skip
@@ -59,70 +57,6 @@ class Cause:
     title: str
     sentences: list[str]
     findings: list[Finding]
-
-
-def plural(count: int, one: str, many: str | None = None) -> str:
-    return f"{count} {one if count == 1 else many or one + 's'}"
-
-
-def paper_cells(cases: Cases) -> list[st.Cell]:
-    return [cell for _, _, cells in st.table3(cases) for cell in cells if cell is not None and cell.paper is not None]
-
-
-def summary(cases: Cases) -> list[str]:
-    """The result in a few sentences."""
-    cells = paper_cells(cases)
-    count = Counter(cell.verdict for cell in cells)
-    parts = [
-        f"{count[st.REPRODUCED]} are reproduced",
-        f"{count[st.BETTER]} are better here",
-        f"{count[st.MEANS_ONLY]} hold for the means but not for the ±2σ bars",
-        f"{count[st.WORSE]} are not reproduced",
-    ]
-    said = [f"Of the {len(cells)} numbers in the paper's Table 3, {', '.join(parts[:-1])} and {parts[-1]}."]
-    misses = [cell for cell in cells if cell.verdict == st.WORSE]
-    if misses:
-        by_quantity = Counter(cell.quantity for cell in misses)
-        names = [f"{SYMBOLS[q]} ({n})" for q, n in by_quantity.most_common()]
-        widest = max(misses, key=lambda cell: cell.factor)
-        said.append(
-            f"What is missed: {', '.join(names)}. The widest miss is {SYMBOLS[widest.quantity]} of the "
-            f"{NAMES[widest.obstacle].lower()} ({widest.model} model): {number(widest.factor)} times the paper's range."
-        )
-    return said + advice(cases)
-
-
-def advice(cases: Cases) -> list[str]:
-    """Does the paper's conclusion hold: the disc for distance and height, the line for side distance and size?"""
-    boxes = ("building", "truck", "long-truck")
-    holds, fails = [], []
-    for quantity, wanted in (("z0", "disc"), ("height", "disc"), ("x0", "line"), ("width", "line")):
-        ranges = {}
-        for model in ("disc", "line"):
-            cells = [st.make_cell(cases, obstacle, model, quantity) for obstacle in boxes]
-            values = [cell.bars for cell in cells if cell is not None and math.isfinite(cell.bars)]
-            ranges[model] = float(np.median(values)) if values else math.nan
-        other = "line" if wanted == "disc" else "disc"
-        if not all(math.isfinite(value) for value in ranges.values()):
-            continue
-        slack = 1.25 if wanted == "disc" else 1.0  # of the disc the paper says only that it is about as good
-        disc, line = (with_unit(ranges[model], quantity) for model in ("disc", "line"))
-        text = f"{SYMBOLS[quantity]} (disc ±{disc}, line ±{line})"
-        (holds if ranges[wanted] <= slack * ranges[other] else fails).append(text)
-    said = []
-    if holds:
-        said.append(
-            "The paper's conclusion, the disc model for distance and height, the line model for side distance "
-            "and size, "
-            f"holds here for {listed(holds)}, medians over the box-shaped obstacles."
-        )
-    if fails:
-        said.append(f"It does not hold here for {listed(fails)}.")
-    return said
-
-
-def listed(parts: list[str]) -> str:
-    return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
 
 
 def causes(cases: Cases) -> list[Cause]:
@@ -353,150 +287,3 @@ def _evidence_of_wind(cases: Cases, cells: list[st.Cell]) -> list[str]:
         "fall speaks "
         f"for whole pixels as the reason, a rise against): {'; '.join(said)}."
     ]
-
-
-def missing(cases: Cases) -> list[str]:
-    """Runs that do not count in Table 3."""
-    said = []
-    for obstacle, model in t3.PAPER_TABLE3:
-        flown = st.flown_runs(cases, obstacle, model)
-        counted = st.paper_runs(cases, obstacle, model)
-        name = f"{NAMES[obstacle].lower()}/{model}"
-        if len(counted) < len(flown):
-            said.append(
-                f"{name}: {len(flown) - len(counted)} of {plural(len(flown), 'run')} never give the line model "
-                "its 8 points "
-                "and stay with the disc."
-            )
-        for quantity in t3.TABLE3_QUANTITIES:
-            if quantity == "length" and model == "disc":
-                continue
-            errors = st.errors_of(counted, quantity)
-            if errors.without_estimate:
-                said.append(f"{name}: {plural(errors.without_estimate, 'run')} without {SYMBOLS[quantity]}.")
-            if errors.without_percent:
-                said.append(
-                    f"{name}: {plural(errors.without_percent, 'run')} with {SYMBOLS[quantity]} = 0, of which no "
-                    "percentage can "
-                    "be taken."
-                )
-    return said
-
-
-def better(cases: Cases) -> str:
-    cells = [cell for cell in paper_cells(cases) if cell.verdict == st.BETTER]
-    if not cells:
-        return ""
-    names = [
-        f"{NAMES[c.obstacle].lower()}/{c.model} {SYMBOLS[c.quantity]} (±{with_unit(c.bars, c.quantity)}, paper "
-        f"{c.paper})"
-        for c in cells
-    ]
-    return f"Better than in the paper: {'; '.join(names)}."
-
-
-def studies(cases: Cases) -> list[str]:
-    """Which studies are harder than straight flight and which are not, by the error of Z₀."""
-    harder, alike, easier = [], [], []
-    for variant in st.variants(cases):
-        straight = st.like_for_like(cases, variant.runs)
-        a, b = st.median_rmse(straight, "z0"), st.median_rmse(variant.runs, "z0")
-        if math.isfinite(a) and math.isfinite(b) and a > 0.0:
-            group = harder if b > HARDER * a else easier if b < EASIER * a else alike
-            group.append(f"{variant.label} (×{number(b / a)})")
-    said = []
-    for group, text in (
-        (harder, f"Harder than straight flight, Z₀ error more than {number(HARDER)} times as large: "),
-        (alike, "About as hard: "),
-        (easier, f"Easier, less than {number(EASIER)} times: "),
-    ):
-        if group:
-            said.append(text + "; ".join(group) + ".")
-    return said
-
-
-def outliers(campaign: Campaign) -> str:
-    """The paper's open question: are its outliers the badly conditioned runs?"""
-    runs = campaign.cases.select(study="paper", fraction=t3.FRACTION)
-    runs = runs.where(((runs["model"] == "auto") | (runs["obstacle"] == "cylinder")) & np.isfinite(runs["condition"]))
-    count, bad, shares = 0, 0, []
-    for obstacle in runs.levels("obstacle"):
-        mine = runs.select(obstacle=obstacle)
-        extent = np.abs(mine["z0_mean_pct"]) + mine["z0_two_sigma_pct"]
-        mask = extent > 3.0 * np.nanmedian(extent)
-        limit = np.percentile(mine["condition"], 75.0)
-        count += int(np.sum(mask))
-        bad += int(np.sum(mask & (mine["condition"] >= limit)))
-        shares.append(np.mean(mask))
-    if not len(runs):
-        return ""
-    if not count:
-        return "No run of the paper's study has a Z₀ bar longer than three times its obstacle's median."
-    return (
-        f"Outliers, as the paper met them: {count} of {plural(len(runs), 'run')} have a Z₀ bar longer than "
-        "three times their "
-        f"obstacle's median. {bad} of these {count} are in the worst quarter of their obstacle's condition numbers; "
-        f"by chance it would be {number(count / 4.0)}."
-    )
-
-
-def condition_effect(campaign: Campaign) -> str:
-    """Does the condition number, as the paper would form it, tell good runs from bad ones?"""
-    runs = campaign.cases.select(study="paper", fraction=t3.FRACTION)
-    runs = runs.where((runs["model"] == "auto") | (runs["obstacle"] == "cylinder"))
-    there = np.isfinite(runs["condition"]) & np.isfinite(runs["z0_rmse_pct"])
-    if np.sum(there) < 5:
-        return ""
-    condition, error = runs["condition"][there], runs["z0_rmse_pct"][there]
-    low, high = np.percentile(condition, (10.0, 90.0))
-    best, worst = np.percentile(error, (10.0, 90.0))
-    rho = st.rank_correlation(condition, error)
-    text = (
-        f"In the paper's study, 80 % of the runs have a condition number from {number(float(low))} to "
-        f"{number(float(high))}, "
-        f"while their errors of Z₀ go from {number(float(best))} to {number(float(worst))} %; the rank correlation is "
-        f"{number(rho)}. "
-    )
-    if abs(rho) < 0.4:
-        text += (
-            "The condition number of (5) as written does not tell good runs from bad ones: it is set by the "
-            "units and the "
-            "length of the baseline, which all runs share, not by how much the apparent size changes over the window."
-        )
-    else:
-        text += "So it tells part of what makes a run good or bad."
-    return text
-
-
-def window_effect(campaign: Campaign) -> str:
-    rows = campaign.cases.select(study="conditioning", fraction=t3.FRACTION)
-    windows = [w for w in rows.levels("window")] if len(rows) else []
-    if len(windows) < 2:
-        return ""
-    kept = st.nominal_rows(rows, "window")
-    errors = {w: st.median_rmse(kept.select(window=w), "z0") for w in windows}
-    shown = [w for w in windows if math.isfinite(errors[w])]
-    if len(shown) < 2:
-        return ""
-    values = "; ".join(f"{w:g} images {number(errors[w])}\u00a0%" for w in shown)
-    return f"Root mean square error of Z₀ against the length of the window, median over all obstacles: {values}."
-
-
-def fraction_effect(cases: Cases) -> str:
-    """How Table 3 depends on the part of the run, in one sentence."""
-    levels = cases.levels("fraction")
-    ratios = []
-    for obstacle, model in t3.PAPER_TABLE3:
-        for quantity in t3.TABLE3_QUANTITIES:
-            short, long = (st.make_cell(cases, obstacle, model, quantity, level) for level in (levels[0], levels[-1]))
-            if short is not None and long is not None and long.bars > 0.0:
-                ratios.append(short.bars / long.bars)
-    ratios = [ratio for ratio in ratios if math.isfinite(ratio)]
-    if len(levels) < 2 or not ratios:
-        return ""
-    narrower = sum(ratio < 1.0 for ratio in ratios)
-    return (
-        f"Over the last {levels[0] * 100:.0f} % alone, {narrower} of the {len(ratios)} ranges are narrower than "
-        "over all "
-        f"solved images; the median ratio is {number(float(np.median(ratios)))}."
-    )

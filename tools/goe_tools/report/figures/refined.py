@@ -12,12 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from . import refined as rf
-from . import refined_prose as prose
-from .data import Campaign
-from .drawing import FigureSpec
-from .goals_file import QUANTITIES, GoalRow
-from .style import (
+from .. import refined as rf
+from ..data import Campaign
+from ..goals_file import QUANTITIES, GoalRow
+from ..prose import refined as prose
+from ..style import (
     GOAL_SYMBOLS,
     INK,
     MISSED,
@@ -31,6 +30,7 @@ from .style import (
     WINDOW_COLOUR,
     number,
 )
+from .drawing import FigureSpec
 
 GOOD_BAND = "#e3f1e8"
 LEGEND_IN = 0.32  # height of a line of the legend

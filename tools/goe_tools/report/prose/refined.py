@@ -7,12 +7,12 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ..optimum import paper_table3 as t3
-from . import refined as rf
-from .data import Campaign
-from .goals_file import GoalRow, Goals
-from .prose import listed, plural
-from .style import GOAL_SYMBOLS, NAMES, SYMBOLS, number, with_unit
+from ...optimum import paper_table3 as t3
+from .. import refined as rf
+from ..data import Campaign
+from ..goals_file import GoalRow, Goals
+from ..style import GOAL_SYMBOLS, NAMES, SYMBOLS, number, with_unit
+from .words import listed, plural
 
 FEW_WORST = 0.95  # a mean that falls below this share of itself without the worst 1 % is made by few flights
 NOISE_NAMES = {
