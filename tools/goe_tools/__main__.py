@@ -21,7 +21,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
     "offline": (".optimum.offline", "fit all images of a log with truth at once"),
     "peers": (".peers", "hold the window solve against other solvers"),
-    "report": (".report", "write the campaign's report and print Table 3"),
+    "report": (".report.command", "write the campaign's report and print Table 3"),
     "table": (".logs.table", "print estimates as a table that a pilot can read"),
 }
 EXIT_BAD_INPUT = 2
