@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from goe_tools.obslog import Camera, ObservationLog, write_log
-from goe_tools.scene import Scene, make_log
+from goe_tools.logs.obslog import Camera, ObservationLog, write_log
+from goe_tools.logs.scene import Scene, make_log
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -18,9 +18,10 @@ FAKE_REPLAY = """#!{python}
 import sys
 sys.path.insert(0, {tools!r})
 import numpy as np
-from goe_tools.estimate import LABELS, NUMBERS, Settings
-from goe_tools.mirror32 import Mirror32
-from goe_tools.obslog import read_log
+from goe_tools.logs.estimates import LABELS, NUMBERS
+from goe_tools.logs.obslog import read_log
+from goe_tools.reference.mirror32 import Mirror32
+from goe_tools.reference.settings import Settings
 
 option = {{name: sys.argv[i + 1] for i, name in enumerate(sys.argv) if name.startswith("--")}}
 change = {change!r}

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools import compare
 from goe_tools.__main__ import main
-from goe_tools.estimate import Settings
-from goe_tools.obslog import read_log, write_log
-from goe_tools.scene import Scene, make_log
+from goe_tools.logs.obslog import read_log, write_log
+from goe_tools.logs.scene import Scene, make_log
+from goe_tools.reference import compare
+from goe_tools.reference.settings import Settings
 
 ROOT = Path(__file__).resolve().parents[2]
 

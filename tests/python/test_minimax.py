@@ -1,4 +1,4 @@
-"""The constants of goe_angle.c and goe_normal.c in lib/maths are the minimax polynomials', and their stated bounds hold."""
+"""The constants of lib/maths are those of the minimax polynomials, and their stated bounds hold."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.minimax import PROBLEMS, remez
+from goe_tools.reference.minimax import PROBLEMS, remez
 
 LIBRARY = Path(__file__).resolve().parents[2] / "lib" / "maths"
 BOUND = {"ATAN": 5e-9, "SIN": 2e-9, "COS": 1e-10, "NORMAL": 2e-7}

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from goe_tools.obslog import (
+from goe_tools.logs.obslog import (
     Camera,
     LogError,
     ObservationLog,

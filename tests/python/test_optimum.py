@@ -10,27 +10,36 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.optimum import flights as fl
-from goe_tools.optimum import goals, model
+from goe_tools.optimum import model
 from goe_tools.optimum.bound import bound
+from goe_tools.optimum.flights.flight import LEFT, RIGHT, TOP, Obstacle
+from goe_tools.optimum.flights.logged import from_log
+from goe_tools.optimum.flights.measured import measure
+from goe_tools.optimum.flights.noise import FIELD, NOISES, Noise
+from goe_tools.optimum.flights.rotations import multiply, small_rotations
+from goe_tools.optimum.flights.scene import Scene
+from goe_tools.optimum.flights.simulated import Course, paper_scenes, pinhole, simulate
+from goe_tools.optimum.goals import command
+from goe_tools.optimum.goals.goal import Goal
+from goe_tools.optimum.goals.kitti import caught
 from goe_tools.optimum.judge import judge, renamed, renamed_sigma
 from goe_tools.optimum.library import MODEL_BOX, MODEL_DISC, Track, estimate, library_path, settings_of
 
 CORNER = Path(__file__).resolve().parents[1] / "data" / "corner"
-EXACT = fl.Noise(pixel_px=0.0)
-SENSORS = replace(fl.FIELD, outliers=0.0, position_walk_m=0.0)  # all that the model knows, and nothing else
+EXACT = Noise(pixel_px=0.0)
+SENSORS = replace(FIELD, outliers=0.0, position_walk_m=0.0)  # all that the model knows, and nothing else
 
 
-def box_scene(**change: object) -> fl.Scene:
-    truth = fl.Obstacle("box", -30.0, 300.0, math.radians(20.0), 8.0, 14.0, 12.0)
-    course = fl.Course(15.0, 18.0, 20.0, 0.0, 300.0 / 18.0, 0.1, "weave", (5.0, 9.0))
-    return fl.simulate("box", "box", fl.pinhole(-15.0), replace(truth, **change), course, np.array([0.1, 0.2, 0.3]))
+def box_scene(**change: object) -> Scene:
+    truth = Obstacle("box", -30.0, 300.0, math.radians(20.0), 8.0, 14.0, 12.0)
+    course = Course(15.0, 18.0, 20.0, 0.0, 300.0 / 18.0, 0.1, "weave", (5.0, 9.0))
+    return simulate("box", "box", pinhole(-15.0), replace(truth, **change), course, np.array([0.1, 0.2, 0.3]))
 
 
-def disc_scene(x0: float = 25.0) -> fl.Scene:
-    truth = fl.Obstacle("disc", x0, 300.0, 0.0, 6.0, 6.0, 25.0)
-    course = fl.Course(15.0, 18.0, 20.0, 0.0, 300.0 / 18.0)
-    return fl.simulate("disc", "disc", fl.pinhole(), truth, course, np.zeros(3))
+def disc_scene(x0: float = 25.0) -> Scene:
+    truth = Obstacle("disc", x0, 300.0, 0.0, 6.0, 6.0, 25.0)
+    course = Course(15.0, 18.0, 20.0, 0.0, 300.0 / 18.0)
+    return simulate("disc", "disc", pinhole(), truth, course, np.zeros(3))
 
 
 @pytest.fixture
@@ -45,9 +54,9 @@ def built() -> Path:
 
 
 @pytest.mark.parametrize("scene", [box_scene(), disc_scene()], ids=["box", "disc"])
-def test_exact_points_leave_no_residuals(scene: fl.Scene) -> None:
+def test_exact_points_leave_no_residuals(scene: Scene) -> None:
     """The simulator projects corners in NED, the model works in T: two ways to the same pixels."""
-    flight = fl.measure(scene, EXACT)
+    flight = measure(scene, EXACT)
     view, state = model.view_of(flight), model.true_state(flight)
     corners = model.correspond(view, state)
     rows = model.row_mask(corners.usable)
@@ -56,8 +65,8 @@ def test_exact_points_leave_no_residuals(scene: fl.Scene) -> None:
 
 
 @pytest.mark.parametrize("scene", [box_scene(), disc_scene()], ids=["box", "disc"])
-def test_complex_steps_agree_with_differences(scene: fl.Scene) -> None:
-    flight = fl.measure(scene, fl.FIELD, 3)
+def test_complex_steps_agree_with_differences(scene: Scene) -> None:
+    flight = measure(scene, FIELD, 3)
     flight.camera = replace(flight.camera, k1=-0.05, k2=0.01, p1=0.001, p2=-0.0005, k3=0.002)
     view, state = model.view_of(flight), model.true_state(flight)
     state[[model.BX, model.BY, model.BZ, model.DH, model.VX, model.VZ]] = [0.004, -0.003, 0.005, 0.3, 0.02, 0.03]
@@ -75,9 +84,9 @@ def test_complex_steps_agree_with_differences(scene: fl.Scene) -> None:
 
 def test_an_attitude_error_is_undone_by_the_bias_states() -> None:
     scene = box_scene()
-    flight = fl.measure(scene, EXACT)
+    flight = measure(scene, EXACT)
     turned = np.array([0.006, -0.004, 0.008])
-    flight.attitude = fl.multiply(flight.attitude, fl.small_rotations(-turned))
+    flight.attitude = multiply(flight.attitude, small_rotations(-turned))
     view, state = model.view_of(flight), model.true_state(flight)
     corners = model.correspond(view, state)
     rows = model.row_mask(corners.usable)
@@ -86,7 +95,7 @@ def test_an_attitude_error_is_undone_by_the_bias_states() -> None:
 
 
 def test_undistort_inverts_the_lens() -> None:
-    camera = replace(fl.pinhole(), k1=-0.2, k2=0.05, p1=0.001, p2=-0.002, k3=-0.01)
+    camera = replace(pinhole(), k1=-0.2, k2=0.05, p1=0.001, p2=-0.002, k3=-0.01)
     pixel = np.random.default_rng(1).uniform(100.0, 1180.0, (50, 2))
     point, slope = model.undistort(camera, pixel)
     again = model._distorted(camera, point) * [camera.fx, camera.fy] + [camera.cx, camera.cy]
@@ -99,14 +108,14 @@ def test_undistort_inverts_the_lens() -> None:
 
 
 def test_the_bound_is_linear_in_the_pixel_noise() -> None:
-    flight = fl.measure(box_scene(), EXACT)
-    small, large = (bound(flight, fl.Noise(pixel_px=px)).sigma for px in (0.2, 0.8))
+    flight = measure(box_scene(), EXACT)
+    small, large = (bound(flight, Noise(pixel_px=px)).sigma for px in (0.2, 0.8))
     assert np.allclose(large / small, 4.0, rtol=1e-3)
 
 
 def test_twice_the_images_are_worth_the_square_root_of_two() -> None:
-    noise = fl.Noise(pixel_px=0.5, attitude_white_deg=0.05)
-    flight = fl.measure(box_scene(), EXACT)
+    noise = Noise(pixel_px=0.5, attitude_white_deg=0.05)
+    flight = measure(box_scene(), EXACT)
     names = ("time_s", "pixel_px", "seen", "position_ned_m", "attitude", "height_m")
     doubled = replace(flight, **{name: np.repeat(getattr(flight, name), 2, 0) for name in names})
     ratio = bound(flight, noise).sigma / bound(doubled, noise).sigma
@@ -116,9 +125,9 @@ def test_twice_the_images_are_worth_the_square_root_of_two() -> None:
 def test_the_bound_of_a_distant_disc_is_that_of_three_numbers() -> None:
     """Far away a disc's outline is x = (a -+ w/2)/(1 - dZ q): its information can be written down by hand."""
     scene = disc_scene(x0=0.0).trimmed(0)
-    flight = fl.measure(scene, EXACT).first(80)  # to 120 m before it
-    flight.seen[:, fl.TOP] = False
-    noise = fl.Noise(pixel_px=0.5)
+    flight = measure(scene, EXACT).first(80)  # to 120 m before it
+    flight.seen[:, TOP] = False
+    noise = Noise(pixel_px=0.5)
     view = model.view_of(flight)
     q, w = 1 / 300.0, 6.0 / 300.0
     depth = 1 - view.dz_m * q
@@ -131,19 +140,19 @@ def test_the_bound_of_a_distant_disc_is_that_of_three_numbers() -> None:
 
 
 def test_nuisances_only_raise_the_bound() -> None:
-    flight = fl.measure(box_scene(), EXACT)
-    assert (bound(flight, SENSORS).sigma >= bound(flight, fl.Noise(pixel_px=0.5)).sigma).all()
+    flight = measure(box_scene(), EXACT)
+    assert (bound(flight, SENSORS).sigma >= bound(flight, Noise(pixel_px=0.5)).sigma).all()
 
 
 # ------------------------------------------------------------------------------------------------------------- offline
 
 
 @pytest.mark.parametrize("scene", [box_scene(), disc_scene()], ids=["box", "disc"])
-def test_the_fit_finds_the_truth_without_noise(scene: fl.Scene) -> None:
+def test_the_fit_finds_the_truth_without_noise(scene: Scene) -> None:
     pytest.importorskip("scipy")
     from goe_tools.optimum.offline import fit
 
-    flight = fl.measure(scene, EXACT)
+    flight = measure(scene, EXACT)
     start = model.true_state(flight)
     start[model.A :] *= [1.02, 0.98, 1.03, 0.98, 1.02, 1.02, 1.0, 1.0]
     if flight.truth.kind == "disc":
@@ -160,7 +169,7 @@ def test_the_fit_reaches_the_bound() -> None:
 
     ratios = []
     for seed in range(30):
-        flight = fl.measure(box_scene(), SENSORS, seed)
+        flight = measure(box_scene(), SENSORS, seed)
         error = fit(flight).values - flight.truth.values
         ratios.append(error / bound(flight).sigma)
     rmse = np.sqrt(np.mean(np.square(ratios), 0))
@@ -171,7 +180,7 @@ def test_the_fit_leaves_outliers_out() -> None:
     pytest.importorskip("scipy")
     from goe_tools.optimum.offline import fit
 
-    flight = fl.measure(box_scene(), SENSORS, 1)
+    flight = measure(box_scene(), SENSORS, 1)
     bad = np.random.default_rng(2).random(flight.seen.shape) < 0.05
     bad &= flight.seen
     flight.pixel_px[bad] += [25.0, 25.0]
@@ -190,7 +199,7 @@ def test_a_log_becomes_a_flight() -> None:
     assert (truth.kind, truth.width_m, truth.length_m, truth.height_m) == ("box", 15.0, 25.0, 60.0)
     assert (truth.x0_m, truth.z0_m) == (-50.0, 612.0)
     assert truth.orientation_rad == pytest.approx(math.radians(-5.0))
-    assert len(flight.time_s) == 121 and flight.seen[:, fl.LEFT].sum() > 100
+    assert len(flight.time_s) == 121 and flight.seen[:, LEFT].sum() > 100
     assert flight.top_is_highest  # the scene's: the highest point in the image
 
 
@@ -199,7 +208,7 @@ def test_the_truth_of_a_log_without_the_simulators_columns(tmp_path: Path) -> No
         (tmp_path / name).write_text((CORNER / name).read_text())
     lines = (CORNER / "truth.csv").read_text().splitlines()
     (tmp_path / "truth.csv").write_text("\n".join(",".join(line.split(",")[:9]) for line in lines) + "\n")
-    (plain,), (told,) = fl.from_log(tmp_path), fl.from_log(CORNER)
+    (plain,), (told,) = from_log(tmp_path), from_log(CORNER)
     assert np.allclose(plain.truth.values, told.truth.values, atol=1e-6)
 
 
@@ -225,10 +234,10 @@ def test_a_log_without_truth_is_told(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 
 def test_the_campaign_of_the_paper() -> None:
-    scenes = fl.paper_scenes()
+    scenes = paper_scenes()
     assert len(scenes) == 156
-    assert all(s.seen[: len(s.time_s) // 2, [fl.LEFT, fl.RIGHT]].all(1).mean() > 0.8 for s in scenes)
-    again = [fl.measure(scenes[40], fl.FIELD, (3, 4)) for _ in range(2)]
+    assert all(s.seen[: len(s.time_s) // 2, [LEFT, RIGHT]].all(1).mean() > 0.8 for s in scenes)
+    again = [measure(scenes[40], FIELD, (3, 4)) for _ in range(2)]
     assert np.array_equal(again[0].pixel_px, again[1].pixel_px)
 
 
@@ -244,7 +253,7 @@ def track_of(values: np.ndarray, model_number: int) -> Track:
 
 
 def test_names_of_front_and_side_may_be_exchanged() -> None:
-    flight = fl.measure(box_scene(), EXACT)
+    flight = measure(box_scene(), EXACT)
     truth = flight.truth.values
     twice = renamed(renamed(truth, 1), -1)
     assert np.allclose(twice, truth, atol=1e-9)
@@ -255,14 +264,14 @@ def test_names_of_front_and_side_may_be_exchanged() -> None:
 
 
 def test_the_bound_under_the_other_name() -> None:
-    flight = fl.measure(box_scene(), EXACT)
-    best = bound(flight, fl.Noise())
+    flight = measure(box_scene(), EXACT)
+    best = bound(flight, Noise())
     other = renamed_sigma(flight.truth, best.covariance)
     assert np.allclose(other[[2, 3, 4, 5]], best.sigma[[2, 4, 3, 5]])
 
 
 def test_a_disc_for_a_box_is_held_against_its_middle() -> None:
-    flight = fl.measure(box_scene(), EXACT)
+    flight = measure(box_scene(), EXACT)
     values = np.tile(flight.truth.values, (2, 1))
     values[:, :2] = flight.truth.corners().mean(0)
     error = judge(track_of(values, MODEL_DISC), flight).error
@@ -274,7 +283,7 @@ def test_a_disc_for_a_box_is_held_against_its_middle() -> None:
 
 
 def test_the_library_over_a_flight(built: Path) -> None:
-    flight = fl.measure(box_scene(), fl.NOISES["gauss0.3"], 1)
+    flight = measure(box_scene(), NOISES["gauss0.3"], 1)
     track = estimate(flight)
     error = judge(track, flight)
     assert track.valid[-1].all()
@@ -289,7 +298,7 @@ def test_the_library_over_a_flight(built: Path) -> None:
 
 
 def test_a_goal_is_met_within_its_range() -> None:
-    goal = goals.Goal("g", "n", "1", {"X0": 1.0, "Z0": 3.0}, (0.0, 2.0), ("X0",))
+    goal = Goal("g", "n", "1", {"X0": 1.0, "Z0": 3.0}, (0.0, 2.0), ("X0",))
     assert goal.met and not replace(goal, asked=("X0", "Z0")).met
     assert replace(goal, asked=("X0", "Z0")).missed == ("Z0",)
     assert replace(goal, asked=()).met is None
@@ -298,8 +307,8 @@ def test_a_goal_is_met_within_its_range() -> None:
 
 def test_caught_at_a_share_of_false_flags() -> None:
     static, moving = np.arange(10.0), np.array([8.5, 9.5, 20.0, 1.0])
-    assert goals.caught(static, moving, 0.0) == 50.0
-    assert goals.caught(static, moving, 0.1) == 75.0
+    assert caught(static, moving, 0.0) == 50.0
+    assert caught(static, moving, 0.1) == 75.0
 
 
 def test_goals_of_table3(built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -318,9 +327,9 @@ def test_goals_says_what_it_does_not_know(built: Path, capsys: pytest.CaptureFix
 
 
 def test_an_interrupt_ends_with_a_word(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    def interrupted(*_: object) -> list[goals.Goal]:
+    def interrupted(*_: object) -> list[Goal]:
         raise KeyboardInterrupt
 
-    monkeypatch.setitem(goals.GROUPS, "field", interrupted)
+    monkeypatch.setitem(command.GROUPS, "field", interrupted)
     assert main(["goals", "--quick", "--only", "field"]) == 130
     assert capsys.readouterr().err.splitlines()[-1] == "goe_tools goals: interrupted"

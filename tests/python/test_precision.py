@@ -7,12 +7,15 @@ import math
 
 import numpy as np
 import pytest
-from goe_tools.optimum import flights as fl
+from goe_tools.optimum.flights.measured import measure
+from goe_tools.optimum.flights.noise import NOISES
+from goe_tools.optimum.flights.scene import Scene
+from goe_tools.optimum.flights.simulated import paper_scenes, random_scenes
 from goe_tools.optimum.library import MODEL_DISC, estimate, library_path
 from goe_tools.optimum.precision import rounding_of
 
 LIMIT = 0.05  # of one sigma
-NOISES = ("gauss0.3", "gauss1", "field")
+NAMES = ("gauss0.3", "gauss1", "field")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -25,19 +28,19 @@ def built() -> None:
 
 
 @pytest.fixture(scope="module")
-def scenes() -> list[fl.Scene]:
+def scenes() -> list[Scene]:
     """Every twelfth of the paper's cases, and a few random ones."""
-    return fl.paper_scenes()[::12] + fl.random_scenes(12)
+    return paper_scenes()[::12] + random_scenes(12)
 
 
 @pytest.fixture(scope="module")
-def box(scenes: list[fl.Scene]) -> fl.Scene:
+def box(scenes: list[Scene]) -> Scene:
     return next(scene for scene in scenes if scene.truth.kind == "box")
 
 
-@pytest.mark.parametrize("noise", NOISES)
-def test_rounding_is_small_beside_the_sigma(noise: str, scenes: list[fl.Scene]) -> None:
-    flights = [rounding_of(fl.measure(s, fl.NOISES[noise], (1, i))) for i, s in enumerate(scenes)]
+@pytest.mark.parametrize("noise", NAMES)
+def test_rounding_is_small_beside_the_sigma(noise: str, scenes: list[Scene]) -> None:
+    flights = [rounding_of(measure(s, NOISES[noise], (1, i))) for i, s in enumerate(scenes)]
     worst, last = (np.array([getattr(r, name) for r in flights]) for name in ("worst", "last"))
     assert np.isfinite(worst).sum(0).min() >= 10  # every quantity was compared
     assert max(np.quantile(column[np.isfinite(column)], 0.99) for column in worst.T) < LIMIT
@@ -46,7 +49,7 @@ def test_rounding_is_small_beside_the_sigma(noise: str, scenes: list[fl.Scene]) 
     assert sum(r.apart for r in flights) <= 0.01 * sum(r.answered for r in flights)
 
 
-def test_the_other_build_does_compute_in_float64(box: fl.Scene) -> None:
+def test_the_other_build_does_compute_in_float64(box: Scene) -> None:
     """Its settings are of doubles, and its answers are others, if only a little."""
     sizes = []
     for double in (False, True):
@@ -54,14 +57,14 @@ def test_the_other_build_does_compute_in_float64(box: fl.Scene) -> None:
         size.restype = ctypes.c_size_t
         sizes.append(size())
     assert sizes[1] > 1.5 * sizes[0]
-    flight = fl.measure(box, fl.NOISES["gauss0.3"], 1)
+    flight = measure(box, NOISES["gauss0.3"], 1)
     single, double = estimate(flight), estimate(flight, double=True)
     assert 0.0 < np.nanmax(np.abs(single.values[-1] - double.values[-1])) < 0.1
     assert math.isfinite(rounding_of(flight).worst.max())
 
 
-def test_where_the_builds_decide_otherwise_is_counted(monkeypatch: pytest.MonkeyPatch, box: fl.Scene) -> None:
-    flight = fl.measure(box, fl.NOISES["gauss1"], 1)
+def test_where_the_builds_decide_otherwise_is_counted(monkeypatch: pytest.MonkeyPatch, box: Scene) -> None:
+    flight = measure(box, NOISES["gauss1"], 1)
     tracks = [estimate(flight), estimate(flight, double=True)]
     tracks[1].model[-3:] = MODEL_DISC
     tracks[0].values[-4] += 0.5 * tracks[1].sigma[-4]

@@ -8,27 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from goe_tools.estimate import Settings
-from goe_tools.gates import Gates
-from goe_tools.mirror32 import Mirror32
-from goe_tools.obslog import Camera, Frame, ObservationLog
-from goe_tools.reference64 import (
-    Reference64,
-    Report,
-    Row,
-    mounting_rotation,
-    quaternion_rotation,
-    solve,
-    undistort,
-)
-from goe_tools.scene import (
-    CAMERA_AXES_IN_BODY,
-    Scene,
-    distort,
-    make_log,
-    quaternion_of,
-    yaw_pitch_roll,
-)
+from goe_tools.logs.obslog import Camera, Frame, ObservationLog
+from goe_tools.logs.projection import CAMERA_AXES_IN_BODY, distort, quaternion_of, yaw_pitch_roll
+from goe_tools.logs.scene import Scene, make_log
+from goe_tools.reference.gates import Gates
+from goe_tools.reference.mirror32 import Mirror32
+from goe_tools.reference.reference64 import Reference64, Report
+from goe_tools.reference.reference64.geometry import mounting_rotation, quaternion_rotation, undistort
+from goe_tools.reference.reference64.window import Row, solve
+from goe_tools.reference.settings import Settings
 
 
 def fly(log: ObservationLog, **settings: object) -> list[Report]:

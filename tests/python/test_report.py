@@ -12,13 +12,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.obslog import LogError
-from goe_tools.report import page, prose, refined_prose, terminal
+from goe_tools.logs.obslog import LogError
+from goe_tools.optimum import paper_table3 as t3
+from goe_tools.report import page, terminal
 from goe_tools.report import refined as rf
 from goe_tools.report import statistics as st
 from goe_tools.report.data import Campaign, Cases, read_campaign
 from goe_tools.report.figures import FIGURES
 from goe_tools.report.goals_file import read_goals
+from goe_tools.report.prose import misses, table3
+from goe_tools.report.prose import refined as refined_prose
 from goe_tools.report.style import number
 from rich.console import Console
 from synthetic_campaign import write_campaign, write_goals
@@ -40,12 +43,12 @@ def written(campaign: Campaign, tmp_path_factory: pytest.TempPathFactory) -> Pat
 
 
 def test_holding_range_is_the_smallest_that_holds_three_quarters() -> None:
-    assert st.holding_range(np.array([4.0, 1.0, 3.0, 2.0])) == 3.0
-    assert st.holding_range(np.array([5.0, 1.0, 3.0, 2.0, 4.0])) == 4.0  # 4 of 5; 3 of 5 is too few
-    assert st.holding_range(np.array([7.0, math.nan])) == 7.0
-    assert math.isnan(st.holding_range(np.array([math.nan])))
+    assert t3.holding_range(np.array([4.0, 1.0, 3.0, 2.0])) == 3.0
+    assert t3.holding_range(np.array([5.0, 1.0, 3.0, 2.0, 4.0])) == 4.0  # 4 of 5; 3 of 5 is too few
+    assert t3.holding_range(np.array([7.0, math.nan])) == 7.0
+    assert math.isnan(t3.holding_range(np.array([math.nan])))
     values = np.abs(np.random.default_rng(1).normal(size=997))
-    held = st.holding_range(values)
+    held = t3.holding_range(values)
     assert np.mean(values <= held) >= 0.75 > np.mean(values < held)
 
 
@@ -57,26 +60,26 @@ def errors(means: list[float], two_sigma: float = 0.0) -> st.Errors:
 @pytest.mark.parametrize(
     ("paper", "means", "two_sigma", "verdict"),
     [
-        (st.PaperRange(10.0), [4.0, -4.0, 4.0, 99.0], 1.0, st.BETTER),
-        (st.PaperRange(10.0), [4.0, -4.0, 4.0, 99.0], 1.1, st.REPRODUCED),
-        (st.PaperRange(10.0), [10.5, -10.5, 10.5, 99.0], 2.0, st.REPRODUCED),
-        (st.PaperRange(10.0), [10.5, -10.5, 10.5, 99.0], 2.1, st.MEANS_ONLY),
-        (st.PaperRange(10.0), [12.6, -12.6, 12.6, 0.0], 0.0, st.WORSE),
-        (st.PaperRange(20.0, beyond=True), [21.0, -21.0, 21.0, 0.0], 0.0, st.REPRODUCED),
-        (st.PaperRange(20.0, beyond=True), [21.0, -21.0, 19.0, 0.0], 0.0, st.BETTER),
+        (t3.PaperRange(10.0), [4.0, -4.0, 4.0, 99.0], 1.0, st.BETTER),
+        (t3.PaperRange(10.0), [4.0, -4.0, 4.0, 99.0], 1.1, st.REPRODUCED),
+        (t3.PaperRange(10.0), [10.5, -10.5, 10.5, 99.0], 2.0, st.REPRODUCED),
+        (t3.PaperRange(10.0), [10.5, -10.5, 10.5, 99.0], 2.1, st.MEANS_ONLY),
+        (t3.PaperRange(10.0), [12.6, -12.6, 12.6, 0.0], 0.0, st.WORSE),
+        (t3.PaperRange(20.0, beyond=True), [21.0, -21.0, 21.0, 0.0], 0.0, st.REPRODUCED),
+        (t3.PaperRange(20.0, beyond=True), [21.0, -21.0, 19.0, 0.0], 0.0, st.BETTER),
         (None, [1.0], 0.0, st.NOT_IN_PAPER),
-        (st.PaperRange(20.0), [], 0.0, st.NOT_IN_PAPER),
+        (t3.PaperRange(20.0), [], 0.0, st.NOT_IN_PAPER),
     ],
 )
-def test_verdict(paper: st.PaperRange | None, means: list[float], two_sigma: float, verdict: str) -> None:
+def test_verdict(paper: t3.PaperRange | None, means: list[float], two_sigma: float, verdict: str) -> None:
     assert st.judge(paper, errors(means, two_sigma)) == verdict
 
 
 def test_papers_table_is_the_papers() -> None:
     """Row by row as printed in its Table 3."""
     text = {
-        f"{obstacle}/{model}": " ".join("N/A" if row[q] is None else str(row[q]) for q in st.TABLE3_QUANTITIES)
-        for (obstacle, model), row in st.PAPER_TABLE3.items()
+        f"{obstacle}/{model}": " ".join("N/A" if row[q] is None else str(row[q]) for q in t3.TABLE3_QUANTITIES)
+        for (obstacle, model), row in t3.PAPER_TABLE3.items()
     }
     assert text == {
         "cylinder/disc": "3 10 12 N/A 1",
@@ -136,7 +139,7 @@ def test_zero_truth_has_no_percentage_and_is_told(campaign: Campaign) -> None:
     cell = st.make_cell(campaign.cases, "cylinder", "disc", "x0")
     assert cell is not None
     assert (len(cell.errors.mean), cell.errors.without_percent, cell.errors.without_estimate) == (4, 2, 0)
-    assert any("cylinder/disc: 2 runs with X₀ = 0" in sentence for sentence in prose.missing(campaign.cases))
+    assert any("cylinder/disc: 2 runs with X₀ = 0" in sentence for sentence in table3.missing(campaign.cases))
 
 
 def test_rank_correlation() -> None:
@@ -174,8 +177,8 @@ def test_studies_are_compared_with_the_same_cases(campaign: Campaign) -> None:
 
 
 def test_misses_are_told_with_a_reason(campaign: Campaign) -> None:
-    cells = [c for c in prose.paper_cells(campaign.cases) if c.verdict in (st.WORSE, st.MEANS_ONLY)]
-    causes = prose.causes(campaign.cases)
+    cells = [c for c in table3.paper_cells(campaign.cases) if c.verdict in (st.WORSE, st.MEANS_ONLY)]
+    causes = misses.causes(campaign.cases)
     assert len(cells) > 3
     assert sum(len(cause.findings) for cause in causes) == len(cells)
     assert all(cause.sentences and cause.title for cause in causes)
@@ -187,8 +190,8 @@ def test_small_truth_is_found_as_the_reason() -> None:
     ones = np.ones(8)
     columns = {"case": ones, "x0_truth": truth, "x0_mean": ones, "x0_two_sigma": ones, "fresh_line_share": ones}
     found = st.Errors(Cases(columns), 100.0 / truth, 100.0 / truth, 0, 0)
-    cell = st.Cell("truck", "line", "x0", st.PaperRange(20.0), found, 100.0, 50.0, st.WORSE)
-    assert prose.likely_cause(cell) == prose.SMALL_TRUTH
+    cell = st.Cell("truck", "line", "x0", t3.PaperRange(20.0), found, 100.0, 50.0, st.WORSE)
+    assert misses.likely_cause(cell) == misses.SMALL_TRUTH
 
 
 # ------------------------------------------------------------------------------------------------ the refined method
@@ -208,7 +211,7 @@ def refined_extent(folder: Path, obstacle: str, model: str, column: str) -> floa
 
 def test_refined_numbers_follow_from_the_rows(campaign: Campaign) -> None:
     rows = {(obstacle, model): cells for obstacle, model, cells in rf.table3(campaign)}
-    assert set(rows) == {*st.PAPER_TABLE3, *((obstacle, "box") for obstacle in rf.BOXES)}
+    assert set(rows) == {*t3.PAPER_TABLE3, *((obstacle, "box") for obstacle in rf.BOXES)}
     z0 = rows["truck", "line"][0]
     assert z0 is not None and z0.paper is not None
     assert z0.refined == refined_extent(campaign.folder, "truck", "auto", "z0_{}_pct")

@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from goe_tools.optimum import rivals
-from goe_tools.optimum.flights import Noise, measure, paper_scenes
+from goe_tools.optimum.flights.measured import measure
+from goe_tools.optimum.flights.noise import Noise
+from goe_tools.optimum.flights.simulated import paper_scenes
 from goe_tools.optimum.rivals import RIVALS, STRENGTHS, Track, history, missing
 from goe_tools.optimum.rivals.track import MIN_IMAGES
 

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.obslog import Camera, Frame, ObservationLog, read_log
-from goe_tools.scene import Scene, distort, make_log, quaternion_of, yaw_pitch_roll
+from goe_tools.logs.obslog import Camera, Frame, ObservationLog, read_log
+from goe_tools.logs.projection import distort, quaternion_of, yaw_pitch_roll
+from goe_tools.logs.scene import Scene, make_log
 
 ROOT = Path(__file__).resolve().parents[2]
 

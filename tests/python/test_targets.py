@@ -6,7 +6,8 @@ import math
 from pathlib import Path
 
 import pytest
-from goe_tools import embed_logs, ledger
+from goe_tools import ledger
+from goe_tools.logs import embed_logs
 
 TARGETS = Path(__file__).resolve().parents[1] / "targets"
 

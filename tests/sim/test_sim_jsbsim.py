@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from sim_support import Camera, Log, box_corners, poses, read_log
 
-TOOL = Path(__file__).resolve().parents[2] / "tools" / "goe_tools" / "jsbsim_flight.py"
+COMMAND = (sys.executable, "-m", "goe_tools", "jsbsim_flight")
 
 pytest.importorskip("jsbsim")
 
 
 def fly(goe_sim: Path, folder: Path, *options: object, sim: tuple[str, ...]) -> Log:
-    command = [sys.executable, TOOL, "--goe-sim", goe_sim, "--out", folder, *options, "--", *sim]
+    command = [*COMMAND, "--goe-sim", goe_sim, "--out", folder, *options, "--", *sim]
     subprocess.run([str(word) for word in command], check=True)
     return read_log(folder)
 
@@ -44,7 +44,7 @@ def test_scenario_is_flown(goe_sim: Path, tmp_path: Path, glide: float, wind: st
 
 
 def test_ground_is_reported(goe_sim: Path, tmp_path: Path) -> None:
-    command = [sys.executable, TOOL, "--goe-sim", goe_sim, "--out", tmp_path / "log", "--altitude", "0.05", "--wind",
+    command = [*COMMAND, "--goe-sim", goe_sim, "--out", tmp_path / "log", "--altitude", "0.05", "--wind",
                "dryden:moderate"]  # fmt: skip
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
     assert done.returncode == 1 and "hit the ground" in done.stderr

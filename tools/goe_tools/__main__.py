@@ -7,35 +7,45 @@ import importlib
 import sys
 from collections.abc import Sequence
 
-from .obslog import LogError
+from .logs.obslog import LogError
 
-COMMANDS = {
-    "bound": "print the Cramer-Rao bound of a log with truth",
-    "scene": "write a synthetic observation log of a box or a cylinder",
-    "embed_logs": "write or check the synthetic logs that the target images carry",
-    "compare": "run goe_replay over logs and compare it with both references",
-    "golden": "write or check the C headers with the unit tests' reference data",
-    "ledger": "measure what the library costs on each target",
-    "goals": "print what the project promises beside what is reached",
-    "offline": "fit all images of a log with truth at once",
-    "peers": "hold the window solve against other solvers",
-    "report": "write the campaign's report and print Table 3",
-    "table": "print estimates as a table that a pilot can read",
+COMMANDS = {  # name: module with add_arguments and run, and what it does
+    "bound": (".optimum.bound", "print the Cramer-Rao bound of a log with truth"),
+    "scene": (".logs.scene_command", "write a synthetic observation log of a box or a cylinder"),
+    "embed_logs": (".logs.embed_logs", "write or check the synthetic logs that the target images carry"),
+    "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
+    "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),
+    "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
+    "ledger": (".ledger", "measure what the library costs on each target"),
+    "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
+    "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
+    "offline": (".optimum.offline", "fit all images of a log with truth at once"),
+    "peers": (".peers", "hold the window solve against other solvers"),
+    "report": (".report.command", "write the campaign's report and print Table 3"),
+    "table": (".logs.table", "print estimates as a table that a pilot can read"),
 }
-MODULES = {name: f".optimum.{name}" for name in ("bound", "goals", "offline")}
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser of a command line. Only the module of the command that is asked for is imported: plots, tables and
+    solvers take their time to start."""
     parser = argparse.ArgumentParser(prog="goe_tools", description="Tools of the ground obstacle estimator.")
     commands = parser.add_subparsers(dest="command", required=True)
-    for name, text in COMMANDS.items():
-        module = importlib.import_module(MODULES.get(name, f".{name}"), __package__)
+    asked = next((word for word in words if not word.startswith("-")), None)
+    for name, (module_name, text) in COMMANDS.items():
         command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
-        module.add_arguments(command)
-        command.set_defaults(entry=module.run)
-    arguments = parser.parse_args(argv)
+        if name == asked:
+            module = importlib.import_module(module_name, __package__)
+            module.add_arguments(command)
+            command.set_defaults(entry=module.run)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    words = sys.argv[1:] if argv is None else argv
+    arguments = parser_for(words).parse_args(words)
     try:
         return int(arguments.entry(arguments))
     except (LogError, ValueError, FileNotFoundError) as error:

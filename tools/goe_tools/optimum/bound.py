@@ -18,7 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .flights import FIELD, QUANTITIES, Flight, Noise
+from .flights.flight import QUANTITIES, Flight
+from .flights.noise import FIELD, Noise
 from .model import (
     correspond,
     covariances,

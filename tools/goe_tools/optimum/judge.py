@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .flights import Flight, Obstacle, fold
+from .flights.flight import Flight, Obstacle
+from .flights.rotations import fold
 from .library import MODEL_BOX, MODEL_DISC, MODEL_LINE, Track
 from .model import COMPLEX_STEP
 

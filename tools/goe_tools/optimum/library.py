@@ -13,7 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .flights import ROOT, Flight, Noise
+from ..places import ROOT
+from .flights.flight import Flight
+from .flights.noise import Noise
 
 LIBRARY_NAMES = ("libgoe_batch.so", "libgoe_batch.dylib")
 METHODS = {"window": 1, "refined": 2}

@@ -25,22 +25,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..obslog import Camera
-from .flights import (
-    BASE_LEFT,
-    BASE_NEAR,
-    BASE_RIGHT,
-    LEFT,
-    MIN_DEPTH_SHARE,
-    RIGHT,
-    TOP,
-    Flight,
-    Noise,
-    from_log,
-    level_axes,
-    matrices,
-    mounting,
-)
+from ..logs.obslog import Camera
+from .flights.flight import BASE_LEFT, BASE_NEAR, BASE_RIGHT, LEFT, RIGHT, TOP, Flight
+from .flights.logged import from_log
+from .flights.noise import Noise
+from .flights.rotations import level_axes, matrices, mounting
+from .flights.scene import MIN_DEPTH_SHARE
 
 STATES = ("bx", "by", "bz", "dh", "a", "q", "sx", "fx", "sz", "e", "vx", "vz")
 BX, BY, BZ, DH, A, Q, SX, FX, SZ, E, VX, VZ = range(12)

@@ -17,7 +17,9 @@ import numpy as np
 
 from .bound import add_arguments as add_arguments  # of both commands
 from .bound import inverse, noise_of, print_flights, print_row, printable, shown
-from .flights import Flight, Noise, fold
+from .flights.flight import Flight
+from .flights.noise import Noise
+from .flights.rotations import fold
 from .model import (
     DH,
     FX,

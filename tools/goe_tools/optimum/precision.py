@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .flights import Flight, fold
+from .flights.flight import Flight
+from .flights.rotations import fold
 from .judge import ORIENTATION
 from .library import METHODS, Track, estimate
 

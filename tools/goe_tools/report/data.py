@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..obslog import LogError
+from ..logs.obslog import LogError
 from .goals_file import Goals, read_goals
 
 LABELS = ("study", "obstacle", "path", "speed_profile", "wind", "noise", "method", "model")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..obslog import LogError
+from ..logs.obslog import LogError
 
 QUANTITIES = ("X0", "Z0", "orientation", "W", "L", "H")  # as the file names them, in the order of its tables
 

@@ -15,14 +15,15 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
-from . import prose
+from ..optimum import paper_table3 as t3
 from . import refined as rf
-from . import refined_prose as rp
 from . import statistics as st
 from .data import Campaign
-from .drawing import render
 from .figures import FIGURES
+from .figures.drawing import render
 from .goals_file import QUANTITIES, GoalRow, Goals
+from .prose import misses, studies, table3
+from .prose import refined as rp
 from .style import COLOURS, GOAL_SYMBOLS, NAMES, SYMBOLS, UNITS, number
 
 VERDICT_MARKS = {
@@ -133,7 +134,7 @@ def _table3(campaign: Campaign) -> list[dict[str, Any]]:
             "colour": COLOURS[obstacle],
             "runs": len(st.paper_runs(campaign.cases, obstacle, model)),
             "cells": [_cell(cell) for cell in cells],
-            "in_paper": (obstacle, model) in st.PAPER_TABLE3,
+            "in_paper": (obstacle, model) in t3.PAPER_TABLE3,
         }
         for obstacle, model, cells in st.table3(campaign.cases)
     ]
@@ -144,9 +145,9 @@ def _fractions(campaign: Campaign) -> dict[str, Any]:
     levels = campaign.cases.levels("fraction")
     by_level = {level: st.table3(campaign.cases, level) for level in levels}
     tables = []
-    for i, quantity in enumerate(st.TABLE3_QUANTITIES):
+    for i, quantity in enumerate(t3.TABLE3_QUANTITIES):
         rows = []
-        for j, (obstacle, model) in enumerate(st.PAPER_TABLE3):
+        for j, (obstacle, model) in enumerate(t3.PAPER_TABLE3):
             cells = [by_level[level][j][2][i] for level in levels]
             if any(cell is not None for cell in cells):
                 paper = cells[0].paper if cells[0] is not None else None
@@ -155,7 +156,7 @@ def _fractions(campaign: Campaign) -> dict[str, Any]:
                 ]
                 rows.append({"name": f"{NAMES[obstacle]}/{model}", "paper": str(paper) if paper else "–", "ours": ours})
         tables.append({"symbol": SYMBOLS[quantity], "unit": UNITS[quantity], "rows": rows})
-    return {"levels": levels, "chosen": st.FRACTION, "tables": tables}
+    return {"levels": levels, "chosen": t3.FRACTION, "tables": tables}
 
 
 def _studies(campaign: Campaign) -> list[dict[str, Any]]:
@@ -306,24 +307,24 @@ def render_page(campaign: Campaign, figures: list[PageFigure]) -> str:
         counts=st.campaign_counts(campaign),
         version=_version(campaign),
         ended_early=campaign.facts.get("flights_ended_early", 0),
-        most=f"{st.MOST:.0%}",
-        fraction=f"{st.FRACTION:.0%}".replace("%", " %"),
+        most=f"{t3.MOST:.0%}",
+        fraction=f"{t3.FRACTION:.0%}".replace("%", " %"),
         rounding=f"{st.ROUNDING:g}",
-        quantities=[(SYMBOLS[q], UNITS[q]) for q in st.TABLE3_QUANTITIES],
+        quantities=[(SYMBOLS[q], UNITS[q]) for q in t3.TABLE3_QUANTITIES],
         study_quantities=[(SYMBOLS[q], UNITS[q]) for q in st.STUDY_QUANTITIES],
         table3=_table3(campaign),
-        summary=prose.summary(cases),
-        causes=prose.causes(cases),
-        better=prose.better(cases),
-        missing=prose.missing(cases),
+        summary=table3.summary(cases),
+        causes=misses.causes(cases),
+        better=table3.better(cases),
+        missing=table3.missing(cases),
         fractions=_fractions(campaign),
-        fraction_effect=prose.fraction_effect(cases),
+        fraction_effect=table3.fraction_effect(cases),
         studies=_studies(campaign),
-        study_sentences=prose.studies(cases),
-        outliers=prose.outliers(campaign),
-        condition_effect=prose.condition_effect(campaign),
+        study_sentences=studies.studies(cases),
+        outliers=studies.outliers(campaign),
+        condition_effect=studies.condition_effect(campaign),
         line_apart=st.line_apart(cases),
-        window_effect=prose.window_effect(campaign),
+        window_effect=studies.window_effect(campaign),
         refined=_refined(campaign),
         real=rp.real_data(campaign),
         goal_symbols=[GOAL_SYMBOLS[name] for name in QUANTITIES],

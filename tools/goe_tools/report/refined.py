@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..optimum import paper_table3 as t3
 from . import statistics as st
 from .data import Campaign, Cases
 from .goals_file import QUANTITIES, GoalRow, Goals
@@ -46,7 +47,7 @@ class Trio:
     obstacle: str
     model: str  # the paper's row; "box": refined alone, told that it is a box
     quantity: str
-    paper: st.PaperRange | None
+    paper: t3.PaperRange | None
     window: float
     refined: float
     runs: int  # of the refined method, those that have the quantity
@@ -59,7 +60,7 @@ class Trio:
 
 
 def refined_runs(refined: Cases, obstacle: str, model: str) -> Cases:
-    return refined.select(study="paper", obstacle=obstacle, model=model, fraction=st.FRACTION)
+    return refined.select(study="paper", obstacle=obstacle, model=model, fraction=t3.FRACTION)
 
 
 def _trio(campaign: Campaign, obstacle: str, model: str, quantity: str) -> Trio | None:
@@ -70,7 +71,7 @@ def _trio(campaign: Campaign, obstacle: str, model: str, quantity: str) -> Trio 
     errors = st.errors_of(runs, quantity)
     return Trio(
         obstacle, model, quantity, window.paper if window else None, window.bars if window else math.nan,
-        st.holding_range(errors.extent), len(errors.mean), errors.without_estimate,
+        t3.holding_range(errors.extent), len(errors.mean), errors.without_estimate,
     )  # fmt: skip
 
 
@@ -79,8 +80,8 @@ def table3(campaign: Campaign) -> list[tuple[str, str, list[Trio | None]]]:
     if campaign.refined is None:
         return []
     told = [(o, "box") for o in BOXES if len(refined_runs(campaign.refined, o, "box"))]
-    rows = (*st.PAPER_TABLE3, *told)
-    return [(o, m, [_trio(campaign, o, m, q) for q in st.TABLE3_QUANTITIES]) for o, m in rows]
+    rows = (*t3.PAPER_TABLE3, *told)
+    return [(o, m, [_trio(campaign, o, m, q) for q in t3.TABLE3_QUANTITIES]) for o, m in rows]
 
 
 def papers(campaign: Campaign) -> list[Trio]:
@@ -101,7 +102,7 @@ def studies(campaign: Campaign) -> list[StudyRow]:
     if campaign.refined is None:
         return []
     window, refined = (_of_auto(cases) for cases in (campaign.cases, campaign.refined))
-    straight = [cases.select(study="paper", fraction=st.FRACTION) for cases in (window, refined)]
+    straight = [cases.select(study="paper", fraction=t3.FRACTION) for cases in (window, refined)]
     pairs = [("straight, as the paper", *straight)]
     others = {variant.label: variant.runs for variant in st.variants(refined)}
     pairs += [(v.label, v.runs, others[v.label]) for v in st.variants(window) if v.label in others]

@@ -9,14 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from ..optimum.paper_table3 import FRACTION, PAPER_TABLE3, TABLE3_QUANTITIES, PaperRange, holding_range
 from .data import IN_PERCENT, SAME_CASE, Campaign, Cases
 
-MOST = 0.75  # share of the cases that "most of the values" means
-FRACTION = 0.4  # part of a run's solved images, the last ones, that the statistics are over
 ROUNDING = 1.25  # the paper's ranges are round numbers read off plots: this much wider still counts as reproduced
 MUCH = 0.5  # half the paper's range or less counts as better
 
-TABLE3_QUANTITIES = ("z0", "x0", "width", "length", "height")
 BETTER, REPRODUCED, MEANS_ONLY, WORSE, NOT_IN_PAPER = (
     "better",
     "reproduced",
@@ -26,32 +24,6 @@ BETTER, REPRODUCED, MEANS_ONLY, WORSE, NOT_IN_PAPER = (
 )
 
 
-@dataclass(frozen=True)
-class PaperRange:
-    """A number of the paper's Table 3: most values inside +-value, or with ``beyond`` most of them outside."""
-
-    value: float
-    beyond: bool = False
-
-    def __str__(self) -> str:
-        return f">{self.value:g}" if self.beyond else f"{self.value:g}"
-
-
-def _paper(z0: float, x0: float, width: float, length: float | None, height: float) -> dict[str, PaperRange | None]:
-    """Negative: the paper's sign for 'most values are outside'."""
-    numbers = dict(zip(TABLE3_QUANTITIES, (z0, x0, width, length, height)))
-    return {q: None if n is None else PaperRange(abs(n), n < 0) for q, n in numbers.items()}
-
-
-# (obstacle, model in the paper's words) -> the paper's Table 3
-PAPER_TABLE3: dict[tuple[str, str], dict[str, PaperRange | None]] = {
-    ("cylinder", "disc"): _paper(3, 10, 12, None, 1),
-    ("truck", "disc"): _paper(5, -20, -50, None, 2),
-    ("long-truck", "disc"): _paper(5, -20, -50, None, 2),
-    ("building", "line"): _paper(10, 30, 5, 30, 8),
-    ("truck", "line"): _paper(7, 20, 2, 25, 2),
-    ("long-truck", "line"): _paper(7, 25, 2, 25, 2),
-}
 # flown by the paper, but not in its table; "switching": disc and line solutions of a run together
 ALSO_FLOWN = (("building", "disc"), ("building", "switching"), ("truck", "switching"), ("long-truck", "switching"))
 MODEL_IN_CASES = {"disc": "disc", "line": "line", "switching": "auto"}
@@ -61,14 +33,6 @@ PURE = 0.999  # share of line solutions from which on a run counts as line throu
 def column(quantity: str, measure: str) -> str:
     """The column of cases.csv in Table 3's unit: percent of the truth for what the paper gives in percent."""
     return f"{quantity}_{measure}" + ("_pct" if quantity in IN_PERCENT else "")
-
-
-def holding_range(extents: np.ndarray, share: float = MOST) -> float:
-    """The smallest value that at least ``share`` of the extents do not exceed; NaN for none."""
-    values = np.sort(extents[np.isfinite(extents)])
-    if not len(values):
-        return math.nan
-    return float(values[math.ceil(share * len(values) - 1e-9) - 1])
 
 
 @dataclass(frozen=True)

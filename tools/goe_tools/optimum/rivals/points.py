@@ -12,7 +12,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
-from ..flights import BASE_LEFT, BASE_NEAR, BASE_RIGHT, TOP
+from ..flights.flight import BASE_LEFT, BASE_NEAR, BASE_RIGHT, TOP
 from .track import MIN_IMAGES, Silhouette, Track
 
 Located = Optional[tuple[np.ndarray, np.ndarray]]  # point (3,) m and its covariance (3,3) m^2, T

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..flights import BASE_LEFT, BASE_NEAR, BASE_RIGHT, LEFT, RIGHT, TOP, Flight, Noise
+from ..flights.flight import BASE_LEFT, BASE_NEAR, BASE_RIGHT, LEFT, RIGHT, TOP, Flight
+from ..flights.noise import Noise
 from ..model import view_of
 
 MIN_IMAGES = 5  # fewer give no answer: two would do without noise, but then there is nothing to judge outliers by

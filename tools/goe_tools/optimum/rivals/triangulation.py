@@ -9,15 +9,15 @@ from __future__ import annotations
 import importlib
 import sys
 from functools import cache
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 
+from ...places import ROOT
 from .points import Located, Values, estimate
 from .track import HUBER, MIN_IMAGES, Track
 
-PLACE = Path(__file__).resolve().parents[4] / ".cache" / "rivals"
+PLACE = ROOT / ".cache" / "rivals"
 WORST = 0.25  # a point whose distance is less sure than this, relative, has not been located
 
 

@@ -1,0 +1,186 @@
+"""The rooms of tools/goe_tools: imports go down, never round in circles, and a long file holds one idea."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+from goe_tools.__main__ import COMMANDS
+
+PACKAGE = Path(__file__).resolve().parents[2] / "tools" / "goe_tools"
+
+# From the ground up. A room knows the floors below its own, and no other room of its own floor.
+FLOORS = (
+    ("__init__", "places"),
+    ("logs",),
+    ("reference", "optimum", "cost"),
+    ("report",),
+    ("__main__",),
+)
+BESIDE = {"ledger": "cost", "peers": "cost"}  # files that lie beside the rooms, and where they belong
+
+MOST_LINES = 500
+LONG = {"ledger.py": "each figure of the cost ledger, from the build to the README's tables"}  # file, its one idea
+
+Module = tuple[str, ...]  # ("logs", "obslog"); of a folder's __init__.py: ("logs", "__init__")
+Graph = dict[str, set[str]]
+
+
+def folders_of(modules: Iterable[Module]) -> set[Module]:
+    """Every folder that holds any of the modules, however deep below it."""
+    return {module[:depth] for module in modules for depth in range(len(module))}
+
+
+def sources(package: Path) -> dict[Module, Path]:
+    return {path.relative_to(package).with_suffix("").parts: path for path in sorted(package.rglob("*.py"))}
+
+
+def imported(module: Module, path: Path, known: dict[Module, Path], package_name: str) -> Iterator[Module]:
+    """The modules of the package that a module imports, also those inside functions."""
+    folders = folders_of(known)
+
+    def found(name: Module) -> Module:
+        """The module of that name, the folder's __init__.py, or, of a name that a module defines, that module."""
+        if name in known:
+            return name
+        return (*name, "__init__") if name in folders else found(name[:-1])
+
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                first, *rest = alias.name.split(".")
+                if first == package_name:
+                    yield found(tuple(rest))
+        elif isinstance(node, ast.ImportFrom):
+            start = tuple(node.module.split(".")) if node.module else ()
+            if node.level:
+                start = (*module[: len(module) - node.level], *start)
+            elif start[:1] == (package_name,):
+                start = start[1:]
+            else:
+                continue
+            for alias in node.names:
+                yield found((*start, alias.name))
+
+
+def imports(package: Path) -> set[tuple[Module, Module]]:
+    known = sources(package)
+    return {(m, target) for m, path in known.items() for target in imported(m, path, known, package.name)}
+
+
+def side_by_side(edges: set[tuple[Module, Module]], folder: Module) -> Graph:
+    """What lies directly in a folder, files and folders, and which of it imports which."""
+    graph: Graph = {}
+    depth = len(folder)
+    for source, target in edges:
+        if source[:depth] == folder == target[:depth] and source[depth] != target[depth]:
+            graph.setdefault(source[depth], set()).add(target[depth])
+    return graph
+
+
+def circles(package: Path) -> list[str]:
+    edges, found = imports(package), []
+    for folder in sorted(folders_of(sources(package))):
+        try:
+            TopologicalSorter(side_by_side(edges, folder)).prepare()
+        except CycleError as error:
+            found.append(f"{'/'.join((package.name, *folder))}: {' <- '.join(error.args[1])}")
+    return found
+
+
+def upwards(edges: set[tuple[Module, Module]]) -> list[str]:
+    """Imports that do not go to a lower floor, and rooms without one."""
+    floor = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+    found = []
+    for source, target in sorted(edges):
+        rooms = [BESIDE.get(module[0], module[0]) for module in (source, target)]
+        for room in rooms:
+            if room not in floor:
+                found.append(f"{room}: say in FLOORS on which floor it is")
+        if rooms[0] != rooms[1] and floor.get(rooms[0], 0) <= floor.get(rooms[1], 0):
+            found.append(f"{'/'.join(source)} imports {'/'.join(target)}")
+    return found
+
+
+def test_imports_go_to_lower_floors() -> None:
+    edges = imports(PACKAGE)
+    assert (("report", "page"), ("report", "figures", "__init__")) in edges  # a folder's __init__.py is found
+    assert (("optimum", "model"), ("logs", "obslog")) in edges  # ... and what lies in another room
+    commands = {(("__main__",), tuple(name.strip(".").split("."))) for name, _ in COMMANDS.values()}
+    assert upwards(edges | commands) == []
+
+
+def test_no_circles_at_any_level() -> None:
+    assert circles(PACKAGE) == []
+
+
+def test_every_command_is_a_module() -> None:
+    known = sources(PACKAGE)
+    for module_name, _ in COMMANDS.values():
+        name = tuple(module_name.strip(".").split("."))
+        assert name in known or (*name, "__init__") in known, module_name
+
+
+def test_what_lies_in_the_package_has_a_floor_and_a_line_in_the_readme() -> None:
+    told = (PACKAGE / "README.md").read_text(encoding="utf-8")
+    for room in {module[0] for module in sources(PACKAGE)}:
+        assert any(BESIDE.get(room, room) in rooms for rooms in FLOORS), room
+        if (PACKAGE / room).is_dir() or room in BESIDE:
+            assert f"`{room}/`" in told or f"`{room}.py`" in told, room
+
+
+def test_a_long_file_holds_one_idea() -> None:
+    files = sources(PACKAGE).values()
+    assert len(files) > 50
+    long = [p for p in files if len(p.read_text(encoding="utf-8").splitlines()) > MOST_LINES and p.name not in LONG]
+    assert long == [], "split it, or name its one idea in LONG"
+
+
+# ------------------------------------------------------------------------------------------------ the checks themselves
+
+
+def write(folder: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        path = folder / "house" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return folder / "house"
+
+
+@pytest.mark.parametrize(
+    "back",
+    ["from ..logs.b import y", "from ..logs import b", "from .. import logs", "from house.logs import b",
+     "import house.logs.b", "def f():\n    from ..logs.b import y"],
+)  # fmt: skip
+def test_a_circle_between_folders_is_seen(tmp_path: Path, back: str) -> None:
+    files = {"logs/a.py": "", "logs/b.py": "from ..report import a", "report/a.py": "from logs import b"}
+    house = write(tmp_path, files)
+    assert circles(house) == []  # another package's logs
+    write(tmp_path, {"report/a.py": back})
+    (told,) = circles(house)
+    assert told.startswith("house: ") and "logs" in told and "report" in told
+
+
+def test_an_import_upwards_is_seen(tmp_path: Path) -> None:
+    files = {
+        "logs/b.py": "from ..report.a import x",
+        "report/a.py": "",
+        "optimum/c.py": "from .. import logs",
+        "reference/d.py": "from ..optimum import c",
+        "cellar/e.py": "from ..logs.b import x",
+    }
+    assert upwards(imports(write(tmp_path, files))) == [
+        "cellar: say in FLOORS on which floor it is",
+        "cellar/e imports logs/b",
+        "logs/b imports report/a",
+        "reference/d imports optimum/c",
+    ]
+
+
+def test_a_circle_of_files_is_seen(tmp_path: Path) -> None:
+    files = {"logs/a.py": "from .b import x", "logs/b.py": "from . import c", "logs/c.py": "from .a import y"}
+    (told,) = circles(write(tmp_path, files))
+    assert told.startswith("house/logs: ")

@@ -1,0 +1,11 @@
+"""Logs: what a flight is told by, and what an estimator answered, as files.
+
+obslog         observation logs: camera.ini, frames.csv, truth.csv
+estimates      what goe_replay writes of a log
+table          estimates as a table that a pilot can read
+projection     where a point lies in the image of a flying camera
+scene          synthetic logs of boxes and cylinders
+scene_command  the command that writes one
+embed_logs     synthetic logs as C arrays, for the images that run on every target
+jsbsim_flight  a log of a flight by JSBSim
+"""

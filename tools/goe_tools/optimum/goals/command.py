@@ -1,0 +1,78 @@
+"""The command ``goals``: every figure that the project promises, beside the figure that is reached.
+
+    python -m goe_tools goals [--quick] [--only GROUP,...] [--json FILE] [--jobs N]
+
+A new group of goals is a module beside this one and a line in ``GROUPS``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from ..flights.logged import KITTI_FOLDER
+from ..flights.recorded import RECORDED_FOLDER
+from ..library import library_path
+from .early import early_group
+from .field import field_group
+from .float32 import float32_group
+from .goal import Goal
+from .kitti import kitti_group
+from .output import as_json, print_group
+from .pixel_noise import gauss_group
+from .recorded import recorded_group
+from .rivals import rivals_group
+from .table3 import table3_group
+from .work import FULL, QUICK, Amount
+
+GROUPS: dict[str, Callable[[str, Amount], list[Goal]]] = {
+    "gauss0.3": gauss_group,
+    "gauss1": gauss_group,
+    "rounding": gauss_group,
+    "field": field_group,
+    "float32": float32_group,
+    "table3": table3_group,
+    "early": early_group,
+    "recorded": recorded_group,
+    "kitti": kitti_group,
+    "rivals": rivals_group,
+}
+ABSENT = {
+    "float32": "the target goe_batch_double is not built",
+    "recorded": f"no flights in {RECORDED_FOLDER}",
+    "kitti": f"no logs in {KITTI_FOLDER}",
+    "rivals": "the rivals are not there",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--quick", action="store_true", help="fewer flights: a minute instead of many")
+    parser.add_argument("--only", metavar="GROUPS", help=f"some of {','.join(GROUPS)}")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
+    parser.add_argument(
+        "--worst", type=int, default=0, metavar="N", help="name the N worst flights, errors in own sigmas"
+    )
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    chosen = arguments.only.split(",") if arguments.only else list(GROUPS)
+    for name in chosen:
+        if name not in GROUPS:
+            raise ValueError(f"--only {name}: not one of {', '.join(GROUPS)}")
+    if arguments.jobs < 1:
+        raise ValueError(f"--jobs {arguments.jobs}: must be at least 1")
+    library_path()  # its absence is told before the work begins
+    amount = Amount(**{**vars(QUICK if arguments.quick else FULL), "jobs": arguments.jobs, "worst": arguments.worst})
+    goals: list[Goal] = []
+    for name in chosen:
+        found = GROUPS[name](name, amount)
+        print_group(name, found, ABSENT.get(name, "nothing to tell"))
+        goals += found
+    asked = [goal for goal in goals if goal.met is not None]
+    print(f"\n{sum(bool(goal.met) for goal in asked)} of {len(asked)} goals met")
+    if arguments.json:
+        arguments.json.write_text(json.dumps(as_json(goals, arguments.quick), indent=1) + "\n", encoding="utf-8")
+    return 0

@@ -1,0 +1,74 @@
+"""How many flights are flown, and in how many processes."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from tqdm import tqdm
+
+from ..flights.noise import NOISES
+from ..flights.simulated import paper_scenes, random_scenes
+from .outcome import Outcome, Task, perform
+from .output import print_worst
+
+Result = TypeVar("Result")
+
+
+@dataclass
+class Amount:
+    """How much is computed."""
+
+    seeds: int
+    field_seeds: int
+    random: int
+    offline: int  # of the first seed's flights with field noise, drawn at random
+    rivals: int  # likewise
+    recorded: int  # passes of each recorded flight and seed
+    recorded_seeds: int
+    precision_seeds: int
+    jobs: int = 1
+    worst: int = 0  # flights to be named, those of the largest NEES
+
+
+QUICK = Amount(
+    seeds=6, field_seeds=4, random=100, offline=90, rivals=40, recorded=40, recorded_seeds=2,
+    precision_seeds=1,
+)  # fmt: skip
+FULL = Amount(
+    seeds=24, field_seeds=16, random=400, offline=10**6, rivals=300, recorded=60, recorded_seeds=3,
+    precision_seeds=3,
+)  # fmt: skip
+
+
+def each(work: Callable[[Task], Result], tasks: Sequence[Task], jobs: int, title: str) -> list[Result]:
+    progress = {"total": len(tasks), "desc": title, "disable": None, "leave": False}
+    if jobs == 1:
+        return [work(task) for task in tqdm(tasks, **progress)]
+    with multiprocessing.Pool(jobs, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:  # Ctrl-C: ours alone
+        return list(tqdm(pool.imap(work, tasks, chunksize=8), **progress))
+
+
+def perform_all(tasks: Sequence[Task], amount: Amount, title: str) -> list[Outcome]:
+    outcomes = each(perform, tasks, amount.jobs, title)
+    print_worst(title, outcomes, amount.worst)
+    return outcomes
+
+
+def simulated_tasks(noise: str, seeds: int, amount: Amount, **options: object) -> list[Task]:
+    scenes = paper_scenes() + random_scenes(amount.random)
+    return [
+        Task(scene, NOISES[noise], (seed, number), **options)  # type: ignore[arg-type]
+        for seed in range(1, seeds + 1)
+        for number, scene in enumerate(scenes)
+    ]
+
+
+def drawn(tasks: list[Task], count: int) -> list[Task]:
+    """Some of the tasks, the same ones every time."""
+    order = np.random.default_rng(3).permutation(len(tasks))[:count]
+    return [tasks[i] for i in sorted(order)]
