@@ -5,10 +5,6 @@
 
 #include "maths/goe_angle.h"
 
-const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
-    return estimator->settings.method == GOE_METHOD_REFINED ? &estimator->estimate : &estimator->window.estimate;
-}
-
 /* The filter is as it was when it gave the estimate; it may be another's since. */
 static bool is_of_filter(const goe_estimate_t *estimate) {
     return estimate->method == GOE_METHOD_REFINED && estimate->fresh;

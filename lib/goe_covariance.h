@@ -9,7 +9,9 @@
 typedef float goe_covariance_t[GOE_QUANTITIES][GOE_QUANTITIES];
 
 /* The estimate after the latest image. */
-const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator);
+static inline const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
+    return estimator->settings.method == GOE_METHOD_REFINED ? &estimator->estimate : &estimator->window.estimate;
+}
 
 /* goe_covariance() of an estimator that has a position, the height's rows and columns counted from `zero`. */
 void goe_latest_covariance(const goe_estimator_t *estimator, goe_zero_t zero, goe_covariance_t covariance);

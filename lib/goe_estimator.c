@@ -23,18 +23,21 @@ static bool is_refined(const goe_estimator_t *estimator) { return estimator->set
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
-static void set_age(int64_t time_us, int64_t solved_us, goe_estimate_t *estimate) {
+static int64_t solved_time_us(const goe_estimator_t *estimator) {
+    return is_refined(estimator) ? estimator->estimate_time_us : estimator->window.solved_time_us;
+}
+
+/* The estimate grows old while images are refused, too, as far as their times can be believed. */
+static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     estimate->age_s = 0.0f;
     if (estimate->fresh || !(estimate->valid & GOE_HAS_POSITION)) {
         return;
     }
-    const uint64_t age_us = (uint64_t)time_us - (uint64_t)solved_us;
+    const int64_t latest_us = estimator->motion.time_us;
+    const int64_t now_us = image_us > latest_us ? image_us : latest_us;
+    const uint64_t age_us = (uint64_t)now_us - (uint64_t)solved_time_us(estimator);
     const uint32_t limited_us = age_us < AGE_LIMIT_US ? (uint32_t)age_us : AGE_LIMIT_US;
     estimate->age_s = (float)limited_us * S_PER_US;
-}
-
-static int64_t solved_time_us(const goe_estimator_t *estimator) {
-    return is_refined(estimator) ? estimator->estimate_time_us : estimator->window.solved_time_us;
 }
 
 /* No new answer: the last one grows old, and follows the motion. */
@@ -62,15 +65,10 @@ static goe_status_t report_window(goe_estimator_t *estimator, goe_status_t statu
     return status == GOE_COLLECTING ? GOE_HELD : status;
 }
 
-static bool report_quantities(goe_estimator_t *estimator) {
-    goe_quantities_t quantities;
-    goe_refined_quantities(&estimator->filter, &estimator->settings, &estimator->motion, &quantities);
-    return goe_report_quantities(&quantities, &estimator->motion, &estimator->estimate);
-}
-
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_image_t *image, const goe_faults_t *faults,
                                    bool measured) {
-    const bool fresh = measured && report_quantities(estimator);
+    const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
+                                                      &estimator->estimate);
     if (fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
     } else {
@@ -188,17 +186,15 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
         return !estimator || !image ? GOE_BAD_ARGUMENT : GOE_NOT_INITIALISED;
     }
     goe_status_t status = goe_intake_check(&estimator->motion, image);
-    const bool taken = status == GOE_OK;
-    if (taken) {
+    if (status == GOE_OK) {
         status = take_image(estimator, image);
+        *estimate = *goe_latest_estimate(estimator);
     } else {
         goe_count_cause(estimator->causes, status);
+        *estimate = *goe_latest_estimate(estimator);
+        estimate->fresh = false;
     }
-    *estimate = *goe_latest_estimate(estimator);
-    estimate->fresh = estimate->fresh && taken;
-    /* the estimate grows old while images are refused, too, as far as their times can be believed */
-    const int64_t latest_us = estimator->motion.time_us;
-    set_age(image->pose.time_us > latest_us ? image->pose.time_us : latest_us, solved_time_us(estimator), estimate);
+    set_age(estimator, image->pose.time_us, estimate);
     return status;
 }
 

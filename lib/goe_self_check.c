@@ -7,13 +7,7 @@
 #include "goe.h"
 #include "maths/goe_scalar.h"
 
-static uint32_t bits_of(float a) {
-    uint32_t bits;
-    memcpy(&bits, &a, sizeof bits);
-    return bits;
-}
-
-static bool same(float a, uint32_t bits) { return bits_of(a) == bits; }
+static bool same(float a, uint32_t bits) { return goe_bits(a) == bits; }
 
 /* (1 + 2^-12)^2 - (1 + 2^-11) is 2^-24 exactly, and 0 if the product is rounded first. */
 static bool contracts(void) {
@@ -52,10 +46,10 @@ static bool reciprocates(void) {
     const float first = dividend[0] / divisor;
     const float second = dividend[1] / divisor;
     const float third = dividend[2] / divisor;
-    uint32_t off = (bits_of(first) ^ right[0]) | (bits_of(second) ^ right[1]) | (bits_of(third) ^ right[2]);
-    off |= bits_of(dividend[0] / DIVISOR) ^ right[0];
+    uint32_t off = (goe_bits(first) ^ right[0]) | (goe_bits(second) ^ right[1]) | (goe_bits(third) ^ right[2]);
+    off |= goe_bits(dividend[0] / DIVISOR) ^ right[0];
     for (int k = 0; k < count; k++) {
-        off |= bits_of(dividend[k] / divisor) ^ right[k];
+        off |= goe_bits(dividend[k] / divisor) ^ right[k];
     }
     return off != 0u;
 }
@@ -75,7 +69,7 @@ static bool flushes(void) {
         values[k] *= half;
     }
     for (int k = 0; k < 8; k++) {
-        off |= bits_of(values[k]) ^ 0x00400000u;
+        off |= goe_bits(values[k]) ^ 0x00400000u;
     }
     return off != 0u || !same(subnormal, 0x00400000u) || !same(subnormal / half, 0x00800000u);
 }
@@ -111,7 +105,7 @@ static bool root_is_nearest(uint32_t square_bits) {
     float square;
     memcpy(&square, &square_bits, sizeof square);
     volatile float given = square;
-    const uint32_t root_bits = bits_of(sqrtf(given));
+    const uint32_t root_bits = goe_bits(sqrtf(given));
     const bool subnormal = square_bits < HIDDEN_BIT;
     if (subnormal && root_bits == 0u) {
         return true; /* flushed, not misrounded */

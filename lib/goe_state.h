@@ -12,6 +12,13 @@
 /* C99 has no _Static_assert: a negative array size does not compile. */
 #define GOE_STATIC_ASSERT(condition, what) typedef char goe_assert_##what[(condition) ? 1 : -1]
 
+/* Before a static function that is called once: its locals must not lie on the stack while its neighbours run. */
+#if defined(__GNUC__)
+#define GOE_NOINLINE __attribute__((noinline))
+#else
+#define GOE_NOINLINE
+#endif
+
 /* ----------------------------------------------------------------------------------------------------------- image -- */
 
 /* image/goe_ego_motion.c: own motion over the track. */

@@ -9,7 +9,9 @@
 
 /* The rotation and the camera are read once: the compiler could not know that writing the points leaves them alone. */
 void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
-    const goe_pixels_t pixels = goe_image_pixels(view->image);
+    const goe_image_t *image = view->image;
+    const goe_pixel_t *const pixels[GOE_FEATURES] = {&image->left,      &image->right,     &image->top,
+                                                     &image->base_left, &image->base_near, &image->base_right};
     const float *r = view->camera_to_trajectory;
     const float xx = r[0], xy = r[1], xz = r[2];
     const float yx = r[3], yy = r[4], yz = r[5];
@@ -17,7 +19,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     const float cx_px = camera->cx_px, cy_px = camera->cy_px, fx_px = camera->fx_px, fy_px = camera->fy_px;
     const bool distorts = goe_camera_distorts(camera);
     for (size_t i = 0; i < GOE_FEATURES; i++) {
-        const goe_pixel_t *pixel = pixels.at[i];
+        const goe_pixel_t *pixel = pixels[i];
         goe_point_t *point = &view->point[i];
         point->usable = pixel->seen;
         if (!pixel->seen) {

@@ -20,11 +20,6 @@ void goe_camera_mounting(const goe_camera_t *camera, float camera_to_body[9]) {
     }
 }
 
-bool goe_camera_distorts(const goe_camera_t *camera) {
-    return (goe_magnitude(camera->k1) | goe_magnitude(camera->k2) | goe_magnitude(camera->p1) |
-            goe_magnitude(camera->p2) | goe_magnitude(camera->k3)) != 0u;
-}
-
 /* Brown-Conrady, inverted by the fixed-point iteration x <- (x_distorted - tangential(x)) / radial(x). */
 bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y) {
     const float distorted_x = *ray_x;

@@ -3,12 +3,17 @@
 #define GOE_CAMERA_H
 
 #include "goe.h"
+#include "maths/goe_scalar.h"
 
 /* Camera -> body (FRD) of the mounting angles. */
 void goe_camera_mounting(const goe_camera_t *camera, float camera_to_body[9]);
 
 /* Whether any distortion coefficient is not 0. */
-bool goe_camera_distorts(const goe_camera_t *camera);
+static inline bool goe_camera_distorts(const goe_camera_t *camera) {
+    return ((goe_bits(camera->k1) | goe_bits(camera->k2) | goe_bits(camera->p1) | goe_bits(camera->p2) |
+             goe_bits(camera->k3)) &
+            GOE_MAGNITUDE_BITS) != 0u;
+}
 
 /* Inverts the lens model at the distorted ray (*ray_x, *ray_y, 1). False, with the ray untouched, if it cannot be. */
 bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y);

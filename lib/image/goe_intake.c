@@ -2,7 +2,6 @@
 #include "image/goe_intake.h"
 
 #include "image/goe_ego_motion.h"
-#include "image/goe_view.h"
 #include "maths/goe_scalar.h"
 
 #define POSITION_LIMIT_M 1.0e6f
@@ -18,17 +17,20 @@ static uint32_t largest_of(const float v[3]) {
     return larger(larger(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
 }
 
-static uint32_t largest_pixel(const goe_image_t *image) {
-    const goe_pixels_t pixels = goe_image_pixels(image);
-    uint32_t largest = 0u;
-    for (size_t i = 0; i < GOE_FEATURES; i++) {
-        const goe_pixel_t *pixel = pixels.at[i];
-        if (pixel->seen) {
-            largest = larger(largest, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px)));
-        }
-    }
-    return largest;
+static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
+    return pixel->seen ? larger(so_far, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px))) : so_far;
 }
+
+static uint32_t largest_pixel(const goe_image_t *image) {
+    uint32_t largest = with_pixel(0u, &image->left);
+    largest = with_pixel(largest, &image->right);
+    largest = with_pixel(largest, &image->top);
+    largest = with_pixel(largest, &image->base_left);
+    largest = with_pixel(largest, &image->base_near);
+    return with_pixel(largest, &image->base_right);
+}
+
+GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_is_checked);
 
 /* Not finite outranks out of range, which outranks a bad attitude. */
 static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {

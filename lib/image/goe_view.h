@@ -32,19 +32,6 @@ typedef struct {
     float camera_to_trajectory[9];
 } goe_view_t;
 
-/* The features of an image by goe_feature_t. */
-typedef struct {
-    const goe_pixel_t *at[GOE_FEATURES];
-} goe_pixels_t;
-
-static inline goe_pixels_t goe_image_pixels(const goe_image_t *image) {
-    const goe_pixels_t pixels = {
-        {&image->left, &image->right, &image->top, &image->base_left, &image->base_near, &image->base_right}};
-    return pixels;
-}
-
-GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_has_a_pixel);
-
 static inline bool goe_image_seen(const goe_image_t *image) {
     return image->left.seen || image->right.seen || image->top.seen || image->base_left.seen || image->base_near.seen ||
            image->base_right.seen;

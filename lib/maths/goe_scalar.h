@@ -6,15 +6,18 @@
 #include <stdint.h>
 #include <string.h>
 
-#define GOE_INFINITY_BITS 0x7F800000u /* any magnitude from here on is an infinity or a NaN */
+#define GOE_MAGNITUDE_BITS 0x7FFFFFFFu /* all but the sign */
+#define GOE_INFINITY_BITS 0x7F800000u  /* any magnitude from here on is an infinity or a NaN */
+
+static inline uint32_t goe_bits(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
 
 /* Bits of |x|. They order as the magnitudes do, and unlike isfinite() or a comparison with NaN the compiler cannot
  * assume their meaning away under -ffast-math. */
-static inline uint32_t goe_magnitude(float x) {
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits & 0x7FFFFFFFu;
-}
+static inline uint32_t goe_magnitude(float x) { return goe_bits(x) & GOE_MAGNITUDE_BITS; }
 
 /* |x|. Not fabsf(): a C library may lack it, and then an undeclared call would return an int. */
 static inline float goe_absolute(float x) {

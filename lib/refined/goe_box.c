@@ -45,6 +45,7 @@ typedef struct {
     float ground, top; /* Y of the base and of the roof */
     bool front, right; /* which side of the box the camera is on */
     bool far_half;     /* it is nearer to the back edge */
+    goe_xz_t corner[CORNERS];
     float depth_margin, side_margin; /* how far it is outside of the box along and across its axes, units of Z0 */
 } outline_t;
 
@@ -98,14 +99,10 @@ static void describe(const goe_observation_t *obs, outline_t *o) {
     o->far_half = along >= 0.5f * length;
     o->depth_margin = o->front ? -along : along - length;
     o->side_margin = (o->right ? across : -across) - 0.5f * width;
-}
-
-static float corner_x(const outline_t *o, size_t corner) {
-    return o->middle.x + across_of[corner] * o->fx + along_of[corner] * o->sx;
-}
-
-static float corner_z(const outline_t *o, size_t corner) {
-    return o->middle.z + across_of[corner] * o->fz + along_of[corner] * o->sz;
+    for (size_t i = 0; i < CORNERS; i++) {
+        o->corner[i].x = o->middle.x + across_of[i] * o->fx + along_of[i] * o->sx;
+        o->corner[i].z = o->middle.z + across_of[i] * o->fz + along_of[i] * o->sz;
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------------- visible corners -- */
@@ -121,8 +118,8 @@ static void corners_of_faces(size_t face, bool two, size_t corner[3]) {
 static float misfit(const goe_observation_t *obs, const outline_t *o, const size_t corner[3]) {
     float sum = 0.0f;
     for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i += 2) {
-        const float z = corner_z(o, corner[i]);
-        const float x = corner_x(o, corner[i]) / (z > AHEAD_LEAST ? z : AHEAD_LEAST);
+        const float z = o->corner[corner[i]].z;
+        const float x = o->corner[corner[i]].x / (z > AHEAD_LEAST ? z : AHEAD_LEAST);
         sum += goe_absolute(obs->point[GOE_POINT_BASE_LEFT + i].x - x);
     }
     return sum;
@@ -153,8 +150,8 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
     float least = 0.0f;
     float most = 0.0f;
     for (size_t i = 0; i < CORNERS; i++) {
-        const float z = corner_z(o, i);
-        const float x = corner_x(o, i) / (z > AHEAD_TINY ? z : AHEAD_TINY);
+        const float z = o->corner[i].z;
+        const float x = o->corner[i].x / (z > AHEAD_TINY ? z : AHEAD_TINY);
         if (i == 0 || x < least) {
             least = x;
             corner[OUTER_LEFT] = i;
@@ -184,29 +181,29 @@ static void set_corner(goe_rows_t *rows, float by[GOE_STATES], const goe_observa
 }
 
 /* Two rows, the second free of the first one's noise. */
-static void add_base_corner(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
-                            goe_rows_t *rows) {
+GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature,
+                                         size_t corner, goe_rows_t *rows) {
     goe_gradient_t gx;
     goe_gradient_t gy;
     const float height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
     const goe_point_t *measured = &obs->point[feature];
-    const goe_point_t seen =
-        goe_observation_project(obs, corner_x(o, corner), o->ground, corner_z(o, corner), &gx, &gy);
     const goe_spread_t spread = goe_observation_spread(obs, feature);
     const float share = spread.xy / spread.xx;
-    const float rx = measured->x - seen.x;
-    const float ry = measured->y - seen.y - share * rx;
+    goe_observation_project_x(obs, o->corner[corner].x, o->ground, o->corner[corner].z, &gx);
+    goe_observation_project_y(obs, o->corner[corner].x, o->ground, o->corner[corner].z, &gy);
     gy.x -= share * gx.x;
     gy.y -= share * gx.y;
     gy.z -= share * gx.z;
     gy.ex -= share * gx.ex;
     gy.ey -= share * gx.ey;
     gy.ez -= share * gx.ez;
-    float *by = goe_rows_add(rows, feature, rx, spread.xx, &gx);
+    float *by = goe_rows_add(rows, feature, measured->x, spread.xx, &gx);
+    const float along_x = by[GOE_BEHIND_STATES];
     set_corner(rows, by, obs, o, corner, &gx);
     by[GOE_INVERSE_RANGE] += gx.y * height_m;
     by[GOE_HEIGHT_BIAS] = gx.y * o->q;
-    by = goe_rows_add(rows, feature, ry, spread.yy - share * spread.xy, &gy);
+    by = goe_rows_add(rows, feature, measured->y, spread.yy - share * spread.xy, &gy);
+    by[GOE_BEHIND_STATES] -= share * along_x;
     set_corner(rows, by, obs, o, corner, &gy);
     by[GOE_INVERSE_RANGE] += gy.y * height_m;
     by[GOE_HEIGHT_BIAS] = gy.y * o->q;
@@ -215,17 +212,11 @@ static void add_base_corner(const goe_observation_t *obs, const outline_t *o, go
 /* The vertical edge over an outer corner, at the height at which it was measured. */
 static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
                            goe_rows_t *rows) {
-    goe_gradient_t gx;
-    goe_gradient_t gy;
-    const goe_point_t *measured = &obs->point[feature];
-    if (!measured->usable) {
-        return;
+    goe_gradient_t g;
+    float *by = goe_rows_add_edge(rows, obs, feature, o->corner[corner], goe_observation_size_variance(obs), &g);
+    if (by) {
+        set_corner(rows, by, obs, o, corner, &g);
     }
-    const float z = corner_z(o, corner);
-    const goe_point_t seen = goe_observation_project(obs, corner_x(o, corner), measured->y * z, z, &gx, &gy);
-    const float variance = goe_observation_spread(obs, feature).xx + goe_observation_size_variance(obs);
-    float *by = goe_rows_add(rows, feature, measured->x - seen.x, variance, &gx);
-    set_corner(rows, by, obs, o, corner, &gx);
 }
 
 /* The corner of the roof nearest to the camera; seen from above the highest in the image is the farthest. */
@@ -237,19 +228,15 @@ static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
 }
 
 static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t *rows) {
-    goe_gradient_t gx;
-    goe_gradient_t gy;
-    const goe_point_t *measured = &obs->point[GOE_POINT_TOP];
-    if (!measured->usable) {
-        return;
-    }
+    goe_gradient_t g;
     const size_t corner = top_corner(obs, o);
-    const goe_point_t seen = goe_observation_project(obs, corner_x(o, corner), o->top, corner_z(o, corner), &gx, &gy);
-    const float variance = goe_observation_spread(obs, GOE_POINT_TOP).yy + goe_observation_size_variance(obs);
-    float *by = goe_rows_add(rows, GOE_POINT_TOP, measured->y - seen.y, variance, &gy);
-    set_corner(rows, by, obs, o, corner, &gy);
-    by[GOE_INVERSE_RANGE] += gy.y * obs->height_m;
-    by[GOE_TOP] = -gy.y;
+    float *by =
+        goe_rows_add_level(rows, obs, GOE_POINT_TOP, o->corner[corner], o->top, goe_observation_size_variance(obs), &g);
+    if (by) {
+        set_corner(rows, by, obs, o, corner, &g);
+        by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
+        by[GOE_TOP] = -g.y;
+    }
 }
 
 void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {

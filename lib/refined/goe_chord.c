@@ -46,66 +46,50 @@ static void inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) 
 
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
-/* An end of the chord. */
-typedef struct {
-    float x, z; /* from the camera now, units of Z0 */
-    float side; /* of the chord's middle: -1/2 left, +1/2 right */
-} end_t;
-
-static end_t end_of(const goe_observation_t *obs, float side) {
-    const float *x = obs->state;
+/* An end of the chord, from the camera now, units of Z0. side: of the chord's middle, -1/2 left, +1/2 right. */
+static goe_xz_t end_of(const goe_observation_t *obs, float side) {
     const goe_xz_t middle = goe_observation_reference(obs);
-    const float z = middle.z + side * x[GOE_SIDE_X];
-    const end_t end = {middle.x + side * x[GOE_FRONT_X], goe_larger(z, AHEAD_LEAST), side};
+    const goe_xz_t end = {middle.x + side * obs->state[GOE_FRONT_X],
+                          goe_larger(middle.z + side * obs->state[GOE_SIDE_X], AHEAD_LEAST)};
     return end;
 }
 
-static void set_end(float by[GOE_STATES], const goe_observation_t *obs, const end_t *end, const goe_gradient_t *g) {
+static void set_end(float by[GOE_STATES], const goe_observation_t *obs, float side, const goe_gradient_t *g) {
     by[GOE_BEARING] = g->x;
     by[GOE_INVERSE_RANGE] = goe_rows_by_range(obs, g->x, g->z);
-    by[GOE_SIDE_X] = end->side * g->z;
-    by[GOE_FRONT_X] = end->side * g->x;
+    by[GOE_SIDE_X] = side * g->z;
+    by[GOE_FRONT_X] = side * g->x;
 }
 
 /* An upright edge, at the height at which it was measured. */
 static void add_end(const goe_observation_t *obs, goe_feature_t feature, float side, goe_rows_t *rows) {
-    goe_gradient_t gx;
-    goe_gradient_t gy;
-    const goe_point_t *measured = &obs->point[feature];
-    if (!measured->usable) {
-        return;
+    goe_gradient_t g;
+    float *by = goe_rows_add_edge(rows, obs, feature, end_of(obs, side), goe_observation_size_variance(obs), &g);
+    if (by) {
+        set_end(by, obs, side, &g);
     }
-    const end_t end = end_of(obs, side);
-    const goe_point_t seen = goe_observation_project(obs, end.x, measured->y * end.z, end.z, &gx, &gy);
-    const float variance = goe_observation_spread(obs, feature).xx + goe_observation_size_variance(obs);
-    float *by = goe_rows_add(rows, feature, measured->x - seen.x, variance, &gx);
-    set_end(by, obs, &end, &gx);
 }
 
 /* Over the nearer end; seen from above the highest in the image is over the farther one. */
 static void add_top(const goe_observation_t *obs, goe_rows_t *rows) {
-    goe_gradient_t gx;
-    goe_gradient_t gy;
-    const float *x = obs->state;
-    const goe_point_t *measured = &obs->point[GOE_POINT_TOP];
-    if (!measured->usable) {
-        return;
-    }
+    goe_gradient_t g;
+    const goe_point_t *left = &obs->point[GOE_POINT_LEFT];
+    const goe_point_t *right = &obs->point[GOE_POINT_RIGHT];
     const goe_xz_t middle = goe_observation_reference(obs);
     const float y = goe_observation_roof(obs);
     const bool highest = obs->settings->top_is_highest && y > 0.0f;
-    const bool right_is_near = middle.x * x[GOE_FRONT_X] + middle.z * x[GOE_SIDE_X] < 0.0f;
-    const end_t end = end_of(obs, right_is_near != highest ? 0.5f : -0.5f);
-    const goe_point_t seen = goe_observation_project(obs, end.x, y, end.z, &gx, &gy);
-    const float width = obs->point[GOE_POINT_LEFT].usable && obs->point[GOE_POINT_RIGHT].usable
-                            ? obs->point[GOE_POINT_RIGHT].x - obs->point[GOE_POINT_LEFT].x
-                            : 0.0f;
-    const float variance = goe_observation_spread(obs, GOE_POINT_TOP).yy + goe_observation_size_variance(obs) +
-                           goe_square(TOP_NOISE * seen.y * width);
-    float *by = goe_rows_add(rows, GOE_POINT_TOP, measured->y - seen.y, variance, &gy);
-    set_end(by, obs, &end, &gy);
-    by[GOE_INVERSE_RANGE] += gy.y * obs->height_m;
-    by[GOE_TOP] = -gy.y;
+    const bool right_is_near = middle.x * obs->state[GOE_FRONT_X] + middle.z * obs->state[GOE_SIDE_X] < 0.0f;
+    const float side = right_is_near != highest ? 0.5f : -0.5f;
+    float *by =
+        goe_rows_add_level(rows, obs, GOE_POINT_TOP, end_of(obs, side), y, goe_observation_size_variance(obs), &g);
+    if (!by) {
+        return;
+    }
+    const float width = left->usable && right->usable ? right->x - left->x : 0.0f;
+    *goe_rows_last_variance(rows) += goe_square(TOP_NOISE * g.at * width);
+    set_end(by, obs, side, &g);
+    by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
+    by[GOE_TOP] = -g.y;
 }
 
 void goe_chord_rows(const goe_observation_t *obs, goe_rows_t *rows) {

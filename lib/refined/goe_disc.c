@@ -53,70 +53,67 @@ static bool outline_features(const goe_observation_t *obs, goe_feature_t *left, 
 }
 
 /* The tangent's azimuth is that of the centre plus or minus asin(r/d). */
-static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_feature_t feature, float side,
-                        float extra_variance, goe_rows_t *rows) {
-    goe_gradient_t gx;
-    goe_gradient_t gy;
-    const goe_point_t *measured = &obs->point[feature];
+static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_feature_t feature, float side, float more,
+                        goe_rows_t *rows) {
+    goe_gradient_t g;
     const float tx = o->to.x * o->cosine + side * o->to.z * o->sine;
     const float tz = o->to.z * o->cosine - side * o->to.x * o->sine;
-    if (!measured->usable || tz < TANGENT_AHEAD) {
+    if (tz < TANGENT_AHEAD) {
         return;
     }
-    const float ray = tx / tz;
-    const goe_point_t seen = goe_observation_project(obs, ray, measured->y, 1.0f, &gx, &gy);
-    const float by_azimuth = (1.0f + ray * ray) * gx.x;
+    const goe_xz_t ray = {tx / tz, 1.0f};
+    float *by = goe_rows_add_edge(rows, obs, feature, ray, more, &g);
+    if (!by) {
+        return;
+    }
+    const float by_azimuth = (1.0f + ray.x * ray.x) * g.x;
     const float by_sine = side / o->cosine;
     const float by_x = by_azimuth * (o->to.z - by_sine * o->sine * o->to.x) / o->distance;
     const float by_z = by_azimuth * (-o->to.x - by_sine * o->sine * o->to.z) / o->distance;
-    const float variance = goe_observation_spread(obs, feature).xx + extra_variance;
     /* without base corners: half the skew deeper */
-    const float by_skew = obs->base ? 0.0f : -0.5f * side * ray / o->center.z * gx.x;
-    const float residual = measured->x - seen.x - by_skew * obs->state[GOE_SIDE_X];
-    float *by = goe_rows_add(rows, feature, residual, variance, &gx);
+    const float by_skew = obs->base ? 0.0f : -0.5f * side * ray.x / o->center.z * g.x;
     by[GOE_BEARING] = by_x;
     by[GOE_INVERSE_RANGE] = goe_rows_by_range(obs, by_x, by_z);
     by[GOE_SIDE_X] = by_skew;
     by[GOE_FRONT_X] = 0.5f * by_azimuth * by_sine / o->distance;
+    by[GOE_BEHIND_STATES] -= by_skew * obs->state[GOE_SIDE_X];
 }
 
 /* The nearest point of the upper rim; seen from above the highest in the image is the farthest. */
-static void add_top(const goe_observation_t *obs, const circle_t *o, float extra_variance, goe_rows_t *rows) {
-    goe_gradient_t gx;
-    goe_gradient_t gy;
-    const goe_point_t *measured = &obs->point[GOE_POINT_TOP];
-    if (!measured->usable) {
-        return;
-    }
+static void add_top(const goe_observation_t *obs, const circle_t *o, float more, goe_rows_t *rows) {
+    goe_gradient_t g;
     const float y = goe_observation_roof(obs);
     const float side = obs->settings->top_is_highest && y > 0.0f ? -1.0f : 1.0f;
     const float share = 1.0f - side * o->sine;
-    const goe_point_t seen = goe_observation_project(obs, o->center.x * share, y, o->center.z * share, &gx, &gy);
-    const float radial = side * (gy.x * o->center.x + gy.z * o->center.z); /* by -(sine of half the angle) */
-    const float by_x = gy.x * share + radial * o->sine / o->distance * o->to.x;
-    const float by_z = gy.z * share + radial * o->sine / o->distance * o->to.z;
-    const float variance = goe_observation_spread(obs, GOE_POINT_TOP).yy + extra_variance;
-    float *by = goe_rows_add(rows, GOE_POINT_TOP, measured->y - seen.y, variance, &gy);
+    const goe_xz_t rim = {o->center.x * share, o->center.z * share};
+    float *by = goe_rows_add_level(rows, obs, GOE_POINT_TOP, rim, y, more, &g);
+    if (!by) {
+        return;
+    }
+    const float radial = side * (g.x * o->center.x + g.z * o->center.z); /* by -(sine of half the angle) */
+    const float by_x = g.x * share + radial * o->sine / o->distance * o->to.x;
+    const float by_z = g.z * share + radial * o->sine / o->distance * o->to.z;
     by[GOE_BEARING] = by_x;
-    by[GOE_INVERSE_RANGE] = gy.y * obs->height_m - by_x * obs->camera_m.x - by_z * obs->camera_m.z;
+    by[GOE_INVERSE_RANGE] = g.y * obs->height_m - by_x * obs->camera_m.x - by_z * obs->camera_m.z;
     by[GOE_FRONT_X] = -radial * 0.5f / o->distance;
-    by[GOE_TOP] = -gy.y;
+    by[GOE_TOP] = -g.y;
 }
 
 /* Range over flat ground: a base corner lies about half a width before or behind the centre. */
 static void add_base(const goe_observation_t *obs, const circle_t *o, goe_feature_t feature, float width,
                      goe_rows_t *rows) {
-    goe_gradient_t gx;
-    goe_gradient_t gy;
-    const goe_point_t *measured = &obs->point[feature];
+    goe_gradient_t g;
     const float q = obs->state[GOE_INVERSE_RANGE];
     const float height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
-    const goe_point_t seen = goe_observation_project(obs, o->center.x, height_m * q, o->center.z, &gx, &gy);
-    const float variance = goe_observation_spread(obs, feature).yy * BASE_NOISE + goe_square(seen.y * width);
-    float *by = goe_rows_add(rows, feature, measured->y - seen.y, variance, &gy);
-    by[GOE_HEIGHT_BIAS] = gy.y * q;
-    by[GOE_BEARING] = gy.x;
-    by[GOE_INVERSE_RANGE] = gy.y * height_m - gy.x * obs->camera_m.x - gy.z * obs->camera_m.z;
+    float *by = goe_rows_add_level(rows, obs, feature, o->center, height_m * q, 0.0f, &g);
+    if (!by) {
+        return;
+    }
+    float *variance = goe_rows_last_variance(rows);
+    *variance = *variance * BASE_NOISE + goe_square(g.at * width);
+    by[GOE_HEIGHT_BIAS] = g.y * q;
+    by[GOE_BEARING] = g.x;
+    by[GOE_INVERSE_RANGE] = g.y * height_m - g.x * obs->camera_m.x - g.z * obs->camera_m.z;
 }
 
 void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {

@@ -84,30 +84,34 @@ void goe_observation_linearise(goe_observation_t *obs) {
     obs->ez = m[6] * b[0] + m[7] * b[1] + m[8] * b[2];
 }
 
-goe_point_t goe_observation_project(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x,
-                                    goe_gradient_t *of_y) {
-    const float ex = obs->ex;
-    const float ey = obs->ey;
-    const float ez = obs->ez;
-    const float turned_z = z + ex * y - ey * x;
-    const float reciprocal = 1.0f / (turned_z < FORWARD_LEAST ? FORWARD_LEAST : turned_z);
-    goe_point_t seen;
-    seen.x = (x + ey * z - ez * y) * reciprocal;
-    seen.y = (y + ez * x - ex * z) * reciprocal;
-    seen.usable = true;
-    of_x->x = (1.0f + seen.x * ey) * reciprocal;
-    of_x->y = (-ez - seen.x * ex) * reciprocal;
-    of_x->z = (ey - seen.x) * reciprocal;
-    of_x->ey = (z + seen.x * x) * reciprocal;
-    of_x->ex = -(seen.x * y) * reciprocal;
+/* 1/Z of the point in the true axes. */
+static float nearness(const goe_observation_t *obs, float x, float y, float z) {
+    const float turned_z = z + obs->ex * y - obs->ey * x;
+    return 1.0f / (turned_z < FORWARD_LEAST ? FORWARD_LEAST : turned_z);
+}
+
+void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x) {
+    const float reciprocal = nearness(obs, x, y, z);
+    const float seen_x = (x + obs->ey * z - obs->ez * y) * reciprocal;
+    of_x->at = seen_x;
+    of_x->x = (1.0f + seen_x * obs->ey) * reciprocal;
+    of_x->y = (-obs->ez - seen_x * obs->ex) * reciprocal;
+    of_x->z = (obs->ey - seen_x) * reciprocal;
+    of_x->ey = (z + seen_x * x) * reciprocal;
+    of_x->ex = -(seen_x * y) * reciprocal;
     of_x->ez = -y * reciprocal;
-    of_y->x = (ez + seen.y * ey) * reciprocal;
-    of_y->y = (1.0f - seen.y * ex) * reciprocal;
-    of_y->z = (-ex - seen.y) * reciprocal;
-    of_y->ey = (seen.y * x) * reciprocal;
-    of_y->ex = (-z - seen.y * y) * reciprocal;
+}
+
+void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y) {
+    const float reciprocal = nearness(obs, x, y, z);
+    const float seen_y = (y + obs->ez * x - obs->ex * z) * reciprocal;
+    of_y->at = seen_y;
+    of_y->x = (obs->ez + seen_y * obs->ey) * reciprocal;
+    of_y->y = (1.0f - seen_y * obs->ex) * reciprocal;
+    of_y->z = (-obs->ex - seen_y) * reciprocal;
+    of_y->ey = (seen_y * x) * reciprocal;
+    of_y->ex = (-z - seen_y * y) * reciprocal;
     of_y->ez = x * reciprocal;
-    return seen;
 }
 
 goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t feature) {
@@ -151,19 +155,41 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix) {
     rows->count = 0;
 }
 
-float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float residual, float variance,
+float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
                     const goe_gradient_t *gradient) {
     const size_t at = rows->count++;
     float *row = rows->matrix->row[at];
-    float *by_state = &row[GOE_STATE_COLUMN];
+    float *by = &row[GOE_STATE_COLUMN];
     rows->variance[at] = variance;
     rows->feature[at] = (uint8_t)feature;
     row[0] = gradient->ey;
     row[1] = gradient->ex;
     row[2] = gradient->ez;
-    row[GOE_RESIDUAL] = residual;
-    memset(by_state, 0, GOE_STATES * sizeof by_state[0]);
-    return by_state;
+    for (size_t state = GOE_HEIGHT_BIAS; state < GOE_STATES; state++) {
+        by[state] = 0.0f;
+    }
+    by[GOE_BEHIND_STATES] = measured - gradient->at;
+    return by;
+}
+
+float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_xz_t place,
+                         float more, goe_gradient_t *of_x) {
+    const goe_point_t *measured = &obs->point[feature];
+    if (!measured->usable) {
+        return NULL;
+    }
+    goe_observation_project_x(obs, place.x, measured->y * place.z, place.z, of_x);
+    return goe_rows_add(rows, feature, measured->x, goe_observation_spread(obs, feature).xx + more, of_x);
+}
+
+float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_xz_t place,
+                          float y, float more, goe_gradient_t *of_y) {
+    const goe_point_t *measured = &obs->point[feature];
+    if (!measured->usable) {
+        return NULL;
+    }
+    goe_observation_project_y(obs, place.x, y, place.z, of_y);
+    return goe_rows_add(rows, feature, measured->y, goe_observation_spread(obs, feature).yy + more, of_y);
 }
 
 GOE_STATIC_ASSERT(GOE_NUISANCES == 3, the_nuisances_are_the_attitude_about_y_x_z);

@@ -29,8 +29,10 @@ typedef struct {
     size_t count;
 } goe_rows_t;
 
-/* Derivatives of one image coordinate by the point (X, Y, Z) and by the attitude's error about the axes. */
+/* An image coordinate that is predicted, and its derivatives by the point (X, Y, Z) and by the attitude's error about the
+ * axes. */
 typedef struct {
+    float at;
     float x, y, z, ex, ey, ez;
 } goe_gradient_t;
 
@@ -46,9 +48,9 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
                               const goe_view_t *view);
 void goe_observation_linearise(goe_observation_t *obs);
 
-/* Where the point (X, Y, Z), in units of Z0 or any other, is seen, and the derivatives of both coordinates. */
-goe_point_t goe_observation_project(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x,
-                                    goe_gradient_t *of_y);
+/* Where the point (X, Y, Z), in units of Z0 or any other, is seen along x, and along y. */
+void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x);
+void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
 /* One sigma of a pixel, focal lengths. */
 static inline float goe_observation_pixel(const goe_observation_t *obs) {
@@ -80,10 +82,26 @@ float goe_observation_size_variance(const goe_observation_t *obs);
 /* Starts an empty set of rows. */
 void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
 
-/* Adds a row: residual, variance, the image's own attitude. Returns its derivatives by the states, all 0 so far; those by the
- * attitude bias are filled by goe_rows_end(). */
-float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float residual, float variance,
+/* Each adds a row and returns its derivatives by the states, all 0 so far, with the residual behind them
+ * (GOE_BEHIND_STATES); those by the attitude bias are filled by goe_rows_end(). The row's variance is rows->variance of the
+ * last row.
+ *
+ * Any row: measured coordinate minus gradient->at. */
+float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
                     const goe_gradient_t *gradient);
+
+/* An upright edge at the place (X, Z), seen along x at the height at which it was measured. Null if the feature is not
+ * usable. more: variance beyond the pixel noise. */
+float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_xz_t place,
+                         float more, goe_gradient_t *of_x);
+
+/* A point at the place (X, Z) and the height y, seen along y. */
+float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_xz_t place,
+                          float y, float more, goe_gradient_t *of_y);
+
+#define GOE_BEHIND_STATES (GOE_RESIDUAL - GOE_STATE_COLUMN)
+
+static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->variance[rows->count - 1u]; }
 
 /* Derivative by GOE_INVERSE_RANGE of a coordinate whose point moves with the camera by by_x and by_z. */
 static inline float goe_rows_by_range(const goe_observation_t *obs, float by_x, float by_z) {

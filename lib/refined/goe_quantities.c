@@ -59,25 +59,28 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 
 /* --------------------------------------------------------------------------------------------------------- variance -- */
 
-/* Derivative in terms of independent unit errors: its squared norm is the variance. */
-static void project(const goe_filter_t *filter, const float by[GOE_STATES], float projected[GOE_STATES]) {
-    goe_srif_project(&filter->inverse, by, projected);
+/* Derivatives become those in terms of independent unit errors: their squared norm is the variance. */
+static void project(const goe_filter_t *filter, float by[GOE_STATES]) {
+    goe_srif_project(&filter->inverse, by);
     if (filter->phase == GOE_PHASE_DISC) {
-        goe_disc_condition(filter, projected);
+        goe_disc_condition(filter, by);
     }
 }
 
-static float variance_of(const goe_filter_t *filter, const float by[GOE_STATES]) {
-    float projected[GOE_STATES];
-    float sum = 0.0f;
+static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
+    for (size_t k = 0; k < GOE_STATES; k++) {
+        sum += a[k] * b[k];
+    }
+    return sum;
+}
+
+/* The derivatives are used up. */
+static float variance_of(const goe_filter_t *filter, float by[GOE_STATES]) {
     if (filter->phase != GOE_PHASE_DISC) {
         return goe_srif_variance(&filter->inverse, by);
     }
-    project(filter, by, projected);
-    for (size_t j = 0; j < GOE_STATES; j++) {
-        sum += projected[j] * projected[j];
-    }
-    return sum;
+    project(filter, by);
+    return dot(by, by, 0.0f);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
@@ -130,8 +133,8 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q)
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape,
-                           drift_t drift, goe_quantities_t *q) {
+static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
+                           goe_quantities_t *q) {
     const goe_xz_t camera_m = {motion->dx_m, motion->dz_m};
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const float variance =
@@ -150,10 +153,10 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
     /* from the state's axes to north: the heading of T and the turn */
     const float c = motion->heading_cos * filter->axes.turn_cos - motion->heading_sin * filter->axes.turn_sin;
     const float s = motion->heading_sin * filter->axes.turn_cos + motion->heading_cos * filter->axes.turn_sin;
-    float by[GOE_STATES] = {0.0f};
     goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m,
                      place.z * shape->scale_m + filter->axes.start_dz_m, &q->center_m[0], &q->center_m[1]);
     for (int i = 0; i < 2; i++) {
+        float by[GOE_STATES] = {0.0f};
         goe_shape_place(&shape->middle, shape->scale_m, i == 0 ? -s : c, i == 0 ? c : s, by);
         q->center_sd_m[i] = sqrtf(variance_of(filter, by) + drift_variance(motion, drift, shape, q->box, GOE_Z0));
     }
@@ -188,7 +191,6 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
 
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                                goe_zero_t zero, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
-    float root[GOE_QUANTITIES][GOE_STATES];
     goe_shape_t shape;
     const goe_xz_t camera_m = {motion->dx_m, motion->dz_m};
     const drift_t drift = drift_of(&settings->noise, motion);
@@ -198,16 +200,15 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     }
     const float early = sqrtf(shape.early);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
-        project(filter, shape.quantity[i].by, root[i]);
+        float *by = shape.quantity[i].by;
+        project(filter, by);
         const float factor = depends_on_corner(i) ? early : 1.0f;
         for (int k = 0; k < GOE_STATES; k++) {
-            root[i][k] *= factor;
+            by[k] *= factor;
         }
         for (int j = 0; j <= i; j++) {
-            float sum = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
-            for (int k = 0; k < GOE_STATES; k++) {
-                sum += root[i][k] * root[j][k];
-            }
+            const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
+            const float sum = dot(by, shape.quantity[j].by, drifted);
             covariance[i][j] = sum;
             covariance[j][i] = sum;
         }

@@ -13,6 +13,7 @@
 #include "refined/goe_box.h"
 #include "refined/goe_health.h"
 #include "refined/goe_model.h"
+#include "refined/goe_report.h"
 
 #define S_PER_US 1.0e-6f
 #define GAP_MOST_US 1000000000 /* a longer gap between images counts as this one */
@@ -98,7 +99,7 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
     return true;
 }
 
-static bool take_image(goe_filter_t *filter, goe_observation_t *obs) {
+GOE_NOINLINE static bool take_image(goe_filter_t *filter, goe_observation_t *obs) {
     goe_verdict_t verdict;
     (void)goe_count_image(&filter->phase_images);
     const bool measured = measure(filter, obs, &verdict);
@@ -131,8 +132,10 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     return !goe_model_change(filter, &obs) && take_image(filter, &obs);
 }
 
-void goe_refined_quantities(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                            goe_quantities_t *quantities) {
-    goe_quantities_find(filter, settings, motion, quantities);
-    filter->known = (uint8_t)quantities->now;
+bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                        goe_estimate_t *estimate) {
+    goe_quantities_t quantities;
+    goe_quantities_find(filter, settings, motion, &quantities);
+    filter->known = (uint8_t)quantities.now;
+    return goe_report_quantities(&quantities, motion, estimate);
 }

@@ -3,16 +3,17 @@
 #define GOE_REFINED_H
 
 #include "image/goe_view.h"
-#include "refined/goe_quantities.h"
+#include "refined/goe_filter.h"
 
 /* Takes one image. swapped: how many pairs of points are out of their order, left to right. Returns whether the image gave
  * the filter anything. */
 bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                         unsigned *swapped);
 
-/* After an update that returned true: what the filter knows. A quantity is known only if the image before knew it, too: sigma
- * and value come from the same linearisation, so one image alone may be lucky. */
-void goe_refined_quantities(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                            goe_quantities_t *quantities);
+/* After an update that returned true: sets *estimate from what the filter knows. A quantity is known only if the image before
+ * knew it, too: sigma and value come from the same linearisation, so one image alone may be lucky. Returns as
+ * goe_report_quantities(). */
+bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                        goe_estimate_t *estimate);
 
 #endif

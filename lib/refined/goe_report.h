@@ -4,7 +4,8 @@
 
 #include "refined/goe_quantities.h"
 
-/* Sets *estimate, fresh, if the position is known; otherwise keeps the last valid estimate and returns false. */
+/* Sets *estimate, fresh, from the quantities if the position is known; otherwise keeps the last valid estimate and returns
+ * false. */
 bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_t *motion, goe_estimate_t *estimate);
 
 /* How the latest image fits: nis to misfit, suspect, points. */

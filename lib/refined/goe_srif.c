@@ -54,8 +54,9 @@ typedef struct {
     float diagonal, u, beta;
 } reflection_t;
 
-/* False if the column is 0 already. */
-static inline bool reflect(column_t p, float r, reflection_t *to) {
+/* False if the column is 0 already. r: the element of the triangle above it. */
+static inline bool reflect(const goe_matrix_t *matrix, size_t j, float r, reflection_t *to) {
+    const column_t p = load(&matrix->row[0][j]);
     const float s = dot(p, p, 0.0f);
     if (!(s > 0.0f)) {
         return false;
@@ -67,18 +68,31 @@ static inline bool reflect(column_t p, float r, reflection_t *to) {
     return true;
 }
 
-/* Nothing is known of the nuisances beforehand but their sigma: their rows of the triangle are 0 until they are reached,
- * and are not needed afterwards. */
+/* The reflection by column j of the columns from first to before last; above: what the triangle has above the first of these,
+ * and with each further column `step` elements farther. */
+static inline void apply(goe_matrix_t *matrix, size_t j, const reflection_t *to, size_t first, size_t last,
+                         float *above, size_t step) {
+    const column_t p = load(&matrix->row[0][j]);
+    const float u = to->u;
+    const float beta = to->beta;
+    for (size_t c = first; c < last; c++) {
+        const column_t column = load(&matrix->row[0][c]);
+        const float g = dot(p, column, u * *above) * beta;
+        *above += g * u;
+        above += step;
+        store_sum(&matrix->row[0][c], column, g, p);
+    }
+}
+
+/* Nothing is known of the nuisances beforehand but their sigma: their rows of the triangle are 0 until they are reached, and
+ * are not needed afterwards. */
 static void remove_nuisances(float root, goe_matrix_t *matrix) {
     reflection_t to;
+    float none = 0.0f;
     for (size_t j = 0; j < GOE_NUISANCES; j++) {
-        const column_t p = load(&matrix->row[0][j]);
-        if (!reflect(p, root, &to)) {
-            continue;
-        }
-        for (size_t c = j + 1; c < GOE_COLUMNS; c++) {
-            const column_t column = load(&matrix->row[0][c]);
-            store_sum(&matrix->row[0][c], column, dot(p, column, 0.0f) * to.beta, p);
+        if (reflect(matrix, j, root, &to)) {
+            to.u = 0.0f; /* nothing to read, nothing to keep above the columns */
+            apply(matrix, j, &to, j + 1, GOE_COLUMNS, &none, 0);
         }
     }
 }
@@ -87,23 +101,14 @@ static void reflect_states(goe_triangle_t *root, goe_matrix_t *matrix, float rig
     reflection_t to;
     float *r = root->element;
     for (size_t j = 0; j < GOE_STATES; j++) {
-        const column_t p = load(&matrix->row[0][GOE_STATE_COLUMN + j]);
+        const size_t column = GOE_STATE_COLUMN + j;
         right[j] = 0.0f;
-        if (!reflect(p, *r, &to)) {
-            r += GOE_STATES - j;
-            continue;
+        if (reflect(matrix, column, *r, &to)) {
+            *r = to.diagonal;
+            apply(matrix, column, &to, column + 1, GOE_RESIDUAL, r + 1, 1);
+            apply(matrix, column, &to, GOE_RESIDUAL, GOE_COLUMNS, &right[j], 0);
         }
-        *r++ = to.diagonal;
-        for (size_t c = GOE_STATE_COLUMN + j + 1; c < GOE_RESIDUAL; c++) {
-            const column_t column = load(&matrix->row[0][c]);
-            const float g = dot(p, column, to.u * *r) * to.beta;
-            *r++ += g * to.u;
-            store_sum(&matrix->row[0][c], column, g, p);
-        }
-        const column_t residual = load(&matrix->row[0][GOE_RESIDUAL]);
-        const float g = dot(p, residual, 0.0f) * to.beta;
-        right[j] = g * to.u;
-        store_sum(&matrix->row[0][GOE_RESIDUAL], residual, g, p);
+        r += GOE_STATES - j;
     }
 }
 
@@ -224,9 +229,10 @@ float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STA
     return sum + p * p;
 }
 
-void goe_srif_project(const goe_inverse_t *inverse, const float weight[GOE_STATES], float projected[GOE_STATES]) {
-    for (size_t j = 0; j < GOE_STATES; j++) {
-        projected[j] = dot_run(weight, &inverse->element[goe_inverse_column(j)], j + 1);
+/* From the last one on, as element j needs the weights up to j. */
+void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]) {
+    for (size_t j = GOE_STATES; j-- > 0;) {
+        weight[j] = dot_run(weight, &inverse->element[goe_inverse_column(j)], j + 1);
     }
 }
 

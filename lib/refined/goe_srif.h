@@ -42,8 +42,8 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
 /* Variance of w' x. */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
-/* R^-1' w: its squared norm is that variance. */
-void goe_srif_project(const goe_inverse_t *inverse, const float weight[GOE_STATES], float projected[GOE_STATES]);
+/* w becomes R^-1' w, whose squared norm is that variance: the derivative in terms of independent unit errors. */
+void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]);
 
 /* Covariance of the first GOE_KEPT states; upper half. */
 #define GOE_KEPT 6

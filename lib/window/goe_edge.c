@@ -30,18 +30,18 @@ static void measure_edge(const goe_settings_t *settings, const goe_pixel_t *from
     edge->heading_deg = edge->has_heading ? heading_deg(left, right) : 0.0f;
 }
 
-static void add_edge(const goe_settings_t *settings, const goe_view_t *view, goe_feature_t from, goe_feature_t to,
-                     goe_edges_t *edges) {
-    if (view->point[from].usable && view->point[to].usable) {
-        const goe_pixels_t pixels = goe_image_pixels(view->image);
+static void add_edge(const goe_settings_t *settings, const goe_pixel_t *from_px, const goe_point_t *from,
+                     const goe_pixel_t *to_px, const goe_point_t *to, goe_edges_t *edges) {
+    if (from->usable && to->usable) {
         goe_edge_t *edge = &edges->edge[edges->count++];
-        edge->left = &view->point[from];
-        edge->right = &view->point[to];
-        measure_edge(settings, pixels.at[from], pixels.at[to], edge);
+        edge->left = from;
+        edge->right = to;
+        measure_edge(settings, from_px, to_px, edge);
     }
 }
 
 goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_view_t *view, goe_edges_t *edges) {
+    const goe_image_t *image = view->image;
     const goe_point_t *left = &view->point[GOE_POINT_BASE_LEFT];
     const goe_point_t *corner = &view->point[GOE_POINT_BASE_NEAR];
     const goe_point_t *right = &view->point[GOE_POINT_BASE_RIGHT];
@@ -50,13 +50,13 @@ goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_view_t *vie
         if (!in_order(left, corner) || !in_order(corner, right)) {
             return GOE_SWAPPED;
         }
-        add_edge(settings, view, GOE_POINT_BASE_LEFT, GOE_POINT_BASE_NEAR, edges);
-        add_edge(settings, view, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_RIGHT, edges);
+        add_edge(settings, &image->base_left, left, &image->base_near, corner, edges);
+        add_edge(settings, &image->base_near, corner, &image->base_right, right, edges);
     } else {
         if (!in_order(left, right)) {
             return GOE_SWAPPED;
         }
-        add_edge(settings, view, GOE_POINT_BASE_LEFT, GOE_POINT_BASE_RIGHT, edges);
+        add_edge(settings, &image->base_left, left, &image->base_right, right, edges);
     }
     return GOE_OK;
 }

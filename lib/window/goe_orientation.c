@@ -42,13 +42,13 @@ static void low_pass(goe_orientation_t *orientation, float measured_deg, int mem
 void goe_orientation_update(goe_orientation_t *orientation, const goe_edges_t *edges, int memory, goe_faces_t *faces) {
     const goe_edge_t *first = edges->count > 0 ? &edges->edge[0] : NULL;
     const goe_edge_t *second = edges->count > 1 ? &edges->edge[1] : NULL;
-    if (!(first && first->has_heading) && !(second && second->has_heading)) {
+    faces->measured = (first && first->has_heading) || (second && second->has_heading);
+    if (!faces->measured) {
         return;
     }
     const float if_first_deg = hypothesis_deg(first, second);
     const float if_second_deg = hypothesis_deg(second, first);
     const bool first_is_side = prefers_first(orientation, if_first_deg, if_second_deg);
-    faces->measured = true;
     faces->side = first_is_side ? first : second;
     faces->front = first_is_side ? second : first;
     faces->side_is_right = !first_is_side;

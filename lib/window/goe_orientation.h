@@ -7,7 +7,7 @@
 #include "window/goe_edge.h"
 
 typedef struct {
-    bool measured;           /* some edge of this image has a heading; otherwise there is neither front nor side */
+    bool measured;           /* some edge of this image has a heading; otherwise the rest does not hold */
     const goe_edge_t *front; /* null if not visible */
     const goe_edge_t *side;  /* null if not visible */
     bool side_is_right;      /* the side edge lies right of the front edge */

@@ -22,6 +22,7 @@
 typedef struct {
     const goe_settings_t *settings;
     const goe_view_t *view;
+    const goe_motion_t *motion;
     goe_edges_t edges;
     goe_faces_t faces;
     goe_turn_t turn;  /* filtered orientation */
@@ -37,8 +38,8 @@ void goe_window_clear(goe_window_t *window) {
 
 /* ------------------------------------------------------------------------------------------------- rows of one image -- */
 
-static void add_row(goe_fit_ring_t *ring, const frame_t *frame, goe_row_t row) {
-    goe_fit_add(ring, frame->settings->window, frame->view->motion->dx_m, frame->view->motion->dz_m, row);
+static inline void add_row(goe_fit_ring_t *ring, const frame_t *frame, goe_row_t row) {
+    goe_fit_add(ring, frame->settings->window, frame->motion->dx_m, frame->motion->dz_m, row);
 }
 
 static goe_status_t add_disc_row(goe_window_t *window, frame_t *frame) {
@@ -56,8 +57,16 @@ static goe_status_t add_disc_row(goe_window_t *window, frame_t *frame) {
     return fault;
 }
 
+static void clear_faces(frame_t *frame) {
+    frame->edges.count = 0;
+    frame->faces.measured = false;
+    frame->turn.s = 0.0f;
+    frame->turn.c = 1.0f;
+}
+
 static void find_faces(goe_window_t *window, frame_t *frame) {
     if (frame->settings->model == GOE_MODEL_DISC) {
+        clear_faces(frame);
         return;
     }
     goe_fault_note(&frame->faults, goe_edge_find(frame->settings, frame->view, &frame->edges));
@@ -100,7 +109,7 @@ static void take_fit(goe_window_t *window, const frame_t *frame, goe_model_t mod
     estimate->valid |= GOE_HAS_POSITION | GOE_HAS_WIDTH;
     estimate->fresh = true;
     estimate->points = frame->settings->window;
-    window->solved_time_us = frame->view->motion->time_us;
+    window->solved_time_us = frame->motion->time_us;
 }
 
 /* GOE_OK: solved. GOE_COLLECTING, GOE_HELD: nothing to solve. Otherwise why there is no solution. */
@@ -144,7 +153,7 @@ static void take_extent(goe_mean_t *mean, int length, const goe_extent_t *extent
 static void measure_length(goe_window_t *window, frame_t *frame) {
     goe_estimate_t *estimate = &window->estimate;
     goe_extent_t extent;
-    if (estimate->model != GOE_MODEL_LINE || !frame->faces.side) {
+    if (estimate->model != GOE_MODEL_LINE || !frame->faces.measured || !frame->faces.side) {
         return;
     }
     const float min_x = frame->settings->side_min_px / frame->settings->camera.fx_px;
@@ -163,7 +172,7 @@ static void measure_height(goe_window_t *window, frame_t *frame) {
     if (!top->usable) {
         return;
     }
-    const goe_status_t fault = goe_extent_height(top, frame->view->motion->height_m, estimate, &extent);
+    const goe_status_t fault = goe_extent_height(top, frame->motion->height_m, estimate, &extent);
     goe_fault_note(&frame->faults, fault);
     if (fault == GOE_OK) {
         take_extent(&window->height, frame->settings->window, &extent, GOE_HAS_HEIGHT, &estimate->valid,
@@ -252,13 +261,8 @@ static void start_frame(frame_t *frame, const goe_settings_t *settings, const go
                         const goe_faults_t *faults) {
     frame->settings = settings;
     frame->view = view;
+    frame->motion = view->motion;
     frame->faults = *faults;
-    frame->edges.count = 0;
-    frame->faces.measured = false;
-    frame->faces.front = NULL;
-    frame->faces.side = NULL;
-    frame->turn.s = 0.0f;
-    frame->turn.c = 1.0f;
     frame->disc_row = false;
     frame->line_row = false;
 }

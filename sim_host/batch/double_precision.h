@@ -16,15 +16,18 @@
 #include <string.h>
 
 #define GOE_SCALAR_H
+#define GOE_MAGNITUDE_BITS 0x7FFFFFFFu
 #define GOE_INFINITY_BITS 0x7F800000u
 
-/* Bits of |x| as a float: infinities and NaN stay what they are, and what no float can hold counts as infinite. */
-static inline uint32_t goe_magnitude(double x) {
+/* Bits of x as a float: infinities and NaN stay what they are, and what no float can hold counts as infinite. */
+static inline uint32_t goe_bits(double x) {
     const float single = (float)x;
     uint32_t bits;
     memcpy(&bits, &single, sizeof bits);
-    return bits & 0x7FFFFFFFu;
+    return bits;
 }
+
+static inline uint32_t goe_magnitude(double x) { return goe_bits(x) & GOE_MAGNITUDE_BITS; }
 
 static inline double goe_absolute(double x) { return fabs(x); }
 

@@ -429,7 +429,8 @@ static void a_variance_is_the_covariance_seen_along_the_weights(void) {
                 expected += (double)weight[i] * p.m[i][j] * (double)weight[j];
             }
         }
-        goe_srif_project(&inverse, weight, projected);
+        memcpy(projected, weight, sizeof projected);
+        goe_srif_project(&inverse, projected);
         for (int i = 0; i < N; i++) {
             squares += (double)projected[i] * (double)projected[i];
         }

@@ -9,8 +9,8 @@ import pytest
 
 LIBRARY = Path(__file__).resolve().parents[2] / "lib"
 
-# Floors, from the ground up. A file may include what lies in its own room or on a lower floor, nothing else: rooms on the
-# same floor do not know each other. "" is lib/ itself, where the contract lies at the bottom and the chain on top.
+# Floors, from the ground up. A file may include what lies in its own room or on a lower floor, nothing else: rooms on
+# the same floor do not know each other. "" is lib/ itself, where the contract lies at the bottom and the chain on top.
 FLOORS = [
     {"contract"},
     {"maths"},
