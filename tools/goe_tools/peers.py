@@ -34,6 +34,8 @@ BARE_METAL = ROOT / "port" / "baremetal"
 REPLAY = ROOT / "tests" / "targets"
 OWN_FLAGS = ("-O2", "-ffp-contract=off", "-fno-math-errno")
 BEST_FLAGS = ("-O3", "-ffast-math")
+THROUGHPUT = (10000, 400000)  # most obstacles, updates per measurement
+QUICK_THROUGHPUT = (1, 100)
 M4F = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
 M4F_MEMORY = (
     "ROM_ORIGIN=0", "ROM_LENGTH=0x400000", "RAM_ORIGIN=0x20000000", "RAM_LENGTH=0x400000", "STACK_LENGTH=0x8000",
@@ -83,11 +85,8 @@ def has_header(name: str) -> bool:
 
 def all_peers(arguments: argparse.Namespace) -> list[Peer]:
     """The solvers that can be had here; the others are named."""
-    fit = (
-        "goe_fit_t" if "goe_fit_t" in (ROOT / "lib" / "goe_window.h").read_text(encoding="utf-8") else "goe_estimate_t"
-    )
     library = sorted((ROOT / "lib").glob("*.c"))
-    peers = [Peer("goe, closed form", "peer_goe.c", [f"-DGOE_PEER_FIT={fit}", f"-I{ROOT / 'lib'}"], library)]
+    peers = [Peer("goe, closed form", "peer_goe.c", [f"-I{ROOT / 'lib'}"], library)]
     if (arguments.eigen / "Eigen" / "Dense").exists():
         flags = [f"-isystem{arguments.eigen}", "-DNDEBUG", "-DEIGEN_NO_MALLOC"]
         for number, method in enumerate(("LLT", "LDLT", "ColPivHouseholderQR"), start=1):
@@ -242,14 +241,14 @@ def processor() -> str:
     return model.group(1) if model else platform.processor()
 
 
-def throughput(folder: Path) -> list[str]:
-    """Estimators per second on one core."""
+def throughput(folder: Path, size: tuple[int, int]) -> list[str]:
+    """Updates per second on one core."""
     sources = [PEERS / "throughput.c", REPLAY / "replay.c", REPLAY / "embedded_logs.c", *(ROOT / "lib").glob("*.c")]
     flags = ["-std=gnu11", *OWN_FLAGS, f"-I{ROOT / 'lib'}", f"-I{REPLAY}"]
     program = folder / "throughput"
     output_of(["gcc", *flags, *sources, "-lm", "-o", program])
     lines = ["| obstacles | updates per second, one core | ns per update | state, KiB |", "|---|---|---|---|"]
-    return lines + [f"| {' | '.join(line.split())} |" for line in output_of([program]).splitlines()]
+    return lines + [f"| {' | '.join(line.split())} |" for line in output_of([program, *map(str, size)]).splitlines()]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -257,6 +256,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--eigen", type=Path, default=Path("/usr/include/eigen3"), metavar="DIR", help="folder of Eigen/")
     add("--cmsis-dsp", type=Path, metavar="DIR", help="sources of CMSIS-DSP (its folder with Include and Source)")
     add("--tinyekf", type=Path, metavar="DIR", help="sources of TinyEKF")
+    add("--quick", action="store_true", help="own flags only, next to no throughput: to test this command")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -268,7 +268,8 @@ def run(arguments: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         plugin = build_plugin(folder) if with_target else Path()
-        tasks = [(peer, flags) for peer in peers for flags in (OWN_FLAGS, BEST_FLAGS)]
+        sets = (OWN_FLAGS,) if arguments.quick else (OWN_FLAGS, BEST_FLAGS)
+        tasks = [(peer, flags) for peer in peers for flags in sets]
         for number, (peer, flags) in enumerate(tqdm(tasks, unit="build", disable=not sys.stderr.isatty())):
             result = Result()
             native = ["-march=native"] if flags == BEST_FLAGS else []
@@ -277,7 +278,7 @@ def run(arguments: argparse.Namespace) -> int:
                 nothing = image_of(Peer("", "peer_none.c"), list(flags), folder / f"none{number}")
                 run_on_target(peer, list(flags), folder / f"m4f{number}", plugin, code_bytes(nothing), result)
             rows.append(row(peer.name, "own" if flags == OWN_FLAGS else "best", result))
-        speed = throughput(folder)
+        speed = throughput(folder, QUICK_THROUGHPUT if arguments.quick else THROUGHPUT)
     print(HEAD, *rows, sep="\n")
     print(f"\nown: {' '.join(OWN_FLAGS)}; best: {' '.join(BEST_FLAGS)}, on the host with -march=native")
     print(f"host: {processor()}, {output_of(['gcc', '--version']).splitlines()[0]}")

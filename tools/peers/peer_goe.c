@@ -15,7 +15,7 @@ void peer_prepare(const peer_window_t *window) {
 }
 
 void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
-    GOE_PEER_FIT fit;
+    goe_estimate_t fit;
     (void)window;
     if (goe_window_solve(&rows, PEER_POINTS, 0.1f, &fit) == GOE_OK) {
         solution->width_m = fit.width_m;

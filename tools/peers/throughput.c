@@ -1,5 +1,9 @@
-/* Estimators per second on one core of the host: 1, 100 and 10,000 obstacles, each fed image after image in turn, so
- * that many obstacles no longer fit into the caches. SPDX-License-Identifier: MIT */
+/* Updates per second on one core of the host: 1, 100 and 10,000 obstacles, each fed image after image in turn, so that many
+ * obstacles no longer fit into the caches.
+ *
+ *   throughput OBSTACLES UPDATES   the most obstacles; updates per measurement, at least
+ *
+ * SPDX-License-Identifier: MIT */
 #define _POSIX_C_SOURCE 199309L
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +11,6 @@
 
 #include "replay.h"
 
-#define UPDATES 400000 /* per measurement, at least */
 #define ROUNDS 5
 #define IMAGES_MAX 256
 
@@ -43,12 +46,12 @@ static double fly(goe_estimator_t *estimators, int count, const logged_track_t *
 }
 
 /* The best of several rounds: everything else on the machine only adds. */
-static double updates_per_second(goe_estimator_t *estimators, int count, const logged_track_t *track) {
+static double updates_per_second(goe_estimator_t *estimators, int count, int least, const logged_track_t *track) {
     goe_settings_t settings;
     double best = 0.0;
     const int updates = count * track->count;
-    const int flights = UPDATES / updates + 1;
-    replay_read_settings(track, &settings);
+    const int flights = least / updates + 1;
+    replay_read_settings(track, GOE_METHOD_REFINED, &settings);
     for (int i = 0; i < count; i++) {
         if (goe_init(&estimators[i], sizeof estimators[i], &settings, NULL) != GOE_OK) {
             exit(1);
@@ -67,14 +70,16 @@ static double updates_per_second(goe_estimator_t *estimators, int count, const l
 }
 
 /* One line for each number of obstacles: obstacles, updates per second, nanoseconds per update, KiB of state. */
-int main(void) {
+int main(int count, char **arguments) {
     static const int counts[] = {1, 100, 10000};
-    goe_estimator_t *estimators = malloc(10000u * sizeof *estimators);
+    const int most = count == 3 ? atoi(arguments[1]) : 0;
+    const int least = count == 3 ? atoi(arguments[2]) : 0;
+    goe_estimator_t *estimators = most > 0 ? malloc((size_t)most * sizeof *estimators) : NULL;
     if (!estimators) {
         return 1;
     }
-    for (int i = 0; i < 3; i++) {
-        const double speed = updates_per_second(estimators, counts[i], &logged_tracks[0]);
+    for (int i = 0; i < 3 && counts[i] <= most; i++) {
+        const double speed = updates_per_second(estimators, counts[i], least, &logged_tracks[0]);
         printf("%d %.0f %.1f %.0f\n", counts[i], speed, 1.0e9 / speed, (double)counts[i] * sizeof *estimators / 1024.0);
     }
     free(estimators);
