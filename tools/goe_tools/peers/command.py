@@ -1,7 +1,7 @@
 """Side by side: our window solve and what others would do with the same window, in one run on one machine.
 
-Each solver solves the same 64 windows of 8 images (tools/peers/windows.c): on the host it is timed and its width is
-held against double precision; on a Cortex-M4F under QEMU its instructions are counted one by one and its stack is
+Each solver solves the same 64 windows of 8 images (tools/peers/window/windows.c): on the host it is timed and its width
+is held against double precision; on a Cortex-M4F under QEMU its instructions are counted one by one and its stack is
 painted. Every solver is built twice: with the library's own flags, and with flags that leave a compiler all freedom
 (-O3 -ffast-math, on the host -march=native), which most peers profit from.
 
@@ -27,9 +27,11 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from .ledger import ROOT, LedgerError, build_plugin, emulated, output_of
+from ..ledger import ROOT, LedgerError, build_plugin, emulated, output_of
 
 PEERS = ROOT / "tools" / "peers"
+FRAME = PEERS / "frame"
+WINDOW = PEERS / "window"
 BARE_METAL = ROOT / "port" / "baremetal"
 REPLAY = ROOT / "tests" / "targets"
 OWN_FLAGS = ("-O2", "-ffp-contract=off", "-fno-math-errno")
@@ -48,7 +50,7 @@ EMULATOR = (
 
 @dataclass
 class Peer:
-    """A solver: its source in tools/peers, what it needs to compile and link, and what it can do."""
+    """A solver: its source in tools/peers/window, what it needs to compile and link, and what it can do."""
 
     name: str
     source: str
@@ -138,18 +140,19 @@ def compile_all(compiler: str, flags: list[str], sources: list[Path], folder: Pa
 
 def split_flags(peer: Peer) -> tuple[list[str], list[str]]:
     """Flags for C and for C++ sources."""
-    return ["-std=gnu11", *peer.flags], ["-std=c++17", "-fno-exceptions", "-fno-rtti", *peer.flags]
+    folders = [f"-I{FRAME}", f"-I{WINDOW}"]
+    return ["-std=gnu11", *folders, *peer.flags], ["-std=c++17", "-fno-exceptions", "-fno-rtti", *folders, *peer.flags]
 
 
 def run_on_host(peer: Peer, flags: list[str], folder: Path, result: Result) -> None:
     c_flags, cpp_flags = split_flags(peer)
-    own = [PEERS / peer.source]
+    own = [WINDOW / peer.source]
     objects = compile_all(
         "g++" if peer.is_cpp else "gcc", [*flags, *(cpp_flags if peer.is_cpp else c_flags)], own, folder
     )
     objects += compile_all("gcc", [*flags, *c_flags], peer.more_sources, folder)
-    frame = ["-std=gnu11", "-O2", "-ffp-contract=off"]  # windows and truth: the same for all
-    objects += compile_all("gcc", frame, [PEERS / "windows.c", PEERS / "host_main.c"], folder)
+    frame = ["-std=gnu11", "-O2", "-ffp-contract=off", f"-I{FRAME}"]  # windows and truth: the same for all
+    objects += compile_all("gcc", frame, [WINDOW / "windows.c", FRAME / "host_main.c"], folder)
     program = folder / "host"
     output_of(["g++" if peer.is_cpp else "gcc", *objects, *peer.libraries, "-lm", "-o", program])
     numbers = re.match(r"ns (\S+) error (\S+) (\S+)", output_of([program]))
@@ -167,12 +170,12 @@ def image_of(peer: Peer, flags: list[str], folder: Path) -> Path:
     base = [*M4F, "-ffunction-sections", "-fdata-sections"]
     compiler = "arm-none-eabi-g++" if peer.is_cpp else "arm-none-eabi-gcc"
     language = [*cpp_flags, "-fno-threadsafe-statics"] if peer.is_cpp else c_flags
-    objects = compile_all(compiler, [*base, *flags, *language], [PEERS / peer.source], folder / "solver")
+    objects = compile_all(compiler, [*base, *flags, *language], [WINDOW / peer.source], folder / "solver")
     objects += compile_all("arm-none-eabi-gcc", [*base, *flags, *c_flags], peer.more_sources, folder / "solver")
-    frame = [*base, "-std=gnu11", "-O2", "-ffp-contract=off", "-DGOE_BARE_METAL", f"-I{BARE_METAL}"]
+    frame = [*base, "-std=gnu11", "-O2", "-ffp-contract=off", "-DGOE_BARE_METAL", f"-I{BARE_METAL}", f"-I{FRAME}"]
     port = [BARE_METAL / name for name in ("semihosting.c", "start_arm.c", "c_library.c")]
     objects += compile_all(
-        "arm-none-eabi-gcc", frame, [PEERS / "windows.c", PEERS / "image_main.c", *port], folder / "frame"
+        "arm-none-eabi-gcc", frame, [WINDOW / "windows.c", FRAME / "image_main.c", *port], folder / "frame"
     )
     image = folder / "image.elf"
     link = ["-nostartfiles", f"-T{BARE_METAL / 'image.ld'}", "-Wl,-e,port_start,--gc-sections,--no-warn-rwx-segments"]
@@ -275,7 +278,7 @@ def run(arguments: argparse.Namespace) -> int:
             native = ["-march=native"] if flags == BEST_FLAGS else []
             run_on_host(peer, [*flags, *native], folder / f"host{number}", result)
             if with_target and peer.on_target:
-                nothing = image_of(Peer("", "peer_none.c"), list(flags), folder / f"none{number}")
+                nothing = image_of(Peer("", "../frame/peer_none.c"), list(flags), folder / f"none{number}")
                 run_on_target(peer, list(flags), folder / f"m4f{number}", plugin, code_bytes(nothing), result)
             rows.append(row(peer.name, "own" if flags == OWN_FLAGS else "best", result))
         speed = throughput(folder, QUICK_THROUGHPUT if arguments.quick else THROUGHPUT)

@@ -1,0 +1,1 @@
+"""The library beside other solvers and filters of the same problems."""
