@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
+from pathlib import Path
 
+import numpy as np
 import pytest
+from goe_tools.peers.build import Builder, build_plugin, missing_tool
+from goe_tools.peers.job import Group
+from goe_tools.peers.measure import Bench
+from goe_tools.peers.others import Others
+from goe_tools.peers.window import QUICK_CASES, WindowJob, window_job, window_peers
 
 # Of W, relative: single precision over a window whose normal equations are conditioned like 1e4.
 WINDOW_ERROR_MOST = 1.0e-3
+NOBODY = Others(eigen=None, lapack=False, cmsis_dsp=None, tinyekf=None)
 
-emulated = pytest.mark.skipif(
-    shutil.which("arm-none-eabi-g++") is None or shutil.which("qemu-system-arm") is None,
-    reason="emulated part: no arm-none-eabi-g++ or no qemu-system-arm",
-)
+emulated = pytest.mark.skipif(missing_tool() is not None, reason=f"emulated part: no {missing_tool()}")
 
 
 def tables(text: str) -> list[list[dict[str, str]]]:
-    """The Markdown tables of a text; each a list of rows by column."""
+    """The Markdown tables of a text; each a list of rows by column. Of columns with one name the first counts."""
     found: list[list[dict[str, str]]] = []
     head: list[str] | None = None
     for line in text.splitlines():
@@ -30,7 +34,7 @@ def tables(text: str) -> list[list[dict[str, str]]]:
             found.append([])
         elif not set("".join(cells)) <= {"-"}:
             assert len(cells) == len(head), line
-            found[-1].append(dict(zip(head, cells)))
+            found[-1].append(dict(zip(reversed(head), reversed(cells))))
     return found
 
 
@@ -44,9 +48,11 @@ def printed() -> str:
 def test_each_solver_finds_the_width(printed: str) -> None:
     solvers = tables(printed)[0]
     assert solvers[0]["solver"] == "goe, closed form"
+    assert float(solvers[0]["over ours"]) == 1.0
     for row in solvers:
-        assert float(row["host, ns"]) > 0.0, row
-        assert 0.0 <= float(row["root mean square"]) <= float(row["error of W: worst"]) < WINDOW_ERROR_MOST, row
+        assert float(row["host, ns"]) > 0.0 and float(row["over ours"]) > 0.0, row
+        assert 0.0 <= float(row["root mean square"]) <= float(row["error of W, relative: worst"]), row
+        assert float(row["error of W, relative: worst"]) < WINDOW_ERROR_MOST, row
 
 
 def test_who_is_not_there_is_named(printed: str) -> None:
@@ -68,3 +74,26 @@ def test_throughput_is_printed(printed: str) -> None:
     rows = tables(printed)[1]
     assert [row["obstacles"] for row in rows] == ["1"]
     assert all(float(row["updates per second, one core"]) > 0.0 for row in rows)
+
+
+@emulated
+def test_instructions_repeat_exactly(tmp_path: Path) -> None:
+    builder = Builder(tmp_path)
+    bench = Bench(builder, window_job(builder, NOBODY, quick=True), 1, build_plugin(tmp_path))
+    image = bench.programs(bench.job.peers[0], "own").image
+    assert image is not None
+    builder.make()
+    text, counts = bench.count(image)
+    assert len(counts) == QUICK_CASES and min(counts) > 0
+    assert bench.count(image) == (text, counts)
+
+
+def test_a_wrong_answer_shows() -> None:
+    # X0 = 10 m, Z0 = 100 m, W = 4 m, flown straight ahead: no number is rounded
+    case = np.concatenate([np.zeros(8), np.arange(8.0), np.full(8, 2.5), (100.0 - np.arange(8.0)) / 4.0])
+    group = Group("one", case[None].astype(np.float32))
+    ours = window_peers(NOBODY)[0]
+    right, wrong = (np.array([[width, 10.0, 100.0]], dtype=np.float32) for width in (4.0, 4.5))
+    job = WindowJob([ours], [group])
+    assert job.errors(ours, group, right) == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert job.errors(ours, group, wrong) == pytest.approx((0.125, 0.125), abs=1e-12)

@@ -1,39 +1,27 @@
-/* Runs one solver on a target, for counting its instructions and its stack. Prints one line: stack <bytes>.
+/* Runs one solver on a target, for counting its instructions. Prints the answer to each case, and of each group:
+ *   stack <bytes, the most of any case>
  * SPDX-License-Identifier: MIT */
-#include "peer.h"
-#include "semihosting.h"
+#include "console.h"
 #include "stack.h"
 
-static peer_window_t windows[PEER_WINDOWS];
-static peer_solution_t solution;
-
-__attribute__((noinline)) static size_t depth_of(const peer_window_t *window) {
+__attribute__((noinline)) static size_t depth_of_solve(void) {
     port_stack_paint();
-    peer_solve(window, &solution);
+    peer_solve(0);
     return port_stack_used();
 }
 
-static void write_count(size_t count) {
-    char text[12];
-    int at = 11;
-    text[at] = '\0';
-    do {
-        text[--at] = (char)('0' + count % 10u);
-        count /= 10u;
-    } while (count > 0u);
-    port_write_text(&text[at]);
-}
-
 int main(void) {
-    size_t deepest = 0;
-    peer_make_windows(windows);
-    for (int i = 0; i < PEER_WINDOWS; i++) {
-        peer_prepare(&windows[i]);
-        const size_t depth = depth_of(&windows[i]);
-        deepest = depth > deepest ? depth : deepest;
+    peer_answer_t answer;
+    for (int group = 0; group < peer_groups; group++) {
+        size_t deepest = 0;
+        for (int i = peer_first[group]; i < peer_first[group + 1]; i++) {
+            peer_prepare(0, &peer_cases[i]);
+            const size_t depth = depth_of_solve();
+            deepest = depth > deepest ? depth : deepest;
+            peer_answer(0, &answer);
+            console_answer(&answer);
+        }
+        console_count("stack", (unsigned long)deepest);
     }
-    port_write_text("stack ");
-    write_count(deepest);
-    port_write_text("\n");
     return 0;
 }

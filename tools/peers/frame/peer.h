@@ -1,32 +1,28 @@
-/* One window solve, by whoever is linked. SPDX-License-Identifier: MIT */
+/* A solver, whoever's is linked, and the cases that it is given. SPDX-License-Identifier: MIT */
 #ifndef GOE_PEER_H
 #define GOE_PEER_H
+
+#include "job.h" /* of the problem at hand: peer_case_t and peer_answer_t, floats alone; PEER_REPEATS */
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define PEER_POINTS 8
-#define PEER_WINDOWS 64
+#define PEER_SLOTS 64 /* cases that are prepared at once: the most of a group */
 
-/* The rows of one window: xi = (X0 - dX)/W, zeta = (Z0 - dZ)/W, with noise. */
-typedef struct {
-    float dx_m[PEER_POINTS], dz_m[PEER_POINTS], xi[PEER_POINTS], zeta[PEER_POINTS];
-} peer_window_t;
+/* Written by `goe_tools peers`, group after group, so that each machine gets the same bits. */
+extern const peer_case_t peer_cases[];
+extern const int peer_first[]; /* case of each group, and the end of the last */
+extern const int peer_groups;
 
-/* What is solved for. */
-typedef struct {
-    float width_m, x0_m, z0_m;
-} peer_solution_t;
+/* Puts a case into the form in which the solver holds such things. Neither timed nor counted. */
+void peer_prepare(int slot, const peer_case_t *given);
 
-/* The same windows on every machine: an approach with a weave, obstacles of 2 to 40 m at 30 to 400 m. */
-void peer_make_windows(peer_window_t windows[PEER_WINDOWS]);
+/* Solves what was prepared. */
+void peer_solve(int slot);
 
-/* What a solver makes of the window before it is timed; most do nothing. */
-void peer_prepare(const peer_window_t *window);
-
-/* Solves the 16 x 3 least squares problem in (1/W, X0/W, Z0/W). */
-void peer_solve(const peer_window_t *window, peer_solution_t *solution);
+/* Neither timed nor counted. */
+void peer_answer(int slot, peer_answer_t *answer);
 
 #ifdef __cplusplus
 }

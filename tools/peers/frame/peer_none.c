@@ -1,10 +1,14 @@
-/* Nothing: what the frame costs. SPDX-License-Identifier: MIT */
+/* Solves nothing: what is left of an image without a solver. SPDX-License-Identifier: MIT */
 #include "peer.h"
 
-void peer_prepare(const peer_window_t *window) { (void)window; }
+void peer_prepare(int slot, const peer_case_t *given) {
+    (void)slot;
+    (void)given;
+}
 
-void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
-    solution->width_m = window->dx_m[0];
-    solution->x0_m = window->dx_m[1];
-    solution->z0_m = window->dx_m[2];
+void peer_solve(int slot) { (void)slot; }
+
+void peer_answer(int slot, peer_answer_t *answer) {
+    (void)slot;
+    (void)answer;
 }

@@ -4,22 +4,25 @@
 #include "goe_window.h"
 #include "peer.h"
 
-static goe_window_t rows;
+#define MIN_BASELINE_M 0.1f
 
-void peer_prepare(const peer_window_t *window) {
-    memset(&rows, 0, sizeof rows);
+static goe_window_t windows[PEER_SLOTS];
+static goe_estimate_t fits[PEER_SLOTS];
+
+void peer_prepare(int slot, const peer_case_t *given) {
+    goe_window_t *window = &windows[slot];
+    memset(window, 0, sizeof *window);
+    memset(&fits[slot], 0, sizeof fits[slot]);
     for (int k = 0; k < PEER_POINTS; k++) {
-        const goe_row_t row = {window->xi[k], window->zeta[k]};
-        goe_window_add(&rows, PEER_POINTS, window->dx_m[k], window->dz_m[k], row);
+        const goe_row_t row = {given->xi[k], given->zeta[k]};
+        goe_window_add(window, PEER_POINTS, given->dx_m[k], given->dz_m[k], row);
     }
 }
 
-void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
-    goe_estimate_t fit;
-    (void)window;
-    if (goe_window_solve(&rows, PEER_POINTS, 0.1f, &fit) == GOE_OK) {
-        solution->width_m = fit.width_m;
-        solution->x0_m = fit.x0_m;
-        solution->z0_m = fit.z0_m;
-    }
+void peer_solve(int slot) { (void)goe_window_solve(&windows[slot], PEER_POINTS, MIN_BASELINE_M, &fits[slot]); }
+
+void peer_answer(int slot, peer_answer_t *answer) {
+    answer->width_m = fits[slot].width_m;
+    answer->x0_m = fits[slot].x0_m;
+    answer->z0_m = fits[slot].z0_m;
 }
