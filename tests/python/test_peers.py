@@ -12,6 +12,7 @@ from goe_tools.peers.build import Builder, build_plugin, missing_tool
 from goe_tools.peers.job import Group
 from goe_tools.peers.measure import Bench
 from goe_tools.peers.others import Others
+from goe_tools.peers.throughput import KINDS
 from goe_tools.peers.window import QUICK_CASES, WindowJob, window_job, window_peers
 
 # Of W, relative: single precision over a window whose normal equations are conditioned like 1e4.
@@ -72,8 +73,12 @@ def test_each_solver_is_counted(printed: str) -> None:
 
 def test_throughput_is_printed(printed: str) -> None:
     rows = tables(printed)[1]
-    assert [row["obstacles"] for row in rows] == ["1"]
-    assert all(float(row["updates per second, one core"]) > 0.0 for row in rows)
+    assert [row["obstacles"] for row in rows] == ["1", "10"]
+    for row in rows:
+        speeds = [float(row[f"{kind}: updates per second"]) for kind in KINDS]
+        assert min(speeds) > 0.0
+        assert float(row["time of refined over window"]) == pytest.approx(speeds[0] / speeds[1], abs=0.006)
+        assert float(row["of refined and hazard over refined"]) == pytest.approx(speeds[1] / speeds[2], abs=0.006)
 
 
 @emulated

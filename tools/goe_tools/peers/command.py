@@ -117,23 +117,29 @@ def measured(bench: Bench, set_names: Sequence[str]) -> list[Results]:
     return found
 
 
-def compare(arguments: argparse.Namespace, parts: Sequence[str], builder: Builder) -> None:
+def compare_solvers(arguments: argparse.Namespace, names: Sequence[str], builder: Builder) -> None:
     others = find_others(arguments)
     tool = missing_tool()
     if tool is not None:
         print(f"skipped: Cortex-M4F: no {tool}")
     plugin = build_plugin(builder.folder) if tool is None else None
     set_names = list(FLAG_SETS)[:1] if arguments.quick else list(FLAG_SETS)
-    for name in (name for name in JOBS if name in parts):
+    for name in names:
         job = JOBS[name](builder, others, arguments.quick)
         bench = Bench(builder, job, QUICK_ROUNDS if arguments.quick else ROUNDS, plugin)
         for group, results in zip(job.groups, measured(bench, set_names)):
             print(*table(job, group, results), "", sep="\n", flush=True)
+
+
+def compare(arguments: argparse.Namespace, parts: Sequence[str], builder: Builder) -> None:
+    jobs = [name for name in JOBS if name in parts]
+    if jobs:
+        compare_solvers(arguments, jobs, builder)
     if THROUGHPUT in parts:
         program = throughput_program(builder)
         builder.make()
         print(*throughput_table(program, QUICK if arguments.quick else FULL), "", sep="\n")
-    print(*closing(tool is None), sep="\n")
+    print(*closing(bool(jobs) and missing_tool() is None), sep="\n")
 
 
 def run(arguments: argparse.Namespace) -> int:
