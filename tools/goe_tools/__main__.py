@@ -18,7 +18,7 @@ COMMANDS = {
     "ledger": "measure what the library costs on each target",
     "goals": "print what the project promises beside what is reached",
     "offline": "fit all images of a log with truth at once",
-    "peers": "hold the window solve against other solvers",
+    "peers": "hold the window's fit and the filter's update against other solvers",
     "report": "write the campaign's report and print Table 3",
     "table": "print estimates as a table that a pilot can read",
 }

@@ -2,6 +2,9 @@
 
 job           what a problem, its cases and its solvers are
 window        problem: the window's fit
+update        problem: the refined filter's measurement update
+lower_bound   how few operations such an update can do with
+others        whose solvers can be had here
 build         programs for this machine and images for the Cortex-M4F
 measure       runs them: nanoseconds, instructions, stack, code, error of the answers
 throughput    updates per second of the whole library on one core

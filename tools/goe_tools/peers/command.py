@@ -4,7 +4,7 @@ Each solver solves the same cases: on the host it is timed; on a Cortex-M4F unde
 by one and its stack is painted; on both its answers are held against double precision. Every solver is built twice:
 with the library's own flags, and with flags that leave a compiler all freedom, which most peers profit from.
 
-    python -m goe_tools peers [--cmsis-dsp DIR] [--tinyekf DIR] [window | throughput ...]
+    python -m goe_tools peers [--cmsis-dsp DIR] [--tinyekf DIR] [window | update | throughput ...]
 
 tools/peers/README.md tells what is compared and what the columns mean.
 """
@@ -22,13 +22,14 @@ from pathlib import Path
 from tqdm import tqdm
 
 from .build import BEST_HOST_FLAGS, FLAG_SETS, M4F, Builder, LedgerError, build_plugin, missing_tool, output_of
-from .job import Group, Job, Peer
+from .job import Counted, Group, Job, Peer
 from .measure import Bench, Result
 from .others import find_others
 from .throughput import FULL, QUICK, throughput_program, throughput_table
+from .update import update_job
 from .window import window_job
 
-JOBS = {"window": window_job}
+JOBS = {"window": window_job, "update": update_job}
 THROUGHPUT = "throughput"
 PARTS = (*JOBS, THROUGHPUT)
 ROUNDS, QUICK_ROUNDS = 300, 3
@@ -71,11 +72,21 @@ def row(peer: Peer, set_name: str, results: Results) -> str:
     return f"| {' | '.join([*cells, *(shown(error, '.1e') for error in result.errors)])} |"
 
 
+def bound_row(bound: Counted, results: Results, columns: int) -> str:
+    ours = results.get((bound.against, bound.set_name), Result())
+    count = mean(bound.instructions)
+    cells = [bound.name, bound.set_name, "-", "-", f"{count:.0f} ({max(bound.instructions)})"]
+    cells.append(shown(ratio(count, mean(ours.instructions)), ".2f"))
+    return f"| {' | '.join([*cells, *['-'] * (columns - len(cells))])} |"
+
+
 def table(job: Job, group: Group, results: Results) -> Iterator[str]:
     columns = [*COLUMNS, *job.error_names]
     yield from (f"{job.title}: {group.name}", "", f"| {' | '.join(columns)} |", "|---" * len(columns) + "|")
     for peer in job.peers:
         yield from (row(peer, set_name, results) for set_name in FLAG_SETS if (peer.name, set_name) in results)
+    sets = {set_name for _, set_name in results}
+    yield from (bound_row(bound, results, len(columns)) for bound in job.bounds(group) if bound.set_name in sets)
 
 
 def processor() -> str:

@@ -19,9 +19,15 @@ class Peer:
     source: Path
     against: str  # name of the solver of ours that does the same and that its ratios are taken of
     flags: tuple[str, ...] = ()
+    defines: tuple[str, ...] = ()  # for its own source alone
     more_sources: tuple[Path, ...] = ()
     libraries: tuple[str, ...] = ()
     on_target: bool = True
+
+    @property
+    def all_ours(self) -> bool:
+        """No source or header of it is another's."""
+        return not self.libraries and not any(flag.startswith("-isystem") for flag in self.flags)
 
 
 @dataclass(frozen=True)

@@ -69,7 +69,8 @@ class Bench:
     def solver(self, prefix: str, peer: Peer, base: Iterable[str]) -> list[str]:
         cpp = peer.source.suffix == ".cpp"
         flags = [*base, *peer.flags]
-        own = [*flags, *self.includes, *STRICT, *(CPP if cpp else C)]
+        strict = STRICT if peer.all_ours else ()  # inlined, others' headers warn here
+        own = [*flags, *peer.defines, *self.includes, *strict, *(CPP if cpp else C)]
         objects = self.builder.objects(SOLVER_ROLE, prefix + ("g++" if cpp else "gcc"), own, [peer.source])
         return objects + self.builder.objects(SOLVER_ROLE, prefix + "gcc", [*flags, *C], peer.more_sources)
 
@@ -136,7 +137,7 @@ class Bench:
         for group, result, answers in zip(self.job.groups, results, self.by_group(words.view(np.float32))):
             errors = self.job.errors(peer, group, answers)
             before = result.errors or errors
-            result.errors = tuple(None if a is None or b is None else max(a, b) for a, b in zip(before, errors))
+            result.errors = tuple(worse(a, b) for a, b in zip(before, errors))
 
     def count(self, image: Path) -> tuple[str, list[int]]:
         """What an image prints, and the instructions of each solve."""
@@ -144,6 +145,11 @@ class Bench:
         ranges.write_text(solver_ranges(image), encoding="utf-8")
         text = emulated([*EMULATOR, "-plugin", f"{self.plugin},map={ranges},out={counts}", "-kernel", str(image)])
         return text, [int(line.split()[1]) for line in counts.read_text(encoding="utf-8").splitlines()]
+
+
+def worse(a: float | None, b: float | None) -> float | None:
+    """NaN is the worst."""
+    return None if a is None or b is None else float(np.maximum(a, b))
 
 
 def code_bytes(image: Path) -> int:

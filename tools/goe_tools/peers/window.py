@@ -52,11 +52,12 @@ def make_cases(builder: Builder, count: int) -> NDArray[np.float32]:
 
 def window_peers(others: Others) -> list[Peer]:
     """Ours is first."""
-    peers = [Peer(OURS, FOLDER / "peer_goe.c", OURS, library_includes(), library_sources())]
+    library = library_sources()
+    peers = [Peer(OURS, FOLDER / "peer_goe.c", OURS, library_includes(), more_sources=library)]
     if others.eigen is not None:
         for number, method in enumerate(("LLT", "LDLT", "ColPivHouseholderQR"), start=1):
-            flags = (*others.eigen, f"-DMETHOD={number}")
-            peers.append(Peer(f"Eigen {method}", FOLDER / "peer_eigen.cpp", OURS, flags))
+            source, defines = FOLDER / "peer_eigen.cpp", (f"-DMETHOD={number}",)
+            peers.append(Peer(f"Eigen {method}", source, OURS, others.eigen, defines))
     if others.lapack:
         peers.append(Peer("LAPACK sgels", FOLDER / "peer_lapack.c", OURS, libraries=("-llapacke",), on_target=False))
     if others.cmsis_dsp is not None:
@@ -65,8 +66,8 @@ def window_peers(others: Others) -> list[Peer]:
         sources += [folder / "Source" / "BasicMathFunctions" / f"arm_{name}_f32.c" for name in ("dot_prod", "scale")]
         include = (f"-isystem{folder / 'Include'}", f"-isystem{folder / 'PrivateInclude'}", "-D__GNUC_PYTHON__", "-w")
         for number, method in enumerate(("Cholesky", "QR"), start=1):
-            flags = (*include, f"-DMETHOD={number}")
-            peers.append(Peer(f"CMSIS-DSP {method}", FOLDER / "peer_cmsis.c", OURS, flags, tuple(sources)))
+            source, defines = FOLDER / "peer_cmsis.c", (f"-DMETHOD={number}",)
+            peers.append(Peer(f"CMSIS-DSP {method}", source, OURS, include, defines, tuple(sources)))
     if others.tinyekf is not None:
         peers.append(Peer("TinyEKF, one step", FOLDER / "peer_tinyekf.c", OURS, others.tinyekf))
     return peers
