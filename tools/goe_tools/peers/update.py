@@ -231,6 +231,7 @@ def update_peers(others: Others) -> list[Peer]:
     if others.eigen is not None:
         for (ours, name, held), define in zip(kinds, defines):
             peers.append(UpdatePeer(name, FOLDER / "peer_eigen.cpp", ours, others.eigen, define, held=held))
+    peers.append(UpdatePeer("sequential UD", FOLDER / "peer_ud.c", OURS_INVERSE, held="factors"))
     return peers
 
 
