@@ -232,6 +232,9 @@ def update_peers(others: Others) -> list[Peer]:
         for (ours, name, held), define in zip(kinds, defines):
             peers.append(UpdatePeer(name, FOLDER / "peer_eigen.cpp", ours, others.eigen, define, held=held))
     peers.append(UpdatePeer("sequential UD", FOLDER / "peer_ud.c", OURS_INVERSE, held="factors"))
+    if others.tinyekf is not None:
+        source = FOLDER / "peer_tinyekf.c"
+        peers.append(UpdatePeer("TinyEKF", source, OURS_INVERSE, others.tinyekf, held="covariance", tells_nis=False))
     return peers
 
 
