@@ -151,7 +151,7 @@ def test_throughput_is_printed(printed: str) -> None:
 @emulated
 def test_instructions_repeat_exactly(tmp_path: Path) -> None:
     builder = Builder(tmp_path)
-    bench = Bench(builder, window.window_job(builder, NOBODY, quick=True), 1, build_plugin(tmp_path))
+    bench = Bench(builder, window.window_job(builder, NOBODY, quick=True), 0.01, build_plugin(tmp_path))
     image = bench.programs(bench.job.peers[0], "own").image
     assert image is not None
     builder.make()

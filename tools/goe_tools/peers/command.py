@@ -32,7 +32,7 @@ from .window import window_job
 JOBS = {"window": window_job, "update": update_job}
 THROUGHPUT = "throughput"
 PARTS = (*JOBS, THROUGHPUT)
-ROUNDS, QUICK_ROUNDS = 300, 3
+SECONDS, QUICK_SECONDS = 0.5, 0.01  # of a solver and a group of cases, on the host
 EXIT_FAILED = 1
 
 # -------------------------------------------------------------------------------------------------------------- tables
@@ -137,7 +137,7 @@ def compare_solvers(arguments: argparse.Namespace, names: Sequence[str], builder
     set_names = list(FLAG_SETS)[:1] if arguments.quick else list(FLAG_SETS)
     for name in names:
         job = JOBS[name](builder, others, arguments.quick)
-        bench = Bench(builder, job, QUICK_ROUNDS if arguments.quick else ROUNDS, plugin)
+        bench = Bench(builder, job, QUICK_SECONDS if arguments.quick else SECONDS, plugin)
         for group, results in zip(job.groups, measured(bench, set_names)):
             print(*table(job, group, results), "", sep="\n", flush=True)
 

@@ -56,10 +56,10 @@ class Programs:
 
 
 class Bench:
-    """A job on both machines. rounds: on the host, of which the best counts. plugin: that counts; None: host only."""
+    """A job on both machines. seconds: on the host, for each group. plugin: that counts; None: host only."""
 
-    def __init__(self, builder: Builder, job: Job, rounds: int, plugin: Path | None) -> None:
-        self.builder, self.job, self.rounds, self.plugin = builder, job, rounds, plugin
+    def __init__(self, builder: Builder, job: Job, seconds: float, plugin: Path | None) -> None:
+        self.builder, self.job, self.seconds, self.plugin = builder, job, seconds, plugin
         self.includes = (f"-I{FRAME}", f"-I{job.folder}")
         self.cases = builder.folder / f"{job.folder.name}_cases.c"
         self.cases.write_text(job.cases_in_c(), encoding="utf-8")
@@ -81,7 +81,7 @@ class Bench:
     def host_program(self, peer: Peer, set_name: str) -> Path:
         native = BEST_HOST_FLAGS if set_name == "best" else ()
         objects = self.solver("", peer, [*FLAG_SETS[set_name], *native])
-        objects += self.frame("", [f"-DPEER_ROUNDS={self.rounds}"], [FRAME / "host_main.c"])
+        objects += self.frame("", [f"-DPEER_SECONDS={self.seconds}"], [FRAME / "host_main.c"])
         objects += self.frame("", [], [FRAME / "console.c", self.cases])
         name = self.file_name(peer, set_name, "host")
         return self.builder.program(name, "g++", [*objects, *peer.libraries, "-lm"])
