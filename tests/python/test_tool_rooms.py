@@ -20,7 +20,7 @@ FLOORS = (
     ("report",),
     ("__main__",),
 )
-BESIDE = {"ledger": "cost", "peers": "cost"}  # files that lie beside the rooms, and where they belong
+BESIDE = {"ledger": "cost"}  # files that lie beside the rooms, and where they belong
 
 MOST_LINES = 500
 LONG = {"ledger.py": "each figure of the cost ledger, from the build to the README's tables"}  # file, its one idea

@@ -20,7 +20,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
     "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
     "offline": (".optimum.offline", "fit all images of a log with truth at once"),
-    "peers": (".peers", "hold the window solve against other solvers"),
+    "peers": (".cost.peers.command", "hold the window fit and the filter update against other solvers"),
     "report": (".report.command", "write the campaign's report and print Table 3"),
     "table": (".logs.table", "print estimates as a table that a pilot can read"),
 }

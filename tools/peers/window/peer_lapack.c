@@ -4,27 +4,29 @@
 
 #include "dense.h"
 
-static float given_a[DENSE_ROWS * DENSE_COLUMNS];
-static float given_b[DENSE_ROWS];
+static float given_a[PEER_SLOTS][DENSE_ROWS * DENSE_COLUMNS];
+static float given_b[PEER_SLOTS][DENSE_ROWS];
+static peer_answer_t answers[PEER_SLOTS];
 
-void peer_prepare(const peer_window_t *window) {
+void peer_prepare(int slot, const peer_case_t *given) {
     float rows[DENSE_ROWS * DENSE_COLUMNS];
-    dense_system(window, rows, given_b);
+    dense_system(given, rows, given_b[slot]);
     for (int i = 0; i < DENSE_ROWS; i++) { /* by column: what LAPACK computes with */
         for (int j = 0; j < DENSE_COLUMNS; j++) {
-            given_a[j * DENSE_ROWS + i] = rows[i * DENSE_COLUMNS + j];
+            given_a[slot][j * DENSE_ROWS + i] = rows[i * DENSE_COLUMNS + j];
         }
     }
 }
 
-void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
+void peer_solve(int slot) {
     float a[DENSE_ROWS * DENSE_COLUMNS];
     float b[DENSE_ROWS];
     float work[64];
-    (void)window;
-    memcpy(a, given_a, sizeof a);
-    memcpy(b, given_b, sizeof b);
+    memcpy(a, given_a[slot], sizeof a);
+    memcpy(b, given_b[slot], sizeof b);
     (void)LAPACKE_sgels_work(LAPACK_COL_MAJOR, 'N', DENSE_ROWS, DENSE_COLUMNS, 1, a, DENSE_ROWS, b, DENSE_ROWS, work,
                              64);
-    dense_solution(b, solution);
+    dense_solution(b, &answers[slot]);
 }
+
+void peer_answer(int slot, peer_answer_t *answer) { *answer = answers[slot]; }

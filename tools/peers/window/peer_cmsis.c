@@ -2,13 +2,16 @@
 #include "arm_math.h"
 #include "dense.h"
 
-static float32_t given_a[DENSE_ROWS * DENSE_COLUMNS];
-static float32_t given_b[DENSE_ROWS];
+static float32_t given_a[PEER_SLOTS][DENSE_ROWS * DENSE_COLUMNS];
+static float32_t given_b[PEER_SLOTS][DENSE_ROWS];
+static peer_answer_t answers[PEER_SLOTS];
 
-void peer_prepare(const peer_window_t *window) { dense_system(window, given_a, given_b); }
+void peer_prepare(int slot, const peer_case_t *given) { dense_system(given, given_a[slot], given_b[slot]); }
+
+void peer_answer(int slot, peer_answer_t *answer) { *answer = answers[slot]; }
 
 #if METHOD == 1
-void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
+void peer_solve(int slot) {
     float32_t transposed[DENSE_COLUMNS * DENSE_ROWS];
     float32_t normal[9];
     float32_t right[3];
@@ -16,8 +19,8 @@ void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
     float32_t half[3];
     float32_t upper[9];
     float32_t p[3];
-    arm_matrix_instance_f32 a = {DENSE_ROWS, DENSE_COLUMNS, given_a};
-    arm_matrix_instance_f32 b = {DENSE_ROWS, 1, given_b};
+    arm_matrix_instance_f32 a = {DENSE_ROWS, DENSE_COLUMNS, given_a[slot]};
+    arm_matrix_instance_f32 b = {DENSE_ROWS, 1, given_b[slot]};
     arm_matrix_instance_f32 at = {DENSE_COLUMNS, DENSE_ROWS, transposed};
     arm_matrix_instance_f32 n = {3, 3, normal};
     arm_matrix_instance_f32 r = {3, 1, right};
@@ -25,7 +28,6 @@ void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
     arm_matrix_instance_f32 h = {3, 1, half};
     arm_matrix_instance_f32 u = {3, 3, upper};
     arm_matrix_instance_f32 x = {3, 1, p};
-    (void)window;
     (void)arm_mat_trans_f32(&a, &at);
     (void)arm_mat_mult_f32(&at, &a, &n);
     (void)arm_mat_mult_f32(&at, &b, &r);
@@ -33,13 +35,13 @@ void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
     (void)arm_mat_solve_lower_triangular_f32(&l, &r, &h);
     (void)arm_mat_trans_f32(&l, &u);
     (void)arm_mat_solve_upper_triangular_f32(&u, &h, &x);
-    dense_solution(p, solution);
+    dense_solution(p, &answers[slot]);
 }
 #else
 #define WIDE_COLUMNS (DENSE_COLUMNS + 1)
 
 /* b as a fourth column: Q' b comes with R, and Q is not asked for. */
-void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
+void peer_solve(int slot) {
     float32_t wide[DENSE_ROWS * WIDE_COLUMNS];
     float32_t triangle[DENSE_ROWS * WIDE_COLUMNS];
     float32_t tau[WIDE_COLUMNS];
@@ -48,12 +50,11 @@ void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
     float32_t p[DENSE_COLUMNS];
     arm_matrix_instance_f32 a = {DENSE_ROWS, WIDE_COLUMNS, wide};
     arm_matrix_instance_f32 r = {DENSE_ROWS, WIDE_COLUMNS, triangle};
-    (void)window;
     for (int i = 0; i < DENSE_ROWS; i++) {
         for (int j = 0; j < DENSE_COLUMNS; j++) {
-            wide[i * WIDE_COLUMNS + j] = given_a[i * DENSE_COLUMNS + j];
+            wide[i * WIDE_COLUMNS + j] = given_a[slot][i * DENSE_COLUMNS + j];
         }
-        wide[i * WIDE_COLUMNS + DENSE_COLUMNS] = given_b[i];
+        wide[i * WIDE_COLUMNS + DENSE_COLUMNS] = given_b[slot][i];
     }
     (void)arm_mat_qr_f32(&a, DEFAULT_HOUSEHOLDER_THRESHOLD_F32, &r, NULL, tau, row, column);
     for (int j = DENSE_COLUMNS - 1; j >= 0; j--) {
@@ -64,6 +65,6 @@ void peer_solve(const peer_window_t *window, peer_solution_t *solution) {
         }
         p[j] = sum / line[j];
     }
-    dense_solution(p, solution);
+    dense_solution(p, &answers[slot]);
 }
 #endif

@@ -8,12 +8,17 @@ using Rows = Eigen::Matrix<float, DENSE_ROWS, DENSE_COLUMNS, Eigen::RowMajor>;
 using Right = Eigen::Matrix<float, DENSE_ROWS, 1>;
 using Unknowns = Eigen::Matrix<float, DENSE_COLUMNS, 1>;
 
-static Rows a;
-static Right b;
+static Rows rows[PEER_SLOTS];
+static Right right_sides[PEER_SLOTS];
+static peer_answer_t answers[PEER_SLOTS];
 
-void peer_prepare(const peer_window_t *window) { dense_system(window, a.data(), b.data()); }
+void peer_prepare(int slot, const peer_case_t *given) {
+    dense_system(given, rows[slot].data(), right_sides[slot].data());
+}
 
-void peer_solve(const peer_window_t *, peer_solution_t *solution) {
+void peer_solve(int slot) {
+    const Rows &a = rows[slot];
+    const Right &b = right_sides[slot];
 #if METHOD == 3
     const Unknowns p = a.colPivHouseholderQr().solve(b);
 #else
@@ -25,5 +30,7 @@ void peer_solve(const peer_window_t *, peer_solution_t *solution) {
     const Unknowns p = normal.ldlt().solve(right);
 #endif
 #endif
-    dense_solution(p.data(), solution);
+    dense_solution(p.data(), &answers[slot]);
 }
+
+void peer_answer(int slot, peer_answer_t *answer) { *answer = answers[slot]; }

@@ -8,7 +8,7 @@
 #define DENSE_COLUMNS 3
 
 /* a(row, column), by row: 1 0 -dX and 0 1 -dZ; b: xi and zeta. Unknowns X0/W, Z0/W, 1/W. */
-static inline void dense_system(const peer_window_t *window, float a[DENSE_ROWS * DENSE_COLUMNS], float b[DENSE_ROWS]) {
+static inline void dense_system(const peer_case_t *window, float a[DENSE_ROWS * DENSE_COLUMNS], float b[DENSE_ROWS]) {
     for (int k = 0; k < PEER_POINTS; k++) {
         float *row = &a[2 * k * DENSE_COLUMNS];
         row[0] = 1.0f;
@@ -22,10 +22,10 @@ static inline void dense_system(const peer_window_t *window, float a[DENSE_ROWS 
     }
 }
 
-static inline void dense_solution(const float p[DENSE_COLUMNS], peer_solution_t *solution) {
-    solution->width_m = 1.0f / p[2];
-    solution->x0_m = p[0] * solution->width_m;
-    solution->z0_m = p[1] * solution->width_m;
+static inline void dense_solution(const float p[DENSE_COLUMNS], peer_answer_t *answer) {
+    answer->width_m = 1.0f / p[2];
+    answer->x0_m = p[0] * answer->width_m;
+    answer->z0_m = p[1] * answer->width_m;
 }
 
 #endif

@@ -1,7 +1,14 @@
-/* Windows to solve. SPDX-License-Identifier: MIT */
-#include "peer.h"
-
+/* Prints windows to solve, one a line, in the order of peer_case_t: an approach with a weave, obstacles of 2 to 40 m at 30
+ * to 400 m.
+ *
+ *   make_cases COUNT
+ *
+ * SPDX-License-Identifier: MIT */
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "job.h"
 
 #define NOISE 2.0e-3f /* of a row, of its size: half a pixel in an image of 250 pixels */
 
@@ -15,7 +22,7 @@ static float random_number(void) {
 
 static float between(float low, float high) { return low + (high - low) * 0.5f * (random_number() + 1.0f); }
 
-static void make_window(peer_window_t *window) {
+static void make_window(peer_case_t *window) {
     const float width_m = between(2.0f, 40.0f);
     const float x0_m = between(-60.0f, 60.0f);
     const float z0_m = between(60.0f, 400.0f);
@@ -30,9 +37,22 @@ static void make_window(peer_window_t *window) {
     }
 }
 
-void peer_make_windows(peer_window_t windows[PEER_WINDOWS]) {
-    state = 20190601u;
-    for (int i = 0; i < PEER_WINDOWS; i++) {
-        make_window(&windows[i]);
+static void print(const float numbers[PEER_POINTS]) {
+    for (int k = 0; k < PEER_POINTS; k++) {
+        printf("%.9g ", (double)numbers[k]);
     }
+}
+
+int main(int count, char **arguments) {
+    peer_case_t window;
+    state = 20190601u;
+    for (int i = count == 2 ? atoi(arguments[1]) : 0; i > 0; i--) {
+        make_window(&window);
+        print(window.dx_m);
+        print(window.dz_m);
+        print(window.xi);
+        print(window.zeta);
+        printf("\n");
+    }
+    return 0;
 }

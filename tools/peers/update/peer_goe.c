@@ -1,0 +1,48 @@
+/* The library's own: Householder reflections of the triangle. WITH_INVERSE: 1 and the triangle's inverse, whose rows' squared
+ * norms are the variances. SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "peer.h"
+#include "refined/goe_srif.h"
+
+_Static_assert(GOE_STATES == PEER_STATES && GOE_NUISANCES == PEER_NUISANCES && GOE_ROWS_MAX == PEER_ROWS,
+               "job.h is of another filter");
+
+typedef struct {
+    goe_triangle_t root;
+    goe_inverse_t inverse;
+    goe_matrix_t rows;
+    float nuisance_root;
+    float change[GOE_STATES];
+    float nis;
+} state_t;
+
+static state_t states[PEER_SLOTS];
+
+void peer_prepare(int slot, const peer_case_t *given) {
+    state_t *state = &states[slot];
+    memset(state, 0, sizeof *state);
+    memcpy(state->root.element, given->root, sizeof given->root);
+    memcpy(state->rows.row, given->measured, sizeof given->measured);
+    state->nuisance_root = given->nuisance_root;
+}
+
+void peer_solve(int slot) {
+    state_t *state = &states[slot];
+    state->nis = goe_srif_update(&state->root, state->nuisance_root, &state->rows, state->change);
+#if WITH_INVERSE
+    goe_srif_invert(&state->root, &state->inverse);
+#endif
+}
+
+void peer_answer(int slot, peer_answer_t *answer) {
+    const state_t *state = &states[slot];
+    memset(answer, 0, sizeof *answer);
+    memcpy(answer->change, state->change, sizeof answer->change);
+    answer->nis = state->nis;
+#if WITH_INVERSE
+    memcpy(answer->held, state->inverse.element, sizeof state->inverse.element);
+#else
+    memcpy(answer->held, state->root.element, sizeof state->root.element);
+#endif
+}
