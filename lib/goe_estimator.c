@@ -95,7 +95,6 @@ static void forget_track(goe_estimator_t *estimator) {
     goe_window_clear(&estimator->window);
     goe_filter_clear(&estimator->filter);
     estimator->motion.time_us = GOE_TIME_UNKNOWN;
-    estimator->motion.start_time_us = GOE_TIME_UNKNOWN;
     estimator->estimate_time_us = GOE_TIME_UNKNOWN;
 }
 

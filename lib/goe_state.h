@@ -23,7 +23,7 @@
 
 /* image/goe_ego_motion.c: own motion over the track. */
 typedef struct {
-    int64_t time_us, start_time_us; /* latest and first image of the track */
+    int64_t time_us;                /* latest image of the track */
     float heading_cos, heading_sin; /* of T's Z axis, from north */
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
@@ -89,6 +89,7 @@ typedef struct {
 
 typedef struct
 { /* refined/goe_filter.c: the axes of the state, with their origin at the camera at the filter's start */
+    int64_t start_time_us;
     float turn_cos, turn_sin;     /* T turned by this about the vertical, clockwise seen from above */
     float start_dx_m, start_dz_m; /* that camera in T */
 } goe_axes_t;

@@ -60,7 +60,6 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
         fix_heading(motion, settings, body_to_ned);
         memcpy(motion->origin_ne_m, position, sizeof position);
         motion->started = true;
-        motion->start_time_us = pose->time_us;
     } else if (goe_motion_reset(motion, pose)) {
         for (int i = 0; i < 2; i++) {
             motion->origin_ne_m[i] += pose->reset_delta_ned_m[i];

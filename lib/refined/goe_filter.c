@@ -36,6 +36,7 @@ void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sig
 }
 
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
+    filter->axes.start_time_us = motion->time_us;
     filter->axes.turn_cos = 1.0f;
     filter->axes.turn_sin = 0.0f;
     filter->axes.start_dx_m = motion->dx_m;

@@ -25,18 +25,22 @@ static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION
 
 /* ------------------------------------------------------------------------------------------------------------- drift -- */
 
-/* Constant velocity errors scale and turn the flown path, and the obstacle with it: no image shows that. */
+/* Constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no image shows
+ * that. */
 typedef struct {
-    float share; /* of lengths, and rad */
+    goe_xz_t camera_m; /* since the filter's start */
+    float share;       /* of lengths, and rad */
     float walk_m2;
 } drift_t;
 
-static drift_t drift_of(const goe_noise_t *noise, const goe_motion_t *motion) {
-    const uint64_t us = (uint64_t)motion->time_us - (uint64_t)motion->start_time_us;
+static drift_t drift_of(const goe_filter_t *filter, const goe_noise_t *noise, const goe_motion_t *motion) {
+    drift_t drift;
+    const uint64_t us = (uint64_t)motion->time_us - (uint64_t)filter->axes.start_time_us;
     const float s = (float)(uint32_t)(us < TIME_MOST_US ? us : TIME_MOST_US) * S_PER_US;
-    const float path_m = sqrtf(goe_square(motion->dx_m) + goe_square(motion->dz_m));
-    const drift_t drift = {noise->velocity_bias_m_s * s / (path_m > PATH_LEAST_M ? path_m : PATH_LEAST_M),
-                           goe_square(noise->position_walk_m) * s};
+    drift.camera_m = goe_filter_camera(filter, motion);
+    const float path_m = sqrtf(goe_xz_dot(drift.camera_m, drift.camera_m));
+    drift.share = noise->velocity_bias_m_s * s / (path_m > PATH_LEAST_M ? path_m : PATH_LEAST_M);
+    drift.walk_m2 = goe_square(noise->position_walk_m) * s;
     return drift;
 }
 
@@ -135,14 +139,13 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q)
 
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            goe_quantities_t *q) {
-    const goe_xz_t camera_m = {motion->dx_m, motion->dz_m};
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const float variance =
             variance_of(filter, shape->quantity[i].by) * (depends_on_corner(i) ? shape->early : 1.0f) +
             drift_variance(motion, drift, shape, q->box, i);
         q->value[i] = shape->quantity[i].value;
-        q->sigma[i] = sqrtf(
-            variance + goe_box_outline_variance(filter, shape, camera_m, i, goe_square(q->sigma[GOE_ORIENTATION])));
+        q->sigma[i] = sqrtf(variance + goe_box_outline_variance(filter, shape, drift.camera_m, i,
+                                                                goe_square(q->sigma[GOE_ORIENTATION])));
     }
 }
 
@@ -174,7 +177,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     if (!(filter->state[GOE_INVERSE_RANGE] > 0.0f) || !(shape.scale_m > 0.0f)) {
         return;
     }
-    const drift_t drift = drift_of(&settings->noise, motion);
+    const drift_t drift = drift_of(filter, &settings->noise, motion);
     q->box = goe_filter_is_box(filter);
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, q);
@@ -192,8 +195,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                                goe_zero_t zero, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
     goe_shape_t shape;
-    const goe_xz_t camera_m = {motion->dx_m, motion->dz_m};
-    const drift_t drift = drift_of(&settings->noise, motion);
+    const drift_t drift = drift_of(filter, &settings->noise, motion);
     goe_model_shape(filter, &shape);
     if (zero == GOE_FROM_DATUM) {
         shape.quantity[GOE_HEIGHT].by[GOE_HEIGHT_BIAS] = 0.0f;
@@ -213,6 +215,6 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
             covariance[j][i] = sum;
         }
         covariance[i][i] +=
-            goe_box_outline_variance(filter, &shape, camera_m, i, covariance[GOE_ORIENTATION][GOE_ORIENTATION]);
+            goe_box_outline_variance(filter, &shape, drift.camera_m, i, covariance[GOE_ORIENTATION][GOE_ORIENTATION]);
     }
 }

@@ -520,7 +520,7 @@ static void give_disc(float shared) {
     r[goe_inverse_column(GOE_TOP) + GOE_BEARING] = 0.02f * shared;
     r[goe_inverse_column(GOE_TOP) + GOE_TOP] = 0.02f;
     estimator.settings.method = GOE_METHOD_REFINED;
-    estimator.motion.time_us = estimator.motion.start_time_us = 0;
+    estimator.motion.time_us = estimator.filter.axes.start_time_us = 0;
 }
 
 static void correlation_moves_the_probability(void) {
