@@ -7,13 +7,16 @@
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  *
  * Two methods, chosen by goe_settings_t.method:
- *   refined  (default) a square-root information filter over the whole track: maximum likelihood in fixed memory, with the
- *            errors of the sensors (goe_noise_t) as its weights and nuisances, so that its sigmas are of the true error
+ *   refined  (default) a square-root information filter over the whole track: maximum likelihood in fixed memory. The errors of
+ *            the sensors (goe_navigation_t, goe_detector_t) are its weights and nuisance states, so that its sigmas are of the
+ *            true error. lib/refined/README.md holds its theory.
  *   window   the paper: P. Bauer, "Position, Size and Orientation Estimation of Ground Obstacles in Sense and Avoid", IFAC
- *            ACA 2019, equation by equation. It runs beside the refined method and answers until that has started.
+ *            ACA 2019, equation by equation (lib/window/README.md). Where both methods are compiled in it runs beside the
+ *            refined one and answers until that has started.
  * "(1)" to "(8)" below and in the .c files are the equations of that paper.
  *
- * THIS HEADER IS THE MANUAL. The .c files hold reasons and equation numbers only.
+ * THIS HEADER IS THE MANUAL. The .c files hold reasons and equation numbers only; lib/README.md shows the rooms.
+ * "Given" is what the caller hands in, "reported" what the library answers.
  *
  * ---------------------------------------------------------------------------------------------------------------------
  * Frames
@@ -53,7 +56,7 @@
  *
  *   Jumps: x0, z0, x and z move by half the obstacle's size when a disc becomes a line or box. Refined: front and side keep
  *   their names until the side lies more than 52 degrees (tan b = 1.3) from Z; then width and length, their sigmas,
- *   orientation, both axes and the reference point change at once. The center does neither.
+ *   orientation, both axes and the reference point change at once. The centre does neither.
  *
  * ---------------------------------------------------------------------------------------------------------------------
  * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 2 KiB at the default window), and all there
@@ -62,14 +65,16 @@
  * Threads     Every function touches only what its arguments point at. Two threads may work on two estimators; one
  *             estimator needs the caller's lock.
  * Arithmetic  float only; of the C library sqrtf, memcpy and memset, no more. sqrtf must be correctly rounded, as IEEE 754
- *             asks: goe_self_check() tries it. Compiled with its own flags (see README)
- *             the results are bit-identical on every IEEE 754 target; goe_self_check() tells at run time whether they are.
+ *             asks: goe_self_check() tries it. Compiled with the library's own flags (-ffp-contract=off) the results are
+ *             bit-identical on every IEEE 754 target; goe_self_check() tells at run time whether they are.
  *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity.
  * Safety      Every output is finite. Input that is not finite is refused by its exponent bits, so also under -ffast-math.
  *             No argument leads to a trap, an endless loop or a write outside the estimator.
  * Failure     A call that returns a negative status changed nothing in the estimator but its counters, unless the
  *             status says "image taken" below. The last good estimate is kept and marked stale. One thing ends a track:
  *             a filter reset of unknown size (goe_pose_t) forgets it, as goe_reset does.
+ * Cost        is stated at each function: the most that a call takes on a Cortex-M4F with gcc -O2, in instructions (not
+ *             cycles) and bytes of stack. tests/targets has every processor and compiler.
  */
 #ifndef GOE_H
 #define GOE_H
@@ -78,15 +83,38 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Compile-time limits may come from a header of the firmware's own: -DGOE_CONFIG_HEADER='"my_goe_config.h"'. */
+#define GOE_VERSION_MAJOR 0
+#define GOE_VERSION_MINOR 2
+#define GOE_VERSION_PATCH 0
+
+/* ------------------------------------------------------------------------------------------------- compile-time limits -- */
+
+/* They may come from a header of the firmware's own: -DGOE_CONFIG_HEADER='"my_goe_config.h"'. All translation units of a
+ * program must agree; goe_init() refuses an estimator of another size. */
 #ifdef GOE_CONFIG_HEADER
 #include GOE_CONFIG_HEADER
 #endif
 
-/* Largest window that goe_settings_t.window may ask for, in image points; 3 to 64. Each point costs 40 bytes of state.
- * All translation units of a program must agree; goe_init() refuses an estimator of another size. */
+/* Parts that may be left out, code and state: 1 or 0. At least one method is needed. */
+#ifndef GOE_WITH_WINDOW
+#define GOE_WITH_WINDOW 1 /* the window method; without it the refined one answers nothing until it has started */
+#endif
+#ifndef GOE_WITH_REFINED
+#define GOE_WITH_REFINED 1 /* the refined method */
+#endif
+#ifndef GOE_WITH_HAZARD
+#define GOE_WITH_HAZARD 1 /* goe_hazard() */
+#endif
+#if !GOE_WITH_WINDOW && !GOE_WITH_REFINED
+#error "GOE_WITH_WINDOW or GOE_WITH_REFINED must be 1"
+#endif
+
+/* Largest window that goe_settings_t.window.points may ask for, in image points; 3 to 64. Each point costs 40 bytes. */
 #ifndef GOE_WINDOW_MAX
 #define GOE_WINDOW_MAX 8
+#endif
+#if GOE_WINDOW_MAX < 3 || GOE_WINDOW_MAX > 64
+#error "GOE_WINDOW_MAX must be 3 to 64"
 #endif
 
 #if defined(__GNUC__) || defined(__clang__)
@@ -103,9 +131,11 @@ extern "C" {
 
 /* What became of one image, or of a call. 0: nominal. Positive: the image was good, but gave less than a whole new
  * solution. Negative: no new solution. "Image taken": the image was stored although the status is negative, because the
- * next images build on it; otherwise it was refused whole. */
+ * next images build on it; otherwise it was refused whole.
+ * Numbers that are free: 5 to 31 for images that were good, -14 to -31 for faults of images, from -35 on for calls. A later
+ * version may use them, and renumbers nothing. */
 typedef enum {
-    GOE_OK = 0,             /* solved from this image and the window before it */
+    GOE_OK = 0,             /* solved from this image and those before it */
     GOE_PARTIAL = 1,        /* solved, but a part of the image was refused or could not be used: see the counters */
     GOE_COLLECTING = 2,     /* image taken; no solution yet: too few points, or the range is not known to 25 % (1 sigma) */
     GOE_HELD = 3,           /* image taken; it adds no point to the reported model, whose older solution stands */
@@ -119,10 +149,10 @@ typedef enum {
                                image, the side edge points at the camera */
     GOE_NO_EDGE = -5,       /* line model forced and no line point: the front edge is too short or no edge has a
                                measurable orientation (10 px and 2 px gates), as when the obstacle is met head-on */
-    GOE_BAD_HEIGHT = -6,    /* camera's height above ground <= 0; told as GOE_PARTIAL: no obstacle height from this image.
+    GOE_BAD_HEIGHT = -6,    /* camera's height above ground <= 0; as GOE_PARTIAL: no obstacle height from this image.
                                Window */
     /* the solution; image taken. Window, also while it answers for the refined method */
-    GOE_NO_BASELINE = -7,   /* the camera moved too little over the window: goe_settings_t.min_baseline_m */
+    GOE_NO_BASELINE = -7,   /* the camera moved too little over the window: goe_settings_t.window.min_baseline_m */
     GOE_NO_PARALLAX = -8,   /* the image does not grow as it must (1/W <= 0, or lost in rounding): not a static obstacle
                                ahead, or far too noisy */
     GOE_PASSED = -9,        /* the solution lies abeam or behind: Z <= 0 somewhere in the window */
@@ -132,9 +162,9 @@ typedef enum {
     GOE_BAD_TIME = -12,     /* time unknown, repeated or running backwards; after a wild jump ahead: goe_reset */
     GOE_BAD_ATTITUDE = -13, /* the quaternion's norm is off 1 by more than 1 % (a zero quaternion among them) */
     /* a call */
-    GOE_BAD_SETTINGS = -14, /* goe_init: a setting is outside its range; bad_field names it */
-    GOE_BAD_ARGUMENT = -15, /* a null pointer, or an estimator of another size than the library's (GOE_WINDOW_MAX) */
-    GOE_NOT_INITIALISED = -16 /* goe_init has not succeeded on this estimator */
+    GOE_BAD_SETTINGS = -32, /* goe_init: a setting is outside its range; bad_field names it */
+    GOE_BAD_ARGUMENT = -33, /* a null pointer, or an estimator of another size than the library's (GOE_WINDOW_MAX, parts) */
+    GOE_NOT_INITIALISED = -34 /* goe_init has not succeeded on this estimator */
 } goe_status_t;
 
 /* goe_estimator_t.causes counts every fault, for the flight log: causes[-status] for GOE_BEHIND_CAMERA to
@@ -146,8 +176,8 @@ typedef enum {
 /* The projection model that is reported. */
 typedef enum {
     GOE_MODEL_NONE = 0, /* estimate only: nothing solved yet. As a setting: refused */
-    GOE_MODEL_AUTO = 1, /* setting only. Window: disc until line_points line points exist, the line from then on: when no
-                           more base corners come its last solution is held, until goe_reset. Refined: disc until the
+    GOE_MODEL_AUTO = 1, /* setting only. Window: disc until window.line_points line points exist, the line from then on: when
+                           no more base corners come its last solution is held, until goe_reset. Refined: disc until the
                            images show a box */
     GOE_MODEL_DISC = 2, /* an upright cylinder, or the circle that stands for anything else; (2) */
     GOE_MODEL_LINE = 3, /* (3): the front edge of a box; needs base corners. As a setting of the refined method: a box,
@@ -157,58 +187,86 @@ typedef enum {
 
 typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2 } goe_method_t;
 
-/* How wrong the measurements are, for the refined method: one-sigma each, as a data sheet or a look at a log gives them.
- * "Constant" errors are the same over a track; the filter estimates them beside the obstacle. Too large a figure wastes
- * data; too small a one makes the sigmas too small by as much, refuses good points and makes obstacles suspect. */
-typedef struct {
-    float pixel_px;            /* of an image point, new in each image; 0.05 to 100; default 0.5. Rounding alone: 0.3 */
-    float size_share;          /* of left, right and top, added to it: share of the silhouette's width; 0 to 1; default 0.
-                                  A detector's bounding boxes: about 0.025 */
-    float correlation;         /* of a point's error from image to image; 0 to 0.95; default 0. Detectors: about 0.5 */
-    float shape_share;         /* by how much the silhouette of what is taken for a disc differs from a disc's: share of its
-                                  width; 0 to 1; default 0. Cars as discs: about 0.12 */
-    float attitude_bias_deg;   /* constant attitude error, mounting included, about each body axis; 1e-3 to 30; 0.5 */
-    float attitude_white_deg;  /* attitude error that is new in each image; 1e-4 to 30; 0.1 */
-    float attitude_drift_deg;  /* by which the constant one wanders, per square root of a second; 0 to 30; 0 */
-    float height_m;            /* constant error of height_m over the obstacle's ground; 1e-3 to 1e3; 0.5 */
-    float velocity_bias_m_s;   /* constant error of the own horizontal velocity, each axis; 0 to 100; 0.05 */
-    float position_walk_m;     /* random walk of the own position, per square root of a second; 0 to 100; 0.05 */
-} goe_noise_t;
+/* Each field: its meaning; its range; its default. goe_settings_list.h has the same as one table, which sets the defaults and
+ * checks the ranges. Fields of a part that was left out are neither read nor checked. */
 
 /* Pinhole camera with Brown-Conrady lens, in OpenCV's conventions, and how it sits on the aircraft.
  * Mounting: the un-mounted camera looks along body x with image x = body y and image y = body z; it is turned by yaw
  * about z, then pitch about the new y, then roll about the newest x. A camera that looks left has a negative yaw. */
 typedef struct {
-    float fx_px, fy_px;                          /* focal lengths, 1 to 1e5; no default: must be set */
-    float cx_px, cy_px;                          /* principal point, -1e5 to 1e5; no default: must be set */
-    float k1, k2, p1, p2, k3;                    /* lens distortion, each -100 to 100; default 0 */
-    float mount_yaw_deg, mount_pitch_deg, mount_roll_deg; /* -360 to 360; default 0 */
-    float offset_m[3];                           /* camera relative to the pose's reference point, body FRD, +-1e4; 0 */
+    float fx_px;           /* focal length along x, px; 1 to 1e5; no default: must be set */
+    float fy_px;           /* ... along y; 1 to 1e5; no default: must be set */
+    float cx_px;           /* principal point, px; -1e5 to 1e5; no default: must be set */
+    float cy_px;           /* principal point, px; -1e5 to 1e5; no default: must be set */
+    float k1;              /* lens distortion, radial; -100 to 100; default 0 */
+    float k2;              /* lens distortion, radial; -100 to 100; default 0 */
+    float p1;              /* lens distortion, tangential; -100 to 100; default 0 */
+    float p2;              /* lens distortion, tangential; -100 to 100; default 0 */
+    float k3;              /* lens distortion, radial; -100 to 100; default 0 */
+    float mount_yaw_deg;   /* mounting, degrees; -360 to 360; default 0 */
+    float mount_pitch_deg; /* mounting, degrees; -360 to 360; default 0 */
+    float mount_roll_deg;  /* mounting, degrees; -360 to 360; default 0 */
+    float offset_m[3];     /* camera relative to the pose's reference point, body FRD, m; -1e4 to 1e4; default 0 */
 } goe_camera_t;
+
+/* How wrong the pose is, for the refined method: one-sigma each, as a data sheet or a look at a log gives them. Too large a
+ * figure wastes data; too small a one makes the sigmas too small by as much, refuses good points and makes obstacles
+ * suspect. A constant error is the same over a track: the filter estimates it beside the obstacle. */
+typedef struct {
+    float attitude_bias_deg;  /* constant attitude error about each body axis, mounting included, degrees; 1e-3 to 30;
+                                 default 0.5 */
+    float attitude_white_deg; /* attitude error that is new in each image, degrees; 1e-4 to 30; default 0.1 */
+    float attitude_drift_deg; /* random walk of the attitude error, degrees per square root of a second; 0 to 30; default 0 */
+    float height_bias_m;      /* constant error of goe_pose_t.height_m over the obstacle's ground, m; 1e-3 to 1e3;
+                                 default 0.5 */
+    float velocity_bias_m_s;  /* constant error of the own horizontal velocity, each axis, m/s; 0 to 100; default 0.05 */
+    float position_walk_m;    /* random walk of the own position, m per square root of a second; 0 to 100; default 0.05 */
+} goe_navigation_t;
+
+/* How wrong the features are, for the refined method: one-sigma each. */
+typedef struct {
+    float point_px;    /* error of an image point, new in each image, px; 0.05 to 100; default 0.5. Rounding alone: 0.3 */
+    float box_share;   /* error of left, right and top, added to it, as a fraction of the silhouette's width; 0 to 1;
+                          default 0. Bounding boxes of a detector: about 0.025 */
+    float correlation; /* of a point's error from image to image; 0 to 0.95; default 0. Detectors: about 0.5 */
+    float shape_share; /* model error of the disc: how far a real silhouette departs from a cylinder's, as a fraction of its
+                          width; 0 to 1; default 0. Cars as discs: about 0.12 */
+} goe_detector_t;
+
+/* The window method, Section 4 of the paper. The refined method uses none of these. */
+typedef struct {
+    int points;               /* image points in the window of (5), also of the sliding means; 3 to GOE_WINDOW_MAX; default 8
+                                 (or GOE_WINDOW_MAX, if that is less) */
+    int line_points;          /* model auto: line points before the line is reported; 1 to 1000; default 8 */
+    float edge_min_px;        /* an edge counts if its ends are farther apart in the raw image, px; 0 to 1e4; default 10 */
+    float orientation_min_px; /* ... and has an orientation if they differ by more in aligned y, px; 0 to 1e4; default 2 */
+    float side_min_px;        /* length is skipped while an end of the side edge is nearer to x' = 0, px; 0.1 to 1e4;
+                                 default 10 */
+    int orientation_memory;   /* images that the low-pass of the orientation remembers; 1 to 1000; default 20 */
+    float min_baseline_m;     /* least spread of the flown baseline, root of its summed squares, m; 1e-3 to 1e4;
+                                 default 0.1 */
+} goe_window_settings_t;
+
+typedef struct {
+    float typical_size_m; /* width that the range is first guessed from, to a factor of 3, m; 0.1 to 1e3; default 6 */
+    float gate_sigma;     /* a point farther off than this is left out, sigmas; 1 to 100; default 5 */
+    float huber_sigma;    /* a point farther off than this counts less, sigmas; 0.5 to 100; default 2.5 */
+    float misfit_max;     /* goe_estimate_t.misfit above which the obstacle is suspect; 0.01 to 1e3; default 1.9. Less where
+                             shape_share or box_share stand for what is the same in every image */
+    bool top_is_highest;  /* `top` is the highest point in the image also when seen from above the roof: see goe_image_t.top;
+                             default false */
+} goe_refined_settings_t;
 
 typedef struct {
     goe_camera_t camera;
-    goe_method_t method;       /* default refined */
-    goe_model_t model;         /* auto, disc or line; default auto */
-    bool heading_auto;         /* default true: T's Z axis = the vehicle's yaw at the track's first image */
-    float heading_deg;         /* otherwise this: clockwise from north, -360 to 360; default 0 */
-    int window;                /* points in the window of (5), also of the sliding means; 3 to GOE_WINDOW_MAX; paper: 8 */
-    int line_points;           /* auto: line points before the line is reported; 1 to 1000; paper: 8 */
-    float edge_min_px;         /* an edge counts if its ends are farther apart in the raw image; 0 to 1e4; paper: 10 */
-    float orientation_min_px;  /* ... and has an orientation if they differ by more in aligned y; 0 to 1e4; paper: 2 */
-    float side_min_px;         /* length is skipped while an end of the side edge is nearer to x' = 0; 0.1 to 1e4;
-                                  paper: 10 */
-    int orientation_memory;    /* images that the low-pass of the orientation remembers; 1 to 1000; paper: 20 */
-    float min_baseline_m;      /* root of the summed squared spread of the flown baseline; 1e-3 to 1e4; default 0.1 */
-    /* the refined method only, from here on */
-    goe_noise_t noise;
-    float typical_size_m;      /* width that the range is first guessed from, to a factor of 3; 0.1 to 1e3; default 6 */
-    float gate_sigma;          /* a point farther off than this is left out; 1 to 100; default 5 */
-    float huber_sigma;         /* a point farther off than this counts less; 0.5 to 100; default 2.5 */
-    float misfit_max;          /* misfit (goe_estimate_t) above which the obstacle is suspect; 0.01 to 1e3; default 1.9. Less
-                                  where shape_share or size_share stand for what is the same in every image */
-    bool top_is_highest;       /* the detector's `top` is the highest point in the image, also seen from above the roof;
-                                  default false: see goe_image_t.top */
+    goe_method_t method; /* window or refined; default refined (if compiled in) */
+    goe_model_t model;   /* auto, disc or line; default auto */
+    bool heading_auto;   /* T's Z axis = the vehicle's yaw at the track's first image; default true */
+    float heading_deg;   /* otherwise this: clockwise from north, degrees; -360 to 360; default 0 */
+    goe_navigation_t navigation;
+    goe_detector_t detector;
+    goe_window_settings_t window;
+    goe_refined_settings_t refined;
 } goe_settings_t;
 
 /* ----------------------------------------------------------------------------------------------------------- input -- */
@@ -218,7 +276,7 @@ typedef struct {
 /* Where the aircraft was AT THE TIME OF EXPOSURE, not when the image arrived.
  * A jump of the autopilot's own filter is not motion. Whenever the filter resets, increment reset_count; give the
  * position it jumped by, when it is known: new minus old, summed over all resets since the last image that was taken,
- * that is, not refused whole (GOE_NOT_FINITE to GOE_BAD_ATTITUDE): after a refusal the same delta must be told again.
+ * that is, not refused whole (GOE_NOT_FINITE to GOE_BAD_ATTITUDE): after a refusal the same delta must be given again.
  * Known: compensated, the track goes on. Unknown, and also when heading or attitude jumped: reset_delta_known = false,
  * the track starts anew with this image. */
 typedef struct {
@@ -241,8 +299,8 @@ typedef struct {
 
 /* One image of one obstacle. Any subset of the features may be seen.
  * Disc: left and right. Line and box: two or three base corners; refined also finds a box by left and right alone when one of
- * its faces turns away in flight: before that it is told as a disc about its middle, whose width is the lateral extent of what
- * is seen of it. Height: top, and a solution of any model.
+ * its faces turns away in flight: before that it is reported as a disc about its middle, whose width is the lateral extent of
+ * what is seen of it. Height: top, and a solution of any model.
  * A bounding box is upright in the image, not in the world: when the camera rolls, its sides touch the top and the foot
  * of a tall obstacle, and the width comes out too large (a mast of 6 m by 30 m: 11 m at 10 degrees of roll) without any
  * sign of it. Banked, give silhouette points or leave left and right unseen. */
@@ -252,7 +310,7 @@ typedef struct {
     goe_pixel_t top;         /* point of the roof's edge over the nearest base corner, of a disc the nearest point of the
                                 upper rim; of a bounding box: the top side's middle. Seen from below the roof and
                                 not far from the axis it is the highest point in the image; from above, the highest one
-                                is another: top_is_highest */
+                                is another: refined.top_is_highest */
     goe_pixel_t base_left, base_near, base_right; /* visible corners of the base on the ground, in image order;
                                 base_near lies between two visible faces, and is not seen when one face alone is */
 } goe_image_t;
@@ -264,12 +322,13 @@ typedef struct {
 #define GOE_HAS_LENGTH 0x02u      /* length: line or box, side edge seen from aside */
 #define GOE_HAS_HEIGHT 0x04u      /* height */
 #define GOE_HAS_ORIENTATION 0x08u /* orientation, other_side, both axes */
-#define GOE_HAS_CENTER 0x10u      /* center: disc; or line or box with length */
+#define GOE_HAS_CENTER 0x10u      /* centre: disc; or line or box with length */
 #define GOE_HAS_WIDTH 0x20u       /* width */
 
 /* One-sigma of each quantity; units as the quantity.
- * Refined: of the true error, as far as goe_noise_t tells the truth; a quantity is valid once its sigma was below 25 % (x0,
- * z0: of the range at the filter's start), 30 % (width, length, height) or 10 degrees in two images in a row.
+ * Refined: of the true error, as far as goe_navigation_t and goe_detector_t describe the sensors; a quantity is valid once its
+ * sigma was below 25 % (x0, z0: of the range at the filter's start), 30 % (width, length, height) or 10 degrees in two images
+ * in a row.
  * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
  * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:
  * then the orientation's is 0, and those of length and height hold only what the solution gives them. */
@@ -278,15 +337,16 @@ typedef struct {
 } goe_sigma_t;
 
 typedef struct {
-    goe_method_t method;   /* that gave the answer; refined also while that has started and knows nothing yet; 0 if none */
+    goe_method_t method;   /* behind this estimate; refined once the filter has started, even while no quantity is valid yet;
+                              0 if none */
     goe_model_t model;     /* none (nothing solved), disc, line or box: the model behind x0 to width and the centre */
     unsigned valid;        /* GOE_HAS_... */
     bool fresh;            /* x0 to width are solved from the latest image; false: stale, the last good answer. Window:
                               length, height and orientation are the latest measured, and have no age of their own */
     bool suspect;          /* refined: the residuals do not fit a static obstacle of this model (misfit > misfit_max): it
-                              moves, or it is of another shape, or the noise is larger than told; or a disc was asked for
-                              and its silhouette is not that of one; or what was told as base corners proved to be none and
-                              is left out. Do not trust the rest */
+                              moves, or it is of another shape, or the errors are larger than given; or a disc was asked for
+                              and its silhouette is not that of one; or what was given as base corners proved to be none and
+                              is left out. The sigmas may then be too small: widen the margins, never drop a warning */
     int points;            /* images behind the answer: the window, or all that were used; at most 32767; 0 if none */
     float age_s;           /* since the image of the last solution, refused images included; 0 if fresh or none; at
                               most 4000. It stands still when goe_update is not called */
@@ -305,10 +365,10 @@ typedef struct {
     float residual;        /* window: root mean square residual of (5), in the rows' own unit m/S; refined: 0 */
     float baseline_m;      /* window: root of the summed squared spread of the camera's path over the window; refined:
                               distance of the camera from where the track began */
-    float nis;             /* refined: normalised innovation squared of the latest image, and how many rows made it: */
-    int nis_rows;          /* its expectation; 0 if the image gave none */
-    float misfit;          /* refined: mean of nis over nis_rows, of the track's latest 64 images, begun with eight times 0;
-                              1 is what goe_noise_t lets expect */
+    float nis;             /* refined: normalised innovation squared of the latest image ... */
+    int nis_rows;          /* ... and how many rows made it, which is its expectation; 0 if the image gave none */
+    float misfit;          /* refined: running mean of nis / nis_rows over the last 64 images, seeded with eight zeros; 1 is
+                              what the settings predict */
     goe_sigma_t sigma;
 } goe_estimate_t;
 
@@ -320,27 +380,31 @@ typedef struct {
 
 /* ------------------------------------------------------------------------------------------------------- functions -- */
 
-/* Sets every field of *settings: the refined method, for the noise of a small aircraft's usual sensors; the paper's values
- * for the window; no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are 0 and must be set by the caller. A
- * null pointer is ignored. */
+/* Sets every field of *settings to its default: the refined method (if compiled in), for the errors of a small aircraft's
+ * usual sensors; the paper's values for the window; no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are 0 and
+ * must be set by the caller. A null pointer is ignored.
+ * Cost: at most 1500 instructions, 128 bytes of stack. */
 void goe_settings_default(goe_settings_t *settings);
 
 /* Checks *settings, copies them and starts with an empty track and zeroed counters.
  *   estimator_size  sizeof(goe_estimator_t) as the caller's compiler sees it
  *   bad_field       where to put the name of the first bad setting ("camera.fx_px", ...); null if not wanted.
  *                   Set to null unless GOE_BAD_SETTINGS is returned.
- * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS; on failure the estimator is left as it was. */
+ * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS (a method that was left out among these); on failure the estimator is
+ * left as it was.
+ * Cost: at most 4000 instructions, 160 bytes of stack. */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 
-/* Takes one image and tells the estimate after it.
+/* Takes one image and reports the estimate after it.
  *   estimate  written by every call; all zero (valid = 0) with GOE_BAD_ARGUMENT and GOE_NOT_INITIALISED. If it is null
  *             the image is not taken: GOE_BAD_ARGUMENT
  * Returns GOE_OK, a positive status, or one of GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE, GOE_BAD_ARGUMENT,
- * GOE_NOT_INITIALISED. If several faults meet in one image all are counted; a failed solution is told rather than a
+ * GOE_NOT_INITIALISED. If several faults meet in one image all are counted; a failed solution is reported rather than a
  * feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
- * Cost: bounded; no loop runs longer than GOE_WINDOW_MAX or 20. */
+ * Cost: at most 25000 instructions, 1024 bytes of stack; 30000 with lens distortion; window: 2550. No loop runs longer than
+ * GOE_WINDOW_MAX or 20. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
 /* The quantities of goe_covariance, in this order. */
@@ -350,7 +414,8 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  * and columns of a quantity that is not valid there are 0. Of the window's answer, and of a stale one: the sigmas squared
  * on the diagonal.
  *   covariance  written by every call unless null; all zero on failure
- * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED. */
+ * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED.
+ * Cost: at most 8500 instructions, 800 bytes of stack. */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
 /* What the aircraft is about to do: fly on from the latest image's position at constant velocity. Slower than 0.1 m/s over
@@ -369,35 +434,43 @@ typedef struct {
     float miss_m;      /* that distance; 0 if the path crosses the outline */
     float clearance_m; /* camera above the top at that time; negative: below it. Descending across the outline: where it
                           leaves it, which is the least. 0 if the height is not known */
-    float time_sd_s;   /* 0 if time_s is. Along a side that may lean either way from the path it spans that side */
-    float miss_sd_m;   /* of a crossing path: of how far the outline would have to be moved for the path to miss it */
+    float time_sd_s;   /* 0 if time_s is. If a face is so nearly parallel to the path that either end may be the closest, it
+                          spans the whole face */
+    float miss_sd_m;   /* if the path crosses the outline: one sigma of the penetration depth */
     float clearance_sd_m;
     float violation;   /* probability, 0 to 1, that the margin and the clearance are both violated; if the height is not
                           known: that the margin is. The clearance is that of clearance_m: within the margin, but before
                           or after that time, a slope costs up to climb * margin_m / speed more, which is for
-                          goe_plan_t.clearance_m to allow for. Told too high, not too low, where the errors of distance
-                          and clearance are opposed */
+                          goe_plan_t.clearance_m to allow for. Conservative (too high, never too low) when the errors of
+                          distance and clearance are negatively correlated */
     bool has_clearance; /* the obstacle's height is known */
 } goe_hazard_t;
 
 /* Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. The outline is the disc, or the box
  * as far as it is known: without orientation or length the circle of its width about the reference point, without width
- * (GOE_HAS_WIDTH) that point alone, so that margin_m has to cover the obstacle's size.
+ * (GOE_HAS_WIDTH) that point alone, so that margin_m has to cover the obstacle's size. A suspect or stale estimate asks for
+ * wider margins, not for silence: README.md, "Going around, or not".
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,
- * GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED. Cost: bounded; no loop runs longer than 10. */
+ * GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED.
+ * Cost: at most 17000 instructions, 1000 bytes of stack. No loop runs longer than 10. */
+#if GOE_WITH_HAZARD
 GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard);
+#endif
 
 /* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
- * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED. */
+ * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED.
+ * Cost: at most 1200 instructions, 64 bytes of stack. */
 goe_status_t goe_reset(goe_estimator_t *estimator);
 
-/* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number. */
+/* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number.
+ * Cost: at most 1500 instructions, 32 bytes of stack. */
 const char *goe_status_text(goe_status_t status);
 
 /* What the arithmetic of the library does on this machine, with the flags that goe_self_check.c was compiled with (give all
- * of lib/ the same): 0 if it is the IEEE 754 single precision
- * arithmetic that bit identity rests on, otherwise a sum of GOE_SELF_... */
+ * of lib/ the same): 0 if it is the IEEE 754 single precision arithmetic that bit identity rests on, otherwise a sum of
+ * GOE_SELF_...
+ * Cost: at most 2500 instructions, 160 bytes of stack. */
 unsigned goe_self_check(void);
 #define GOE_SELF_CONTRACTED 0x01u   /* a*b + c is rounded once (fused): compile with -ffp-contract=off */
 #define GOE_SELF_REASSOCIATED 0x02u /* sums or products are reordered: -ffast-math, -fassociative-math */

@@ -4,15 +4,7 @@
 #include <string.h>
 
 #include "maths/goe_angle.h"
-
-/* The filter is as it was when it gave the estimate; it may be another's since. */
-static bool is_of_filter(const goe_estimate_t *estimate) {
-    return estimate->method == GOE_METHOD_REFINED && estimate->fresh;
-}
-
-float goe_latest_height_bias(const goe_estimator_t *estimator) {
-    return is_of_filter(goe_latest_estimate(estimator)) ? estimator->filter.state[GOE_HEIGHT_BIAS] : 0.0f;
-}
+#include "refined/goe_quantities.h"
 
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
     const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
@@ -20,6 +12,12 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         covariance[i][i] = of[i] * of[i];
     }
+}
+
+#if GOE_WITH_REFINED
+/* The filter is as it was when it gave the estimate; it may be another's since. */
+static bool is_of_filter(const goe_estimate_t *estimate) {
+    return estimate->method == GOE_METHOD_REFINED && estimate->fresh;
 }
 
 static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
@@ -36,14 +34,38 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
     }
 }
 
-void goe_latest_covariance(const goe_estimator_t *estimator, goe_zero_t zero, goe_covariance_t covariance) {
+/* False if the estimate is not the filter's. */
+static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
     const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    if (!is_of_filter(estimate)) {
+        return false;
+    }
+    goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, from_datum, covariance);
+    keep_valid(estimate->valid, covariance);
+    return true;
+}
+
+float goe_latest_height_bias(const goe_estimator_t *estimator) {
+    return is_of_filter(goe_latest_estimate(estimator)) ? estimator->filter.state[GOE_HEIGHT_BIAS] : 0.0f;
+}
+#else
+static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
+    (void)estimator;
+    (void)from_datum;
+    (void)covariance;
+    return false;
+}
+
+float goe_latest_height_bias(const goe_estimator_t *estimator) {
+    (void)estimator;
+    return 0.0f;
+}
+#endif
+
+void goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
     memset(covariance, 0, sizeof(goe_covariance_t));
-    if (is_of_filter(estimate)) {
-        goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, zero, covariance);
-        keep_valid(estimate->valid, covariance);
-    } else {
-        covariance_of_sigmas(&estimate->sigma, covariance);
+    if (!covariance_of_filter(estimator, from_datum, covariance)) {
+        covariance_of_sigmas(&goe_latest_estimate(estimator)->sigma, covariance);
     }
 }
 
@@ -58,6 +80,6 @@ goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[G
     if (!(goe_latest_estimate(estimator)->valid & GOE_HAS_POSITION)) {
         return GOE_COLLECTING;
     }
-    goe_latest_covariance(estimator, GOE_FROM_GROUND, covariance);
+    goe_latest_covariance(estimator, false, covariance);
     return GOE_OK;
 }

@@ -2,19 +2,34 @@
 #ifndef GOE_COVARIANCE_H
 #define GOE_COVARIANCE_H
 
-#include "refined/goe_quantities.h"
+#include "goe.h"
 
-#define GOE_READY 0x474F4532u /* "GOE2" */
+#define GOE_READY 0x474F4533u /* "GOE3" */
 
 typedef float goe_covariance_t[GOE_QUANTITIES][GOE_QUANTITIES];
 
-/* The estimate after the latest image. */
-static inline const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
-    return estimator->settings.method == GOE_METHOD_REFINED ? &estimator->estimate : &estimator->window.estimate;
+static inline bool goe_is_refined(const goe_estimator_t *estimator) {
+#if GOE_WITH_WINDOW && GOE_WITH_REFINED
+    return estimator->settings.method == GOE_METHOD_REFINED;
+#else
+    (void)estimator;
+    return GOE_WITH_REFINED != 0;
+#endif
 }
 
-/* goe_covariance() of an estimator that has a position, the height's rows and columns counted from `zero`. */
-void goe_latest_covariance(const goe_estimator_t *estimator, goe_zero_t zero, goe_covariance_t covariance);
+/* The estimate after the latest image. */
+static inline const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
+#if !GOE_WITH_REFINED
+    return &estimator->window.estimate;
+#elif !GOE_WITH_WINDOW
+    return &estimator->estimate;
+#else
+    return goe_is_refined(estimator) ? &estimator->estimate : &estimator->window.estimate;
+#endif
+}
+
+/* goe_covariance() of an estimator that has a position. from_datum: the top's height is counted from the altimeter's zero. */
+void goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance);
 
 /* Constant error of goe_pose_t.height_m that the height of the latest estimate has been freed from, and the camera's has
  * not; 0 if it has none. */

@@ -19,12 +19,19 @@
 #define AGE_LIMIT_US 4000000000u
 #define S_PER_US 1.0e-6f
 
-static bool is_refined(const goe_estimator_t *estimator) { return estimator->settings.method == GOE_METHOD_REFINED; }
-
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
 static int64_t solved_time_us(const goe_estimator_t *estimator) {
-    return is_refined(estimator) ? estimator->estimate_time_us : estimator->window.solved_time_us;
+#if GOE_WITH_REFINED
+    if (goe_is_refined(estimator)) {
+        return estimator->estimate_time_us;
+    }
+#endif
+#if GOE_WITH_WINDOW
+    return estimator->window.solved_time_us;
+#else
+    return GOE_TIME_UNKNOWN;
+#endif
 }
 
 /* The estimate grows old while images are refused, too, as far as their times can be believed. */
@@ -40,6 +47,22 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
     estimate->age_s = (float)limited_us * S_PER_US;
 }
 
+static void forget_track(goe_estimator_t *estimator) {
+    memset(&estimator->motion, 0, sizeof estimator->motion);
+    estimator->motion.time_us = GOE_TIME_UNKNOWN;
+#if GOE_WITH_WINDOW
+    goe_window_clear(&estimator->window);
+#endif
+#if GOE_WITH_REFINED
+    goe_filter_clear(&estimator->filter);
+    memset(&estimator->estimate, 0, sizeof estimator->estimate);
+    estimator->estimate_time_us = GOE_TIME_UNKNOWN;
+#endif
+}
+
+/* ------------------------------------------------------------------------------------------------------------- refined -- */
+
+#if GOE_WITH_REFINED
 /* No new answer: the last one grows old, and follows the motion. */
 static void grow_old(goe_estimator_t *estimator) {
     goe_estimate_t *estimate = &estimator->estimate;
@@ -48,21 +71,6 @@ static void grow_old(goe_estimator_t *estimator) {
         estimate->x_m = estimate->x0_m - estimator->motion.dx_m;
         estimate->z_m = estimate->z0_m - estimator->motion.dz_m;
     }
-}
-
-/* A filter that has not started, or has only a disc where a box was asked for, leaves the answer to the window; a stale
- * answer of its own is worth more than none, or than a stale one of the window's. */
-static goe_status_t report_window(goe_estimator_t *estimator, goe_status_t status) {
-    goe_estimate_t *estimate = &estimator->estimate;
-    if (estimator->window.estimate.fresh || estimate->method != GOE_METHOD_REFINED ||
-        !(estimate->valid & GOE_HAS_POSITION)) {
-        *estimate = estimator->window.estimate;
-        estimator->estimate_time_us = estimator->window.solved_time_us;
-        return status;
-    }
-    grow_old(estimator);
-    goe_report_fit(&estimator->filter, &estimator->settings, estimate);
-    return status == GOE_COLLECTING ? GOE_HELD : status;
 }
 
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_image_t *image, const goe_faults_t *faults,
@@ -87,43 +95,80 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_image_t
     return (estimator->estimate.valid & GOE_HAS_POSITION) ? GOE_HELD : GOE_COLLECTING;
 }
 
-/* --------------------------------------------------------------------------------------------------------- the chain -- */
-
-static void forget_track(goe_estimator_t *estimator) {
-    memset(&estimator->motion, 0, sizeof estimator->motion);
-    memset(&estimator->estimate, 0, sizeof estimator->estimate);
-    goe_window_clear(&estimator->window);
-    goe_filter_clear(&estimator->filter);
-    estimator->motion.time_us = GOE_TIME_UNKNOWN;
-    estimator->estimate_time_us = GOE_TIME_UNKNOWN;
-}
-
-static goe_status_t estimate_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
-    unsigned swapped;
-    const goe_settings_t *settings = &estimator->settings;
-    goe_filter_t *filter = &estimator->filter;
-    const goe_window_task_t task = goe_filter_reports(filter, settings) ? GOE_WINDOW_COLLECTS : GOE_WINDOW_SOLVES;
-    const goe_status_t status = goe_window_update(&estimator->window, settings, view, task, faults);
-    const bool measured = goe_refined_update(filter, settings, view, &swapped);
-    for (unsigned i = 0; i < swapped && task == GOE_WINDOW_COLLECTS; i++) { /* otherwise the window has counted */
-        goe_count_cause(estimator->causes, GOE_SWAPPED);
-    }
-    if (swapped > 0 && faults->first == GOE_OK) {
-        faults->first = GOE_SWAPPED;
-    }
-    const goe_status_t reported = goe_filter_reports(filter, settings)
-                                      ? report_refined(estimator, view->image, faults, measured)
-                                      : report_window(estimator, status);
-    estimator->estimate.suspect = estimator->estimate.suspect || filter->health.base_refused;
-    return reported;
-}
-
 /* North and east of an older answer are those of the autopilot's filter before its reset. */
 static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
     if (estimate->valid & GOE_HAS_CENTER) {
         estimate->center_north_m += delta_ned_m[0];
         estimate->center_east_m += delta_ned_m[1];
     }
+}
+
+/* Points out of order: pairs that the refined method found, once for each. */
+static void note_swapped(goe_estimator_t *estimator, unsigned swapped, bool count, goe_faults_t *faults) {
+    for (unsigned i = 0; i < swapped && count; i++) {
+        goe_count_cause(estimator->causes, GOE_SWAPPED);
+    }
+    if (swapped > 0 && faults->first == GOE_OK) {
+        faults->first = GOE_SWAPPED;
+    }
+}
+
+#if GOE_WITH_WINDOW
+/* A filter that has not started, or has only a disc where a box was asked for, leaves the answer to the window; a stale
+ * answer of its own is worth more than none, or than a stale one of the window's. */
+static goe_status_t report_window(goe_estimator_t *estimator, goe_status_t status) {
+    goe_estimate_t *estimate = &estimator->estimate;
+    if (estimator->window.estimate.fresh || estimate->method != GOE_METHOD_REFINED ||
+        !(estimate->valid & GOE_HAS_POSITION)) {
+        *estimate = estimator->window.estimate;
+        estimator->estimate_time_us = estimator->window.solved_time_us;
+        return status;
+    }
+    grow_old(estimator);
+    goe_report_fit(&estimator->filter, &estimator->settings, estimate);
+    return status == GOE_COLLECTING ? GOE_HELD : status;
+}
+
+static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
+    unsigned swapped;
+    const goe_settings_t *settings = &estimator->settings;
+    goe_filter_t *filter = &estimator->filter;
+    const goe_window_task_t task = goe_filter_reports(filter, settings) ? GOE_WINDOW_COLLECTS : GOE_WINDOW_SOLVES;
+    const goe_status_t status = goe_window_update(&estimator->window, settings, view, task, faults);
+    const bool measured = goe_refined_update(filter, settings, view, &swapped);
+    note_swapped(estimator, swapped, task == GOE_WINDOW_COLLECTS, faults); /* a window that solves has counted */
+    return goe_filter_reports(filter, settings) ? report_refined(estimator, view->image, faults, measured)
+                                                : report_window(estimator, status);
+}
+#else
+static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
+    unsigned swapped;
+    const bool measured = goe_refined_update(&estimator->filter, &estimator->settings, view, &swapped);
+    const bool reports = goe_filter_reports(&estimator->filter, &estimator->settings);
+    note_swapped(estimator, swapped, true, faults);
+    return report_refined(estimator, view->image, faults, measured && reports);
+}
+#endif
+
+static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
+    const goe_status_t status = update_refined(estimator, view, faults);
+    estimator->estimate.suspect = estimator->estimate.suspect || estimator->filter.health.base_refused;
+    return status;
+}
+#endif
+
+/* --------------------------------------------------------------------------------------------------------- the chain -- */
+
+static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
+    if (goe_motion_lost(&estimator->motion, pose)) {
+        forget_track(estimator);
+        estimator->causes[RESETS] += estimator->causes[RESETS] < UINT32_MAX ? 1u : 0u;
+    }
+#if GOE_WITH_REFINED
+    if (goe_is_refined(estimator) && goe_motion_reset(&estimator->motion, pose)) {
+        move_center(&estimator->estimate, pose->reset_delta_ned_m);
+    }
+#endif
 }
 
 static void open_view(goe_estimator_t *estimator, const goe_image_t *image, goe_view_t *view, goe_faults_t *faults) {
@@ -137,18 +182,18 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, goe_
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image) {
     goe_view_t view;
     goe_faults_t faults = {estimator->causes, GOE_OK};
-    if (goe_motion_lost(&estimator->motion, &image->pose)) {
-        forget_track(estimator);
-        estimator->causes[RESETS] += estimator->causes[RESETS] < UINT32_MAX ? 1u : 0u;
-    }
-    if (is_refined(estimator) && goe_motion_reset(&estimator->motion, &image->pose)) {
-        move_center(&estimator->estimate, image->pose.reset_delta_ned_m);
-    }
+    follow_reset(estimator, &image->pose);
     open_view(estimator, image, &view, &faults);
-    if (is_refined(estimator)) {
-        return estimate_refined(estimator, &view, &faults);
+#if GOE_WITH_REFINED
+    if (goe_is_refined(estimator)) {
+        return take_refined(estimator, &view, &faults);
     }
+#endif
+#if GOE_WITH_WINDOW
     return goe_window_update(&estimator->window, &estimator->settings, &view, GOE_WINDOW_SOLVES, &faults);
+#else
+    return GOE_COLLECTING; /* not reached: goe_init() admits no other method */
+#endif
 }
 
 /* ------------------------------------------------------------------------------------------------------- public calls -- */

@@ -147,10 +147,14 @@ typedef struct {
 
 typedef struct {
     goe_motion_t motion;
+#if GOE_WITH_WINDOW
     goe_window_t window;
+#endif
+#if GOE_WITH_REFINED
     goe_filter_t filter;
     int64_t estimate_time_us; /* image behind the estimate */
     goe_estimate_t estimate;  /* after the latest image, by whatever method */
+#endif
     goe_settings_t settings;
     float camera_to_body[9];
     uint32_t causes[GOE_CAUSES];

@@ -1,51 +1,26 @@
 /* Names of the statuses. SPDX-License-Identifier: MIT */
 #include "goe.h"
 
+#define CALLS_FROM GOE_BAD_SETTINGS /* the numbers of the calls' statuses begin here, apart from those of images */
+
+/* One after the other, so that no addresses have to be kept: from the highest number down. */
+static const char of_images[] =
+    "nothing_seen\0held\0collecting\0partial\0ok\0behind_camera\0lens_failed\0swapped\0edge_on\0"
+    "no_edge\0bad_height\0no_baseline\0no_parallax\0passed\0not_finite\0out_of_range\0"
+    "bad_time\0bad_attitude\0";
+static const char of_calls[] = "bad_settings\0bad_argument\0not_initialised\0";
+
 const char *goe_status_text(goe_status_t status) {
-    switch (status) {
-        case GOE_OK:
-            return "ok";
-        case GOE_PARTIAL:
-            return "partial";
-        case GOE_COLLECTING:
-            return "collecting";
-        case GOE_HELD:
-            return "held";
-        case GOE_NOTHING_SEEN:
-            return "nothing_seen";
-        case GOE_BEHIND_CAMERA:
-            return "behind_camera";
-        case GOE_LENS_FAILED:
-            return "lens_failed";
-        case GOE_SWAPPED:
-            return "swapped";
-        case GOE_EDGE_ON:
-            return "edge_on";
-        case GOE_NO_EDGE:
-            return "no_edge";
-        case GOE_BAD_HEIGHT:
-            return "bad_height";
-        case GOE_NO_BASELINE:
-            return "no_baseline";
-        case GOE_NO_PARALLAX:
-            return "no_parallax";
-        case GOE_PASSED:
-            return "passed";
-        case GOE_NOT_FINITE:
-            return "not_finite";
-        case GOE_OUT_OF_RANGE:
-            return "out_of_range";
-        case GOE_BAD_TIME:
-            return "bad_time";
-        case GOE_BAD_ATTITUDE:
-            return "bad_attitude";
-        case GOE_BAD_SETTINGS:
-            return "bad_settings";
-        case GOE_BAD_ARGUMENT:
-            return "bad_argument";
-        case GOE_NOT_INITIALISED:
-            return "not_initialised";
-        default:
-            return "unknown";
+    const int number = (int)status;
+    const bool of_image = number >= (int)GOE_BAD_ATTITUDE && number <= (int)GOE_NOTHING_SEEN;
+    const bool of_call = number >= (int)GOE_NOT_INITIALISED && number <= (int)CALLS_FROM;
+    const char *name = of_image ? of_images : of_calls;
+    if (!of_image && !of_call) {
+        return "unknown";
     }
+    for (int k = of_image ? (int)GOE_NOTHING_SEEN : (int)CALLS_FROM; k > number; k--) {
+        while (*name++ != '\0') {
+        }
+    }
+    return name;
 }

@@ -32,7 +32,7 @@ typedef struct {
     char *camera, *frames; /* after parse_options(): the paths to read */
     char **set;            /* NAME=VALUE, null at the end; null if there are none */
     int window;
-    int residuals, help, version;
+    int residuals, help, version, settings;
 } options_t;
 
 static void free_options(options_t *options) {
@@ -115,7 +115,7 @@ static bool parse_arguments(poptContext context, options_t *options) {
     if (result < -1) {
         return complain(poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(result));
     }
-    if (options->help || options->version) {
+    if (options->help || options->version || options->settings) {
         return true;
     }
     const char *directory = poptGetArg(context);
@@ -134,12 +134,7 @@ static bool set_by_name(char *const *set, goe_settings_t *settings) {
             return complain("--set", fault.text);
         }
     }
-    const char *bad_field = settings_out_of_range(settings);
-    if (bad_field != NULL) {
-        (void)snprintf(fault.text, sizeof fault.text, "%s: out of range", bad_field);
-        return complain("--set", fault.text);
-    }
-    return true;
+    return settings_in_range(settings, &fault) || complain("--set", fault.text);
 }
 
 /* The window is checked before what is set by name, so that it is not blamed on that. */
@@ -147,7 +142,7 @@ static bool apply_options(const options_t *options, goe_settings_t *settings) {
     if (!parse_method(options->method, &settings->method) || !parse_model(options->model, &settings->model)) {
         return false;
     }
-    settings->window = options->window;
+    settings->window.points = options->window;
     return check_window(options) && set_by_name(options->set, settings);
 }
 
@@ -302,11 +297,13 @@ static int run(poptContext context, options_t *options) {
     if (!parse_arguments(context, options)) {
         return EXIT_BAD_INPUT;
     }
-    if (!options->help && !options->version) {
+    if (!options->help && !options->version && !options->settings) {
         return replay(options);
     }
     if (options->help) {
         print_help(context);
+    } else if (options->settings) {
+        (void)settings_list(stdout);
     } else {
         (void)puts(PROGRAM " " GOE_VERSION);
     }
@@ -316,7 +313,7 @@ static int run(poptContext context, options_t *options) {
 int main(int argc, char **argv) {
     goe_settings_t defaults;
     goe_settings_default(&defaults);
-    options_t options = {.window = defaults.window};
+    options_t options = {.window = defaults.window.points};
     const struct poptOption table[] = {
         {"method", 0, POPT_ARG_STRING, &options.method, 0, "how to estimate; refined by default", "refined|window"},
         {"model", 0, POPT_ARG_STRING, &options.model, 0, "what stands for the obstacle; auto by default",
@@ -329,6 +326,8 @@ int main(int argc, char **argv) {
          "FILE"},
         {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},
         {"frames", 0, POPT_ARG_STRING, &options.frames, 0, "in place of DIR/frames.csv", "FILE"},
+        {"settings", 0, POPT_ARG_NONE, &options.settings, 0,
+         "print every setting and exit: name, unit, least, most, default, text, between tabs", NULL},
         {"help", 'h', POPT_ARG_NONE, &options.help, 0, "print this and exit", NULL},
         {"version", 0, POPT_ARG_NONE, &options.version, 0, "print the version and exit", NULL},
         POPT_TABLEEND};

@@ -6,6 +6,8 @@
 #include "maths/goe_normal.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_HAZARD
+
 #define SIGMA_LEAST 1.0e-6f
 #define MOST 1.0e9f /* of any number reported */
 
@@ -31,3 +33,5 @@ float goe_affine_sigma(const goe_affine_t *affine, goe_covariance_t covariance) 
 float goe_affine_below(const goe_affine_t *affine, float limit, goe_covariance_t covariance) {
     return goe_normal_below((limit - affine->value) / goe_larger(goe_affine_sigma(affine, covariance), SIGMA_LEAST));
 }
+
+#endif

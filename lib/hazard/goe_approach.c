@@ -8,6 +8,8 @@
 #include "maths/goe_normal.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_HAZARD
+
 #define HOVER_M_S 0.1f /* slower than this is taken as standing still */
 #define SIGMA_LEAST 1.0e-6f
 
@@ -128,3 +130,5 @@ void goe_approach_find(const goe_outline_t *o, const goe_course_t *course, goe_c
     find_clearance(course, &lowest, share, height_m, &a->clearance);
     a->ahead = goe_outline_distance(o, a->time_s > 0.0f ? course->ahead : goe_outline_way_from(o, course));
 }
+
+#endif

@@ -4,6 +4,8 @@
 #include "hazard/goe_violation.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_HAZARD
+
 #define VELOCITY_MOST_M_S 1.0e3f
 #define DISTANCE_MOST_M 1.0e4f
 
@@ -41,7 +43,9 @@ goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan
     if (!(estimate->valid & GOE_HAS_POSITION)) {
         return GOE_COLLECTING;
     }
-    goe_latest_covariance(estimator, GOE_FROM_DATUM, covariance);
+    goe_latest_covariance(estimator, true, covariance);
     goe_violation_foresee(estimator, plan, covariance, hazard);
     return GOE_OK;
 }
+
+#endif

@@ -6,6 +6,8 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_HAZARD
+
 #define PARALLEL 1.0e-5f      /* sine of an angle between two directions that counts as none */
 #define CHORD_LEAST_M 1.0e-3f /* half chord that a derivative divides by */
 #define DISTANCE_LEAST_M 1.0e-6f
@@ -181,3 +183,5 @@ static goe_xz_t way_from_disc(const goe_outline_t *o, const goe_course_t *course
 goe_xz_t goe_outline_way_from(const goe_outline_t *o, const goe_course_t *course) {
     return o->box ? way_from_box(o, course) : way_from_disc(o, course);
 }
+
+#endif

@@ -4,6 +4,8 @@
 #include "hazard/goe_approach.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_HAZARD
+
 #define SIGMA_LEAST 1.0e-6f
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
@@ -78,3 +80,5 @@ void goe_violation_foresee(const goe_estimator_t *estimator, const goe_plan_t *p
     hazard->has_clearance = (estimate->valid & GOE_HAS_HEIGHT) != 0u;
     report(&outline, &course, &approach, plan, covariance, hazard);
 }
+
+#endif

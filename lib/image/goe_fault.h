@@ -9,6 +9,8 @@ typedef struct {
     goe_status_t first; /* GOE_OK: none yet */
 } goe_faults_t;
 
+GOE_STATIC_ASSERT(GOE_CAUSES == 1 - (int)GOE_BAD_ATTITUDE, every_fault_has_a_counter);
+
 static inline void goe_count_cause(uint32_t causes[GOE_CAUSES], goe_status_t fault) {
     uint32_t *counter = &causes[-(int)fault];
     *counter += *counter < UINT32_MAX ? 1u : 0u;

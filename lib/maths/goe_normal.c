@@ -1,5 +1,9 @@
 /* The normal distribution. SPDX-License-Identifier: MIT */
 #include "maths/goe_normal.h"
+
+#include "goe.h" /* for the parts */
+
+#if GOE_WITH_HAZARD
 #include "maths/goe_scalar.h"
 
 /* Minimax polynomial made by `python -m goe_tools minimax`. The upper tail is N(x)^-8, N = N1 + x (N2 + x (N3 + ...)), on
@@ -28,3 +32,5 @@ float goe_normal_below(float x) {
     const float tail = 1.0f / (n4 * n4);
     return x < 0.0f ? tail : 1.0f - tail;
 }
+
+#endif

@@ -14,6 +14,8 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_REFINED
+
 #define AHEAD_LEAST 0.01f  /* range below which a corner's direction is not compared */
 #define AHEAD_TINY 1.0e-3f /* ... or ordered */
 #define SUM_LEAST 1.0e-12f
@@ -221,7 +223,7 @@ static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe
 
 /* The corner of the roof nearest to the camera; seen from above the highest in the image is the farthest. */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
-    const bool highest = obs->settings->top_is_highest && o->top > 0.0f;
+    const bool highest = obs->settings->refined.top_is_highest && o->top > 0.0f;
     const bool right = o->right != highest;
     const bool back = o->far_half != highest;
     return right ? (back ? BACK_RIGHT : FRONT_RIGHT) : (back ? BACK_LEFT : FRONT_LEFT);
@@ -460,3 +462,5 @@ float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *sh
     const float sine2 = side_share2(filter, camera_m);
     return size2 + goe_square(shape->quantity[quantity].value) * orientation_rad2 / (sine2 + SINE2_LEAST);
 }
+
+#endif

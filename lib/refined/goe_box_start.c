@@ -7,6 +7,8 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_box.h"
 
+#if GOE_WITH_REFINED
+
 #define RANGE_LEAST_M 1.0f
 #define HEIGHT_LEAST_M 0.3f /* camera over ground: lower the corners' y say nothing */
 #define NEARER_MOST 1.7f    /* 1/range of a corner over the state's 1/range */
@@ -110,7 +112,7 @@ static float edge_sigma(const goe_observation_t *obs, const face_t *face, float 
     const float deep = face->range_m * face->range_m / face->height_m * pixel;
     const float wide = face->range_m * pixel;
     const float tilt =
-        face->range_m / face->height_m * (obs->settings->noise.attitude_bias_deg * GOE_RAD_PER_DEG) * x * x;
+        face->range_m / face->height_m * (obs->settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) * x * x;
     const float noise = sqrtf(deep * x * (deep * x) + wide * z * (wide * z) + tilt * tilt);
     const float sure = z * z - SURE_SIGMAS2 * deep * deep;
     return noise / goe_larger(x * x + goe_larger(sure, 0.0f), EDGE_LEAST_M2);
@@ -266,3 +268,5 @@ bool goe_box_start(goe_filter_t *filter, const goe_observation_t *obs) {
     start_box(filter, &box, obs->point[GOE_POINT_BASE_NEAR].usable);
     return true;
 }
+
+#endif

@@ -8,6 +8,8 @@
 #include "refined/goe_box.h"
 #include "refined/goe_disc.h"
 
+#if GOE_WITH_REFINED
+
 #define RANGE_SHARE 0.1f    /* one sigma of 1/Z0 over it, for a disc to change */
 #define DISC_FREEDOM 0.05f  /* what the disc's tangents left behind in the chord, of its width */
 #define AHEAD_LEAST 1.0e-3f /* of an end, units of Z0 */
@@ -77,7 +79,7 @@ static void add_top(const goe_observation_t *obs, goe_rows_t *rows) {
     const goe_point_t *right = &obs->point[GOE_POINT_RIGHT];
     const goe_xz_t middle = goe_observation_reference(obs);
     const float y = goe_observation_roof(obs);
-    const bool highest = obs->settings->top_is_highest && y > 0.0f;
+    const bool highest = obs->settings->refined.top_is_highest && y > 0.0f;
     const bool right_is_near = middle.x * obs->state[GOE_FRONT_X] + middle.z * obs->state[GOE_SIDE_X] < 0.0f;
     const float side = right_is_near != highest ? 0.5f : -0.5f;
     float *by =
@@ -293,3 +295,5 @@ void goe_chord_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     goe_shape_line(filter, filter->state, shape);
     shape->place_m2 = goe_square(PLACE_SHARE * shape->quantity[GOE_WIDTH].value);
 }
+
+#endif

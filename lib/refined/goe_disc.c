@@ -7,6 +7,8 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_REFINED
+
 #define AHEAD_LEAST 1.0e-3f /* centre, units of Z0: nearer gives no rows */
 #define TANGENT_AHEAD 0.02f /* third component of a tangent's unit vector */
 #define SINE_LEAST 1.0e-5f  /* of half the angle that the disc covers */
@@ -83,7 +85,7 @@ static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_fea
 static void add_top(const goe_observation_t *obs, const circle_t *o, float more, goe_rows_t *rows) {
     goe_gradient_t g;
     const float y = goe_observation_roof(obs);
-    const float side = obs->settings->top_is_highest && y > 0.0f ? -1.0f : 1.0f;
+    const float side = obs->settings->refined.top_is_highest && y > 0.0f ? -1.0f : 1.0f;
     const float share = 1.0f - side * o->sine;
     const goe_xz_t rim = {o->center.x * share, o->center.z * share};
     float *by = goe_rows_add_level(rows, obs, GOE_POINT_TOP, rim, y, more, &g);
@@ -125,8 +127,8 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     }
     const bool wide = outline_features(obs, &left, &right);
     const float width = wide ? obs->point[right].x - obs->point[left].x : 0.0f;
-    const float shape = obs->settings->noise.shape_share + (obs->base ? STAND_IN_SHAPE : 0.0f);
-    const float extra = goe_square(shape * width) + goe_square(obs->settings->noise.size_share * width);
+    const float shape = obs->settings->detector.shape_share + (obs->base ? STAND_IN_SHAPE : 0.0f);
+    const float extra = goe_square(shape * width) + goe_square(obs->settings->detector.box_share * width);
     add_tangent(obs, &circle, left, -1.0f, extra, rows);
     add_tangent(obs, &circle, right, 1.0f, extra, rows);
     add_top(obs, &circle, extra, rows);
@@ -140,29 +142,29 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 /* Flat ground, if the base lies clearly below the horizon; otherwise the typical size. */
 static float first_range_m(const goe_observation_t *obs, float size) {
-    const goe_noise_t *noise = &obs->settings->noise;
+    const goe_navigation_t *navigation = &obs->settings->navigation;
     if (obs->base && obs->height_m > 0.0f) {
         const float y = 0.5f * (obs->point[GOE_POINT_BASE_LEFT].y + obs->point[GOE_POINT_BASE_RIGHT].y);
-        const float sigma =
-            sqrtf(goe_square(noise->attitude_bias_deg * GOE_RAD_PER_DEG) +
-                  goe_square(noise->attitude_white_deg * GOE_RAD_PER_DEG) + goe_square(goe_observation_pixel(obs)));
+        const float sigma = sqrtf(goe_square(navigation->attitude_bias_deg * GOE_RAD_PER_DEG) +
+                                  goe_square(navigation->attitude_white_deg * GOE_RAD_PER_DEG) +
+                                  goe_square(goe_observation_pixel(obs)));
         if (y > GROUND_SIGMAS * sigma) {
             return obs->height_m / y;
         }
     }
-    return obs->settings->typical_size_m / size;
+    return obs->settings->refined.typical_size_m / size;
 }
 
 static void set_first_root(const goe_settings_t *settings, const float state[GOE_STATES], goe_triangle_t *root) {
-    const float bias = settings->noise.attitude_bias_deg * GOE_RAD_PER_DEG;
+    const float bias = settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG;
     const float top =
         goe_absolute(state[GOE_TOP]) > state[GOE_FRONT_X] ? goe_absolute(state[GOE_TOP]) : state[GOE_FRONT_X];
     memset(root, 0, sizeof *root);
     *goe_srif_at(root, GOE_BIAS_X, GOE_BIAS_X) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Y, GOE_BIAS_Y) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Z, GOE_BIAS_Z) =
-        1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->noise.velocity_bias_m_s));
-    *goe_srif_at(root, GOE_HEIGHT_BIAS, GOE_HEIGHT_BIAS) = 1.0f / settings->noise.height_m;
+        1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_m_s));
+    *goe_srif_at(root, GOE_HEIGHT_BIAS, GOE_HEIGHT_BIAS) = 1.0f / settings->navigation.height_bias_m;
     *goe_srif_at(root, GOE_BEARING, GOE_BEARING) = 1.0f;
     *goe_srif_at(root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0f / (RANGE_FREEDOM * state[GOE_INVERSE_RANGE]);
     *goe_srif_at(root, GOE_SIDE_X, GOE_SIDE_X) = 1.0f / state[GOE_FRONT_X];
@@ -239,3 +241,5 @@ void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     condition_state(filter, x);
     goe_shape_line(filter, x, shape);
 }
+
+#endif

@@ -3,6 +3,14 @@
 
 #include <string.h>
 
+#if GOE_WITH_REFINED
+
+GOE_STATIC_ASSERT(GOE_PHASE_BOX_OUTLINE <= UINT8_MAX, a_phase_fits_its_byte);
+GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_ORIENTATION | GOE_HAS_CENTER |
+                   GOE_HAS_WIDTH) <= UINT8_MAX,
+                  what_is_known_fits_its_byte);
+GOE_STATIC_ASSERT(GOE_BIAS_Y == GOE_BIAS_X + 1 && GOE_BIAS_Z == GOE_BIAS_X + 2, the_biases_follow_each_other);
+
 bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings) {
     return filter->phase >= (settings->model == GOE_MODEL_LINE ? GOE_PHASE_BOX_FACE : GOE_PHASE_DISC);
 }
@@ -42,3 +50,5 @@ void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->axes.start_dx_m = motion->dx_m;
     filter->axes.start_dz_m = motion->dz_m;
 }
+
+#endif

@@ -9,6 +9,8 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_REFINED
+
 typedef struct {
     size_t row[GOE_ROWS_MAX]; /* by residual */
     size_t count;
@@ -47,7 +49,7 @@ static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
 static float innovation(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, size_t row,
                         size_t middle) {
     float weight[GOE_STATES];
-    const float white = settings->noise.attitude_white_deg * GOE_RAD_PER_DEG;
+    const float white = settings->navigation.attitude_white_deg * GOE_RAD_PER_DEG;
     const float other = row == middle ? 0.0f : 1.0f;
     const float *a = rows->matrix->row[row];
     const float *b = rows->matrix->row[middle];
@@ -84,8 +86,8 @@ static void hold(const goe_rows_t *rows, const group_t *group, size_t row, float
 static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
                   belief_t *belief) {
     group_t group;
-    const float gate = settings->gate_sigma;
-    const float huber = settings->huber_sigma;
+    const float gate = settings->refined.gate_sigma;
+    const float huber = settings->refined.huber_sigma;
     gather(rows, along_x, &group);
     const float alone = group.count > 0 ? innovation(settings, filter, rows, group.middle, group.middle) : 0.0f;
     const bool common = alone <= gate * gate; /* a middle that is off itself tells nothing of the others */
@@ -116,7 +118,7 @@ GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);
 
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
     belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
-    const float correlation = settings->noise.correlation;
+    const float correlation = settings->detector.correlation;
     const float repeated = (1.0f + correlation) / (1.0f - correlation);
     judge(settings, filter, rows, true, &belief);
     judge(settings, filter, rows, false, &belief);
@@ -130,3 +132,5 @@ goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t 
     }
     return belief.verdict;
 }
+
+#endif

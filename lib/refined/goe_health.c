@@ -4,6 +4,8 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_chord.h"
 
+#if GOE_WITH_REFINED
+
 #define RECENT_MEMORY 0.125f /* of one image in recent_nis */
 #define MEAN_IMAGES 64       /* that mean_nis remembers */
 #define MEAN_SEEDS 8         /* images of NIS 0 that it is begun with: the first ones alone say little */
@@ -135,3 +137,5 @@ bool goe_health_is_lost(goe_filter_t *filter, const goe_settings_t *settings, go
     memset(health->refused, 0, sizeof health->refused);
     return true;
 }
+
+#endif

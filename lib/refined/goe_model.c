@@ -6,6 +6,8 @@
 #include "refined/goe_chord.h"
 #include "refined/goe_disc.h"
 
+#if GOE_WITH_REFINED
+
 bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs) {
     if (!goe_disc_start(obs, filter->state, &filter->root)) {
         return false;
@@ -62,3 +64,5 @@ void goe_model_shape(const goe_filter_t *filter, goe_shape_t *shape) {
         goe_disc_shape(filter, shape);
     }
 }
+
+#endif

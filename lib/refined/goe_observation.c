@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#if GOE_WITH_REFINED
+
 #define ABEAM 0.02f           /* third component of an aligned point's ray after the turn */
 #define FORWARD_LEAST 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
@@ -127,7 +129,7 @@ goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t
 goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature) {
     const float *h = obs->camera_to_axes;
     const goe_point_t *p = &obs->point[feature];
-    const float scale = (h[2] * p->x + h[5] * p->y + h[8]) * obs->settings->noise.pixel_px;
+    const float scale = (h[2] * p->x + h[5] * p->y + h[8]) * obs->settings->detector.point_px;
     const float u = scale / obs->settings->camera.fx_px;
     const float v = scale / obs->settings->camera.fy_px;
     const float xu = (h[0] - p->x * h[6]) * u;
@@ -144,7 +146,7 @@ float goe_observation_size_variance(const goe_observation_t *obs) {
     if (!left->usable || !right->usable) {
         return 0.0f;
     }
-    const float sigma = obs->settings->noise.size_share * (right->x - left->x);
+    const float sigma = obs->settings->detector.box_share * (right->x - left->x);
     return sigma * sigma;
 }
 
@@ -210,3 +212,5 @@ void goe_rows_end(goe_rows_t *rows, const goe_observation_t *obs) {
     }
     memset(rows->matrix->row[rows->count], 0, (GOE_ROWS_MAX - rows->count) * sizeof rows->matrix->row[0]);
 }
+
+#endif

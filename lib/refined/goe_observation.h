@@ -54,7 +54,7 @@ void goe_observation_project_y(const goe_observation_t *obs, float x, float y, f
 
 /* One sigma of a pixel, focal lengths. */
 static inline float goe_observation_pixel(const goe_observation_t *obs) {
-    return obs->settings->noise.pixel_px / obs->settings->camera.fx_px;
+    return obs->settings->detector.point_px / obs->settings->camera.fx_px;
 }
 
 /* The state's reference point relative to the camera now, units of Z0. */
@@ -74,7 +74,7 @@ goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t
 
 goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature);
 
-/* Variance of a silhouette point beyond the pixel noise: goe_noise_t.size_share. */
+/* Variance of a silhouette point beyond the pixel noise: goe_detector_t.box_share. */
 float goe_observation_size_variance(const goe_observation_t *obs);
 
 /* ------------------------------------------------------------------------------------------------------------ rows -- */

@@ -10,6 +10,8 @@
 #include "refined/goe_disc.h"
 #include "refined/goe_model.h"
 
+#if GOE_WITH_REFINED
+
 #define RANGE_SHARE 0.25f   /* sigma over value up to which the range is reported */
 #define EXTENT_SHARE 0.3f   /* ... width, length and height */
 #define HEIGHT_LEAST_M 2.0f /* a lower obstacle's height may be off by the share of this */
@@ -33,14 +35,14 @@ typedef struct {
     float walk_m2;
 } drift_t;
 
-static drift_t drift_of(const goe_filter_t *filter, const goe_noise_t *noise, const goe_motion_t *motion) {
+static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
     drift_t drift;
     const uint64_t us = (uint64_t)motion->time_us - (uint64_t)filter->axes.start_time_us;
     const float s = (float)(uint32_t)(us < TIME_MOST_US ? us : TIME_MOST_US) * S_PER_US;
     drift.camera_m = goe_filter_camera(filter, motion);
     const float path_m = sqrtf(goe_xz_dot(drift.camera_m, drift.camera_m));
-    drift.share = noise->velocity_bias_m_s * s / (path_m > PATH_LEAST_M ? path_m : PATH_LEAST_M);
-    drift.walk_m2 = goe_square(noise->position_walk_m) * s;
+    drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_LEAST_M ? path_m : PATH_LEAST_M);
+    drift.walk_m2 = goe_square(navigation->position_walk_m) * s;
     return drift;
 }
 
@@ -177,7 +179,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     if (!(filter->state[GOE_INVERSE_RANGE] > 0.0f) || !(shape.scale_m > 0.0f)) {
         return;
     }
-    const drift_t drift = drift_of(filter, &settings->noise, motion);
+    const drift_t drift = drift_of(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, q);
@@ -193,11 +195,11 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
 /* --------------------------------------------------------------------------------------------------------- covariance -- */
 
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                               goe_zero_t zero, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+                               bool from_datum, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
     goe_shape_t shape;
-    const drift_t drift = drift_of(filter, &settings->noise, motion);
+    const drift_t drift = drift_of(filter, &settings->navigation, motion);
     goe_model_shape(filter, &shape);
-    if (zero == GOE_FROM_DATUM) {
+    if (from_datum) {
         shape.quantity[GOE_HEIGHT].by[GOE_HEIGHT_BIAS] = 0.0f;
     }
     const float early = sqrtf(shape.early);
@@ -218,3 +220,5 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
             goe_box_outline_variance(filter, &shape, drift.camera_m, i, covariance[GOE_ORIENTATION][GOE_ORIENTATION]);
     }
 }
+
+#endif

@@ -5,12 +5,6 @@
 
 #include "refined/goe_shape.h"
 
-/* From what the top's height is counted. */
-typedef enum {
-    GOE_FROM_GROUND, /* of the obstacle */
-    GOE_FROM_DATUM   /* the altimeter's zero: its constant error cancels between camera and top */
-} goe_zero_t;
-
 typedef struct {
     unsigned now;                /* GOE_HAS_...: what the latest image knows well enough ... */
     unsigned known;              /* ... and the one before knew, too; 0: the rest does not hold */
@@ -25,8 +19,9 @@ typedef struct {
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          goe_quantities_t *quantities);
 
-/* Covariance of the six quantities, metres and radians, of the filter's present state. */
+/* Covariance of the six quantities, metres and radians, of the filter's present state. from_datum: the top's height is counted
+ * from the altimeter's zero, not from the ground: its constant error cancels between camera and top. */
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                               goe_zero_t zero, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
+                               bool from_datum, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
 #endif

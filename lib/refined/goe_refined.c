@@ -15,6 +15,8 @@
 #include "refined/goe_model.h"
 #include "refined/goe_report.h"
 
+#if GOE_WITH_REFINED
+
 #define S_PER_US 1.0e-6f
 #define GAP_MOST_US 1000000000 /* a longer gap between images counts as this one */
 #define AHEAD_LEAST 0.02f      /* of the reference point, units of Z0 */
@@ -27,10 +29,10 @@ static float seconds_since(int64_t then_us, int64_t now_us) {
 }
 
 /* Process noise: the attitude's bias drifts, the own position walks. */
-static void let_time_pass(goe_filter_t *filter, const goe_noise_t *noise, int64_t time_us) {
+static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, int64_t time_us) {
     const float root_s = sqrtf(seconds_since(filter->time_us, time_us));
-    const float drift = noise->attitude_drift_deg * GOE_RAD_PER_DEG * root_s;
-    const float walk = noise->position_walk_m * root_s * filter->state[GOE_INVERSE_RANGE];
+    const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * root_s;
+    const float walk = navigation->position_walk_m * root_s * filter->state[GOE_INVERSE_RANGE];
     filter->time_us = time_us;
     filter->drift_rad2 += drift * drift;
     filter->walk2 += walk * walk;
@@ -58,7 +60,7 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict) {
     goe_rows_t rows;
     float change[GOE_STATES];
-    const float white = obs->settings->noise.attitude_white_deg * GOE_RAD_PER_DEG;
+    const float white = obs->settings->navigation.attitude_white_deg * GOE_RAD_PER_DEG;
     goe_rows_clear(&rows, &filter->rows);
     goe_model_rows(filter, obs, &rows);
     goe_rows_end(&rows, obs);
@@ -75,7 +77,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     }
     /* The weights were inflated by (1+r)/(1-r) for correlation in time; the scatter within one image was not, so undo it for
      * the NIS. */
-    const float correlation = obs->settings->noise.correlation;
+    const float correlation = obs->settings->detector.correlation;
     goe_health_take(&filter->health, *verdict, nis * ((1.0f + correlation) / (1.0f - correlation)));
     return true;
 }
@@ -127,7 +129,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     if (!open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
-    let_time_pass(filter, &settings->noise, view->motion->time_us);
+    let_time_pass(filter, &settings->navigation, view->motion->time_us);
     goe_observation_linearise(&obs);
     return !goe_model_change(filter, &obs) && take_image(filter, &obs);
 }
@@ -139,3 +141,5 @@ bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, co
     filter->known = (uint8_t)quantities.now;
     return goe_report_quantities(&quantities, motion, estimate);
 }
+
+#endif

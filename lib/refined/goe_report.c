@@ -8,6 +8,8 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_disc.h"
 
+#if GOE_WITH_REFINED
+
 #define SUSPECT_IMAGES 8 /* fewer say nothing */
 
 static void report_position(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
@@ -80,7 +82,7 @@ static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings
 
 void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, goe_estimate_t *estimate) {
     const goe_health_t *health = &filter->health;
-    estimate->suspect = (health->images >= SUSPECT_IMAGES && health->mean_nis > settings->misfit_max) ||
+    estimate->suspect = (health->images >= SUSPECT_IMAGES && health->mean_nis > settings->refined.misfit_max) ||
                         health->base_refused || is_forced(filter, settings);
     if (estimate->method == GOE_METHOD_REFINED) {
         estimate->points = health->images;
@@ -89,3 +91,5 @@ void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, 
         estimate->misfit = health->mean_nis;
     }
 }
+
+#endif

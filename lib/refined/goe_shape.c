@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#if GOE_WITH_REFINED
+
 void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]) {
     by[GOE_BEARING] = by_x * scale_m;
     by[GOE_INVERSE_RANGE] = -scale_m * scale_m * (by_x * spot->at.x + by_z * spot->at.z);
@@ -41,3 +43,5 @@ void goe_shape_line(const goe_filter_t *filter, const float x[GOE_STATES], goe_s
     width->by[GOE_INVERSE_RANGE] = -shape->scale_m * width->value;
     width->by[GOE_FRONT_X] = shape->scale_m;
 }
+
+#endif

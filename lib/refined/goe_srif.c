@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#if GOE_WITH_REFINED
+
 #define PIVOT_MIN 1.0e-12f /* of the diagonal: a covariance this near to singular is taken as if it were this far */
 
 /* -------------------------------------------------------------------------------------------------------- reflections -- */
@@ -326,3 +328,5 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
     }
     (void)goe_srif_update(root, 1.0f, rows, change);
 }
+
+#endif

@@ -4,6 +4,8 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_WINDOW
+
 static bool in_order(const goe_point_t *left, const goe_point_t *right) {
     return !left->usable || !right->usable || left->x <= right->x;
 }
@@ -25,8 +27,8 @@ static void measure_edge(const goe_settings_t *settings, const goe_pixel_t *from
     const float du = to->u_px - from->u_px;
     const float dv = to->v_px - from->v_px;
     const float rise_px = goe_absolute(right->y - left->y) * settings->camera.fx_px;
-    edge->counts = du * du + dv * dv > settings->edge_min_px * settings->edge_min_px;
-    edge->has_heading = edge->counts && rise_px > settings->orientation_min_px;
+    edge->counts = du * du + dv * dv > settings->window.edge_min_px * settings->window.edge_min_px;
+    edge->has_heading = edge->counts && rise_px > settings->window.orientation_min_px;
     edge->heading_deg = edge->has_heading ? heading_deg(left, right) : 0.0f;
 }
 
@@ -60,3 +62,5 @@ goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_view_t *vie
     }
     return GOE_OK;
 }
+
+#endif

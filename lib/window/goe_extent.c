@@ -2,6 +2,8 @@
 #include "window/goe_extent.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_WINDOW
+
 goe_status_t goe_extent_length(const goe_faces_t *faces, const goe_span_t *front, goe_turn_t turn,
                                const goe_estimate_t *reference, float min_x, goe_extent_t *length) {
     /* the edges meet at the near corner: the front's right end if the side is the right edge */
@@ -24,3 +26,5 @@ goe_status_t goe_extent_length(const goe_faces_t *faces, const goe_span_t *front
     length->variance_m2 = inverse * inverse * across_m2;
     return GOE_OK;
 }
+
+#endif

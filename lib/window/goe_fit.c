@@ -9,6 +9,8 @@
 
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_WINDOW
+
 #define PARALLAX_MIN 1.0e-6f /* change of the rows over the window, of their size: below lies the rounding of floats */
 #define LIMIT_M 1.0e6f       /* no obstacle is farther away or wider */
 #define SIGMA_LIMIT_M 1.0e9f /* so that squares and products of sigmas stay finite */
@@ -111,3 +113,5 @@ goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_bas
     set_sigmas(&m, length, squared_residuals(ring->point, length, &m, inverse_width), fit);
     return GOE_OK;
 }
+
+#endif

@@ -1,6 +1,8 @@
 /* Sliding mean. SPDX-License-Identifier: MIT */
 #include "window/goe_mean.h"
 
+#if GOE_WITH_WINDOW
+
 /* Summed anew each time: a running sum would collect rounding errors over a long track. */
 goe_average_t goe_mean_add(goe_mean_t *mean, int length, float value) {
     const int n = mean->count < length ? mean->count + 1 : length;
@@ -20,3 +22,5 @@ goe_average_t goe_mean_add(goe_mean_t *mean, int length, float value) {
     const goe_average_t result = {average, n > 1 ? squares / (float)((n - 1) * n) : 0.0f};
     return result;
 }
+
+#endif

@@ -4,6 +4,8 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
+#if GOE_WITH_WINDOW
+
 /* Between +-30 and +-60 degrees the smaller angle no longer tells the side edge from the front edge under noise: there
  * the low-pass decides, or it would average +45 with -45. */
 #define AMBIGUOUS_DEG 30.0f
@@ -54,3 +56,5 @@ void goe_orientation_update(goe_orientation_t *orientation, const goe_edges_t *e
     faces->side_is_right = !first_is_side;
     low_pass(orientation, first_is_side ? if_first_deg : if_second_deg, memory);
 }
+
+#endif

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#if GOE_WITH_WINDOW
+
 #define WIDTH_MIN 1.0e-4f    /* smallest image width that is divided by, of the focal length */
 #define DISC_MULTIPLIER 2.0f /* m in (5) */
 
@@ -39,3 +41,5 @@ goe_status_t goe_projection_line(const goe_point_t *left, const goe_point_t *rig
     row->zeta = turn.c * forward - turn.s * aside;
     return GOE_OK;
 }
+
+#endif

@@ -18,6 +18,8 @@
 #include "window/goe_orientation.h"
 #include "window/goe_projection.h"
 
+#if GOE_WITH_WINDOW
+
 /* What one image contributes, on its way through the chain. */
 typedef struct {
     const goe_settings_t *settings;
@@ -39,7 +41,7 @@ void goe_window_clear(goe_window_t *window) {
 /* ------------------------------------------------------------------------------------------------- rows of one image -- */
 
 static inline void add_row(goe_fit_ring_t *ring, const frame_t *frame, goe_row_t row) {
-    goe_fit_add(ring, frame->settings->window, frame->motion->dx_m, frame->motion->dz_m, row);
+    goe_fit_add(ring, frame->settings->window.points, frame->motion->dx_m, frame->motion->dz_m, row);
 }
 
 static goe_status_t add_disc_row(goe_window_t *window, frame_t *frame) {
@@ -70,7 +72,8 @@ static void find_faces(goe_window_t *window, frame_t *frame) {
         return;
     }
     goe_fault_note(&frame->faults, goe_edge_find(frame->settings, frame->view, &frame->edges));
-    goe_orientation_update(&window->orientation, &frame->edges, frame->settings->orientation_memory, &frame->faces);
+    goe_orientation_update(&window->orientation, &frame->edges, frame->settings->window.orientation_memory,
+                           &frame->faces);
     goe_sincos_deg(window->orientation.filtered_deg, &frame->turn.s, &frame->turn.c);
 }
 
@@ -91,7 +94,8 @@ static void add_line_row(goe_window_t *window, frame_t *frame) {
 /* ------------------------------------------------------------------------------------------------------- solution -- */
 
 static int line_points_needed(const goe_settings_t *settings) {
-    return settings->line_points > settings->window ? settings->line_points : settings->window;
+    return settings->window.line_points > settings->window.points ? settings->window.line_points
+                                                                  : settings->window.points;
 }
 
 /* The model to report: Section 4 of the paper, disc until enough line points are there. */
@@ -108,7 +112,7 @@ static void take_fit(goe_window_t *window, const frame_t *frame, goe_model_t mod
     estimate->model = model;
     estimate->valid |= GOE_HAS_POSITION | GOE_HAS_WIDTH;
     estimate->fresh = true;
-    estimate->points = frame->settings->window;
+    estimate->points = frame->settings->window.points;
     window->solved_time_us = frame->motion->time_us;
 }
 
@@ -116,14 +120,14 @@ static void take_fit(goe_window_t *window, const frame_t *frame, goe_model_t mod
 static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
     const goe_model_t model = reported_model(window, frame->settings);
     const goe_fit_ring_t *ring = model == GOE_MODEL_LINE ? &window->line : &window->disc;
-    const int length = frame->settings->window;
+    const int length = frame->settings->window.points;
     if (ring->count < length) {
         return GOE_COLLECTING;
     }
     if (!(model == GOE_MODEL_LINE ? frame->line_row : frame->disc_row)) {
         return GOE_HELD;
     }
-    const goe_status_t status = goe_fit_solve(ring, length, frame->settings->min_baseline_m, &window->estimate);
+    const goe_status_t status = goe_fit_solve(ring, length, frame->settings->window.min_baseline_m, &window->estimate);
     if (status == GOE_OK) {
         take_fit(window, frame, model);
     }
@@ -156,11 +160,11 @@ static void measure_length(goe_window_t *window, frame_t *frame) {
     if (estimate->model != GOE_MODEL_LINE || !frame->faces.measured || !frame->faces.side) {
         return;
     }
-    const float min_x = frame->settings->side_min_px / frame->settings->camera.fx_px;
+    const float min_x = frame->settings->window.side_min_px / frame->settings->camera.fx_px;
     const goe_status_t fault = goe_extent_length(&frame->faces, &frame->front, frame->turn, estimate, min_x, &extent);
     goe_fault_note(&frame->faults, fault);
     if (fault == GOE_OK) {
-        take_extent(&window->length, frame->settings->window, &extent, GOE_HAS_LENGTH, &estimate->valid,
+        take_extent(&window->length, frame->settings->window.points, &extent, GOE_HAS_LENGTH, &estimate->valid,
                     &estimate->length_m, &estimate->sigma.length_m);
     }
 }
@@ -175,7 +179,7 @@ static void measure_height(goe_window_t *window, frame_t *frame) {
     const goe_status_t fault = goe_extent_height(top, frame->motion->height_m, estimate, &extent);
     goe_fault_note(&frame->faults, fault);
     if (fault == GOE_OK) {
-        take_extent(&window->height, frame->settings->window, &extent, GOE_HAS_HEIGHT, &estimate->valid,
+        take_extent(&window->height, frame->settings->window.points, &extent, GOE_HAS_HEIGHT, &estimate->valid,
                     &estimate->height_m, &estimate->sigma.height_m);
     }
 }
@@ -290,3 +294,5 @@ goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *setti
     report_center(&window->estimate, view->motion);
     return judge(&frame, solving);
 }
+
+#endif

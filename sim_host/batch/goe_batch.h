@@ -23,7 +23,7 @@ typedef float goe_batch_float_t;
 size_t goe_batch_settings_size(void);
 void goe_batch_default(goe_settings_t *settings);
 
-/* Sets a field by its name in goe_settings_t ("noise.pixel_px", "camera.fx_px", "method", ...); whole numbers and truth
+/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "method", ...); whole numbers and truth
  * values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
 int goe_batch_set(goe_settings_t *settings, const char *name, double value);
 

@@ -79,19 +79,20 @@ static void log_frame(const flight_frame_t *frame, frame_t *row) {
 
 static float at_least(double figure, double least) { return number_to_float(fmax(figure, least)); }
 
-goe_noise_t case_noise(const sensor_noise_t *sensors) {
+void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings) {
+    goe_detector_t *detector = &settings->detector;
+    goe_navigation_t *navigation = &settings->navigation;
     const double rounding_px = sensors->rounding ? ROUNDING_PX : 0.0;
-    goe_noise_t noise;
-    (void)memset(&noise, 0, sizeof noise);
-    noise.pixel_px = at_least(hypot(hypot(sensors->pixel_px, sensors->detector_px), rounding_px), LEAST_PIXEL_PX);
-    noise.size_share = number_to_float(sensors->detector_width);
-    noise.correlation = number_to_float(sensors->detector_correlation);
-    noise.attitude_bias_deg = at_least(sensors->attitude_bias_deg, LEAST_ANGLE_DEG);
-    noise.attitude_white_deg = at_least(sensors->attitude_noise_deg, LEAST_ANGLE_DEG);
-    noise.height_m = at_least(sensors->altimeter_m, LEAST_HEIGHT_M);
-    noise.velocity_bias_m_s = number_to_float(sensors->velocity_bias_mps);
-    noise.position_walk_m = number_to_float(sensors->position_walk_m);
-    return noise;
+    (void)memset(detector, 0, sizeof *detector);
+    (void)memset(navigation, 0, sizeof *navigation);
+    detector->point_px = at_least(hypot(hypot(sensors->pixel_px, sensors->detector_px), rounding_px), LEAST_PIXEL_PX);
+    detector->box_share = number_to_float(sensors->detector_width);
+    detector->correlation = number_to_float(sensors->detector_correlation);
+    navigation->attitude_bias_deg = at_least(sensors->attitude_bias_deg, LEAST_ANGLE_DEG);
+    navigation->attitude_white_deg = at_least(sensors->attitude_noise_deg, LEAST_ANGLE_DEG);
+    navigation->height_bias_m = at_least(sensors->altimeter_m, LEAST_HEIGHT_M);
+    navigation->velocity_bias_m_s = number_to_float(sensors->velocity_bias_mps);
+    navigation->position_walk_m = number_to_float(sensors->position_walk_m);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- run -- */
@@ -115,8 +116,8 @@ const char *case_run(const flight_case_t *setup, const flight_log_t *log, case_s
     settings.heading_deg = number_to_float(degrees(log->course_rad));
     settings.method = setting.method;
     settings.model = setting.model;
-    settings.window = setting.window;
-    settings.noise = case_noise(&setup->noise);
+    settings.window.points = setting.window;
+    case_noise(&setup->noise, &settings);
     if (goe_init(&estimator, sizeof estimator, &settings, &bad_field) != GOE_OK) {
         return bad_field;
     }

@@ -29,7 +29,7 @@ typedef struct {
 
 /* What the refined method is told of the sensors: their true errors, as a user knows them from data sheets. Outliers are
  * left to its gate. */
-goe_noise_t case_noise(const sensor_noise_t *sensors);
+void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings);
 
 /* Runs the library over log, which setup flew. samples: room for log->count of them.
  * Null, or the name of the setting that the library refuses. */

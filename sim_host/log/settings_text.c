@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "goe_settings_list.h"
 #include "input_error.h"
 #include "number_text.h"
 
@@ -12,62 +13,31 @@
 #define LINE_MAX_LENGTH 100
 #define INDENT "  "
 
-typedef enum { KIND_NUMBER, KIND_COUNT, KIND_TRUTH, KIND_METHOD, KIND_MODEL } setting_kind_t;
+typedef enum { KIND_REAL, KIND_COUNT, KIND_TRUTH, KIND_CHOICE } setting_kind_t;
 
 typedef struct {
     const char *name;
     size_t offset; /* in goe_settings_t */
     setting_kind_t kind;
+    const char *unit;
+    double least, most, value; /* value: by default */
+    const char *text;
 } setting_t;
 
-#define SETTING(field, kind) {#field, offsetof(goe_settings_t, field), kind}
+#define SETTING(field, kind, unit, least, most, value, text)                                                           \
+    {#field, offsetof(goe_settings_t, field), KIND_##kind, unit, (double)(least), (double)(most), (double)(value),     \
+     text},
 
-#define TUNED 21u /* so many of the first of these are to be tuned */
-static const setting_t settings_by_name[] = {
-    SETTING(noise.pixel_px, KIND_NUMBER),
-    SETTING(noise.size_share, KIND_NUMBER),
-    SETTING(noise.correlation, KIND_NUMBER),
-    SETTING(noise.shape_share, KIND_NUMBER),
-    SETTING(noise.attitude_bias_deg, KIND_NUMBER),
-    SETTING(noise.attitude_white_deg, KIND_NUMBER),
-    SETTING(noise.attitude_drift_deg, KIND_NUMBER),
-    SETTING(noise.height_m, KIND_NUMBER),
-    SETTING(noise.velocity_bias_m_s, KIND_NUMBER),
-    SETTING(noise.position_walk_m, KIND_NUMBER),
-    SETTING(typical_size_m, KIND_NUMBER),
-    SETTING(gate_sigma, KIND_NUMBER),
-    SETTING(huber_sigma, KIND_NUMBER),
-    SETTING(misfit_max, KIND_NUMBER),
-    SETTING(top_is_highest, KIND_TRUTH),
-    SETTING(line_points, KIND_COUNT),
-    SETTING(edge_min_px, KIND_NUMBER),
-    SETTING(orientation_min_px, KIND_NUMBER),
-    SETTING(side_min_px, KIND_NUMBER),
-    SETTING(orientation_memory, KIND_COUNT),
-    SETTING(min_baseline_m, KIND_NUMBER),
-    SETTING(method, KIND_METHOD),
-    SETTING(model, KIND_MODEL),
-    SETTING(window, KIND_COUNT),
-    SETTING(heading_auto, KIND_TRUTH),
-    SETTING(heading_deg, KIND_NUMBER),
-    SETTING(camera.fx_px, KIND_NUMBER),
-    SETTING(camera.fy_px, KIND_NUMBER),
-    SETTING(camera.cx_px, KIND_NUMBER),
-    SETTING(camera.cy_px, KIND_NUMBER),
-    SETTING(camera.k1, KIND_NUMBER),
-    SETTING(camera.k2, KIND_NUMBER),
-    SETTING(camera.p1, KIND_NUMBER),
-    SETTING(camera.p2, KIND_NUMBER),
-    SETTING(camera.k3, KIND_NUMBER),
-    SETTING(camera.mount_yaw_deg, KIND_NUMBER),
-    SETTING(camera.mount_pitch_deg, KIND_NUMBER),
-    SETTING(camera.mount_roll_deg, KIND_NUMBER),
-    SETTING(camera.offset_m[0], KIND_NUMBER),
-    SETTING(camera.offset_m[1], KIND_NUMBER),
-    SETTING(camera.offset_m[2], KIND_NUMBER),
-};
-#undef SETTING
+/* The tuned ones first: the others have places of their own in logs and options. */
+static const setting_t settings_by_name[] = {GOE_SETTINGS_REFINED(SETTING) GOE_SETTINGS_WINDOW(SETTING)
+                                                 GOE_SETTINGS_GENERAL(SETTING) GOE_SETTINGS_CAMERA(SETTING)};
 #define SETTINGS (sizeof settings_by_name / sizeof settings_by_name[0])
+
+static size_t count_tuned(void) {
+#define ONE(field, kind, unit, least, most, value, text) +1u
+    return 0u GOE_SETTINGS_REFINED(ONE) GOE_SETTINGS_WINDOW(ONE);
+#undef ONE
+}
 
 /* ----------------------------------------------------------------------------------------------------------- values -- */
 
@@ -82,7 +52,7 @@ static const setting_t *find_setting(const char *name, size_t length, size_t cou
 }
 
 static bool suits(const setting_t *setting, double value) {
-    if (setting->kind == KIND_NUMBER) {
+    if (setting->kind == KIND_REAL) {
         return true;
     }
     const bool whole = fabs(value) <= WHOLE_MAX && fabs(value - rint(value)) <= 0.0;
@@ -92,7 +62,7 @@ static bool suits(const setting_t *setting, double value) {
 static void store(goe_settings_t *settings, const setting_t *setting, double value) {
     unsigned char *field = (unsigned char *)settings + setting->offset;
     switch (setting->kind) {
-        case KIND_NUMBER: {
+        case KIND_REAL: {
             const float number = number_to_float(value);
             (void)memcpy(field, &number, sizeof number);
             break;
@@ -107,15 +77,10 @@ static void store(goe_settings_t *settings, const setting_t *setting, double val
             (void)memcpy(field, &truth, sizeof truth);
             break;
         }
-        case KIND_METHOD: {
-            const goe_method_t method = (goe_method_t)(int)value;
-            (void)memcpy(field, &method, sizeof method);
-            break;
-        }
-        case KIND_MODEL:
+        case KIND_CHOICE:
         default: {
-            const goe_model_t model = (goe_model_t)(int)value;
-            (void)memcpy(field, &model, sizeof model);
+            const goe_method_t choice = (goe_method_t)(int)value; /* all enumerations here are of one size */
+            (void)memcpy(field, &choice, sizeof choice);
             break;
         }
     }
@@ -140,9 +105,9 @@ static void append(setting_fault_t *fault, const char *text) {
 static bool tell_names(const char *name, size_t length, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(name, length);
     (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting; there are ", excerpt.text);
-    for (size_t i = 0; i < TUNED; i++) {
+    for (size_t i = 0; i < count_tuned(); i++) {
         append(fault, settings_by_name[i].name);
-        append(fault, i + 2u < TUNED ? ", " : i + 1u < TUNED ? " and " : "");
+        append(fault, i + 2u < count_tuned() ? ", " : i + 1u < count_tuned() ? " and " : "");
     }
     return false;
 }
@@ -155,7 +120,7 @@ static bool tell_value(const setting_t *setting, const char *text, const char *r
 
 bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fault_t *fault) {
     const size_t length = strcspn(assignment, "=");
-    const setting_t *setting = find_setting(assignment, length, TUNED);
+    const setting_t *setting = find_setting(assignment, length, count_tuned());
     if (setting == NULL) {
         return tell_names(assignment, length, fault);
     }
@@ -177,7 +142,8 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
 
 /* ------------------------------------------------------------------------------------------------------------ range -- */
 
-const char *settings_out_of_range(const goe_settings_t *settings) {
+/* The name of the first setting beside the camera that goe_init() refuses; null if it refuses none. */
+static const char *first_refused(const goe_settings_t *settings) {
     goe_settings_t trial = *settings;
     goe_estimator_t estimator;
     const char *bad_field = NULL;
@@ -187,11 +153,21 @@ const char *settings_out_of_range(const goe_settings_t *settings) {
     return goe_init(&estimator, sizeof estimator, &trial, &bad_field) == GOE_OK ? NULL : bad_field;
 }
 
+bool settings_in_range(const goe_settings_t *settings, setting_fault_t *fault) {
+    const char *name = first_refused(settings);
+    if (name == NULL) {
+        return true;
+    }
+    const setting_t *setting = find_setting(name, strlen(name), SETTINGS);
+    (void)snprintf(fault->text, sizeof fault->text, "%s: out of range: %g to %g", name, setting->least, setting->most);
+    return false;
+}
+
 /* ----------------------------------------------------------------------------------------------------------- print -- */
 
 #define ENTRY_MAX 96
 
-/* "name=value"; the tuned are numbers, counts and truth values. */
+/* "name=value" */
 static void format_entry(char text[ENTRY_MAX], const goe_settings_t *settings, const setting_t *setting) {
     const unsigned char *field = (const unsigned char *)settings + setting->offset;
     if (setting->kind == KIND_COUNT) {
@@ -211,7 +187,7 @@ static void format_entry(char text[ENTRY_MAX], const goe_settings_t *settings, c
 
 bool settings_print(FILE *stream, const goe_settings_t *settings) {
     size_t column = 0;
-    for (size_t i = 0; i < TUNED; i++) {
+    for (size_t i = 0; i < count_tuned(); i++) {
         char entry[ENTRY_MAX];
         format_entry(entry, settings, &settings_by_name[i]);
         const bool fresh_line = column == 0 || column + 1u + strlen(entry) > LINE_MAX_LENGTH;
@@ -221,4 +197,14 @@ bool settings_print(FILE *stream, const goe_settings_t *settings) {
         column = (fresh_line ? strlen(INDENT) : column + 1u) + strlen(entry);
     }
     return fputc('\n', stream) != EOF;
+}
+
+bool settings_list(FILE *stream) {
+    bool good = true;
+    for (size_t i = 0; i < SETTINGS; i++) {
+        const setting_t *s = &settings_by_name[i];
+        good = good &&
+               fprintf(stream, "%s\t%s\t%g\t%g\t%g\t%s\n", s->name, s->unit, s->least, s->most, s->value, s->text) > 0;
+    }
+    return good;
 }

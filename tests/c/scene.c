@@ -106,13 +106,13 @@ void scene_make_cylinder(scene_t *scene) {
     scene->height_m = 30.0;
 }
 
-void scene_tell_no_noise(goe_noise_t *noise) {
-    noise->pixel_px = 0.05f;
-    noise->attitude_bias_deg = 1.0e-3f;
-    noise->attitude_white_deg = 1.0e-3f;
-    noise->height_m = 1.0e-2f;
-    noise->velocity_bias_m_s = 0.0f;
-    noise->position_walk_m = 0.0f;
+void scene_tell_no_noise(goe_settings_t *settings) {
+    settings->detector.point_px = 0.05f;
+    settings->navigation.attitude_bias_deg = 1.0e-3f;
+    settings->navigation.attitude_white_deg = 1.0e-3f;
+    settings->navigation.height_bias_m = 1.0e-2f;
+    settings->navigation.velocity_bias_m_s = 0.0f;
+    settings->navigation.position_walk_m = 0.0f;
 }
 
 void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px) {

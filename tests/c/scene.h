@@ -64,7 +64,7 @@ goe_settings_t scene_window_settings(const scene_t *scene);
 void scene_make_cylinder(scene_t *scene);
 
 /* The noise that the scenes have: nothing but the rounding of their numbers is wrong. */
-void scene_tell_no_noise(goe_noise_t *noise);
+void scene_tell_no_noise(goe_settings_t *settings);
 
 /* Gaussian noise on every point, seen or not. */
 void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px);

@@ -83,7 +83,7 @@ double sighting_place(sighting_t *sighting, check_random_t *random) {
 
 void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, double truth[GOE_STATES]) {
     sighting->state[GOE_TOP] = (float)(check_random_between(random, 2.0, 60.0) / z0_m);
-    sighting->settings.top_is_highest = check_random_bits(random) % 2u != 0u;
+    sighting->settings.refined.top_is_highest = check_random_bits(random) % 2u != 0u;
     for (int i = 0; i < GOE_STATES; i++) {
         truth[i] = (double)sighting->state[i];
     }

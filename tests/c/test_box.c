@@ -147,7 +147,7 @@ static void any_box(corner_t corner[4]) {
         sighting.state[GOE_FRONT_X] = (float)(w * cos(b));
         sighting.state[GOE_DEPTH_DIFFERENCE] = (float)(l * cos(b) - w * fabs(sin(b)));
         sighting.state[GOE_TOP] = (float)(check_random_between(&any, 2.0, 40.0) / z0_m);
-        sighting.settings.top_is_highest = check_random_bits(&any) % 2u != 0u;
+        sighting.settings.refined.top_is_highest = check_random_bits(&any) % 2u != 0u;
         for (int i = 0; i < GOE_STATES; i++) {
             truth[i] = (double)sighting.state[i];
         }
@@ -209,7 +209,7 @@ static void rows_are_those_of_the_corners_that_are_seen(void) {
         int count;
         int top;
         any_box(corner);
-        const bool farthest = sighting.settings.top_is_highest && height_of(truth, GOE_POINT_TOP) > 0.0;
+        const bool farthest = sighting.settings.refined.top_is_highest && height_of(truth, GOE_POINT_TOP) > 0.0;
         if (!find_visible(corner, visible, &count) || !find_top(corner, farthest, &top)) {
             continue;
         }
@@ -271,7 +271,7 @@ static void a_missed_near_corner_is_told_from_a_single_face(void) {
         memset(truth, 0, 3 * sizeof truth[0]);
         sighting_look(&sighting);
         sighting.sight.two_faces = true;
-        sighting.settings.noise.pixel_px = 0.2f;
+        sighting.settings.detector.point_px = 0.2f;
         const double clearly = 6.0 * 0.2 / 914.0;
         if (!find_visible(corner, visible, &count) || count != 3) {
             continue;

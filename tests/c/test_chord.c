@@ -82,7 +82,7 @@ static double see(const double state[GOE_STATES], size_t feature) {
     const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
     const double pz = 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE];
     const double y = (double)sighting.sight.height_m * state[GOE_INVERSE_RANGE] - state[GOE_TOP];
-    const bool highest = sighting.settings.top_is_highest && y > 0.0;
+    const bool highest = sighting.settings.refined.top_is_highest && y > 0.0;
     const bool right_is_near = px * state[GOE_FRONT_X] + pz * state[GOE_SIDE_X] < 0.0;
     const double side = (feature == GOE_POINT_TOP ? right_is_near != highest : feature == GOE_POINT_RIGHT) ? 0.5 : -0.5;
     const double held = (double)sighting.sight.point[feature].y * end_z(truth, side);
@@ -177,7 +177,7 @@ static void a_box_comes_out_of_its_silhouette(void) {
     for (int i = 0; i < 3; i++) {
         setUp();
         scene.alpha_deg = alpha_deg[i];
-        scene_tell_no_noise(&settings.noise);
+        scene_tell_no_noise(&settings);
         start();
         for (int k = 0; k < IMAGES; k++) {
             see_silhouette(k, 0.0);
@@ -195,8 +195,8 @@ static void a_box_comes_out_of_its_silhouette(void) {
 /* GIVEN errors as settings tell them THEN what is told of the box holds within its sigmas. */
 static void noise_does_not_hide_the_box(void) {
     any = check_random_start("silhouettes");
-    settings.noise.attitude_bias_deg = 1.0e-3f;
-    settings.noise.attitude_white_deg = 1.0e-3f;
+    settings.navigation.attitude_bias_deg = 1.0e-3f;
+    settings.navigation.attitude_white_deg = 1.0e-3f;
     start();
     for (int k = 0; k < IMAGES; k++) {
         see_silhouette(k, 0.5);
@@ -215,7 +215,7 @@ static void noise_does_not_hide_the_box(void) {
 static void left_and_right_are_alike(void) {
     unsigned char phase[IMAGES];
     scene.camera.cx_px = 0.0f;
-    scene_tell_no_noise(&settings.noise);
+    scene_tell_no_noise(&settings);
     start();
     for (int k = 0; k < IMAGES; k++) {
         see_silhouette(k, 0.0);
@@ -240,7 +240,7 @@ static void left_and_right_are_alike(void) {
 
 /* GIVEN a box that starts by its silhouette WHEN its base comes into view THEN it becomes a box by its corners. */
 static void base_corners_end_the_chord(void) {
-    scene_tell_no_noise(&settings.noise);
+    scene_tell_no_noise(&settings);
     start();
     for (int k = 0; k < 60; k++) {
         see_silhouette(k, 0.0);

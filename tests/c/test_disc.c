@@ -41,7 +41,7 @@ static double see(const double state[GOE_STATES], size_t feature) {
     }
     if (feature == GOE_POINT_TOP) {
         const double y = h * state[GOE_INVERSE_RANGE] - state[GOE_TOP];
-        const bool farthest = sighting.settings.top_is_highest && y > 0.0;
+        const bool farthest = sighting.settings.refined.top_is_highest && y > 0.0;
         const double share = (distance + (farthest ? radius : -radius)) / distance;
         const double rim[3] = {px * share, y, pz * share};
         sighting_project(&sighting, state, rim, seen);
@@ -129,8 +129,8 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
     measure(GOE_POINT_RIGHT);
     measure(GOE_POINT_TOP);
     for (int i = 0; i < 2; i++) {
-        sighting.settings.noise.shape_share = i ? 0.12f : 0.0f;
-        sighting.settings.noise.size_share = i ? 0.05f : 0.0f;
+        sighting.settings.detector.shape_share = i ? 0.12f : 0.0f;
+        sighting.settings.detector.box_share = i ? 0.05f : 0.0f;
         goe_rows_clear(&sighting.rows, &sighting.matrix);
         goe_disc_rows(&sighting.sight, &sighting.rows);
         memcpy(variance[i], sighting.rows.variance, sizeof variance[i]);
@@ -154,7 +154,7 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
         memset(sighting.state, 0, 3 * sizeof sighting.state[0]);
         memset(truth, 0, 3 * sizeof truth[0]);
         sighting_look(&sighting);
-        sighting.settings.typical_size_m = sighting.state[GOE_FRONT_X] / sighting.state[GOE_INVERSE_RANGE];
+        sighting.settings.refined.typical_size_m = sighting.state[GOE_FRONT_X] / sighting.state[GOE_INVERSE_RANGE];
         measure(GOE_POINT_LEFT);
         measure(GOE_POINT_RIGHT);
         measure(GOE_POINT_TOP);

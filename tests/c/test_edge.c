@@ -122,8 +122,8 @@ static void the_orientation_gate_is_exact(void) {
 }
 
 static void the_gates_are_settings(void) {
-    settings.edge_min_px = 50.0f;
-    settings.orientation_min_px = 30.0f;
+    settings.window.edge_min_px = 50.0f;
+    settings.window.orientation_min_px = 30.0f;
     set_left(0.0f, 0.0f);
     set_right(49.0f / 1024.0f, 9.0f / 1024.0f);
     CHECK_STATUS(GOE_OK, find());
@@ -172,7 +172,7 @@ static void the_heading_is_that_of_the_vanishing_point(void) {
 
 /* An edge parallel to the horizon has no heading by the gate; where the gate lets it through it has 90 degrees. */
 static void an_edge_along_the_horizon_heads_aside(void) {
-    settings.orientation_min_px = 0.0f;
+    settings.window.orientation_min_px = 0.0f;
     set_left(-0.1f, 0.2f);
     set_right(0.1f, 0.2f);
     CHECK_STATUS(GOE_OK, find());

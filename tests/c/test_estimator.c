@@ -92,13 +92,13 @@ static void the_line_takes_over_at_the_eighth_line_point(void) {
 }
 
 static void the_number_of_line_points_is_a_setting(void) {
-    settings.line_points = 11;
+    settings.window.line_points = 11;
     start();
     (void)fly(0, 10);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
     (void)fly(10, 11);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
-    settings.line_points = 1; /* the window still has to be full */
+    settings.window.line_points = 1; /* the window still has to be full */
     start();
     (void)fly(0, 7);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
@@ -107,8 +107,8 @@ static void the_number_of_line_points_is_a_setting(void) {
 }
 
 static void the_window_is_a_setting(void) {
-    settings.window = 3;
-    settings.line_points = 3;
+    settings.window.points = 3;
+    settings.window.line_points = 3;
     start();
     CHECK_STATUS(GOE_COLLECTING, fly(0, 2));
     CHECK_STATUS(GOE_OK, fly(2, 3));

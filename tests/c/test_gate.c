@@ -128,7 +128,7 @@ static void a_shift_of_all_points_refuses_none(void) {
     for (int axis = 0; axis < 3; axis++) {
         for (int sigmas = -4; sigmas <= 4; sigmas += 2) {
             setUp();
-            const double angle = sigmas * (double)settings.noise.attitude_white_deg * RAD_PER_DEG;
+            const double angle = sigmas * (double)settings.navigation.attitude_white_deg * RAD_PER_DEG;
             turn(axis == 0 ? angle : 0.0, axis == 1 ? angle : 0.0, axis == 2 ? angle : 0.0);
             const goe_matrix_t before = matrix;
             apply();
@@ -160,7 +160,7 @@ static void a_suspicious_point_counts_less(void) {
     const size_t feature = GOE_POINT_BASE_NEAR;
     for (int n = 0; n < 4; n++) {
         setUp();
-        settings.noise.attitude_white_deg = 1.0e-4f;
+        settings.navigation.attitude_white_deg = 1.0e-4f;
         for (size_t i = 0; i < rows.count; i++) { /* its difference from the middle one has both points' noise */
             *residual(i) =
                 rows.feature[i] == feature && is_along_y(i) ? (float)(normalised[n] * sqrt(2.0) * SIGMA) : 0.0f;
@@ -173,15 +173,15 @@ static void a_suspicious_point_counts_less(void) {
 }
 
 static void the_limits_are_settings(void) {
-    settings.noise.attitude_white_deg = 1.0e-4f;
-    settings.gate_sigma = 3.0f;
+    settings.navigation.attitude_white_deg = 1.0e-4f;
+    settings.refined.gate_sigma = 3.0f;
     *residual(0) = (float)(3.2 * sqrt(2.0) * SIGMA);
     apply();
     TEST_ASSERT_EQUAL_HEX32(1u << rows.feature[0], verdict.refused);
     setUp();
-    settings.noise.attitude_white_deg = 1.0e-4f;
-    settings.gate_sigma = 100.0f;
-    settings.huber_sigma = 1.0f;
+    settings.navigation.attitude_white_deg = 1.0e-4f;
+    settings.refined.gate_sigma = 100.0f;
+    settings.refined.huber_sigma = 1.0f;
     *residual(0) = (float)(10.0 * sqrt(2.0) * SIGMA);
     const goe_matrix_t before = matrix;
     apply();
@@ -191,7 +191,7 @@ static void the_limits_are_settings(void) {
 
 /* Errors that repeat from image to image count as fewer images: (1 + r)/(1 - r) times the variance. */
 static void correlated_errors_count_less(void) {
-    settings.noise.correlation = 0.6f;
+    settings.detector.correlation = 0.6f;
     const goe_matrix_t before = matrix;
     apply();
     for (size_t i = 0; i < rows.count; i++) {

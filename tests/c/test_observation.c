@@ -129,13 +129,14 @@ static void the_spread_is_that_of_the_alignment(void) {
         double by_u[2];
         double by_v[2];
         sighting_start(&sighting, &any);
-        sighting.settings.noise.pixel_px = (float)check_random_between(&any, 0.1, 3.0);
+        sighting.settings.detector.point_px = (float)check_random_between(&any, 0.1, 3.0);
         const double u = check_random_between(&any, -600.0, 600.0);
         const double v = check_random_between(&any, -500.0, 500.0);
         align(&sighting, u, v, aligned);
         sighting.sight.point[GOE_POINT_TOP] = (goe_point_t){(float)aligned[0], (float)aligned[1], true};
         differentiate(&sighting, u, v, by_u, by_v);
-        const double variance = (double)sighting.settings.noise.pixel_px * (double)sighting.settings.noise.pixel_px;
+        const double variance =
+            (double)sighting.settings.detector.point_px * (double)sighting.settings.detector.point_px;
         const double xx = variance * (by_u[0] * by_u[0] + by_v[0] * by_v[0]);
         const double xy = variance * (by_u[0] * by_u[1] + by_v[0] * by_v[1]);
         const double yy = variance * (by_u[1] * by_u[1] + by_v[1] * by_v[1]);
@@ -149,7 +150,7 @@ static void the_spread_is_that_of_the_alignment(void) {
 static void size_noise_is_a_share_of_the_width(void) {
     any = check_random_start("size");
     sighting_start(&sighting, &any);
-    sighting.settings.noise.size_share = 0.03f;
+    sighting.settings.detector.box_share = 0.03f;
     sighting.sight.point[GOE_POINT_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
     sighting.sight.point[GOE_POINT_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
     CHECK_CLOSE(1.0e-10, 3.6e-5, goe_observation_size_variance(&sighting.sight));

@@ -120,9 +120,10 @@ static void fly_all(goe_method_t method, shape_t shape) {
         scene_make_cylinder(&scene);
     }
     settings = method == GOE_METHOD_WINDOW ? scene_window_settings(&scene) : scene_settings(&scene);
-    scene_tell_no_noise(&settings.noise);
-    settings.noise.velocity_bias_m_s = 0.1f; /* what a flown path stretches by counts from the filter's start, too */
-    settings.noise.position_walk_m = 0.01f;
+    scene_tell_no_noise(&settings);
+    settings.navigation.velocity_bias_m_s =
+        0.1f; /* what a flown path stretches by counts from the filter's start, too */
+    settings.navigation.position_walk_m = 0.01f;
     for (size_t i = 0; i < ARRIVALS; i++) {
         TEST_ASSERT_TRUE(fly(shape, &arrivals[i]) > IMAGES / 2);
     }

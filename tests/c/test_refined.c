@@ -144,7 +144,7 @@ static void boxes_come_out_as_they_are(void) {
                 scene.path = (scene_path_t)path;
                 scene.x0_m = aside_m[i];
                 scene.alpha_deg = alpha_deg;
-                scene_tell_no_noise(&settings.noise);
+                scene_tell_no_noise(&settings);
                 start();
                 CHECK_STATUS(GOE_OK, fly(0, IMAGES));
                 TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
@@ -168,7 +168,7 @@ static void cylinders_come_out_as_they_are(void) {
             scene.x0_m = aside_m[i % 3];
             scene.height_m = height_m[i / 3];
             scene.width_m = 1.5 + 3.0 * i; /* the first guess, of 6 m, is never right */
-            scene_tell_no_noise(&settings.noise);
+            scene_tell_no_noise(&settings);
             start();
             CHECK_STATUS(GOE_OK, fly(0, IMAGES));
             TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
@@ -186,8 +186,8 @@ static void sigmas_shrink_with_every_image(void) {
     float value[GOE_QUANTITIES];
     float sigma[GOE_QUANTITIES];
     float first = 0.0f;
-    settings.noise.velocity_bias_m_s = 0.0f;
-    settings.noise.position_walk_m = 0.0f;
+    settings.navigation.velocity_bias_m_s = 0.0f;
+    settings.navigation.position_walk_m = 0.0f;
     start();
     fly(0, 6);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
@@ -244,9 +244,9 @@ static void a_constant_attitude_error_is_taken_out(void) {
         setUp();
         scene.camera.mount_pitch_deg = 0.5f;
         scene.camera.mount_yaw_deg = -0.4f;
-        scene_tell_no_noise(&settings.noise);
-        settings.noise.pixel_px = 0.1f;
-        settings.noise.attitude_bias_deg = known > 0 ? 0.5f : 1.0e-3f;
+        scene_tell_no_noise(&settings);
+        settings.detector.point_px = 0.1f;
+        settings.navigation.attitude_bias_deg = known > 0 ? 0.5f : 1.0e-3f;
         CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
         fly(0, IMAGES);
         misfit[known] = estimate.misfit;
@@ -382,8 +382,8 @@ static void sigmas_tell_the_error(void) {
             }
             scene.x0_m = check_random_between(&any, -30.0, 30.0);
             scene.path = (scene_path_t)(n % 3);
-            scene_tell_no_noise(&settings.noise);
-            settings.noise.pixel_px = 0.5f;
+            scene_tell_no_noise(&settings);
+            settings.detector.point_px = 0.5f;
             fly_once(&honesty, 0.5);
         }
         check_report(shape > 0 ? "cylinders: NEES over freedoms" : "boxes: NEES over freedoms",
@@ -485,8 +485,8 @@ static void a_reset_forgets_the_track(void) {
 /* GIVEN single wild points WHEN they come now and then THEN the answer hardly moves. */
 static void single_outliers_are_left_out(void) {
     any = check_random_start("outliers");
-    scene_tell_no_noise(&settings.noise);
-    settings.noise.pixel_px = 0.5f;
+    scene_tell_no_noise(&settings);
+    settings.detector.point_px = 0.5f;
     start();
     for (int k = 0; k < IMAGES; k++) {
         scene_image(&scene, k, &image, NULL);
@@ -512,8 +512,8 @@ static void a_track_that_began_with_an_outlier_recovers(void) {
                 if (shape > 0) {
                     scene_make_cylinder(&scene);
                 }
-                scene_tell_no_noise(&settings.noise);
-                settings.noise.pixel_px = 0.5f;
+                scene_tell_no_noise(&settings);
+                settings.detector.point_px = 0.5f;
                 start();
                 for (int k = 0; k < IMAGES; k++) {
                     scene_image(&scene, k, &image, NULL);
@@ -556,8 +556,8 @@ static void the_error_of_the_altitude_is_in_the_height(void) {
     for (int i = 0; i < 2; i++) {
         setUp();
         scene_make_cylinder(&scene);
-        scene_tell_no_noise(&settings.noise);
-        settings.noise.height_m = i > 0 ? 2.0f : 0.01f;
+        scene_tell_no_noise(&settings);
+        settings.navigation.height_bias_m = i > 0 ? 2.0f : 0.01f;
         start();
         fly(0, IMAGES);
         TEST_ASSERT_EQUAL_HEX32(DISC_BITS, estimate.valid);
@@ -570,8 +570,8 @@ static void the_error_of_the_altitude_is_in_the_height(void) {
 
 /* GIVEN eight images of another obstacle, 15 m aside and half as far THEN the track ends up at the one that is seen. */
 static void a_track_that_began_at_another_obstacle_recovers(void) {
-    scene_tell_no_noise(&settings.noise);
-    settings.noise.pixel_px = 0.5f;
+    scene_tell_no_noise(&settings);
+    settings.detector.point_px = 0.5f;
     start();
     const scene_t right = scene;
     scene.x0_m += 15.0;
@@ -669,7 +669,7 @@ static void a_stand_in_tells_no_width(void) {
     scene.x0_m = 0.0;
     scene.z0_m = 180.0;
     scene.alpha_deg = 0.0;
-    settings.noise.pixel_px = 2.0f;
+    settings.detector.point_px = 2.0f;
     start();
     for (int k = 0; k < IMAGES; k++) {
         fly(k, k + 1);
@@ -688,9 +688,9 @@ static void the_window_answers_before_the_start_only(void) {
     bool begun = false;
     any = check_random_start("before the start");
     settings.model = GOE_MODEL_LINE;
-    settings.orientation_min_px = 0.0f;
-    settings.edge_min_px = 0.0f;
-    settings.noise.pixel_px = 3.0f;
+    settings.window.orientation_min_px = 0.0f;
+    settings.window.edge_min_px = 0.0f;
+    settings.detector.point_px = 3.0f;
     scene.z0_m = 400.0;
     start();
     for (int k = 0; k < 190; k++) {

@@ -275,10 +275,10 @@ static void check_state(void) {
     check_finite(e->window.height.value, GOE_WINDOW_MAX, "heights");
     check_finite(&e->window.orientation.filtered_deg, 3, "orientation");
     check_filter(&e->filter);
-    TEST_ASSERT_TRUE(e->window.disc.next >= 0 && e->window.disc.next < e->settings.window);
-    TEST_ASSERT_TRUE(e->window.line.next >= 0 && e->window.line.next < e->settings.window);
-    TEST_ASSERT_TRUE(e->window.length.next >= 0 && e->window.length.next < e->settings.window);
-    TEST_ASSERT_TRUE(e->window.height.next >= 0 && e->window.height.next < e->settings.window);
+    TEST_ASSERT_TRUE(e->window.disc.next >= 0 && e->window.disc.next < e->settings.window.points);
+    TEST_ASSERT_TRUE(e->window.line.next >= 0 && e->window.line.next < e->settings.window.points);
+    TEST_ASSERT_TRUE(e->window.length.next >= 0 && e->window.length.next < e->settings.window.points);
+    TEST_ASSERT_TRUE(e->window.height.next >= 0 && e->window.height.next < e->settings.window.points);
 }
 
 static void update_and_check(const goe_image_t *image) {
@@ -319,20 +319,20 @@ static float any_from(float least, float most) {
 }
 
 static void any_noise(goe_settings_t *s) {
-    s->noise.pixel_px = any_from(0.05f, 100.0f);
-    s->noise.size_share = any_from(0.0f, 1.0f);
-    s->noise.correlation = any_from(0.0f, 0.95f);
-    s->noise.shape_share = any_from(0.0f, 1.0f);
-    s->noise.attitude_bias_deg = any_from(1.0e-3f, 30.0f);
-    s->noise.attitude_white_deg = any_from(1.0e-4f, 30.0f);
-    s->noise.attitude_drift_deg = any_from(0.0f, 30.0f);
-    s->noise.height_m = any_from(1.0e-3f, 1.0e3f);
-    s->noise.velocity_bias_m_s = any_from(0.0f, 100.0f);
-    s->noise.position_walk_m = any_from(0.0f, 100.0f);
-    s->typical_size_m = any_from(0.1f, 1.0e3f);
-    s->gate_sigma = any_from(1.0f, 100.0f);
-    s->huber_sigma = any_from(0.5f, 100.0f);
-    s->misfit_max = any_from(1.0e-2f, 1.0e3f);
+    s->detector.point_px = any_from(0.05f, 100.0f);
+    s->detector.box_share = any_from(0.0f, 1.0f);
+    s->detector.correlation = any_from(0.0f, 0.95f);
+    s->detector.shape_share = any_from(0.0f, 1.0f);
+    s->navigation.attitude_bias_deg = any_from(1.0e-3f, 30.0f);
+    s->navigation.attitude_white_deg = any_from(1.0e-4f, 30.0f);
+    s->navigation.attitude_drift_deg = any_from(0.0f, 30.0f);
+    s->navigation.height_bias_m = any_from(1.0e-3f, 1.0e3f);
+    s->navigation.velocity_bias_m_s = any_from(0.0f, 100.0f);
+    s->navigation.position_walk_m = any_from(0.0f, 100.0f);
+    s->refined.typical_size_m = any_from(0.1f, 1.0e3f);
+    s->refined.gate_sigma = any_from(1.0f, 100.0f);
+    s->refined.huber_sigma = any_from(0.5f, 100.0f);
+    s->refined.misfit_max = any_from(1.0e-2f, 1.0e3f);
 }
 
 static goe_settings_t any_settings(void) {
@@ -362,15 +362,15 @@ static goe_settings_t any_settings(void) {
     s.model = (goe_model_t)(GOE_MODEL_AUTO + (int)below(3));
     s.heading_auto = one_in(2);
     s.heading_deg = any_within(360.0f);
-    s.window = 3 + (int)below(GOE_WINDOW_MAX - 2);
-    s.line_points = 1 + (int)below(one_in(2) ? 5 : 1000);
-    s.edge_min_px = one_in(2) ? 0.0f : between(0.0, 20.0);
-    s.orientation_min_px = one_in(2) ? 0.0f : between(0.0, 5.0);
-    s.side_min_px = one_in(2) ? 0.1f : between(0.1, 20.0);
-    s.orientation_memory = 1 + (int)below(one_in(2) ? 3 : 1000);
-    s.min_baseline_m = one_in(2) ? 1.0e-3f : between(1.0e-3, 10.0);
+    s.window.points = 3 + (int)below(GOE_WINDOW_MAX - 2);
+    s.window.line_points = 1 + (int)below(one_in(2) ? 5 : 1000);
+    s.window.edge_min_px = one_in(2) ? 0.0f : between(0.0, 20.0);
+    s.window.orientation_min_px = one_in(2) ? 0.0f : between(0.0, 5.0);
+    s.window.side_min_px = one_in(2) ? 0.1f : between(0.1, 20.0);
+    s.window.orientation_memory = 1 + (int)below(one_in(2) ? 3 : 1000);
+    s.window.min_baseline_m = one_in(2) ? 1.0e-3f : between(1.0e-3, 10.0);
     s.method = one_in(4) ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
-    s.top_is_highest = one_in(2);
+    s.refined.top_is_highest = one_in(2);
     if (one_in(2)) {
         any_noise(&s);
     }
@@ -549,9 +549,9 @@ static void spoiled_flights_do_no_harm(void) {
         any_scene(&scene);
         goe_settings_t settings = scene_settings(&scene);
         settings.model = (goe_model_t)(GOE_MODEL_AUTO + (int)below(3));
-        settings.window = 3 + (int)below(GOE_WINDOW_MAX - 2);
+        settings.window.points = 3 + (int)below(GOE_WINDOW_MAX - 2);
         settings.method = one_in(4) ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
-        settings.top_is_highest = one_in(2);
+        settings.refined.top_is_highest = one_in(2);
         if (one_in(3)) {
             any_noise(&settings);
         }
@@ -646,7 +646,7 @@ static void long_adversarial_tracks_do_no_harm(void) {
         any_scene(&scene);
         goe_settings_t settings = scene_settings(&scene);
         settings.model = (goe_model_t)(GOE_MODEL_AUTO + t % 3);
-        settings.top_is_highest = one_in(2);
+        settings.refined.top_is_highest = one_in(2);
         if (t >= 3) {
             any_noise(&settings);
         }

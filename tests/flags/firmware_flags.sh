@@ -8,27 +8,13 @@
 # floating-point unit's mode. UNITY_INCLUDE and UNITY_LIBRARY say where the test framework is.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/firmwares.sh"
 
 firmware=${1:-}
-case $firmware in
-    px4)
-        flags=(-Wall -Wextra -Wdouble-promotion -Wfloat-equal -Wshadow -Wcast-align -Wlogical-op -Wpointer-arith
-            -Wframe-larger-than=1300 -freciprocal-math -fno-signed-zeros -fno-trapping-math -fno-math-errno)
-        levels=(-O2 -Os) ;;
-    ardupilot)
-        flags=(-Wall -Wextra -Wframe-larger-than=1300 -Wfloat-equal -Wmissing-declarations -Wlogical-op
-            -fsingle-precision-constant -DNDEBUG)
-        levels=(-Os -O2) ;;
-    betaflight)
-        flags=(-Wall -Wextra -Wpedantic -Wdouble-promotion -Wold-style-definition -flto -ffast-math)
-        levels=(-O2 -Ofast) ;;
-    inav)
-        flags=(-Wall -Wextra -Wdouble-promotion -Wstrict-prototypes -fsingle-precision-constant -flto)
-        levels=(-Os -O2) ;;
-    *)
-        echo "usage: $0 px4|ardupilot|betaflight|inav" >&2
-        exit 2 ;;
-esac
+firmware_flags "$firmware" || {
+    echo "usage: $0 px4|ardupilot|betaflight|inav" >&2
+    exit 2
+}
 
 sources=("$root"/lib/*.c "$root"/lib/*/*.c)
 shopt -s nullglob

@@ -313,60 +313,63 @@ def test_residuals_are_columns_at_the_end(method: str) -> None:
 
 def test_suspect() -> None:
     """Pixels said to be ten times better than they are, and a bound for it."""
-    told = ("--set", "noise.pixel_px=0.05", "--set", "noise.attitude_white_deg=1e-4", "--set", "gate_sigma=100")
-    out = replay(CORNER, "--residuals", *told, "--set", "huber_sigma=100")
+    told = ("--set", "detector.point_px=0.05", "--set", "navigation.attitude_white_deg=1e-4")
+    told += ("--set", "refined.gate_sigma=100")
+    out = replay(CORNER, "--residuals", *told, "--set", "refined.huber_sigma=100")
     assert number(out[-1], "misfit") > 1.9
     images = accumulate(int(row["nis_rows"]) > 0 for row in out)
     told_so = [row["suspect"] for row in out]
     assert told_so == [str(int(n >= 8 and float(row["misfit"] or 0.0) > 1.9)) for n, row in zip(images, out)]
-    bold = [row["suspect"] for row in replay(CORNER, "--residuals", *told, "--set", "misfit_max=1e3")]
+    bold = [row["suspect"] for row in replay(CORNER, "--residuals", *told, "--set", "refined.misfit_max=1e3")]
     assert bold.count("1") < told_so.count("1")  # what is left are base corners that proved wrong
 
 
 SETTINGS = {  # by --set, and their defaults
-    "noise.pixel_px": 0.5,
-    "noise.size_share": 0,
-    "noise.correlation": 0,
-    "noise.shape_share": 0,
-    "noise.attitude_bias_deg": 0.5,
-    "noise.attitude_white_deg": 0.1,
-    "noise.attitude_drift_deg": 0,
-    "noise.height_m": 0.5,
-    "noise.velocity_bias_m_s": 0.05,
-    "noise.position_walk_m": 0.05,
-    "typical_size_m": 6,
-    "gate_sigma": 5,
-    "huber_sigma": 2.5,
-    "misfit_max": 1.9,
-    "top_is_highest": 0,
-    "line_points": 8,
-    "edge_min_px": 10,
-    "orientation_min_px": 2,
-    "side_min_px": 10,
-    "orientation_memory": 20,
-    "min_baseline_m": 0.1,
+    "navigation.attitude_bias_deg": 0.5,
+    "navigation.attitude_white_deg": 0.1,
+    "navigation.attitude_drift_deg": 0,
+    "navigation.height_bias_m": 0.5,
+    "navigation.velocity_bias_m_s": 0.05,
+    "navigation.position_walk_m": 0.05,
+    "detector.point_px": 0.5,
+    "detector.box_share": 0,
+    "detector.correlation": 0,
+    "detector.shape_share": 0,
+    "refined.typical_size_m": 6,
+    "refined.gate_sigma": 5,
+    "refined.huber_sigma": 2.5,
+    "refined.misfit_max": 1.9,
+    "refined.top_is_highest": 0,
+    "window.points": 8,
+    "window.line_points": 8,
+    "window.edge_min_px": 10,
+    "window.orientation_min_px": 2,
+    "window.side_min_px": 10,
+    "window.orientation_memory": 20,
+    "window.min_baseline_m": 0.1,
 }
 OTHERWISE = {  # values that change what the refined method, or else the window, says of the corner log or the chimney
     "refined": {
-        **{name: 0.2 for name in SETTINGS if name.startswith("noise.")},
-        "typical_size_m": 30,
-        "gate_sigma": 1,
-        "huber_sigma": 0.5,
-        "top_is_highest": 1,
+        **{name: 0.2 for name in SETTINGS if name.startswith(("detector.", "navigation."))},
+        "refined.typical_size_m": 30,
+        "refined.gate_sigma": 1,
+        "refined.huber_sigma": 0.5,
+        "refined.top_is_highest": 1,
     },
     "window": {
-        "line_points": 20,
-        "edge_min_px": 40,
-        "orientation_min_px": 100,
-        "side_min_px": 60,
-        "orientation_memory": 3,
-        "min_baseline_m": 100,
+        "window.points": 5,
+        "window.line_points": 20,
+        "window.edge_min_px": 40,
+        "window.orientation_min_px": 100,
+        "window.side_min_px": 60,
+        "window.orientation_memory": 3,
+        "window.min_baseline_m": 100,
     },
 }
 
 
 def test_each_setting_is_set(log: Path) -> None:
-    assert {"misfit_max"} | {name for told in OTHERWISE.values() for name in told} == set(SETTINGS)
+    assert {"refined.misfit_max"} | {name for told in OTHERWISE.values() for name in told} == set(SETTINGS)
     for method, told in OTHERWISE.items():
         usual = [call("--method", method, folder).stdout for folder in (CORNER, log)]
         for name, value in told.items():
@@ -382,8 +385,8 @@ def test_set_to_the_default_changes_nothing() -> None:
 
 
 def test_the_last_of_two_counts() -> None:
-    both = call("--set", "noise.pixel_px=3", "--set=noise.pixel_px=0.7", CORNER).stdout
-    assert both == call("--set", "noise.pixel_px=0.7", CORNER).stdout != call(CORNER).stdout
+    both = call("--set", "detector.point_px=3", "--set=detector.point_px=0.7", CORNER).stdout
+    assert both == call("--set", "detector.point_px=0.7", CORNER).stdout != call(CORNER).stdout
 
 
 # ------------------------------------------------------------------------------------------------------- file formats
@@ -637,28 +640,31 @@ BAD_USAGE = [
     (["--model", ""], "--model must be auto, disc or line"),
     (["--method", "magic"], "magic: --method must be window or refined"),
     (["--set"], "--set: missing argument"),
-    (["--set", ""], "--set: '' is no setting; there are noise.pixel_px, "),
-    (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are noise.pixel_px, "),
-    (["--set", "noise.pixel_p=1"], "--set: 'noise.pixel_p' is no setting"),
-    (["--set", "noise.pixel_pxx=1"], "orientation_memory and min_baseline_m"),
+    (["--set", ""], "--set: '' is no setting; there are navigation.attitude_bias_deg, "),
+    (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are navigation.attitude_bias_deg, "),
+    (["--set", "detector.point_p=1"], "--set: 'detector.point_p' is no setting"),
+    (["--set", "detector.point_pxx=1"], "orientation_memory and window.min_baseline_m"),
     (["--set", "window=5"], "--set: 'window' is no setting"),
     (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting"),
     (["--set", "\x1b[31m=5"], "--set: '?[31m' is no setting"),
-    (["--set", "noise.pixel_px"], "--set: noise.pixel_px: no value; write noise.pixel_px=VALUE"),
-    (["--set", "noise.pixel_px="], "--set: noise.pixel_px: '' is not a number"),
-    (["--set", "noise.pixel_px=0.5px"], "--set: noise.pixel_px: '0.5px' is not a number"),
-    (["--set", "noise.pixel_px= 1"], "--set: noise.pixel_px: ' 1' is not a number"),
-    (["--set", "noise.pixel_px=1=1"], "--set: noise.pixel_px: '1=1' is not a number"),
-    (["--set", "noise.pixel_px=" + "9" * 400 + "x"], "9...' is not a number"),
-    (["--set", "noise.pixel_px=nan"], "--set: noise.pixel_px: out of range"),
-    (["--set", "noise.pixel_px=1e99"], "--set: noise.pixel_px: out of range"),
-    (["--set", "noise.correlation=1"], "--set: noise.correlation: out of range"),
-    (["--set", "gate_sigma=4", "--set", "typical_size_m=-6"], "--set: typical_size_m: out of range"),
-    (["--set", "line_points=2.5"], "--set: line_points: '2.5' is not a whole number"),
-    (["--set", "line_points=nan"], "--set: line_points: 'nan' is not a whole number"),
-    (["--set", "orientation_memory=0"], "--set: orientation_memory: out of range"),
-    (["--set", "top_is_highest=2"], "--set: top_is_highest: '2' is not 0 or 1"),
-    (["--set", "top_is_highest=yes"], "--set: top_is_highest: 'yes' is not a number"),
+    (["--set", "detector.point_px"], "--set: detector.point_px: no value; write detector.point_px=VALUE"),
+    (["--set", "detector.point_px="], "--set: detector.point_px: '' is not a number"),
+    (["--set", "detector.point_px=0.5px"], "--set: detector.point_px: '0.5px' is not a number"),
+    (["--set", "detector.point_px= 1"], "--set: detector.point_px: ' 1' is not a number"),
+    (["--set", "detector.point_px=1=1"], "--set: detector.point_px: '1=1' is not a number"),
+    (["--set", "detector.point_px=" + "9" * 400 + "x"], "9...' is not a number"),
+    (["--set", "detector.point_px=nan"], "--set: detector.point_px: out of range: 0.05 to 100"),
+    (["--set", "detector.point_px=1e99"], "--set: detector.point_px: out of range: 0.05 to 100"),
+    (["--set", "detector.correlation=1"], "--set: detector.correlation: out of range: 0 to 0.95"),
+    (
+        ["--set", "refined.gate_sigma=4", "--set", "refined.typical_size_m=-6"],
+        "--set: refined.typical_size_m: out of range: 0.1 to 1000",
+    ),
+    (["--set", "window.line_points=2.5"], "--set: window.line_points: '2.5' is not a whole number"),
+    (["--set", "window.line_points=nan"], "--set: window.line_points: 'nan' is not a whole number"),
+    (["--set", "window.orientation_memory=0"], "--set: window.orientation_memory: out of range: 1 to 1000"),
+    (["--set", "refined.top_is_highest=2"], "--set: refined.top_is_highest: '2' is not 0 or 1"),
+    (["--set", "refined.top_is_highest=yes"], "--set: refined.top_is_highest: 'yes' is not a number"),
     (["--wat"], "--wat: unknown option"),
     (["another"], "another: one folder at a time"),
 ]

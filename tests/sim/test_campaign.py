@@ -42,13 +42,14 @@ BEYOND = {  # study: path, speed profile, wind, noise of each variant
     "field": (("straight", "constant", "none", "field"),),
 }
 # what goe_campaign tells the refined method of a noise, where it is not goe_replay's default
-EXACT_POSE = {"attitude_bias_deg": 1e-3, "attitude_white_deg": 1e-3, "height_m": 1e-3}
-EXACT_POSE |= {"velocity_bias_m_s": 0, "position_walk_m": 0}
+EXACT_POSE = {"navigation.attitude_bias_deg": 1e-3, "navigation.attitude_white_deg": 1e-3}
+EXACT_POSE |= {"navigation.height_bias_m": 1e-3}
+EXACT_POSE |= {"navigation.velocity_bias_m_s": 0, "navigation.position_walk_m": 0}
 TOLD = {
-    "none": {"pixel_px": 0.05, **EXACT_POSE},
-    "rounding": {"pixel_px": 0.35, **EXACT_POSE},
+    "none": {"detector.point_px": 0.05, **EXACT_POSE},
+    "rounding": {"detector.point_px": 0.35, **EXACT_POSE},
     "field": {},
-    "detector": {"pixel_px": 0.7, "size_share": 0.025, "correlation": 0.5, **EXACT_POSE},
+    "detector": {"detector.point_px": 0.7, "detector.box_share": 0.025, "detector.correlation": 0.5, **EXACT_POSE},
 }
 BITS_CASES = {"cylinder": 2, "building": 18, "truck": 66, "long-truck": 126}
 
@@ -103,7 +104,7 @@ def replay(
     programs: dict[str, Path], log: Path, model: str, window: int = 8, method: str = "window", noise: str = "field"
 ) -> str:
     command = [str(programs["goe_replay"]), "--method", method, "--model", model, "--window", str(window), str(log)]
-    command += [f"--set=noise.{name}={value}" for name, value in TOLD[noise].items()]
+    command += [f"--set={name}={value}" for name, value in TOLD[noise].items()]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
 

@@ -128,9 +128,9 @@ void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_
     }
     settings->method = method;
     settings->model = (goe_model_t)track->model;
-    settings->window = track->window;
-    settings->line_points = track->line_points;
-    settings->orientation_memory = track->orientation_memory;
+    settings->window.points = track->window;
+    settings->window.line_points = track->line_points;
+    settings->window.orientation_memory = track->orientation_memory;
     settings->heading_auto = track->heading_auto != 0u;
 }
 
@@ -150,18 +150,28 @@ static goe_status_t init_track(replay_t *replay, goe_estimator_t *estimator, con
     return status;
 }
 
-static void replay_questions(replay_t *replay, const goe_estimator_t *estimator) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f};
+static void hash_covariance(replay_t *replay, const goe_estimator_t *estimator) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
-    goe_hazard_t hazard;
     hash_status(replay, goe_covariance(estimator, covariance));
     hash_numbers(replay, &covariance[0][0], GOE_QUANTITIES * GOE_QUANTITIES);
+}
+
+#if GOE_WITH_HAZARD
+static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f};
+    goe_hazard_t hazard;
     hash_status(replay, goe_hazard(estimator, &plan, &hazard));
     const float numbers[] = {hazard.time_s,    hazard.miss_m,    hazard.clearance_m,   hazard.violation,
                              hazard.time_sd_s, hazard.miss_sd_m, hazard.clearance_sd_m};
     hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
     hash_word(replay, hazard.has_clearance ? 1u : 0u);
 }
+#else
+static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
+    (void)replay;
+    (void)estimator;
+}
+#endif
 
 static void replay_images(replay_t *replay, goe_estimator_t *estimator, const logged_track_t *track) {
     for (int k = 0; k < track->count; k++) {
@@ -171,7 +181,8 @@ static void replay_images(replay_t *replay, goe_estimator_t *estimator, const lo
         replay_read_image(&logged_images[track->first + k], &image);
         hash_status(replay, goe_update(estimator, &image, &estimate));
         hash_estimate(replay, &estimate);
-        replay_questions(replay, estimator);
+        hash_covariance(replay, estimator);
+        hash_hazard(replay, estimator);
         replay->images++;
     }
     for (int i = 0; i < GOE_CAUSES; i++) {
@@ -188,6 +199,43 @@ void replay_all(replay_t *replay) {
         if (init_track(replay, &estimator, track, replay_methods[t % REPLAY_METHODS]) == GOE_OK) {
             replay_images(replay, &estimator, track);
             hash_status(replay, goe_reset(&estimator));
+        }
+    }
+}
+
+/* What a method answers by itself, whatever other parts are compiled in: the window all along, the refined method where it
+ * has solved an image. */
+static void replay_own(replay_parts_t *parts, goe_estimator_t *estimator, const logged_track_t *track,
+                       goe_method_t method) {
+    replay_t *own = method == GOE_METHOD_WINDOW ? &parts->window : &parts->refined;
+    replay_t *hazard = method == GOE_METHOD_WINDOW ? &parts->window_hazard : &parts->refined_hazard;
+    for (int k = 0; k < track->count; k++) {
+        goe_image_t image;
+        goe_estimate_t estimate;
+        replay_read_image(&logged_images[track->first + k], &image);
+        const goe_status_t status = goe_update(estimator, &image, &estimate);
+        const bool solved = estimate.method == GOE_METHOD_REFINED && estimate.fresh;
+        if (method == GOE_METHOD_WINDOW || solved) {
+            hash_status(own, status);
+            hash_estimate(own, &estimate);
+            hash_covariance(own, estimator);
+            hash_hazard(hazard, estimator);
+            hazard->images++;
+            own->images++;
+        }
+    }
+}
+
+void replay_parts(replay_parts_t *parts) {
+    static goe_estimator_t estimator;
+    const replay_parts_t begin = {replay_start(), replay_start(), replay_start(), replay_start()};
+    replay_t dropped = replay_start();
+    *parts = begin;
+    for (int t = 0; t < logged_track_count * REPLAY_METHODS; t++) {
+        const logged_track_t *track = &logged_tracks[t / REPLAY_METHODS];
+        const goe_method_t method = replay_methods[t % REPLAY_METHODS];
+        if (init_track(&dropped, &estimator, track, method) == GOE_OK) {
+            replay_own(parts, &estimator, track, method);
         }
     }
 }

@@ -21,6 +21,13 @@ extern const goe_method_t replay_methods[REPLAY_METHODS];
 /* Every track: its estimator initialised, each image taken, reset at the end. All that is returned is hashed. */
 void replay_all(replay_t *replay);
 
+/* The same of what does not depend on the parts that are compiled in beside a method; a part that is left out has no images. */
+typedef struct {
+    replay_t window, refined, window_hazard, refined_hazard;
+} replay_parts_t;
+
+void replay_parts(replay_parts_t *parts);
+
 void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_settings_t *settings);
 void replay_read_image(const logged_image_t *logged, goe_image_t *image);
 

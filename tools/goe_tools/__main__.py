@@ -22,6 +22,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "offline": (".optimum.offline", "fit all images of a log with truth at once"),
     "peers": (".cost.peers.command", "hold the window fit and the filter update against other solvers"),
     "report": (".report.command", "write the campaign's report and print Table 3"),
+    "settings": (".reference.settings_table", "print, write or check the manual's table of the library's settings"),
     "table": (".logs.table", "print estimates as a table that a pilot can read"),
 }
 EXIT_BAD_INPUT = 2

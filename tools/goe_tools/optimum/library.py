@@ -28,13 +28,23 @@ NUMBERS = (
     "x0_sd_m", "z0_sd_m", "orientation_sd_deg", "width_sd_m", "length_sd_m", "height_sd_m", "nis", "misfit",
 )  # fmt: skip
 TO_RADIANS = np.where(np.arange(6) == 2, np.pi / 180.0, 1.0)
+SETTING_OF = {  # the library's setting for each figure of a noise
+    "sigma_px": "detector.point_px",
+    "size_share": "detector.box_share",
+    "correlation": "detector.correlation",
+    "shape_share": "detector.shape_share",
+    "attitude_bias_deg": "navigation.attitude_bias_deg",
+    "attitude_white_deg": "navigation.attitude_white_deg",
+    "attitude_drift_deg": "navigation.attitude_drift_deg",
+    "height_m": "navigation.height_bias_m",
+    "velocity_bias_m_s": "navigation.velocity_bias_m_s",
+    "position_walk_m": "navigation.position_walk_m",
+    "typical_size_m": "refined.typical_size_m",
+}
 SMALLEST = {  # that the library takes
-    "noise.pixel_px": 0.05, "noise.attitude_bias_deg": 1e-3, "noise.attitude_white_deg": 1e-4, "noise.height_m": 1e-3,
+    "detector.point_px": 0.05, "navigation.attitude_bias_deg": 1e-3, "navigation.attitude_white_deg": 1e-4,
+    "navigation.height_bias_m": 1e-3,
 }  # fmt: skip
-NOISE_FIELDS = (
-    "size_share", "correlation", "shape_share", "attitude_bias_deg", "attitude_white_deg", "attitude_drift_deg",
-    "height_m", "velocity_bias_m_s", "position_walk_m",
-)  # fmt: skip
 
 
 class _Track(ctypes.Structure):
@@ -119,13 +129,12 @@ def settings_of(flight: Flight, noise: Noise | None = None, method: str = "refin
     result |= {f"camera.mount_{axis}_deg": getattr(camera, f"mount_{axis}_deg") for axis in ("yaw", "pitch", "roll")}
     result |= {f"camera.offset_m[{i}]": getattr(camera, f"offset_{axis}_m") for i, axis in enumerate("xyz")}
     result |= {
-        "top_is_highest": float(flight.top_is_highest),
+        "refined.top_is_highest": float(flight.top_is_highest),
         "heading_auto": 0.0,
         "heading_deg": camera.heading_deg or 0.0,
         "method": float(METHODS[method]),
     }
-    result |= {f"noise.{name}": getattr(noise, name) for name in NOISE_FIELDS}
-    result |= {"noise.pixel_px": noise.sigma_px, "typical_size_m": noise.typical_size_m}
+    result |= {setting: getattr(noise, name) for name, setting in SETTING_OF.items()}
     return {name: max(value, SMALLEST.get(name, value)) for name, value in result.items()}
 
 

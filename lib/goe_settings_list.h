@@ -1,0 +1,82 @@
+/* Every setting, once: defaults, checks, the programs' --set and the documentation come from this list.
+ * SPDX-License-Identifier: MIT
+ *
+ *   X(field, kind, unit, least, most, by default, text)
+ *
+ * field is the path in goe_settings_t; kind REAL, COUNT (int), TRUTH (bool) or CHOICE (an enumeration, by its number). A
+ * setting whose default is outside its range must be set. The settings of a part that was left out are in no list. */
+#ifndef GOE_SETTINGS_LIST_H
+#define GOE_SETTINGS_LIST_H
+
+#include "goe.h"
+
+/* clang-format off: a table. */
+#define GOE_SETTINGS_CAMERA(X) \
+    X(camera.fx_px, REAL, "px", 1.0f, 1.0e5f, 0.0f, "focal length along x") \
+    X(camera.fy_px, REAL, "px", 1.0f, 1.0e5f, 0.0f, "focal length along y") \
+    X(camera.cx_px, REAL, "px", -1.0e5f, 1.0e5f, 0.0f, "principal point") \
+    X(camera.cy_px, REAL, "px", -1.0e5f, 1.0e5f, 0.0f, "principal point") \
+    X(camera.k1, REAL, "", -100.0f, 100.0f, 0.0f, "lens distortion, radial, OpenCV's order and meaning") \
+    X(camera.k2, REAL, "", -100.0f, 100.0f, 0.0f, "lens distortion, radial") \
+    X(camera.p1, REAL, "", -100.0f, 100.0f, 0.0f, "lens distortion, tangential") \
+    X(camera.p2, REAL, "", -100.0f, 100.0f, 0.0f, "lens distortion, tangential") \
+    X(camera.k3, REAL, "", -100.0f, 100.0f, 0.0f, "lens distortion, radial") \
+    X(camera.mount_yaw_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting; a camera that looks left has a negative yaw") \
+    X(camera.mount_pitch_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting") \
+    X(camera.mount_roll_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting") \
+    X(camera.offset_m[0], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body forward") \
+    X(camera.offset_m[1], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body right") \
+    X(camera.offset_m[2], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body down")
+
+#define GOE_SETTINGS_GENERAL(X) \
+    X(method, CHOICE, "", GOE_METHOD_LEAST, GOE_METHOD_MOST, GOE_METHOD_MOST, "1 window, 2 refined") \
+    X(model, CHOICE, "", GOE_MODEL_AUTO, GOE_MODEL_LINE, GOE_MODEL_AUTO, "1 auto, 2 disc, 3 line (refined: a box)") \
+    X(heading_auto, TRUTH, "", 0, 1, 1, "direction of Z: the vehicle's yaw at the first image") \
+    X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "direction of Z otherwise, clockwise from north")
+
+#if GOE_WITH_REFINED
+#define GOE_SETTINGS_REFINED(X) \
+    X(navigation.attitude_bias_deg, REAL, "deg", 1.0e-3f, 30.0f, 0.5f, "constant attitude error, mounting included") \
+    X(navigation.attitude_white_deg, REAL, "deg", 1.0e-4f, 30.0f, 0.1f, "attitude error that is new in each image") \
+    X(navigation.attitude_drift_deg, REAL, "deg/s^0.5", 0.0f, 30.0f, 0.0f, "random walk of the attitude error") \
+    X(navigation.height_bias_m, REAL, "m", 1.0e-3f, 1.0e3f, 0.5f, "constant error of the height above ground") \
+    X(navigation.velocity_bias_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity") \
+    X(navigation.position_walk_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the own position") \
+    X(detector.point_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image; rounding: 0.3") \
+    X(detector.box_share, REAL, "", 0.0f, 1.0f, 0.0f, "error of left, right, top, of the width; detectors: 0.025") \
+    X(detector.correlation, REAL, "", 0.0f, 0.95f, 0.0f, "of a point's error from image to image; detectors: 0.5") \
+    X(detector.shape_share, REAL, "", 0.0f, 1.0f, 0.0f, "model error of the disc, of its width; cars: 0.12") \
+    X(refined.typical_size_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "first guess of the width, where the ground tells no range") \
+    X(refined.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point farther off is left out") \
+    X(refined.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point farther off counts less") \
+    X(refined.misfit_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "misfit above which the obstacle is suspect") \
+    X(refined.top_is_highest, TRUTH, "", 0, 1, 0, "top is the highest point in the image, also from above")
+#else
+#define GOE_SETTINGS_REFINED(X)
+#endif
+
+#if GOE_WITH_WINDOW
+#define GOE_SETTINGS_WINDOW(X) \
+    X(window.points, COUNT, "images", 3, GOE_WINDOW_MAX, GOE_WINDOW_DEFAULT, "points in the fit and the sliding means") \
+    X(window.line_points, COUNT, "images", 1, 1000, 8, "when the line takes over from the disc") \
+    X(window.edge_min_px, REAL, "px", 0.0f, 1.0e4f, 10.0f, "shorter edges do not count") \
+    X(window.orientation_min_px, REAL, "px", 0.0f, 1.0e4f, 2.0f, "flatter edges have no orientation") \
+    X(window.side_min_px, REAL, "px", 0.1f, 1.0e4f, 10.0f, "a side edge nearer to edge-on gives no length") \
+    X(window.orientation_memory, COUNT, "images", 1, 1000, 20, "low-pass of the orientation") \
+    X(window.min_baseline_m, REAL, "m", 1.0e-3f, 1.0e4f, 0.1f, "less camera motion over the window gives no solution")
+#else
+#define GOE_SETTINGS_WINDOW(X)
+#endif
+/* clang-format on */
+
+#define GOE_SETTINGS(X) GOE_SETTINGS_CAMERA(X) GOE_SETTINGS_GENERAL(X) GOE_SETTINGS_REFINED(X) GOE_SETTINGS_WINDOW(X)
+
+#if GOE_WINDOW_MAX < 8
+#define GOE_WINDOW_DEFAULT GOE_WINDOW_MAX
+#else
+#define GOE_WINDOW_DEFAULT 8
+#endif
+#define GOE_METHOD_LEAST (GOE_WITH_WINDOW ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED)
+#define GOE_METHOD_MOST (GOE_WITH_REFINED ? GOE_METHOD_REFINED : GOE_METHOD_WINDOW)
+
+#endif

@@ -1,0 +1,41 @@
+/* What each part of the library answers, as hashes; and that what is left out is refused. SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <string.h>
+
+#include "replay.h"
+
+static void print(const char *name, const replay_t *replay, bool present) {
+    char text[17];
+    replay_hash_text(replay->hash, text);
+    if (present) {
+        printf("%s %s images %ld\n", name, text, replay->images);
+    }
+}
+
+/* A method that is not there is named by goe_init. */
+static bool refuses(goe_method_t method) {
+    goe_estimator_t estimator;
+    goe_settings_t settings;
+    const char *bad = NULL;
+    goe_settings_default(&settings);
+    settings.camera.fx_px = settings.camera.fy_px = 900.0f;
+    if (goe_init(&estimator, sizeof estimator, &settings, &bad) != GOE_OK) {
+        return false; /* the default method is one that is there */
+    }
+    settings.method = method;
+    return goe_init(&estimator, sizeof estimator, &settings, &bad) == GOE_BAD_SETTINGS && bad &&
+           strcmp(bad, "method") == 0;
+}
+
+int main(void) {
+    replay_parts_t parts;
+    replay_parts(&parts);
+    print("window", &parts.window, GOE_WITH_WINDOW);
+    print("refined", &parts.refined, GOE_WITH_REFINED);
+    print("window_hazard", &parts.window_hazard, GOE_WITH_WINDOW && GOE_WITH_HAZARD);
+    print("refined_hazard", &parts.refined_hazard, GOE_WITH_REFINED && GOE_WITH_HAZARD);
+    printf("bytes %zu\n", sizeof(goe_estimator_t));
+    const bool refused =
+        (GOE_WITH_WINDOW || refuses(GOE_METHOD_WINDOW)) && (GOE_WITH_REFINED || refuses(GOE_METHOD_REFINED));
+    return refused ? 0 : 1;
+}

@@ -1,0 +1,87 @@
+"""The table of settings in the manual, from the library's one list.
+
+    python -m goe_tools settings [--check FILE | --write FILE]
+
+Without options the table is printed. FILE has it between <!-- settings: begin --> and <!-- settings: end -->.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..places import ROOT
+
+BEGIN, END = "<!-- settings: begin -->", "<!-- settings: end -->"
+MANUAL = ROOT / "lib" / "README.md"
+
+
+@dataclass
+class Setting:
+    name: str
+    unit: str
+    least: str
+    most: str
+    value: str  # by default
+    text: str
+
+    @property
+    def default(self) -> str:
+        """A default outside its range says that the user has to set it."""
+        inside = float(self.least) <= float(self.value) <= float(self.most)
+        return self.value if inside and not self.name.startswith("camera.c") else "must be set"
+
+
+    @property
+    def limit(self) -> str:
+        """The programs are built with the largest window that there is; a firmware has its own."""
+        return "`GOE_WINDOW_MAX`" if self.name == "window.points" else self.most
+
+
+def program() -> Path:
+    return Path(os.environ.get("GOE_REPLAY", ROOT / "build" / "sim_host" / "goe_replay"))
+
+
+def settings(replay: Path | None = None) -> list[Setting]:
+    """Every setting, as the library has it."""
+    lines = subprocess.run([replay or program(), "--settings"], capture_output=True, text=True, check=True).stdout
+    return [Setting(*line.split("\t")) for line in lines.splitlines()]
+
+
+def table(rows: list[Setting]) -> str:
+    head = ["| setting | unit | range | default | meaning |", "|---|---|---|---|---|"]
+    body = [f"| `{s.name}` | {s.unit or '-'} | {s.least} to {s.limit} | {s.default} | {s.text} |" for s in rows]
+    return "\n".join([*head, *body])
+
+
+def parts(page: str, name: str) -> tuple[str, str, str]:
+    """What stands before, between and behind the marks."""
+    if BEGIN not in page or END not in page:
+        raise ValueError(f"{name}: there is no {BEGIN} ... {END}")
+    before, rest = page.split(BEGIN, 1)
+    between, behind = rest.split(END, 1)
+    return before, between.strip(), behind
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--check", type=Path, metavar="FILE", help="fail if FILE has another table")
+    what.add_argument("--write", type=Path, metavar="FILE", help="put the table into FILE")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    text = table(settings())
+    file = arguments.check or arguments.write
+    if file is None:
+        print(text)
+        return 0
+    before, between, behind = parts(file.read_text(encoding="utf-8"), str(file))
+    if arguments.write:
+        file.write_text(f"{before}{BEGIN}\n{text}\n{END}{behind}", encoding="utf-8")
+    elif between != text:
+        print(f"{file}: its table of settings is not the library's; python -m goe_tools settings --write {file}")
+        return 1
+    return 0
