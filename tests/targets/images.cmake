@@ -5,7 +5,7 @@ option(GOE_TARGET_UNIT_TESTS "Build the unit tests of tests/c as images, too" ON
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
 target_link_libraries(goe PUBLIC m)
-# What tools/goe_tools/ledger.py reads.
+# What tools/goe_tools/cost reads.
 target_compile_options(goe PRIVATE -ffunction-sections -fstack-usage $<$<C_COMPILER_ID:GNU>:-fcallgraph-info=su>)
 
 # goe_image(<target> <board> <source>...): an image for a board, without the library

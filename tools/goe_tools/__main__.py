@@ -23,6 +23,7 @@ COMMANDS = {
     "table": "print estimates as a table that a pilot can read",
 }
 MODULES = {name: f".optimum.{name}" for name in ("bound", "goals", "offline")}
+MODULES["ledger"] = ".cost.ledger"
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C
 
