@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from goe_tools.cost import book, growth, guarantees, instructions, pages, stack
+from goe_tools.cost import book, growth, guarantees, instructions, pages, parts, stack
 from goe_tools.cost.building import Build, library_command, shown_flags
 from goe_tools.cost.ledger import LEDGER, merged
 from goe_tools.cost.modules import bytes_of_object
@@ -137,6 +137,53 @@ def test_the_command_of_the_library_is_found_in_rooms_too() -> None:
         library_command([other])
 
 
+# -------------------------------------------------------------------------------------------------------------- parts
+
+PARTS_HEADER = """
+#if GOE_WITH_HAZARD && !GOE_WITH_REFINED
+#error "the hazard needs the refined method"
+#endif
+typedef struct {
+    char always[100], window[10 * GOE_WITH_WINDOW + 1], refined[1000 * GOE_WITH_REFINED + 1];
+} goe_estimator_t;
+"""
+
+
+def library_with_parts(folder: Path, header: str) -> Path:
+    """A library in rooms of which each part is one function."""
+    for part in parts.PARTS:
+        lines = ['#include "goe.h"', f"#if GOE_WITH_{part.upper()}", f"int {part}(int a) {{ return 3 * a; }}", "#endif"]
+        (folder / part).mkdir(parents=True)
+        (folder / part / f"goe_{part}.c").write_text("\n".join([*lines, ""]), encoding="utf-8")
+    (folder / "goe.h").write_text(header, encoding="utf-8")
+    return folder
+
+
+def test_parts_are_measured_once_the_header_knows_them(tmp_path: Path) -> None:
+    library = library_with_parts(tmp_path / "lib", PARTS_HEADER)
+    found = parts.measured_parts(host_build(tmp_path, library), tmp_path, library)
+    assert [part.name for part in found] == [
+        "window", "refined", "window and refined", "refined and hazard", "everything",
+    ]  # fmt: skip
+    sizes = {part.name: part.state for part in found}
+    assert sizes == {"window": 112, "refined": 1102, "window and refined": 1112, "refined and hazard": 1102,
+                     "everything": 1112}  # fmt: skip
+    code = {part.name: part.code for part in found}
+    assert 0 < code["window"] < code["window and refined"] < code["everything"]
+
+
+def test_no_parts_without_the_macros(tmp_path: Path) -> None:
+    library = library_with_parts(tmp_path / "lib", "/* GOE_WITH_WINDOW alone is not enough */\n")
+    assert parts.measured_parts(host_build(tmp_path, library), tmp_path, library) == []
+    assert pages.part_table({book.key(book.CODE, book.TOTAL): 1}) == []
+
+
+def test_a_header_that_does_not_compile_is_no_refusal(tmp_path: Path) -> None:
+    library = library_with_parts(tmp_path / "lib", "#include <not_there.h>\n" + PARTS_HEADER)
+    with pytest.raises(LedgerError, match=r"not_there\.h"):
+        parts.measured_parts(host_build(tmp_path, library), tmp_path, library)
+
+
 # ----------------------------------------------------------------------------------------------------- ledger's file
 
 
@@ -243,6 +290,15 @@ def test_the_table_of_guarantees_tells_where_they_do_not_hold() -> None:
     assert cells[1:] == [
         "Cortex-M4F gcc -Os (25,000), gcc -O2 (24,000), clang -O2 (1)", "Cortex-M4F clang -Os (25,001)",
     ]  # fmt: skip
+
+
+def test_parts_have_a_table_of_their_own() -> None:
+    ledger = committed()
+    ledger[parts.PARTS_PRESET] |= {
+        book.key(book.PART_BYTES, "window"): 7000,
+        book.key(book.PART_STATE, "window"): 500,
+    }
+    assert "| window | 7000 | 500 |" in pages.ledger_tables(ledger).splitlines()
 
 
 def test_tables_go_between_the_markers(tmp_path: Path) -> None:

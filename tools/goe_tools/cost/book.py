@@ -23,6 +23,7 @@ STACK, PAINTED = "stack bytes computed", "stack bytes painted"  # ...: <public f
 INSTRUCTIONS = "instructions"  # ...: <public function>: min, mean, max
 OF_UPDATE = "instructions of goe_update"  # ...: <module>: min, mean, max
 WORST = "worst goe_update"  # ...: track; ...: <module>: <function>. Of one target; may shift between functions
+PART_BYTES, PART_STATE = "code and constants bytes with parts", "state bytes with parts"  # ...: <combination>. Of one
 
 
 def key(*words: object) -> str:

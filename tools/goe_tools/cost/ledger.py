@@ -9,7 +9,7 @@
 The ledger is tests/targets/ledger.csv, its pages are tests/targets/LEDGER.md and a part of README.md. Figures: bytes of
 code, constants and data per module and in total; bytes of the state per window length; the worst-case stack of each
 public function, from the call graph and from painting under QEMU; instructions per call of each public function over
-the embedded logs, and of goe_update per module.
+the embedded logs, and of goe_update per module; what the library's parts cost.
 """
 
 from __future__ import annotations

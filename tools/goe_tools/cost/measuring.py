@@ -10,6 +10,7 @@ from .book import Figures, key
 from .building import Build, build, shown_flags
 from .instructions import PUBLIC, UPDATES, Spread, count, counted_calls
 from .modules import KINDS, external_calls, module_bytes, state_bytes
+from .parts import PARTS_PRESET, measured_parts
 from .running import LedgerError
 from .stack import computed_stack, painted_stack
 
@@ -55,12 +56,18 @@ def instruction_figures(built: Build, plugin: Path, scratch: Path) -> Figures:
     return figures
 
 
+def part_figures(built: Build, scratch: Path) -> Figures:
+    parts = measured_parts(built, scratch)
+    figures: Figures = {key(book.PART_BYTES, part.name): part.code for part in parts}
+    return figures | {key(book.PART_STATE, part.name): part.state for part in parts}
+
+
 def measure(preset: str, folder: Path, plugin: Path) -> Figures:
     """All figures of one preset, built in a folder of its name."""
     built = build(preset, folder)
     with tempfile.TemporaryDirectory() as name:
         scratch = Path(name)
-        return {
+        figures: Figures = {
             book.COMPILER: built.compiler,
             book.FLAGS: shown_flags(built.command),
             book.MACHINE: built.board,
@@ -69,3 +76,4 @@ def measure(preset: str, folder: Path, plugin: Path) -> Figures:
             **stack_figures(built),
             **instruction_figures(built, plugin, scratch),
         }
+        return figures | part_figures(built, scratch) if preset == PARTS_PRESET else figures

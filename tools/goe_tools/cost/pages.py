@@ -9,6 +9,7 @@ from .book import Figures, Ledger, below, number
 from .instructions import PUBLIC, UPDATES, WITH_LENS
 from .measuring import FULL_PRESET
 from .modules import WINDOWS
+from .parts import PARTS_PRESET
 from .targets import compiler_title, processor_title
 
 BEGIN, END = "<!-- ledger: begin -->", "<!-- ledger: end -->"
@@ -74,6 +75,15 @@ def state_table(figures: Figures) -> list[str]:
     ]
 
 
+def part_table(figures: Figures) -> list[str]:
+    """Nothing, where the library has no parts."""
+    parts = below(figures, book.PART_BYTES)
+    if not parts:
+        return []
+    rows = [f"| {p} | {number(figures, book.PART_BYTES, p)} | {number(figures, book.PART_STATE, p)} |" for p in parts]
+    return ["| parts | code + constants, bytes | state, bytes |", "|---|---|---|", *rows]
+
+
 def heading(preset: str, figures: Figures) -> str:
     return f"{processor_title(preset)}, {figures[book.COMPILER]}, `{figures[book.FLAGS]}`:"
 
@@ -81,6 +91,9 @@ def heading(preset: str, figures: Figures) -> str:
 def ledger_tables(ledger: Ledger) -> str:
     """All tables, for LEDGER.md."""
     blocks = [target_table(ledger)]
+    parts = ledger.get(PARTS_PRESET)
+    if parts and part_table(parts):
+        blocks += [[heading(PARTS_PRESET, parts)], part_table(parts)]
     full = ledger.get(FULL_PRESET)
     if full:
         blocks += [[heading(FULL_PRESET, full)], module_table(full), function_table(full), state_table(full)]
