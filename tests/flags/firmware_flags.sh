@@ -30,7 +30,6 @@ case $firmware in
         exit 2 ;;
 esac
 
-sources=("$root"/lib/*.c)
 shopt -s nullglob
 safety_tests=("$root"/tests/c/test_safety*.c)
 support=()
@@ -45,8 +44,8 @@ fi
 compile() {
     local compiler=$1
     shift
-    "$compiler" "$@" -Werror -c "${sources[@]}" || fail "$compiler $*"
-    compiled=$((compiled + ${#sources[@]}))
+    "$compiler" "$@" -Werror -I"$root/lib" -c "${library_sources[@]}" || fail "$compiler $*"
+    compiled=$((compiled + ${#library_sources[@]}))
 }
 
 # run_safety <compiler> <flag>...: with the library's objects in the current folder

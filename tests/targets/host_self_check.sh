@@ -5,10 +5,8 @@
 #   host_self_check.sh <golden hash>
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-root=$(cd "$here/../.." && pwd)
+. "$here/../flags/common.sh"
 golden=$1
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
 
 contracted=0x01u reassociated=0x02u reciprocal=0x04u flushed=0x08u excess=0x10u rounding=0x20u any=0x3Fu
 machine=
@@ -26,7 +24,7 @@ prove() {
     command -v "$compiler" >/dev/null || return 0
     rm -f "$scratch"/*.o
     # the program that judges is compiled plainly
-    (cd "$scratch" && "$compiler" "${flags[@]}" -c "$root"/lib/*.c)
+    (cd "$scratch" && "$compiler" "${flags[@]}" -c "${library_sources[@]}")
     # The program that judges is compiled plainly.
     # shellcheck disable=SC2086 # several flags or none
     "$compiler" -std=gnu99 -O1 -ffp-contract=off $machine "${define[@]}" -I"$root/lib" -I"$here" \

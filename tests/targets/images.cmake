@@ -34,7 +34,7 @@ endforeach()
 
 # ---------------------------------------------------------------------------------------------------------- self-check
 
-file(GLOB library_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/*.c)
+goe_library_sources(library_sources)
 
 # The library once more, with other people's flags after its own.
 function(goe_library_with name)
