@@ -8,6 +8,11 @@ target_link_libraries(goe PUBLIC m)
 # What tools/goe_tools/cost reads.
 target_compile_options(goe PRIVATE -ffunction-sections -fstack-usage $<$<C_COMPILER_ID:GNU>:-fcallgraph-info=su>)
 
+# The embedded logs and what flies them, compiled once for all images.
+add_library(replay_parts OBJECT ${replay_sources})
+goe_compile(replay_parts)
+target_link_libraries(replay_parts PRIVATE goe goe_port)
+
 # goe_image(<target> <board> <source>...): an image for a board, without the library
 function(goe_image target board)
     add_executable(${target} ${ARGN})
@@ -20,12 +25,12 @@ endfunction()
 # ------------------------------------------------------------------------------------------------- replay and its stack
 
 foreach(board IN LISTS GOE_TARGET_BOARDS)
-    goe_image(replay_${board} ${board} replay_main.c ${replay_sources})
+    goe_image(replay_${board} ${board} replay_main.c $<TARGET_OBJECTS:replay_parts>)
     target_link_libraries(replay_${board} PRIVATE goe)
     target_link_options(replay_${board} PRIVATE LINKER:-Map,${CMAKE_CURRENT_BINARY_DIR}/replay_${board}.map)
     goe_check_hash(replay_${board} replay_${board})
 
-    goe_image(stack_${board} ${board} stack_main.c ${replay_sources})
+    goe_image(stack_${board} ${board} stack_main.c $<TARGET_OBJECTS:replay_parts>)
     target_link_libraries(stack_${board} PRIVATE goe)
     add_test(NAME stack_${board} COMMAND stack_${board})
     set_tests_properties(stack_${board} PROPERTIES LABELS targets TIMEOUT 60
@@ -36,8 +41,11 @@ endforeach()
 
 goe_library_sources(library_sources)
 
-# The library once more, with other people's flags after its own.
+# The library once more, with other people's flags after its own. Whoever names the same flags shares it.
 function(goe_library_with name)
+    if(TARGET ${name})
+        return()
+    endif()
     add_library(${name} STATIC ${library_sources})
     set_target_properties(${name} PROPERTIES C_STANDARD 99 C_EXTENSIONS ON)
     target_compile_options(${name} PRIVATE -ffp-contract=off -fno-math-errno ${ARGN})
@@ -50,15 +58,16 @@ endfunction()
 # must say so.
 function(goe_self_check_proof name expected allowed mode)
     set(image self_check_${name})
-    goe_library_with(goe_${name} ${ARGN})
-    goe_image(${image} ${GOE_TARGET_BOARD} self_check_main.c ${replay_sources})
+    string(MAKE_C_IDENTIFIER "goe_with${ARGN}" library)
+    goe_library_with(${library} ${ARGN})
+    goe_image(${image} ${GOE_TARGET_BOARD} self_check_main.c $<TARGET_OBJECTS:replay_parts>)
     set_target_properties(${image} PROPERTIES C_EXTENSIONS ON)
     target_compile_definitions(${image} PRIVATE EXPECTED=${expected} ALLOWED=${allowed} MODE=MODE_${mode})
     # gcc at -O2 makes use of every flag on every processor; the others may not
     if(ARGN AND NOT (CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_C_FLAGS_RELEASE STREQUAL -O2))
         target_compile_definitions(${image} PRIVATE GOLDEN=0x${golden}u)
     endif()
-    target_link_libraries(${image} PRIVATE goe_${name})
+    target_link_libraries(${image} PRIVATE ${library})
     add_test(NAME ${image} COMMAND ${image})
     set_tests_properties(${image} PROPERTIES LABELS targets TIMEOUT 60)
 endfunction()
