@@ -1,6 +1,7 @@
 # A build for a target: see CMakeLists.txt.
 
-option(GOE_TARGET_UNIT_TESTS "Build the unit tests of tests/c as images, too" ON)
+set(GOE_TARGET_TESTS all CACHE STRING "Tests of tests/c to build as images, too: all, safety, none")
+set_property(CACHE GOE_TARGET_TESTS PROPERTY STRINGS all safety none)
 
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
@@ -99,8 +100,8 @@ endif()
 # ---------------------------------------------------------------------------------------------------------- unit tests
 
 # All of tests/c but test_host_*.c, and test_double_*.c: those hold the library against double precision at length,
-# which single precision processors emulate.
-if(GOE_TARGET_UNIT_TESTS)
+# which single precision processors emulate. Or the safety tests alone: random bit patterns as input.
+if(NOT GOE_TARGET_TESTS STREQUAL none)
     include(${PROJECT_SOURCE_DIR}/port/cmake/unity.cmake)
     if(NOT TARGET goe_unity)
         message(FATAL_ERROR "Images need the sources of Unity: name them with -DUNITY_DIR=")
@@ -113,6 +114,9 @@ if(GOE_TARGET_UNIT_TESTS)
     file(GLOB support CONFIGURE_DEPENDS ${unit_tests}/*.c)
     list(REMOVE_ITEM support ${programs})
     list(FILTER programs EXCLUDE REGEX "/test_(host|double)_")
+    if(GOE_TARGET_TESTS STREQUAL safety)
+        list(FILTER programs INCLUDE REGEX "/test_safety")
+    endif()
 
     add_library(unit_test_support STATIC ${support})
     goe_compile(unit_test_support)
@@ -129,7 +133,8 @@ if(GOE_TARGET_UNIT_TESTS)
     endforeach()
 
     # The safety tests, with the library under the flags of four firmwares that run on such processors.
-    if(has_fpu AND CMAKE_SYSTEM_PROCESSOR STREQUAL arm AND CMAKE_C_COMPILER_ID STREQUAL GNU)
+    if(has_fpu AND CMAKE_SYSTEM_PROCESSOR STREQUAL arm AND CMAKE_C_COMPILER_ID STREQUAL GNU
+       AND CMAKE_C_FLAGS_RELEASE STREQUAL -O2)
         set(px4 -std=gnu11 -freciprocal-math -fno-signed-zeros -fno-trapping-math -fno-math-errno)
         set(ardupilot -std=gnu11 -fsingle-precision-constant -DNDEBUG -ffp-contract=fast)
         set(betaflight -std=gnu17 -Ofast -ffast-math -ffp-contract=fast)

@@ -61,7 +61,7 @@ def build(preset: str, folder: Path) -> Build:
     """The replay and the stack of a preset, in a folder's folder of its name."""
     tree = folder / preset
     if not (tree / "CMakeCache.txt").exists():
-        output_of(["cmake", "--preset", preset, "-B", tree, "-DGOE_TARGET_UNIT_TESTS=OFF"], ROOT)
+        output_of(["cmake", "--preset", preset, "-B", tree, "-DGOE_TARGET_TESTS=none"], ROOT)
     cache = (tree / "CMakeCache.txt").read_text(encoding="utf-8")
     board = re.search(r"^GOE_TARGET_BOARD:INTERNAL=(.*)$", cache, re.MULTILINE)
     qemu = re.search(r"^GOE_QEMU_COMMAND:INTERNAL=(.*)$", cache, re.MULTILINE)
