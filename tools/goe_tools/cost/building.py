@@ -60,9 +60,12 @@ def library_command(commands: list[dict[str, str]]) -> list[str]:
 def build(preset: str, folder: Path) -> Build:
     """The replay and the stack of a preset, in a folder's folder of its name."""
     tree = folder / preset
-    if not (tree / "CMakeCache.txt").exists():
+    cache_file = tree / "CMakeCache.txt"
+    if not cache_file.exists():
         output_of(["cmake", "--preset", preset, "-B", tree, "-DGOE_TARGET_TESTS=none"], ROOT)
-    cache = (tree / "CMakeCache.txt").read_text(encoding="utf-8")
+    elif cache_file.stat().st_mtime < (ROOT / "CMakePresets.json").stat().st_mtime:
+        output_of(["cmake", "--preset", preset, "-B", tree], ROOT)
+    cache = cache_file.read_text(encoding="utf-8")
     board = re.search(r"^GOE_TARGET_BOARD:INTERNAL=(.*)$", cache, re.MULTILINE)
     qemu = re.search(r"^GOE_QEMU_COMMAND:INTERNAL=(.*)$", cache, re.MULTILINE)
     assert board and qemu, "the toolchain file tells how its images are run"
