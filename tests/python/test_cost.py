@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from goe_tools.__main__ import main
 from goe_tools.cost import book, growth, guarantees, instructions, pages, parts, stack
+from goe_tools.cost import ledger as command
 from goe_tools.cost.building import Build, library_command, shown_flags
-from goe_tools.cost.ledger import LEDGER, merged
 from goe_tools.cost.modules import bytes_of_object
 from goe_tools.cost.running import LedgerError
 
@@ -86,8 +87,8 @@ def test_an_unknown_callee_is_refused(callee: int | str) -> None:
 
 def host_build(tree: Path, library: Path) -> Build:
     """What the tools know of a build, with this machine's compiler."""
-    command = ["gcc", "-std=c99", "-O2", "-DGOE_WINDOW_MAX=8", "-fstack-usage", f"-I{library}"]
-    return Build("host", tree, "none", "", "gcc", command, [])
+    words = ["gcc", "-std=c99", "-O2", "-DGOE_WINDOW_MAX=8", "-fstack-usage", f"-I{library}"]
+    return Build("host", tree, "none", "", "gcc", words, [])
 
 
 def test_modules_are_named_by_room_and_file(tmp_path: Path) -> None:
@@ -130,9 +131,9 @@ def test_bytes_of_an_object_by_kind() -> None:
 def test_the_command_of_the_library_is_found_in_rooms_too() -> None:
     other = {"command": "gcc -O0 -o tests/CMakeFiles/x.dir/x.c.obj -c x.c"}
     own = {"command": "gcc -Os -std=c99 -fstack-usage -o lib/CMakeFiles/goe.dir/image/goe_camera.c.obj -c y.c"}
-    command = library_command([other, own])
-    assert command == ["gcc", "-Os", "-std=c99", "-fstack-usage"]
-    assert shown_flags(command) == "-Os -std=c99"
+    words = library_command([other, own])
+    assert words == ["gcc", "-Os", "-std=c99", "-fstack-usage"]
+    assert shown_flags(words) == "-Os -std=c99"
     with pytest.raises(ValueError, match="no file of the library"):
         library_command([other])
 
@@ -205,7 +206,7 @@ def test_no_ledger_is_refused(text: str) -> None:
 
 def test_what_one_measures_leaves_the_other_targets() -> None:
     before: book.Ledger = {"m4f-gcc-os": {"x": 1}, "m4f-gcc-o2": {"x": 2}}
-    assert merged(before, {"m4f-gcc-o2": {"x": 3}, "m0plus-gcc-os": {"x": 4}}) == {
+    assert command.merged(before, {"m4f-gcc-o2": {"x": 3}, "m0plus-gcc-os": {"x": 4}}) == {
         "m0plus-gcc-os": {"x": 4}, "m4f-gcc-os": {"x": 1}, "m4f-gcc-o2": {"x": 3},
     }  # fmt: skip
 
@@ -234,12 +235,12 @@ def test_targets_of_another_compiler_are_named_not_compared(capsys: pytest.Captu
 
 
 def committed() -> book.Ledger:
-    return book.read(LEDGER)
+    return book.read(command.LEDGER)
 
 
 def test_committed_pages_show_the_committed_ledger() -> None:
     assert pages.wrong_pages(ROOT, committed()) == []
-    assert len(LEDGER.read_text(encoding="utf-8").splitlines()) < ROWS_MOST
+    assert len(command.LEDGER.read_text(encoding="utf-8").splitlines()) < ROWS_MOST
 
 
 def copy_of_pages(folder: Path) -> Path:
@@ -255,6 +256,24 @@ def test_a_figure_that_only_the_ledger_has_is_told(tmp_path: Path) -> None:
     assert [text.split(":")[0] for text in pages.wrong_pages(root, ledger)] == ["README.md", "tests/targets/LEDGER.md"]
     pages.write_pages(root, ledger)
     assert pages.wrong_pages(root, ledger) == []
+
+
+def test_what_is_measured_is_written_to_the_ledger_and_its_pages(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root, file = copy_of_pages(tmp_path), tmp_path / "ledger.csv"
+    book.write(file, committed())
+    now = committed()["m4f-gcc-os"] | {"stack bytes painted: goe_update": 1234}
+    monkeypatch.setattr(command, "ROOT", root)
+    monkeypatch.setattr(command, "measured", lambda wanted, folder, jobs: {preset: now for preset in wanted})
+    rest = ["--ledger", str(file), "m4f-gcc-os"]
+    assert main(["ledger", "--check", *rest]) == 1
+    assert "m4f-gcc-os: stack bytes painted: goe_update: " in capsys.readouterr().err
+    assert main(["ledger", "--write", *rest]) == 0
+    assert book.read(file) == committed() | {"m4f-gcc-os": now}
+    assert all(" (1234) |" in (root / page).read_text(encoding="utf-8") for page in pages.PAGES)
+    assert main(["ledger", "--check", *rest]) == 0
+    assert main(["ledger", "--check-pages", "--ledger", str(file)]) == 0
 
 
 def test_a_guarantee_that_the_readme_does_not_state_is_told(tmp_path: Path) -> None:
