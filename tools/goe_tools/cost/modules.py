@@ -34,10 +34,8 @@ def module_bytes(built: Build) -> dict[str, dict[str, int]]:
 def external_calls(built: Build) -> list[str]:
     """Symbols that the library needs from elsewhere."""
     defined, wanted = set(), set()
-    for path in built.library_files("obj"):
-        for line in built.tool("nm", path).splitlines():
-            kind, name = line.split()[-2:]
-            (wanted if kind in "Uw" else defined).add(name)
+    for kind, name in re.findall(r" (\w) (\S+)$", built.tool("nm", *built.library_files("obj")), re.MULTILINE):
+        (wanted if kind in "Uw" else defined).add(name)
     return sorted(wanted - defined)
 
 
