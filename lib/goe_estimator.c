@@ -159,13 +159,15 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
+/* The autopilot's filter jumped: by a known amount the answer moves along, by an unknown one the track ends. */
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
-    if (goe_motion_lost(&estimator->motion, pose)) {
+    if (!pose->reset_delta_known) {
         forget_track(estimator);
         estimator->causes[RESETS] += estimator->causes[RESETS] < UINT32_MAX ? 1u : 0u;
+        return;
     }
 #if GOE_WITH_REFINED
-    if (goe_is_refined(estimator) && goe_motion_reset(&estimator->motion, pose)) {
+    if (goe_is_refined(estimator)) {
         move_center(&estimator->estimate, pose->reset_delta_ned_m);
     }
 #endif
@@ -182,7 +184,9 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, goe_
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image) {
     goe_view_t view;
     goe_faults_t faults = {estimator->causes, GOE_OK};
-    follow_reset(estimator, &image->pose);
+    if (goe_motion_reset(&estimator->motion, &image->pose)) {
+        follow_reset(estimator, &image->pose);
+    }
     open_view(estimator, image, &view, &faults);
 #if GOE_WITH_REFINED
     if (goe_is_refined(estimator)) {

@@ -2,11 +2,18 @@
 # Cases per second of goe_campaign on all cores. A case is one flight with all that is run over it.
 #
 #   tools/bench_campaign.sh [seeds] [program]   default 10, build/sim_host/goe_campaign
+#   tools/bench_campaign.sh --quick             the paper's study alone, once
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
+runs=3
+quick=false
+if [ "${1:-}" = --quick ]; then
+    quick=true
+    runs=1
+    shift
+fi
 seeds=${1:-10}
 program=${2:-$root/build/sim_host/goe_campaign}
-runs=3
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -31,7 +38,9 @@ bench() {
 }
 
 bench "paper's study, 1 seed" --studies paper --seeds 1
-bench "whole campaign, 1 seed" --seeds 1
-bench "whole campaign, $seeds seeds" --seeds "$seeds"
+if ! $quick; then
+    bench "whole campaign, 1 seed" --seeds 1
+    bench "whole campaign, $seeds seeds" --seeds "$seeds"
+fi
 echo "jobs:     $(fact jobs)"
 echo "machine:  $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # Memory of one estimator and code of the library, as the README's table.
 #
-#   tools/sizes.sh          prints the table
+#   tools/sizes.sh          prints the tables
+#   tools/sizes.sh <words>  ... of the code only the rows whose name has these words, such as "Cortex-M4F gcc"
 #   tools/sizes.sh --check  fails if an estimator at the default window is larger than 2 KiB, or if the README
 #                           states bytes per estimator that are not these
 set -euo pipefail
-root=$(cd "$(dirname "$0")/.." && pwd)
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
+. "$(dirname "$0")/../tests/flags/common.sh"
 cd "$scratch"
 
 limit_bytes=2048
+wanted=${1:-}
 
 # estimator_bytes [window]
 estimator_bytes() {
@@ -29,8 +29,9 @@ state_rows() {
 code_row() {
     local name=$1 size=$2
     shift 2
+    [[ $name == *"$wanted"* ]] || return 0
     if command -v "$1" >/dev/null; then
-        "$@" -std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib" -c "$root"/lib/*.c "$root"/lib/*/*.c
+        "$@" -std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib" -c "${library_sources[@]}"
         # .data.rel.ro holds constants that are addresses: read-only once loaded
         "$size" -A ./*.o | awk -v name="$name ($("$1" -dumpversion))" \
             '/^\.(text|rodata|data\.rel\.ro)/ { code += $2 } /^\.(data|bss)/ && !/^\.data\.rel\.ro/ { data += $2 }

@@ -3,7 +3,8 @@
 #
 #   tools/test.sh           everything
 #
-# Every step's full output is kept in .cache/test/. GOE_KITTI_DIR names a folder of recorded flights to compare
+# Two steps run at a time; a step's line stands when it has ended, with its own time and that of the processors. Every
+# step's full output is kept in .cache/test/. Ctrl-C ends all that runs. GOE_KITTI_DIR names a folder of recorded flights to compare
 # goe_replay with the references on; UNITY_DIR the sources of the Unity test framework, where they are not to be fetched.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -16,36 +17,175 @@ flights=${GOE_KITTI_DIR:-../shared/data/kitti}
 export GOE_REPLAY=$root/build/sim_host/goe_replay
 export OPENBLAS_NUM_THREADS=1 # numpy: the matrices are small, threads only get into each other's way
 
-failed=()
+# -------------------------------------------------------------------------------------------------------------- steps
+
+# All by a step's name.
+steps=()
+declare -A command_of=() after_of=() tells_of=() start_of=()
+declare -A state_of=() # waiting, running, ok, failed, left out
+declare -A name_of_process=() # those that run
 skipped=()
+side_by_side=2
+tail_lines=60
 
 log_of() { echo "$logs/$(tr -c '[:alnum:]\n' _ <<<"$1").log"; }
 
-# step <name> <command>...: quiet if it succeeds
-step() {
-    local name=$1 start=$SECONDS log
-    log=$(log_of "$1")
+# add <name> <command>...: a step for run_steps. With after=<name>: once that one has succeeded. With tells=<pattern>: the
+# lines of its log that tell its result.
+add() {
+    local name=$1
     shift
-    if "$@" >"$log" 2>&1; then
-        printf 'ok      %-44s %4d s\n' "$name" $((SECONDS - start))
-    else
-        printf 'FAILED  %-44s %4d s   %s\n' "$name" $((SECONDS - start)) "$log"
+    steps+=("$name")
+    command_of[$name]=$(printf '%q ' "$@")
+    after_of[$name]=${after:-}
+    tells_of[$name]=${tells:-}
+    state_of[$name]=waiting
+}
+
+# In a process group of its own, so that it can be ended with all that it starts.
+start() {
+    local name=$1 log
+    log=$(log_of "$name")
+    set -m
+    {
+        TIMEFORMAT='%0U %0S'
+        time eval "${command_of[$name]}" >"$log" 2>&1
+    } 2>"$log.time" </dev/null &
+    set +m
+    name_of_process[$!]=$name
+    start_of[$name]=$SECONDS
+    state_of[$name]=running
+}
+
+# The next step that may start, if there is one.
+next_ready() {
+    local name before
+    for name in "${steps[@]}"; do
+        [ "${state_of[$name]}" = waiting ] || continue
+        before=${after_of[$name]}
+        if [ -z "$before" ] || [ "${state_of[$before]}" = ok ]; then
+            echo "$name"
+            return
+        fi
+    done
+}
+
+# Their names, with commas between them.
+running() {
+    local name names=
+    for name in "${steps[@]}"; do
+        if [ "${state_of[$name]}" = running ]; then
+            names="${names:+$names, }$name"
+        fi
+    done
+    echo "$names"
+}
+
+# On a terminal the line below the results names what runs.
+show_running() {
+    [ ! -t 1 ] || printf '\r\033[K...     %s' "$(running)"
+}
+
+# report <name> <exit status>
+report() {
+    local name=$1 status=$2 log wall user system word
+    log=$(log_of "$name")
+    wall=$((SECONDS - start_of[$name]))
+    read -r user system < <(tail -n 1 "$log.time")
+    rm -f "$log.time"
+    word=ok
+    state_of[$name]=ok
+    if [ "$status" != 0 ]; then
+        word=FAILED
+        state_of[$name]=failed
+    fi
+    [ ! -t 1 ] || printf '\r\033[K'
+    printf '%-7s %-46s %4d s   processor %4d s\n' $word "$name" $wall $((user + system))
+    processor_s=$((processor_s + user + system))
+    if [ $word = FAILED ]; then
         echo "--------------------------------------------------------------------------- last lines of $log"
-        tail -n "${tail_lines:-60}" "$log"
+        tail -n $tail_lines "$log"
         echo "---------------------------------------------------------------------------"
-        failed+=("$name")
-        return 1
+    elif [ -n "${tells_of[$name]}" ]; then
+        grep -E "${tells_of[$name]}" "$log" | sed 's/^/        /'
     fi
 }
+
+# Runs all steps that are waiting, and what may start after them.
+run_steps() {
+    local name process status
+    while true; do
+        while [ ${#name_of_process[@]} -lt $side_by_side ]; do
+            name=$(next_ready)
+            [ -n "$name" ] || break
+            start "$name"
+        done
+        [ ${#name_of_process[@]} != 0 ] || break
+        show_running
+        wait -n -p process
+        status=$?
+        name=${name_of_process[${process:-0}]:-}
+        if [ -n "$name" ]; then
+            unset "name_of_process[$process]"
+            report "$name" $status
+        fi
+    done
+    for name in "${steps[@]}"; do
+        if [ "${state_of[$name]}" = waiting ]; then
+            state_of[$name]="left out"
+            skip "$name, as this failed: ${after_of[$name]}"
+        fi
+    done
+}
+
+# descendants <process>...: their children, and theirs
+descendants() {
+    local IFS=, children=()
+    mapfile -t children < <(ps -o pid= --ppid "$*" | tr -d ' ')
+    if [ ${#children[@]} != 0 ]; then
+        printf '%s\n' "${children[@]}"
+        descendants "${children[@]}"
+    fi
+}
+
+# Ends what runs: asks first, so that tests can remove what they have made, and then makes sure.
+end_all() {
+    trap '' INT TERM HUP
+    local process left
+    mapfile -t left < <(descendants "${!name_of_process[@]}")
+    for process in "${!name_of_process[@]}"; do
+        kill -INT -- "-$process" 2>/dev/null
+    done
+    for _ in $(seq 30); do
+        [ -n "$(jobs -r)" ] || break
+        sleep 0.1
+    done
+    for process in "${!name_of_process[@]}"; do
+        kill -KILL -- "-$process" 2>/dev/null
+    done
+    [ ${#left[@]} = 0 ] || kill -KILL "${left[@]}" 2>/dev/null
+    wait
+}
+
+interrupted() {
+    local what
+    what=$(running)
+    end_all 2>/dev/null
+    [ ! -t 1 ] || printf '\r\033[K'
+    echo "interrupted: ${what:-set-up}"
+    exit 130
+}
+trap interrupted INT TERM HUP
 
 skip() { skipped+=("$1"); }
 
 has() { command -v "$1" >/dev/null; }
 
-# closing <name> <pattern>: the lines of a step's log that tell its result
-closing() { grep -E "$2" "$(log_of "$1")" | sed 's/^/        /'; }
-
 finish() {
+    local name failed=()
+    for name in "${steps[@]}"; do
+        [[ ${state_of[$name]} == ok || ${state_of[$name]} == "left out" ]] || failed+=("$name")
+    done
     echo
     if [ ${#skipped[@]} != 0 ]; then
         printf 'skipped: %s\n' "${skipped[@]}"
@@ -56,9 +196,11 @@ finish() {
         printf 'FAILED: %s\n' "${failed[@]}"
         exit 1
     fi
-    echo "all tests passed in $SECONDS s"
+    echo "all tests passed in $SECONDS s, $processor_s s of the processors"
     exit 0
 }
+
+# ------------------------------------------------------------------------------------------------------- what they run
 
 configure() { cmake --preset "$1" -DGOE_BUILD_TESTS=ON ${UNITY_DIR:+-DUNITY_DIR="$UNITY_DIR"}; }
 build() { configure "$1" && cmake --build --preset "$1"; }
@@ -82,66 +224,68 @@ replay_sanitized() {
 test_replay_sanitized() { GOE_REPLAY=$root/build-asan/sim_host/goe_replay run_pytest tests/host; }
 run_pytest() { "$python" -m pytest -q -rs -p no:cacheprovider -c tools/pyproject.toml "$@"; }
 
+# ---------------------------------------------------------------------------------------------------------------- run
+
 jobs=$(nproc)
+export CMAKE_BUILD_PARALLEL_LEVEL=$jobs
+processor_s=0
 tools/setup.sh || exit 1
 
-if ! step "build" build default; then
+add "build" build default
+run_steps
+if [ "${state_of[build]}" != ok ]; then
     skip "everything else, as nothing could be built"
     finish
 fi
 
-if step "ctest" ctest --preset default -j "$jobs"; then # every target under QEMU among it
-    closing ctest 'tests passed|Total Test time'
-fi
-while read -r name; do
-    skip "ctest: $name"
-done < <(sed -nE 's/.* Test +#[0-9]+: ([a-z0-9_]+) \.*\*\*\*(Skipped|Not Run).*/\1/p' $logs/ctest.log)
-
-if step "pytest" run_pytest tests; then
-    closing pytest '(passed|failed|skipped).* in [0-9.]+'
-    while read -r reason; do skip "pytest: $reason"; done < <(sed -n 's/^SKIPPED //p' $logs/pytest.log)
-fi
-
-step "golden data are what their generator makes" "$python" -m goe_tools golden --check tests/c/golden
-step "embedded logs are what their generator makes" \
-    "$python" -m goe_tools embed_logs --out tests/targets/embedded_logs.c --check
-if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
-    step "cost ledger" "$python" -m goe_tools ledger --check tests/targets/ledger.json --readme README.md
-else
-    skip "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
-fi
-step "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests
-step "compare with the references: tests/data" "$python" -m goe_tools compare tests/data/*/
-if [ -d "$flights" ]; then
-    step "compare with the references: recorded flights" "$python" -m goe_tools compare "$flights"/*/
-else
-    skip "comparison on recorded flights: no folder $flights (GOE_KITTI_DIR)"
-fi
-
-if step "sanitizers" build_and_ctest asan; then
-    closing sanitizers 'tests passed'
-    step "sanitizers: goe_replay on logs" replay_sanitized
-    step "sanitizers: goe_replay on bad input" test_replay_sanitized && closing "sanitizers: goe_replay on bad input" passed
-fi
-
-if has clang-19; then
-    step "clang" build_and_ctest clang && closing clang 'tests passed'
-else
-    skip "clang: unit tests and the firmwares' flags (no clang-19)"
-fi
-if has clang-19 && has clang-tidy-19; then
-    step "clang-tidy" tidy
-else
-    skip "clang-tidy (needs clang-19 and clang-tidy-19)"
-fi
+# What takes a moment comes first, then what takes longest.
+add "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests
 if has clang-format-19; then
-    step "clang-format" check_format
+    add "clang-format" check_format
 else
     skip "clang-format (not installed)"
 fi
 if has shellcheck; then
-    step "shellcheck" shellcheck tools/*.sh tests/flags/*.sh tests/targets/*.sh .ci/run
+    add "shellcheck" shellcheck tools/*.sh tests/flags/*.sh tests/targets/*.sh .ci/run
 else
     skip "shellcheck (not installed)"
 fi
+add "golden data are what their generator makes" "$python" -m goe_tools golden --check tests/c/golden
+add "embedded logs are what their generator makes" \
+    "$python" -m goe_tools embed_logs --out tests/targets/embedded_logs.c --check
+add "compare with the references: tests/data" "$python" -m goe_tools compare tests/data/*/
+if [ -d "$flights" ]; then
+    add "compare with the references: recorded flights" "$python" -m goe_tools compare "$flights"/*/
+else
+    skip "comparison on recorded flights: no folder $flights (GOE_KITTI_DIR)"
+fi
+
+tells='tests passed|Total Test time' add "ctest: targets" \
+    ctest --test-dir build/tests/targets --output-on-failure -j "$jobs" # every target under QEMU
+if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
+    after="ctest: targets" add "cost ledger" "$python" -m goe_tools ledger --check # of the builds that ctest has made
+else
+    skip "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
+fi
+tells='(passed|failed|skipped).* in [0-9.]+' add "pytest" run_pytest tests
+tells='tests passed|Total Test time' add "ctest: all but targets" ctest --preset default -LE targets -j "$jobs"
+tells='tests passed' add "sanitizers" build_and_ctest asan
+after="sanitizers" add "sanitizers: goe_replay on logs" replay_sanitized
+tells=passed after="sanitizers" add "sanitizers: goe_replay on bad input" test_replay_sanitized
+if has clang-19; then
+    tells='tests passed' add "clang" build_and_ctest clang
+else
+    skip "clang: unit tests and the firmwares' flags (no clang-19)"
+fi
+if has clang-19 && has clang-tidy-19; then
+    after="clang" add "clang-tidy" tidy
+else
+    skip "clang-tidy (needs clang-19 and clang-tidy-19)"
+fi
+run_steps
+
+while read -r name; do
+    skip "ctest: $name"
+done < <(sed -nE 's/.* Test +#[0-9]+: ([a-z0-9_-]+) \.*\*\*\*(Skipped|Not Run).*/\1/p' $logs/ctest*.log)
+while read -r reason; do skip "pytest: $reason"; done < <(sed -n 's/^SKIPPED //p' $logs/pytest.log)
 finish

@@ -9,13 +9,9 @@
  * view->camera_to_trajectory is set: the rotation of this image's rays into T. */
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
 
-/* Whether the autopilot's filter jumped since the image before; the same by an unknown amount. */
+/* Whether the autopilot's filter jumped since the image before. */
 static inline bool goe_motion_reset(const goe_motion_t *motion, const goe_pose_t *pose) {
     return motion->started && pose->reset_count != motion->reset_count;
-}
-
-static inline bool goe_motion_lost(const goe_motion_t *motion, const goe_pose_t *pose) {
-    return goe_motion_reset(motion, pose) && !pose->reset_delta_known;
 }
 
 /* (X, Z) in T, relative to T's origin, to north and east. */

@@ -215,7 +215,7 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
 static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
                            goe_rows_t *rows) {
     goe_gradient_t g;
-    float *by = goe_rows_add_edge(rows, obs, feature, o->corner[corner], goe_observation_size_variance(obs), &g);
+    float *by = goe_rows_add_edge(rows, obs, o->corner[corner], feature, goe_observation_size_variance(obs), &g);
     if (by) {
         set_corner(rows, by, obs, o, corner, &g);
     }
@@ -233,7 +233,7 @@ static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t
     goe_gradient_t g;
     const size_t corner = top_corner(obs, o);
     float *by =
-        goe_rows_add_level(rows, obs, GOE_POINT_TOP, o->corner[corner], o->top, goe_observation_size_variance(obs), &g);
+        goe_rows_add_level(rows, obs, o->corner[corner], o->top, GOE_POINT_TOP, goe_observation_size_variance(obs), &g);
     if (by) {
         set_corner(rows, by, obs, o, corner, &g);
         by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
@@ -249,7 +249,7 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
         visible_corners(obs, &outline, corner);
         for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i++) {
             if (obs->point[GOE_POINT_BASE_LEFT + i].usable) {
-                add_base_corner(obs, &outline, GOE_POINT_BASE_LEFT + i, corner[i], rows);
+                add_base_corner(obs, &outline, (goe_feature_t)(GOE_POINT_BASE_LEFT + i), corner[i], rows);
             }
         }
     } else {

@@ -66,7 +66,7 @@ static void set_end(float by[GOE_STATES], const goe_observation_t *obs, float si
 /* An upright edge, at the height at which it was measured. */
 static void add_end(const goe_observation_t *obs, goe_feature_t feature, float side, goe_rows_t *rows) {
     goe_gradient_t g;
-    float *by = goe_rows_add_edge(rows, obs, feature, end_of(obs, side), goe_observation_size_variance(obs), &g);
+    float *by = goe_rows_add_edge(rows, obs, end_of(obs, side), feature, goe_observation_size_variance(obs), &g);
     if (by) {
         set_end(by, obs, side, &g);
     }
@@ -83,7 +83,7 @@ static void add_top(const goe_observation_t *obs, goe_rows_t *rows) {
     const bool right_is_near = middle.x * obs->state[GOE_FRONT_X] + middle.z * obs->state[GOE_SIDE_X] < 0.0f;
     const float side = right_is_near != highest ? 0.5f : -0.5f;
     float *by =
-        goe_rows_add_level(rows, obs, GOE_POINT_TOP, end_of(obs, side), y, goe_observation_size_variance(obs), &g);
+        goe_rows_add_level(rows, obs, end_of(obs, side), y, GOE_POINT_TOP, goe_observation_size_variance(obs), &g);
     if (!by) {
         return;
     }

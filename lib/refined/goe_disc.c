@@ -64,7 +64,7 @@ static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_fea
         return;
     }
     const goe_xz_t ray = {tx / tz, 1.0f};
-    float *by = goe_rows_add_edge(rows, obs, feature, ray, more, &g);
+    float *by = goe_rows_add_edge(rows, obs, ray, feature, more, &g);
     if (!by) {
         return;
     }
@@ -88,7 +88,7 @@ static void add_top(const goe_observation_t *obs, const circle_t *o, float more,
     const float side = obs->settings->refined.top_is_highest && y > 0.0f ? -1.0f : 1.0f;
     const float share = 1.0f - side * o->sine;
     const goe_xz_t rim = {o->center.x * share, o->center.z * share};
-    float *by = goe_rows_add_level(rows, obs, GOE_POINT_TOP, rim, y, more, &g);
+    float *by = goe_rows_add_level(rows, obs, rim, y, GOE_POINT_TOP, more, &g);
     if (!by) {
         return;
     }
@@ -107,7 +107,7 @@ static void add_base(const goe_observation_t *obs, const circle_t *o, goe_featur
     goe_gradient_t g;
     const float q = obs->state[GOE_INVERSE_RANGE];
     const float height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
-    float *by = goe_rows_add_level(rows, obs, feature, o->center, height_m * q, 0.0f, &g);
+    float *by = goe_rows_add_level(rows, obs, o->center, height_m * q, feature, 0.0f, &g);
     if (!by) {
         return;
     }

@@ -174,7 +174,7 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, flo
     return by;
 }
 
-float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_xz_t place,
+float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
                          float more, goe_gradient_t *of_x) {
     const goe_point_t *measured = &obs->point[feature];
     if (!measured->usable) {
@@ -184,8 +184,8 @@ float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_fea
     return goe_rows_add(rows, feature, measured->x, goe_observation_spread(obs, feature).xx + more, of_x);
 }
 
-float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_xz_t place,
-                          float y, float more, goe_gradient_t *of_y) {
+float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, float y,
+                          goe_feature_t feature, float more, goe_gradient_t *of_y) {
     const goe_point_t *measured = &obs->point[feature];
     if (!measured->usable) {
         return NULL;

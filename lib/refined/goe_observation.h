@@ -92,12 +92,12 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, flo
 
 /* An upright edge at the place (X, Z), seen along x at the height at which it was measured. Null if the feature is not
  * usable. more: variance beyond the pixel noise. */
-float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_xz_t place,
+float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
                          float more, goe_gradient_t *of_x);
 
 /* A point at the place (X, Z) and the height y, seen along y. */
-float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_xz_t place,
-                          float y, float more, goe_gradient_t *of_y);
+float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, float y,
+                          goe_feature_t feature, float more, goe_gradient_t *of_y);
 
 #define GOE_BEHIND_STATES (GOE_RESIDUAL - GOE_STATE_COLUMN)
 

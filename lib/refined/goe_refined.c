@@ -101,7 +101,7 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
     return true;
 }
 
-GOE_NOINLINE static bool take_image(goe_filter_t *filter, goe_observation_t *obs) {
+GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs) {
     goe_verdict_t verdict;
     (void)goe_count_image(&filter->phase_images);
     const bool measured = measure(filter, obs, &verdict);
@@ -131,7 +131,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     }
     let_time_pass(filter, &settings->navigation, view->motion->time_us);
     goe_observation_linearise(&obs);
-    return !goe_model_change(filter, &obs) && take_image(filter, &obs);
+    return !goe_model_change(filter, &obs) && use_image(filter, &obs);
 }
 
 bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,

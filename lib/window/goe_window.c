@@ -218,8 +218,8 @@ static void report_center(goe_estimate_t *estimate, const goe_motion_t *motion) 
     float z_m = estimate->z0_m;
     float variance_x = sigma->x0_m * sigma->x0_m;
     float variance_z = sigma->z0_m * sigma->z0_m;
-    if (!(estimate->valid & GOE_HAS_POSITION) ||
-        !(estimate->model == GOE_MODEL_DISC || (estimate->valid & GOE_HAS_LENGTH))) {
+    const unsigned needed = GOE_HAS_POSITION | (estimate->model == GOE_MODEL_DISC ? 0u : GOE_HAS_LENGTH);
+    if ((estimate->valid & needed) != needed) {
         clear_center(estimate);
         return;
     }

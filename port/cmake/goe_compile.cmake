@@ -12,6 +12,12 @@ set(goe_arithmetic -ffp-contract=off -fno-math-errno)
 
 set(goe_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
+# goe_library_sources(<variable>): the sources of the library, those in folders of lib/ too
+function(goe_library_sources variable)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/*.c)
+    set(${variable} ${sources} PARENT_SCOPE)
+endfunction()
+
 # goe_compile(<target> [LIBRARY]): C99 and warnings; LIBRARY: what holds for lib/ alone.
 function(goe_compile target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "LIBRARY" "" "")

@@ -1,10 +1,14 @@
 # shellcheck shell=bash
-# What the checks of this folder share. Sourced.
+# What the checks of this folder, of tests/targets and tools/sizes.sh share. Sourced.
 
 # shellcheck disable=SC2034 # of use to whoever sources this file
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+
+# The library's sources, those in folders of lib/ too; they compile with -I"$root/lib".
+# shellcheck disable=SC2034
+mapfile -t library_sources < <(find "$root/lib" -name '*.c' | sort)
 
 # The host compilers that are installed.
 compilers() {

@@ -16,7 +16,6 @@ firmware_flags "$firmware" || {
     exit 2
 }
 
-sources=("$root"/lib/*.c "$root"/lib/*/*.c)
 shopt -s nullglob
 safety_tests=("$root"/tests/c/test_safety*.c)
 support=()
@@ -31,8 +30,8 @@ fi
 compile() {
     local compiler=$1
     shift
-    "$compiler" "$@" -Werror -I"$root/lib" -c "${sources[@]}" || fail "$compiler $*"
-    compiled=$((compiled + ${#sources[@]}))
+    "$compiler" "$@" -Werror -I"$root/lib" -c "${library_sources[@]}" || fail "$compiler $*"
+    compiled=$((compiled + ${#library_sources[@]}))
 }
 
 # run_safety <compiler> <flag>...: with the library's objects in the current folder

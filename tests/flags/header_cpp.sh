@@ -12,7 +12,7 @@ if [ ${#present[@]} = 0 ]; then
     exit 77
 fi
 cd "$scratch"
-gcc -std=c99 -I"$root/lib" -c "$root"/lib/*.c "$root"/lib/*/*.c
+gcc -std=c99 -I"$root/lib" -c "${library_sources[@]}"
 for compiler in "${present[@]}"; do
     mapfile -t accepted < <(known "$compiler" "${warnings[@]}")
     for standard in c++11 c++17 c++20; do

@@ -5,7 +5,6 @@ set -euo pipefail
 . "$(dirname "$0")/common.sh"
 here=$root/tests/flags
 warnings=(-Wall -Wextra -Wundef -Wshadow -Werror)
-sources=("$root"/lib/*.c "$root"/lib/*/*.c)
 
 cd "$scratch"
 cat >header.cpp <<'END'
@@ -16,8 +15,8 @@ END
 compiled=0
 # compile <compiler> <flag>...: every source of the library
 compile() {
-    "$@" "${warnings[@]}" -I"$root/lib" -c "${sources[@]}" || fail "$*"
-    compiled=$((compiled + ${#sources[@]}))
+    "$@" "${warnings[@]}" -I"$root/lib" -c "${library_sources[@]}" || fail "$*"
+    compiled=$((compiled + ${#library_sources[@]}))
 }
 
 # poor <compiler> <flag>...: no headers but the compiler's own and the poor library's

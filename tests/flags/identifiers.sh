@@ -13,7 +13,8 @@ calls="$calls|sqrt|sqrtl|fabs|fabsf|fabsl|isnan|isinf|isfinite|isnormal|fpclassi
 headers='#include *<(stdio|stdlib|tgmath|complex|assert|errno|fenv)\.h>'
 
 bad=0
-for file in "$root"/lib/*.[ch] "$root"/lib/*/*.[ch]; do
+mapfile -t files < <(find "$root/lib" -name '*.[ch]')
+for file in "${files[@]}"; do
     stripped=$scratch/stripped
     gcc -fpreprocessed -dD -E -P -w "$file" >"$stripped"
     if grep -nE "\\b($types|$keywords)\\b|\\b($calls) *\\(" "$stripped" >"$scratch/found" ||
@@ -28,5 +29,5 @@ done
 # Every floating-point constant carries its f: a double constant would be caught by one of these.
 cd "$scratch"
 mapfile -t flags < <(known gcc -Wdouble-promotion -Wunsuffixed-float-constants -Wfloat-conversion -Wvla)
-gcc -std=c99 "${flags[@]}" -Werror -I"$root/lib" -c "$root"/lib/*.c "$root"/lib/*/*.c || fail "double precision or variable-length arrays in lib/"
-echo "no forbidden word in $(find "$root/lib" -name '*.[ch]' | wc -l) files"
+gcc -std=c99 "${flags[@]}" -Werror -I"$root/lib" -c "${library_sources[@]}" || fail "double precision or variable-length arrays in lib/"
+echo "no forbidden word in ${#files[@]} files"

@@ -18,7 +18,7 @@ syntax() {
         for firmware in "${firmwares[@]}"; do
             firmware_flags "$firmware"
             mapfile -t accepted < <(known "$compiler" "${flags[@]}")
-            "$compiler" -std=c99 "${accepted[@]}" -Werror -Wundef -fsyntax-only "$@" -I"$root/lib" "${sources[@]}" ||
+            "$compiler" -std=c99 "${accepted[@]}" -Werror -Wundef -fsyntax-only "$@" -I"$root/lib" "${library_sources[@]}" ||
                 fail "$compiler, flags of $firmware, $*"
         done
     done
@@ -46,7 +46,6 @@ combination() {
     grep -v bytes "$tree.parts" >>"$builds/answers"
 }
 
-mapfile -t sources < <(find "$root/lib" -name '*.c')
 : >"$builds/answers"
 for window in 1 0; do
     for refined in 1 0; do

@@ -20,10 +20,9 @@ FLOORS = (
     ("report",),
     ("__main__",),
 )
-BESIDE = {"ledger": "cost"}  # files that lie beside the rooms, and where they belong
 
 MOST_LINES = 500
-LONG = {"ledger.py": "each figure of the cost ledger, from the build to the README's tables"}  # file, its one idea
+LONG: dict[str, str] = {}  # file, its one idea
 
 Module = tuple[str, ...]  # ("logs", "obslog"); of a folder's __init__.py: ("logs", "__init__")
 Graph = dict[str, set[str]]
@@ -96,7 +95,7 @@ def upwards(edges: set[tuple[Module, Module]]) -> list[str]:
     floor = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
     found = []
     for source, target in sorted(edges):
-        rooms = [BESIDE.get(module[0], module[0]) for module in (source, target)]
+        rooms = [module[0] for module in (source, target)]
         for room in rooms:
             if room not in floor:
                 found.append(f"{room}: say in FLOORS on which floor it is")
@@ -127,8 +126,8 @@ def test_every_command_is_a_module() -> None:
 def test_what_lies_in_the_package_has_a_floor_and_a_line_in_the_readme() -> None:
     told = (PACKAGE / "README.md").read_text(encoding="utf-8")
     for room in {module[0] for module in sources(PACKAGE)}:
-        assert any(BESIDE.get(room, room) in rooms for rooms in FLOORS), room
-        if (PACKAGE / room).is_dir() or room in BESIDE:
+        assert any(room in rooms for rooms in FLOORS), room
+        if (PACKAGE / room).is_dir():
             assert f"`{room}/`" in told or f"`{room}.py`" in told, room
 
 

@@ -4,13 +4,11 @@
 #   host_builds.sh <golden hash>
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-root=$(cd "$here/../.." && pwd)
+. "$here/../flags/common.sh"
 golden=$1
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
 
 own=(-std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib" -I"$here")
-sources=("$root"/lib/*.c "$root"/lib/*/*.c "$here/replay_main.c" "$here/replay.c" "$here/embedded_logs.c")
+sources=("${library_sources[@]}" "$here/replay_main.c" "$here/replay.c" "$here/embedded_logs.c")
 failed=0
 ran=0
 

@@ -5,32 +5,46 @@
 #   host_self_check.sh <golden hash>
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-root=$(cd "$here/../.." && pwd)
+. "$here/../flags/common.sh"
 golden=$1
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
 
 contracted=0x01u reassociated=0x02u reciprocal=0x04u flushed=0x08u excess=0x10u rounding=0x20u any=0x3Fu
 machine=
 failed=0
 ran=0
 
+# objects <folder> <flag>... -- <file>...: compiles the files into the folder, once for all that want them so
+objects() {
+    local folder=$1 flags=()
+    shift
+    while [ "$1" != -- ]; do
+        flags+=("$1")
+        shift
+    done
+    shift
+    [ ! -d "$folder" ] || return 0
+    mkdir "$folder"
+    (cd "$folder" && "$compiler" "${flags[@]}" -I"$root/lib" -I"$here" -c "$@")
+}
+
 # prove <name> <mode> <expected bits> <allowed bits> <strict|loose> <link flags> <compiler> <flag>...
 #   strict: the bits must be reported; loose: or the hash is golden
 prove() {
     local name=$1 mode=$2 expected=$3 allowed=$4 strict=$5 link=$6 compiler=$7
     shift 7
-    local flags=(-std=gnu99 -O2 -ffp-contract=off -fno-math-errno "$@" -I"$root/lib" -I"$here")
+    local library judge
     local define=(-DMODE="MODE_$mode" -DEXPECTED="$expected" -DALLOWED="$allowed")
     [ "$strict" = strict ] || define+=(-DGOLDEN="0x${golden}u")
     command -v "$compiler" >/dev/null || return 0
-    rm -f "$scratch"/*.o
-    # the program that judges is compiled plainly
-    (cd "$scratch" && "$compiler" "${flags[@]}" -c "$root"/lib/*.c "$root"/lib/*/*.c)
+    library="$scratch/library $compiler $*"
+    objects "$library" -std=gnu99 -O2 -ffp-contract=off -fno-math-errno "$@" -- "${library_sources[@]}"
     # The program that judges is compiled plainly.
+    judge="$scratch/judge $compiler $machine"
+    # shellcheck disable=SC2086 # several flags or none
+    objects "$judge" -std=gnu99 -O1 -ffp-contract=off $machine -- "$here/replay.c" "$here/embedded_logs.c"
     # shellcheck disable=SC2086 # several flags or none
     "$compiler" -std=gnu99 -O1 -ffp-contract=off $machine "${define[@]}" -I"$root/lib" -I"$here" \
-        "$here/self_check_main.c" "$here/replay.c" "$here/embedded_logs.c" "$scratch"/*.o $link -lm -o "$scratch/check"
+        "$here/self_check_main.c" "$judge"/*.o "$library"/*.o $link -lm -o "$scratch/check"
     ran=$((ran + 1))
     echo -n "$name, $compiler $*: "
     if ! "$scratch/check"; then

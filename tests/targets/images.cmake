@@ -1,12 +1,18 @@
 # A build for a target: see CMakeLists.txt.
 
-option(GOE_TARGET_UNIT_TESTS "Build the unit tests of tests/c as images, too" ON)
+set(GOE_TARGET_TESTS all CACHE STRING "Tests of tests/c to build as images, too: all, safety, none")
+set_property(CACHE GOE_TARGET_TESTS PROPERTY STRINGS all safety none)
 
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
 target_link_libraries(goe PUBLIC m)
-# What tools/goe_tools/ledger.py reads.
+# What tools/goe_tools/cost reads.
 target_compile_options(goe PRIVATE -ffunction-sections -fstack-usage $<$<C_COMPILER_ID:GNU>:-fcallgraph-info=su>)
+
+# The embedded logs and what flies them, compiled once for all images.
+add_library(replay_parts OBJECT ${replay_sources})
+goe_compile(replay_parts)
+target_link_libraries(replay_parts PRIVATE goe goe_port)
 
 # goe_image(<target> <board> <source>...): an image for a board, without the library
 function(goe_image target board)
@@ -20,12 +26,12 @@ endfunction()
 # ------------------------------------------------------------------------------------------------- replay and its stack
 
 foreach(board IN LISTS GOE_TARGET_BOARDS)
-    goe_image(replay_${board} ${board} replay_main.c ${replay_sources})
+    goe_image(replay_${board} ${board} replay_main.c $<TARGET_OBJECTS:replay_parts>)
     target_link_libraries(replay_${board} PRIVATE goe)
     target_link_options(replay_${board} PRIVATE LINKER:-Map,${CMAKE_CURRENT_BINARY_DIR}/replay_${board}.map)
     goe_check_hash(replay_${board} replay_${board})
 
-    goe_image(stack_${board} ${board} stack_main.c ${replay_sources})
+    goe_image(stack_${board} ${board} stack_main.c $<TARGET_OBJECTS:replay_parts>)
     target_link_libraries(stack_${board} PRIVATE goe)
     add_test(NAME stack_${board} COMMAND stack_${board})
     set_tests_properties(stack_${board} PROPERTIES LABELS targets TIMEOUT 60
@@ -34,11 +40,13 @@ endforeach()
 
 # ---------------------------------------------------------------------------------------------------------- self-check
 
-file(GLOB library_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/*.c ${PROJECT_SOURCE_DIR}/lib/*/*.c)
+goe_library_sources(library_sources)
+set(self_check_source ${library_sources})
+list(FILTER self_check_source INCLUDE REGEX "/goe_self_check\\.c$")
 
-# The library once more, with other people's flags after its own.
-function(goe_library_with name)
-    add_library(${name} STATIC ${library_sources})
+# goe_library_with(<name> <sources> <flag>...): sources of the library once more, with other people's flags after its own
+function(goe_library_with name sources)
+    add_library(${name} STATIC ${sources})
     set_target_properties(${name} PROPERTIES C_STANDARD 99 C_EXTENSIONS ON)
     target_compile_options(${name} PRIVATE -ffp-contract=off -fno-math-errno ${ARGN})
     target_compile_definitions(${name} PUBLIC GOE_WINDOW_MAX=${GOE_WINDOW_MAX})
@@ -47,18 +55,23 @@ function(goe_library_with name)
 endfunction()
 
 # goe_self_check_proof(<name> <expected bits> <allowed bits> <mode> <flag>...): the self-check, compiled and run so,
-# must say so.
+# must say so. gcc at -O2 makes use of every flag on every processor. The others may not: then the whole library with
+# these flags must give the golden hash.
 function(goe_self_check_proof name expected allowed mode)
     set(image self_check_${name})
-    goe_library_with(goe_${name} ${ARGN})
-    goe_image(${image} ${GOE_TARGET_BOARD} self_check_main.c ${replay_sources})
+    goe_image(${image} ${GOE_TARGET_BOARD} self_check_main.c $<TARGET_OBJECTS:replay_parts>)
     set_target_properties(${image} PROPERTIES C_EXTENSIONS ON)
     target_compile_definitions(${image} PRIVATE EXPECTED=${expected} ALLOWED=${allowed} MODE=MODE_${mode})
-    # gcc at -O2 makes use of every flag on every processor; the others may not
-    if(ARGN AND NOT (CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_C_FLAGS_RELEASE STREQUAL -O2))
-        target_compile_definitions(${image} PRIVATE GOLDEN=0x${golden}u)
+    if(ARGN)
+        set(sources ${self_check_source})
+        if(NOT (CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_C_FLAGS_RELEASE STREQUAL -O2))
+            set(sources "${library_sources}")
+            target_compile_definitions(${image} PRIVATE GOLDEN=0x${golden}u)
+        endif()
+        goe_library_with(goe_${name} "${sources}" ${ARGN})
+        target_link_libraries(${image} PRIVATE goe_${name})
     endif()
-    target_link_libraries(${image} PRIVATE goe_${name})
+    target_link_libraries(${image} PRIVATE goe) # what is not in the one before
     add_test(NAME ${image} COMMAND ${image})
     set_tests_properties(${image} PROPERTIES LABELS targets TIMEOUT 60)
 endfunction()
@@ -90,8 +103,8 @@ endif()
 # ---------------------------------------------------------------------------------------------------------- unit tests
 
 # All of tests/c but test_host_*.c, and test_double_*.c: those hold the library against double precision at length,
-# which single precision processors emulate.
-if(GOE_TARGET_UNIT_TESTS)
+# which single precision processors emulate. Or the safety tests alone: random bit patterns as input.
+if(NOT GOE_TARGET_TESTS STREQUAL none)
     include(${PROJECT_SOURCE_DIR}/port/cmake/unity.cmake)
     if(NOT TARGET goe_unity)
         message(FATAL_ERROR "Images need the sources of Unity: name them with -DUNITY_DIR=")
@@ -104,6 +117,9 @@ if(GOE_TARGET_UNIT_TESTS)
     file(GLOB support CONFIGURE_DEPENDS ${unit_tests}/*.c)
     list(REMOVE_ITEM support ${programs})
     list(FILTER programs EXCLUDE REGEX "/test_(host|double)_")
+    if(GOE_TARGET_TESTS STREQUAL safety)
+        list(FILTER programs INCLUDE REGEX "/test_safety")
+    endif()
 
     add_library(unit_test_support STATIC ${support})
     goe_compile(unit_test_support)
@@ -120,13 +136,14 @@ if(GOE_TARGET_UNIT_TESTS)
     endforeach()
 
     # The safety tests, with the library under the flags of four firmwares that run on such processors.
-    if(has_fpu AND CMAKE_SYSTEM_PROCESSOR STREQUAL arm AND CMAKE_C_COMPILER_ID STREQUAL GNU)
+    if(has_fpu AND CMAKE_SYSTEM_PROCESSOR STREQUAL arm AND CMAKE_C_COMPILER_ID STREQUAL GNU
+       AND CMAKE_C_FLAGS_RELEASE STREQUAL -O2)
         set(px4 -std=gnu11 -freciprocal-math -fno-signed-zeros -fno-trapping-math -fno-math-errno)
         set(ardupilot -std=gnu11 -fsingle-precision-constant -DNDEBUG -ffp-contract=fast)
         set(betaflight -std=gnu17 -Ofast -ffast-math -ffp-contract=fast)
         set(inav -std=gnu11 -fsingle-precision-constant -ffp-contract=fast)
         foreach(firmware px4 ardupilot betaflight inav)
-            goe_library_with(goe_${firmware} ${${firmware}})
+            goe_library_with(goe_${firmware} "${library_sources}" ${${firmware}})
             goe_image(safety_${firmware} ${GOE_TARGET_BOARD} ${unit_tests}/test_safety.c ${support})
             target_compile_options(safety_${firmware} PRIVATE -Wno-double-promotion -Wno-float-equal)
             target_include_directories(safety_${firmware} PRIVATE ${unit_tests})

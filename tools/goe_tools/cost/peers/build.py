@@ -13,7 +13,8 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from ...ledger import ROOT, LedgerError, build_plugin, emulated, output_of  # noqa: F401 - measure takes them from here
+from ..instructions import build_plugin  # noqa: F401 - measure takes it from here
+from ..running import ROOT, LedgerError, emulated, output_of  # noqa: F401 - measure takes them from here
 
 PEERS = ROOT / "tools" / "peers"
 FRAME = PEERS / "frame"

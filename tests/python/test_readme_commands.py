@@ -1,0 +1,280 @@
+"""Every command that a README names is run: here, with small arguments, or by the test or step that a table names."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+from goe_tools.__main__ import main
+from goe_tools.optimum import goals
+from synthetic_campaign import write_campaign
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDERS = ("lib", "port", "sim_host", "tests", "tools")
+PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "cmake", "ctest")
+SECONDS = 300
+
+# ------------------------------------------------------------------------------------------------ what the READMEs say
+
+
+def pages() -> list[Path]:
+    """README.md of all folders, and what lies beside the tests' one."""
+    return [ROOT / "README.md", *sorted(page for folder in FOLDERS for page in (ROOT / folder).rglob("*.md"))]
+
+
+def is_command(text: str) -> bool:
+    words = text.split()
+    if not words:
+        return False
+    if words[0] in PROGRAMS or words[:2] in (["python", "-m"], ["python3", "-m"]):
+        return True
+    is_path = "/" in words[0] and not (ROOT / words[0]).is_dir() and words[0].split("/")[0] in ("tools", "build")
+    return words[0].endswith(".sh") or is_path
+
+
+def commands_of(text: str) -> list[str]:
+    """All commands of a page, as they stand there: in blocks of sh, in indented blocks, in code within a line."""
+    found: list[str] = []
+    text = text.replace("\\\n", " ")
+    for block in re.findall(r"^```sh\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+        lines = [re.sub(r"(^|\s)#.*", "", line) for line in block.splitlines()]
+        found += [line for line in lines if line.strip()]
+    text = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+    found += [line for line in re.findall(r"^ {4}(\S.*)$", text, re.MULTILINE) if is_command(line)]
+    found += [code for code in re.findall(r"(?<!`)`([^`]+)`(?!`)", text) if is_command(code)]
+    return [" ".join(part.split()) for line in found for part in line.split("&&")]
+
+
+def named(command: str) -> str:
+    """A command without what its user fills in: options in brackets, words such as DIR, FILE.html or <preset>."""
+    words = re.sub(r"\[[^\]]*\]", "", command).split()
+    return " ".join(word for word in words if not re.fullmatch(r"[A-Z]+(\.[a-z]+)?|<[^>]*>", word))
+
+
+def all_commands() -> dict[str, str]:
+    """Where each command is named first, by its name."""
+    places: dict[str, str] = {}
+    for page in pages():
+        for command in commands_of(page.read_text(encoding="utf-8")):
+            places.setdefault(named(command), str(page.relative_to(ROOT)))
+    return places
+
+
+# ---------------------------------------------------------------------------------------- what runs them, and what here
+
+
+@dataclass(frozen=True)
+class By:
+    """The test or step that runs a command. ``words``: how the command is called there."""
+
+    file: str
+    words: str
+    expected_later: bool = False  # the file comes with another change; the command does not work before
+
+
+# A key that ends in "..." stands for all that begins so.
+RUN_BY = {
+    "tools/test.sh": By(".ci/run", "tools/test.sh"),
+    "cmake --install": By("tests/CMakeLists.txt", "--install"),
+    "cmake --preset": By("tools/test.sh", "cmake --preset"),
+    "cmake --build --preset": By("tools/test.sh", "cmake --build --preset"),
+    "ctest --preset": By("tools/test.sh", "ctest --preset"),
+    "build/tests/targets/replay": By("tests/targets/host.cmake", "goe_check_hash(replay replay)"),
+    "host_builds.sh": By("tests/targets/host.cmake", "host_builds.sh"),
+    "host_self_check.sh": By("tests/targets/host.cmake", "host_self_check.sh"),
+    "build_target.sh": By("tests/targets/host.cmake", "build_target.sh"),
+    "goe_replay": By("tests/host/test_replay.py", "goe_replay"),
+    "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
+    "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
+    "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
+    "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
+    "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
+    "python -m goe_tools ledger": By("tools/test.sh", "goe_tools ledger"),
+    "python -m goe_tools ledger --check": By("tools/test.sh", "goe_tools ledger --check"),
+    "python -m goe_tools ledger --write": By("tests/python/test_cost.py", '"ledger", "--write"'),
+    "python -m goe_tools offline": By("tests/python/test_optimum.py", '"offline"'),
+    "python -m goe_tools peers": By("tests/python/test_peers.py", "peers", expected_later=True),
+    "python -m goe_tools report --table --out": By("tools/demo.sh", "report $campaign --table --out"),
+    "python -m goe_tools scene ...": By("tests/python/test_scene.py", "python -m goe_tools scene"),
+    "python -m goe_tools.jsbsim_flight": By("tests/sim/test_sim_jsbsim.py", "jsbsim_flight"),
+}
+
+
+def output_of(*words: str | Path, **environment: str) -> str:
+    done = subprocess.run(
+        [str(word) for word in words], cwd=ROOT, env={**os.environ, **environment}, capture_output=True, text=True,
+        timeout=SECONDS,
+    )  # fmt: skip
+    assert done.returncode == 0, f"{words}: exit status {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture
+def built() -> Path:
+    """The build folder that README.md's commands use."""
+    if not (ROOT / "build" / "CMakeCache.txt").exists():
+        pytest.skip("nothing is built in build/ (tools/test.sh builds)")
+    return ROOT / "build"
+
+
+@pytest.fixture
+def set_up() -> None:
+    if not (ROOT / ".venv" / "installed").exists():
+        pytest.skip("tools/setup.sh has not run")
+
+
+@pytest.fixture
+def few_flights(monkeypatch: pytest.MonkeyPatch) -> None:
+    few = replace(
+        goals.QUICK, seeds=1, field_seeds=1, random=4, offline=2, rivals=2, recorded=1, recorded_seeds=1,
+        precision_seeds=1,
+    )  # fmt: skip
+    monkeypatch.setattr(goals, "QUICK", few)
+    monkeypatch.setattr(goals, "FULL", few)
+
+
+def test_demo(built: Path, set_up: None) -> None:
+    text = output_of("tools/demo.sh")
+    assert "refined, the default method: better than the paper in" in text
+    (page,) = re.findall(r"^The report: +(.*)$", text, re.MULTILINE)
+    assert Path(page) == built / "report.html"
+    assert Path(page).read_text(encoding="utf-8").rstrip().endswith("</html>")
+
+
+def test_sizes() -> None:
+    text = output_of("tools/sizes.sh", "x86-64 gcc -Os")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    states = re.findall(r"^\| \d+ \| \d+ \|$", text, re.MULTILINE)
+    (code,) = re.findall(r"^\| x86.*$", text, re.MULTILINE)
+    assert len(states) == 5
+    assert all(row in readme for row in states)
+    assert re.fullmatch(r"\| x86-64 gcc -Os \(\d+\) \| [1-9]\d{4} \| 0 \|", code)
+
+
+def test_bench(built: Path) -> None:
+    rates = re.findall(r"^goe_replay --method (\w+): +(\d+) rows/s", output_of("tools/bench.sh", "1000"), re.MULTILINE)
+    assert [method for method, _ in rates] == ["refined", "window"]
+    assert all(int(rate) > 0 for _, rate in rates)
+
+
+def test_bench_campaign(built: Path) -> None:
+    text = output_of("tools/bench_campaign.sh", "--quick")
+    assert re.match(r"paper's study, 1 seed +[\d.]+ s +[1-9]\d* cases/s .*\(156 cases, ", text)
+
+
+def test_set_up_with_rivals(tmp_path: Path, set_up: None) -> None:
+    """In a copy whose list of rivals is empty: nothing is fetched, and the missing GTSAM is told."""
+    shutil.copytree(ROOT / "tools", tmp_path / "tools", ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+    (tmp_path / "tools" / "requirements-rivals.txt").write_text("# none\n")
+    bin_folder = tmp_path / ".venv" / "bin"
+    bin_folder.mkdir(parents=True)
+    (bin_folder / "python").write_text(f'#!/bin/sh\nexec {ROOT}/.venv/bin/python "$@"\n')
+    (bin_folder / "python").chmod(0o755)
+    # What tools/setup.sh leaves in .venv to tell that it is as wanted.
+    wanted = [(tmp_path / "tools" / name).read_text() for name in ("requirements.txt", "pyproject.toml")]
+    version = output_of("python3", "--version")
+    (tmp_path / ".venv" / "installed").write_text(f"{version}{''.join(wanted)}{tmp_path}\n")
+    text = output_of(tmp_path / "tools" / "setup.sh", "--rivals", UNITY_DIR="not looked for", PYTHON="python3")
+    assert "making .cache/rivals" in text
+    assert "making .venv" not in text
+    assert "there is no GTSAM for this Python" in text
+    assert (tmp_path / ".cache" / "rivals" / "installed").exists()
+
+
+def test_targets_are_listed(built: Path) -> None:
+    text = output_of("ctest", "--test-dir", built, "-L", "targets", "-N")
+    assert len(re.findall(r"Test +#\d+: target_[\w-]+-(gcc|clang)-(os|o2)$", text, re.MULTILINE)) == 28
+
+
+def test_quick_goals_and_their_report(tmp_path: Path, few_flights: None, built: Path) -> None:
+    file, page = tmp_path / "goals.json", tmp_path / "page.html"
+    assert main(["goals", "--quick", "--json", str(file)]) == 0
+    groups = {row["group"] for row in json.loads(file.read_text())["goals"]}
+    assert len(groups) >= len(goals.GROUPS) - len(goals.ABSENT)
+    campaign = write_campaign(tmp_path / "campaign")
+    assert main(["report", str(campaign), "--goals", str(file), "--out", str(page)]) == 0
+    assert "goals are met" in page.read_text(encoding="utf-8")
+
+
+def test_goals(few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["goals", "--only", "gauss1"]) == 0
+    assert re.search(r"\d+ of \d+ goals met", capsys.readouterr().out)
+
+
+RUN_HERE: dict[str, Callable[..., None]] = {
+    "tools/demo.sh": test_demo,
+    "tools/sizes.sh": test_sizes,
+    "tools/bench.sh": test_bench,
+    "tools/bench_campaign.sh": test_bench_campaign,
+    "tools/setup.sh --rivals": test_set_up_with_rivals,
+    "ctest -L targets": test_targets_are_listed,
+    "python -m goe_tools goals": test_goals,
+    "python -m goe_tools goals --quick": test_quick_goals_and_their_report,
+    "python -m goe_tools goals --json": test_quick_goals_and_their_report,
+    "python -m goe_tools report --goals --out": test_quick_goals_and_their_report,
+}
+
+# ------------------------------------------------------------------------------------------------------ the two agree
+
+
+def own_name(command: str) -> str:
+    """What a command is called: compare, demo.sh, --install."""
+    tool = re.match(r"python -m goe_tools[. ](\w+)", command)
+    words = command.split()
+    return tool.group(1) if tool else words[-1] if words[0] in ("cmake", "ctest") else words[0].rpartition("/")[2]
+
+
+def matches(key: str, command: str) -> bool:
+    return command.startswith(key[: -len("...")]) if key.endswith("...") else command == key
+
+
+def test_every_command_is_run() -> None:
+    commands = all_commands()
+    keys = [*RUN_HERE, *RUN_BY]
+    unknown = [command for command in commands if not any(matches(key, command) for key in keys)]
+    assert not unknown, "no test runs: " + "; ".join(f"{command} ({commands[command]})" for command in unknown)
+    idle = [key for key in keys if not any(matches(key, command) for command in commands)]
+    assert not idle, "no README names any more: " + "; ".join(idle)
+
+
+@pytest.mark.parametrize("command", RUN_BY)
+def test_command_is_run_elsewhere(command: str) -> None:
+    by = RUN_BY[command]
+    file = ROOT / by.file
+    if by.expected_later and not file.exists():
+        pytest.skip(f"{by.file}, which will run {command}, is not there yet")
+    assert by.words in file.read_text(encoding="utf-8")
+    assert own_name(command) in by.words
+
+
+SAMPLE = """
+```sh
+tools/first.sh   # a comment
+# python -m goe_tools nothing
+cmake --preset x && ctest
+```
+```c
+goe_update(); /* `tools/not.sh` */
+```
+Text with `tools/second.sh --all`, `goe_sim [--wind FILE]`, `goe_hazard()`, `--quick`, `lib/goe.h`, `tools/` and
+`python -m goe_tools report
+DIR --out FILE.html`; `build/tests/replay` and `<x> --y`.
+
+    python -m goe_tools scene --reach 3 \\
+        --out here
+    some listing
+"""
+
+
+def test_commands_are_found() -> None:
+    assert [named(command) for command in commands_of(SAMPLE)] == [
+        "tools/first.sh", "cmake --preset x", "ctest", "python -m goe_tools scene --reach 3 --out here",
+        "tools/second.sh --all", "goe_sim", "python -m goe_tools report --out", "build/tests/replay",
+    ]  # fmt: skip

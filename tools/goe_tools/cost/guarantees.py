@@ -1,0 +1,134 @@
+"""What README.md guarantees of the cost, on which targets it must hold, and on which it does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from . import book
+from .book import Figures, Ledger, key
+from .instructions import UPDATES
+from .targets import PROCESSORS, compiler_title, presets, processor_title
+
+
+def targets_of(processor: str) -> tuple[str, ...]:
+    return tuple(preset for preset in presets() if preset.rsplit("-", 2)[0] == processor)
+
+
+@dataclass(frozen=True)
+class Guarantee:
+    """A figure and what it may be at most."""
+
+    words: str  # the limit is {limit}
+    stated: str  # how README.md's own words give the limit
+    figure: str
+    limit: int
+    told: tuple[str, ...]  # targets of which README.md says whether it holds
+    promised: tuple[str, ...]  # those on which it must
+
+
+EVERYWHERE = tuple(presets())
+M4F = targets_of("m4f")
+M4F_GCC = ("m4f-gcc-os", "m4f-gcc-o2")
+M4F_GCC_O2 = ("m4f-gcc-o2",)
+GUARANTEES = (
+    Guarantee(
+        "an estimator takes at most {limit} bytes at a window of 8",
+        "2 KiB",
+        key(book.STATE, "window 8"),
+        2048,
+        EVERYWHERE,
+        EVERYWHERE,
+    ),
+    Guarantee(
+        "no writable data outside the estimator",
+        "no hidden state",
+        key(book.DATA, book.TOTAL),
+        0,
+        EVERYWHERE,
+        EVERYWHERE,
+    ),
+    Guarantee(
+        "an update takes at most {limit} instructions",
+        "25,000 instructions",
+        key(book.INSTRUCTIONS, UPDATES["refined"], "max"),
+        25000,
+        M4F,
+        M4F_GCC,
+    ),
+    Guarantee(
+        "... with method `window` at most {limit}",
+        "2,550",
+        key(book.INSTRUCTIONS, UPDATES["window"], "max"),
+        2550,
+        M4F,
+        M4F_GCC_O2,
+    ),
+    Guarantee(
+        "an update takes at most {limit} bytes of stack",
+        "1,024 bytes of stack",
+        key(book.STACK, UPDATES["refined"]),
+        1024,
+        M4F,
+        M4F_GCC_O2,
+    ),
+)
+# Of the C library; sqrtf is an instruction there.
+CALLS_ALLOWED = {"memcpy", "memset"}
+CALLS_PROMISED = M4F_GCC_O2
+
+
+def value_of(figures: Figures, guarantee: Guarantee) -> float:
+    value = figures[guarantee.figure]
+    assert not isinstance(value, str)
+    return value
+
+
+def broken_promises(ledger: Ledger) -> list[str]:
+    """What is promised of these targets and does not hold."""
+    broken = []
+    for preset, figures in ledger.items():
+        for guarantee in GUARANTEES:
+            value = value_of(figures, guarantee)
+            if preset in guarantee.promised and value > guarantee.limit:
+                broken.append(f"{preset}: {guarantee.figure}: {value}, promised {guarantee.limit}")
+        strange = set(str(figures.get(book.CALLS, "")).split()) - CALLS_ALLOWED
+        if preset in CALLS_PROMISED and strange:
+            broken.append(f"{preset}: the library calls {', '.join(sorted(strange))}")
+    return broken
+
+
+def listed(ledger: Ledger, chosen: list[str], guarantee: Guarantee) -> str:
+    """Targets by processor, each with its figure."""
+    parts = []
+    for processor in PROCESSORS:
+        of_it = [preset for preset in targets_of(processor) if preset in chosen]
+        texts = [f"{compiler_title(preset)} ({value_of(ledger[preset], guarantee):,})" for preset in of_it]
+        if texts:
+            parts.append(f"{processor_title(of_it[0])} {', '.join(texts)}")
+    return "; ".join(parts)
+
+
+def rows(ledger: Ledger) -> list[str]:
+    """README.md's table: each guarantee, and where it holds and where it does not."""
+    lines = ["| guarantee | holds for | does not hold for |", "|---|---|---|"]
+    for guarantee in GUARANTEES:
+        told = [preset for preset in guarantee.told if preset in ledger]
+        good = [preset for preset in told if value_of(ledger[preset], guarantee) <= guarantee.limit]
+        bad = [preset for preset in told if preset not in good]
+        if good == list(EVERYWHERE):
+            most = max(value_of(ledger[preset], guarantee) for preset in good)
+            where = "every target and compiler" + (f" (at most {most:,})" if guarantee.limit else "")
+        else:
+            where = listed(ledger, good, guarantee)
+        words = guarantee.words.format(limit=f"{guarantee.limit:,}")
+        lines.append(f"| {words} | {where} | {listed(ledger, bad, guarantee)} |")
+    return lines
+
+
+def not_stated(readme: str) -> list[str]:
+    """Guarantees whose limit README.md does not give in its own words."""
+    return [
+        f"README.md does not say “{guarantee.stated}”: {guarantee.words.format(limit=guarantee.limit)}"
+        for guarantee in GUARANTEES
+        if guarantee.stated not in readme
+    ]
