@@ -146,6 +146,7 @@ scene_t scene_mirrored(const scene_t *scene) {
     m.yaw_deg = -m.yaw_deg;
     m.roll_deg = -m.roll_deg;
     m.wobble_deg = -m.wobble_deg;
+    m.roll_swing_deg = -m.roll_swing_deg;
     m.camera.cx_px = -m.camera.cx_px;
     m.camera.mount_yaw_deg = -m.camera.mount_yaw_deg;
     m.camera.mount_roll_deg = -m.camera.mount_roll_deg;
@@ -200,7 +201,8 @@ static void fly(const scene_t *scene, int k, goe_pose_t *pose, flight_t *flight)
     }
     const double yaw = scene->course_deg + scene->yaw_deg + turn_deg + scene->wobble_deg * sin(phase);
     const double pitch = scene->pitch_deg - scene->glide_deg + fabs(scene->wobble_deg) * cos(1.3 * phase);
-    const double roll = scene->roll_deg + scene->wobble_deg * sin(0.7 * phase + 1.0);
+    const double swing = scene->roll_swing_deg * sin(TWO_PI * scene->roll_swing_hz * t);
+    const double roll = scene->roll_deg + scene->wobble_deg * sin(0.7 * phase + 1.0) + swing;
     const double c = cos(scene->course_deg * RAD_PER_DEG);
     const double s = sin(scene->course_deg * RAD_PER_DEG);
     const double descent = along * tan(scene->glide_deg * RAD_PER_DEG);
@@ -333,6 +335,55 @@ static void tell_points(const points_t *points, scene_truth_t *truth) {
     }
 }
 
+/* ---------------------------------------------------------------------------------------------------- bounding boxes -- */
+
+#define RIM_POINTS 48
+
+/* Corner or rim point i of the footprint, relative to the camera, T axes, at the height of the camera. */
+static vector_t footprint_point(const scene_t *scene, double x, double z, int i) {
+    const double angle = TWO_PI * i / RIM_POINTS;
+    const double s = sin(scene->alpha_deg * RAD_PER_DEG);
+    const double c = cos(scene->alpha_deg * RAD_PER_DEG);
+    const double across = i % 2 == 0 ? -0.5 * scene->width_m : 0.5 * scene->width_m;
+    const double along = i < 2 ? 0.0 : scene->length_m;
+    if (scene->shape == SCENE_BOX) {
+        return (vector_t){{x + across * c + along * s, 0.0, z - across * s + along * c}};
+    }
+    return (vector_t){{x + 0.5 * scene->width_m * cos(angle), 0.0, z + 0.5 * scene->width_m * sin(angle)}};
+}
+
+typedef struct {
+    float left, top, right, bottom;
+} frame_t;
+
+/* False if a point of the obstacle is not ahead. */
+static bool frame_of(const scene_t *scene, const flight_t *flight, const scene_truth_t *at, frame_t *frame) {
+    const int points = scene->shape == SCENE_BOX ? 4 : RIM_POINTS;
+    bool ahead = true;
+    for (int i = 0; i < 2 * points; i++) {
+        vector_t point = footprint_point(scene, at->x_m, at->z_m, i / 2);
+        point.v[1] = at->height_above_ground_m - (i % 2 == 0 ? 0.0 : scene->height_m);
+        const goe_pixel_t p = project(scene, flight, point);
+        ahead = ahead && p.seen;
+        frame->left = i == 0 || p.u_px < frame->left ? p.u_px : frame->left;
+        frame->right = i == 0 || p.u_px > frame->right ? p.u_px : frame->right;
+        frame->top = i == 0 || p.v_px < frame->top ? p.v_px : frame->top;
+        frame->bottom = i == 0 || p.v_px > frame->bottom ? p.v_px : frame->bottom;
+    }
+    return ahead;
+}
+
+static void see_upright_box(const scene_t *scene, const flight_t *flight, const scene_truth_t *at, goe_image_t *image) {
+    frame_t f = {0.0f, 0.0f, 0.0f, 0.0f};
+    const bool seen = frame_of(scene, flight, at, &f);
+    image->left = (goe_pixel_t){f.left, 0.5f * (f.top + f.bottom), seen};
+    image->right = (goe_pixel_t){f.right, 0.5f * (f.top + f.bottom), seen};
+    image->top = (goe_pixel_t){0.5f * (f.left + f.right), f.top, seen};
+    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+}
+
+/* --------------------------------------------------------------------------------------------------------- the image -- */
+
 void scene_image(const scene_t *scene, int k, goe_image_t *image, scene_truth_t *truth) {
     goe_pose_t first_pose;
     flight_t first;
@@ -372,5 +423,8 @@ void scene_image(const scene_t *scene, int k, goe_image_t *image, scene_truth_t 
         if (points.base_seen[i]) {
             *base[i] = project(scene, &now, points.base[i]);
         }
+    }
+    if (scene->upright_boxes) {
+        see_upright_box(scene, &now, told, image);
     }
 }

@@ -32,9 +32,12 @@ typedef struct {
     double pitch_deg;  /* of the nose from the glide slope */
     double roll_deg;
     double wobble_deg; /* amplitude of an oscillation of all three attitude angles; the yaw starts at 0 */
+    double roll_swing_deg, roll_swing_hz; /* amplitude and rate of a sine of the roll alone */
     double start_ned_m[2];
     double ground_d_m;
-    bool top_nearest; /* top: the roof's point nearest to the camera; otherwise the highest in the image */
+    bool upright_boxes; /* left, right, top: the middles of the sides of the upright bounding box in the raw image, as a
+                           detector gives it; no base corners */
+    bool top_nearest;   /* top: the roof's point nearest to the camera; otherwise the highest in the image */
     goe_camera_t camera;
 } scene_t;
 

@@ -1,0 +1,260 @@
+/* The phases of the filter: every transition by its name, and that there are no others. SPDX-License-Identifier: MIT
+ *
+ * The diagram stands above goe_phase_t in refined/goe_filter.h. */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "refined/goe_filter.h"
+#include "scene.h"
+
+#define IMAGES 188
+#define PHASES 6
+
+/* Which features the detector gives. */
+typedef enum { SEE_ALL, SEE_OUTLINE, SEE_OUTLINE_FIRST, SEE_LEAPS } sight_t;
+
+static scene_t scene;
+static goe_settings_t settings;
+static goe_estimator_t estimator;
+static goe_estimate_t estimate;
+static check_random_t any;
+static bool happened[PHASES][PHASES]; /* from, to: of two images one after the other */
+static bool learnt_anew, exchanged;
+
+static const bool allowed[PHASES][PHASES] = {
+    [GOE_PHASE_NONE] = {[GOE_PHASE_DISC] = true},
+    [GOE_PHASE_DISC] =
+        {[GOE_PHASE_NONE] = true, [GOE_PHASE_CHORD] = true, [GOE_PHASE_BOX_FACE] = true, [GOE_PHASE_BOX] = true},
+    [GOE_PHASE_CHORD] =
+        {[GOE_PHASE_NONE] = true, [GOE_PHASE_BOX_FACE] = true, [GOE_PHASE_BOX] = true, [GOE_PHASE_BOX_OUTLINE] = true},
+    [GOE_PHASE_BOX_FACE] = {[GOE_PHASE_NONE] = true, [GOE_PHASE_BOX] = true},
+    [GOE_PHASE_BOX] = {[GOE_PHASE_NONE] = true},
+    [GOE_PHASE_BOX_OUTLINE] = {[GOE_PHASE_NONE] = true},
+};
+
+void setUp(void) {
+    scene_default(&scene);
+    scene.top_nearest = true;
+    settings = scene_settings(&scene);
+    scene_tell_no_noise(&settings);
+    memset(happened, 0, sizeof happened);
+    learnt_anew = false;
+    exchanged = false;
+}
+void tearDown(void) {}
+
+static goe_phase_t phase(void) { return goe_filter_phase(&estimator.filter); }
+
+static void start(void) {
+    settings.camera = scene.camera;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+}
+
+static void update(const goe_image_t *image) {
+    const goe_phase_t before = phase();
+    const unsigned images = estimator.filter.phase_images;
+    const bool names = estimator.filter.naming.exchanged;
+    (void)goe_update(&estimator, image, &estimate);
+    if (before != phase()) {
+        happened[before][phase()] = true;
+    } else {
+        learnt_anew = learnt_anew || (before == GOE_PHASE_CHORD && images > 0 && estimator.filter.phase_images == 0);
+        exchanged = exchanged || (goe_filter_is_box(&estimator.filter) && names != estimator.filter.naming.exchanged);
+    }
+}
+
+static void hide_base(goe_image_t *image) {
+    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+}
+
+/* A scene from image to image. SEE_LEAPS: from the middle on every third of the points lies elsewhere. */
+static void fly(sight_t sight, int images) {
+    start();
+    for (int k = 0; k < images; k++) {
+        goe_image_t image;
+        scene_image(&scene, k, &image, NULL);
+        if (sight == SEE_OUTLINE || (sight == SEE_OUTLINE_FIRST && k < images / 2)) {
+            hide_base(&image);
+        }
+        if (sight == SEE_LEAPS && k >= images / 2) {
+            image.left.u_px -= 150.0f;
+            image.right.u_px -= 150.0f;
+            image.base_right.u_px += 100.0f;
+        }
+        update(&image);
+    }
+}
+
+/* A box of which the front and the right face are seen until the front turns away. */
+static void make_box_beside(double alpha_deg) {
+    scene.width_m = 5.0;
+    scene.length_m = 9.0;
+    scene.height_m = 6.0;
+    scene.alpha_deg = alpha_deg;
+    scene.x0_m = -16.0;
+    scene.speed_mps = 10.0;
+    scene.image_rate_hz = 20.0;
+    scene.wobble_deg = 1.0;
+}
+
+/* A wide front straight ahead, its sides hidden behind it until the path leads aside. */
+static void make_wall_ahead(void) {
+    scene.width_m = 12.0;
+    scene.length_m = 8.0;
+    scene.height_m = 5.0;
+    scene.alpha_deg = 0.0;
+    scene.x0_m = 0.0;
+    scene.z0_m = 120.0;
+    scene.speed_mps = 10.0;
+    scene.path = SCENE_ARC;
+    scene.arc_radius_m = 300.0;
+}
+
+/* ------------------------------------------------------------------------------------------------------- transitions -- */
+
+static void a_width_starts_a_disc(void) {
+    goe_image_t image;
+    start();
+    scene_image(&scene, 0, &image, NULL);
+    image.right.seen = false;
+    hide_base(&image);
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_NONE, phase());
+    scene_image(&scene, 1, &image, NULL);
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
+}
+
+static void two_faces_make_a_box_of_a_disc(void) {
+    fly(SEE_ALL, 40);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_BOX]);
+    TEST_ASSERT_FALSE(happened[GOE_PHASE_DISC][GOE_PHASE_BOX_FACE]);
+}
+
+static void one_face_makes_a_box_whose_length_is_held(void) {
+    make_wall_ahead();
+    fly(SEE_ALL, 60);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_BOX_FACE]);
+    TEST_ASSERT_FALSE(estimate.valid & GOE_HAS_LENGTH && phase() == GOE_PHASE_BOX_FACE);
+}
+
+static void a_second_face_frees_the_length(void) {
+    make_wall_ahead();
+    fly(SEE_ALL, 90);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_BOX_FACE][GOE_PHASE_BOX]);
+    TEST_ASSERT_TRUE((estimate.valid & GOE_HAS_LENGTH) != 0);
+}
+
+static void a_skewed_outline_makes_a_chord_of_a_disc(void) {
+    make_box_beside(44.0);
+    fly(SEE_OUTLINE, IMAGES);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_CHORD]);
+}
+
+static void a_face_that_turns_away_makes_a_box_of_a_chord(void) {
+    make_box_beside(44.0);
+    fly(SEE_OUTLINE, IMAGES);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_CHORD][GOE_PHASE_BOX_OUTLINE]);
+}
+
+static void base_corners_make_a_box_of_a_chord(void) {
+    make_box_beside(44.0);
+    fly(SEE_OUTLINE_FIRST, 160);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_CHORD]);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_CHORD][GOE_PHASE_BOX]);
+}
+
+static void a_chord_learns_an_end_anew_when_a_face_comes_into_view(void) {
+    scene.width_m = 7.7;
+    scene.length_m = 10.4;
+    scene.height_m = 3.0;
+    scene.alpha_deg = 5.0; /* the front, then the left side */
+    scene.x0_m = 13.3;
+    scene.z0_m = 116.0;
+    scene.speed_mps = 8.7;
+    scene.image_rate_hz = 12.3;
+    fly(SEE_OUTLINE, IMAGES);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_CHORD]);
+    TEST_ASSERT_TRUE(learnt_anew);
+    TEST_ASSERT_FALSE(happened[GOE_PHASE_CHORD][GOE_PHASE_BOX_OUTLINE]);
+}
+
+static void a_side_that_lies_across_takes_the_name_of_the_front(void) {
+    scene.width_m = 3.1;
+    scene.length_m = 15.3;
+    scene.height_m = 20.5;
+    scene.alpha_deg = 23.3;
+    scene.x0_m = -28.2;
+    scene.z0_m = 120.0;
+    scene.speed_mps = 12.9;
+    scene.image_rate_hz = 16.7;
+    fly(SEE_ALL, IMAGES);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_BOX]);
+    TEST_ASSERT_TRUE(exchanged);
+}
+
+static void what_does_not_fit_starts_the_filter_anew(void) {
+    scene_make_cylinder(&scene);
+    fly(SEE_LEAPS, 60);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_NONE]);
+    setUp();
+    fly(SEE_LEAPS, 60);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_BOX][GOE_PHASE_NONE]);
+    setUp();
+    make_wall_ahead();
+    scene.path = SCENE_STRAIGHT;
+    fly(SEE_LEAPS, 60);
+    TEST_ASSERT_TRUE(happened[GOE_PHASE_BOX_FACE][GOE_PHASE_NONE]);
+}
+
+/* --------------------------------------------------------------------------------------------------------- no others -- */
+
+static void make_any_scene(void) {
+    scene.shape = check_random_bits(&any) % 4u == 0u ? SCENE_CYLINDER : SCENE_BOX;
+    scene.path = (scene_path_t)(check_random_bits(&any) % 3u);
+    scene.width_m = check_random_between(&any, 2.0, 20.0);
+    scene.length_m = check_random_between(&any, 2.0, 20.0);
+    scene.height_m = check_random_between(&any, 2.0, 30.0);
+    scene.alpha_deg = check_random_between(&any, -90.0, 90.0);
+    scene.x0_m = check_random_between(&any, -30.0, 30.0);
+    scene.z0_m = check_random_between(&any, 60.0, 150.0);
+    scene.speed_mps = check_random_between(&any, 5.0, 20.0);
+    scene.image_rate_hz = check_random_between(&any, 8.0, 20.0);
+}
+
+static void no_other_transition_happens(void) {
+    any = check_random_start("phases");
+    memset(happened, 0, sizeof happened);
+    for (int run = 0; run < 150; run++) {
+        scene_default(&scene);
+        make_any_scene();
+        settings = scene_settings(&scene);
+        fly((sight_t)(check_random_bits(&any) % 4u), 120);
+    }
+    int transitions = 0;
+    for (int from = 0; from < PHASES; from++) {
+        for (int to = 0; to < PHASES; to++) {
+            TEST_ASSERT_TRUE(allowed[from][to] || !happened[from][to]);
+            transitions += happened[from][to] ? 1 : 0;
+        }
+    }
+    check_report("kinds of transitions that happened", transitions);
+    TEST_ASSERT_TRUE(transitions >= 9);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_width_starts_a_disc);
+    RUN_TEST(two_faces_make_a_box_of_a_disc);
+    RUN_TEST(one_face_makes_a_box_whose_length_is_held);
+    RUN_TEST(a_second_face_frees_the_length);
+    RUN_TEST(a_skewed_outline_makes_a_chord_of_a_disc);
+    RUN_TEST(a_face_that_turns_away_makes_a_box_of_a_chord);
+    RUN_TEST(base_corners_make_a_box_of_a_chord);
+    RUN_TEST(a_chord_learns_an_end_anew_when_a_face_comes_into_view);
+    RUN_TEST(a_side_that_lies_across_takes_the_name_of_the_front);
+    RUN_TEST(what_does_not_fit_starts_the_filter_anew);
+    RUN_TEST(no_other_transition_happens);
+    return UNITY_END();
+}
