@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Memory of one estimator and code of the library, as the README's table.
+# Memory of one estimator and code of the library, as the tables of lib/README.md.
 #
 #   tools/sizes.sh          prints the tables
 #   tools/sizes.sh <words>  ... of the code only the rows whose name has these words, such as "Cortex-M4F gcc"
-#   tools/sizes.sh --check  fails if an estimator at the default window is larger than 2 KiB, or if the README
+#   tools/sizes.sh --check  fails if an estimator at the default window is larger than 2 KiB, or if lib/README.md
 #                           states bytes per estimator that are not these
 set -euo pipefail
 . "$(dirname "$0")/../tests/flags/common.sh"
@@ -47,10 +47,10 @@ if [ "${1:-}" = --check ]; then
         echo "FAILED: more than $limit_bytes" >&2
         exit 1
     fi
-    if [ -e "$root/README.md" ]; then
+    if [ -e "$root/lib/README.md" ]; then
         while read -r row; do
-            if ! grep -qxF "$row" "$root/README.md"; then
-                echo "FAILED: README.md has no line \"$row\" (tools/sizes.sh prints its table)" >&2
+            if ! grep -qxF "$row" "$root/lib/README.md"; then
+                echo "FAILED: lib/README.md has no line \"$row\" (tools/sizes.sh prints its table)" >&2
                 exit 1
             fi
         done <<<"$(state_rows)"

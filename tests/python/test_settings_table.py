@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from goe_tools.__main__ import main
 from goe_tools.reference.settings_table import MANUAL, Setting, parts, settings, table
 
 HEADER = MANUAL.with_name("goe.h")
@@ -80,6 +81,15 @@ def test_help_shows_the_defaults(rows: list[Setting]) -> None:
     tuned = [row for row in rows if row.name.split(".")[0] in ("navigation", "detector", "refined", "window")]
     for row in tuned:
         assert f"{row.name}={row.value}" in shown.split(), row.name
+
+
+def test_the_command_mends_a_page(rows: list[Setting], tmp_path: Path) -> None:
+    page = tmp_path / "README.md"
+    page.write_text(MANUAL.read_text(encoding="utf-8").replace("focal length", "focus"), encoding="utf-8")
+    assert main(["settings", "--check", str(page)]) == 1
+    assert main(["settings", "--write", str(page)]) == 0
+    assert main(["settings", "--check", str(page)]) == 0
+    assert page.read_text(encoding="utf-8") == MANUAL.read_text(encoding="utf-8")
 
 
 def test_other_settings_than_the_lists_are_noticed(rows: list[Setting]) -> None:

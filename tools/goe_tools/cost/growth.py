@@ -12,9 +12,7 @@ NO_ROW_IF_NONE = book.DATA  # of a module
 def compared(figures: Figures) -> dict[str, float]:
     """The figures that may not grow. Parts of the worst call may shift between functions; words are not compared."""
     return {
-        name: value
-        for name, value in figures.items()
-        if not isinstance(value, str) and not name.startswith(book.WORST)
+        name: value for name, value in figures.items() if not isinstance(value, str) and not name.startswith(book.WORST)
     }
 
 

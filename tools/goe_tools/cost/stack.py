@@ -115,5 +115,3 @@ def painted_stack(built: Build) -> dict[str, int]:
     found = {name: int(size) for name, size in re.findall(r"^stack (\w+) (\d+)$", text, re.MULTILINE)}
     found[UPDATES["window"]] = found.pop("goe_update_window")
     return found
-
-

@@ -34,7 +34,6 @@ class Setting:
         inside = float(self.least) <= float(self.value) <= float(self.most)
         return self.value if inside and not self.name.startswith("camera.c") else "must be set"
 
-
     @property
     def limit(self) -> str:
         """The programs are built with the largest window that there is; a firmware has its own."""
