@@ -383,7 +383,7 @@ typedef struct {
 /* Sets every field of *settings to its default: the refined method (if compiled in), for the errors of a small aircraft's
  * usual sensors; the paper's values for the window; no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are 0 and
  * must be set by the caller. A null pointer is ignored.
- * Cost: at most 1500 instructions, 128 bytes of stack. */
+ * Cost: at most 1000 instructions, 40 bytes of stack. */
 void goe_settings_default(goe_settings_t *settings);
 
 /* Checks *settings, copies them and starts with an empty track and zeroed counters.
@@ -392,7 +392,7 @@ void goe_settings_default(goe_settings_t *settings);
  *                   Set to null unless GOE_BAD_SETTINGS is returned.
  * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS (a method that was left out among these); on failure the estimator is
  * left as it was.
- * Cost: at most 4000 instructions, 160 bytes of stack. */
+ * Cost: at most 6000 instructions, 160 bytes of stack. */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 
@@ -464,7 +464,7 @@ GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const go
 goe_status_t goe_reset(goe_estimator_t *estimator);
 
 /* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number.
- * Cost: at most 1500 instructions, 32 bytes of stack. */
+ * Cost: at most 700 instructions, 32 bytes of stack. */
 const char *goe_status_text(goe_status_t status);
 
 /* What the arithmetic of the library does on this machine, with the flags that goe_self_check.c was compiled with (give all

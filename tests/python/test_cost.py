@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.cost import book, growth, guarantees, instructions, pages, parts, stack
+from goe_tools.cost import book, growth, guarantees, instructions, pages, parts, stack, stated
 from goe_tools.cost import ledger as command
 from goe_tools.cost.building import Build, library_command, shown_flags
+from goe_tools.cost.instructions import PUBLIC
 from goe_tools.cost.modules import bytes_of_object
 from goe_tools.cost.running import LedgerError
 
@@ -244,7 +246,7 @@ def test_committed_pages_show_the_committed_ledger() -> None:
 
 
 def copy_of_pages(folder: Path) -> Path:
-    for page in pages.PAGES:
+    for page in (*pages.PAGES, pages.HEADER):
         (folder / page).parent.mkdir(parents=True, exist_ok=True)
         (folder / page).write_bytes((ROOT / page).read_bytes())
     return folder
@@ -283,6 +285,27 @@ def test_a_guarantee_that_the_readme_does_not_state_is_told(tmp_path: Path) -> N
     assert text.count("25,000 instructions") == 2  # once in its own words, once in the table
     readme.write_text(text.replace("25,000 instructions", "few instructions", 1), encoding="utf-8")
     assert ["25,000 instructions" in wrong for wrong in pages.wrong_pages(root, committed())] == [True]
+
+
+def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
+    root = copy_of_pages(tmp_path)
+    ledger = committed()
+    header = root / pages.HEADER
+    limits = stated.stated(header.read_text(encoding="utf-8"))
+    assert limits["instructions: goe_update: max"] == 25000
+    assert limits["instructions: goe_update with lens distortion: max"] == 30000
+    assert limits["instructions: goe_update, window: max"] == 2550
+    assert len(limits) == 2 * len(PUBLIC) + 2
+    hazard = r"at most \d+ instructions(, \d+ bytes of stack\. No loop)"
+    text = re.sub(hazard, r"at most 10 instructions\1", header.read_text(encoding="utf-8"))
+    header.write_text(text, encoding="utf-8")
+    measured = ledger[stated.TARGET]["instructions: goe_hazard: max"]
+    assert pages.wrong_pages(root, ledger) == [
+        f"lib/goe.h: instructions: goe_hazard: max: at most 10, but {stated.TARGET} has {measured}"
+    ]
+    header.write_text("nothing", encoding="utf-8")
+    with pytest.raises(ValueError, match="states no cost of goe_settings_default, goe_init"):
+        pages.wrong_pages(root, ledger)
 
 
 def test_a_promise_that_is_broken_is_told() -> None:

@@ -10,6 +10,7 @@ parts         what a firmware pays that leaves parts of the library out
 measuring     all figures of a target
 book          the ledger's file
 growth        what grew over the ledger
+stated        what goe.h states of each function
 guarantees    what README.md promises, and on which targets it holds
 pages         the tables that people read
 ledger        the command: python -m goe_tools ledger

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from . import book, guarantees
+from . import book, guarantees, stated
 from .book import Figures, Ledger, below, number
 from .instructions import PUBLIC, UPDATES, WITH_LENS
 from .measuring import FULL_PRESET
@@ -106,6 +106,7 @@ def readme_tables(ledger: Ledger) -> str:
     return "\n".join([*target_table(few), "", *guarantees.rows(ledger), ""])
 
 
+HEADER = Path("lib/goe.h")
 PAGES = {Path("README.md"): readme_tables, Path("tests/targets/LEDGER.md"): ledger_tables}
 
 
@@ -118,14 +119,17 @@ def with_tables(path: Path, tables: str) -> str:
 
 
 def wrong_pages(root: Path, ledger: Ledger) -> list[str]:
-    """Pages that do not show this ledger, and guarantees that README.md does not state."""
+    """Pages that do not show this ledger, guarantees that README.md does not state, costs that goe.h understates."""
     wrong = [
         f"{page}: its tables are not those of the ledger: run python -m goe_tools ledger --write"
         for page, tables in PAGES.items()
         if with_tables(root / page, tables(ledger)) != (root / page).read_text(encoding="utf-8")
     ]
     own_words = with_tables(root / "README.md", "")
-    return wrong + guarantees.not_stated(own_words)
+    wrong += guarantees.not_stated(own_words)
+    if stated.TARGET in ledger:
+        wrong += stated.understated((root / HEADER).read_text(encoding="utf-8"), ledger[stated.TARGET])
+    return wrong
 
 
 def write_pages(root: Path, ledger: Ledger) -> None:

@@ -1,0 +1,44 @@
+"""What lib/goe.h states at each function as its most, held against what is measured."""
+
+from __future__ import annotations
+
+import re
+
+from . import book
+from .book import Figures, key, number
+from .instructions import PUBLIC, UPDATES, WITH_LENS
+
+TARGET = "m4f-gcc-o2"  # the one that goe.h's words name
+COST = re.compile(
+    r"Cost: at most (?P<instructions>\d+) instructions, (?P<stack>\d+) bytes of stack"
+    r"(?:; (?P<lens>\d+) with lens distortion)?(?:; window: (?P<window>\d+))?\."
+    r".*?\*/.*?\b(?P<name>goe_\w+)\(",
+    re.DOTALL,
+)
+
+
+def stated(header: str) -> dict[str, int]:
+    """The stated figures, by the ledger's names."""
+    found: dict[str, int] = {}
+    for cost in COST.finditer(header):
+        name = cost["name"]
+        places = {
+            "instructions": key(book.INSTRUCTIONS, name, "max"),
+            "stack": key(book.STACK, name),
+            "lens": key(book.INSTRUCTIONS, f"{name} {WITH_LENS}", "max"),
+            "window": key(book.INSTRUCTIONS, UPDATES["window"], "max"),
+        }
+        found |= {places[group]: int(cost[group]) for group in places if cost[group]}
+    missing = [name for name in PUBLIC if key(book.STACK, name) not in found]
+    if missing:
+        raise ValueError(f"lib/goe.h states no cost of {', '.join(missing)}")
+    return found
+
+
+def understated(header: str, figures: Figures) -> list[str]:
+    """What costs more than the header says."""
+    return [
+        f"lib/goe.h: {name}: at most {limit}, but {TARGET} has {number(figures, name):g}"
+        for name, limit in stated(header).items()
+        if number(figures, name) > limit
+    ]
