@@ -125,22 +125,23 @@ typedef struct {      /* refined/goe_health.c: how the images fit */
     bool base_refused;             /* base corners proved to be none: they are not used */
 } goe_health_t;
 
+/* What is small comes first: instructions reach the beginning of an object by shorter forms. */
 typedef struct {
-    int64_t time_us;         /* of the latest image that the filter took */
-    float state[GOE_STATES]; /* by goe_state_index_t */
-    goe_triangle_t root;     /* R: R'R is the information of the state */
-    goe_inverse_t inverse;   /* of R, after the latest image: R^-1 R^-1' is the covariance */
-    float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since */
-    goe_matrix_t rows;       /* of the image at hand */
-    goe_axes_t axes;
-    goe_candidate_t candidate;
-    goe_leaving_t leaving;
-    goe_health_t health;
-    goe_naming_t naming;
+    int64_t time_us;      /* of the latest image that the filter took */
     uint8_t phase;        /* goe_phase_t */
     uint8_t phase_images; /* images of the phase, saturating */
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
     bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
+    goe_naming_t naming;
+    float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since */
+    goe_candidate_t candidate;
+    goe_leaving_t leaving;
+    goe_health_t health;
+    goe_axes_t axes;
+    float state[GOE_STATES]; /* by goe_state_index_t */
+    goe_triangle_t root;     /* R: R'R is the information of the state */
+    goe_inverse_t inverse;   /* of R, after the latest image: R^-1 R^-1' is the covariance */
+    goe_matrix_t rows;       /* of the image at hand */
 } goe_filter_t;
 
 /* ------------------------------------------------------------------------------------------------------- estimator -- */
