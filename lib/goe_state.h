@@ -148,18 +148,18 @@ typedef struct {
 
 typedef struct {
     goe_motion_t motion;
+    uint32_t ready; /* tells an initialised estimator from any other memory */
+    uint32_t causes[GOE_CAUSES];
+    float camera_to_body[9];
+    goe_settings_t settings;
+#if GOE_WITH_REFINED
+    int64_t estimate_time_us; /* image behind the estimate */
+    goe_estimate_t estimate;  /* after the latest image, by whatever method */
+    goe_filter_t filter;
+#endif
 #if GOE_WITH_WINDOW
     goe_window_t window;
 #endif
-#if GOE_WITH_REFINED
-    goe_filter_t filter;
-    int64_t estimate_time_us; /* image behind the estimate */
-    goe_estimate_t estimate;  /* after the latest image, by whatever method */
-#endif
-    goe_settings_t settings;
-    float camera_to_body[9];
-    uint32_t causes[GOE_CAUSES];
-    uint32_t ready; /* tells an initialised estimator from any other memory */
 } goe_estimator_t;
 
 #endif
