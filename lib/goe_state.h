@@ -12,7 +12,8 @@
 /* C99 has no _Static_assert: a negative array size does not compile. */
 #define GOE_STATIC_ASSERT(condition, what) typedef char goe_assert_##what[(condition) ? 1 : -1]
 
-/* Before a static function that is called once: its locals must not lie on the stack while its neighbours run. */
+/* Before a static function that is to stay one: its locals must not lie on the stack while its neighbours run, or it is called
+ * from more than one place and a copy in each would cost more. */
 #if defined(__GNUC__)
 #define GOE_NOINLINE __attribute__((noinline))
 #else
