@@ -11,13 +11,13 @@
 #include "image/goe_camera.h"
 #include "image/goe_ego_motion.h"
 #include "image/goe_intake.h"
+#include "maths/goe_time.h"
 #include "refined/goe_refined.h"
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
 
-#define RESETS 0 /* causes[0] counts tracks that an unknown filter reset ended */
+#define RESETS GOE_OK /* causes[0] counts tracks that an unknown filter reset ended */
 #define AGE_LIMIT_US 4000000000u
-#define S_PER_US 1.0e-6f
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -42,9 +42,7 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
     }
     const int64_t latest_us = estimator->motion.time_us;
     const int64_t now_us = image_us > latest_us ? image_us : latest_us;
-    const uint64_t age_us = (uint64_t)now_us - (uint64_t)solved_time_us(estimator);
-    const uint32_t limited_us = age_us < AGE_LIMIT_US ? (uint32_t)age_us : AGE_LIMIT_US;
-    estimate->age_s = (float)limited_us * S_PER_US;
+    estimate->age_s = goe_time_between_s(solved_time_us(estimator), now_us, AGE_LIMIT_US);
 }
 
 static void forget_track(goe_estimator_t *estimator) {
@@ -163,7 +161,7 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
     if (!pose->reset_delta_known) {
         forget_track(estimator);
-        estimator->causes[RESETS] += estimator->causes[RESETS] < UINT32_MAX ? 1u : 0u;
+        goe_count_cause(estimator->causes, RESETS);
         return;
     }
 #if GOE_WITH_REFINED
@@ -229,30 +227,28 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
     if (!estimate) {
         return GOE_BAD_ARGUMENT;
     }
-    if (!estimator || !image || estimator->ready != GOE_READY) {
+    goe_status_t status = image ? goe_check_ready(estimator) : GOE_BAD_ARGUMENT;
+    if (status != GOE_OK) {
         memset(estimate, 0, sizeof *estimate);
-        return !estimator || !image ? GOE_BAD_ARGUMENT : GOE_NOT_INITIALISED;
+        return status;
     }
-    goe_status_t status = goe_intake_check(&estimator->motion, image);
-    if (status == GOE_OK) {
+    status = goe_intake_check(&estimator->motion, image);
+    const bool taken = status == GOE_OK;
+    if (taken) {
         status = take_image(estimator, image);
-        *estimate = *goe_latest_estimate(estimator);
     } else {
         goe_count_cause(estimator->causes, status);
-        *estimate = *goe_latest_estimate(estimator);
-        estimate->fresh = false;
     }
+    *estimate = *goe_latest_estimate(estimator);
+    estimate->fresh = estimate->fresh && taken;
     set_age(estimator, image->pose.time_us, estimate);
     return status;
 }
 
 goe_status_t goe_reset(goe_estimator_t *estimator) {
-    if (!estimator) {
-        return GOE_BAD_ARGUMENT;
+    const goe_status_t status = goe_check_ready(estimator);
+    if (status == GOE_OK) {
+        forget_track(estimator);
     }
-    if (estimator->ready != GOE_READY) {
-        return GOE_NOT_INITIALISED;
-    }
-    forget_track(estimator);
-    return GOE_OK;
+    return status;
 }
