@@ -71,7 +71,7 @@ static void grow_old(goe_estimator_t *estimator) {
     }
 }
 
-static goe_status_t report_refined(goe_estimator_t *estimator, const goe_image_t *image, const goe_faults_t *faults,
+static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
                                    bool measured) {
     const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
                                                       &estimator->estimate);
@@ -87,7 +87,7 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_image_t
     if (faults->first != GOE_OK) {
         return faults->first;
     }
-    if (!goe_image_seen(image)) {
+    if (!view->seen) {
         return GOE_NOTHING_SEEN;
     }
     return (estimator->estimate.valid & GOE_HAS_POSITION) ? GOE_HELD : GOE_COLLECTING;
@@ -135,7 +135,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const goe_status_t status = goe_window_update(&estimator->window, settings, view, task, faults);
     const bool measured = goe_refined_update(filter, settings, view, &swapped);
     note_swapped(estimator, swapped, task == GOE_WINDOW_COLLECTS, faults); /* a window that solves has counted */
-    return goe_filter_reports(filter, settings) ? report_refined(estimator, view->image, faults, measured)
+    return goe_filter_reports(filter, settings) ? report_refined(estimator, view, faults, measured)
                                                 : report_window(estimator, status);
 }
 #else
@@ -144,7 +144,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const bool measured = goe_refined_update(&estimator->filter, &estimator->settings, view, &swapped);
     const bool reports = goe_filter_reports(&estimator->filter, &estimator->settings);
     note_swapped(estimator, swapped, true, faults);
-    return report_refined(estimator, view->image, faults, measured && reports);
+    return report_refined(estimator, view, faults, measured && reports);
 }
 #endif
 

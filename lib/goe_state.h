@@ -59,10 +59,10 @@ typedef struct { /* window/goe_orientation.c */
 
 typedef struct {            /* window/goe_window.c */
     int64_t solved_time_us; /* image of the last solution */
-    goe_fit_ring_t disc, line;
-    goe_mean_t length, height;
-    goe_orientation_t orientation;
     goe_estimate_t estimate;
+    goe_orientation_t orientation;
+    goe_mean_t length, height;
+    goe_fit_ring_t disc, line;
 } goe_window_t;
 
 /* --------------------------------------------------------------------------------------------------------- refined -- */

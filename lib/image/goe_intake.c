@@ -11,22 +11,17 @@
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
-static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
-    return pixel->seen
-               ? goe_larger_bits(so_far, goe_larger_bits(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px)))
-               : so_far;
-}
-
 static uint32_t largest_pixel(const goe_image_t *image) {
-    uint32_t largest = with_pixel(0u, &image->left);
-    largest = with_pixel(largest, &image->right);
-    largest = with_pixel(largest, &image->top);
-    largest = with_pixel(largest, &image->base_left);
-    largest = with_pixel(largest, &image->base_near);
-    return with_pixel(largest, &image->base_right);
+    const goe_pixel_t *pixels = goe_image_pixels(image);
+    uint32_t largest = 0u;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        if (pixels[i].seen) {
+            largest = goe_larger_bits(largest, goe_magnitude(pixels[i].u_px));
+            largest = goe_larger_bits(largest, goe_magnitude(pixels[i].v_px));
+        }
+    }
+    return largest;
 }
-
-GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_is_checked);
 
 /* Not finite outranks out of range, which outranks a bad attitude. */
 static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {

@@ -251,7 +251,7 @@ static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
     if (frame->faults.first != GOE_OK) {
         return frame->faults.first;
     }
-    if (!goe_image_seen(frame->view->image)) {
+    if (!frame->view->seen) {
         return GOE_NOTHING_SEEN;
     }
     if (frame->settings->model == GOE_MODEL_LINE && frame->edges.count > 0 && !frame->line_row) {
