@@ -63,12 +63,8 @@ static void forget_track(goe_estimator_t *estimator) {
 #if GOE_WITH_REFINED
 /* No new answer: the last one grows old, and follows the motion. */
 static void grow_old(goe_estimator_t *estimator) {
-    goe_estimate_t *estimate = &estimator->estimate;
-    estimate->fresh = false;
-    if (estimate->valid & GOE_HAS_POSITION) {
-        estimate->x_m = estimate->x0_m - estimator->motion.dx_m;
-        estimate->z_m = estimate->z0_m - estimator->motion.dz_m;
-    }
+    estimator->estimate.fresh = false;
+    goe_motion_relate(&estimator->motion, &estimator->estimate);
 }
 
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
