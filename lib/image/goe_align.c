@@ -20,25 +20,29 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         const goe_pixel_t *pixel = &pixels[i];
         goe_point_t *point = &view->point[i];
-        point->usable = pixel->seen;
+        point->usable = false;
         if (!pixel->seen) {
             continue;
         }
         view->seen = true;
         float x = (pixel->u_px - cx_px) / fx_px;
         float y = (pixel->v_px - cy_px) / fy_px;
-        if (distorts && !goe_camera_undistort(camera, &x, &y)) {
-            point->usable = false;
-            goe_fault_note(faults, GOE_LENS_FAILED);
-            continue;
+        if (distorts) {
+            float ray[2] = {x, y}; /* its own: x and y stay in registers */
+            if (!goe_camera_undistort(camera, &ray[0], &ray[1])) {
+                goe_fault_count(faults, GOE_LENS_FAILED);
+                continue;
+            }
+            x = ray[0];
+            y = ray[1];
         }
         const float forward = zx * x + zy * y + zz;
         if (forward <= FORWARD_MIN * sqrtf(x * x + y * y + 1.0f)) {
-            point->usable = false;
-            goe_fault_note(faults, GOE_BEHIND_CAMERA);
+            goe_fault_count(faults, GOE_BEHIND_CAMERA);
             continue;
         }
         point->x = (xx * x + xy * y + xz) / forward;
         point->y = (yx * x + yy * y + yz) / forward;
+        point->usable = true;
     }
 }

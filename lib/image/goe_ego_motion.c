@@ -44,8 +44,9 @@ static void turn_into_trajectory(const goe_motion_t *motion, const float body_to
         const float *m = &view->camera_to_body[i];
         const float north = b[0] * m[0] + b[1] * m[3] + b[2] * m[6];
         const float east = b[3] * m[0] + b[4] * m[3] + b[5] * m[6];
+        const float down = b[6] * m[0] + b[7] * m[3] + b[8] * m[6];
         turned[i] = c * east - s * north;
-        turned[3 + i] = b[6] * m[0] + b[7] * m[3] + b[8] * m[6];
+        turned[3 + i] = down;
         turned[6 + i] = c * north + s * east;
     }
 }

@@ -6,10 +6,7 @@ void goe_count_cause(uint32_t causes[GOE_CAUSES], goe_status_t fault) {
     *counter += *counter < UINT32_MAX ? 1u : 0u;
 }
 
-void goe_fault_note(goe_faults_t *faults, goe_status_t fault) {
-    if (fault == GOE_OK) {
-        return;
-    }
+void goe_fault_count(goe_faults_t *faults, goe_status_t fault) {
     goe_count_cause(faults->causes, fault);
     if (faults->first == GOE_OK) {
         faults->first = fault;

@@ -15,6 +15,12 @@ GOE_STATIC_ASSERT(GOE_CAUSES == 1 - (int)GOE_BAD_ATTITUDE, every_fault_has_a_cou
 void goe_count_cause(uint32_t causes[GOE_CAUSES], goe_status_t fault);
 
 /* fault: GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE; GOE_OK is ignored. */
-void goe_fault_note(goe_faults_t *faults, goe_status_t fault);
+void goe_fault_count(goe_faults_t *faults, goe_status_t fault);
+
+static inline void goe_fault_note(goe_faults_t *faults, goe_status_t fault) {
+    if (fault != GOE_OK) {
+        goe_fault_count(faults, fault);
+    }
+}
 
 #endif
