@@ -168,8 +168,8 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
 /* Derivatives by the place and the outline of a corner, from those by (X, Z); and what their linearisation may miss. */
-static void set_corner(goe_rows_t *rows, float by[restrict GOE_STATES], const goe_observation_t *obs, const outline_t *o,
-                       size_t corner, const goe_gradient_t *g) {
+static void set_corner(goe_rows_t *rows, float by[restrict GOE_STATES], const goe_observation_t *obs,
+                       const outline_t *o, size_t corner, const goe_gradient_t *g) {
     const float across = across_of[corner];
     const float along = along_of[corner];
     const float by_both = (along - across * o->sign) * g->z; /* by side and front depth as their sum moves them */
