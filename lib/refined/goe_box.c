@@ -32,17 +32,24 @@
 #define CLEARLY_PX 4.0f /* sigmas of a pixel by which one reading of the outline must fit better */
 
 enum { FRONT_LEFT, BACK_LEFT, BACK_RIGHT, FRONT_RIGHT, CORNERS }; /* clockwise */
-enum { FACE_FRONT, FACE_RIGHT, FACE_BACK, FACE_LEFT };
 enum { OUTER_LEFT, NEAR_CORNER, OUTER_RIGHT };
 
 static const float across_of[CORNERS] = {-0.5f, -0.5f, 0.5f, 0.5f};
 static const float along_of[CORNERS] = {0.0f, 1.0f, 1.0f, 0.0f};
 
+/* -------------------------------------------------------------------------------------------------------------- edges -- */
+
+/* The edges of the state as vectors, the state's axes, units of Z0, and their lengths. */
 typedef struct {
-    float q, sx, fx, sz, fz; /* fz: see above */
-    goe_xz_t middle;         /* P */
     goe_depth_t depth;
-    float sign;        /* of sx: the front edge comes nearer to the right (+) or to the left (-) */
+    float sign; /* of sx: the front edge comes nearer to the right (+) or to the left (-) */
+    goe_xz_t side_edge, front_edge;
+    float side, front;
+} edges_t;
+
+typedef struct {
+    edges_t edges;
+    goe_xz_t middle;   /* P */
     float curvature;   /* one sigma of what linearising the depths at an uncertain GOE_DEPTH_DIFFERENCE misses */
     float ground, top; /* Y of the base and of the roof */
     bool front, right; /* which side of the box the camera is on */
@@ -70,30 +77,47 @@ goe_depth_t goe_box_depth(const float state[GOE_STATES]) {
     return depth;
 }
 
+static void find_edges(const float x[GOE_STATES], edges_t *e) {
+    e->depth = goe_box_depth(x);
+    e->sign = sign_of(x[GOE_SIDE_X]);
+    e->side_edge.x = x[GOE_SIDE_X];
+    e->side_edge.z = e->depth.side;
+    e->front_edge.x = x[GOE_FRONT_X];
+    e->front_edge.z = -e->sign * e->depth.front;
+    e->side = sqrtf(goe_xz_dot(e->side_edge, e->side_edge));
+    e->front = sqrtf(goe_xz_dot(e->front_edge, e->front_edge));
+}
+
 void goe_box_enter(goe_filter_t *filter, goe_phase_t phase) {
     filter->naming.exchanged = false;
     filter->naming.decided = false;
     goe_filter_enter(filter, phase);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ outline -- */
+
+static void place_corners(outline_t *o) {
+    const goe_xz_t side = o->edges.side_edge;
+    const goe_xz_t front = o->edges.front_edge;
+    for (size_t i = 0; i < CORNERS; i++) {
+        o->corner[i].x = o->middle.x + across_of[i] * front.x + along_of[i] * side.x;
+        o->corner[i].z = o->middle.z + across_of[i] * front.z + along_of[i] * side.z;
+    }
+}
+
 static void describe(const goe_observation_t *obs, outline_t *o) {
     const float *x = obs->state;
-    o->depth = goe_box_depth(x);
-    o->q = x[GOE_INVERSE_RANGE];
-    o->sx = x[GOE_SIDE_X];
-    o->fx = x[GOE_FRONT_X];
-    o->sz = o->depth.side;
-    o->sign = o->sx > 0.0f ? 1.0f : -1.0f;
-    o->fz = -o->sign * o->depth.front;
-    o->curvature = CURVATURE * 2.0f * goe_absolute(o->sx) * o->fx / (o->depth.sum * o->depth.sum * o->depth.sum) *
-                   obs->depth_variance;
+    edges_t *e = &o->edges;
+    find_edges(x, e);
+    o->curvature = CURVATURE * 2.0f * goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X] /
+                   (e->depth.sum * e->depth.sum * e->depth.sum) * obs->depth_variance;
     o->middle = goe_observation_reference(obs);
-    o->ground = (obs->height_m + x[GOE_HEIGHT_BIAS]) * o->q;
+    o->ground = (obs->height_m + x[GOE_HEIGHT_BIAS]) * x[GOE_INVERSE_RANGE];
     o->top = goe_observation_roof(obs);
-    const float length = sqrtf(o->sx * o->sx + o->sz * o->sz);
-    const float vx = o->sx / length;
-    const float vz = o->sz / length;
-    const float width = o->fx / vz;
+    const float length = e->side;
+    const float vx = e->side_edge.x / length;
+    const float vz = e->side_edge.z / length;
+    const float width = e->front_edge.x / vz;
     const float across = vx * o->middle.z - vz * o->middle.x; /* of the camera, in the box's axes, from P */
     const float along = -(vx * o->middle.x + vz * o->middle.z);
     o->front = -along > along - length;
@@ -101,19 +125,16 @@ static void describe(const goe_observation_t *obs, outline_t *o) {
     o->far_half = along >= 0.5f * length;
     o->depth_margin = o->front ? -along : along - length;
     o->side_margin = (o->right ? across : -across) - 0.5f * width;
-    for (size_t i = 0; i < CORNERS; i++) {
-        o->corner[i].x = o->middle.x + across_of[i] * o->fx + along_of[i] * o->sx;
-        o->corner[i].z = o->middle.z + across_of[i] * o->fz + along_of[i] * o->sz;
-    }
+    place_corners(o);
 }
 
 /* ---------------------------------------------------------------------------------------------------- visible corners -- */
 
-/* Corners at the left end, between and at the right end of one face, or of two faces that begin with `face`. */
-static void corners_of_faces(size_t face, bool two, size_t corner[3]) {
-    corner[OUTER_LEFT] = (CORNERS - face) % CORNERS;
-    corner[NEAR_CORNER] = (corner[OUTER_LEFT] + 3u) % CORNERS;
-    corner[OUTER_RIGHT] = (corner[OUTER_LEFT] + (two ? 2u : 3u)) % CORNERS;
+/* Corners at the left end, between and at the right end of one face, or of two faces. */
+static void corners_from(size_t left, bool two, size_t corner[3]) {
+    corner[OUTER_LEFT] = left;
+    corner[NEAR_CORNER] = (left + 3u) % CORNERS;
+    corner[OUTER_RIGHT] = (left + (two ? 2u : 3u)) % CORNERS;
 }
 
 /* Sum of what the outer corners are off in the image. */
@@ -128,18 +149,15 @@ static float misfit(const goe_observation_t *obs, const outline_t *o, const size
 }
 
 static void visible_corners(const goe_observation_t *obs, const outline_t *o, size_t corner[3]) {
-    const size_t first_of_two = o->front ? (o->right ? FACE_FRONT : FACE_LEFT) : (o->right ? FACE_RIGHT : FACE_BACK);
-    if (obs->point[GOE_POINT_BASE_NEAR].usable) {
-        corners_of_faces(first_of_two, true, corner);
-        return;
-    }
-    const size_t along = o->front ? FACE_FRONT : FACE_BACK;
-    const size_t across = o->right ? FACE_RIGHT : FACE_LEFT;
-    corners_of_faces(o->depth_margin > o->side_margin ? along : across, false, corner);
-    if (obs->two_faces && obs->base && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
+    const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
+    const size_t of_two = o->front ? (o->right ? FRONT_LEFT : BACK_LEFT) : (o->right ? FRONT_RIGHT : BACK_RIGHT);
+    const size_t along = o->front ? FRONT_LEFT : BACK_RIGHT;
+    const size_t across = o->right ? FRONT_RIGHT : BACK_LEFT;
+    corners_from(near_seen ? of_two : o->depth_margin > o->side_margin ? along : across, near_seen, corner);
+    if (!near_seen && obs->two_faces && obs->base && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
         /* one face, or two and the detector missed the corner between them: whichever fits clearly better */
         size_t both[3];
-        corners_of_faces(first_of_two, true, both);
+        corners_from(of_two, true, both);
         const float clearly = CLEARLY_PX * goe_observation_pixel(obs);
         if (misfit(obs, o, both) + clearly < misfit(obs, o, corner)) {
             memcpy(corner, both, sizeof both);
@@ -172,13 +190,14 @@ static void set_corner(goe_rows_t *rows, float by[restrict GOE_STATES], const go
                        const outline_t *o, size_t corner, const goe_gradient_t *g) {
     const float across = across_of[corner];
     const float along = along_of[corner];
-    const float by_both = (along - across * o->sign) * g->z; /* by side and front depth as their sum moves them */
+    const float by_both = (along - across * o->edges.sign) * g->z; /* by side and front depth as their sum moves them */
     const float missed = 0.5f * by_both * o->curvature;
     by[GOE_BEARING] = g->x;
     by[GOE_INVERSE_RANGE] = goe_rows_by_range(obs, g->x, g->z);
-    by[GOE_SIDE_X] = along * g->x + by_both * o->depth.by_extents[0];
-    by[GOE_FRONT_X] = across * g->x + by_both * o->depth.by_extents[1];
-    by[GOE_DEPTH_DIFFERENCE] = (along * o->depth.side_by_d - across * o->sign * o->depth.front_by_d) * g->z;
+    by[GOE_SIDE_X] = along * g->x + by_both * o->edges.depth.by_extents[0];
+    by[GOE_FRONT_X] = across * g->x + by_both * o->edges.depth.by_extents[1];
+    by[GOE_DEPTH_DIFFERENCE] =
+        (along * o->edges.depth.side_by_d - across * o->edges.sign * o->edges.depth.front_by_d) * g->z;
     rows->variance[rows->count - 1u] += missed * missed;
 }
 
@@ -203,12 +222,12 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     const float along_x = by[GOE_BEHIND_STATES];
     set_corner(rows, by, obs, o, corner, &gx);
     by[GOE_INVERSE_RANGE] += gx.y * height_m;
-    by[GOE_HEIGHT_BIAS] = gx.y * o->q;
+    by[GOE_HEIGHT_BIAS] = gx.y * obs->state[GOE_INVERSE_RANGE];
     by = goe_rows_add(rows, feature, measured->y, spread.yy - share * spread.xy, &gy);
     by[GOE_BEHIND_STATES] -= share * along_x;
     set_corner(rows, by, obs, o, corner, &gy);
     by[GOE_INVERSE_RANGE] += gy.y * height_m;
-    by[GOE_HEIGHT_BIAS] = gy.y * o->q;
+    by[GOE_HEIGHT_BIAS] = gy.y * obs->state[GOE_INVERSE_RANGE];
 }
 
 /* The vertical edge over an outer corner, at the height at which it was measured. */
@@ -341,27 +360,9 @@ bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs) {
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-/* The edges of the state as vectors, the state's axes, units of Z0, and their lengths. */
-typedef struct {
-    goe_depth_t depth;
-    goe_xz_t side_edge, front_edge;
-    float side, front;
-} edges_t;
-
-static edges_t edges_of(const float x[GOE_STATES]) {
-    edges_t e;
-    e.depth = goe_box_depth(x);
-    e.side_edge.x = x[GOE_SIDE_X];
-    e.side_edge.z = e.depth.side;
-    e.front_edge.x = x[GOE_FRONT_X];
-    e.front_edge.z = -sign_of(x[GOE_SIDE_X]) * e.depth.front;
-    e.side = sqrtf(goe_xz_dot(e.side_edge, e.side_edge));
-    e.front = sqrtf(x[GOE_FRONT_X] * x[GOE_FRONT_X] + e.depth.front * e.depth.front);
-    return e;
-}
-
 void goe_box_name(goe_filter_t *filter) {
-    const edges_t e = edges_of(filter->state);
+    edges_t e;
+    find_edges(filter->state, &e);
     const goe_xz_t side = goe_filter_into_trajectory(filter, filter->naming.exchanged ? e.front_edge : e.side_edge);
     const float slope = filter->naming.decided ? EXCHANGE_SLOPE : 1.0f;
     if (goe_absolute(side.x) > slope * goe_absolute(side.z)) {
@@ -373,7 +374,7 @@ void goe_box_name(goe_filter_t *filter) {
 /* The reference point, and across fronts and along sides from there. */
 static goe_spot_t spot_of(const float x[GOE_STATES], const edges_t *e, float across, float along) {
     goe_spot_t spot;
-    const float sign = sign_of(x[GOE_SIDE_X]);
+    const float sign = e->sign;
     const float both = along - across * sign;
     spot.at.x = x[GOE_BEARING] + across * x[GOE_FRONT_X] + along * x[GOE_SIDE_X];
     spot.at.z = 1.0f - across * sign * e->depth.front + along * e->depth.side;
@@ -417,7 +418,8 @@ static float early_factor(const goe_filter_t *filter, const edges_t *e) {
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     const float *x = filter->state;
     const bool exchanged = filter->naming.exchanged;
-    const edges_t e = edges_of(x);
+    edges_t e;
+    find_edges(x, &e);
     const goe_xz_t side = goe_filter_into_trajectory(filter, e.side_edge);
     const goe_xz_t front = goe_filter_into_trajectory(filter, e.front_edge);
     const float away = front.z < 0.0f ? 1.0f : -1.0f; /* the end of the front from which it leads away */
@@ -436,7 +438,8 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
 /* Of the side, seen at a small angle, only the product of length and angle shows. */
 static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
     const float *x = filter->state;
-    const edges_t e = edges_of(x);
+    edges_t e;
+    find_edges(x, &e);
     const float scale_m = 1.0f / x[GOE_INVERSE_RANGE];
     const float vx = e.side_edge.x / e.side;
     const float vz = e.side_edge.z / e.side;
