@@ -6,6 +6,23 @@
 #include "maths/goe_angle.h"
 #include "refined/goe_quantities.h"
 
+goe_status_t goe_check_ready(const goe_estimator_t *estimator) {
+    if (!estimator) {
+        return GOE_BAD_ARGUMENT;
+    }
+    return estimator->ready == GOE_READY ? GOE_OK : GOE_NOT_INITIALISED;
+}
+
+const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
+#if !GOE_WITH_REFINED
+    return &estimator->window.estimate;
+#elif !GOE_WITH_WINDOW
+    return &estimator->estimate;
+#else
+    return goe_is_refined(estimator) ? &estimator->estimate : &estimator->window.estimate;
+#endif
+}
+
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
     const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
                                       sigma->width_m, sigma->length_m, sigma->height_m};
@@ -62,24 +79,22 @@ float goe_latest_height_bias(const goe_estimator_t *estimator) {
 }
 #endif
 
-void goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
+goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
+    const goe_status_t status = goe_check_ready(estimator);
     memset(covariance, 0, sizeof(goe_covariance_t));
-    if (!covariance_of_filter(estimator, from_datum, covariance)) {
-        covariance_of_sigmas(&goe_latest_estimate(estimator)->sigma, covariance);
+    if (status != GOE_OK) {
+        return status;
     }
+    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    if (!(estimate->valid & GOE_HAS_POSITION)) {
+        return GOE_COLLECTING;
+    }
+    if (!covariance_of_filter(estimator, from_datum, covariance)) {
+        covariance_of_sigmas(&estimate->sigma, covariance);
+    }
+    return GOE_OK;
 }
 
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
-    if (!covariance) {
-        return GOE_BAD_ARGUMENT;
-    }
-    memset(covariance, 0, sizeof(goe_covariance_t));
-    if (!estimator || estimator->ready != GOE_READY) {
-        return estimator ? GOE_NOT_INITIALISED : GOE_BAD_ARGUMENT;
-    }
-    if (!(goe_latest_estimate(estimator)->valid & GOE_HAS_POSITION)) {
-        return GOE_COLLECTING;
-    }
-    goe_latest_covariance(estimator, false, covariance);
-    return GOE_OK;
+    return covariance ? goe_latest_covariance(estimator, false, covariance) : GOE_BAD_ARGUMENT;
 }

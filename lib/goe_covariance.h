@@ -17,19 +17,14 @@ static inline bool goe_is_refined(const goe_estimator_t *estimator) {
 #endif
 }
 
-/* The estimate after the latest image. */
-static inline const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
-#if !GOE_WITH_REFINED
-    return &estimator->window.estimate;
-#elif !GOE_WITH_WINDOW
-    return &estimator->estimate;
-#else
-    return goe_is_refined(estimator) ? &estimator->estimate : &estimator->window.estimate;
-#endif
-}
+/* GOE_OK, or GOE_BAD_ARGUMENT of a null pointer, or GOE_NOT_INITIALISED. */
+goe_status_t goe_check_ready(const goe_estimator_t *estimator);
 
-/* goe_covariance() of an estimator that has a position. from_datum: the top's height is counted from the altimeter's zero. */
-void goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance);
+/* The estimate after the latest image. */
+const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator);
+
+/* goe_covariance(). from_datum: the top's height is counted from the altimeter's zero. */
+goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance);
 
 /* Constant error of goe_pose_t.height_m that the height of the latest estimate has been freed from, and the camera's has
  * not; 0 if it has none. */

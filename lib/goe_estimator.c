@@ -11,13 +11,13 @@
 #include "image/goe_camera.h"
 #include "image/goe_ego_motion.h"
 #include "image/goe_intake.h"
+#include "maths/goe_time.h"
 #include "refined/goe_refined.h"
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
 
-#define RESETS 0 /* causes[0] counts tracks that an unknown filter reset ended */
+#define RESETS GOE_OK /* causes[0] counts tracks that an unknown filter reset ended */
 #define AGE_LIMIT_US 4000000000u
-#define S_PER_US 1.0e-6f
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -42,9 +42,7 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
     }
     const int64_t latest_us = estimator->motion.time_us;
     const int64_t now_us = image_us > latest_us ? image_us : latest_us;
-    const uint64_t age_us = (uint64_t)now_us - (uint64_t)solved_time_us(estimator);
-    const uint32_t limited_us = age_us < AGE_LIMIT_US ? (uint32_t)age_us : AGE_LIMIT_US;
-    estimate->age_s = (float)limited_us * S_PER_US;
+    estimate->age_s = goe_time_between_s(solved_time_us(estimator), now_us, AGE_LIMIT_US);
 }
 
 static void forget_track(goe_estimator_t *estimator) {
@@ -65,15 +63,11 @@ static void forget_track(goe_estimator_t *estimator) {
 #if GOE_WITH_REFINED
 /* No new answer: the last one grows old, and follows the motion. */
 static void grow_old(goe_estimator_t *estimator) {
-    goe_estimate_t *estimate = &estimator->estimate;
-    estimate->fresh = false;
-    if (estimate->valid & GOE_HAS_POSITION) {
-        estimate->x_m = estimate->x0_m - estimator->motion.dx_m;
-        estimate->z_m = estimate->z0_m - estimator->motion.dz_m;
-    }
+    estimator->estimate.fresh = false;
+    goe_motion_relate(&estimator->motion, &estimator->estimate);
 }
 
-static goe_status_t report_refined(goe_estimator_t *estimator, const goe_image_t *image, const goe_faults_t *faults,
+static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
                                    bool measured) {
     const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
                                                       &estimator->estimate);
@@ -89,7 +83,7 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_image_t
     if (faults->first != GOE_OK) {
         return faults->first;
     }
-    if (!goe_image_seen(image)) {
+    if (!view->seen) {
         return GOE_NOTHING_SEEN;
     }
     return (estimator->estimate.valid & GOE_HAS_POSITION) ? GOE_HELD : GOE_COLLECTING;
@@ -137,7 +131,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const goe_status_t status = goe_window_update(&estimator->window, settings, view, task, faults);
     const bool measured = goe_refined_update(filter, settings, view, &swapped);
     note_swapped(estimator, swapped, task == GOE_WINDOW_COLLECTS, faults); /* a window that solves has counted */
-    return goe_filter_reports(filter, settings) ? report_refined(estimator, view->image, faults, measured)
+    return goe_filter_reports(filter, settings) ? report_refined(estimator, view, faults, measured)
                                                 : report_window(estimator, status);
 }
 #else
@@ -146,7 +140,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const bool measured = goe_refined_update(&estimator->filter, &estimator->settings, view, &swapped);
     const bool reports = goe_filter_reports(&estimator->filter, &estimator->settings);
     note_swapped(estimator, swapped, true, faults);
-    return report_refined(estimator, view->image, faults, measured && reports);
+    return report_refined(estimator, view, faults, measured && reports);
 }
 #endif
 
@@ -163,7 +157,7 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
     if (!pose->reset_delta_known) {
         forget_track(estimator);
-        estimator->causes[RESETS] += estimator->causes[RESETS] < UINT32_MAX ? 1u : 0u;
+        goe_count_cause(estimator->causes, RESETS);
         return;
     }
 #if GOE_WITH_REFINED
@@ -229,30 +223,28 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
     if (!estimate) {
         return GOE_BAD_ARGUMENT;
     }
-    if (!estimator || !image || estimator->ready != GOE_READY) {
+    goe_status_t status = image ? goe_check_ready(estimator) : GOE_BAD_ARGUMENT;
+    if (status != GOE_OK) {
         memset(estimate, 0, sizeof *estimate);
-        return !estimator || !image ? GOE_BAD_ARGUMENT : GOE_NOT_INITIALISED;
+        return status;
     }
-    goe_status_t status = goe_intake_check(&estimator->motion, image);
-    if (status == GOE_OK) {
+    status = goe_intake_check(&estimator->motion, image);
+    const bool taken = status == GOE_OK;
+    if (taken) {
         status = take_image(estimator, image);
-        *estimate = *goe_latest_estimate(estimator);
     } else {
         goe_count_cause(estimator->causes, status);
-        *estimate = *goe_latest_estimate(estimator);
-        estimate->fresh = false;
     }
+    *estimate = *goe_latest_estimate(estimator);
+    estimate->fresh = estimate->fresh && taken;
     set_age(estimator, image->pose.time_us, estimate);
     return status;
 }
 
 goe_status_t goe_reset(goe_estimator_t *estimator) {
-    if (!estimator) {
-        return GOE_BAD_ARGUMENT;
+    const goe_status_t status = goe_check_ready(estimator);
+    if (status == GOE_OK) {
+        forget_track(estimator);
     }
-    if (estimator->ready != GOE_READY) {
-        return GOE_NOT_INITIALISED;
-    }
-    forget_track(estimator);
-    return GOE_OK;
+    return status;
 }

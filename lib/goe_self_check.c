@@ -100,7 +100,8 @@ static bool misrounds(void) {
 #define ROOT_SHIFT_MAX 47u /* of the smallest subnormal */
 
 /* The root r 2^f of m 2^e, both mantissas whole, is the nearest float exactly if r is the whole number nearest to the root
- * of X = m 2^(e - 2f): (r - 1/2)^2 < X < (r + 1/2)^2, that is r^2 - r < X <= r^2 + r, which 64 bits hold. */
+ * of X = m 2^(e - 2f): (r - 1/2)^2 < X < (r + 1/2)^2, that is r^2 - r < X <= r^2 + r, which 64 bits hold; without a sign,
+ * what is too small is too large. */
 static bool root_is_nearest(uint32_t square_bits) {
     float square;
     memcpy(&square, &square_bits, sizeof square);
@@ -111,10 +112,10 @@ static bool root_is_nearest(uint32_t square_bits) {
         return true; /* flushed, not misrounded */
     }
     const uint64_t m = (square_bits & (HIDDEN_BIT - 1u)) | (subnormal ? 0u : HIDDEN_BIT);
-    const uint64_t r = (root_bits & (HIDDEN_BIT - 1u)) | HIDDEN_BIT;
+    const uint32_t r = (root_bits & (HIDDEN_BIT - 1u)) | HIDDEN_BIT;
     const uint32_t e = subnormal ? 1u : square_bits >> MANTISSA_BITS;
     const uint32_t shift = e + EXPONENT_OFFSET - 2u * (root_bits >> MANTISSA_BITS);
-    return shift <= ROOT_SHIFT_MAX && (m << shift) > r * r - r && (m << shift) <= r * r + r;
+    return shift <= ROOT_SHIFT_MAX && (m << shift) - (uint64_t)r * (r - 1u) - 1u < 2u * r;
 }
 
 /* Spread over all exponents, odd and even; the first are subnormal. 32 arguments miss a root that is wrong for a quarter

@@ -11,19 +11,59 @@ enum { GOE_KIND_REAL, GOE_KIND_COUNT, GOE_KIND_TRUTH, GOE_KIND_CHOICE };
 /* Arrays side by side, as entries of mixed sizes would be padded; names one after the other. Counts, truth values and choices
  * are exact in a float. */
 #define NAME(field, kind, unit, least, most, value, text) #field "\0"
-#define PLACE(field, kind, unit, least, most, value, text) (uint16_t)offsetof(goe_settings_t, field),
+#define PLACE(field, kind, unit, least, most, value, text) (uint8_t)offsetof(goe_settings_t, field),
 #define KIND(field, kind, unit, least, most, value, text) (uint8_t)GOE_KIND_##kind,
 #define RANGE(field, kind, unit, least, most, value, text) {(float)(least), (float)(most), (float)(value)},
 
 static const char names[] = GOE_SETTINGS(NAME);
-static const uint16_t places[] = {GOE_SETTINGS(PLACE)};
+static const uint8_t places[] = {GOE_SETTINGS(PLACE)};
 static const uint8_t kinds[] = {GOE_SETTINGS(KIND)};
 static const struct {
     float least, most, value;
 } ranges[] = {GOE_SETTINGS(RANGE)};
 #define SETTINGS (sizeof places / sizeof places[0])
 
+GOE_STATIC_ASSERT(sizeof(goe_settings_t) <= UINT8_MAX, a_place_fits_its_type);
 GOE_STATIC_ASSERT(sizeof(goe_method_t) == sizeof(goe_model_t), choices_are_of_one_size);
+
+static void write_field(unsigned char *field, uint8_t kind, float value) {
+    const int count = (int)value;
+    const goe_method_t choice = (goe_method_t)count;
+    const bool truth = count != 0;
+    switch (kind) {
+        case GOE_KIND_REAL:
+            memcpy(field, &value, sizeof value);
+            break;
+        case GOE_KIND_COUNT:
+            memcpy(field, &count, sizeof count);
+            break;
+        case GOE_KIND_TRUTH:
+            memcpy(field, &truth, sizeof truth);
+            break;
+        default:
+            memcpy(field, &choice, sizeof choice);
+            break;
+    }
+}
+
+static float read_field(const unsigned char *field, uint8_t kind) {
+    float value;
+    int count;
+    goe_method_t choice;
+    switch (kind) {
+        case GOE_KIND_REAL:
+            memcpy(&value, field, sizeof value);
+            return value;
+        case GOE_KIND_COUNT:
+            memcpy(&count, field, sizeof count);
+            return (float)count;
+        case GOE_KIND_TRUTH: /* not read as a bool: it may be neither */
+            return (float)*field;
+        default:
+            memcpy(&choice, field, sizeof choice);
+            return (float)choice;
+    }
+}
 
 void goe_settings_default(goe_settings_t *settings) {
     if (!settings) {
@@ -31,56 +71,15 @@ void goe_settings_default(goe_settings_t *settings) {
     }
     memset(settings, 0, sizeof *settings);
     for (size_t i = 0; i < SETTINGS; i++) {
-        unsigned char *field = (unsigned char *)settings + places[i];
-        const float value = ranges[i].value;
-        const int count = (int)value;
-        const goe_method_t choice = (goe_method_t)count;
-        const bool truth = count != 0;
-        switch (kinds[i]) {
-            case GOE_KIND_REAL:
-                memcpy(field, &value, sizeof value);
-                break;
-            case GOE_KIND_COUNT:
-                memcpy(field, &count, sizeof count);
-                break;
-            case GOE_KIND_TRUTH:
-                memcpy(field, &truth, sizeof truth);
-                break;
-            default:
-                memcpy(field, &choice, sizeof choice);
-                break;
-        }
+        write_field((unsigned char *)settings + places[i], kinds[i], ranges[i].value);
     }
-}
-
-static bool is_within(const unsigned char *field, size_t i) {
-    float value = 0.0f;
-    int count = 0;
-    goe_method_t choice = GOE_METHOD_WINDOW;
-    unsigned char truth = 0;
-    switch (kinds[i]) {
-        case GOE_KIND_REAL:
-            memcpy(&value, field, sizeof value);
-            return goe_magnitude(value) < GOE_INFINITY_BITS && value >= ranges[i].least && value <= ranges[i].most;
-        case GOE_KIND_COUNT:
-            memcpy(&count, field, sizeof count);
-            break;
-        case GOE_KIND_TRUTH: /* not read as a bool: it may be neither */
-            memcpy(&truth, field, sizeof truth);
-            count = truth;
-            break;
-        default:
-            memcpy(&choice, field, sizeof choice);
-            count = (int)choice;
-            break;
-    }
-    return count >= (int)ranges[i].least && count <= (int)ranges[i].most;
 }
 
 const char *goe_settings_first_bad(const goe_settings_t *settings) {
     const char *name = names;
     for (size_t i = 0; i < SETTINGS; i++) {
-        if (!is_within((const unsigned char *)settings + places[i], i)) {
+        const float value = read_field((const unsigned char *)settings + places[i], kinds[i]);
+        if (goe_magnitude(value) >= GOE_INFINITY_BITS || !(value >= ranges[i].least && value <= ranges[i].most)) {
             return name;
         }
         while (*name++ != '\0') {

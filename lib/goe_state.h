@@ -12,7 +12,8 @@
 /* C99 has no _Static_assert: a negative array size does not compile. */
 #define GOE_STATIC_ASSERT(condition, what) typedef char goe_assert_##what[(condition) ? 1 : -1]
 
-/* Before a static function that is called once: its locals must not lie on the stack while its neighbours run. */
+/* Before a static function that is to stay one: its locals must not lie on the stack while its neighbours run, or it is called
+ * from more than one place and a copy in each would cost more. */
 #if defined(__GNUC__)
 #define GOE_NOINLINE __attribute__((noinline))
 #else
@@ -58,10 +59,10 @@ typedef struct { /* window/goe_orientation.c */
 
 typedef struct {            /* window/goe_window.c */
     int64_t solved_time_us; /* image of the last solution */
-    goe_fit_ring_t disc, line;
-    goe_mean_t length, height;
-    goe_orientation_t orientation;
     goe_estimate_t estimate;
+    goe_orientation_t orientation;
+    goe_mean_t length, height;
+    goe_fit_ring_t disc, line;
 } goe_window_t;
 
 /* --------------------------------------------------------------------------------------------------------- refined -- */
@@ -125,40 +126,41 @@ typedef struct {      /* refined/goe_health.c: how the images fit */
     bool base_refused;             /* base corners proved to be none: they are not used */
 } goe_health_t;
 
+/* What is small comes first: instructions reach the beginning of an object by shorter forms. */
 typedef struct {
-    int64_t time_us;         /* of the latest image that the filter took */
-    float state[GOE_STATES]; /* by goe_state_index_t */
-    goe_triangle_t root;     /* R: R'R is the information of the state */
-    goe_inverse_t inverse;   /* of R, after the latest image: R^-1 R^-1' is the covariance */
-    float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since */
-    goe_matrix_t rows;       /* of the image at hand */
-    goe_axes_t axes;
-    goe_candidate_t candidate;
-    goe_leaving_t leaving;
-    goe_health_t health;
-    goe_naming_t naming;
+    int64_t time_us;      /* of the latest image that the filter took */
     uint8_t phase;        /* goe_phase_t */
     uint8_t phase_images; /* images of the phase, saturating */
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
     bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
+    goe_naming_t naming;
+    float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since */
+    goe_candidate_t candidate;
+    goe_leaving_t leaving;
+    goe_health_t health;
+    goe_axes_t axes;
+    float state[GOE_STATES]; /* by goe_state_index_t */
+    goe_triangle_t root;     /* R: R'R is the information of the state */
+    goe_inverse_t inverse;   /* of R, after the latest image: R^-1 R^-1' is the covariance */
+    goe_matrix_t rows;       /* of the image at hand */
 } goe_filter_t;
 
 /* ------------------------------------------------------------------------------------------------------- estimator -- */
 
 typedef struct {
     goe_motion_t motion;
+    uint32_t ready; /* tells an initialised estimator from any other memory */
+    uint32_t causes[GOE_CAUSES];
+    float camera_to_body[9];
+    goe_settings_t settings;
+#if GOE_WITH_REFINED
+    int64_t estimate_time_us; /* image behind the estimate */
+    goe_estimate_t estimate;  /* after the latest image, by whatever method */
+    goe_filter_t filter;
+#endif
 #if GOE_WITH_WINDOW
     goe_window_t window;
 #endif
-#if GOE_WITH_REFINED
-    goe_filter_t filter;
-    int64_t estimate_time_us; /* image behind the estimate */
-    goe_estimate_t estimate;  /* after the latest image, by whatever method */
-#endif
-    goe_settings_t settings;
-    float camera_to_body[9];
-    uint32_t causes[GOE_CAUSES];
-    uint32_t ready; /* tells an initialised estimator from any other memory */
 } goe_estimator_t;
 
 #endif

@@ -13,6 +13,13 @@
 
 float goe_bounded(float x) { return goe_within(x, MOST) ? x : (x < 0.0f ? -MOST : MOST); }
 
+void goe_affine_divide(goe_affine_t *affine, float divisor) {
+    affine->value /= divisor;
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        affine->by[i] /= divisor;
+    }
+}
+
 float goe_affine_product(const goe_affine_t *a, const goe_affine_t *b, goe_covariance_t covariance) {
     float sum = 0.0f;
     for (int i = 0; i < GOE_QUANTITIES; i++) {

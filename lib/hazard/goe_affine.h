@@ -10,6 +10,9 @@ typedef struct {
     float by[GOE_QUANTITIES];
 } goe_affine_t;
 
+/* The number over a divisor that is exact. */
+void goe_affine_divide(goe_affine_t *affine, float divisor);
+
 /* Covariance of two such numbers. */
 float goe_affine_product(const goe_affine_t *a, const goe_affine_t *b, goe_covariance_t covariance);
 

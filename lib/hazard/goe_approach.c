@@ -15,28 +15,21 @@
 
 /* ---------------------------------------------------------------------------------------------------------- approach -- */
 
-goe_course_t goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan) {
+void goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan, goe_course_t *course) {
     const float c = motion->heading_cos;
     const float s = motion->heading_sin;
     const float north = plan->velocity_ned_m_s[0];
     const float east = plan->velocity_ned_m_s[1];
     const float speed = sqrtf(north * north + east * east);
-    goe_course_t course;
-    memset(&course, 0, sizeof course);
-    course.climb_m_s = -plan->velocity_ned_m_s[2];
+    memset(course, 0, sizeof *course);
+    course->climb_m_s = -plan->velocity_ned_m_s[2];
     if (speed > HOVER_M_S) {
-        course.speed_m_s = speed;
-        course.ahead.x = (c * east - s * north) / speed;
-        course.ahead.z = (c * north + s * east) / speed;
-        course.right = goe_outline_right_of(course.ahead);
-    }
-    return course;
-}
-
-static void to_time(goe_affine_t *along, const goe_course_t *course) {
-    along->value /= course->speed_m_s;
-    for (int i = 0; i < GOE_QUANTITIES; i++) {
-        along->by[i] /= course->speed_m_s;
+        course->speed_m_s = speed;
+        course->ahead.x = (c * east - s * north) / speed;
+        course->ahead.z = (c * north + s * east) / speed;
+        course->back = goe_xz_negative(course->ahead);
+        course->side[GOE_RIGHT] = goe_outline_right_of(course->ahead);
+        course->side[GOE_LEFT] = goe_outline_right_of(course->back);
     }
 }
 
@@ -44,15 +37,14 @@ static void to_time(goe_affine_t *along, const goe_course_t *course) {
  * flight. Value and derivatives are 0 for what is now. */
 static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance,
                        const goe_approach_t *approach, goe_affine_t *first, goe_affine_t *lowest) {
-    memset(lowest, 0, sizeof *lowest);
-    if (approach->left.value > 0.0f || approach->right.value > 0.0f) {
-        *first = goe_outline_along(o, course->ahead,
-                                   approach->left.value > 0.0f ? course->right : goe_xz_negative(course->right));
+    const goe_affine_t *side = approach->side;
+    if (side[GOE_RIGHT].value > 0.0f || side[GOE_LEFT].value > 0.0f) {
+        goe_outline_along(o, &course->ahead, &course->side[side[GOE_RIGHT].value > 0.0f ? GOE_RIGHT : GOE_LEFT], first);
     } else {
-        const float sigma_m = goe_affine_sigma(&approach->left, covariance);
-        *first = goe_outline_end(o, course, -1.0f, sigma_m);
+        const float sigma_m = goe_affine_sigma(&side[GOE_RIGHT], covariance);
+        goe_outline_end(o, course, -1.0f, sigma_m, first);
         if (course->climb_m_s < 0.0f) {
-            *lowest = goe_outline_end(o, course, 1.0f, sigma_m);
+            goe_outline_end(o, course, 1.0f, sigma_m, lowest);
         }
     }
     if (!(first->value > 0.0f)) {
@@ -61,23 +53,26 @@ static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_c
     if (!(lowest->value > 0.0f)) {
         *lowest = *first;
     }
-    to_time(first, course);
-    to_time(lowest, course);
+    goe_affine_divide(first, course->speed_m_s);
+    goe_affine_divide(lowest, course->speed_m_s);
 }
 
 /* What bounds the spread of the time whatever the derivatives say: the outline is met between its near and its far end.
  * They do at a grazed edge, where the entry moves at once from one end to the other. */
 static float time_sd_most(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance) {
-    const goe_affine_t far_end = goe_outline_reach(o, course->ahead);
-    const goe_affine_t near_end = goe_outline_reach(o, goe_xz_negative(course->ahead));
+    goe_affine_t far_end;
+    goe_affine_t near_end;
+    goe_outline_reach(o, &course->ahead, &far_end);
+    goe_outline_reach(o, &course->back, &near_end);
     return (goe_affine_sigma(&near_end, covariance) + 0.5f * (far_end.value + near_end.value)) / course->speed_m_s;
 }
 
 /* Variance of the time along an edge which, as far as the orientation is known, may lean either way from the course: then
  * the closest corner is its other end, if the outline is passed at all. */
-static float edge_variance(const goe_course_t *course, goe_xz_t edge, float length_m, float sigma_rad, float passes) {
-    const float lean = goe_absolute(goe_xz_dot(edge, course->right));
-    const float lead = goe_absolute(goe_xz_dot(edge, course->ahead));
+static float edge_variance(const goe_course_t *course, const goe_xz_t *edge, float length_m, float sigma_rad,
+                           float passes) {
+    const float lean = goe_absolute(goe_xz_dot(*edge, course->side[GOE_RIGHT]));
+    const float lead = goe_absolute(goe_xz_dot(*edge, course->ahead));
     const float other = passes * goe_normal_below(-lean / goe_larger(lead * sigma_rad, SIGMA_LEAST));
     const float between_s = lead * length_m / course->speed_m_s;
     return other * (1.0f - other) * between_s * between_s;
@@ -91,10 +86,9 @@ static float time_sd(const goe_outline_t *o, const goe_course_t *course, const g
     }
     if (o->box) {
         const float sigma_rad = sqrtf(covariance[GOE_ORIENTATION][GOE_ORIENTATION]) * GOE_RAD_PER_DEG;
-        const goe_affine_t *side = a->left.value > a->right.value ? &a->left : &a->right;
-        const float passes = 1.0f - goe_affine_below(side, 0.0f, covariance);
-        sd = sqrtf(sd * sd + edge_variance(course, o->length_axis, o->length, sigma_rad, passes) +
-                   edge_variance(course, o->width_axis, 2.0f * o->half, sigma_rad, passes));
+        const float passes = 1.0f - goe_affine_below(goe_approach_side(a), 0.0f, covariance);
+        sd = sqrtf(sd * sd + edge_variance(course, &o->length_axis, o->length, sigma_rad, passes) +
+                   edge_variance(course, &o->width_axis, 2.0f * o->half, sigma_rad, passes));
     }
     const float most = time_sd_most(o, course, covariance);
     return goe_bounded(sd < most ? sd : most);
@@ -114,13 +108,15 @@ void goe_approach_find(const goe_outline_t *o, const goe_course_t *course, goe_c
                        goe_approach_t *a) {
     goe_affine_t first;
     goe_affine_t lowest;
+    goe_xz_t towards = course->ahead;
     float share = 0.0f;
     memset(a, 0, sizeof *a);
     memset(&lowest, 0, sizeof lowest);
     a->moves = course->speed_m_s > 0.0f;
     if (a->moves) {
-        a->left = goe_outline_distance(o, course->right);
-        a->right = goe_outline_distance(o, goe_xz_negative(course->right));
+        for (int i = 0; i < GOE_SIDES; i++) {
+            goe_outline_distance(o, &course->side[i], &a->side[i]);
+        }
         find_times(o, course, covariance, a, &first, &lowest);
         a->time_s = first.value;
         a->time_sd_s = time_sd(o, course, a, &first, covariance);
@@ -128,7 +124,10 @@ void goe_approach_find(const goe_outline_t *o, const goe_course_t *course, goe_c
             time_sd(o, course, a, &lowest, covariance) / goe_larger(goe_affine_sigma(&lowest, covariance), SIGMA_LEAST);
     }
     find_clearance(course, &lowest, share, height_m, &a->clearance);
-    a->ahead = goe_outline_distance(o, a->time_s > 0.0f ? course->ahead : goe_outline_way_from(o, course));
+    if (!(a->time_s > 0.0f)) {
+        towards = goe_outline_way_from(o, course);
+    }
+    goe_outline_distance(o, &towards, &a->ahead);
 }
 
 #endif

@@ -4,17 +4,22 @@
 
 #include "hazard/goe_outline.h"
 
-/* left, right: signed distances if the obstacle is passed with it on the left, on the right; these exclude each other, so that
- * their probabilities add. ahead: along the course, or, of what does not come nearer, from the outline to the camera. */
+/* side: signed distances beside the outline, to that side of the course: it is passed with the obstacle on the other. These
+ * exclude each other, so that their probabilities add. ahead: along the course, or, of what does not come nearer, from the outline to the camera. */
 typedef struct {
-    goe_affine_t left, right, ahead;
-    goe_affine_t clearance;
+    goe_affine_t side[GOE_SIDES], ahead, clearance;
     float time_s, time_sd_s;
     bool moves;
 } goe_approach_t;
 
 /* The course of a plan, T axes. */
-goe_course_t goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan);
+void goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan, goe_course_t *course);
+
+/* The side on which the outline is passed, or crossed less deep. */
+static inline const goe_affine_t *goe_approach_side(const goe_approach_t *approach) {
+    const goe_affine_t *side = approach->side;
+    return side[GOE_RIGHT].value > side[GOE_LEFT].value ? &side[GOE_RIGHT] : &side[GOE_LEFT];
+}
 
 /* height_m: of the camera over the top now. */
 void goe_approach_find(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance, float height_m,

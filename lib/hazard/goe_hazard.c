@@ -9,17 +9,16 @@
 #define VELOCITY_MOST_M_S 1.0e3f
 #define DISTANCE_MOST_M 1.0e4f
 
+/* GOE_OK, or why the plan is refused. */
 static goe_status_t check_plan(const goe_plan_t *plan) {
-    bool finite =
-        goe_magnitude(plan->margin_m) < GOE_INFINITY_BITS && goe_magnitude(plan->clearance_m) < GOE_INFINITY_BITS;
-    bool within = goe_within(plan->margin_m, DISTANCE_MOST_M) && goe_within(plan->clearance_m, DISTANCE_MOST_M);
-    for (int i = 0; i < 3; i++) {
-        finite = finite && goe_magnitude(plan->velocity_ned_m_s[i]) < GOE_INFINITY_BITS;
-        within = within && goe_within(plan->velocity_ned_m_s[i], VELOCITY_MOST_M_S);
-    }
-    if (!finite) {
+    const uint32_t velocity = goe_largest_of_three(plan->velocity_ned_m_s);
+    const uint32_t margin = goe_magnitude(plan->margin_m);
+    const uint32_t clearance = goe_magnitude(plan->clearance_m);
+    if (velocity >= GOE_INFINITY_BITS || margin >= GOE_INFINITY_BITS || clearance >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
+    const bool within = velocity <= goe_magnitude(VELOCITY_MOST_M_S) && margin <= goe_magnitude(DISTANCE_MOST_M) &&
+                        clearance <= goe_magnitude(DISTANCE_MOST_M);
     return within && plan->margin_m >= 0.0f && plan->clearance_m >= 0.0f ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
@@ -29,23 +28,17 @@ goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan
         return GOE_BAD_ARGUMENT;
     }
     memset(hazard, 0, sizeof *hazard);
-    if (!estimator || !plan) {
-        return GOE_BAD_ARGUMENT;
+    goe_status_t status = plan ? goe_check_ready(estimator) : GOE_BAD_ARGUMENT;
+    if (status == GOE_OK) {
+        status = check_plan(plan);
     }
-    if (estimator->ready != GOE_READY) {
-        return GOE_NOT_INITIALISED;
+    if (status == GOE_OK) {
+        status = goe_latest_covariance(estimator, true, covariance);
     }
-    const goe_status_t status = check_plan(plan);
-    if (status != GOE_OK) {
-        return status;
+    if (status == GOE_OK) {
+        goe_violation_foresee(estimator, plan, covariance, hazard);
     }
-    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
-    if (!(estimate->valid & GOE_HAS_POSITION)) {
-        return GOE_COLLECTING;
-    }
-    goe_latest_covariance(estimator, true, covariance);
-    goe_violation_foresee(estimator, plan, covariance, hazard);
-    return GOE_OK;
+    return status;
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include "hazard/goe_outline.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
@@ -15,137 +16,131 @@
 
 /* ----------------------------------------------------------------------------------------------------------- outline -- */
 
-goe_outline_t goe_outline_of(const goe_estimate_t *estimate) {
+void goe_outline_of(const goe_estimate_t *estimate, goe_outline_t *o) {
     const unsigned needed = GOE_HAS_ORIENTATION | GOE_HAS_WIDTH | GOE_HAS_LENGTH;
-    goe_outline_t o;
-    o.reference.x = estimate->x_m;
-    o.reference.z = estimate->z_m;
-    o.length_axis.x = estimate->length_axis[0];
-    o.length_axis.z = estimate->length_axis[1];
-    o.width_axis.x = estimate->width_axis[0];
-    o.width_axis.z = estimate->width_axis[1];
-    o.half = (estimate->valid & GOE_HAS_WIDTH) ? 0.5f * estimate->width_m : 0.0f;
-    o.length = estimate->length_m;
-    o.box = estimate->model != GOE_MODEL_DISC && (estimate->valid & needed) == needed;
-    return o;
+    o->reference.x = estimate->x_m;
+    o->reference.z = estimate->z_m;
+    o->length_axis.x = estimate->length_axis[0];
+    o->length_axis.z = estimate->length_axis[1];
+    o->width_axis.x = estimate->width_axis[0];
+    o->width_axis.z = estimate->width_axis[1];
+    o->half = (estimate->valid & GOE_HAS_WIDTH) ? 0.5f * estimate->width_m : 0.0f;
+    o->length = estimate->length_m;
+    o->box = estimate->model != GOE_MODEL_DISC && (estimate->valid & needed) == needed;
 }
 
-goe_affine_t goe_outline_corner(const goe_outline_t *o, goe_xz_t m, float side, float end) {
-    const float across = goe_xz_dot(m, o->width_axis);
-    const float along = goe_xz_dot(m, o->length_axis);
+void goe_outline_corner(const goe_outline_t *o, const goe_xz_t *m, float side, float end, goe_affine_t *at) {
+    const float across = goe_xz_dot(*m, o->width_axis);
+    const float along = goe_xz_dot(*m, o->length_axis);
     const float side_m = side * 2.0f * o->half;
     const float end_m = end * o->length;
-    goe_affine_t g = {goe_xz_dot(m, o->reference) + side_m * across + end_m * along, {0}};
-    g.by[GOE_X0] = m.x;
-    g.by[GOE_Z0] = m.z;
-    g.by[GOE_WIDTH] = side * across;
-    g.by[GOE_LENGTH] = end * along;
-    g.by[GOE_ORIENTATION] = (end_m * across - side_m * along) * GOE_RAD_PER_DEG;
-    return g;
+    at->value = goe_xz_dot(*m, o->reference) + side_m * across + end_m * along;
+    at->by[GOE_X0] = m->x;
+    at->by[GOE_Z0] = m->z;
+    at->by[GOE_ORIENTATION] = (end_m * across - side_m * along) * GOE_RAD_PER_DEG;
+    at->by[GOE_WIDTH] = side * across;
+    at->by[GOE_LENGTH] = end * along;
+    at->by[GOE_HEIGHT] = 0.0f;
 }
 
-goe_affine_t goe_outline_reach(const goe_outline_t *o, goe_xz_t m) {
-    if (o->box) {
-        return goe_outline_corner(o, m, goe_xz_dot(m, o->width_axis) < 0.0f ? -0.5f : 0.5f,
-                                  goe_xz_dot(m, o->length_axis) > 0.0f ? 1.0f : 0.0f);
-    }
-    goe_affine_t h = {goe_xz_dot(m, o->reference) + o->half, {0}};
-    h.by[GOE_X0] = m.x;
-    h.by[GOE_Z0] = m.z;
-    h.by[GOE_WIDTH] = 0.5f;
-    return h;
+/* m k at the corner of a box that lies on that side across and along its axes; at the centre of a disc. */
+GOE_NOINLINE static void corner_on(const goe_outline_t *o, const goe_xz_t *m, float across, float along,
+                                   goe_affine_t *at) {
+    const float side = across < 0.0f ? -0.5f : 0.5f;
+    const float end = along > 0.0f ? 1.0f : 0.0f;
+    goe_outline_corner(o, m, o->box ? side : 0.0f, o->box ? end : 0.0f, at);
 }
 
-goe_affine_t goe_outline_distance(const goe_outline_t *o, goe_xz_t m) {
-    goe_affine_t d = goe_outline_reach(o, m);
-    d.value = -d.value;
-    for (int i = 0; i < GOE_QUANTITIES; i++) {
-        d.by[i] = -d.by[i];
+void goe_outline_reach(const goe_outline_t *o, const goe_xz_t *m, goe_affine_t *reach) {
+    corner_on(o, m, goe_xz_dot(*m, o->width_axis), goe_xz_dot(*m, o->length_axis), reach);
+    if (!o->box) {
+        reach->value += o->half;
+        reach->by[GOE_WIDTH] = 0.5f;
     }
-    return d;
 }
 
-goe_affine_t goe_outline_along(const goe_outline_t *o, goe_xz_t ahead, goe_xz_t m) {
-    if (o->box) {
-        float across = goe_xz_dot(m, o->width_axis);
-        float along = goe_xz_dot(m, o->length_axis);
-        across = goe_absolute(across) > PARALLEL ? across : -goe_xz_dot(ahead, o->width_axis);
-        along = goe_absolute(along) > PARALLEL ? along : -goe_xz_dot(ahead, o->length_axis);
-        return goe_outline_corner(o, ahead, across < 0.0f ? -0.5f : 0.5f, along > 0.0f ? 1.0f : 0.0f);
-    }
-    goe_affine_t s = {goe_xz_dot(ahead, o->reference), {0}};
-    s.by[GOE_X0] = ahead.x;
-    s.by[GOE_Z0] = ahead.z;
-    return s;
+void goe_outline_distance(const goe_outline_t *o, const goe_xz_t *m, goe_affine_t *distance) {
+    goe_outline_reach(o, m, distance);
+    goe_affine_divide(distance, -1.0f);
+}
+
+void goe_outline_along(const goe_outline_t *o, const goe_xz_t *ahead, const goe_xz_t *m, goe_affine_t *along) {
+    const float across_m = goe_xz_dot(*m, o->width_axis);
+    const float along_m = goe_xz_dot(*m, o->length_axis);
+    corner_on(o, ahead, goe_absolute(across_m) > PARALLEL ? across_m : -goe_xz_dot(*ahead, o->width_axis),
+              goe_absolute(along_m) > PARALLEL ? along_m : -goe_xz_dot(*ahead, o->length_axis), along);
 }
 
 /* --------------------------------------------------------------------------------------------------------- crossing -- */
 
 /* Along the course into (way -1) or out of (way 1) a disc that it crosses. sigma_m: of how deep. Near the rim the chord
  * grows with the root of the depth, and its derivative is taken a sigma inside. */
-static goe_affine_t chord_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m) {
-    const goe_xz_t u = course->ahead;
-    const goe_xz_t r = course->right;
-    const float off = goe_xz_dot(r, o->reference);
-    const float chord2 = o->half * o->half - off * off;
-    const float chord = sqrtf(chord2 > 0.0f ? chord2 : 0.0f);
+static void chord_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m, goe_affine_t *end) {
+    const goe_xz_t *right = &course->side[GOE_RIGHT];
+    const float off = goe_xz_dot(*right, o->reference);
+    const float chord = sqrtf(goe_larger(o->half * o->half - off * off, 0.0f));
     const float share = way / goe_larger(goe_larger(chord, sqrtf(o->half * sigma_m)), CHORD_LEAST_M);
-    goe_affine_t s = {goe_xz_dot(u, o->reference) + way * chord, {0}};
-    s.by[GOE_X0] = u.x - share * off * r.x;
-    s.by[GOE_Z0] = u.z - share * off * r.z;
-    s.by[GOE_WIDTH] = 0.5f * share * o->half;
-    return s;
+    goe_outline_corner(o, &course->ahead, 0.0f, 0.0f, end);
+    end->value += way * chord;
+    end->by[GOE_X0] -= share * off * right->x;
+    end->by[GOE_Z0] -= share * off * right->z;
+    end->by[GOE_WIDTH] = 0.5f * share * o->half;
+}
+
+static goe_xz_t normal_of(const goe_outline_t *o, int face) {
+    const goe_xz_t axis = (face & 2) ? o->length_axis : o->width_axis;
+    return (face & 1) ? goe_xz_negative(axis) : axis;
 }
 
 /* Along the course to the line of the face with the outward normal m; slope = m u, not 0. */
-static goe_affine_t face_line(const goe_outline_t *o, const goe_course_t *course, goe_xz_t m, float slope) {
-    goe_affine_t s = goe_outline_reach(o, m);
-    s.value /= slope;
-    const goe_xz_t to_reference = {o->reference.x - s.value * course->ahead.x,
-                                   o->reference.z - s.value * course->ahead.z};
-    for (int i = 0; i < GOE_QUANTITIES; i++) {
-        s.by[i] /= slope;
-    }
-    s.by[GOE_ORIENTATION] = goe_xz_dot(goe_outline_right_of(m), to_reference) * GOE_RAD_PER_DEG / slope;
-    return s;
+static void face_line(const goe_outline_t *o, const goe_course_t *course, const goe_xz_t *m, float slope,
+                      goe_affine_t *line) {
+    goe_outline_reach(o, m, line);
+    goe_affine_divide(line, slope);
+    const goe_xz_t to_reference = {o->reference.x - line->value * course->ahead.x,
+                                   o->reference.z - line->value * course->ahead.z};
+    line->by[GOE_ORIENTATION] = goe_xz_dot(goe_outline_right_of(*m), to_reference) * GOE_RAD_PER_DEG / slope;
 }
 
 /* The same for a box: the last of the faces that it enters by, the first of those that it leaves by. */
-static goe_affine_t face_end(const goe_outline_t *o, const goe_course_t *course, float way) {
-    const goe_xz_t normal[4] = {o->width_axis, goe_xz_negative(o->width_axis), o->length_axis,
-                                goe_xz_negative(o->length_axis)};
-    goe_affine_t s = {0.0f, {0}};
+static void face_end(const goe_outline_t *o, const goe_course_t *course, float way, goe_affine_t *end) {
     bool any = false;
-    for (int i = 0; i < 4; i++) {
-        const float slope = goe_xz_dot(normal[i], course->ahead);
+    memset(end, 0, sizeof *end);
+    for (int face = 0; face < GOE_CORNERS; face++) {
+        const goe_xz_t normal = normal_of(o, face);
+        const float slope = goe_xz_dot(normal, course->ahead);
         if (way * slope > PARALLEL) {
-            const goe_affine_t end = face_line(o, course, normal[i], slope);
-            if (!any || way * (end.value - s.value) < 0.0f) {
-                s = end;
+            goe_affine_t line;
+            face_line(o, course, &normal, slope, &line);
+            if (!any || way * (line.value - end->value) < 0.0f) {
+                *end = line;
                 any = true;
             }
         }
     }
-    return s;
 }
 
-goe_affine_t goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m) {
-    return o->box ? face_end(o, course, way) : chord_end(o, course, way, sigma_m);
+void goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m, goe_affine_t *end) {
+    if (o->box) {
+        face_end(o, course, way, end);
+    } else {
+        chord_end(o, course, way, sigma_m, end);
+    }
 }
 
 /* -------------------------------------------------------------------------------------------------- where it stands -- */
 
 /* The way out of a box that the camera is in, other than to the sides of the course. */
 static goe_xz_t way_out_of_box(const goe_outline_t *o, const goe_course_t *course) {
-    const goe_xz_t normal[4] = {o->width_axis, goe_xz_negative(o->width_axis), o->length_axis,
-                                goe_xz_negative(o->length_axis)};
+    goe_affine_t depth;
     goe_xz_t best = course->ahead;
     float least = MOST;
-    for (int i = 0; i < 4; i++) {
-        const float depth = goe_outline_reach(o, normal[i]).value;
-        if (depth < least && goe_xz_dot(normal[i], course->ahead) >= 0.0f) {
-            least = depth;
-            best = normal[i];
+    for (int face = 0; face < GOE_CORNERS; face++) {
+        const goe_xz_t normal = normal_of(o, face);
+        goe_outline_reach(o, &normal, &depth);
+        if (depth.value < least && goe_xz_dot(normal, course->ahead) >= 0.0f) {
+            least = depth.value;
+            best = normal;
         }
     }
     return best;

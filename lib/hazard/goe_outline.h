@@ -9,14 +9,18 @@
 #include "hazard/goe_affine.h"
 #include "maths/goe_xz.h"
 
+#define GOE_CORNERS 4
+
 typedef struct {
     goe_xz_t reference, width_axis, length_axis;
     float half, length; /* half: of the width, or the radius */
     bool box;
 } goe_outline_t;
 
+enum { GOE_RIGHT, GOE_LEFT, GOE_SIDES };
+
 typedef struct {
-    goe_xz_t ahead, right; /* unit vectors; 0 if it stands still */
+    goe_xz_t ahead, back, side[GOE_SIDES]; /* unit vectors; 0 if it stands still */
     float speed_m_s, climb_m_s;
 } goe_course_t;
 
@@ -27,23 +31,24 @@ static inline goe_xz_t goe_outline_right_of(goe_xz_t v) {
 }
 
 /* The box as far as it is known, otherwise a disc. */
-goe_outline_t goe_outline_of(const goe_estimate_t *estimate);
+void goe_outline_of(const goe_estimate_t *estimate, goe_outline_t *o);
 
-/* m k at a corner k of a box, m held in the derivatives: side -0.5 or 0.5 of the width, end 0 or 1 of the length. */
-goe_affine_t goe_outline_corner(const goe_outline_t *o, goe_xz_t m, float side, float end);
+/* *at = m k at a corner k of a box, m held in the derivatives: side -0.5 or 0.5 of the width, end 0 or 1 of the length. At the
+ * reference point both are 0. */
+void goe_outline_corner(const goe_outline_t *o, const goe_xz_t *m, float side, float end, goe_affine_t *at);
 
 /* h(m), |m| = 1. */
-goe_affine_t goe_outline_reach(const goe_outline_t *o, goe_xz_t m);
+void goe_outline_reach(const goe_outline_t *o, const goe_xz_t *m, goe_affine_t *reach);
 
 /* Signed distance to the half-plane beyond which the outline does not reach towards m. */
-goe_affine_t goe_outline_distance(const goe_outline_t *o, goe_xz_t m);
+void goe_outline_distance(const goe_outline_t *o, const goe_xz_t *m, goe_affine_t *distance);
 
 /* Along the course to where the outline reaches farthest towards m, a side of the course; of a whole edge that does, to
  * its first end. */
-goe_affine_t goe_outline_along(const goe_outline_t *o, goe_xz_t ahead, goe_xz_t m);
+void goe_outline_along(const goe_outline_t *o, const goe_xz_t *ahead, const goe_xz_t *m, goe_affine_t *along);
 
 /* Along the course into (way -1) or out of (way 1) the outline, which it crosses. sigma_m: of how deep. */
-goe_affine_t goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m);
+void goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m, goe_affine_t *end);
 
 /* Unit vector from the outline to the camera now, or out of it by the shortest way. */
 goe_xz_t goe_outline_way_from(const goe_outline_t *o, const goe_course_t *course);

@@ -11,19 +11,19 @@
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
 
 static const goe_affine_t *largest(const goe_approach_t *a) {
-    const goe_affine_t *side = a->left.value > a->right.value ? &a->left : &a->right;
+    const goe_affine_t *side = goe_approach_side(a);
     return a->moves && side->value > a->ahead.value ? side : &a->ahead;
 }
 
-/* Probability that the obstacle is not passed on the side that m points away from it. Each corner may spoil it, and the
- * one that is likeliest to is not always the nearest: the orientation moves some more than others. */
-static float side_violation(const goe_outline_t *o, goe_xz_t m, const goe_affine_t *nearest, float margin_m,
+/* Probability that the obstacle is not passed on a side of the course. Each corner may spoil it, and the one that is likeliest
+ * to is not always the nearest: the orientation moves some more than others. */
+static float side_violation(const goe_outline_t *o, const goe_affine_t *nearest, const goe_xz_t *away, float margin_m,
                             goe_covariance_t covariance) {
     float most = goe_affine_below(nearest, margin_m, covariance);
-    for (int i = 0; o->box && i < 4; i++) {
-        const goe_affine_t d = goe_outline_corner(o, goe_xz_negative(m), (i & 1) ? 0.5f : -0.5f, (i & 2) ? 1.0f : 0.0f);
-        const float p = goe_affine_below(&d, margin_m, covariance);
-        most = p > most ? p : most;
+    for (int i = 0; o->box && i < GOE_CORNERS; i++) {
+        goe_affine_t d;
+        goe_outline_corner(o, away, (i & 1) ? 0.5f : -0.5f, (i & 2) ? 1.0f : 0.0f, &d);
+        most = goe_larger(goe_affine_below(&d, margin_m, covariance), most);
     }
     return most;
 }
@@ -35,8 +35,8 @@ static float margin_violation(const goe_outline_t *o, const goe_course_t *course
     if (!a->moves) {
         return out;
     }
-    const float sides = side_violation(o, course->right, &a->left, margin_m, covariance) +
-                        side_violation(o, goe_xz_negative(course->right), &a->right, margin_m, covariance) - 1.0f;
+    const float sides = side_violation(o, &a->side[GOE_RIGHT], &course->side[GOE_LEFT], margin_m, covariance) +
+                        side_violation(o, &a->side[GOE_LEFT], &course->side[GOE_RIGHT], margin_m, covariance) - 1.0f;
     return sides < 0.0f ? 0.0f : sides < out ? sides : out;
 }
 
@@ -70,10 +70,12 @@ static void report(const goe_outline_t *o, const goe_course_t *course, const goe
 
 void goe_violation_foresee(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_covariance_t covariance,
                            goe_hazard_t *hazard) {
+    goe_outline_t outline;
+    goe_course_t course;
     goe_approach_t approach;
     const goe_estimate_t *estimate = goe_latest_estimate(estimator);
-    const goe_outline_t outline = goe_outline_of(estimate);
-    const goe_course_t course = goe_approach_course(&estimator->motion, plan);
+    goe_outline_of(estimate, &outline);
+    goe_approach_course(&estimator->motion, plan, &course);
     const float height_m =
         estimator->motion.height_m - (estimate->height_m - goe_latest_height_bias(estimator)); /* over the top now */
     goe_approach_find(&outline, &course, covariance, height_m, &approach);

@@ -9,36 +9,40 @@
 
 /* The rotation and the camera are read once: the compiler could not know that writing the points leaves them alone. */
 void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
-    const goe_image_t *image = view->image;
-    const goe_pixel_t *const pixels[GOE_FEATURES] = {&image->left,      &image->right,     &image->top,
-                                                     &image->base_left, &image->base_near, &image->base_right};
+    const goe_pixel_t *pixels = goe_image_pixels(view->image);
     const float *r = view->camera_to_trajectory;
     const float xx = r[0], xy = r[1], xz = r[2];
     const float yx = r[3], yy = r[4], yz = r[5];
     const float zx = r[6], zy = r[7], zz = r[8];
     const float cx_px = camera->cx_px, cy_px = camera->cy_px, fx_px = camera->fx_px, fy_px = camera->fy_px;
     const bool distorts = goe_camera_distorts(camera);
+    view->seen = false;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
-        const goe_pixel_t *pixel = pixels[i];
+        const goe_pixel_t *pixel = &pixels[i];
         goe_point_t *point = &view->point[i];
-        point->usable = pixel->seen;
+        point->usable = false;
         if (!pixel->seen) {
             continue;
         }
+        view->seen = true;
         float x = (pixel->u_px - cx_px) / fx_px;
         float y = (pixel->v_px - cy_px) / fy_px;
-        if (distorts && !goe_camera_undistort(camera, &x, &y)) {
-            point->usable = false;
-            goe_fault_note(faults, GOE_LENS_FAILED);
-            continue;
+        if (distorts) {
+            float ray[2] = {x, y}; /* its own: x and y stay in registers */
+            if (!goe_camera_undistort(camera, &ray[0], &ray[1])) {
+                goe_fault_count(faults, GOE_LENS_FAILED);
+                continue;
+            }
+            x = ray[0];
+            y = ray[1];
         }
         const float forward = zx * x + zy * y + zz;
         if (forward <= FORWARD_MIN * sqrtf(x * x + y * y + 1.0f)) {
-            point->usable = false;
-            goe_fault_note(faults, GOE_BEHIND_CAMERA);
+            goe_fault_count(faults, GOE_BEHIND_CAMERA);
             continue;
         }
         point->x = (xx * x + xy * y + xz) / forward;
         point->y = (yx * x + yy * y + yz) / forward;
+        point->usable = true;
     }
 }

@@ -11,19 +11,15 @@ typedef struct {
 
 GOE_STATIC_ASSERT(GOE_CAUSES == 1 - (int)GOE_BAD_ATTITUDE, every_fault_has_a_counter);
 
-static inline void goe_count_cause(uint32_t causes[GOE_CAUSES], goe_status_t fault) {
-    uint32_t *counter = &causes[-(int)fault];
-    *counter += *counter < UINT32_MAX ? 1u : 0u;
-}
+/* Counters saturate. */
+void goe_count_cause(uint32_t causes[GOE_CAUSES], goe_status_t fault);
 
 /* fault: GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE; GOE_OK is ignored. */
+void goe_fault_count(goe_faults_t *faults, goe_status_t fault);
+
 static inline void goe_fault_note(goe_faults_t *faults, goe_status_t fault) {
-    if (fault == GOE_OK) {
-        return;
-    }
-    goe_count_cause(faults->causes, fault);
-    if (faults->first == GOE_OK) {
-        faults->first = fault;
+    if (fault != GOE_OK) {
+        goe_fault_count(faults, fault);
     }
 }
 

@@ -11,37 +11,28 @@
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
-static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
-
-static uint32_t largest_of(const float v[3]) {
-    return larger(larger(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
-}
-
-static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
-    return pixel->seen ? larger(so_far, larger(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px))) : so_far;
-}
-
 static uint32_t largest_pixel(const goe_image_t *image) {
-    uint32_t largest = with_pixel(0u, &image->left);
-    largest = with_pixel(largest, &image->right);
-    largest = with_pixel(largest, &image->top);
-    largest = with_pixel(largest, &image->base_left);
-    largest = with_pixel(largest, &image->base_near);
-    return with_pixel(largest, &image->base_right);
+    const goe_pixel_t *pixels = goe_image_pixels(image);
+    uint32_t largest = 0u;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        if (pixels[i].seen) {
+            largest = goe_larger_bits(largest, goe_magnitude(pixels[i].u_px));
+            largest = goe_larger_bits(largest, goe_magnitude(pixels[i].v_px));
+        }
+    }
+    return largest;
 }
-
-GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_is_checked);
 
 /* Not finite outranks out of range, which outranks a bad attitude. */
 static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {
     const goe_pose_t *pose = &image->pose;
     const uint32_t height = goe_magnitude(pose->height_m);
     const uint32_t pixel = largest_pixel(image);
-    uint32_t position = largest_of(pose->position_ned_m);
+    uint32_t position = goe_largest_of_three(pose->position_ned_m);
     if (reset && pose->reset_delta_known) {
-        position = larger(position, largest_of(pose->reset_delta_ned_m));
+        position = goe_larger_bits(position, goe_largest_of_three(pose->reset_delta_ned_m));
     }
-    if (larger(larger(height, attitude), larger(position, pixel)) >= GOE_INFINITY_BITS) {
+    if (goe_larger_bits(goe_larger_bits(height, attitude), goe_larger_bits(position, pixel)) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
     const bool within = height <= goe_magnitude(HEIGHT_LIMIT_M) && position <= goe_magnitude(POSITION_LIMIT_M) &&
@@ -59,7 +50,7 @@ static bool is_unit(const float q[4], uint32_t largest) {
 
 goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *image) {
     const float *q = image->pose.attitude;
-    const uint32_t attitude = larger(largest_of(q), goe_magnitude(q[3]));
+    const uint32_t attitude = goe_larger_bits(goe_largest_of_three(q), goe_magnitude(q[3]));
     const goe_status_t status = check_numbers(image, attitude, goe_motion_reset(motion, &image->pose));
     if (status != GOE_OK) {
         return status;

@@ -26,15 +26,24 @@ typedef struct {
 
 typedef struct {
     goe_point_t point[GOE_FEATURES]; /* by goe_feature_t */
+    bool seen;                       /* any of them, in the image */
     const goe_image_t *image;        /* as it was given */
     const goe_motion_t *motion;      /* the track's own motion up to this image */
     const float *camera_to_body;     /* rotations, row by row */
     float camera_to_trajectory[9];
 } goe_view_t;
 
-static inline bool goe_image_seen(const goe_image_t *image) {
-    return image->left.seen || image->right.seen || image->top.seen || image->base_left.seen || image->base_near.seen ||
-           image->base_right.seen;
+#define GOE_PIXEL_LIES_AT(field, feature)                                                                              \
+    (offsetof(goe_image_t, field) == offsetof(goe_image_t, left) + (feature) * sizeof(goe_pixel_t))
+GOE_STATIC_ASSERT(GOE_PIXEL_LIES_AT(right, GOE_POINT_RIGHT) && GOE_PIXEL_LIES_AT(top, GOE_POINT_TOP) &&
+                      GOE_PIXEL_LIES_AT(base_left, GOE_POINT_BASE_LEFT) &&
+                      GOE_PIXEL_LIES_AT(base_near, GOE_POINT_BASE_NEAR) &&
+                      GOE_PIXEL_LIES_AT(base_right, GOE_POINT_BASE_RIGHT),
+                  the_pixels_of_an_image_follow_each_other);
+
+/* The pixels of an image, by goe_feature_t. */
+static inline const goe_pixel_t *goe_image_pixels(const goe_image_t *image) {
+    return (const goe_pixel_t *)(const void *)((const unsigned char *)image + offsetof(goe_image_t, left));
 }
 
 #endif

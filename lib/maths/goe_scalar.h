@@ -19,6 +19,13 @@ static inline uint32_t goe_bits(float x) {
  * assume their meaning away under -ffast-math. */
 static inline uint32_t goe_magnitude(float x) { return goe_bits(x) & GOE_MAGNITUDE_BITS; }
 
+static inline uint32_t goe_larger_bits(uint32_t a, uint32_t b) { return a > b ? a : b; }
+
+/* The largest magnitude of a vector's elements. */
+static inline uint32_t goe_largest_of_three(const float v[3]) {
+    return goe_larger_bits(goe_larger_bits(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
+}
+
 /* |x|. Not fabsf(): a C library may lack it, and then an undeclared call would return an int. */
 static inline float goe_absolute(float x) {
 #if defined(__GNUC__)

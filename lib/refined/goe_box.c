@@ -32,17 +32,14 @@
 #define CLEARLY_PX 4.0f /* sigmas of a pixel by which one reading of the outline must fit better */
 
 enum { FRONT_LEFT, BACK_LEFT, BACK_RIGHT, FRONT_RIGHT, CORNERS }; /* clockwise */
-enum { FACE_FRONT, FACE_RIGHT, FACE_BACK, FACE_LEFT };
 enum { OUTER_LEFT, NEAR_CORNER, OUTER_RIGHT };
 
 static const float across_of[CORNERS] = {-0.5f, -0.5f, 0.5f, 0.5f};
 static const float along_of[CORNERS] = {0.0f, 1.0f, 1.0f, 0.0f};
 
 typedef struct {
-    float q, sx, fx, sz, fz; /* fz: see above */
-    goe_xz_t middle;         /* P */
-    goe_depth_t depth;
-    float sign;        /* of sx: the front edge comes nearer to the right (+) or to the left (-) */
+    goe_box_edges_t edges;
+    goe_xz_t middle;   /* P */
     float curvature;   /* one sigma of what linearising the depths at an uncertain GOE_DEPTH_DIFFERENCE misses */
     float ground, top; /* Y of the base and of the roof */
     bool front, right; /* which side of the box the camera is on */
@@ -53,21 +50,29 @@ typedef struct {
 
 static float sign_of(float x) { return x > 0.0f ? 1.0f : -1.0f; }
 
-goe_depth_t goe_box_depth(const float state[GOE_STATES]) {
-    goe_depth_t depth;
-    const float d = state[GOE_DEPTH_DIFFERENCE];
-    const float product = goe_absolute(state[GOE_SIDE_X]) * state[GOE_FRONT_X];
+void goe_box_edges(const float x[GOE_STATES], goe_box_edges_t *e) {
+    const float d = x[GOE_DEPTH_DIFFERENCE];
+    const float across = goe_absolute(x[GOE_SIDE_X]);
+    const float sign = sign_of(x[GOE_SIDE_X]);
+    const float product = across * x[GOE_FRONT_X];
     const float sum = goe_larger(sqrtf(d * d + 4.0f * product), SUM_LEAST);
     /* the larger one by adding, the smaller one by the product: no cancellation */
     const float larger = 0.5f * (sum + goe_absolute(d));
-    depth.sum = sum;
-    depth.side = d > 0.0f ? larger : product / larger;
-    depth.front = d > 0.0f ? product / larger : larger;
-    depth.by_extents[0] = (state[GOE_SIDE_X] > 0.0f ? state[GOE_FRONT_X] : -state[GOE_FRONT_X]) / sum;
-    depth.by_extents[1] = goe_absolute(state[GOE_SIDE_X]) / sum;
-    depth.side_by_d = depth.side / sum;
-    depth.front_by_d = -depth.front / sum;
-    return depth;
+    const float smaller = product / larger;
+    e->sum = sum;
+    e->sign = sign;
+    e->side.along.x = x[GOE_SIDE_X];
+    e->side.along.z = d > 0.0f ? larger : smaller;
+    e->side.by[0] = sign * x[GOE_FRONT_X] / sum;
+    e->side.by[1] = across / sum;
+    e->side.by[2] = e->side.along.z / sum;
+    e->front.along.x = x[GOE_FRONT_X];
+    e->front.along.z = -sign * (d > 0.0f ? smaller : larger);
+    e->front.by[0] = -sign * e->side.by[0];
+    e->front.by[1] = -sign * e->side.by[1];
+    e->front.by[2] = -e->front.along.z / sum;
+    e->side.length = sqrtf(goe_xz_dot(e->side.along, e->side.along));
+    e->front.length = sqrtf(goe_xz_dot(e->front.along, e->front.along));
 }
 
 void goe_box_enter(goe_filter_t *filter, goe_phase_t phase) {
@@ -76,24 +81,30 @@ void goe_box_enter(goe_filter_t *filter, goe_phase_t phase) {
     goe_filter_enter(filter, phase);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ outline -- */
+
+static void place_corners(outline_t *o) {
+    const goe_xz_t side = o->edges.side.along;
+    const goe_xz_t front = o->edges.front.along;
+    for (size_t i = 0; i < CORNERS; i++) {
+        o->corner[i].x = o->middle.x + across_of[i] * front.x + along_of[i] * side.x;
+        o->corner[i].z = o->middle.z + across_of[i] * front.z + along_of[i] * side.z;
+    }
+}
+
 static void describe(const goe_observation_t *obs, outline_t *o) {
     const float *x = obs->state;
-    o->depth = goe_box_depth(x);
-    o->q = x[GOE_INVERSE_RANGE];
-    o->sx = x[GOE_SIDE_X];
-    o->fx = x[GOE_FRONT_X];
-    o->sz = o->depth.side;
-    o->sign = o->sx > 0.0f ? 1.0f : -1.0f;
-    o->fz = -o->sign * o->depth.front;
-    o->curvature = CURVATURE * 2.0f * goe_absolute(o->sx) * o->fx / (o->depth.sum * o->depth.sum * o->depth.sum) *
+    goe_box_edges_t *e = &o->edges;
+    goe_box_edges(x, e);
+    o->curvature = CURVATURE * 2.0f * goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X] / (e->sum * e->sum * e->sum) *
                    obs->depth_variance;
     o->middle = goe_observation_reference(obs);
-    o->ground = (obs->height_m + x[GOE_HEIGHT_BIAS]) * o->q;
+    o->ground = (obs->height_m + x[GOE_HEIGHT_BIAS]) * x[GOE_INVERSE_RANGE];
     o->top = goe_observation_roof(obs);
-    const float length = sqrtf(o->sx * o->sx + o->sz * o->sz);
-    const float vx = o->sx / length;
-    const float vz = o->sz / length;
-    const float width = o->fx / vz;
+    const float length = e->side.length;
+    const float vx = e->side.along.x / length;
+    const float vz = e->side.along.z / length;
+    const float width = e->front.along.x / vz;
     const float across = vx * o->middle.z - vz * o->middle.x; /* of the camera, in the box's axes, from P */
     const float along = -(vx * o->middle.x + vz * o->middle.z);
     o->front = -along > along - length;
@@ -101,19 +112,16 @@ static void describe(const goe_observation_t *obs, outline_t *o) {
     o->far_half = along >= 0.5f * length;
     o->depth_margin = o->front ? -along : along - length;
     o->side_margin = (o->right ? across : -across) - 0.5f * width;
-    for (size_t i = 0; i < CORNERS; i++) {
-        o->corner[i].x = o->middle.x + across_of[i] * o->fx + along_of[i] * o->sx;
-        o->corner[i].z = o->middle.z + across_of[i] * o->fz + along_of[i] * o->sz;
-    }
+    place_corners(o);
 }
 
 /* ---------------------------------------------------------------------------------------------------- visible corners -- */
 
-/* Corners at the left end, between and at the right end of one face, or of two faces that begin with `face`. */
-static void corners_of_faces(size_t face, bool two, size_t corner[3]) {
-    corner[OUTER_LEFT] = (CORNERS - face) % CORNERS;
-    corner[NEAR_CORNER] = (corner[OUTER_LEFT] + 3u) % CORNERS;
-    corner[OUTER_RIGHT] = (corner[OUTER_LEFT] + (two ? 2u : 3u)) % CORNERS;
+/* Corners at the left end, between and at the right end of one face, or of two faces. */
+static void corners_from(size_t left, bool two, size_t corner[3]) {
+    corner[OUTER_LEFT] = left;
+    corner[NEAR_CORNER] = (left + 3u) % CORNERS;
+    corner[OUTER_RIGHT] = (left + (two ? 2u : 3u)) % CORNERS;
 }
 
 /* Sum of what the outer corners are off in the image. */
@@ -128,18 +136,15 @@ static float misfit(const goe_observation_t *obs, const outline_t *o, const size
 }
 
 static void visible_corners(const goe_observation_t *obs, const outline_t *o, size_t corner[3]) {
-    const size_t first_of_two = o->front ? (o->right ? FACE_FRONT : FACE_LEFT) : (o->right ? FACE_RIGHT : FACE_BACK);
-    if (obs->point[GOE_POINT_BASE_NEAR].usable) {
-        corners_of_faces(first_of_two, true, corner);
-        return;
-    }
-    const size_t along = o->front ? FACE_FRONT : FACE_BACK;
-    const size_t across = o->right ? FACE_RIGHT : FACE_LEFT;
-    corners_of_faces(o->depth_margin > o->side_margin ? along : across, false, corner);
-    if (obs->two_faces && obs->base && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
+    const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
+    const size_t of_two = o->front ? (o->right ? FRONT_LEFT : BACK_LEFT) : (o->right ? FRONT_RIGHT : BACK_RIGHT);
+    const size_t along = o->front ? FRONT_LEFT : BACK_RIGHT;
+    const size_t across = o->right ? FRONT_RIGHT : BACK_LEFT;
+    corners_from(near_seen ? of_two : o->depth_margin > o->side_margin ? along : across, near_seen, corner);
+    if (!near_seen && obs->two_faces && obs->base && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
         /* one face, or two and the detector missed the corner between them: whichever fits clearly better */
         size_t both[3];
-        corners_of_faces(first_of_two, true, both);
+        corners_from(of_two, true, both);
         const float clearly = CLEARLY_PX * goe_observation_pixel(obs);
         if (misfit(obs, o, both) + clearly < misfit(obs, o, corner)) {
             memcpy(corner, both, sizeof both);
@@ -168,17 +173,18 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
 /* Derivatives by the place and the outline of a corner, from those by (X, Z); and what their linearisation may miss. */
-static void set_corner(goe_rows_t *rows, float by[GOE_STATES], const goe_observation_t *obs, const outline_t *o,
-                       size_t corner, const goe_gradient_t *g) {
+static void set_corner(goe_rows_t *rows, float by[restrict GOE_STATES], const goe_observation_t *obs,
+                       const outline_t *o, size_t corner, const goe_gradient_t *g) {
+    const goe_box_edges_t *e = &o->edges;
     const float across = across_of[corner];
     const float along = along_of[corner];
-    const float by_both = (along - across * o->sign) * g->z; /* by side and front depth as their sum moves them */
+    const float by_both = (along - across * e->sign) * g->z; /* by side and front depth as their sum moves them */
     const float missed = 0.5f * by_both * o->curvature;
     by[GOE_BEARING] = g->x;
     by[GOE_INVERSE_RANGE] = goe_rows_by_range(obs, g->x, g->z);
-    by[GOE_SIDE_X] = along * g->x + by_both * o->depth.by_extents[0];
-    by[GOE_FRONT_X] = across * g->x + by_both * o->depth.by_extents[1];
-    by[GOE_DEPTH_DIFFERENCE] = (along * o->depth.side_by_d - across * o->sign * o->depth.front_by_d) * g->z;
+    by[GOE_SIDE_X] = along * g->x + by_both * e->side.by[0];
+    by[GOE_FRONT_X] = across * g->x + by_both * e->side.by[1];
+    by[GOE_DEPTH_DIFFERENCE] = (along * e->side.by[2] + across * e->front.by[2]) * g->z;
     rows->variance[rows->count - 1u] += missed * missed;
 }
 
@@ -203,12 +209,12 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     const float along_x = by[GOE_BEHIND_STATES];
     set_corner(rows, by, obs, o, corner, &gx);
     by[GOE_INVERSE_RANGE] += gx.y * height_m;
-    by[GOE_HEIGHT_BIAS] = gx.y * o->q;
+    by[GOE_HEIGHT_BIAS] = gx.y * obs->state[GOE_INVERSE_RANGE];
     by = goe_rows_add(rows, feature, measured->y, spread.yy - share * spread.xy, &gy);
     by[GOE_BEHIND_STATES] -= share * along_x;
     set_corner(rows, by, obs, o, corner, &gy);
     by[GOE_INVERSE_RANGE] += gy.y * height_m;
-    by[GOE_HEIGHT_BIAS] = gy.y * o->q;
+    by[GOE_HEIGHT_BIAS] = gy.y * obs->state[GOE_INVERSE_RANGE];
 }
 
 /* The vertical edge over an outer corner, at the height at which it was measured. */
@@ -264,13 +270,15 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 /* Extents of too different size make a box that the next image cannot be linearised at. */
 void goe_box_clip(goe_filter_t *filter) {
+    goe_box_edges_t edges;
     float *x = filter->state;
     const float least = EXTENT_LEAST * (goe_absolute(x[GOE_SIDE_X]) + goe_absolute(x[GOE_FRONT_X]) +
                                         goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
     x[GOE_FRONT_X] = goe_larger(x[GOE_FRONT_X], least);
     x[GOE_DEPTH_DIFFERENCE] =
         goe_larger(x[GOE_DEPTH_DIFFERENCE], DEPTH_LEAST * goe_absolute(x[GOE_SIDE_X]) - x[GOE_FRONT_X] / DEPTH_LEAST);
-    if (goe_box_depth(x).side < least) {
+    goe_box_edges(x, &edges);
+    if (edges.side.along.z < least) {
         x[GOE_DEPTH_DIFFERENCE] = least - goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X] / least;
     }
 }
@@ -327,7 +335,9 @@ static void exchange_names(goe_filter_t *filter) {
 }
 
 bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs) {
-    const float side = goe_box_depth(filter->state).side;
+    goe_box_edges_t edges;
+    goe_box_edges(filter->state, &edges);
+    const float side = edges.side.along.z;
     if (filter->phase == GOE_PHASE_BOX_FACE && obs->base && obs->point[GOE_POINT_BASE_NEAR].usable) {
         free_length(filter, side);
         return true;
@@ -341,28 +351,10 @@ bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs) {
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-/* The edges of the state as vectors, the state's axes, units of Z0, and their lengths. */
-typedef struct {
-    goe_depth_t depth;
-    goe_xz_t side_edge, front_edge;
-    float side, front;
-} edges_t;
-
-static edges_t edges_of(const float x[GOE_STATES]) {
-    edges_t e;
-    e.depth = goe_box_depth(x);
-    e.side_edge.x = x[GOE_SIDE_X];
-    e.side_edge.z = e.depth.side;
-    e.front_edge.x = x[GOE_FRONT_X];
-    e.front_edge.z = -sign_of(x[GOE_SIDE_X]) * e.depth.front;
-    e.side = sqrtf(goe_xz_dot(e.side_edge, e.side_edge));
-    e.front = sqrtf(x[GOE_FRONT_X] * x[GOE_FRONT_X] + e.depth.front * e.depth.front);
-    return e;
-}
-
 void goe_box_name(goe_filter_t *filter) {
-    const edges_t e = edges_of(filter->state);
-    const goe_xz_t side = goe_filter_into_trajectory(filter, filter->naming.exchanged ? e.front_edge : e.side_edge);
+    goe_box_edges_t e;
+    goe_box_edges(filter->state, &e);
+    const goe_xz_t side = goe_filter_into_trajectory(filter, filter->naming.exchanged ? e.front.along : e.side.along);
     const float slope = filter->naming.decided ? EXCHANGE_SLOPE : 1.0f;
     if (goe_absolute(side.x) > slope * goe_absolute(side.z)) {
         filter->naming.exchanged = !filter->naming.exchanged;
@@ -371,75 +363,75 @@ void goe_box_name(goe_filter_t *filter) {
 }
 
 /* The reference point, and across fronts and along sides from there. */
-static goe_spot_t spot_of(const float x[GOE_STATES], const edges_t *e, float across, float along) {
-    goe_spot_t spot;
-    const float sign = sign_of(x[GOE_SIDE_X]);
-    const float both = along - across * sign;
-    spot.at.x = x[GOE_BEARING] + across * x[GOE_FRONT_X] + along * x[GOE_SIDE_X];
-    spot.at.z = 1.0f - across * sign * e->depth.front + along * e->depth.side;
-    spot.x_by[0] = along;
-    spot.x_by[1] = across;
-    spot.x_by[2] = 0.0f;
-    spot.z_by[0] = both * e->depth.by_extents[0];
-    spot.z_by[1] = both * e->depth.by_extents[1];
-    spot.z_by[2] = along * e->depth.side_by_d - across * sign * e->depth.front_by_d;
-    return spot;
+static void find_spot(const float x[GOE_STATES], const goe_box_edges_t *e, float across, float along,
+                      goe_spot_t *spot) {
+    spot->at.x = x[GOE_BEARING] + across * e->front.along.x + along * e->side.along.x;
+    spot->at.z = 1.0f + across * e->front.along.z + along * e->side.along.z;
+    spot->x_by[0] = along;
+    spot->x_by[1] = across;
+    spot->x_by[2] = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        spot->z_by[i] = along * e->side.by[i] + across * e->front.by[i];
+    }
 }
 
-/* Length of an edge, m: its own extent across, which is state `extent`, and its depth. */
-static void set_edge(goe_linear_t *length, const edges_t *e, bool side, float scale_m) {
-    const float size = side ? e->side : e->front;
-    const float across = side ? e->side_edge.x : e->front_edge.x;
-    const float by_depth = (side ? e->depth.side : e->depth.front) / size * scale_m;
-    length->value = scale_m * size;
-    length->by[GOE_SIDE_X] = by_depth * e->depth.by_extents[0];
-    length->by[GOE_FRONT_X] = by_depth * e->depth.by_extents[1];
-    length->by[GOE_DEPTH_DIFFERENCE] = by_depth * (side ? e->depth.side_by_d : e->depth.front_by_d);
-    length->by[side ? GOE_SIDE_X : GOE_FRONT_X] += across / size * scale_m;
-    length->by[GOE_INVERSE_RANGE] = -scale_m * scale_m * size;
+/* Length of an edge, m. extent: the state that tells how far it reaches across. */
+static void set_edge(goe_linear_t *length, const goe_box_edge_t *edge, goe_state_index_t extent, float scale_m) {
+    const float by_depth = edge->along.z / edge->length * scale_m;
+    length->value = scale_m * edge->length;
+    for (int i = 0; i < 3; i++) {
+        length->by[GOE_SIDE_X + i] = by_depth * edge->by[i];
+    }
+    length->by[extent] += edge->along.x / edge->length * scale_m;
+    length->by[GOE_INVERSE_RANGE] = -scale_m * scale_m * edge->length;
 }
 
 /* Both edges turn together. */
-static void set_orientation(goe_linear_t *orientation, const edges_t *e, goe_xz_t length_axis) {
-    const float scale = 1.0f / (e->side * e->side);
-    const float by_depth = -e->side_edge.x * scale;
+static void set_orientation(goe_linear_t *orientation, const goe_box_edge_t *side, goe_xz_t length_axis) {
+    const float scale = 1.0f / (side->length * side->length);
+    const float by_depth = -side->along.x * scale;
     orientation->value = goe_arctan_rad(length_axis.x, length_axis.z);
-    orientation->by[GOE_SIDE_X] = e->depth.side * scale + by_depth * e->depth.by_extents[0];
-    orientation->by[GOE_FRONT_X] = by_depth * e->depth.by_extents[1];
-    orientation->by[GOE_DEPTH_DIFFERENCE] = by_depth * e->depth.side_by_d;
+    for (int i = 0; i < 3; i++) {
+        orientation->by[GOE_SIDE_X + i] = by_depth * side->by[i];
+    }
+    orientation->by[GOE_SIDE_X] += side->along.z * scale;
 }
 
-static float early_factor(const goe_filter_t *filter, const edges_t *e) {
-    const float relative = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE) / goe_square(e->depth.sum);
+static float early_factor(const goe_filter_t *filter, const goe_box_edges_t *e) {
+    const float relative = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE) / goe_square(e->sum);
     return 1.0f + EARLY * (relative < EARLY_MOST ? relative : EARLY_MOST);
 }
 
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     const float *x = filter->state;
     const bool exchanged = filter->naming.exchanged;
-    const edges_t e = edges_of(x);
-    const goe_xz_t side = goe_filter_into_trajectory(filter, e.side_edge);
-    const goe_xz_t front = goe_filter_into_trajectory(filter, e.front_edge);
-    const float away = front.z < 0.0f ? 1.0f : -1.0f; /* the end of the front from which it leads away */
-    const float length = exchanged ? -away * e.front : (side.z < 0.0f ? -e.side : e.side);
-    const goe_spot_t reference = exchanged ? spot_of(x, &e, 0.5f * away, 0.5f) : spot_of(x, &e, 0.0f, 0.0f);
+    goe_box_edges_t e;
+    goe_spot_t reference;
+    goe_box_edges(x, &e);
+    const goe_box_edge_t *edge = exchanged ? &e.front : &e.side; /* that is reported as side */
+    const goe_xz_t axis = goe_filter_into_trajectory(filter, edge->along);
+    const bool nearer = axis.z < 0.0f; /* it leads towards the camera */
+    const float length = nearer ? -edge->length : edge->length;
+    const float half = nearer ? 0.5f : -0.5f; /* from the end of the front from which it leads away */
+    find_spot(x, &e, exchanged ? half : 0.0f, exchanged ? 0.5f : 0.0f, &reference);
     goe_shape_start(filter, x, &reference, shape);
-    shape->middle = spot_of(x, &e, 0.0f, 0.5f);
-    shape->length_axis.x = (exchanged ? front.x : side.x) / length;
-    shape->length_axis.z = (exchanged ? front.z : side.z) / length;
+    find_spot(x, &e, 0.0f, 0.5f, &shape->middle);
+    shape->length_axis.x = axis.x / length;
+    shape->length_axis.z = axis.z / length;
     shape->early = early_factor(filter, &e);
-    set_orientation(&shape->quantity[GOE_ORIENTATION], &e, shape->length_axis);
-    set_edge(&shape->quantity[GOE_WIDTH], &e, exchanged, shape->scale_m);
-    set_edge(&shape->quantity[GOE_LENGTH], &e, !exchanged, shape->scale_m);
+    set_orientation(&shape->quantity[GOE_ORIENTATION], &e.side, shape->length_axis);
+    set_edge(&shape->quantity[exchanged ? GOE_WIDTH : GOE_LENGTH], &e.side, GOE_SIDE_X, shape->scale_m);
+    set_edge(&shape->quantity[exchanged ? GOE_LENGTH : GOE_WIDTH], &e.front, GOE_FRONT_X, shape->scale_m);
 }
 
 /* Of the side, seen at a small angle, only the product of length and angle shows. */
 static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
     const float *x = filter->state;
-    const edges_t e = edges_of(x);
+    goe_box_edges_t e;
+    goe_box_edges(x, &e);
     const float scale_m = 1.0f / x[GOE_INVERSE_RANGE];
-    const float vx = e.side_edge.x / e.side;
-    const float vz = e.side_edge.z / e.side;
+    const float vx = e.side.along.x / e.side.length;
+    const float vz = e.side.along.z / e.side.length;
     const float px = x[GOE_BEARING] - camera_m.x / scale_m;
     const float pz = 1.0f - camera_m.z / scale_m;
     const float beside = goe_larger(goe_absolute(vz * px - vx * pz) - 0.5f * x[GOE_FRONT_X] / vz, 0.0f);

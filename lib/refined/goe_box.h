@@ -5,16 +5,22 @@
 #include "refined/goe_observation.h"
 #include "refined/goe_shape.h"
 
-/* How deep the edges of a box reach, in units of Z0, and the derivatives by GOE_SIDE_X, GOE_FRONT_X, GOE_DEPTH_DIFFERENCE:
- * side - front = GOE_DEPTH_DIFFERENCE, and as the corner is square, side front = |GOE_SIDE_X| GOE_FRONT_X. */
+/* An edge of a box as a vector, the state's axes and units of Z0, with the derivatives of its depth `along.z` by GOE_SIDE_X,
+ * GOE_FRONT_X, GOE_DEPTH_DIFFERENCE. Across it reaches as far as its own state tells. */
 typedef struct {
-    float side, front; /* sz, |fz|; both >= 0 */
-    float sum;
-    float by_extents[2]; /* of either, by GOE_SIDE_X and GOE_FRONT_X */
-    float side_by_d, front_by_d;
-} goe_depth_t;
+    goe_xz_t along;
+    float by[3];
+    float length;
+} goe_box_edge_t;
 
-goe_depth_t goe_box_depth(const float state[GOE_STATES]);
+/* |side.z| - |front.z| = GOE_DEPTH_DIFFERENCE, and as the corner is square, |side.z front.z| = |GOE_SIDE_X| GOE_FRONT_X. */
+typedef struct {
+    goe_box_edge_t side, front; /* side.along.z >= 0; front.along.x >= 0 */
+    float sum;                  /* of both depths */
+    float sign;                 /* of side.along.x: the front comes nearer to the right (+) or to the left (-) */
+} goe_box_edges_t;
+
+void goe_box_edges(const float state[GOE_STATES], goe_box_edges_t *edges);
 
 /* Enters one of the phases of a box, whose edges have no names yet. */
 void goe_box_enter(goe_filter_t *filter, goe_phase_t phase);

@@ -207,21 +207,21 @@ static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
  * for the corner's place on the circle: twice the angle between chord and front, tan = side over front. */
 static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES], float side_sign,
                           goe_substitution_t *old) {
-    const goe_depth_t depth = goe_box_depth(is);
-    const float sign = is[GOE_SIDE_X] > 0.0f ? -1.0f : 1.0f; /* of the front's depth */
-    const float scale = 1.0f / (1.0f + 0.5f * depth.side);
-    const float turn = 2.0f / (goe_square(is[GOE_FRONT_X]) + goe_square(depth.side));
-    const float side[] = {depth.by_extents[0], depth.by_extents[1], depth.side_by_d};
-    const float front[] = {sign * depth.by_extents[0], sign * depth.by_extents[1], sign * depth.front_by_d};
+    goe_box_edges_t box;
+    goe_box_edges(is, &box);
+    const float depth = box.side.along.z;
+    const float scale = 1.0f / (1.0f + 0.5f * depth);
+    const float turn = 2.0f / (goe_square(is[GOE_FRONT_X]) + goe_square(depth));
     memset(old, 0, sizeof *old);
     for (size_t i = 0; i < 3; i++) {
+        const float side = box.side.by[i];
         for (size_t k = 0; k < GOE_CHANGED; k++) {
-            old->by[k][GOE_OF_SIDE + i] = -0.5f * scale * was[GOE_BEARING + k] * side[i];
+            old->by[k][GOE_OF_SIDE + i] = -0.5f * scale * was[GOE_BEARING + k] * side;
         }
-        old->by[GOE_OF_SIDE][GOE_OF_SIDE + i] += scale * (front[i] + side_sign * side[i]);
-        old->by[GOE_OF_DEPTH][GOE_OF_SIDE + i] = turn * is[GOE_FRONT_X] * side[i];
+        old->by[GOE_OF_SIDE][GOE_OF_SIDE + i] += scale * (box.front.by[i] + side_sign * side);
+        old->by[GOE_OF_DEPTH][GOE_OF_SIDE + i] = turn * is[GOE_FRONT_X] * side;
     }
-    old->by[GOE_OF_DEPTH][GOE_OF_FRONT] -= turn * depth.side;
+    old->by[GOE_OF_DEPTH][GOE_OF_FRONT] -= turn * depth;
     old->by[GOE_OF_BEARING][GOE_OF_SIDE] += 0.5f * scale;
     old->by[GOE_OF_FRONT][GOE_OF_SIDE] += side_sign * scale;
     old->by[GOE_OF_FRONT][GOE_OF_FRONT] += scale;

@@ -6,6 +6,7 @@
 
 #include "image/goe_ego_motion.h"
 #include "maths/goe_scalar.h"
+#include "maths/goe_time.h"
 #include "refined/goe_box.h"
 #include "refined/goe_disc.h"
 #include "refined/goe_model.h"
@@ -19,7 +20,6 @@
 #define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
 #define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
 #define PATH_LEAST_M 0.1f
-#define S_PER_US 1.0e-6f
 #define TIME_MOST_US 4000000000u
 #define METRES_MOST 1.0e6f
 
@@ -37,8 +37,7 @@ typedef struct {
 
 static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
     drift_t drift;
-    const uint64_t us = (uint64_t)motion->time_us - (uint64_t)filter->axes.start_time_us;
-    const float s = (float)(uint32_t)(us < TIME_MOST_US ? us : TIME_MOST_US) * S_PER_US;
+    const float s = goe_time_between_s(filter->axes.start_time_us, motion->time_us, TIME_MOST_US);
     drift.camera_m = goe_filter_camera(filter, motion);
     const float path_m = sqrtf(goe_xz_dot(drift.camera_m, drift.camera_m));
     drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_LEAST_M ? path_m : PATH_LEAST_M);

@@ -10,6 +10,7 @@
 
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
+#include "maths/goe_time.h"
 #include "refined/goe_box.h"
 #include "refined/goe_health.h"
 #include "refined/goe_model.h"
@@ -17,20 +18,14 @@
 
 #if GOE_WITH_REFINED
 
-#define S_PER_US 1.0e-6f
-#define GAP_MOST_US 1000000000 /* a longer gap between images counts as this one */
-#define AHEAD_LEAST 0.02f      /* of the reference point, units of Z0 */
+#define GAP_MOST_US 1000000000u /* a longer gap between images counts as this one */
+#define AHEAD_LEAST 0.02f       /* of the reference point, units of Z0 */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
-static float seconds_since(int64_t then_us, int64_t now_us) {
-    const uint64_t gap = (uint64_t)now_us - (uint64_t)then_us;
-    return (float)(uint32_t)(gap < GAP_MOST_US ? gap : GAP_MOST_US) * S_PER_US;
-}
-
 /* Process noise: the attitude's bias drifts, the own position walks. */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, int64_t time_us) {
-    const float root_s = sqrtf(seconds_since(filter->time_us, time_us));
+    const float root_s = sqrtf(goe_time_between_s(filter->time_us, time_us, GAP_MOST_US));
     const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * root_s;
     const float walk = navigation->position_walk_m * root_s * filter->state[GOE_INVERSE_RANGE];
     filter->time_us = time_us;

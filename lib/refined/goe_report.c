@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "image/goe_ego_motion.h"
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 #include "refined/goe_disc.h"
@@ -17,8 +18,7 @@ static void report_position(const goe_quantities_t *q, const goe_motion_t *motio
     estimate->z0_m = q->value[GOE_Z0];
     estimate->sigma.x0_m = q->sigma[GOE_X0];
     estimate->sigma.z0_m = q->sigma[GOE_Z0];
-    estimate->x_m = estimate->x0_m - motion->dx_m;
-    estimate->z_m = estimate->z0_m - motion->dz_m;
+    goe_motion_relate(motion, estimate);
     estimate->sigma.x_m = estimate->sigma.x0_m;
     estimate->sigma.z_m = estimate->sigma.z0_m;
     estimate->baseline_m = sqrtf(goe_square(motion->dx_m) + goe_square(motion->dz_m));

@@ -6,8 +6,9 @@
 
 #if GOE_WITH_WINDOW
 
-static bool in_order(const goe_point_t *left, const goe_point_t *right) {
-    return !left->usable || !right->usable || left->x <= right->x;
+static bool in_order(const goe_view_t *view, goe_feature_t left, goe_feature_t right) {
+    const goe_point_t *point = view->point;
+    return !point[left].usable || !point[right].usable || point[left].x <= point[right].x;
 }
 
 /* (1). The edge through a and b meets the horizon y = 0 at x_a - y_a (x_b - x_a)/(y_b - y_a) = x/y of the vector below,
@@ -32,33 +33,27 @@ static void measure_edge(const goe_settings_t *settings, const goe_pixel_t *from
     edge->heading_deg = edge->has_heading ? heading_deg(left, right) : 0.0f;
 }
 
-static void add_edge(const goe_settings_t *settings, const goe_pixel_t *from_px, const goe_point_t *from,
-                     const goe_pixel_t *to_px, const goe_point_t *to, goe_edges_t *edges) {
-    if (from->usable && to->usable) {
+static void add_edge(const goe_settings_t *settings, const goe_view_t *view, goe_feature_t from, goe_feature_t to,
+                     goe_edges_t *edges) {
+    const goe_pixel_t *pixels = goe_image_pixels(view->image);
+    if (view->point[from].usable && view->point[to].usable) {
         goe_edge_t *edge = &edges->edge[edges->count++];
-        edge->left = from;
-        edge->right = to;
-        measure_edge(settings, from_px, to_px, edge);
+        edge->left = &view->point[from];
+        edge->right = &view->point[to];
+        measure_edge(settings, &pixels[from], &pixels[to], edge);
     }
 }
 
 goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_view_t *view, goe_edges_t *edges) {
-    const goe_image_t *image = view->image;
-    const goe_point_t *left = &view->point[GOE_POINT_BASE_LEFT];
-    const goe_point_t *corner = &view->point[GOE_POINT_BASE_NEAR];
-    const goe_point_t *right = &view->point[GOE_POINT_BASE_RIGHT];
+    const bool near_corner = view->point[GOE_POINT_BASE_NEAR].usable;
+    const goe_feature_t end = near_corner ? GOE_POINT_BASE_NEAR : GOE_POINT_BASE_RIGHT; /* of the first edge */
     edges->count = 0;
-    if (corner->usable) {
-        if (!in_order(left, corner) || !in_order(corner, right)) {
-            return GOE_SWAPPED;
-        }
-        add_edge(settings, &image->base_left, left, &image->base_near, corner, edges);
-        add_edge(settings, &image->base_near, corner, &image->base_right, right, edges);
-    } else {
-        if (!in_order(left, right)) {
-            return GOE_SWAPPED;
-        }
-        add_edge(settings, &image->base_left, left, &image->base_right, right, edges);
+    if (!in_order(view, GOE_POINT_BASE_LEFT, end) || !in_order(view, end, GOE_POINT_BASE_RIGHT)) {
+        return GOE_SWAPPED;
+    }
+    add_edge(settings, view, GOE_POINT_BASE_LEFT, end, edges);
+    if (near_corner) {
+        add_edge(settings, view, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_RIGHT, edges);
     }
     return GOE_OK;
 }

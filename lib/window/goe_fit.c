@@ -23,13 +23,13 @@ typedef struct {
 } moments_t;
 
 static void sum_means(const goe_fit_point_t *points, int length, moments_t *m) {
-    const goe_fit_point_t *end = points + length;
     float dx_m = 0.0f;
     float dz_m = 0.0f;
     float xi = 0.0f;
     float zeta = 0.0f;
     float largest_dz_m = points->dz_m;
-    for (const goe_fit_point_t *p = points; p != end; p++) {
+    for (int k = 0; k < length; k++) {
+        const goe_fit_point_t *p = &points[k];
         dx_m += p->dx_m;
         dz_m += p->dz_m;
         xi += p->xi;

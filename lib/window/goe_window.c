@@ -136,14 +136,6 @@ static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
 
 /* ------------------------------------------------------------------------------------------- what hangs on a solution -- */
 
-/* The reference point relative to the camera at this image. */
-static void follow_motion(goe_estimate_t *estimate, const goe_motion_t *motion) {
-    if (estimate->valid & GOE_HAS_POSITION) {
-        estimate->x_m = estimate->x0_m - motion->dx_m;
-        estimate->z_m = estimate->z0_m - motion->dz_m;
-    }
-}
-
 /* Takes one image's length or height into its sliding mean. A mean that is not positive is no answer. */
 static void take_extent(goe_mean_t *mean, int length, const goe_extent_t *extent, unsigned has, unsigned *valid,
                         float *value_m, float *sigma_m) {
@@ -251,7 +243,7 @@ static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
     if (frame->faults.first != GOE_OK) {
         return frame->faults.first;
     }
-    if (!goe_image_seen(frame->view->image)) {
+    if (!frame->view->seen) {
         return GOE_NOTHING_SEEN;
     }
     if (frame->settings->model == GOE_MODEL_LINE && frame->edges.count > 0 && !frame->line_row) {
@@ -285,7 +277,7 @@ goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *setti
     add_line_row(window, &frame);
 
     const goe_status_t solving = solve(window, &frame);
-    follow_motion(&window->estimate, view->motion);
+    goe_motion_relate(view->motion, &window->estimate);
     report_orientation(window, frame.turn);
     if (solving == GOE_OK) {
         measure_length(window, &frame);

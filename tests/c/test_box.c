@@ -306,11 +306,14 @@ static void depths_solve_their_equations(void) {
         state[GOE_SIDE_X] = (float)check_random_between(&any, -0.3, 0.3);
         state[GOE_FRONT_X] = (float)check_random_between(&any, 0.001, 0.3);
         state[GOE_DEPTH_DIFFERENCE] = (float)check_random_between(&any, -0.3, 0.3);
-        const goe_depth_t depth = goe_box_depth(state);
+        goe_box_edges_t edges;
+        goe_box_edges(state, &edges);
+        const double side = (double)edges.side.along.z;
+        const double front = fabs((double)edges.front.along.z);
         const double product = fabs((double)state[GOE_SIDE_X]) * (double)state[GOE_FRONT_X];
-        CHECK_CLOSE(1.0e-7, state[GOE_DEPTH_DIFFERENCE], (double)depth.side - (double)depth.front);
-        CHECK_CLOSE(1.0e-6 * product + 1.0e-12, product, (double)depth.side * (double)depth.front);
-        TEST_ASSERT_TRUE(depth.side >= 0.0f && depth.front >= 0.0f);
+        CHECK_CLOSE(1.0e-7, state[GOE_DEPTH_DIFFERENCE], side - front);
+        CHECK_CLOSE(1.0e-6 * product + 1.0e-12, product, side * front);
+        TEST_ASSERT_TRUE(side >= 0.0 && edges.front.along.z * state[GOE_SIDE_X] <= 0.0f);
     }
 }
 
