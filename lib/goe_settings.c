@@ -11,19 +11,19 @@ enum { GOE_KIND_REAL, GOE_KIND_COUNT, GOE_KIND_TRUTH, GOE_KIND_CHOICE };
 /* Arrays side by side, as entries of mixed sizes would be padded; names one after the other. Counts, truth values and choices
  * are exact in a float. */
 #define NAME(field, kind, unit, least, most, value, text) #field "\0"
-#define PLACE(field, kind, unit, least, most, value, text) (uint8_t)offsetof(goe_settings_t, field),
+#define PLACE(field, kind, unit, least, most, value, text) (uint16_t)offsetof(goe_settings_t, field),
 #define KIND(field, kind, unit, least, most, value, text) (uint8_t)GOE_KIND_##kind,
 #define RANGE(field, kind, unit, least, most, value, text) {(float)(least), (float)(most), (float)(value)},
 
 static const char names[] = GOE_SETTINGS(NAME);
-static const uint8_t places[] = {GOE_SETTINGS(PLACE)};
+static const uint16_t places[] = {GOE_SETTINGS(PLACE)};
 static const uint8_t kinds[] = {GOE_SETTINGS(KIND)};
 static const struct {
     float least, most, value;
 } ranges[] = {GOE_SETTINGS(RANGE)};
 #define SETTINGS (sizeof places / sizeof places[0])
 
-GOE_STATIC_ASSERT(sizeof(goe_settings_t) <= UINT8_MAX, a_place_fits_its_type);
+GOE_STATIC_ASSERT(sizeof(goe_settings_t) <= UINT16_MAX, a_place_fits_its_type);
 GOE_STATIC_ASSERT(sizeof(goe_method_t) == sizeof(goe_model_t), choices_are_of_one_size);
 
 static void write_field(unsigned char *field, uint8_t kind, float value) {

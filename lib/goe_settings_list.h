@@ -10,7 +10,8 @@
 
 #include "goe.h"
 
-/* clang-format off: a table. */
+/* A table, laid out by hand. */
+/* clang-format off */
 #define GOE_SETTINGS_CAMERA(X) \
     X(camera.fx_px, REAL, "px", 1.0f, 1.0e5f, 0.0f, "focal length along x") \
     X(camera.fy_px, REAL, "px", 1.0f, 1.0e5f, 0.0f, "focal length along y") \

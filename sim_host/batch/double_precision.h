@@ -29,6 +29,12 @@ static inline uint32_t goe_bits(double x) {
 
 static inline uint32_t goe_magnitude(double x) { return goe_bits(x) & GOE_MAGNITUDE_BITS; }
 
+static inline uint32_t goe_larger_bits(uint32_t a, uint32_t b) { return a > b ? a : b; }
+
+static inline uint32_t goe_largest_of_three(const double v[3]) {
+    return goe_larger_bits(goe_larger_bits(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
+}
+
 static inline double goe_absolute(double x) { return fabs(x); }
 
 static inline bool goe_within(double x, double limit) { return fabs(x) <= fabs(limit) && isfinite(x); }
