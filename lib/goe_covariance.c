@@ -6,23 +6,6 @@
 #include "maths/goe_angle.h"
 #include "refined/goe_quantities.h"
 
-goe_status_t goe_check_ready(const goe_estimator_t *estimator) {
-    if (!estimator) {
-        return GOE_BAD_ARGUMENT;
-    }
-    return estimator->ready == GOE_READY ? GOE_OK : GOE_NOT_INITIALISED;
-}
-
-const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
-#if !GOE_WITH_REFINED
-    return &estimator->window.estimate;
-#elif !GOE_WITH_WINDOW
-    return &estimator->estimate;
-#else
-    return goe_is_refined(estimator) ? &estimator->estimate : &estimator->window.estimate;
-#endif
-}
-
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
     const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
                                       sigma->width_m, sigma->length_m, sigma->height_m};

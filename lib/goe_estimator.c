@@ -17,7 +17,7 @@
 #include "window/goe_window.h"
 
 #define RESETS GOE_OK /* causes[0] counts tracks that an unknown filter reset ended */
-#define AGE_LIMIT_US 4000000000u
+#define AGE_MAX_US 4000000000u
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -42,7 +42,7 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
     }
     const int64_t latest_us = estimator->motion.time_us;
     const int64_t now_us = image_us > latest_us ? image_us : latest_us;
-    estimate->age_s = goe_time_between_s(solved_time_us(estimator), now_us, AGE_LIMIT_US);
+    estimate->age_s = goe_time_between_s(solved_time_us(estimator), now_us, AGE_MAX_US);
 }
 
 static void forget_track(goe_estimator_t *estimator) {

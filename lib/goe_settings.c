@@ -10,16 +10,16 @@ enum { GOE_KIND_REAL, GOE_KIND_COUNT, GOE_KIND_TRUTH, GOE_KIND_CHOICE };
 
 /* Arrays side by side, as entries of mixed sizes would be padded; names one after the other. Counts, truth values and choices
  * are exact in a float. */
-#define NAME(field, kind, unit, least, most, value, text) #field "\0"
-#define PLACE(field, kind, unit, least, most, value, text) (uint16_t)offsetof(goe_settings_t, field),
-#define KIND(field, kind, unit, least, most, value, text) (uint8_t)GOE_KIND_##kind,
-#define RANGE(field, kind, unit, least, most, value, text) {(float)(least), (float)(most), (float)(value)},
+#define NAME(field, kind, unit, low, high, value, text) #field "\0"
+#define PLACE(field, kind, unit, low, high, value, text) (uint16_t)offsetof(goe_settings_t, field),
+#define KIND(field, kind, unit, low, high, value, text) (uint8_t)GOE_KIND_##kind,
+#define RANGE(field, kind, unit, low, high, value, text) {(float)(low), (float)(high), (float)(value)},
 
 static const char names[] = GOE_SETTINGS(NAME);
 static const uint16_t places[] = {GOE_SETTINGS(PLACE)};
 static const uint8_t kinds[] = {GOE_SETTINGS(KIND)};
 static const struct {
-    float least, most, value;
+    float low, high, value;
 } ranges[] = {GOE_SETTINGS(RANGE)};
 #define SETTINGS (sizeof places / sizeof places[0])
 
@@ -79,7 +79,7 @@ const char *goe_settings_first_bad(const goe_settings_t *settings) {
     const char *name = names;
     for (size_t i = 0; i < SETTINGS; i++) {
         const float value = read_field((const unsigned char *)settings + places[i], kinds[i]);
-        if (goe_magnitude(value) >= GOE_INFINITY_BITS || !(value >= ranges[i].least && value <= ranges[i].most)) {
+        if (goe_magnitude(value) >= GOE_INFINITY_BITS || !(value >= ranges[i].low && value <= ranges[i].high)) {
             return name;
         }
         while (*name++ != '\0') {

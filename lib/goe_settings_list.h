@@ -1,7 +1,7 @@
 /* Every setting, once: defaults, checks, the programs' --set and the documentation come from this list.
  * SPDX-License-Identifier: MIT
  *
- *   X(field, kind, unit, least, most, by default, text)
+ *   X(field, kind, unit, low, high, by default, text)
  *
  * field is the path in goe_settings_t; kind REAL, COUNT (int), TRUTH (bool) or CHOICE (an enumeration, by its number). A
  * setting whose default is outside its range must be set. The settings of a part that was left out are in no list. */
@@ -30,7 +30,7 @@
     X(camera.offset_m[2], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body down")
 
 #define GOE_SETTINGS_GENERAL(X) \
-    X(method, CHOICE, "", GOE_METHOD_LEAST, GOE_METHOD_MOST, GOE_METHOD_MOST, "1 window, 2 refined") \
+    X(method, CHOICE, "", GOE_METHOD_MIN, GOE_METHOD_MAX, GOE_METHOD_MAX, "1 window, 2 refined") \
     X(model, CHOICE, "", GOE_MODEL_AUTO, GOE_MODEL_LINE, GOE_MODEL_AUTO, "1 auto, 2 disc, 3 line (refined: a box)") \
     X(heading_auto, TRUTH, "", 0, 1, 1, "direction of Z: the vehicle's yaw at the first image") \
     X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "direction of Z otherwise, clockwise from north")
@@ -77,7 +77,7 @@
 #else
 #define GOE_WINDOW_DEFAULT 8
 #endif
-#define GOE_METHOD_LEAST (GOE_WITH_WINDOW ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED)
-#define GOE_METHOD_MOST (GOE_WITH_REFINED ? GOE_METHOD_REFINED : GOE_METHOD_WINDOW)
+#define GOE_METHOD_MIN (GOE_WITH_WINDOW ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED)
+#define GOE_METHOD_MAX (GOE_WITH_REFINED ? GOE_METHOD_REFINED : GOE_METHOD_WINDOW)
 
 #endif

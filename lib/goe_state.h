@@ -88,17 +88,17 @@ typedef struct {
     float row[GOE_ROWS_MAX][GOE_COLUMNS];
 } goe_matrix_t;
 
-typedef struct
-{ /* refined/goe_filter.c: the axes of the state, with their origin at the camera at the filter's start */
+/* refined/goe_filter.c: the axes of the state, with their origin at the camera at the filter's start. */
+typedef struct {
     int64_t start_time_us;
     float turn_cos, turn_sin;     /* T turned by this about the vertical, clockwise seen from above */
     float start_dx_m, start_dz_m; /* that camera in T */
 } goe_axes_t;
 
-typedef struct { /* refined/goe_box_start.c: the box that the images before saw */
-    float extent
-        [2];   /* of two faces: their lateral extents, focal lengths; of one face: its orientation, rad, and nothing */
-    bool both; /* of two faces */
+/* refined/goe_box_start.c: the box that the images before saw. */
+typedef struct {
+    float extent[2]; /* of two faces: their lateral extents, focal lengths; of one: its orientation, rad, and nothing */
+    bool both;       /* of two faces */
     uint8_t agreeing; /* images in a row */
 } goe_candidate_t;
 
@@ -154,8 +154,8 @@ typedef struct {
     float camera_to_body[9];
     goe_settings_t settings;
 #if GOE_WITH_REFINED
-    int64_t estimate_time_us; /* image behind the estimate */
     goe_estimate_t estimate;  /* after the latest image, by whatever method */
+    int64_t estimate_time_us; /* image behind the estimate */
     goe_filter_t filter;
 #endif
 #if GOE_WITH_WINDOW

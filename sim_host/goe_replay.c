@@ -327,7 +327,7 @@ int main(int argc, char **argv) {
         {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},
         {"frames", 0, POPT_ARG_STRING, &options.frames, 0, "in place of DIR/frames.csv", "FILE"},
         {"settings", 0, POPT_ARG_NONE, &options.settings, 0,
-         "print every setting and exit: name, unit, least, most, default, text, between tabs", NULL},
+         "print every setting and exit: name, unit, low, high, default, text, between tabs", NULL},
         {"help", 'h', POPT_ARG_NONE, &options.help, 0, "print this and exit", NULL},
         {"version", 0, POPT_ARG_NONE, &options.version, 0, "print the version and exit", NULL},
         POPT_TABLEEND};

@@ -8,10 +8,10 @@
 
 #if GOE_WITH_HAZARD
 
-#define SIGMA_LEAST 1.0e-6f
-#define MOST 1.0e9f /* of any number reported */
+#define SIGMA_MIN 1.0e-6f
+#define NUMBER_MAX 1.0e9f /* of any number reported */
 
-float goe_bounded(float x) { return goe_within(x, MOST) ? x : (x < 0.0f ? -MOST : MOST); }
+float goe_bounded(float x) { return goe_within(x, NUMBER_MAX) ? x : (x < 0.0f ? -NUMBER_MAX : NUMBER_MAX); }
 
 void goe_affine_divide(goe_affine_t *affine, float divisor) {
     affine->value /= divisor;
@@ -38,7 +38,7 @@ float goe_affine_sigma(const goe_affine_t *affine, goe_covariance_t covariance) 
 }
 
 float goe_affine_below(const goe_affine_t *affine, float limit, goe_covariance_t covariance) {
-    return goe_normal_below((limit - affine->value) / goe_larger(goe_affine_sigma(affine, covariance), SIGMA_LEAST));
+    return goe_normal_below((limit - affine->value) / goe_larger(goe_affine_sigma(affine, covariance), SIGMA_MIN));
 }
 
 #endif

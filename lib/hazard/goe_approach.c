@@ -11,7 +11,7 @@
 #if GOE_WITH_HAZARD
 
 #define HOVER_M_S 0.1f /* slower than this is taken as standing still */
-#define SIGMA_LEAST 1.0e-6f
+#define SIGMA_MIN 1.0e-6f
 
 /* ---------------------------------------------------------------------------------------------------------- approach -- */
 
@@ -73,7 +73,7 @@ static float edge_variance(const goe_course_t *course, const goe_xz_t *edge, flo
                            float passes) {
     const float lean = goe_absolute(goe_xz_dot(*edge, course->side[GOE_RIGHT]));
     const float lead = goe_absolute(goe_xz_dot(*edge, course->ahead));
-    const float other = passes * goe_normal_below(-lean / goe_larger(lead * sigma_rad, SIGMA_LEAST));
+    const float other = passes * goe_normal_below(-lean / goe_larger(lead * sigma_rad, SIGMA_MIN));
     const float between_s = lead * length_m / course->speed_m_s;
     return other * (1.0f - other) * between_s * between_s;
 }
@@ -121,7 +121,7 @@ void goe_approach_find(const goe_outline_t *o, const goe_course_t *course, goe_c
         a->time_s = first.value;
         a->time_sd_s = time_sd(o, course, a, &first, covariance);
         share =
-            time_sd(o, course, a, &lowest, covariance) / goe_larger(goe_affine_sigma(&lowest, covariance), SIGMA_LEAST);
+            time_sd(o, course, a, &lowest, covariance) / goe_larger(goe_affine_sigma(&lowest, covariance), SIGMA_MIN);
     }
     find_clearance(course, &lowest, share, height_m, &a->clearance);
     if (!(a->time_s > 0.0f)) {

@@ -6,8 +6,8 @@
 
 #if GOE_WITH_HAZARD
 
-#define VELOCITY_MOST_M_S 1.0e3f
-#define DISTANCE_MOST_M 1.0e4f
+#define VELOCITY_MAX_M_S 1.0e3f
+#define DISTANCE_MAX_M 1.0e4f
 
 /* GOE_OK, or why the plan is refused. */
 static goe_status_t check_plan(const goe_plan_t *plan) {
@@ -17,8 +17,8 @@ static goe_status_t check_plan(const goe_plan_t *plan) {
     if (velocity >= GOE_INFINITY_BITS || margin >= GOE_INFINITY_BITS || clearance >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
-    const bool within = velocity <= goe_magnitude(VELOCITY_MOST_M_S) && margin <= goe_magnitude(DISTANCE_MOST_M) &&
-                        clearance <= goe_magnitude(DISTANCE_MOST_M);
+    const bool within = velocity <= goe_magnitude(VELOCITY_MAX_M_S) && margin <= goe_magnitude(DISTANCE_MAX_M) &&
+                        clearance <= goe_magnitude(DISTANCE_MAX_M);
     return within && plan->margin_m >= 0.0f && plan->clearance_m >= 0.0f ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 

@@ -9,10 +9,10 @@
 
 #if GOE_WITH_HAZARD
 
-#define PARALLEL 1.0e-5f      /* sine of an angle between two directions that counts as none */
-#define CHORD_LEAST_M 1.0e-3f /* half chord that a derivative divides by */
-#define DISTANCE_LEAST_M 1.0e-6f
-#define MOST 1.0e9f
+#define PARALLEL 1.0e-5f    /* sine of an angle between two directions that counts as none */
+#define CHORD_MIN_M 1.0e-3f /* half chord that a derivative divides by */
+#define DISTANCE_MIN_M 1.0e-6f
+#define NUMBER_MAX 1.0e9f
 
 /* ----------------------------------------------------------------------------------------------------------- outline -- */
 
@@ -79,7 +79,7 @@ static void chord_end(const goe_outline_t *o, const goe_course_t *course, float 
     const goe_xz_t *right = &course->side[GOE_RIGHT];
     const float off = goe_xz_dot(*right, o->reference);
     const float chord = sqrtf(goe_larger(o->half * o->half - off * off, 0.0f));
-    const float share = way / goe_larger(goe_larger(chord, sqrtf(o->half * sigma_m)), CHORD_LEAST_M);
+    const float share = way / goe_larger(goe_larger(chord, sqrtf(o->half * sigma_m)), CHORD_MIN_M);
     goe_outline_corner(o, &course->ahead, 0.0f, 0.0f, end);
     end->value += way * chord;
     end->by[GOE_X0] -= share * off * right->x;
@@ -134,7 +134,7 @@ void goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float w
 static goe_xz_t way_out_of_box(const goe_outline_t *o, const goe_course_t *course) {
     goe_affine_t depth;
     goe_xz_t best = course->ahead;
-    float least = MOST;
+    float least = NUMBER_MAX;
     for (int face = 0; face < GOE_CORNERS; face++) {
         const goe_xz_t normal = normal_of(o, face);
         goe_outline_reach(o, &normal, &depth);
@@ -153,7 +153,7 @@ static goe_xz_t way_from_box(const goe_outline_t *o, const goe_course_t *course)
     const float off_across = across - (across < -o->half ? -o->half : across > o->half ? o->half : across);
     const float off_along = along - (along < 0.0f ? 0.0f : along > o->length ? o->length : along);
     const float norm = sqrtf(off_across * off_across + off_along * off_along);
-    if (norm < DISTANCE_LEAST_M) {
+    if (norm < DISTANCE_MIN_M) {
         return way_out_of_box(o, course);
     }
     const goe_xz_t m = {(off_across * o->width_axis.x + off_along * o->length_axis.x) / norm,
@@ -168,7 +168,7 @@ static goe_xz_t way_from_disc(const goe_outline_t *o, const goe_course_t *course
         return course->ahead; /* inside, and the sides are nearer than what lies behind */
     }
     goe_xz_t m = {0.0f, 1.0f};
-    if (norm > DISTANCE_LEAST_M) {
+    if (norm > DISTANCE_MIN_M) {
         m.x = -c.x / norm;
         m.z = -c.z / norm;
     }

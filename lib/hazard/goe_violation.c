@@ -6,7 +6,7 @@
 
 #if GOE_WITH_HAZARD
 
-#define SIGMA_LEAST 1.0e-6f
+#define SIGMA_MIN 1.0e-6f
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
 
@@ -60,7 +60,7 @@ static void report(const goe_outline_t *o, const goe_course_t *course, const goe
     if (hazard->has_clearance) {
         const float sd = goe_affine_sigma(&a->clearance, covariance);
         const float shared = goe_affine_product(miss, &a->clearance, covariance);
-        const float correlation = shared / goe_larger(hazard->miss_sd_m, SIGMA_LEAST) / goe_larger(sd, SIGMA_LEAST);
+        const float correlation = shared / goe_larger(hazard->miss_sd_m, SIGMA_MIN) / goe_larger(sd, SIGMA_MIN);
         hazard->clearance_m = goe_bounded(a->clearance.value);
         hazard->clearance_sd_m = sd;
         hazard->violation =

@@ -7,7 +7,7 @@
 #define UNDISTORT_ROUNDS 20
 #define UNDISTORT_DONE 1.0e-7f   /* of the focal length; smaller steps are rounding */
 #define UNDISTORT_FAILED 1.0e-4f /* a last step larger than this did not converge */
-#define RAY_LIMIT 20.0f          /* 87 degrees off the axis: farther out no lens model means anything */
+#define RAY_MAX 20.0f            /* 87 degrees off the axis: farther out no lens model means anything */
 #define RADIAL_MIN 0.05f
 
 void goe_camera_mounting(const goe_camera_t *camera, float camera_to_body[9]) {
@@ -37,7 +37,7 @@ bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y
         const float tangential_y = camera->p1 * (r2 + 2.0f * y * y) + 2.0f * camera->p2 * x * y;
         const float next_x = (distorted_x - tangential_x) / radial;
         const float next_y = (distorted_y - tangential_y) / radial;
-        if (!goe_within(next_x, RAY_LIMIT) || !goe_within(next_y, RAY_LIMIT)) {
+        if (!goe_within(next_x, RAY_MAX) || !goe_within(next_y, RAY_MAX)) {
             return false;
         }
         step = goe_larger(goe_absolute(next_x - x), goe_absolute(next_y - y));

@@ -75,17 +75,3 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
     turn_into_trajectory(motion, body_to_ned, view);
 }
-
-void goe_motion_place(const goe_motion_t *motion, float x_m, float z_m, float *north_m, float *east_m) {
-    const float c = motion->heading_cos;
-    const float s = motion->heading_sin;
-    *north_m = motion->origin_ne_m[0] + (c * z_m - s * x_m);
-    *east_m = motion->origin_ne_m[1] + (s * z_m + c * x_m);
-}
-
-void goe_motion_relate(const goe_motion_t *motion, goe_estimate_t *estimate) {
-    if (estimate->valid & GOE_HAS_POSITION) {
-        estimate->x_m = estimate->x0_m - motion->dx_m;
-        estimate->z_m = estimate->z0_m - motion->dz_m;
-    }
-}

@@ -15,9 +15,19 @@ static inline bool goe_motion_reset(const goe_motion_t *motion, const goe_pose_t
 }
 
 /* (X, Z) in T, relative to T's origin, to north and east. */
-void goe_motion_place(const goe_motion_t *motion, float x_m, float z_m, float *north_m, float *east_m);
+static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float z_m, float *north_m, float *east_m) {
+    const float c = motion->heading_cos;
+    const float s = motion->heading_sin;
+    *north_m = motion->origin_ne_m[0] + (c * z_m - s * x_m);
+    *east_m = motion->origin_ne_m[1] + (s * z_m + c * x_m);
+}
 
 /* The estimate's reference point relative to the camera at the latest image, if it is known. */
-void goe_motion_relate(const goe_motion_t *motion, goe_estimate_t *estimate);
+static inline void goe_motion_relate(const goe_motion_t *motion, goe_estimate_t *estimate) {
+    if (estimate->valid & GOE_HAS_POSITION) {
+        estimate->x_m = estimate->x0_m - motion->dx_m;
+        estimate->z_m = estimate->z0_m - motion->dz_m;
+    }
+}
 
 #endif

@@ -1,4 +1,4 @@
-/* The faults met in one image: each is counted, the first is told. SPDX-License-Identifier: MIT */
+/* The faults met in one image: each is counted, the first is returned. SPDX-License-Identifier: MIT */
 #ifndef GOE_FAULT_H
 #define GOE_FAULT_H
 

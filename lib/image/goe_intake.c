@@ -4,24 +4,29 @@
 #include "image/goe_ego_motion.h"
 #include "maths/goe_scalar.h"
 
-#define POSITION_LIMIT_M 1.0e6f
-#define HEIGHT_LIMIT_M 1.0e5f
-#define PIXEL_LIMIT_PX 1.0e5f
-#define ATTITUDE_LIMIT 2.0f       /* per element: keeps the squares finite */
+#define POSITION_MAX_M 1.0e6f
+#define HEIGHT_MAX_M 1.0e5f
+#define PIXEL_MAX_PX 1.0e5f
+#define ATTITUDE_MAX 2.0f         /* per element: keeps the squares finite */
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
-static uint32_t largest_pixel(const goe_image_t *image) {
-    const goe_pixel_t *pixels = goe_image_pixels(image);
-    uint32_t largest = 0u;
-    for (size_t i = 0; i < GOE_FEATURES; i++) {
-        if (pixels[i].seen) {
-            largest = goe_larger_bits(largest, goe_magnitude(pixels[i].u_px));
-            largest = goe_larger_bits(largest, goe_magnitude(pixels[i].v_px));
-        }
-    }
-    return largest;
+static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
+    const uint32_t largest = goe_larger_bits(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px));
+    return pixel->seen ? goe_larger_bits(so_far, largest) : so_far;
 }
+
+/* Written out: this is done for every image, by every method. */
+static uint32_t largest_pixel(const goe_image_t *image) {
+    uint32_t largest = with_pixel(0u, &image->left);
+    largest = with_pixel(largest, &image->right);
+    largest = with_pixel(largest, &image->top);
+    largest = with_pixel(largest, &image->base_left);
+    largest = with_pixel(largest, &image->base_near);
+    return with_pixel(largest, &image->base_right);
+}
+
+GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_is_checked);
 
 /* Not finite outranks out of range, which outranks a bad attitude. */
 static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {
@@ -35,13 +40,13 @@ static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, b
     if (goe_larger_bits(goe_larger_bits(height, attitude), goe_larger_bits(position, pixel)) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
-    const bool within = height <= goe_magnitude(HEIGHT_LIMIT_M) && position <= goe_magnitude(POSITION_LIMIT_M) &&
-                        pixel <= goe_magnitude(PIXEL_LIMIT_PX);
+    const bool within = height <= goe_magnitude(HEIGHT_MAX_M) && position <= goe_magnitude(POSITION_MAX_M) &&
+                        pixel <= goe_magnitude(PIXEL_MAX_PX);
     return within ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
 static bool is_unit(const float q[4], uint32_t largest) {
-    if (largest > goe_magnitude(ATTITUDE_LIMIT)) {
+    if (largest > goe_magnitude(ATTITUDE_MAX)) {
         return false;
     }
     const float norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];

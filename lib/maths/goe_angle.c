@@ -62,10 +62,3 @@ void goe_sincos_deg(float deg, float *sine, float *cosine) {
             break;
     }
 }
-
-float goe_fold_deg(float deg) {
-    if (deg > 90.0f) {
-        return deg - 180.0f;
-    }
-    return deg <= -90.0f ? deg + 180.0f : deg;
-}

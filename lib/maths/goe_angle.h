@@ -12,6 +12,11 @@ float goe_arctan_rad(float y, float x);
 void goe_sincos_deg(float deg, float *sine, float *cosine);
 
 /* The angle of the same undirected line in (-90, 90] degrees, for -270 < deg <= 270. */
-float goe_fold_deg(float deg);
+static inline float goe_fold_deg(float deg) {
+    if (deg > 90.0f) {
+        return deg - 180.0f;
+    }
+    return deg <= -90.0f ? deg + 180.0f : deg;
+}
 
 #endif

@@ -4,7 +4,12 @@
 
 #include <stdint.h>
 
-/* Seconds from one time to a later one; a span longer than most_us counts as that. */
-float goe_time_between_s(int64_t from_us, int64_t to_us, uint32_t most_us);
+#define GOE_S_PER_US 1.0e-6f
+
+/* Seconds from one time to a later one; a span longer than max_us counts as that. */
+static inline float goe_time_between_s(int64_t from_us, int64_t to_us, uint32_t max_us) {
+    const uint64_t span_us = (uint64_t)to_us - (uint64_t)from_us;
+    return (float)(span_us < max_us ? (uint32_t)span_us : max_us) * GOE_S_PER_US;
+}
 
 #endif

@@ -16,19 +16,19 @@
 
 #if GOE_WITH_REFINED
 
-#define AHEAD_LEAST 0.01f  /* range below which a corner's direction is not compared */
+#define AHEAD_MIN 0.01f    /* range below which a corner's direction is not compared */
 #define AHEAD_TINY 1.0e-3f /* ... or ordered */
-#define SUM_LEAST 1.0e-12f
+#define SUM_MIN 1.0e-12f
 #define CURVATURE 2.0f      /* generous: the error is not a Gaussian one */
-#define EXTENT_LEAST 0.03f  /* of the sum of all extents */
-#define DEPTH_LEAST 0.3f    /* sz over |sx| */
+#define EXTENT_MIN 0.03f    /* of the sum of all extents */
+#define DEPTH_MIN 0.3f      /* sz over |sx| */
 #define EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names, in the state and in the report */
 #define LENGTH_FREED 2.0f   /* one sigma of the length, relative, when its face comes into view */
 #define EARLY 4.0f
-#define EARLY_MOST 4.0f
+#define EARLY_MAX 4.0f
 #define OUTLINE_RAD 0.025f  /* one sigma of what a box by its outline misses: orientation */
 #define OUTLINE_SHARE 0.03f /* ... extents, of width and length together */
-#define SINE2_LEAST 1.0e-6f
+#define SINE2_MIN 1.0e-6f
 #define CLEARLY_PX 4.0f /* sigmas of a pixel by which one reading of the outline must fit better */
 
 enum { FRONT_LEFT, BACK_LEFT, BACK_RIGHT, FRONT_RIGHT, CORNERS }; /* clockwise */
@@ -55,8 +55,8 @@ void goe_box_edges(const float x[GOE_STATES], goe_box_edges_t *e) {
     const float across = goe_absolute(x[GOE_SIDE_X]);
     const float sign = sign_of(x[GOE_SIDE_X]);
     const float product = across * x[GOE_FRONT_X];
-    const float sum = goe_larger(sqrtf(d * d + 4.0f * product), SUM_LEAST);
-    /* the larger one by adding, the smaller one by the product: no cancellation */
+    const float sum = goe_larger(sqrtf(d * d + 4.0f * product), SUM_MIN);
+    /* (R9): the larger one by adding, the smaller one by the product: no cancellation */
     const float larger = 0.5f * (sum + goe_absolute(d));
     const float smaller = product / larger;
     e->sum = sum;
@@ -129,7 +129,7 @@ static float misfit(const goe_observation_t *obs, const outline_t *o, const size
     float sum = 0.0f;
     for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i += 2) {
         const float z = o->corner[corner[i]].z;
-        const float x = o->corner[corner[i]].x / (z > AHEAD_LEAST ? z : AHEAD_LEAST);
+        const float x = o->corner[corner[i]].x / (z > AHEAD_MIN ? z : AHEAD_MIN);
         sum += goe_absolute(obs->point[GOE_POINT_BASE_LEFT + i].x - x);
     }
     return sum;
@@ -188,7 +188,7 @@ static void set_corner(goe_rows_t *rows, float by[restrict GOE_STATES], const go
     rows->variance[rows->count - 1u] += missed * missed;
 }
 
-/* Two rows, the second free of the first one's noise. */
+/* (R11): two rows, the second free of the first one's noise. */
 GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature,
                                          size_t corner, goe_rows_t *rows) {
     goe_gradient_t gx;
@@ -217,7 +217,7 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     by[GOE_HEIGHT_BIAS] = gy.y * obs->state[GOE_INVERSE_RANGE];
 }
 
-/* The vertical edge over an outer corner, at the height at which it was measured. */
+/* (R12): the upright edge over an outer corner, at the height at which it was measured. */
 static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
                            goe_rows_t *rows) {
     goe_gradient_t g;
@@ -227,7 +227,7 @@ static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe
     }
 }
 
-/* The corner of the roof nearest to the camera; seen from above the highest in the image is the farthest. */
+/* (R13): the corner of the roof nearest to the camera; seen from above the highest in the image is the farthest. */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
     const bool highest = obs->settings->refined.top_is_highest && o->top > 0.0f;
     const bool right = o->right != highest;
@@ -272,11 +272,11 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 void goe_box_clip(goe_filter_t *filter) {
     goe_box_edges_t edges;
     float *x = filter->state;
-    const float least = EXTENT_LEAST * (goe_absolute(x[GOE_SIDE_X]) + goe_absolute(x[GOE_FRONT_X]) +
-                                        goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
+    const float least = EXTENT_MIN * (goe_absolute(x[GOE_SIDE_X]) + goe_absolute(x[GOE_FRONT_X]) +
+                                      goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
     x[GOE_FRONT_X] = goe_larger(x[GOE_FRONT_X], least);
     x[GOE_DEPTH_DIFFERENCE] =
-        goe_larger(x[GOE_DEPTH_DIFFERENCE], DEPTH_LEAST * goe_absolute(x[GOE_SIDE_X]) - x[GOE_FRONT_X] / DEPTH_LEAST);
+        goe_larger(x[GOE_DEPTH_DIFFERENCE], DEPTH_MIN * goe_absolute(x[GOE_SIDE_X]) - x[GOE_FRONT_X] / DEPTH_MIN);
     goe_box_edges(x, &edges);
     if (edges.side.along.z < least) {
         x[GOE_DEPTH_DIFFERENCE] = least - goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X] / least;
@@ -304,7 +304,7 @@ static void exchange_state(float x[GOE_STATES]) {
     x[GOE_TOP] *= scale;
 }
 
-/* R in the new states: the derivative of the old ones by them is that of the exchange back. */
+/* (R21): the derivative of the old states by the new ones is that of the exchange back. */
 static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     goe_substitution_t old;
     const float *is = filter->state;
@@ -399,7 +399,7 @@ static void set_orientation(goe_linear_t *orientation, const goe_box_edge_t *sid
 
 static float early_factor(const goe_filter_t *filter, const goe_box_edges_t *e) {
     const float relative = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE) / goe_square(e->sum);
-    return 1.0f + EARLY * (relative < EARLY_MOST ? relative : EARLY_MOST);
+    return 1.0f + EARLY * (relative < EARLY_MAX ? relative : EARLY_MAX);
 }
 
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
@@ -452,7 +452,7 @@ float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *sh
         return size2;
     }
     const float sine2 = side_share2(filter, camera_m);
-    return size2 + goe_square(shape->quantity[quantity].value) * orientation_rad2 / (sine2 + SINE2_LEAST);
+    return size2 + goe_square(shape->quantity[quantity].value) * orientation_rad2 / (sine2 + SINE2_MIN);
 }
 
 #endif

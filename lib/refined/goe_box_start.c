@@ -9,16 +9,16 @@
 
 #if GOE_WITH_REFINED
 
-#define RANGE_LEAST_M 1.0f
-#define HEIGHT_LEAST_M 0.3f /* camera over ground: lower the corners' y say nothing */
-#define NEARER_MOST 1.7f    /* 1/range of a corner over the state's 1/range */
-#define FARTHER_MOST 0.6f
+#define RANGE_MIN_M 1.0f
+#define HEIGHT_MIN_M 0.3f /* camera over ground: lower the corners' y say nothing */
+#define NEARER_MAX 1.7f   /* 1/range of a corner over the state's 1/range */
+#define FARTHER_MAX 0.6f
 #define POINT_NOISE 1.5f  /* one sigma of a difference of two points, in those of a pixel */
 #define SURE_SIGMAS2 4.0f /* a difference in depth counts only as far as it exceeds 2 sigma, or luck would pass */
-#define EDGE_LEAST_M2 1.0e-6f
-#define SIGMA_MOST_RAD 0.2f
-#define SIZE_MOST 0.4f /* of the range */
-#define SIZE_LEAST_M 0.05f
+#define EDGE_MIN_M2 1.0e-6f
+#define SIGMA_MAX_RAD 0.2f
+#define SIZE_SHARE_MAX 0.4f /* of the range */
+#define SIZE_MIN_M 0.05f
 #define QUARTER_TURN_RAD 1.57079633f
 #define ONE_FACE_IMAGES 3   /* that must agree before a box starts from one face */
 #define TWO_FACES_IMAGES 2  /* ... from two */
@@ -29,7 +29,7 @@
 #define SIZE_FREEDOM 2.0f  /* one sigma of the extents at the start, in the larger side */
 #define DEPTH_FREEDOM 4.0f /* ... of the depth difference */
 #define DEPTH_HELD 0.01f   /* ... if one face alone is seen */
-#define FACE_LEAST_PX 3.0f /* lateral extent of a face, in sigmas of a pixel */
+#define FACE_MIN_PX 3.0f   /* lateral extent of a face, in sigmas of a pixel */
 
 /* Into the state's scale; reference: middle of the front edge from the camera, in the footprint's axes. False if it is out of
  * bounds. */
@@ -38,13 +38,13 @@ static bool scale(const goe_observation_t *obs, goe_xz_t reference, float width_
     const float c = box->turn_cos;
     const float s = box->turn_sin;
     const float z0_m = reference.z + s * obs->camera_m.x + c * obs->camera_m.z;
-    if (!(z0_m >= RANGE_LEAST_M) || goe_larger(width_m, length_m) > SIZE_MOST * range_m) {
+    if (!(z0_m >= RANGE_MIN_M) || goe_larger(width_m, length_m) > SIZE_SHARE_MAX * range_m) {
         return false;
     }
     box->q = 1.0f / z0_m;
     box->a = (reference.x + c * obs->camera_m.x - s * obs->camera_m.z) * box->q;
-    box->width = goe_larger(width_m, SIZE_LEAST_M) * box->q;
-    box->length = goe_larger(length_m, SIZE_LEAST_M) * box->q;
+    box->width = goe_larger(width_m, SIZE_MIN_M) * box->q;
+    box->length = goe_larger(length_m, SIZE_MIN_M) * box->q;
     return true;
 }
 
@@ -54,7 +54,7 @@ static float range_of(const goe_observation_t *obs) { return 1.0f / obs->state[G
 
 bool goe_footprint_two_faces(const goe_observation_t *obs, goe_footprint_t *box) {
     const float range_m = range_of(obs);
-    if (!obs->base || !obs->point[GOE_POINT_BASE_NEAR].usable || !(range_m >= RANGE_LEAST_M)) {
+    if (!obs->base || !obs->point[GOE_POINT_BASE_NEAR].usable || !(range_m >= RANGE_MIN_M)) {
         return false;
     }
     const float corner = goe_observation_unbiased(obs, GOE_POINT_BASE_NEAR).x;
@@ -64,7 +64,7 @@ bool goe_footprint_two_faces(const goe_observation_t *obs, goe_footprint_t *box)
     const float left_m = box->left * range_m * c;
     const float right_m = box->right * range_m * c;
     const float least_m = left_m < right_m ? left_m : right_m;
-    if (!(least_m > FACE_LEAST_PX * goe_observation_pixel(obs) * range_m)) {
+    if (!(least_m > FACE_MIN_PX * goe_observation_pixel(obs) * range_m)) {
         return false;
     }
     /* side (right_m, deep_m) and front (left_m, -deep_m) are square to each other; or the names exchanged */
@@ -91,7 +91,7 @@ typedef struct {
 static bool place_end(const goe_point_t *point, float mean_y, const face_t *face, goe_xz_t *end) {
     const float nearness = 1.0f / face->range_m;
     const float inverse = nearness + (point->y - mean_y) / face->height_m;
-    if (!(inverse >= FARTHER_MOST * nearness && inverse <= NEARER_MOST * nearness)) {
+    if (!(inverse >= FARTHER_MAX * nearness && inverse <= NEARER_MAX * nearness)) {
         return false;
     }
     end->z = 1.0f / inverse;
@@ -106,7 +106,7 @@ static bool place_face(const goe_observation_t *obs, face_t *face) {
     return place_end(&left, mean_y, face, &face->left) && place_end(&right, mean_y, face, &face->right);
 }
 
-/* One sigma of the orientation that an edge tells, rad. */
+/* One sigma of the orientation by an edge, rad. */
 static float edge_sigma(const goe_observation_t *obs, const face_t *face, float x, float z) {
     const float pixel = goe_observation_pixel(obs) * POINT_NOISE;
     const float deep = face->range_m * face->range_m / face->height_m * pixel;
@@ -115,7 +115,7 @@ static float edge_sigma(const goe_observation_t *obs, const face_t *face, float 
         face->range_m / face->height_m * (obs->settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) * x * x;
     const float noise = sqrtf(deep * x * (deep * x) + wide * z * (wide * z) + tilt * tilt);
     const float sure = z * z - SURE_SIGMAS2 * deep * deep;
-    return noise / goe_larger(x * x + goe_larger(sure, 0.0f), EDGE_LEAST_M2);
+    return noise / goe_larger(x * x + goe_larger(sure, 0.0f), EDGE_MIN_M2);
 }
 
 /* An edge that lies more across than along is the front, any other the side. */
@@ -143,8 +143,8 @@ bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box) 
     face_t face;
     face.range_m = range_of(obs);
     face.height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
-    if (!obs->base || !(face.range_m >= RANGE_LEAST_M) || !(obs->height_m >= HEIGHT_LEAST_M) ||
-        !(face.height_m >= HEIGHT_LEAST_M) || !place_face(obs, &face)) {
+    if (!obs->base || !(face.range_m >= RANGE_MIN_M) || !(obs->height_m >= HEIGHT_MIN_M) ||
+        !(face.height_m >= HEIGHT_MIN_M) || !place_face(obs, &face)) {
         return false;
     }
     const float x = face.right.x - face.left.x;
@@ -152,7 +152,7 @@ bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box) 
     box->turn_cos = 1.0f;
     box->turn_sin = 0.0f;
     box->sigma_rad = edge_sigma(obs, &face, x, z);
-    if (!(x * x + z * z >= EDGE_LEAST_M2) || !(box->sigma_rad < SIGMA_MOST_RAD)) {
+    if (!(x * x + z * z >= EDGE_MIN_M2) || !(box->sigma_rad < SIGMA_MAX_RAD)) {
         return false;
     }
     const float size_m = sqrtf(x * x + z * z);
@@ -199,7 +199,7 @@ static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, 
 
 static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_footprint_t *box) {
     const bool both = obs->point[GOE_POINT_BASE_NEAR].usable;
-    if (both != filter->candidate.both) { /* what the images before told is no candidate of this kind */
+    if (both != filter->candidate.both) { /* the candidate of the images before is of the other kind */
         filter->candidate.both = both;
         filter->candidate.agreeing = 0;
     }

@@ -10,28 +10,28 @@
 
 #if GOE_WITH_REFINED
 
-#define RANGE_SHARE 0.1f    /* one sigma of 1/Z0 over it, for a disc to change */
-#define DISC_FREEDOM 0.05f  /* what the disc's tangents left behind in the chord, of its width */
-#define AHEAD_LEAST 1.0e-3f /* of an end, units of Z0 */
-#define AHEAD_TINY 0.02f    /* of the chord's middle */
-#define PLACE_SHARE 0.25f   /* of the width by which the middle may lie beside the centre of the obstacle */
-#define TOP_NOISE 0.3f      /* of the nearest corner's place, over the chord */
-#define TOP_FREEDOM 0.1f    /* the same from image to image */
-#define TOP_MOVED 0.5f      /* ... and at the box's start */
-#define MEMORY 0.25f        /* of one image in outward, turning */
-#define SIGMAS2_MOST 25.0f  /* of one image */
-#define LEFT_SIGMAS 1.0f    /* outward: an end is leaving */
-#define GONE_SIGMAS 1.8f    /* outward: an end has left */
+#define RANGE_SHARE 0.1f   /* one sigma of 1/Z0 over it, for a disc to change */
+#define DISC_FREEDOM 0.05f /* what the disc's tangents left behind in the chord, of its width */
+#define AHEAD_MIN 1.0e-3f  /* of an end, units of Z0 */
+#define AHEAD_TINY 0.02f   /* of the chord's middle */
+#define PLACE_SHARE 0.25f  /* of the width by which the middle may lie beside the centre of the obstacle */
+#define TOP_NOISE 0.3f     /* of the nearest corner's place, over the chord */
+#define TOP_FREEDOM 0.1f   /* the same from image to image */
+#define TOP_MOVED 0.5f     /* ... and at the box's start */
+#define MEMORY 0.25f       /* of one image in outward, turning */
+#define SIGMAS2_MAX 25.0f  /* of one image */
+#define LEFT_SIGMAS 1.0f   /* outward: an end is leaving */
+#define GONE_SIGMAS 1.8f   /* outward: an end has left */
 #define TURNING_SIGMAS 0.4f
-#define SETTLED_IMAGES 16    /* before an end can be told to leave */
+#define SETTLED_IMAGES 16    /* before an end can be taken to leave */
 #define END_FREEDOM 0.5f     /* of an end that is learnt anew, over the chord */
 #define DEPTH_UNNOTICED 0.1f /* what the images between a face's turning away and its being noticed did to the chord */
 #define WIDTH_UNNOTICED 0.05f
 #define CORNER_RAD 0.5f /* one sigma of the corner's place on the circle */
 #define BOX_FREEDOM 0.01f
-#define PLACE2_MOST 0.2401f /* (0.49)^2: of the corner's place along the chord from its middle; 1/2 is its end */
-#define ZETA_LEAST 0.3f
-#define SIGMA_LEAST 1.0e-6f
+#define PLACE2_MAX 0.2401f /* (0.49)^2: of the corner's place along the chord from its middle; 1/2 is its end */
+#define ZETA_MIN 0.3f
+#define SIGMA_MIN 1.0e-6f
 
 static float chord_length(const float x[GOE_STATES]) {
     return sqrtf(goe_square(x[GOE_SIDE_X]) + goe_square(x[GOE_FRONT_X]));
@@ -43,16 +43,16 @@ static float top_y(const goe_observation_t *obs) {
 }
 
 static void inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) {
-    goe_filter_inflate(filter, state, goe_larger(sigma, SIGMA_LEAST));
+    goe_filter_inflate(filter, state, goe_larger(sigma, SIGMA_MIN));
 }
 
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
-/* An end of the chord, from the camera now, units of Z0. side: of the chord's middle, -1/2 left, +1/2 right. */
+/* (R8): an end of the chord, from the camera now, units of Z0. side: of the chord's middle, -1/2 left, +1/2 right. */
 static goe_xz_t end_of(const goe_observation_t *obs, float side) {
     const goe_xz_t middle = goe_observation_reference(obs);
     const goe_xz_t end = {middle.x + side * obs->state[GOE_FRONT_X],
-                          goe_larger(middle.z + side * obs->state[GOE_SIDE_X], AHEAD_LEAST)};
+                          goe_larger(middle.z + side * obs->state[GOE_SIDE_X], AHEAD_MIN)};
     return end;
 }
 
@@ -129,7 +129,7 @@ void goe_chord_follow(goe_filter_t *filter, const goe_verdict_t *verdict) {
     if (verdict->held >= GOE_FEATURES) {
         return;
     }
-    const float most2 = SIGMAS2_MOST;
+    const float most2 = SIGMAS2_MAX;
     const float sigmas = sqrtf(goe_within(verdict->held_sigmas2, most2) ? verdict->held_sigmas2 : most2);
     const float outward = verdict->held_outward ? sigmas : -sigmas;
     filter->leaving.outward += (outward - filter->leaving.outward) * MEMORY;
@@ -163,7 +163,7 @@ static bool find_corner(const goe_observation_t *obs, goe_feature_t feature, goe
     corner->x = range * ray - middle.x;
     corner->z = range - middle.z;
     const float place = (corner->x * x[GOE_FRONT_X] + corner->z * x[GOE_SIDE_X]) / length2;
-    return place * place <= PLACE2_MOST;
+    return place * place <= PLACE2_MAX;
 }
 
 /* The front is the edge that lies more across. */
@@ -190,7 +190,7 @@ static faces_t faces_at(const float x[GOE_STATES], goe_xz_t corner) {
 /* False if these are no faces of a box. */
 static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
     const float zeta = 1.0f + faces->shift.z;
-    if (!(zeta >= ZETA_LEAST) || !(faces->front.x > 0.0f) || !(faces->side.z > 0.0f)) {
+    if (!(zeta >= ZETA_MIN) || !(faces->front.x > 0.0f) || !(faces->side.z > 0.0f)) {
         return false;
     }
     const float scale = 1.0f / zeta;
@@ -203,7 +203,7 @@ static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
     return true;
 }
 
-/* Derivatives of the chord by the box. The chord's middle lies half a side behind that of the front; its idle state stands
+/* (R21): derivatives of the chord by the box. The chord's middle lies half a side behind that of the front; its idle state stands
  * for the corner's place on the circle: twice the angle between chord and front, tan = side over front. */
 static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES], float side_sign,
                           goe_substitution_t *old) {

@@ -9,13 +9,13 @@
 
 #if GOE_WITH_REFINED
 
-#define AHEAD_LEAST 1.0e-3f /* centre, units of Z0: nearer gives no rows */
+#define AHEAD_MIN 1.0e-3f   /* centre, units of Z0: nearer gives no rows */
 #define TANGENT_AHEAD 0.02f /* third component of a tangent's unit vector */
-#define SINE_LEAST 1.0e-5f  /* of half the angle that the disc covers */
-#define SINE_MOST 0.98f
+#define SINE_MIN 1.0e-5f    /* of half the angle that the disc covers */
+#define SINE_MAX 0.98f
 #define STAND_IN_SHAPE 0.05f /* shape_share that is added while a box is taken for a disc */
-#define WIDTH_LEAST 1.0e-5f  /* between left and right, focal lengths */
-#define RANGE_LEAST_M 1.0f   /* of a first guess */
+#define WIDTH_MIN 1.0e-5f    /* between left and right, focal lengths */
+#define RANGE_MIN_M 1.0f     /* of a first guess */
 #define GROUND_SIGMAS 3.0f   /* by which the base must lie below the horizon to tell the range */
 #define RANGE_FREEDOM 2.0f   /* one sigma of the first guess of 1/Z0, relative */
 #define WIDTH_FREEDOM 5.0f   /* ... of the width */
@@ -34,19 +34,19 @@ typedef struct {
 
 static bool describe(const goe_observation_t *obs, circle_t *o) {
     o->center = goe_observation_reference(obs);
-    if (!(o->center.z >= AHEAD_LEAST)) {
+    if (!(o->center.z >= AHEAD_MIN)) {
         return false;
     }
     o->distance = sqrtf(goe_xz_dot(o->center, o->center));
     o->to.x = o->center.x / o->distance;
     o->to.z = o->center.z / o->distance;
     const float sine = 0.5f * obs->state[GOE_FRONT_X] / o->distance;
-    o->sine = sine > SINE_MOST ? SINE_MOST : (sine > SINE_LEAST ? sine : SINE_LEAST);
+    o->sine = sine > SINE_MAX ? SINE_MAX : (sine > SINE_MIN ? sine : SINE_MIN);
     o->cosine = sqrtf(1.0f - o->sine * o->sine);
     return true;
 }
 
-/* Which features tell the width; false if none do. */
+/* Which features give the width; false if none do. */
 static bool outline_features(const goe_observation_t *obs, goe_feature_t *left, goe_feature_t *right) {
     const bool silhouette = obs->point[GOE_POINT_LEFT].usable && obs->point[GOE_POINT_RIGHT].usable;
     *left = silhouette || !obs->base ? GOE_POINT_LEFT : GOE_POINT_BASE_LEFT;
@@ -54,7 +54,7 @@ static bool outline_features(const goe_observation_t *obs, goe_feature_t *left, 
     return silhouette || obs->base;
 }
 
-/* The tangent's azimuth is that of the centre plus or minus asin(r/d). */
+/* (R5): the tangent's azimuth is that of the centre plus or minus asin(r/d). */
 static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_feature_t feature, float side, float more,
                         goe_rows_t *rows) {
     goe_gradient_t g;
@@ -81,7 +81,7 @@ static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_fea
     by[GOE_BEHIND_STATES] -= by_skew * obs->state[GOE_SIDE_X];
 }
 
-/* The nearest point of the upper rim; seen from above the highest in the image is the farthest. */
+/* (R6): the nearest point of the upper rim; seen from above the highest in the image is the farthest. */
 static void add_top(const goe_observation_t *obs, const circle_t *o, float more, goe_rows_t *rows) {
     goe_gradient_t g;
     const float y = goe_observation_roof(obs);
@@ -180,14 +180,14 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
         return false;
     }
     const float width = obs->point[right].x - obs->point[left].x;
-    if (!(width >= WIDTH_LEAST)) {
+    if (!(width >= WIDTH_MIN)) {
         return false;
     }
     const float middle = 0.5f * (obs->point[left].x + obs->point[right].x);
     const float size = width / sqrtf(1.0f + middle * middle);
     const float range_m = first_range_m(obs, size);
     const float z0_m = range_m + obs->camera_m.z;
-    if (!(z0_m >= RANGE_LEAST_M)) {
+    if (!(z0_m >= RANGE_MIN_M)) {
         return false;
     }
     const float top = obs->point[GOE_POINT_TOP].usable ? obs->point[GOE_POINT_TOP].y : 0.0f;

@@ -9,22 +9,22 @@
 #define RECENT_MEMORY 0.125f /* of one image in recent_nis */
 #define MEAN_IMAGES 64       /* that mean_nis remembers */
 #define MEAN_SEEDS 8         /* images of NIS 0 that it is begun with: the first ones alone say little */
-#define RATIO_MOST 20.0f     /* of NIS over rows of one image: one outlier must not decide */
-#define RECENT_MOST 6.0f     /* recent_nis that only a captured state reaches */
+#define RATIO_MAX 20.0f      /* of NIS over rows of one image: one outlier must not decide */
+#define RECENT_MAX 6.0f      /* recent_nis that only a captured state reaches */
 #define POOR_IMAGES 3
 #define REFUSED_IMAGES 4 /* images in a row in which a point is refused before the state is doubted */
 #define REFUSED_ENDS 8   /* the same while an end may leave the chord */
 #define REFUSED_TOPS 3
 #define EARLY_IMAGES 32 /* of the track: what does not fit in them began with an outlier */
-#define FAILURES_MOST 2 /* times that a box of base corners may prove wrong */
+#define FAILURES_MAX 2  /* times that a box of base corners may prove wrong */
 #define TOP_FREEDOM 2.0f
-#define STATE_MOST 1.0e6f
-#define NIS_MOST 1.0e6f
+#define STATE_MAX 1.0e6f
+#define NIS_MAX 1.0e6f
 
 /* ---------------------------------------------------------------------------------------------------------- means -- */
 
 static void average(float *mean, float ratio, float memory) {
-    *mean += ((ratio < RATIO_MOST ? ratio : RATIO_MOST) - *mean) * memory;
+    *mean += ((ratio < RATIO_MAX ? ratio : RATIO_MAX) - *mean) * memory;
 }
 
 static unsigned bits_of(unsigned set) {
@@ -52,10 +52,10 @@ void goe_health_expect(goe_health_t *health) {
 }
 
 void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis) {
-    health->nis = goe_within(nis, NIS_MOST) ? nis : NIS_MOST;
+    health->nis = goe_within(nis, NIS_MAX) ? nis : NIS_MAX;
     health->nis_rows = (int16_t)verdict.rows;
     const float ratio = health->nis / (float)verdict.rows;
-    average_track(health, is_poor(verdict) ? RATIO_MOST : ratio); /* what is left fits, and says nothing */
+    average_track(health, is_poor(verdict) ? RATIO_MAX : ratio); /* what is left fits, and says nothing */
     if (health->recent_nis < 0.0f) {
         health->recent_nis = 1.0f;
     } else {
@@ -65,7 +65,7 @@ void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis) {
 
 void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict) {
     if (verdict.measured != 0) {
-        average_track(health, RATIO_MOST);
+        average_track(health, RATIO_MAX);
     }
 }
 
@@ -109,7 +109,7 @@ static void free_top(goe_filter_t *filter) {
 static bool is_sane(const goe_filter_t *filter) {
     bool sane = filter->state[GOE_FRONT_X] > 0.0f;
     for (size_t i = 0; i < GOE_STATES; i++) {
-        sane = goe_within(filter->state[i], STATE_MOST) &&
+        sane = goe_within(filter->state[i], STATE_MAX) &&
                goe_magnitude(filter->root.element[goe_srif_row(i) + i]) < GOE_INFINITY_BITS && sane;
     }
     return sane;
@@ -120,7 +120,7 @@ static bool is_sane(const goe_filter_t *filter) {
 static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) {
     const bool by_corners = filter->phase == GOE_PHASE_BOX || filter->phase == GOE_PHASE_BOX_FACE;
     if (by_corners && settings->model == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
-        filter->health.base_refused = goe_count_image(&filter->health.failed) >= FAILURES_MOST;
+        filter->health.base_refused = goe_count_image(&filter->health.failed) >= FAILURES_MAX;
     }
 }
 
@@ -130,7 +130,7 @@ bool goe_health_is_lost(goe_filter_t *filter, const goe_settings_t *settings, go
     if (health->refused[GOE_POINT_TOP] >= REFUSED_TOPS) {
         free_top(filter);
     }
-    if (!captured && !(health->recent_nis > RECENT_MOST) && is_sane(filter)) {
+    if (!captured && !(health->recent_nis > RECENT_MAX) && is_sane(filter)) {
         return false;
     }
     count_failure(filter, settings);

@@ -5,8 +5,8 @@
 
 #if GOE_WITH_REFINED
 
-#define ABEAM 0.02f           /* third component of an aligned point's ray after the turn */
-#define FORWARD_LEAST 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
+#define ABEAM 0.02f         /* third component of an aligned point's ray after the turn */
+#define FORWARD_MIN 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
 static bool in_order(goe_point_t *left, goe_point_t *right) {
@@ -89,7 +89,7 @@ void goe_observation_linearise(goe_observation_t *obs) {
 /* 1/Z of the point in the true axes. */
 static float nearness(const goe_observation_t *obs, float x, float y, float z) {
     const float turned_z = z + obs->ex * y - obs->ey * x;
-    return 1.0f / (turned_z < FORWARD_LEAST ? FORWARD_LEAST : turned_z);
+    return 1.0f / (turned_z < FORWARD_MIN ? FORWARD_MIN : turned_z);
 }
 
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x) {

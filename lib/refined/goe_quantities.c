@@ -13,21 +13,21 @@
 
 #if GOE_WITH_REFINED
 
-#define RANGE_SHARE 0.25f   /* sigma over value up to which the range is reported */
-#define EXTENT_SHARE 0.3f   /* ... width, length and height */
-#define HEIGHT_LEAST_M 2.0f /* a lower obstacle's height may be off by the share of this */
-#define ORIENTATION_MOST_RAD 0.174532925f
+#define RANGE_SHARE 0.25f /* sigma over value up to which the range is reported */
+#define EXTENT_SHARE 0.3f /* ... width, length and height */
+#define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
+#define ORIENTATION_MAX_RAD 0.174532925f
 #define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
 #define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
-#define PATH_LEAST_M 0.1f
-#define TIME_MOST_US 4000000000u
-#define METRES_MOST 1.0e6f
+#define PATH_MIN_M 0.1f
+#define TIME_MAX_US 4000000000u
+#define METRES_MAX 1.0e6f
 
 static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION && quantity <= GOE_LENGTH; }
 
 /* ------------------------------------------------------------------------------------------------------------- drift -- */
 
-/* Constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no image shows
+/* (R23): constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no image shows
  * that. */
 typedef struct {
     goe_xz_t camera_m; /* since the filter's start */
@@ -37,10 +37,10 @@ typedef struct {
 
 static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
     drift_t drift;
-    const float s = goe_time_between_s(filter->axes.start_time_us, motion->time_us, TIME_MOST_US);
+    const float s = goe_time_between_s(filter->axes.start_time_us, motion->time_us, TIME_MAX_US);
     drift.camera_m = goe_filter_camera(filter, motion);
     const float path_m = sqrtf(goe_xz_dot(drift.camera_m, drift.camera_m));
-    drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_LEAST_M ? path_m : PATH_LEAST_M);
+    drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
     drift.walk_m2 = goe_square(navigation->position_walk_m) * s;
     return drift;
 }
@@ -93,7 +93,7 @@ static float variance_of(const goe_filter_t *filter, float by[GOE_STATES]) {
 /* Within a share of the value, and finite, by the bits. */
 static bool is_known(float value, float sigma, float least, float share) {
     const float size = goe_larger(goe_absolute(value), least);
-    return goe_within(value, METRES_MOST) && goe_within(size, METRES_MOST) && goe_within(sigma, share * size);
+    return goe_within(value, METRES_MAX) && goe_within(size, METRES_MAX) && goe_within(sigma, share * size);
 }
 
 static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
@@ -101,8 +101,8 @@ static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
 }
 
 static bool is_position(const goe_filter_t *filter, const goe_quantities_t *q) {
-    return goe_within(q->value[GOE_X0] + filter->axes.start_dx_m, METRES_MOST) &&
-           goe_within(q->value[GOE_Z0] + filter->axes.start_dz_m, METRES_MOST) &&
+    return goe_within(q->value[GOE_X0] + filter->axes.start_dx_m, METRES_MAX) &&
+           goe_within(q->value[GOE_Z0] + filter->axes.start_dz_m, METRES_MAX) &&
            goe_within(q->sigma[GOE_X0], RANGE_SHARE * q->value[GOE_Z0]) &&
            is_known(q->value[GOE_Z0], q->sigma[GOE_Z0], 0.0f, RANGE_SHARE);
 }
@@ -121,7 +121,7 @@ static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t
     if (q->box && filter->phase != GOE_PHASE_BOX_FACE && is_extent(q, GOE_LENGTH, 0.0f)) {
         known |= GOE_HAS_LENGTH;
     }
-    if (q->box && goe_within(q->sigma[GOE_ORIENTATION], ORIENTATION_MOST_RAD)) {
+    if (q->box && goe_within(q->sigma[GOE_ORIENTATION], ORIENTATION_MAX_RAD)) {
         known |= GOE_HAS_ORIENTATION;
     }
     return known;
@@ -132,7 +132,7 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q)
     if (!is_position(filter, q)) {
         return 0;
     }
-    return GOE_HAS_POSITION | (is_extent(q, GOE_HEIGHT, HEIGHT_LEAST_M) ? GOE_HAS_HEIGHT : 0u) |
+    return GOE_HAS_POSITION | (is_extent(q, GOE_HEIGHT, HEIGHT_MIN_M) ? GOE_HAS_HEIGHT : 0u) |
            (knows_extents(filter) ? known_extents(filter, q) : 0u);
 }
 
@@ -164,7 +164,7 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
         goe_shape_place(&shape->middle, shape->scale_m, i == 0 ? -s : c, i == 0 ? c : s, by);
         q->center_sd_m[i] = sqrtf(variance_of(filter, by) + drift_variance(motion, drift, shape, q->box, GOE_Z0));
     }
-    if (goe_within(q->center_sd_m[0], METRES_MOST) && goe_within(q->center_sd_m[1], METRES_MOST)) {
+    if (goe_within(q->center_sd_m[0], METRES_MAX) && goe_within(q->center_sd_m[1], METRES_MAX)) {
         q->known |= GOE_HAS_CENTER;
     }
 }

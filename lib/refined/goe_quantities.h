@@ -19,7 +19,7 @@ typedef struct {
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          goe_quantities_t *quantities);
 
-/* Covariance of the six quantities, metres and radians, of the filter's present state. from_datum: the top's height is counted
+/* (R22): covariance of the six quantities, metres and radians, of the filter's present state. from_datum: the top's height is counted
  * from the altimeter's zero, not from the ground: its constant error cancels between camera and top. */
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                                bool from_datum, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);

@@ -18,14 +18,14 @@
 
 #if GOE_WITH_REFINED
 
-#define GAP_MOST_US 1000000000u /* a longer gap between images counts as this one */
-#define AHEAD_LEAST 0.02f       /* of the reference point, units of Z0 */
+#define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
+#define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
-/* Process noise: the attitude's bias drifts, the own position walks. */
+/* (R14), process noise: the attitude's bias drifts, the own position walks. */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, int64_t time_us) {
-    const float root_s = sqrtf(goe_time_between_s(filter->time_us, time_us, GAP_MOST_US));
+    const float root_s = sqrtf(goe_time_between_s(filter->time_us, time_us, GAP_MAX_US));
     const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * root_s;
     const float walk = navigation->position_walk_m * root_s * filter->state[GOE_INVERSE_RANGE];
     filter->time_us = time_us;
@@ -43,9 +43,9 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
 
-/* What linearising at an uncertain range may miss: the second order of 1/Z. */
+/* (R15): what linearising at an uncertain range may miss, the second order of 1/Z. */
 static void allow_for_curvature(const goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
-    const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_LEAST);
+    const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
     const float missed = obs->camera_m.z * goe_filter_variance(filter, GOE_INVERSE_RANGE) / ahead;
     for (size_t i = 0; i < rows->count; i++) {
         rows->variance[i] += goe_square(rows->matrix->row[i][GOE_STATE_COLUMN + GOE_INVERSE_RANGE] * missed);

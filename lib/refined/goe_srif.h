@@ -20,7 +20,7 @@ static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
 
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
-/* Rotates whitened rows into R by Householder reflections and solves for the change of the state. nuisance_root: 1/sigma of
+/* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state. nuisance_root: 1/sigma of
  * the nuisances. *matrix is used up. Returns the squared norm that is left of the residuals: the normalised innovation
  * squared. */
 float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]);
@@ -60,7 +60,7 @@ typedef struct {
     float by[GOE_CHANGED][GOE_CHANGED]; /* [old][new] */
 } goe_substitution_t;
 
-/* R in the new states; *rows is used up. */
+/* (R21): R in the new states; *rows is used up. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows);
 
 #endif

@@ -12,8 +12,8 @@
 #if GOE_WITH_WINDOW
 
 #define PARALLAX_MIN 1.0e-6f /* change of the rows over the window, of their size: below lies the rounding of floats */
-#define LIMIT_M 1.0e6f       /* no obstacle is farther away or wider */
-#define SIGMA_LIMIT_M 1.0e9f /* so that squares and products of sigmas stay finite */
+#define METRES_MAX 1.0e6f    /* no obstacle is farther away or wider */
+#define SIGMA_MAX_M 1.0e9f   /* so that squares and products of sigmas stay finite */
 
 typedef struct {
     float dx_m, dz_m, xi, zeta; /* means over the window */
@@ -70,7 +70,7 @@ static float squared_residuals(const goe_fit_point_t *points, int length, const 
     return sum;
 }
 
-static float bounded(float sigma_m) { return sigma_m < SIGMA_LIMIT_M ? sigma_m : SIGMA_LIMIT_M; }
+static float bounded(float sigma_m) { return sigma_m < SIGMA_MAX_M ? sigma_m : SIGMA_MAX_M; }
 
 /* From the covariance of the fit: 1/W has s2/D, the window means have s2/N, and they are independent. */
 static void set_sigmas(const moments_t *m, int length, float squares, goe_estimate_t *fit) {
@@ -100,7 +100,7 @@ goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_bas
     const float width_m = 1.0f / inverse_width;
     const float x0_m = width_m * m.xi + m.dx_m;
     const float z0_m = width_m * m.zeta + m.dz_m;
-    if (!goe_within(width_m, LIMIT_M) || !goe_within(x0_m, LIMIT_M) || !goe_within(z0_m, LIMIT_M)) {
+    if (!goe_within(width_m, METRES_MAX) || !goe_within(x0_m, METRES_MAX) || !goe_within(z0_m, METRES_MAX)) {
         return GOE_NO_PARALLAX;
     }
     if (z0_m <= m.largest_dz_m) {

@@ -20,13 +20,12 @@ typedef struct {
     size_t offset; /* in goe_settings_t */
     setting_kind_t kind;
     const char *unit;
-    double least, most, value; /* value: by default */
+    double low, high, value; /* value: by default */
     const char *text;
 } setting_t;
 
-#define SETTING(field, kind, unit, least, most, value, text)                                                           \
-    {#field, offsetof(goe_settings_t, field), KIND_##kind, unit, (double)(least), (double)(most), (double)(value),     \
-     text},
+#define SETTING(field, kind, unit, low, high, value, text)                                                             \
+    {#field, offsetof(goe_settings_t, field), KIND_##kind, unit, (double)(low), (double)(high), (double)(value), text},
 
 /* The tuned ones first: the others have places of their own in logs and options. */
 static const setting_t settings_by_name[] = {GOE_SETTINGS_REFINED(SETTING) GOE_SETTINGS_WINDOW(SETTING)
@@ -34,7 +33,7 @@ static const setting_t settings_by_name[] = {GOE_SETTINGS_REFINED(SETTING) GOE_S
 #define SETTINGS (sizeof settings_by_name / sizeof settings_by_name[0])
 
 static size_t count_tuned(void) {
-#define ONE(field, kind, unit, least, most, value, text) +1u
+#define ONE(field, kind, unit, low, high, value, text) +1u
     return 0u GOE_SETTINGS_REFINED(ONE) GOE_SETTINGS_WINDOW(ONE);
 #undef ONE
 }
@@ -159,7 +158,7 @@ bool settings_in_range(const goe_settings_t *settings, setting_fault_t *fault) {
         return true;
     }
     const setting_t *setting = find_setting(name, strlen(name), SETTINGS);
-    (void)snprintf(fault->text, sizeof fault->text, "%s: out of range: %g to %g", name, setting->least, setting->most);
+    (void)snprintf(fault->text, sizeof fault->text, "%s: out of range: %g to %g", name, setting->low, setting->high);
     return false;
 }
 
@@ -204,7 +203,7 @@ bool settings_list(FILE *stream) {
     for (size_t i = 0; i < SETTINGS; i++) {
         const setting_t *s = &settings_by_name[i];
         good = good &&
-               fprintf(stream, "%s\t%s\t%g\t%g\t%g\t%s\n", s->name, s->unit, s->least, s->most, s->value, s->text) > 0;
+               fprintf(stream, "%s\t%s\t%g\t%g\t%g\t%s\n", s->name, s->unit, s->low, s->high, s->value, s->text) > 0;
     }
     return good;
 }

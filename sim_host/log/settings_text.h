@@ -27,7 +27,7 @@ bool settings_in_range(const goe_settings_t *settings, setting_fault_t *fault);
 /* The names of the settings to be tuned with their values, in lines. False if they could not be written. */
 bool settings_print(FILE *stream, const goe_settings_t *settings);
 
-/* All settings, a line each: name, unit, least, most, default, text, between tabs. False if they could not be written. */
+/* All settings, a line each: name, unit, low, high, default, text, between tabs. False if they could not be written. */
 bool settings_list(FILE *stream);
 
 #endif

@@ -125,7 +125,7 @@ static double predict(const sighting_t *of, const double state[GOE_STATES], size
     if (feature == GOE_POINT_TOP) {
         return seen[1];
     }
-    const goe_spread_t spread = goe_observation_spread(&of->sight, feature);
+    const goe_spread_t spread = goe_observation_spread(&of->sight, (goe_feature_t)feature);
     return seen[1] - (double)spread.xy / (double)spread.xx * seen[0]; /* free of the first row's noise */
 }
 

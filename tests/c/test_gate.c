@@ -30,7 +30,7 @@ static void add_row(size_t feature, bool along_y) {
     g.ey = (float)(along_y ? x * y : 1.0 + x * x);
     g.ex = (float)(along_y ? -(1.0 + y * y) : -x * y);
     g.ez = (float)(along_y ? x : -y);
-    (void)goe_rows_add(&rows, feature, 0.0f, (float)(SIGMA * SIGMA), &g);
+    (void)goe_rows_add(&rows, (goe_feature_t)feature, 0.0f, (float)(SIGMA * SIGMA), &g);
 }
 
 void setUp(void) {

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.optimum import goals
+from goe_tools.optimum.goals import command as goals
+from goe_tools.optimum.goals import work
 from synthetic_campaign import write_campaign
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -143,7 +144,7 @@ def set_up() -> None:
 @pytest.fixture
 def few_flights(monkeypatch: pytest.MonkeyPatch) -> None:
     few = replace(
-        goals.QUICK, seeds=1, field_seeds=1, random=4, offline=2, rivals=2, recorded=1, recorded_seeds=1,
+        work.QUICK, seeds=1, field_seeds=1, random=4, offline=2, rivals=2, recorded=1, recorded_seeds=1,
         precision_seeds=1,
     )  # fmt: skip
     monkeypatch.setattr(goals, "QUICK", few)
@@ -213,8 +214,9 @@ def test_quick_goals_and_their_report(tmp_path: Path, few_flights: None, built: 
     assert "goals are met" in page.read_text(encoding="utf-8")
 
 
-def test_goals(few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["goals", "--only", "gauss1"]) == 0
+@pytest.mark.parametrize("group", ["gauss1", "float32"])
+def test_goals(group: str, few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["goals", "--only", group]) == 0
     assert re.search(r"\d+ of \d+ goals met", capsys.readouterr().out)
 
 
@@ -226,6 +228,7 @@ RUN_HERE: dict[str, Callable[..., None]] = {
     "tools/setup.sh --rivals": test_set_up_with_rivals,
     "ctest -L targets": test_targets_are_listed,
     "python -m goe_tools goals": test_goals,
+    "python -m goe_tools goals --only float32": test_goals,
     "python -m goe_tools goals --quick": test_quick_goals_and_their_report,
     "python -m goe_tools goals --json": test_quick_goals_and_their_report,
     "python -m goe_tools report --goals --out": test_quick_goals_and_their_report,

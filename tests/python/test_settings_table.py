@@ -65,10 +65,10 @@ def test_the_header_tells_range_and_default(rows: list[Setting]) -> None:
             continue
         found = re.search(rf"; {NUMBER} to {NUMBER}; (?:no default: must be set|default {NUMBER})", text)
         assert found, f"{row.name}: {comment}"
-        least, most, value = found.groups()
-        assert float(least) == pytest.approx(float(row.least), rel=1e-6), row.name
-        if most != "GOE_WINDOW_MAX":  # the programs are built with a larger one
-            assert float(most) == pytest.approx(float(row.most), rel=1e-6), row.name
+        low, high, value = found.groups()
+        assert float(low) == pytest.approx(float(row.low), rel=1e-6), row.name
+        if high != "GOE_WINDOW_MAX":  # the programs are built with a larger one
+            assert float(high) == pytest.approx(float(row.high), rel=1e-6), row.name
         assert (value is None) == (row.default == "must be set"), row.name
         assert value is None or float(value) == pytest.approx(float(row.value), rel=1e-6), row.name
         checked += 1
@@ -93,6 +93,6 @@ def test_the_command_mends_a_page(rows: list[Setting], tmp_path: Path) -> None:
 
 
 def test_other_settings_than_the_lists_are_noticed(rows: list[Setting]) -> None:
-    other = [Setting(**{**vars(row), "most": "7"}) for row in rows]
+    other = [Setting(**{**vars(row), "high": "7"}) for row in rows]
     assert table(other) != table(rows)
     assert Path(MANUAL).exists()

@@ -23,21 +23,21 @@ MANUAL = ROOT / "lib" / "README.md"
 class Setting:
     name: str
     unit: str
-    least: str
-    most: str
+    low: str
+    high: str
     value: str  # by default
     text: str
 
     @property
     def default(self) -> str:
         """A default outside its range says that the user has to set it."""
-        inside = float(self.least) <= float(self.value) <= float(self.most)
+        inside = float(self.low) <= float(self.value) <= float(self.high)
         return self.value if inside and not self.name.startswith("camera.c") else "must be set"
 
     @property
     def limit(self) -> str:
         """The programs are built with the largest window that there is; a firmware has its own."""
-        return "`GOE_WINDOW_MAX`" if self.name == "window.points" else self.most
+        return "`GOE_WINDOW_MAX`" if self.name == "window.points" else self.high
 
 
 def program() -> Path:
@@ -52,7 +52,7 @@ def settings(replay: Path | None = None) -> list[Setting]:
 
 def table(rows: list[Setting]) -> str:
     head = ["| setting | unit | range | default | meaning |", "|---|---|---|---|---|"]
-    body = [f"| `{s.name}` | {s.unit or '-'} | {s.least} to {s.limit} | {s.default} | {s.text} |" for s in rows]
+    body = [f"| `{s.name}` | {s.unit or '-'} | {s.low} to {s.limit} | {s.default} | {s.text} |" for s in rows]
     return "\n".join([*head, *body])
 
 

@@ -12,7 +12,7 @@ from .single import ONE, TWO, ZERO, F, larger, magnitude, within
 
 UNDISTORT_ROUNDS = 20
 UNDISTORT_DONE, UNDISTORT_FAILED = F(1.0e-7), F(1.0e-4)
-RAY_LIMIT, RADIAL_MIN, RADIAL_MAX = F(20.0), F(0.05), F(1.0e6)
+RAY_MAX, RADIAL_MIN, RADIAL_MAX = F(20.0), F(0.05), F(1.0e6)
 FORWARD_MIN = F(0.05)
 
 
@@ -51,7 +51,7 @@ def undistort(lens: Camera32, distorted_x: np.float32, distorted_y: np.float32) 
         tangential_y = lens.p1 * (r2 + TWO * y * y) + TWO * lens.p2 * x * y
         next_x = (distorted_x - tangential_x) / radial
         next_y = (distorted_y - tangential_y) / radial
-        if not within(next_x, RAY_LIMIT) or not within(next_y, RAY_LIMIT):
+        if not within(next_x, RAY_MAX) or not within(next_y, RAY_MAX):
             return None
         step = larger(np.abs(next_x - x), np.abs(next_y - y))
         x, y = next_x, next_y

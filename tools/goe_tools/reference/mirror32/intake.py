@@ -8,7 +8,7 @@ import numpy as np
 
 from .single import Decisions, F, magnitude
 
-POSITION_LIMIT_M, HEIGHT_LIMIT_M, PIXEL_LIMIT_PX, ATTITUDE_LIMIT = F(1.0e6), F(1.0e5), F(1.0e5), F(2.0)
+POSITION_MAX_M, HEIGHT_MAX_M, PIXEL_MAX_PX, ATTITUDE_MAX = F(1.0e6), F(1.0e5), F(1.0e5), F(2.0)
 NORM2_MIN, NORM2_MAX = F(0.99) * F(0.99), F(1.01) * F(1.01)
 INFINITY_BITS = 0x7F800000
 
@@ -24,9 +24,9 @@ class Pose:
 def intake_check(
     pose: Pose, pixels: dict[str, tuple[np.float32, np.float32]], last_time_us: int | None, taken: Decisions
 ) -> str:
-    limits = [(pose.height_m, HEIGHT_LIMIT_M)]
-    limits += [(value, POSITION_LIMIT_M) for value in pose.position_ned_m]
-    limits += [(value, PIXEL_LIMIT_PX) for pixel in pixels.values() for value in pixel]
+    limits = [(pose.height_m, HEIGHT_MAX_M)]
+    limits += [(value, POSITION_MAX_M) for value in pose.position_ned_m]
+    limits += [(value, PIXEL_MAX_PX) for pixel in pixels.values() for value in pixel]
     q = pose.attitude
     if any(magnitude(value) >= INFINITY_BITS for value in [*q, *(value for value, _ in limits)]):
         return "not_finite"
@@ -34,7 +34,7 @@ def intake_check(
         return "out_of_range"
     if pose.time_us is None or (last_time_us is not None and pose.time_us <= last_time_us):
         return "bad_time"
-    if any(magnitude(value) > magnitude(ATTITUDE_LIMIT) for value in q):
+    if any(magnitude(value) > magnitude(ATTITUDE_MAX) for value in q):
         return "bad_attitude"
     norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
     taken["attitude"] = bool(norm2 < NORM2_MIN or norm2 > NORM2_MAX)

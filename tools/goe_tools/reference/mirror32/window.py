@@ -8,7 +8,7 @@ import numpy as np
 
 from .single import ONE, ZERO, Decisions, F, larger, within
 
-PARALLAX_MIN, LIMIT_M, SIGMA_LIMIT_M = F(1.0e-6), F(1.0e6), F(1.0e9)
+PARALLAX_MIN, METRES_MAX, SIGMA_MAX_M = F(1.0e-6), F(1.0e6), F(1.0e9)
 COUNT_MAX = 32767
 
 
@@ -48,7 +48,7 @@ class Fit:
 
 
 def bounded(sigma_m: np.float32) -> np.float32:
-    return sigma_m if sigma_m < SIGMA_LIMIT_M else SIGMA_LIMIT_M
+    return sigma_m if sigma_m < SIGMA_MAX_M else SIGMA_MAX_M
 
 
 def window_solve(window: Window, min_baseline_m: np.float32, taken: Decisions) -> tuple[str, Fit | None]:
@@ -82,7 +82,7 @@ def window_solve(window: Window, min_baseline_m: np.float32, taken: Decisions) -
     width_m = ONE / inverse_width
     x0_m = width_m * mean_xi + mean_dx
     z0_m = width_m * mean_zeta + mean_dz
-    taken["limit"] = not (within(width_m, LIMIT_M) and within(x0_m, LIMIT_M) and within(z0_m, LIMIT_M))
+    taken["limit"] = not (within(width_m, METRES_MAX) and within(x0_m, METRES_MAX) and within(z0_m, METRES_MAX))
     if taken["limit"]:
         return "no_parallax", None
     taken["passed"] = bool(z0_m <= largest_dz)

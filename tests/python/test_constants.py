@@ -1,0 +1,50 @@
+"""The theory of refined: its table has every constant of the sources, and the equations that the sources name exist."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOM = Path(__file__).resolve().parents[2] / "lib" / "refined"
+KINDS = set("dlsgbc")
+
+DEFINITION = re.compile(r"^#define (\w+) \(?(-?[0-9][0-9.]*(?:e-?[0-9]+)?)[fu]*\)?(?:\s|$)", re.MULTILINE)
+TABLE_ROW = re.compile(r"^\| (goe_\w+\.[ch]) \| `(\w+)` \| ([^ |]+) \| (\w) \| (.+) \|$", re.MULTILINE)
+LABEL = re.compile(r"\(R(\d+)\)$", re.MULTILINE)
+
+
+def numbers_in(sources: dict[str, str]) -> dict[tuple[str, str], float]:
+    """Every macro that is a number, by file and name."""
+    return {(file, name): float(value) for file, text in sources.items() for name, value in DEFINITION.findall(text)}
+
+
+def room_sources() -> dict[str, str]:
+    return {path.name: path.read_text() for path in sorted(ROOM.glob("*.[ch]"))}
+
+
+def theory() -> str:
+    return (ROOM / "README.md").read_text()
+
+
+def test_the_table_has_every_constant_of_the_sources_with_its_value() -> None:
+    rows = TABLE_ROW.findall(theory())
+    told = {(file, name): float(value) for file, name, value, _, _ in rows}
+    assert len(told) == len(rows), "a constant stands in the table twice"
+    assert told == numbers_in(room_sources())
+    assert {kind for _, _, _, kind, _ in rows} <= KINDS
+
+
+def test_a_constant_is_found_however_it_is_written() -> None:
+    text = "#define A 1.0e-3f /* x */\n#define B (-1.0f)\n#define C 4000000000u\n#define D GOE_STATES\n#define E_H\n"
+    assert numbers_in({"f": text}) == {("f", "A"): 1e-3, ("f", "B"): -1.0, ("f", "C"): 4e9}
+
+
+def test_equations_are_numbered_in_order() -> None:
+    labels = [int(label) for label in LABEL.findall(theory())]
+    assert labels == list(range(1, len(labels) + 1))
+
+
+def test_equations_that_the_sources_name_exist() -> None:
+    known = {int(label) for label in LABEL.findall(theory())}
+    named = {int(number) for text in room_sources().values() for number in re.findall(r"\(R(\d+)\)", text)}
+    assert named and named <= known
