@@ -237,7 +237,7 @@ typedef struct {
 typedef struct {
     int points;               /* image points in the window of (5), also of the sliding means; 3 to GOE_WINDOW_MAX; default 8
                                  (or GOE_WINDOW_MAX, if that is less) */
-    int line_points;          /* model auto: line points before the line is reported; 1 to 1000; default 8 */
+    int line_points;          /* model auto: line points before the line is reported, at least `points`; 1 to 1000; default 8 */
     float edge_min_px;        /* an edge counts if its ends are farther apart in the raw image, px; 0 to 1e4; default 10 */
     float orientation_min_px; /* ... and has an orientation if they differ by more in aligned y, px; 0 to 1e4; default 2 */
     float side_min_px;        /* length is skipped while an end of the side edge is nearer to x' = 0, px; 0.1 to 1e4;

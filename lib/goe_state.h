@@ -1,7 +1,7 @@
 /* The estimator's memory. Private to the library; in a header because the caller owns the memory. Included by goe.h alone.
  * SPDX-License-Identifier: MIT
  *
- * Each type is written by the one file that is named at it. */
+ * At each type stands the file that keeps it; a new track, and the start of a phase or a model, set it back. */
 #ifndef GOE_STATE_H
 #define GOE_STATE_H
 
@@ -134,7 +134,7 @@ typedef struct {
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
     bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
     goe_naming_t naming;
-    float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since */
+    float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since `inverse` was taken */
     goe_candidate_t candidate;
     goe_leaving_t leaving;
     goe_health_t health;

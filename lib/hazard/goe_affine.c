@@ -20,7 +20,7 @@ void goe_affine_divide(goe_affine_t *affine, float divisor) {
     }
 }
 
-float goe_affine_product(const goe_affine_t *a, const goe_affine_t *b, goe_covariance_t covariance) {
+float goe_affine_covariance(const goe_affine_t *a, const goe_affine_t *b, goe_covariance_t covariance) {
     float sum = 0.0f;
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float row = 0.0f;
@@ -33,7 +33,7 @@ float goe_affine_product(const goe_affine_t *a, const goe_affine_t *b, goe_covar
 }
 
 float goe_affine_sigma(const goe_affine_t *affine, goe_covariance_t covariance) {
-    const float variance = goe_affine_product(affine, affine, covariance);
+    const float variance = goe_affine_covariance(affine, affine, covariance);
     return variance > 0.0f ? goe_bounded(sqrtf(variance)) : 0.0f;
 }
 

@@ -14,7 +14,7 @@ typedef struct {
 void goe_affine_divide(goe_affine_t *affine, float divisor);
 
 /* Covariance of two such numbers. */
-float goe_affine_product(const goe_affine_t *a, const goe_affine_t *b, goe_covariance_t covariance);
+float goe_affine_covariance(const goe_affine_t *a, const goe_affine_t *b, goe_covariance_t covariance);
 
 float goe_affine_sigma(const goe_affine_t *affine, goe_covariance_t covariance);
 

@@ -4,8 +4,9 @@
 
 #include "hazard/goe_outline.h"
 
-/* side: signed distances beside the outline, to that side of the course: it is passed with the obstacle on the other. These
- * exclude each other, so that their probabilities add. ahead: along the course, or, of what does not come nearer, from the outline to the camera. */
+/* side[i]: distance by which the course clears the outline on its side i, negative if it crosses. Only one of them can be
+ * positive, so that their probabilities add. ahead: along the course, or, of what does not come nearer, from the outline to
+ * the camera. */
 typedef struct {
     goe_affine_t side[GOE_SIDES], ahead, clearance;
     float time_s, time_sd_s;

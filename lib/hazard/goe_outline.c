@@ -29,7 +29,7 @@ void goe_outline_of(const goe_estimate_t *estimate, goe_outline_t *o) {
     o->box = estimate->model != GOE_MODEL_DISC && (estimate->valid & needed) == needed;
 }
 
-void goe_outline_corner(const goe_outline_t *o, const goe_xz_t *m, float side, float end, goe_affine_t *at) {
+void goe_outline_corner_along(const goe_outline_t *o, const goe_xz_t *m, float side, float end, goe_affine_t *at) {
     const float across = goe_xz_dot(*m, o->width_axis);
     const float along = goe_xz_dot(*m, o->length_axis);
     const float side_m = side * 2.0f * o->half;
@@ -48,7 +48,7 @@ GOE_NOINLINE static void corner_on(const goe_outline_t *o, const goe_xz_t *m, fl
                                    goe_affine_t *at) {
     const float side = across < 0.0f ? -0.5f : 0.5f;
     const float end = along > 0.0f ? 1.0f : 0.0f;
-    goe_outline_corner(o, m, o->box ? side : 0.0f, o->box ? end : 0.0f, at);
+    goe_outline_corner_along(o, m, o->box ? side : 0.0f, o->box ? end : 0.0f, at);
 }
 
 void goe_outline_reach(const goe_outline_t *o, const goe_xz_t *m, goe_affine_t *reach) {
@@ -80,7 +80,7 @@ static void chord_end(const goe_outline_t *o, const goe_course_t *course, float 
     const float off = goe_xz_dot(*right, o->reference);
     const float chord = sqrtf(goe_larger(o->half * o->half - off * off, 0.0f));
     const float share = way / goe_larger(goe_larger(chord, sqrtf(o->half * sigma_m)), CHORD_MIN_M);
-    goe_outline_corner(o, &course->ahead, 0.0f, 0.0f, end);
+    goe_outline_corner_along(o, &course->ahead, 0.0f, 0.0f, end);
     end->value += way * chord;
     end->by[GOE_X0] -= share * off * right->x;
     end->by[GOE_Z0] -= share * off * right->z;

@@ -35,7 +35,7 @@ void goe_outline_of(const goe_estimate_t *estimate, goe_outline_t *o);
 
 /* *at = m k at a corner k of a box, m held in the derivatives: side -0.5 or 0.5 of the width, end 0 or 1 of the length. At the
  * reference point both are 0. */
-void goe_outline_corner(const goe_outline_t *o, const goe_xz_t *m, float side, float end, goe_affine_t *at);
+void goe_outline_corner_along(const goe_outline_t *o, const goe_xz_t *m, float side, float end, goe_affine_t *at);
 
 /* h(m), |m| = 1. */
 void goe_outline_reach(const goe_outline_t *o, const goe_xz_t *m, goe_affine_t *reach);

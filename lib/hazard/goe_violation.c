@@ -22,7 +22,7 @@ static float side_violation(const goe_outline_t *o, const goe_affine_t *nearest,
     float most = goe_affine_below(nearest, margin_m, covariance);
     for (int i = 0; o->box && i < GOE_CORNERS; i++) {
         goe_affine_t d;
-        goe_outline_corner(o, away, (i & 1) ? 0.5f : -0.5f, (i & 2) ? 1.0f : 0.0f, &d);
+        goe_outline_corner_along(o, away, (i & 1) ? 0.5f : -0.5f, (i & 2) ? 1.0f : 0.0f, &d);
         most = goe_larger(goe_affine_below(&d, margin_m, covariance), most);
     }
     return most;
@@ -59,7 +59,7 @@ static void report(const goe_outline_t *o, const goe_course_t *course, const goe
     hazard->violation = margin_violation(o, course, a, plan->margin_m, covariance);
     if (hazard->has_clearance) {
         const float sd = goe_affine_sigma(&a->clearance, covariance);
-        const float shared = goe_affine_product(miss, &a->clearance, covariance);
+        const float shared = goe_affine_covariance(miss, &a->clearance, covariance);
         const float correlation = shared / goe_larger(hazard->miss_sd_m, SIGMA_MIN) / goe_larger(sd, SIGMA_MIN);
         hazard->clearance_m = goe_bounded(a->clearance.value);
         hazard->clearance_sd_m = sd;

@@ -3,7 +3,7 @@
  * Seen from above, lengths in units of Z0; P: middle of the front edge relative to the camera now.
  *
  *        BL ------ BR          side edge  (sx, sz), from the front backwards
- *        |          |          front edge (fx, fz), fz = -fx sx/sz
+ *        |          |          front edge (fx, fz), fz = -fx sx/sz: square to the side, signed
  *        |          |          corner     P + across (fx, fz) + along (sx, sz)
  *        FL -- P -- FR */
 #include "refined/goe_box.h"
@@ -40,7 +40,7 @@ static const float along_of[CORNERS] = {0.0f, 1.0f, 1.0f, 0.0f};
 typedef struct {
     goe_box_edges_t edges;
     goe_xz_t middle;   /* P */
-    float curvature;   /* one sigma of what linearising the depths at an uncertain GOE_DEPTH_DIFFERENCE misses */
+    float curvature;   /* of the depths in GOE_DEPTH_DIFFERENCE, times its variance: twice what linearising misses */
     float ground, top; /* Y of the base and of the roof */
     bool front, right; /* which side of the box the camera is on */
     bool far_half;     /* it is nearer to the back edge */

@@ -9,6 +9,10 @@
 
 #if GOE_WITH_REFINED
 
+#define BEARING_GROWTH 4.0f    /* factor on the variance of the bearing: the disc's middle was another point */
+#define BEARING_FREEDOM 4.0f   /* ... and sigma added to it, in the larger side */
+#define BEARING_FLOOR2 1.0e-6f /* ... and variance */
+#define RANGE_GROWTH 2.0f      /* factor on the variance of 1/Z0 */
 #define RANGE_MIN_M 1.0f
 #define HEIGHT_MIN_M 0.3f /* camera over ground: lower the corners' y say nothing */
 #define NEARER_MAX 1.7f   /* 1/range of a corner over the state's 1/range */
@@ -24,7 +28,7 @@
 #define TWO_FACES_IMAGES 2  /* ... from two */
 #define AGREEING_PX 7.0f    /* sigmas of a pixel by which the extents of two images may differ */
 #define AGREEING_SHARE 0.1f /* ... and share of the whole */
-#define RANGE_SHARE 0.1f    /* one sigma of the range over it */
+#define RANGE_SHARE 0.1f    /* one sigma of the range over the range */
 #define AGREEING_SIGMAS2 9.0f
 #define SIZE_FREEDOM 2.0f  /* one sigma of the extents at the start, in the larger side */
 #define DEPTH_FREEDOM 4.0f /* ... of the depth difference */
@@ -241,9 +245,10 @@ static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool bot
     }
     c[GOE_BEARING][GOE_BEARING] += filter->walk2;
     turn_covariance(x, box->turn_cos, box->turn_sin, c);
-    c[GOE_BEARING][GOE_BEARING] = 4.0f * c[GOE_BEARING][GOE_BEARING] + goe_square(4.0f * size) + 1.0e-6f;
+    c[GOE_BEARING][GOE_BEARING] =
+        BEARING_GROWTH * c[GOE_BEARING][GOE_BEARING] + goe_square(BEARING_FREEDOM * size) + BEARING_FLOOR2;
     c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] =
-        2.0f * c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] + goe_square(size * box->q);
+        RANGE_GROWTH * c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] + goe_square(size * box->q);
     x[GOE_TOP] *= box->q / x[GOE_INVERSE_RANGE];
     x[GOE_BEARING] = box->a;
     x[GOE_INVERSE_RANGE] = box->q;

@@ -10,18 +10,18 @@
 
 #if GOE_WITH_REFINED
 
-#define RANGE_SHARE 0.1f   /* one sigma of 1/Z0 over it, for a disc to change */
-#define DISC_FREEDOM 0.05f /* what the disc's tangents left behind in the chord, of its width */
-#define AHEAD_MIN 1.0e-3f  /* of an end, units of Z0 */
-#define AHEAD_TINY 0.02f   /* of the chord's middle */
-#define PLACE_SHARE 0.25f  /* of the width by which the middle may lie beside the centre of the obstacle */
-#define TOP_NOISE 0.3f     /* of the nearest corner's place, over the chord */
-#define TOP_FREEDOM 0.1f   /* the same from image to image */
-#define TOP_MOVED 0.5f     /* ... and at the box's start */
-#define MEMORY 0.25f       /* of one image in outward, turning */
-#define SIGMAS2_MAX 25.0f  /* of one image */
-#define LEFT_SIGMAS 1.0f   /* outward: an end is leaving */
-#define GONE_SIGMAS 1.8f   /* outward: an end has left */
+#define RANGE_SHARE 0.1f    /* one sigma of 1/Z0 over it, for a disc to change */
+#define DISC_FREEDOM 0.05f  /* what the disc's tangents left behind in the chord, of its width */
+#define AHEAD_MIN 1.0e-3f   /* of an end, units of Z0 */
+#define AHEAD_TINY 0.02f    /* of the chord's middle */
+#define PLACE_SHARE 0.25f   /* of the width by which the middle may lie beside the centre of the obstacle */
+#define TOP_NOISE 0.3f      /* of the nearest corner's place, over the chord */
+#define TOP_FREEDOM 0.1f    /* the same from image to image */
+#define TOP_MOVED 0.5f      /* ... and at the box's start */
+#define MEMORY 0.25f        /* of one image in outward, turning */
+#define SIGMAS2_MAX 25.0f   /* of one image */
+#define LEAVING_SIGMAS 1.0f /* outward: an end is leaving */
+#define GONE_SIGMAS 1.8f    /* outward: an end has left */
 #define TURNING_SIGMAS 0.4f
 #define SETTLED_IMAGES 16    /* before an end can be taken to leave */
 #define END_FREEDOM 0.5f     /* of an end that is learnt anew, over the chord */
@@ -126,18 +126,18 @@ void goe_chord_free_top(goe_filter_t *filter, const goe_observation_t *obs) {
 }
 
 void goe_chord_follow(goe_filter_t *filter, const goe_verdict_t *verdict) {
-    if (verdict->held >= GOE_FEATURES) {
+    if (verdict->odd >= GOE_FEATURES) {
         return;
     }
     const float most2 = SIGMAS2_MAX;
-    const float sigmas = sqrtf(goe_within(verdict->held_sigmas2, most2) ? verdict->held_sigmas2 : most2);
-    const float outward = verdict->held_outward ? sigmas : -sigmas;
+    const float sigmas = sqrtf(goe_within(verdict->odd_sigmas2, most2) ? verdict->odd_sigmas2 : most2);
+    const float outward = verdict->odd_outward ? sigmas : -sigmas;
     filter->leaving.outward += (outward - filter->leaving.outward) * MEMORY;
     filter->leaving.turning +=
-        ((verdict->held == GOE_POINT_RIGHT ? outward : -outward) - filter->leaving.turning) * MEMORY;
+        ((verdict->odd == GOE_POINT_RIGHT ? outward : -outward) - filter->leaving.turning) * MEMORY;
 }
 
-bool goe_chord_is_left(const goe_filter_t *filter) { return filter->leaving.outward > LEFT_SIGMAS; }
+bool goe_chord_is_leaving(const goe_filter_t *filter) { return filter->leaving.outward > LEAVING_SIGMAS; }
 
 /* --------------------------------------------------------------------------------------------------------- to the box -- */
 

@@ -29,7 +29,7 @@ void goe_chord_rows(const goe_observation_t *obs, goe_rows_t *rows);
 void goe_chord_follow(goe_filter_t *filter, const goe_verdict_t *verdict);
 
 /* Whether an end is leaving the chord, so that its refusal says nothing against the state. */
-bool goe_chord_is_left(const goe_filter_t *filter);
+bool goe_chord_is_leaving(const goe_filter_t *filter);
 
 void goe_chord_shape(const goe_filter_t *filter, goe_shape_t *shape);
 

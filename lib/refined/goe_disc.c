@@ -17,6 +17,7 @@
 #define WIDTH_MIN 1.0e-5f    /* between left and right, focal lengths */
 #define RANGE_MIN_M 1.0f     /* of a first guess */
 #define GROUND_SIGMAS 3.0f   /* by which the base must lie below the horizon to tell the range */
+#define BEARING_FREEDOM 1.0f /* one sigma of the first guess of X0/Z0 */
 #define RANGE_FREEDOM 2.0f   /* one sigma of the first guess of 1/Z0, relative */
 #define WIDTH_FREEDOM 5.0f   /* ... of the width */
 #define TOP_FREEDOM 10.0f    /* ... of the top */
@@ -101,7 +102,8 @@ static void add_top(const goe_observation_t *obs, const circle_t *o, float more,
     by[GOE_TOP] = -g.y;
 }
 
-/* Range over flat ground: a base corner lies about half a width before or behind the centre. */
+/* (R2), range over flat ground: by how much a base corner lies before or behind the centre is not known, and a whole width is
+ * allowed for it. */
 static void add_base(const goe_observation_t *obs, const circle_t *o, goe_feature_t feature, float width,
                      goe_rows_t *rows) {
     goe_gradient_t g;
@@ -140,7 +142,7 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 /* -------------------------------------------------------------------------------------------------------------- start -- */
 
-/* Flat ground, if the base lies clearly below the horizon; otherwise the typical size. */
+/* (R18): flat ground, if the base lies clearly below the horizon; otherwise the typical size. */
 static float first_range_m(const goe_observation_t *obs, float size) {
     const goe_navigation_t *navigation = &obs->settings->navigation;
     if (obs->base && obs->height_m > 0.0f) {
@@ -165,7 +167,7 @@ static void set_first_root(const goe_settings_t *settings, const float state[GOE
     *goe_srif_at(root, GOE_BIAS_Z, GOE_BIAS_Z) =
         1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_m_s));
     *goe_srif_at(root, GOE_HEIGHT_BIAS, GOE_HEIGHT_BIAS) = 1.0f / settings->navigation.height_bias_m;
-    *goe_srif_at(root, GOE_BEARING, GOE_BEARING) = 1.0f;
+    *goe_srif_at(root, GOE_BEARING, GOE_BEARING) = 1.0f / BEARING_FREEDOM;
     *goe_srif_at(root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0f / (RANGE_FREEDOM * state[GOE_INVERSE_RANGE]);
     *goe_srif_at(root, GOE_SIDE_X, GOE_SIDE_X) = 1.0f / state[GOE_FRONT_X];
     *goe_srif_at(root, GOE_FRONT_X, GOE_FRONT_X) = 1.0f / (WIDTH_FREEDOM * state[GOE_FRONT_X]);
@@ -211,7 +213,7 @@ bool goe_disc_is_skewed(const goe_filter_t *filter) {
     return goe_square(filter->state[GOE_SIDE_X]) > SKEWED_SIGMAS2 * goe_filter_variance(filter, GOE_SIDE_X);
 }
 
-/* Condition the state on zero skew, which is what a disc has. */
+/* (R7): conditions the state on zero skew, which is what a disc has. */
 static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
     const float *v = filter->inverse.element;
     const float share = filter->state[GOE_SIDE_X] / skew_variance(filter);

@@ -10,13 +10,13 @@
  * nearly linear. X, Z: the state's axes, see goe_axes_t. "Side" is the edge of length L, "front" that of width W, b the side's
  * angle from Z. */
 typedef enum {
-    GOE_BIAS_X, /* attitude bias about body x, y, z: small rotation from the given to the true attitude, rad */
+    GOE_BIAS_X, /* attitude bias about body x, y, z: small rotation from the true to the given attitude, rad */
     GOE_BIAS_Y,
     GOE_BIAS_Z,
     GOE_HEIGHT_BIAS,   /* true minus given height of the camera above the obstacle's ground, m */
     GOE_BEARING,       /* X0/Z0 */
     GOE_INVERSE_RANGE, /* 1/Z0, 1/m */
-    GOE_SIDE_X,  /* box: L sin(b)/Z0. Disc and chord: how much deeper the right end lies than the left one, over Z0;
+    GOE_SIDE_X, /* box: L sin(b)/Z0. Disc and chord, a depth: how much deeper the right end lies than the left one, over Z0;
                           0 of a true disc */
     GOE_FRONT_X, /* box: W cos(b)/Z0; disc: diameter/Z0; chord: how much farther to the right its right end lies */
     GOE_DEPTH_DIFFERENCE, /* box: (L cos(b) - W |sin(b)|)/Z0: how much deeper the side reaches than the front; otherwise
@@ -36,7 +36,7 @@ GOE_STATIC_ASSERT(GOE_KEPT == GOE_SIDE_X, the_first_states_are_those_that_are_ke
 
 /* The phases, and what leads from one to the next.
  *
- *                     left and right seen
+ *           left and right, or base_left and base_right seen
  *             NONE ------------------------> DISC
  *              ^                              |  \ deeper at one end, range known, no base edge: goe_chord_start
  *              |                              |   \-> CHORD -- an end has left it, a face came into view: learns that end
@@ -78,7 +78,7 @@ static inline unsigned goe_count_image(uint8_t *count) {
 
 /* ------------------------------------------------------------------------------------------------ root and inverse -- */
 
-/* The inverse is that of R now: what was added to its variance since is in it. */
+/* Declares the inverse up to date: drift_rad2 and walk2, which stand beside it, begin at 0 again. */
 void goe_filter_settle(goe_filter_t *filter);
 
 /* Brings the inverse up to date with R. */

@@ -45,7 +45,7 @@ static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
     }
 }
 
-/* Normalised square of a row's residual, or of the difference of two rows'. */
+/* (R16): normalised square of a row's residual, or of the difference of two rows'. */
 static float innovation(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, size_t row,
                         size_t middle) {
     float weight[GOE_STATES];
@@ -76,11 +76,11 @@ typedef struct {
 } belief_t;
 
 /* Of two rows along x, the one that is not the middle. */
-static void hold(const goe_rows_t *rows, const group_t *group, size_t row, float squared, goe_verdict_t *verdict) {
+static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, float squared, goe_verdict_t *verdict) {
     const bool more = residual_of(rows, row) > residual_of(rows, group->middle);
-    verdict->held = rows->feature[row];
-    verdict->held_sigmas2 = squared;
-    verdict->held_outward = more == (verdict->held == GOE_POINT_RIGHT);
+    verdict->odd = rows->feature[row];
+    verdict->odd_sigmas2 = squared;
+    verdict->odd_outward = more == (verdict->odd == GOE_POINT_RIGHT);
 }
 
 static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
@@ -97,7 +97,7 @@ static void judge(const goe_settings_t *settings, const goe_filter_t *filter, co
         const float squared =
             row == group.middle ? alone : innovation(settings, filter, rows, row, common ? group.middle : row);
         if (along_x && group.count == 2 && row != group.middle) {
-            hold(rows, &group, row, squared, &belief->verdict);
+            note_odd(rows, &group, row, squared, &belief->verdict);
         }
         if (squared > gate * gate) {
             belief->verdict.refused |= 1u << feature;

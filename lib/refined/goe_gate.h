@@ -8,10 +8,10 @@
 typedef struct {
     unsigned measured, refused;
     int rows; /* that count */
-    /* if there are two rows along x, the outer one's point, held against the other: */
-    size_t held;        /* feature; GOE_FEATURES if there are not two */
-    float held_sigmas2; /* normalised square of their difference */
-    bool held_outward;  /* they lie farther apart than predicted */
+    /* if there are two rows along x, the point with the larger residual, compared with the other: */
+    size_t odd;        /* feature; GOE_FEATURES if there are not two */
+    float odd_sigmas2; /* normalised square of their difference */
+    bool odd_outward;  /* they lie farther apart than predicted */
 } goe_verdict_t;
 
 /* Whitens the rows: each divided by its sigma, less if it is suspicious, 0 if its point is refused. */

@@ -90,7 +90,7 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     } else if (verdict.measured != 0) {
         health->poor = 0;
     }
-    if (chord && goe_chord_is_left(filter)) {
+    if (chord && goe_chord_is_leaving(filter)) {
         health->poor = 0;
         return false;
     }
@@ -124,7 +124,7 @@ static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) 
     }
 }
 
-bool goe_health_is_lost(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict) {
+bool goe_health_judge(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
     const bool captured = is_captured(filter, verdict);
     if (health->refused[GOE_POINT_TOP] >= REFUSED_TOPS) {

@@ -1,4 +1,4 @@
-/* The models, by the filter's phase: the one place that knows them all. SPDX-License-Identifier: MIT */
+/* The models, by the filter's phase. SPDX-License-Identifier: MIT */
 #ifndef GOE_MODEL_H
 #define GOE_MODEL_H
 

@@ -86,7 +86,7 @@ void goe_observation_linearise(goe_observation_t *obs) {
     obs->ez = m[6] * b[0] + m[7] * b[1] + m[8] * b[2];
 }
 
-/* 1/Z of the point in the true axes. */
+/* 1/Z of the point as the given attitude shows it. */
 static float nearness(const goe_observation_t *obs, float x, float y, float z) {
     const float turned_z = z + obs->ex * y - obs->ey * x;
     return 1.0f / (turned_z < FORWARD_MIN ? FORWARD_MIN : turned_z);

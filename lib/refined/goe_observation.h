@@ -36,19 +36,18 @@ typedef struct {
     float x, y, z, ex, ey, ez;
 } goe_gradient_t;
 
-/* Covariance of an aligned point, of the pixel noise alone. */
+/* (R4): covariance of an aligned point, of the pixel noise alone. */
 typedef struct {
     float xx, xy, yy;
 } goe_spread_t;
 
-/* Turns the view into the state's axes and sets what does not depend on the rest of the state; goe_observation_linearise()
- * does that, and again after the state changed.. Pairs that are out of their order, left to
- * right, do not count; returns how many. */
+/* Turns the view into the state's axes. goe_observation_linearise() then, after time has passed, sets the attitude bias from
+ * the state. Pairs that are out of their order, left to right, do not count; returns how many. */
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view);
 void goe_observation_linearise(goe_observation_t *obs);
 
-/* Where the point (X, Y, Z), in units of Z0 or any other, is seen along x, and along y. */
+/* (R3): where the point (X, Y, Z), in units of Z0 or any other, is seen along x, and along y. */
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x);
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
@@ -57,14 +56,14 @@ static inline float goe_observation_pixel(const goe_observation_t *obs) {
     return obs->settings->detector.point_px / obs->settings->camera.fx_px;
 }
 
-/* The state's reference point relative to the camera now, units of Z0. */
+/* (R1): the state's reference point relative to the camera now, units of Z0. */
 static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {
     const float q = obs->state[GOE_INVERSE_RANGE];
     const goe_xz_t reference = {obs->state[GOE_BEARING] - obs->camera_m.x * q, 1.0f - obs->camera_m.z * q};
     return reference;
 }
 
-/* Y of the roof, units of Z0. */
+/* (R2): Y of the roof, units of Z0. */
 static inline float goe_observation_roof(const goe_observation_t *obs) {
     return obs->height_m * obs->state[GOE_INVERSE_RANGE] - obs->state[GOE_TOP];
 }

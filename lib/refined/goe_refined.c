@@ -70,8 +70,8 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     for (size_t i = 0; i < GOE_STATES; i++) {
         filter->state[i] += change[i];
     }
-    /* The weights were inflated by (1+r)/(1-r) for correlation in time; the scatter within one image was not, so undo it for
-     * the NIS. */
+    /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
+     * NIS. */
     const float correlation = obs->settings->detector.correlation;
     goe_health_take(&filter->health, *verdict, nis * ((1.0f + correlation) / (1.0f - correlation)));
     return true;
@@ -103,7 +103,7 @@ GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs)
     if (goe_filter_is_box(filter)) {
         goe_box_clip(filter);
     }
-    if (goe_health_is_lost(filter, obs->settings, verdict)) {
+    if (goe_health_judge(filter, obs->settings, verdict)) {
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
     }

@@ -11,7 +11,7 @@ static bool in_order(const goe_view_t *view, goe_feature_t left, goe_feature_t r
     return !point[left].usable || !point[right].usable || point[left].x <= point[right].x;
 }
 
-/* (1). The edge through a and b meets the horizon y = 0 at x_a - y_a (x_b - x_a)/(y_b - y_a) = x/y of the vector below,
+/* (1). The edge through a and b meets the horizon y = 0 at x_a - y_a (x_b - x_a)/(y_b - y_a) = x/z of the vector below,
  * which needs no division: an edge parallel to the horizon simply has no Z component. */
 static float heading_deg(const goe_point_t *a, const goe_point_t *b) {
     const float x = a->x * b->y - a->y * b->x;

@@ -183,7 +183,7 @@ static void a_box_comes_out_of_its_silhouette(void) {
             see_silhouette(k, 0.0);
             TEST_ASSERT_FALSE(estimate.suspect);
             if (estimator.filter.phase == GOE_PHASE_CHORD && estimator.filter.phase_images > 20 && estimate.fresh &&
-                !goe_chord_is_left(&estimator.filter)) {
+                !goe_chord_is_leaving(&estimator.filter)) {
                 check_chord();
             }
         }
