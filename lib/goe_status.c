@@ -12,13 +12,13 @@ static const char of_calls[] = "bad_settings\0bad_argument\0not_initialised\0";
 
 const char *goe_status_text(goe_status_t status) {
     const int number = (int)status;
-    const bool of_image = number >= (int)GOE_BAD_ATTITUDE && number <= (int)GOE_NOTHING_SEEN;
-    const bool of_call = number >= (int)GOE_NOT_INITIALISED && number <= (int)CALLS_FROM;
+    const bool of_image = number >= GOE_BAD_ATTITUDE && number <= GOE_NOTHING_SEEN;
+    const bool of_call = number >= GOE_NOT_INITIALISED && number <= CALLS_FROM;
     const char *name = of_image ? of_images : of_calls;
     if (!of_image && !of_call) {
         return "unknown";
     }
-    for (int k = of_image ? (int)GOE_NOTHING_SEEN : (int)CALLS_FROM; k > number; k--) {
+    for (int k = of_image ? GOE_NOTHING_SEEN : CALLS_FROM; k > number; k--) {
         while (*name++ != '\0') {
         }
     }

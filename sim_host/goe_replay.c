@@ -184,6 +184,7 @@ static void explain_no_estimate(const char *path, const tally_t *tally) {
     (void)fprintf(stderr, PROGRAM ": %s: no row gave an estimate (", path);
     for (int i = 0; i < STATUSES; i++) {
         if (tally->rows[i] != 0) {
+            /* NOLINTNEXTLINE(clang-analyzer-optin.core.EnumCastOutOfRange): only what was returned was counted */
             (void)fprintf(stderr, "%s%s: %lu", separator, goe_status_text((goe_status_t)(i + (int)STATUS_FIRST)),
                           tally->rows[i]);
             separator = ", ";

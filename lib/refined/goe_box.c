@@ -50,7 +50,9 @@ typedef struct {
 
 static float sign_of(float x) { return x > 0.0f ? 1.0f : -1.0f; }
 
-void goe_box_edges(const float x[GOE_STATES], goe_box_edges_t *e) {
+void goe_box_edges(const float state[GOE_STATES], goe_box_edges_t *edges) {
+    const float *x = state;
+    goe_box_edges_t *e = edges;
     const float d = x[GOE_DEPTH_DIFFERENCE];
     const float across = goe_absolute(x[GOE_SIDE_X]);
     const float sign = sign_of(x[GOE_SIDE_X]);

@@ -79,10 +79,10 @@ static void find_faces(goe_window_t *window, frame_t *frame) {
 
 static void add_line_row(goe_window_t *window, frame_t *frame) {
     goe_row_t row;
-    const goe_edge_t *front = frame->faces.front;
-    if (!frame->faces.measured || !front || !front->counts) {
+    if (!frame->faces.measured || !frame->faces.front || !frame->faces.front->counts) {
         return;
     }
+    const goe_edge_t *front = frame->faces.front;
     const goe_status_t fault = goe_projection_line(front->left, front->right, frame->turn, &frame->front, &row);
     goe_fault_note(&frame->faults, fault);
     if (fault == GOE_OK) {

@@ -33,8 +33,9 @@ static const setting_t settings_by_name[] = {GOE_SETTINGS_REFINED(SETTING) GOE_S
 #define SETTINGS (sizeof settings_by_name / sizeof settings_by_name[0])
 
 static size_t count_tuned(void) {
-#define ONE(field, kind, unit, low, high, value, text) +1u
-    return 0u GOE_SETTINGS_REFINED(ONE) GOE_SETTINGS_WINDOW(ONE);
+#define ONE(field, kind, unit, low, high, value, text) 1,
+    static const char tuned[] = {GOE_SETTINGS_REFINED(ONE) GOE_SETTINGS_WINDOW(ONE)};
+    return sizeof tuned;
 #undef ONE
 }
 
