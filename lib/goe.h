@@ -182,7 +182,10 @@ typedef enum {
     GOE_MODEL_DISC = 2, /* an upright cylinder, or the circle that stands for anything else; (2) */
     GOE_MODEL_LINE = 3, /* (3): the front edge of a box; needs base corners. As a setting of the refined method: a box,
                            and no disc before it */
-    GOE_MODEL_BOX = 4   /* estimate only: a box with an upright, level outline. Refined method */
+    GOE_MODEL_BOX = 4,  /* estimate only: a box with an upright, level outline. Refined method */
+    GOE_MODEL_PRISM = 5 /* estimate only: something upright by its bounding boxes, whose depth along the line of sight is not
+                           known: the sigmas hold for a mast as for a house. Width: across the line of sight of the first
+                           image. Refined method */
 } goe_model_t;
 
 typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2 } goe_method_t;
@@ -207,6 +210,12 @@ typedef struct {
     float mount_pitch_deg; /* mounting, degrees; -360 to 360; default 0 */
     float mount_roll_deg;  /* mounting, degrees; -360 to 360; default 0 */
     float offset_m[3];     /* camera relative to the pose's reference point, body FRD, m; -1e4 to 1e4; default 0 */
+    float width_px;        /* size of the image, for sides of boxes near its border, px; 0 to 1e5; default 0: not known */
+    float height_px;       /* ... its height; 0 to 1e5; default 0: not known */
+    float border_share;    /* a side nearer to the border than this is not measured, fraction of the image's width; 0 to 0.5;
+                              default 0.012. Detectors draw the side of a cut obstacle 4 to 25 px inside a 1242 px image */
+    float cut_share;       /* while left or right is not measured, or nearer to the border than this, the other sides count
+                              less: detector.cut_noise; 0 to 0.5; default 0.04 */
 } goe_camera_t;
 
 /* How wrong the pose is, for the refined method: one-sigma each, as a data sheet or a look at a log gives them. Too large a
@@ -221,16 +230,26 @@ typedef struct {
                                  default 0.5 */
     float velocity_bias_m_s;  /* constant error of the own horizontal velocity, each axis, m/s; 0 to 100; default 0.05 */
     float position_walk_m;    /* random walk of the own position, m per square root of a second; 0 to 100; default 0.05 */
+    float position_white_m;   /* error of the own position that is new in each image, each axis, m; 0 to 100; default 0.
+                                 Upright boxes only */
+    float ground_m;           /* upright boxes: how far the obstacle's ground may lie off that which height_m is above, added to
+                                 height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
 } goe_navigation_t;
 
 /* How wrong the features are, for the refined method: one-sigma each. */
 typedef struct {
     float point_px;    /* error of an image point, new in each image, px; 0.05 to 100; default 0.5. Rounding alone: 0.3 */
-    float box_share;   /* error of left, right and top, added to it, as a fraction of the silhouette's width; 0 to 1;
-                          default 0. Bounding boxes of a detector: about 0.025 */
-    float correlation; /* of a point's error from image to image; 0 to 0.95; default 0. Detectors: about 0.5 */
+    float point_share; /* error of left, right and top as points, added to it, as a fraction of the silhouette's width;
+                          0 to 1; default 0 */
+    float point_correlation; /* of a point's error from image to image; 0 to 0.95; default 0 */
     float shape_share; /* model error of the disc: how far a real silhouette departs from a cylinder's, as a fraction of its
-                          width; 0 to 1; default 0. Cars as discs: about 0.12 */
+                          width; 0 to 1; default 0. Cars as discs: about 0.12. Points only */
+    float box_px;        /* error of a box's side that is new in each image, px; 0.05 to 100; default 1 */
+    float box_share;     /* error of a side that stays alike from image to image, as a fraction of the box's width (left,
+                            right) or height (top, bottom); 0 to 1; default 0.07, right for real detectors */
+    float correlation_s; /* how long it stays alike, time constant, s; 0 to 100; default 1.2 */
+    float cut_noise;     /* error of every side, new in each image, while the image's border cuts the box (camera.cut_share),
+                            as a fraction of the same; 0 to 10; default 1 */
 } goe_detector_t;
 
 /* The window method, Section 4 of the paper. The refined method uses none of these. */
@@ -282,9 +301,9 @@ typedef struct {
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* vehicle's reference point, each +-1e6, in steps of 6 cm out there and of 1 mm within 1e4;
-                                down is checked only: heights come from height_m */
+                                with points, down is checked only; with boxes it changes the height */
     float height_m;          /* of the camera itself above the ground at the obstacle, +-1e5; window: no obstacle height
-                                if it is <= 0 */
+                                if it is <= 0. Boxes: that of the track's first image counts, from then on the changes of down */
     float attitude[4];       /* w, x, y, z; body FRD to NED; normalised here, refused if its norm is off by over 1 % */
     uint8_t reset_count;     /* the filter's reset counter, any start, wraps */
     bool reset_delta_known;  /* read only when reset_count changed */
@@ -297,22 +316,36 @@ typedef struct {
     bool seen;
 } goe_pixel_t;
 
-/* One image of one obstacle. Any subset of the features may be seen.
+/* The upright bounding box of a detector in the raw image, each side a straight line of the raw pixels. Feed raw detections, not
+ * a tracker's smoothed boxes: smoothing lags, and shrinks large boxes by 5 to 12 %, which no sigma knows of. */
+typedef struct {
+    float left_px, top_px, right_px, bottom_px; /* read only if seen; each +-1e5; left < right, top < bottom */
+    uint8_t seen;                               /* GOE_SEES_...; 0: no box. Without the bit: cut, hidden or not believed */
+} goe_box_t;
+
+#define GOE_SEES_LEFT 0x01u
+#define GOE_SEES_TOP 0x02u
+#define GOE_SEES_RIGHT 0x04u
+#define GOE_SEES_BOTTOM 0x08u
+#define GOE_SEES_BOX 0x0Fu /* all four */
+
+/* One image of one obstacle: a box, or points, or both. Any subset of the features may be seen.
+ * Box: what detectors give. It is exact at any attitude, as every side is a plane through the camera that touches the obstacle
+ * at its roof or at its foot. A box stands for left, right and top, which are not read then; base corners are.
  * Disc: left and right. Line and box: two or three base corners; refined also finds a box by left and right alone when one of
  * its faces turns away in flight: before that it is reported as a disc about its middle, whose width is the lateral extent of
  * what is seen of it. Height: top, and a solution of any model.
- * A bounding box is upright in the image, not in the world: when the camera rolls, its sides touch the top and the foot
- * of a tall obstacle, and the width comes out too large (a mast of 6 m by 30 m: 11 m at 10 degrees of roll) without any
- * sign of it. Banked, give silhouette points or leave left and right unseen. */
+ * Do not give the middles of a box's sides as points: when the camera rolls, the sides touch the top and the foot of a tall
+ * obstacle, and the width comes out too large (a mast of 6 m by 30 m: 11 m at 10 degrees of roll). */
 typedef struct {
     goe_pose_t pose;
-    goe_pixel_t left, right; /* leftmost and rightmost point of the silhouette; of a bounding box: the side's middle */
+    goe_pixel_t left, right; /* leftmost and rightmost point of the silhouette */
     goe_pixel_t top;         /* point of the roof's edge over the nearest base corner, of a disc the nearest point of the
-                                upper rim; of a bounding box: the top side's middle. Seen from below the roof and
-                                not far from the axis it is the highest point in the image; from above, the highest one
+                                upper rim. Seen from below the roof and not far from the axis it is the highest point in the image; from above, the highest one
                                 is another: refined.top_is_highest */
     goe_pixel_t base_left, base_near, base_right; /* visible corners of the base on the ground, in image order;
                                 base_near lies between two visible faces, and is not seen when one face alone is */
+    goe_box_t box;
 } goe_image_t;
 
 /* ---------------------------------------------------------------------------------------------------------- output -- */

@@ -27,7 +27,11 @@
     X(camera.mount_roll_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting") \
     X(camera.offset_m[0], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body forward") \
     X(camera.offset_m[1], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body right") \
-    X(camera.offset_m[2], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body down")
+    X(camera.offset_m[2], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body down") \
+    X(camera.width_px, REAL, "px", 0.0f, 1.0e5f, 0.0f, "width of the image; 0: not known") \
+    X(camera.height_px, REAL, "px", 0.0f, 1.0e5f, 0.0f, "height of the image; 0: not known") \
+    X(camera.border_share, REAL, "", 0.0f, 0.5f, 0.012f, "no side nearer to the border, of the image's width") \
+    X(camera.cut_share, REAL, "", 0.0f, 0.5f, 0.04f, "nearer to the border a box counts as cut, of the image's width")
 
 #define GOE_SETTINGS_GENERAL(X) \
     X(method, CHOICE, "", GOE_METHOD_MIN, GOE_METHOD_MAX, GOE_METHOD_MAX, "1 window, 2 refined") \
@@ -43,10 +47,16 @@
     X(navigation.height_bias_m, REAL, "m", 1.0e-3f, 1.0e3f, 0.5f, "constant error of the height above ground") \
     X(navigation.velocity_bias_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity") \
     X(navigation.position_walk_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the own position") \
+    X(navigation.position_white_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of the own position that is new in each image; boxes") \
+    X(navigation.ground_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "how far the obstacle's ground may lie off; boxes") \
     X(detector.point_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image; rounding: 0.3") \
-    X(detector.box_share, REAL, "", 0.0f, 1.0f, 0.0f, "error of left, right, top, of the width; detectors: 0.025") \
-    X(detector.correlation, REAL, "", 0.0f, 0.95f, 0.0f, "of a point's error from image to image; detectors: 0.5") \
+    X(detector.point_share, REAL, "", 0.0f, 1.0f, 0.0f, "error of left, right, top as points, of the width") \
+    X(detector.point_correlation, REAL, "", 0.0f, 0.95f, 0.0f, "of a point's error from image to image") \
     X(detector.shape_share, REAL, "", 0.0f, 1.0f, 0.0f, "model error of the disc, of its width; cars: 0.12") \
+    X(detector.box_px, REAL, "px", 0.05f, 100.0f, 1.0f, "error of a box's side, new in each image") \
+    X(detector.box_share, REAL, "", 0.0f, 1.0f, 0.07f, "error of a side that stays alike, of the box's width or height") \
+    X(detector.correlation_s, REAL, "s", 0.0f, 100.0f, 1.2f, "how long it stays alike") \
+    X(detector.cut_noise, REAL, "", 0.0f, 10.0f, 1.0f, "error of every side of a box that the border cuts, of the same") \
     X(refined.typical_size_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "first guess of the width, where the ground tells no range") \
     X(refined.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point farther off is left out") \
     X(refined.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point farther off counts less") \

@@ -118,7 +118,7 @@ GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);
 
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
     belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
-    const float correlation = settings->detector.correlation;
+    const float correlation = settings->detector.point_correlation;
     const float repeated = (1.0f + correlation) / (1.0f - correlation);
     judge(settings, filter, rows, true, &belief);
     judge(settings, filter, rows, false, &belief);

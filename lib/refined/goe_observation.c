@@ -146,7 +146,7 @@ float goe_observation_size_variance(const goe_observation_t *obs) {
     if (!left->usable || !right->usable) {
         return 0.0f;
     }
-    const float sigma = obs->settings->detector.box_share * (right->x - left->x);
+    const float sigma = obs->settings->detector.point_share * (right->x - left->x);
     return sigma * sigma;
 }
 

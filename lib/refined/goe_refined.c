@@ -72,7 +72,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     }
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
-    const float correlation = obs->settings->detector.correlation;
+    const float correlation = obs->settings->detector.point_correlation;
     goe_health_take(&filter->health, *verdict, nis * ((1.0f + correlation) / (1.0f - correlation)));
     return true;
 }

@@ -86,8 +86,8 @@ void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings) {
     (void)memset(detector, 0, sizeof *detector);
     (void)memset(navigation, 0, sizeof *navigation);
     detector->point_px = at_least(hypot(hypot(sensors->pixel_px, sensors->detector_px), rounding_px), LEAST_PIXEL_PX);
-    detector->box_share = number_to_float(sensors->detector_width);
-    detector->correlation = number_to_float(sensors->detector_correlation);
+    detector->point_share = number_to_float(sensors->detector_width);
+    detector->point_correlation = number_to_float(sensors->detector_correlation);
     navigation->attitude_bias_deg = at_least(sensors->attitude_bias_deg, LEAST_ANGLE_DEG);
     navigation->attitude_white_deg = at_least(sensors->attitude_noise_deg, LEAST_ANGLE_DEG);
     navigation->height_bias_m = at_least(sensors->altimeter_m, LEAST_HEIGHT_M);

@@ -191,7 +191,7 @@ static void the_limits_are_settings(void) {
 
 /* Errors that repeat from image to image count as fewer images: (1 + r)/(1 - r) times the variance. */
 static void correlated_errors_count_less(void) {
-    settings.detector.correlation = 0.6f;
+    settings.detector.point_correlation = 0.6f;
     const goe_matrix_t before = matrix;
     apply();
     for (size_t i = 0; i < rows.count; i++) {

@@ -320,8 +320,8 @@ static float any_from(float least, float most) {
 
 static void any_noise(goe_settings_t *s) {
     s->detector.point_px = any_from(0.05f, 100.0f);
-    s->detector.box_share = any_from(0.0f, 1.0f);
-    s->detector.correlation = any_from(0.0f, 0.95f);
+    s->detector.point_share = any_from(0.0f, 1.0f);
+    s->detector.point_correlation = any_from(0.0f, 0.95f);
     s->detector.shape_share = any_from(0.0f, 1.0f);
     s->navigation.attitude_bias_deg = any_from(1.0e-3f, 30.0f);
     s->navigation.attitude_white_deg = any_from(1.0e-4f, 30.0f);

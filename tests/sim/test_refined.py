@@ -109,7 +109,7 @@ def test_answers_sooner_than_the_window(programs: dict[str, Path], goe_sim: Path
 def test_bounding_boxes_alone_are_a_disc(programs: dict[str, Path], goe_sim: Path, tmp_path: Path) -> None:
     """A detector's boxes, without base corners: the disc. Its noise told, the truth within three sigma of the range."""
     log = fly(goe_sim, tmp_path / "log", "--case", CASES["cylinder"], "--noise", "detector")
-    told = {"detector.point_px": 0.7, "detector.box_share": 0.025, "detector.correlation": 0.5}
+    told = {"detector.point_px": 0.7, "detector.point_share": 0.025, "detector.point_correlation": 0.5}
     options = [f"--set={name}={value}" for name, value in told.items()]
     rows = replay(programs, tmp_path / "log", *options)
     row = solved(rows)[-1]

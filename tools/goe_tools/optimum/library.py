@@ -30,8 +30,8 @@ NUMBERS = (
 TO_RADIANS = np.where(np.arange(6) == 2, np.pi / 180.0, 1.0)
 SETTING_OF = {  # the library's setting for each figure of a noise
     "sigma_px": "detector.point_px",
-    "size_share": "detector.box_share",
-    "correlation": "detector.correlation",
+    "size_share": "detector.point_share",
+    "correlation": "detector.point_correlation",
     "shape_share": "detector.shape_share",
     "attitude_bias_deg": "navigation.attitude_bias_deg",
     "attitude_white_deg": "navigation.attitude_white_deg",
