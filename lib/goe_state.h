@@ -29,6 +29,8 @@ typedef struct {
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
     float height_m;                 /* camera above ground, latest image */
+    float datum_m;                  /* the same at the first image, above the origin of down */
+    float steady_height_m;          /* ... less down now: no noise of an altimeter, its constant error alone */
     bool started;                   /* a first image was taken; the fields above hold */
     uint8_t reset_count;
 } goe_motion_t;
@@ -112,6 +114,14 @@ typedef struct {    /* refined/goe_box.c: what the report calls the edges of a b
     bool decided;
 } goe_naming_t;
 
+/* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell it. It
+ * hangs on the state: value + by' (x - state), and the variance is what it is uncertain by beyond that. */
+typedef struct {
+    float by[GOE_STATES];
+    float value;    /* focal lengths */
+    float variance; /* 0: the side was never measured */
+} goe_side_memory_t;
+
 #define GOE_NIS_NONE (-1.0f)
 
 typedef struct {      /* refined/goe_health.c: how the images fit */
@@ -139,10 +149,11 @@ typedef struct {
     goe_leaving_t leaving;
     goe_health_t health;
     goe_axes_t axes;
-    float state[GOE_STATES]; /* by goe_state_index_t */
-    goe_triangle_t root;     /* R: R'R is the information of the state */
-    goe_inverse_t inverse;   /* of R, after the latest image: R^-1 R^-1' is the covariance */
-    goe_matrix_t rows;       /* of the image at hand */
+    goe_side_memory_t side[4]; /* by goe_box_side_t */
+    float state[GOE_STATES];   /* by goe_state_index_t */
+    goe_triangle_t root;       /* R: R'R is the information of the state */
+    goe_inverse_t inverse;     /* of R, after the latest image: R^-1 R^-1' is the covariance */
+    goe_matrix_t rows;         /* of the image at hand */
 } goe_filter_t;
 
 /* ------------------------------------------------------------------------------------------------------- estimator -- */
