@@ -64,6 +64,17 @@ static void tell(const goe_estimate_t *estimate, goe_status_t status, int32_t *l
 
 /* ------------------------------------------------------------------------------------------------------------- run -- */
 
+static goe_box_t box_of(const goe_batch_track_t *track, int k) {
+    const goe_batch_float_t *side = track->box_px + (size_t)k * GOE_BATCH_BOX;
+    goe_box_t box;
+    take(&box.left_px, side, 1);
+    take(&box.top_px, side + 1, 1);
+    take(&box.right_px, side + 2, 1);
+    take(&box.bottom_px, side + 3, 1);
+    box.seen = track->box_seen[k];
+    return box;
+}
+
 static goe_image_t image_of(const goe_batch_track_t *track, int k) {
     goe_image_t image;
     memset(&image, 0, sizeof image);
@@ -80,6 +91,9 @@ static goe_image_t image_of(const goe_batch_track_t *track, int k) {
         take(&features[i]->u_px, pixel + 2 * i, 1);
         take(&features[i]->v_px, pixel + 2 * i + 1, 1);
         features[i]->seen = seen[i] != 0;
+    }
+    if (track->box_px != NULL) {
+        image.box = box_of(track, k);
     }
     return image;
 }

@@ -11,6 +11,7 @@
 #define GOE_BATCH_POSE 8    /* north, east, down, height in m; quaternion w, x, y, z */
 #define GOE_BATCH_PIXELS 12 /* u, v in px of left, right, top, base_left, base_near, base_right */
 #define GOE_BATCH_FEATURES 6
+#define GOE_BATCH_BOX 4      /* left, top, right, bottom in px */
 #define GOE_BATCH_LABELS 8   /* goe_batch_label() names them */
 #define GOE_BATCH_NUMBERS 14 /* goe_batch_number() names them */
 
@@ -37,6 +38,8 @@ typedef struct {
     const goe_batch_float_t *pose;     /* [images][GOE_BATCH_POSE] */
     const goe_batch_float_t *pixel_px; /* [images][GOE_BATCH_PIXELS] */
     const uint8_t *seen;               /* [images][GOE_BATCH_FEATURES] */
+    const goe_batch_float_t *box_px;   /* [images][GOE_BATCH_BOX]; null: no boxes */
+    const uint8_t *box_seen;           /* [images] GOE_SEES_...; null only if box_px is */
 } goe_batch_track_t;
 
 typedef struct {

@@ -30,6 +30,8 @@ const char *campaign_text_model(goe_model_t model) {
             return "line";
         case GOE_MODEL_BOX:
             return "box";
+        case GOE_MODEL_PRISM:
+            return "prism";
         case GOE_MODEL_NONE:
         default:
             return "none";

@@ -12,7 +12,7 @@
 #include "campaign_plan.h"
 #include "case_statistics.h"
 
-/* "auto", "disc" or "line" as a setting; "none", "disc", "line" or "box" of an estimate. */
+/* "auto", "disc" or "line" as a setting; "none", "disc", "line", "box" or "prism" of an estimate. */
 const char *campaign_text_model(goe_model_t model);
 
 /* "window" or "refined". */

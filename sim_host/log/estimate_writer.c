@@ -50,6 +50,8 @@ static const char *model_text(goe_model_t model) {
             return "line";
         case GOE_MODEL_BOX:
             return "box";
+        case GOE_MODEL_PRISM:
+            return "prism";
         case GOE_MODEL_NONE:
         case GOE_MODEL_AUTO:
         default:

@@ -49,7 +49,12 @@ TOLD = {
     "none": {"detector.point_px": 0.05, **EXACT_POSE},
     "rounding": {"detector.point_px": 0.35, **EXACT_POSE},
     "field": {},
-    "detector": {"detector.point_px": 0.7, "detector.point_share": 0.025, "detector.point_correlation": 0.5, **EXACT_POSE},
+    "detector": {
+        "detector.point_px": 0.7,
+        "detector.point_share": 0.025,
+        "detector.point_correlation": 0.5,
+        **EXACT_POSE,
+    },
 }
 BITS_CASES = {"cylinder": 2, "building": 18, "truck": 66, "long-truck": 126}
 

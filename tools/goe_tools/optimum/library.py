@@ -19,7 +19,8 @@ from .flights.noise import Noise
 
 LIBRARY_NAMES = ("libgoe_batch.so", "libgoe_batch.dylib")
 METHODS = {"window": 1, "refined": 2}
-MODEL_AUTO, MODEL_DISC, MODEL_LINE, MODEL_BOX = 1, 2, 3, 4
+MODEL_AUTO, MODEL_DISC, MODEL_LINE, MODEL_BOX, MODEL_PRISM = 1, 2, 3, 4, 5
+SEES_SIDES = np.array([0x01, 0x02, 0x04, 0x08], np.uint8)  # GOE_SEES_... of left, top, right, bottom
 HAS_POSITION, HAS_LENGTH, HAS_HEIGHT, HAS_ORIENTATION, HAS_WIDTH = 0x01, 0x02, 0x04, 0x08, 0x20
 VALID_BITS = (HAS_POSITION, HAS_POSITION, HAS_ORIENTATION, HAS_WIDTH, HAS_LENGTH, HAS_HEIGHT)
 LABELS = ("status", "method", "model", "valid", "fresh", "suspect", "points", "nis_rows")
@@ -54,6 +55,8 @@ class _Track(ctypes.Structure):
         ("pose", ctypes.c_void_p),
         ("pixel_px", ctypes.c_void_p),
         ("seen", ctypes.c_void_p),
+        ("box_px", ctypes.c_void_p),
+        ("box_seen", ctypes.c_void_p),
     )
 
 
@@ -127,6 +130,7 @@ def settings_of(flight: Flight, noise: Noise | None = None, method: str = "refin
     result = {f"camera.{name}_px": getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
     result |= {f"camera.{name}": getattr(camera, name) for name in ("k1", "k2", "p1", "p2", "k3")}
     result |= {f"camera.mount_{axis}_deg": getattr(camera, f"mount_{axis}_deg") for axis in ("yaw", "pitch", "roll")}
+    result |= {f"camera.{name}_px": size for name, size in zip(("width", "height"), flight.image_size_px)}
     result |= {f"camera.offset_m[{i}]": getattr(camera, f"offset_{axis}_m") for i, axis in enumerate("xyz")}
     result |= {
         "refined.top_is_highest": float(flight.top_is_highest),
@@ -147,6 +151,15 @@ def _settings(library: ctypes.CDLL, values: dict[str, float]) -> ctypes.Array:
     return buffer
 
 
+def _boxes(flight: Flight) -> tuple[np.ndarray, ...]:
+    """Sides (K, 4) and their seen bits (K,); nothing for a flight without boxes."""
+    if flight.box_px is None:
+        return ()
+    seen = np.isfinite(flight.box_px)
+    sides = np.ascontiguousarray(np.where(seen, flight.box_px, 0.0), np.float32)
+    return sides, np.ascontiguousarray(seen @ SEES_SIDES, np.uint8)
+
+
 def estimate(
     flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False, **change: float
 ) -> Track:
@@ -160,6 +173,7 @@ def estimate(
     arrays = (
         np.rint(flight.time_s * 1e6).astype(np.int64), np.ascontiguousarray(pose),
         np.ascontiguousarray(flight.pixel_px, np.float32), np.ascontiguousarray(flight.seen, np.uint8),
+        *_boxes(flight),
     )  # fmt: skip
     label = np.zeros((images, len(LABELS)), np.int32)
     number = np.zeros((images, len(NUMBERS)), np.float32)

@@ -60,6 +60,8 @@ class Flight:
     noise: Noise
     reach_s: float = math.nan  # from the first image until the obstacle's reference point is abeam
     top_is_highest: bool = False  # top: the roof's highest point in the image; otherwise the one nearest to the camera
+    box_px: np.ndarray | None = None  # (K, 4) left, top, right, bottom; NaN where a side is not seen
+    image_size_px: tuple[float, float] = (0.0, 0.0)  # width, height; 0: not known
 
     @property
     def heading_rad(self) -> float:
@@ -67,7 +69,8 @@ class Flight:
 
     def first(self, images: int) -> Flight:
         """The flight's beginning."""
-        names = ("time_s", "pixel_px", "seen", "position_ned_m", "attitude", "height_m")
+        names = ["time_s", "pixel_px", "seen", "position_ned_m", "attitude", "height_m"]
+        names += [] if self.box_px is None else ["box_px"]
         return replace(self, **{name: getattr(self, name)[:images] for name in names})
 
     def path_m(self) -> float:
