@@ -50,7 +50,7 @@ static bool is_of_prism(const goe_estimator_t *estimator) {
 }
 
 float goe_latest_camera_height(const goe_estimator_t *estimator) {
-    return is_of_prism(estimator) ? estimator->motion.steady_height_m : estimator->motion.height_m;
+    return is_of_prism(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
 }
 
 float goe_latest_height_bias(const goe_estimator_t *estimator) {

@@ -29,8 +29,6 @@ typedef struct {
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
     float height_m;                 /* camera above ground, latest image */
-    float datum_m;                  /* the same at the first image, above the origin of down */
-    float steady_height_m;          /* ... less down now: no noise of an altimeter, its constant error alone */
     bool started;                   /* a first image was taken; the fields above hold */
     uint8_t reset_count;
 } goe_motion_t;
@@ -114,6 +112,14 @@ typedef struct {    /* refined/goe_box.c: what the report calls the edges of a b
     bool decided;
 } goe_naming_t;
 
+/* refined/goe_filter.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
+ * in. */
+typedef struct {
+    float ground_m; /* down of the ground, by the first image of the track */
+    float height_m; /* of the camera above it, latest image */
+    bool begun;
+} goe_datum_t;
+
 /* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell it. It
  * hangs on the state: value + by' (x - state), and the variance is what it is uncertain by beyond that. */
 typedef struct {
@@ -149,6 +155,7 @@ typedef struct {
     goe_leaving_t leaving;
     goe_health_t health;
     goe_axes_t axes;
+    goe_datum_t datum;
     goe_side_memory_t side[4]; /* by goe_box_side_t */
     float state[GOE_STATES];   /* by goe_state_index_t */
     goe_triangle_t root;       /* R: R'R is the information of the state */

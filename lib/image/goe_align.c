@@ -13,6 +13,7 @@
 static void replace_points(const goe_camera_t *camera, goe_view_t *view, goe_pixel_t pixels[GOE_FEATURES],
                            goe_faults_t *faults) {
     memcpy(pixels, goe_image_pixels(view->image), GOE_FEATURES * sizeof pixels[0]);
+    view->seen = (view->image->box.seen & GOE_SEES_BOX) != 0;
     goe_sides_read(camera, view, faults);
     goe_sides_points(camera, view, &pixels[GOE_POINT_LEFT], &pixels[GOE_POINT_RIGHT], &pixels[GOE_POINT_TOP]);
 }
@@ -22,8 +23,8 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     goe_pixel_t replaced[GOE_FEATURES];
     const goe_pixel_t *pixels = goe_image_pixels(view->image);
     view->sides.usable = 0;
-    view->seen = (view->image->box.seen & GOE_SEES_BOX) != 0;
-    if (view->seen) {
+    view->seen = false;
+    if (view->image->box.seen != 0) {
         replace_points(camera, view, replaced, faults);
         pixels = replaced;
     }
@@ -36,8 +37,8 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         const goe_pixel_t *pixel = &pixels[i];
         goe_point_t *point = &view->point[i];
-        point->usable = false;
         if (!pixel->seen) {
+            point->usable = false;
             continue;
         }
         view->seen = true;
@@ -46,6 +47,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
         if (distorts) {
             float ray[2] = {x, y}; /* its own: x and y stay in registers */
             if (!goe_camera_undistort(camera, &ray[0], &ray[1])) {
+                point->usable = false;
                 goe_fault_count(faults, GOE_LENS_FAILED);
                 continue;
             }
@@ -54,6 +56,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
         }
         const float forward = zx * x + zy * y + zz;
         if (forward <= FORWARD_MIN * sqrtf(x * x + y * y + 1.0f)) {
+            point->usable = false;
             goe_fault_count(faults, GOE_BEHIND_CAMERA);
             continue;
         }

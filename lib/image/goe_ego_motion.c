@@ -26,12 +26,11 @@ static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, co
 }
 
 static void camera_position(const goe_settings_t *settings, const goe_pose_t *pose, const float body_to_ned[9],
-                            float position[3]) {
+                            float position[2]) {
     float arm[3];
     goe_rotation_apply(body_to_ned, settings->camera.offset_m, arm);
     position[0] = pose->position_ned_m[0] + arm[0];
     position[1] = pose->position_ned_m[1] + arm[1];
-    position[2] = pose->position_ned_m[2] + arm[2];
 }
 
 /* (NED -> T) (body -> NED) (camera -> body), column by column. Rows of NED -> T: X = (-sin, cos, 0), Y = (0, 0, 1),
@@ -55,24 +54,21 @@ static void turn_into_trajectory(const goe_motion_t *motion, const float body_to
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view) {
     const goe_pose_t *pose = &view->image->pose;
     float body_to_ned[9];
-    float position[3];
+    float position[2];
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
     camera_position(settings, pose, body_to_ned, position);
     if (!motion->started) {
         fix_heading(motion, settings, body_to_ned);
-        memcpy(motion->origin_ne_m, position, sizeof motion->origin_ne_m);
-        motion->datum_m = pose->height_m + position[2];
+        memcpy(motion->origin_ne_m, position, sizeof position);
         motion->started = true;
     } else if (goe_motion_reset(motion, pose)) {
         for (int i = 0; i < 2; i++) {
             motion->origin_ne_m[i] += pose->reset_delta_ned_m[i];
         }
-        motion->datum_m += pose->reset_delta_ned_m[2];
     }
     motion->reset_count = pose->reset_count;
     motion->time_us = pose->time_us;
     motion->height_m = pose->height_m;
-    motion->steady_height_m = motion->datum_m - position[2];
     const float north = position[0] - motion->origin_ne_m[0];
     const float east = position[1] - motion->origin_ne_m[1];
     motion->dx_m = motion->heading_cos * east - motion->heading_sin * north;

@@ -44,7 +44,7 @@ static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, b
     const goe_pose_t *pose = &image->pose;
     const uint32_t height = goe_magnitude(pose->height_m);
     uint32_t pixel = largest_pixel(image);
-    if ((image->box.seen & GOE_SEES_BOX) != 0) {
+    if (image->box.seen != 0) {
         pixel = goe_larger_bits(pixel, largest_side(&image->box));
     }
     uint32_t position = goe_largest_of_three(pose->position_ned_m);

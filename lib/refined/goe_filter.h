@@ -3,6 +3,7 @@
 #ifndef GOE_FILTER_H
 #define GOE_FILTER_H
 
+#include "image/goe_view.h"
 #include "maths/goe_xz.h"
 #include "refined/goe_srif.h"
 
@@ -107,6 +108,12 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 }
 
 /* ------------------------------------------------------------------------------------------------------------ axes -- */
+
+/* Takes an image's height, and what down has changed by. offset_m: of the camera, body axes. */
+void goe_filter_take_height(goe_filter_t *filter, const float offset_m[3], const goe_view_t *view);
+
+/* The autopilot's down jumped by this. */
+static inline void goe_filter_move_datum(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
 
 /* The state's axes become T's, with their origin at the camera now. */
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);

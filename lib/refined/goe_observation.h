@@ -15,7 +15,7 @@ typedef struct {
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
     float height_m;    /* camera above ground, as given */
     const goe_sides_t *sides;
-    float steady_height_m; /* the same by the changes of down, see goe_motion_t */
+    float steady_height_m; /* the same by the changes of down, see goe_datum_t */
     float since_s;         /* since the image used before; 0: there is none */
     float position_sd; /* prism: one sigma of the image's own position error, m, with what the uncertain range adds */
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */

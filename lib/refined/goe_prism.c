@@ -99,9 +99,11 @@ static void into_axes(const goe_observation_t *obs, const float v[3], float to[3
     }
 }
 
+typedef enum { FOOT, HEAD, EITHER } end_t;
+
 /* The touching point on the side of the outward normal, which is given in the camera's axes. (R29), (R30). False if it is not
  * ahead. */
-static bool touch(const goe_observation_t *obs, const ellipse_t *o, const float normal[3], touch_t *t) {
+static bool touch(const goe_observation_t *obs, const ellipse_t *o, const float normal[3], end_t end, touch_t *t) {
     const float e[3] = {obs->ex, obs->ey, obs->ez};
     const float *r = obs->camera_to_axes;
     float n[3];
@@ -115,7 +117,7 @@ static bool touch(const goe_observation_t *obs, const ellipse_t *o, const float 
     const bool tilts = level > LEVEL_MIN;
     t->outward.x = tilts ? n[0] / level : 0.0f;
     t->outward.z = tilts ? n[2] / level : -1.0f;
-    t->foot = n[1] > 0.0f;
+    t->foot = end == EITHER ? n[1] > 0.0f : end == FOOT;
     const float across = o->half * t->outward.x;
     const float along = o->depth * t->outward.z;
     t->reach = goe_larger(sqrtf(across * across + along * along), REACH_MIN);
@@ -155,21 +157,37 @@ static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y)
     return line;
 }
 
-/* Touches by the plane through the raw coordinate `at`: without a lens at once; with one the line is taken as straight where it
- * touches, (R31). */
-static bool touch_side(const goe_observation_t *obs, const ellipse_t *o, size_t side, float at, touch_t *t) {
-    const goe_camera_t *camera = &obs->settings->camera;
-    const float sign = side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f;
-    const float straight[3] = {is_level(side) ? 0.0f : sign, is_level(side) ? sign : 0.0f, -sign * at};
-    if (!touch(obs, o, straight, t)) {
+static float sign_of(size_t side) { return side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f; }
+
+/* By the line as it lies where it touches, which the first call tells about, (R31). */
+static bool touch_bent(const goe_observation_t *obs, const ellipse_t *o, size_t side, const float straight[3],
+                       end_t end, touch_t *t) {
+    if (!touch(obs, o, straight, end, t)) {
         return false;
     }
-    if (!goe_camera_distorts(camera)) {
-        return true;
-    }
-    const line_t line = line_at(camera, side, t->x, t->y);
+    const float sign = sign_of(side);
+    const line_t line = line_at(&obs->settings->camera, side, t->x, t->y);
     const float bent[3] = {sign * line.by_x, sign * line.by_y, -sign * (line.by_x * t->x + line.by_y * t->y)};
-    return touch(obs, o, bent, t);
+    return touch(obs, o, bent, end, t);
+}
+
+/* Touches by the plane through the raw coordinate `at`. With a lens foot and head are tried, as the line is not straight between
+ * them. */
+static bool touch_side(const goe_observation_t *obs, const ellipse_t *o, size_t side, float at, touch_t *t) {
+    const goe_camera_t *camera = &obs->settings->camera;
+    const float sign = sign_of(side);
+    const float straight[3] = {is_level(side) ? 0.0f : sign, is_level(side) ? sign : 0.0f, -sign * at};
+    if (!goe_camera_distorts(camera)) {
+        return touch(obs, o, straight, EITHER, t);
+    }
+    touch_t head;
+    if (!touch_bent(obs, o, side, straight, FOOT, t) || !touch_bent(obs, o, side, straight, HEAD, &head)) {
+        return false;
+    }
+    if (sign * line_at(camera, side, head.x, head.y).at > sign * line_at(camera, side, t->x, t->y).at) {
+        *t = head;
+    }
+    return true;
 }
 
 /* Derivatives by the touching point and by the attitude's error, from the line's. */

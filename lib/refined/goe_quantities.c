@@ -13,7 +13,6 @@
 
 #if GOE_WITH_REFINED
 
-#define RANGE_SHARE 0.25f /* sigma over value up to which the range is reported */
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
 #define ORIENTATION_MAX_RAD 0.174532925f
@@ -100,11 +99,11 @@ static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
     return q->value[quantity] > 0.0f && is_known(q->value[quantity], q->worked_out[quantity], least, EXTENT_SHARE);
 }
 
-static bool is_position(const goe_filter_t *filter, const goe_quantities_t *q) {
+static bool is_position(const goe_filter_t *filter, const goe_quantities_t *q, float share) {
     return goe_within(q->value[GOE_X0] + filter->axes.start_dx_m, METRES_MAX) &&
            goe_within(q->value[GOE_Z0] + filter->axes.start_dz_m, METRES_MAX) &&
-           goe_within(q->worked_out[GOE_X0], RANGE_SHARE * q->value[GOE_Z0]) &&
-           is_known(q->value[GOE_Z0], q->worked_out[GOE_Z0], 0.0f, RANGE_SHARE);
+           goe_within(q->worked_out[GOE_X0], share * q->value[GOE_Z0]) &&
+           is_known(q->value[GOE_Z0], q->worked_out[GOE_Z0], 0.0f, share);
 }
 
 /* The extents of a box by its outline count only after some images, and if these fit. */
@@ -128,8 +127,8 @@ static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t
 }
 
 /* Which of the quantities this image knows well enough; values count from the filter's start. */
-static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q) {
-    if (!is_position(filter, q)) {
+static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q, float range_share) {
+    if (!is_position(filter, q, range_share)) {
         return 0;
     }
     return GOE_HAS_POSITION | (is_extent(q, GOE_HEIGHT, HEIGHT_MIN_M) ? GOE_HAS_HEIGHT : 0u) |
@@ -185,7 +184,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     q->prism = filter->phase == GOE_PHASE_PRISM;
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, q);
-    q->now = known_now(filter, q);
+    q->now = known_now(filter, q, settings->refined.range_share);
     q->known = q->now & filter->known;
     q->value[GOE_X0] += filter->axes.start_dx_m;
     q->value[GOE_Z0] += filter->axes.start_dz_m;
