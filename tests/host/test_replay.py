@@ -600,6 +600,7 @@ BAD_CAMERA = [
     ("huge", camera_with("camera.k1", "1e99"), 8, "camera.k1: out of range"),
     ("zero focal length", camera_with("camera.fy", "0"), 7, "camera.fy: out of range"),
     ("image without size", camera_with("camera.height", "0"), 7, "camera.height: out of range"),
+    ("image too large", camera_with("camera.width", "100001"), 7, "camera.width: out of range"),
     ("lever arm", camera_with("camera.offset_z_m", "20000"), 8, "camera.offset_z_m: out of range"),
     ("heading", camera_with("trajectory.heading_deg", "north"), 8, "trajectory.heading_deg: 'north' is not a number"),
     ("heading out of range", camera_with("trajectory.heading_deg", "361"), 8, "trajectory.heading_deg: out of range"),
