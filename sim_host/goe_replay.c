@@ -267,7 +267,6 @@ static bool replay_with(const options_t *options, const goe_settings_t *settings
 
 static int replay(const options_t *options) {
     goe_settings_t settings;
-    camera_image_size_t size; /* checked; the library has no use for it */
     input_error_t error;
     tally_t tally = {{0}, 0};
     goe_settings_default(&settings);
@@ -275,7 +274,7 @@ static int replay(const options_t *options) {
         return EXIT_BAD_INPUT;
     }
     frame_reader_t *reader =
-        camera_file_read(options->camera, &settings, &size, &error) ? frame_reader_open(options->frames, &error) : NULL;
+        camera_file_read(options->camera, &settings, &error) ? frame_reader_open(options->frames, &error) : NULL;
     if (reader == NULL) {
         (void)print_error(&error);
         return EXIT_BAD_INPUT;

@@ -4,7 +4,6 @@
 #include <ctype.h>
 #include <errno.h>
 #include <ini.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,40 +12,36 @@
 #include "number_text.h"
 
 #define HEADING_AUTO "auto"
-
-typedef struct {
-    goe_settings_t settings;
-    camera_image_size_t size;
-} camera_file_t;
+#define SMALLEST_SIZE_PX 1.0f
 
 typedef enum { KIND_SIZE, KIND_REQUIRED, KIND_OPTIONAL, KIND_HEADING } kind_t;
 
 typedef struct {
     const char *name;
-    size_t offset; /* of the float in camera_file_t */
+    size_t offset; /* of the float in goe_settings_t */
     kind_t kind;
 } camera_key_t;
 
-#define AT(field) offsetof(camera_file_t, field)
+#define AT(field) offsetof(goe_settings_t, field)
 static const camera_key_t keys[] = {
-    {"camera.width", AT(size.width_px), KIND_SIZE},
-    {"camera.height", AT(size.height_px), KIND_SIZE},
-    {"camera.fx", AT(settings.camera.fx_px), KIND_REQUIRED},
-    {"camera.fy", AT(settings.camera.fy_px), KIND_REQUIRED},
-    {"camera.cx", AT(settings.camera.cx_px), KIND_REQUIRED},
-    {"camera.cy", AT(settings.camera.cy_px), KIND_REQUIRED},
-    {"camera.k1", AT(settings.camera.k1), KIND_OPTIONAL},
-    {"camera.k2", AT(settings.camera.k2), KIND_OPTIONAL},
-    {"camera.p1", AT(settings.camera.p1), KIND_OPTIONAL},
-    {"camera.p2", AT(settings.camera.p2), KIND_OPTIONAL},
-    {"camera.k3", AT(settings.camera.k3), KIND_OPTIONAL},
-    {"camera.mount_roll_deg", AT(settings.camera.mount_roll_deg), KIND_OPTIONAL},
-    {"camera.mount_pitch_deg", AT(settings.camera.mount_pitch_deg), KIND_OPTIONAL},
-    {"camera.mount_yaw_deg", AT(settings.camera.mount_yaw_deg), KIND_OPTIONAL},
-    {"camera.offset_x_m", AT(settings.camera.offset_m[0]), KIND_OPTIONAL},
-    {"camera.offset_y_m", AT(settings.camera.offset_m[1]), KIND_OPTIONAL},
-    {"camera.offset_z_m", AT(settings.camera.offset_m[2]), KIND_OPTIONAL},
-    {"trajectory.heading_deg", AT(settings.heading_deg), KIND_HEADING},
+    {"camera.width", AT(camera.width_px), KIND_SIZE},
+    {"camera.height", AT(camera.height_px), KIND_SIZE},
+    {"camera.fx", AT(camera.fx_px), KIND_REQUIRED},
+    {"camera.fy", AT(camera.fy_px), KIND_REQUIRED},
+    {"camera.cx", AT(camera.cx_px), KIND_REQUIRED},
+    {"camera.cy", AT(camera.cy_px), KIND_REQUIRED},
+    {"camera.k1", AT(camera.k1), KIND_OPTIONAL},
+    {"camera.k2", AT(camera.k2), KIND_OPTIONAL},
+    {"camera.p1", AT(camera.p1), KIND_OPTIONAL},
+    {"camera.p2", AT(camera.p2), KIND_OPTIONAL},
+    {"camera.k3", AT(camera.k3), KIND_OPTIONAL},
+    {"camera.mount_roll_deg", AT(camera.mount_roll_deg), KIND_OPTIONAL},
+    {"camera.mount_pitch_deg", AT(camera.mount_pitch_deg), KIND_OPTIONAL},
+    {"camera.mount_yaw_deg", AT(camera.mount_yaw_deg), KIND_OPTIONAL},
+    {"camera.offset_x_m", AT(camera.offset_m[0]), KIND_OPTIONAL},
+    {"camera.offset_y_m", AT(camera.offset_m[1]), KIND_OPTIONAL},
+    {"camera.offset_z_m", AT(camera.offset_m[2]), KIND_OPTIONAL},
+    {"trajectory.heading_deg", AT(heading_deg), KIND_HEADING},
 };
 #undef AT
 #define KEYS (sizeof keys / sizeof keys[0])
@@ -58,7 +53,7 @@ typedef struct {
     size_t text_room;
     unsigned long line;
     unsigned long key_line[KEYS]; /* where a key was given; 0: nowhere */
-    camera_file_t file;
+    goe_settings_t settings;
     bool failed;
     input_error_t *error;
 } camera_reader_t;
@@ -127,13 +122,13 @@ static char *read_line(char *line, int size, void *user) {
 
 /* ------------------------------------------------------------------------------------------------------------ keys -- */
 
-static void store(camera_file_t *file, const camera_key_t *key, float value) {
-    (void)memcpy((char *)file + key->offset, &value, sizeof value);
+static void store(goe_settings_t *settings, const camera_key_t *key, float value) {
+    (void)memcpy((char *)settings + key->offset, &value, sizeof value);
 }
 
-static float stored(const camera_file_t *file, const camera_key_t *key) {
+static float stored(const goe_settings_t *settings, const camera_key_t *key) {
     float value = 0.0f;
-    (void)memcpy(&value, (const char *)file + key->offset, sizeof value);
+    (void)memcpy(&value, (const char *)settings + key->offset, sizeof value);
     return value;
 }
 
@@ -148,13 +143,13 @@ static size_t key_index(const char *name) {
 static void store_text(camera_reader_t *reader, const camera_key_t *key, const char *text) {
     double number = 0.0;
     if (key->kind == KIND_HEADING) {
-        reader->file.settings.heading_auto = strcmp(text, HEADING_AUTO) == 0;
-        if (reader->file.settings.heading_auto) {
+        reader->settings.heading_auto = strcmp(text, HEADING_AUTO) == 0;
+        if (reader->settings.heading_auto) {
             return;
         }
     }
     if (number_parse(text, strlen(text), &number)) {
-        store(&reader->file, key, number_to_float(number));
+        store(&reader->settings, key, number_to_float(number));
     } else {
         FAIL(reader, reader->line, key->name, "'%s' is not a number%s", excerpt_of(text, strlen(text)).text,
              key->kind == KIND_HEADING ? " and not " HEADING_AUTO : "");
@@ -185,26 +180,25 @@ static bool key_missing(const camera_reader_t *reader, size_t i) {
 
 /* The ranges are the library's own: the key is tried alone, on top of settings that are known to be good. */
 static bool value_accepted(const camera_key_t *key, float value) {
-    if (key->kind == KIND_SIZE) {
-        return value >= 1.0f && value < HUGE_VALF;
+    if (key->kind == KIND_SIZE && value < SMALLEST_SIZE_PX) {
+        return false;
     }
-    camera_file_t trial;
+    goe_settings_t trial;
     goe_estimator_t estimator;
-    (void)memset(&trial, 0, sizeof trial);
     (void)memset(&estimator, 0, sizeof estimator);
-    goe_settings_default(&trial.settings);
-    trial.settings.camera.fx_px = 1.0f;
-    trial.settings.camera.fy_px = 1.0f;
-    trial.settings.heading_auto = false;
+    goe_settings_default(&trial);
+    trial.camera.fx_px = 1.0f;
+    trial.camera.fy_px = 1.0f;
+    trial.heading_auto = false;
     store(&trial, key, value);
-    return goe_init(&estimator, sizeof estimator, &trial.settings, NULL) == GOE_OK;
+    return goe_init(&estimator, sizeof estimator, &trial, NULL) == GOE_OK;
 }
 
 static void check_keys(camera_reader_t *reader) {
     for (size_t i = 0; i < KEYS; i++) {
         if (key_missing(reader, i)) {
             FAIL(reader, reader->line == 0 ? 1u : reader->line, keys[i].name, "missing key, not found up to here");
-        } else if (!value_accepted(&keys[i], stored(&reader->file, &keys[i]))) {
+        } else if (!value_accepted(&keys[i], stored(&reader->settings, &keys[i]))) {
             FAIL(reader, reader->key_line[i], keys[i].name, "out of range");
         }
     }
@@ -228,12 +222,12 @@ static void read_keys(camera_reader_t *reader) {
     (void)fclose(reader->stream);
 }
 
-bool camera_file_read(const char *path, goe_settings_t *settings, camera_image_size_t *size, input_error_t *error) {
+bool camera_file_read(const char *path, goe_settings_t *settings, input_error_t *error) {
     camera_reader_t reader;
     (void)memset(&reader, 0, sizeof reader);
     reader.path = path;
     reader.error = error;
-    reader.file.settings = *settings;
+    reader.settings = *settings;
     read_keys(&reader);
     free(reader.text);
     if (!reader.failed) {
@@ -242,7 +236,6 @@ bool camera_file_read(const char *path, goe_settings_t *settings, camera_image_s
     if (reader.failed) {
         return false;
     }
-    *settings = reader.file.settings;
-    *size = reader.file.size;
+    *settings = reader.settings;
     return true;
 }

@@ -7,13 +7,10 @@
 #include "goe.h"
 #include "input_error.h"
 
-typedef struct {
-    float width_px, height_px;
-} camera_image_size_t;
-
-/* Reads the camera and the trajectory's heading into *settings, whose other fields stay as they are, and tells the image
- * size. Unknown, repeated and missing keys, text in place of a number and numbers that the library refuses are errors.
+/* Reads the camera and the trajectory's heading into *settings, whose other fields stay as they are. Unknown, repeated and
+ * missing keys, text in place of a number and numbers that the library refuses are errors; so is an image without size,
+ * which the library would take for one of unknown size.
  * False on failure: *error says what is wrong and where. */
-bool camera_file_read(const char *path, goe_settings_t *settings, camera_image_size_t *size, input_error_t *error);
+bool camera_file_read(const char *path, goe_settings_t *settings, input_error_t *error);
 
 #endif

@@ -9,9 +9,10 @@
 #define TIME_LIMIT_US 9.2e18 /* just inside 64 bits */
 
 const char *const frame_value_name[FRAME_VALUES] = {
-    "n_m",         "e_m",         "d_m",         "agl_m",       "qw",           "qx",          "qy",
-    "qz",          "left_u",      "left_v",      "right_u",     "right_v",      "top_u",       "top_v",
-    "base_left_u", "base_left_v", "base_near_u", "base_near_v", "base_right_u", "base_right_v"};
+    "n_m",         "e_m",          "d_m",           "agl_m",       "qw",           "qx",           "qy",
+    "qz",          "left_u",       "left_v",        "right_u",     "right_v",      "top_u",        "top_v",
+    "base_left_u", "base_left_v",  "base_near_u",   "base_near_v", "base_right_u", "base_right_v", "box_left_px",
+    "box_top_px",  "box_right_px", "box_bottom_px", "reset_n_m",   "reset_e_m",    "reset_d_m"};
 
 static int64_t time_to_us(double time_s) {
     const double time_us = time_s * US_PER_S;
@@ -32,6 +33,32 @@ static goe_pixel_t image_point(const frame_t *frame, frame_value_t name_u) {
     return point;
 }
 
+/* A side of the box: tells its bit, 0 if it is not seen. */
+static unsigned box_side(const frame_t *frame, frame_value_t name, unsigned bit, float *side_px) {
+    if (!frame->given[name]) {
+        return 0;
+    }
+    *side_px = number_to_float(frame->value[name]);
+    return bit;
+}
+
+static void read_box(const frame_t *frame, goe_box_t *box) {
+    unsigned seen = box_side(frame, FRAME_BOX_LEFT_PX, GOE_SEES_LEFT, &box->left_px);
+    seen |= box_side(frame, FRAME_BOX_TOP_PX, GOE_SEES_TOP, &box->top_px);
+    seen |= box_side(frame, FRAME_BOX_RIGHT_PX, GOE_SEES_RIGHT, &box->right_px);
+    seen |= box_side(frame, FRAME_BOX_BOTTOM_PX, GOE_SEES_BOTTOM, &box->bottom_px);
+    box->seen = (uint8_t)seen;
+}
+
+static void read_reset(const frame_t *frame, goe_pose_t *pose) {
+    pose->reset_count = (uint8_t)((uint64_t)frame->reset_count & UINT8_MAX);
+    pose->reset_delta_known = true;
+    for (int i = 0; i < 3; i++) {
+        pose->reset_delta_ned_m[i] = pose_value(frame, (frame_value_t)(FRAME_RESET_N_M + i));
+        pose->reset_delta_known = pose->reset_delta_known && frame->given[FRAME_RESET_N_M + i];
+    }
+}
+
 void frame_to_image(const frame_t *frame, goe_image_t *image) {
     const goe_image_t empty = {0};
     *image = empty;
@@ -43,10 +70,12 @@ void frame_to_image(const frame_t *frame, goe_image_t *image) {
         image->pose.attitude[i] = pose_value(frame, (frame_value_t)(FRAME_QW + i));
     }
     image->pose.height_m = frame->given[FRAME_AGL_M] ? pose_value(frame, FRAME_AGL_M) : -pose_value(frame, FRAME_D_M);
+    read_reset(frame, &image->pose);
     image->left = image_point(frame, FRAME_LEFT_U);
     image->right = image_point(frame, FRAME_RIGHT_U);
     image->top = image_point(frame, FRAME_TOP_U);
     image->base_left = image_point(frame, FRAME_BASE_LEFT_U);
     image->base_near = image_point(frame, FRAME_BASE_NEAR_U);
     image->base_right = image_point(frame, FRAME_BASE_RIGHT_U);
+    read_box(frame, &image->box);
 }

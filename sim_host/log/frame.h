@@ -9,9 +9,10 @@
 
 #define FRAME_TIME_NAME "t_s"
 #define FRAME_ID_NAME "id"
+#define FRAME_RESET_COUNT_NAME "reset_count"
 #define FRAME_TIME_TEXT_MAX 63
 
-/* The measured columns. Image points are pairs: u, then v. */
+/* The columns of numbers. Image points are pairs: u, then v. */
 typedef enum {
     FRAME_N_M,
     FRAME_E_M,
@@ -33,6 +34,13 @@ typedef enum {
     FRAME_BASE_NEAR_V,
     FRAME_BASE_RIGHT_U,
     FRAME_BASE_RIGHT_V,
+    FRAME_BOX_LEFT_PX,
+    FRAME_BOX_TOP_PX,
+    FRAME_BOX_RIGHT_PX,
+    FRAME_BOX_BOTTOM_PX,
+    FRAME_RESET_N_M,
+    FRAME_RESET_E_M,
+    FRAME_RESET_D_M,
     FRAME_VALUES
 } frame_value_t;
 
@@ -42,13 +50,15 @@ typedef struct {
     char time_text[FRAME_TIME_TEXT_MAX + 1]; /* t_s as it was read */
     double time_s;
     int64_t id;
+    int64_t reset_count;        /* 0: the field is empty or the column absent */
     double value[FRAME_VALUES]; /* units as the column's name says; not finite if the log says so */
     bool given[FRAME_VALUES];   /* false: the field is empty or the column absent; value means nothing */
 } frame_t;
 
-/* What the library is shown. An image point is seen if both coordinates are given. A missing pose value becomes NaN and
- * a time that is not finite or does not fit microseconds GOE_TIME_UNKNOWN, both of which the library refuses.
- * agl_m not given: -d_m. */
+/* What the library is shown. An image point is seen if both coordinates are given, a side of the box if its number is. A
+ * missing pose value becomes NaN and a time that is not finite or does not fit microseconds GOE_TIME_UNKNOWN, both of which
+ * the library refuses. agl_m not given: -d_m. The jump of a reset is known if all three of its numbers are given; of the
+ * count the lowest 8 bits go on, as counters wrap at any width. */
 void frame_to_image(const frame_t *frame, goe_image_t *image);
 
 #endif

@@ -17,7 +17,8 @@
 #define COLUMN_IGNORED (-1)
 #define COLUMN_TIME FRAME_VALUES
 #define COLUMN_ID (FRAME_VALUES + 1)
-#define COLUMNS_KNOWN (FRAME_VALUES + 2)
+#define COLUMN_RESET_COUNT (FRAME_VALUES + 2)
+#define COLUMNS_KNOWN (FRAME_VALUES + 3)
 
 typedef struct {
     char *name;
@@ -52,10 +53,16 @@ struct frame_reader {
 };
 
 static const char *known_name(int meaning) {
-    if (meaning == COLUMN_TIME) {
-        return FRAME_TIME_NAME;
+    switch (meaning) {
+        case COLUMN_TIME:
+            return FRAME_TIME_NAME;
+        case COLUMN_ID:
+            return FRAME_ID_NAME;
+        case COLUMN_RESET_COUNT:
+            return FRAME_RESET_COUNT_NAME;
+        default:
+            return frame_value_name[meaning];
     }
-    return meaning == COLUMN_ID ? FRAME_ID_NAME : frame_value_name[meaning];
 }
 
 /* The first fault of a file ends the reading. The fault of a field waits for the end of its row: if the row has too few
@@ -116,7 +123,8 @@ static void add_column(frame_reader_t *reader, const char *name, size_t length) 
     reader->column_count++;
 }
 
-/* Everything but the height above ground and the image points is required; an image point needs both its columns. */
+/* Time, id and pose are required, of the pose all but the height above ground. An image point needs both its columns, and the
+ * jump of a reset the count, without which it would be taken for motion. */
 static void check_header(frame_reader_t *reader) {
     static const int required[] = {COLUMN_TIME, COLUMN_ID, FRAME_N_M, FRAME_E_M, FRAME_D_M,
                                    FRAME_QW,    FRAME_QX,  FRAME_QY,  FRAME_QZ};
@@ -127,11 +135,16 @@ static void check_header(frame_reader_t *reader) {
                  reader->header_done ? "missing column" : "missing column, the file is empty");
         }
     }
-    for (int u = FRAME_LEFT_U; u < FRAME_VALUES; u += 2) {
+    for (int u = FRAME_LEFT_U; u < FRAME_BOX_LEFT_PX; u += 2) {
         const int v = u + 1;
         if (has_column(reader, u) != has_column(reader, v)) {
             const int absent = has_column(reader, u) ? v : u;
             FAIL(reader, line, known_name(absent), "missing column, the image point's other one is there");
+        }
+    }
+    for (int delta = FRAME_RESET_N_M; delta <= FRAME_RESET_D_M; delta++) {
+        if (has_column(reader, delta) && !has_column(reader, COLUMN_RESET_COUNT)) {
+            FAIL(reader, line, FRAME_RESET_COUNT_NAME, "missing column, %s is there", known_name(delta));
         }
     }
 }
@@ -148,9 +161,9 @@ static void store_time(frame_reader_t *reader, const char *text, size_t length) 
     }
 }
 
-static void store_id(frame_reader_t *reader, const char *text, size_t length) {
-    if (!integer_parse(text, length, &reader->frame->id)) {
-        FAIL_FIELD(reader, reader->row_line, FRAME_ID_NAME, "'%s' is not an integer of 64 bits",
+static void store_integer(frame_reader_t *reader, int meaning, const char *text, size_t length, int64_t *to) {
+    if (!integer_parse(text, length, to)) {
+        FAIL_FIELD(reader, reader->row_line, known_name(meaning), "'%s' is not an integer of 64 bits",
                    excerpt_of(text, length).text);
     }
 }
@@ -175,7 +188,11 @@ static void store_field(frame_reader_t *reader, const char *text, size_t length)
     if (meaning == COLUMN_TIME) {
         store_time(reader, text, length);
     } else if (meaning == COLUMN_ID) {
-        store_id(reader, text, length);
+        store_integer(reader, meaning, text, length, &reader->frame->id);
+    } else if (meaning == COLUMN_RESET_COUNT) {
+        if (length > 0) {
+            store_integer(reader, meaning, text, length, &reader->frame->reset_count);
+        }
     } else if (meaning != COLUMN_IGNORED) {
         store_value(reader, meaning, text, length);
     }
@@ -363,6 +380,7 @@ frame_reader_result_t frame_reader_next(frame_reader_t *reader, frame_t *frame, 
     reader->frame = frame;
     reader->row_ready = false;
     (void)memset(frame->given, 0, sizeof frame->given);
+    frame->reset_count = 0;
     while (!reader->failed && !reader->row_ready && !reader->finished) {
         step(reader);
     }

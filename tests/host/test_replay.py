@@ -37,6 +37,9 @@ CORNER = ROOT / "tests" / "data" / "corner"
 POSE = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz"]
 POINTS = ["left", "right", "top", "base_left", "base_near", "base_right"]
 COLUMNS = POSE + [f"{point}_{axis}" for point in POINTS for axis in "uv"]
+SIDES = ["box_left_px", "box_top_px", "box_right_px", "box_bottom_px"]
+JUMP = ["reset_n_m", "reset_e_m", "reset_d_m"]
+RESETS = ["reset_count", *JUMP]
 CAMERA = """# a wide lens
 camera.width = 1920
 camera.height = 1080
@@ -455,6 +458,72 @@ def test_height_above_ground_is_used(tmp_path: Path, log: Path) -> None:
     assert number(other[-1], "height_m") == pytest.approx(number(replay(log, *PAPER)[-1], "height_m") + 10.0, abs=1e-4)
 
 
+@pytest.mark.parametrize("columns", [SIDES, RESETS, SIDES[:1], RESETS[:1], SIDES + RESETS])
+def test_empty_boxes_and_resets_change_nothing(tmp_path: Path, log: Path, columns: list[str]) -> None:
+    other = write_log(tmp_path / "other", table(chimney(), COLUMNS + columns))
+    assert call(other).stdout == call(log).stdout
+
+
+# ------------------------------------------------------------------------------------------- resets of the autopilot
+
+JUMPED_M = (37.25, -12.5, 3.0)  # multiples of 1/4 m like the positions below: their sums are exact
+
+
+def jumped(counts: Sequence[Any], deltas: Sequence[Sequence[Any]] = (JUMPED_M,)) -> list[Row]:
+    """The chimney; from row 12 on the positions have jumped. counts, deltas: of row 12, 13, ...; the last one stays."""
+    rows = chimney()
+    for k, row in enumerate(rows[12:]):
+        for column, by in zip(("n_m", "e_m", "d_m"), JUMPED_M):
+            row[column] += by
+        row["reset_count"] = counts[min(k, len(counts) - 1)]
+        row.update(zip(JUMP, deltas[min(k, len(deltas) - 1)]))
+    return rows
+
+
+def quantities(rows: Sequence[dict[str, str]]) -> list[dict[str, str]]:
+    """Without the centre, which is told in the autopilot's own coordinates."""
+    return [{name: text for name, text in row.items() if not name.startswith("center")} for row in rows]
+
+
+@pytest.mark.parametrize("method", ["window", "refined"])
+def test_a_known_jump_is_no_motion(tmp_path: Path, log: Path, method: str) -> None:
+    plain = replay(log, "--method", method)
+    folder = write_log(tmp_path / "jump", table(jumped([1]), COLUMNS + RESETS))
+    out = replay(folder, "--method", method)
+    assert quantities(out) == quantities(plain)
+    for column, by in (("center_n_m", JUMPED_M[0]), ("center_e_m", JUMPED_M[1])):
+        assert number(out[-1], column) == pytest.approx(number(plain[-1], column) + by, abs=5e-5)
+
+
+def test_a_jump_is_told_in_the_row_of_the_new_count_alone(tmp_path: Path, log: Path) -> None:
+    told_once = table(jumped([1], [JUMPED_M, ("", "", "")]), COLUMNS + RESETS)
+    assert quantities(replay(write_log(tmp_path, told_once), *PAPER)) == quantities(replay(log, *PAPER))
+
+
+@pytest.mark.parametrize("lacking", [*JUMP, "columns"])
+def test_an_unknown_jump_begins_a_new_track(tmp_path: Path, lacking: str) -> None:
+    rows = [{**row, lacking: ""} for row in jumped([1])]
+    columns = COLUMNS + (RESETS[:1] if lacking == "columns" else RESETS)
+    out = replay(write_log(tmp_path / "jump", table(rows, columns)), *PAPER)
+    assert out[11]["status"] == "ok" and out[11]["z0_m"] != ""
+    assert [(row["status"], row["z0_m"]) for row in out[12:19]] == [("collecting", "")] * 7
+    assert number(out[19], "z0_m") == pytest.approx(200.0 - 1.5 * 12, rel=2e-3)  # of the new track's first image
+
+
+def test_a_jump_that_is_not_counted_is_taken_for_motion(tmp_path: Path, log: Path) -> None:
+    """Nothing else than the count tells of it: an empty one is 0, as in the rows before."""
+    plain = replay(log, *PAPER)
+    for counts in ([""], [0], ["0"]):
+        out = replay(write_log(tmp_path / "jump", table(jumped(counts), COLUMNS + RESETS)), *PAPER)
+        assert quantities(out[:12]) == quantities(plain[:12]) and quantities(out[12:]) != quantities(plain[12:])
+
+
+def test_a_jump_that_is_no_number(tmp_path: Path) -> None:
+    rows = jumped([1], [(37.25, "nan", 3.0), JUMPED_M])
+    out = replay(write_log(tmp_path, table(rows, COLUMNS + RESETS)), *PAPER)
+    assert (out[12]["status"], out[13]["status"]) == ("not_finite", "ok")  # the jump is told again
+
+
 # --------------------------------------------------------------------------------------- bad measurements: a status
 
 
@@ -523,6 +592,13 @@ def with_columns(drop: str = "", add: str = "") -> str:
     return table(chimney(), [name for name in COLUMNS if name != drop] + ([add] if add else []))
 
 
+def with_side(text: str) -> list[Row]:
+    """Boxes, and a text for the top of the fifth."""
+    rows = [{**row, **dict(zip(SIDES, (800.0, 300.0, 820.0, 900.0)))} for row in chimney()]
+    rows[4]["box_top_px"] = text
+    return rows
+
+
 BAD_FRAMES = [
     ("empty file", "", 1, "t_s", "missing column"),
     ("blank file", "\n\n \r\n", 1, "t_s", "missing column"),
@@ -561,6 +637,12 @@ BAD_FRAMES = [
         "id",
         "the row ends before this column",
     ),
+    ("text for a side", table(with_side("wide"), COLUMNS + SIDES), 6, "box_top_px", "'wide' is not a number"),
+    ("side twice", with_columns(add="box_top_px,box_top_px"), 1, "box_top_px", "twice"),
+    ("text for a jump", table(jumped([1], [("x", 0, 0)]), COLUMNS + RESETS), 14, "reset_n_m", "'x' is not a number"),
+    ("text for a count", table(jumped(["one"]), COLUMNS + RESETS), 14, "reset_count", "'one' is not an integer"),
+    ("fraction for a count", table(jumped(["1.0"]), COLUMNS + RESETS), 14, "reset_count", "'1.0' is not an integer"),
+    ("a jump without a count", with_columns(add="reset_e_m"), 1, "reset_count", "missing column, reset_e_m is there"),
     ("CRLF", edited(4, left_u="?").replace("\n", "\r\n"), 6, "left_u", "'?' is not a number"),
     ("CR alone", table(chimney()).replace("\n", "\r"), 1, "", ""),
     ("semicolons", table(chimney()).replace(",", ";"), 1, "t_s", "missing column"),
@@ -600,6 +682,7 @@ BAD_CAMERA = [
     ("huge", camera_with("camera.k1", "1e99"), 8, "camera.k1: out of range"),
     ("zero focal length", camera_with("camera.fy", "0"), 7, "camera.fy: out of range"),
     ("image without size", camera_with("camera.height", "0"), 7, "camera.height: out of range"),
+    ("image too large", camera_with("camera.width", "100001"), 7, "camera.width: out of range"),
     ("lever arm", camera_with("camera.offset_z_m", "20000"), 8, "camera.offset_z_m: out of range"),
     ("heading", camera_with("trajectory.heading_deg", "north"), 8, "trajectory.heading_deg: 'north' is not a number"),
     ("heading out of range", camera_with("trajectory.heading_deg", "361"), 8, "trajectory.heading_deg: out of range"),
