@@ -59,7 +59,7 @@
  *   orientation, both axes and the reference point change at once. The centre does neither.
  *
  * ---------------------------------------------------------------------------------------------------------------------
- * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 2 KiB at the default window), and all there
+ * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 2.25 KiB at the default window), and all there
  *             is: no heap, no hidden statics, no recursion. One estimator follows one obstacle; several obstacles take
  *             several estimators, which share nothing.
  * Threads     Every function touches only what its arguments point at. Two threads may work on two estimators; one
@@ -438,7 +438,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * GOE_NOT_INITIALISED. If several faults meet in one image all are counted; a failed solution is reported rather than a
  * feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
- * Cost: at most 25000 instructions, 1024 bytes of stack; 30000 with lens distortion; window: 2550. No loop runs longer than
+ * Cost: at most 25000 instructions, 1100 bytes of stack; 30000 with lens distortion; window: 2550. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 

@@ -96,12 +96,14 @@ static bool is_known(float value, float sigma, float least, float share) {
 }
 
 static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
-    return q->value[quantity] > 0.0f && is_known(q->value[quantity], q->worked_out[quantity], least, EXTENT_SHARE);
+    return q->value[quantity] > 0.0f && goe_within(q->sigma[quantity], METRES_MAX) &&
+           is_known(q->value[quantity], q->worked_out[quantity], least, EXTENT_SHARE);
 }
 
 static bool is_position(const goe_filter_t *filter, const goe_quantities_t *q, float share) {
     return goe_within(q->value[GOE_X0] + filter->axes.start_dx_m, METRES_MAX) &&
            goe_within(q->value[GOE_Z0] + filter->axes.start_dz_m, METRES_MAX) &&
+           goe_within(q->sigma[GOE_X0], METRES_MAX) && goe_within(q->sigma[GOE_Z0], METRES_MAX) &&
            goe_within(q->worked_out[GOE_X0], share * q->value[GOE_Z0]) &&
            is_known(q->value[GOE_Z0], q->worked_out[GOE_Z0], 0.0f, share);
 }

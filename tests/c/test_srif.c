@@ -137,6 +137,7 @@ static void random_matrix(size_t rows, goe_matrix_t *matrix) {
 
 typedef struct {
     dense_t information;
+    double right[N]; /* A'S^-1r */
     double change[N];
     double nis;
 } solution_t;
@@ -161,7 +162,7 @@ static solution_t solve(const goe_triangle_t *root, double nuisance_root, const 
     const dense_t weight = inverted(noise_of(matrix, nuisance_root), ROWS);
     const dense_t prior = information_of(root);
     solution_t s;
-    double right[N];
+    double *right = s.right;
     double left_over[ROWS];
     s.information = prior;
     for (int i = 0; i < N; i++) {
@@ -229,6 +230,36 @@ static void an_update_solves_the_normal_equations(void) {
         random_root(&root);
         random_matrix(1u + (size_t)n % ROWS, &matrix);
         check_update(&root, pow(10.0, check_random_between(&any, 0.0, 3.0)), &matrix);
+    }
+}
+
+/* GIVEN the same WHEN the last state is considered THEN the others are those of the normal equations with that state held at 0,
+ * their dependence on it is that of these equations, too, and what is known of it stays. */
+static void a_considered_state_is_held_and_depended_on(void) {
+    any = check_random_start("considering");
+    for (int n = 0; n < CASES; n++) {
+        goe_triangle_t root;
+        goe_matrix_t matrix;
+        float change[N];
+        random_root(&root);
+        random_matrix(1u + (size_t)n % ROWS, &matrix);
+        const double nuisance_root = pow(10.0, check_random_between(&any, 0.0, 3.0));
+        const float known = *goe_srif_at(&root, N - 1, N - 1);
+        const solution_t expected = solve(&root, nuisance_root, &matrix);
+        const dense_t covariance = inverted(expected.information, N - 1);
+        (void)goe_srif_update_considering(&root, (float)nuisance_root, &matrix, change);
+        const dense_t information = information_of(&root);
+        TEST_ASSERT_EQUAL_FLOAT(known, *goe_srif_at(&root, N - 1, N - 1));
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, change[N - 1]);
+        for (int i = 0; i < N - 1; i++) {
+            double held = 0.0;
+            for (int j = 0; j < N; j++) {
+                const double scale = sqrt(expected.information.m[i][i] * expected.information.m[j][j]);
+                CHECK_CLOSE(SHARE, 0.0, (information.m[i][j] - expected.information.m[i][j]) / scale);
+                held += j < N - 1 ? covariance.m[i][j] * expected.right[j] : 0.0;
+            }
+            CHECK_CLOSE(SHARE, 0.0, ((double)change[i] - held) / sqrt(covariance.m[i][i]));
+        }
     }
 }
 
@@ -495,6 +526,7 @@ static void a_singular_covariance_gives_a_finite_root(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_update_solves_the_normal_equations);
+    RUN_TEST(a_considered_state_is_held_and_depended_on);
     RUN_TEST(the_squares_left_over_average_to_the_number_of_rows);
     RUN_TEST(rows_of_zeros_change_nothing);
     RUN_TEST(a_row_without_derivatives_is_left_over);

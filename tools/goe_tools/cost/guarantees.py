@@ -33,9 +33,9 @@ M4F_GCC_O2 = ("m4f-gcc-o2",)
 GUARANTEES = (
     Guarantee(
         "an estimator takes at most {limit} bytes at a window of 8",
-        "2 KiB",
+        "2.25 KiB",
         key(book.STATE, "window 8"),
-        2048,
+        2304,
         EVERYWHERE,
         EVERYWHERE,
     ),
@@ -65,9 +65,9 @@ GUARANTEES = (
     ),
     Guarantee(
         "an update takes at most {limit} bytes of stack",
-        "1,024 bytes of stack",
+        "1,100 bytes of stack",
         key(book.STACK, UPDATES["refined"]),
-        1024,
+        1100,
         M4F,
         M4F_GCC_O2,
     ),

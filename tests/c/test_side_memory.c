@@ -1,0 +1,162 @@
+/* Memory of a side's error against generalised least squares over all images at once, in double. SPDX-License-Identifier: MIT */
+#include "refined/goe_side_memory.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+
+#define IMAGES 16
+#define CASES 200
+#define SHARE 1.0e-3 /* rounding, of one sigma */
+
+static check_random_t any;
+
+typedef struct {
+    double time_s[IMAGES], slope[IMAGES], residual[IMAGES]; /* residual = slope x + error + white noise */
+    double white[IMAGES];                                   /* variances */
+    double variance, tau_s;                                 /* of the error */
+    double prior;                                           /* variance of x about 0 */
+} series_t;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* ---------------------------------------------------------------------------------------------------------- reference -- */
+
+/* Solves S y = b in place by Gauss elimination; S is positive definite. */
+static void solve(double s[IMAGES][IMAGES], double b[IMAGES]) {
+    for (int c = 0; c < IMAGES; c++) {
+        for (int i = c + 1; i < IMAGES; i++) {
+            const double f = s[i][c] / s[c][c];
+            for (int j = c; j < IMAGES; j++) {
+                s[i][j] -= f * s[c][j];
+            }
+            b[i] -= f * b[c];
+        }
+    }
+    for (int i = IMAGES - 1; i >= 0; i--) {
+        for (int j = i + 1; j < IMAGES; j++) {
+            b[i] -= s[i][j] * b[j];
+        }
+        b[i] /= s[i][i];
+    }
+}
+
+static void covariance_of(const series_t *of, double s[IMAGES][IMAGES]) {
+    for (int i = 0; i < IMAGES; i++) {
+        for (int j = 0; j < IMAGES; j++) {
+            const double apart_s = fabs(of->time_s[i] - of->time_s[j]);
+            s[i][j] = of->variance * exp(-apart_s / of->tau_s) + (i == j ? of->white[i] : 0.0);
+        }
+    }
+}
+
+static void expect(const series_t *of, double *x, double *variance) {
+    double s[IMAGES][IMAGES];
+    double by_slope[IMAGES];
+    double by_residual[IMAGES];
+    double information = 1.0 / of->prior;
+    double right = 0.0;
+    memcpy(by_slope, of->slope, sizeof by_slope);
+    memcpy(by_residual, of->residual, sizeof by_residual);
+    covariance_of(of, s);
+    solve(s, by_slope);
+    covariance_of(of, s);
+    solve(s, by_residual);
+    for (int i = 0; i < IMAGES; i++) {
+        information += of->slope[i] * by_slope[i];
+        right += of->slope[i] * by_residual[i];
+    }
+    *variance = 1.0 / information;
+    *x = right / information;
+}
+
+/* ------------------------------------------------------------------------------------------------------- the recursion -- */
+
+/* x is the filter's bearing; each image is used once, as the filter does: fade, recall, update, learn, follow. */
+static void filter(const series_t *of, double *x, double *variance) {
+    goe_side_memory_t side;
+    double state = 0.0;
+    double information = 1.0 / of->prior;
+    memset(&side, 0, sizeof side);
+    for (int k = 0; k < IMAGES; k++) {
+        float row[GOE_COLUMNS] = {0.0f};
+        float own = (float)of->white[k];
+        float change[GOE_STATES] = {0.0f};
+        const double since_s = k > 0 ? of->time_s[k] - of->time_s[k - 1] : 0.0;
+        goe_side_memory_fade(&side, (float)exp(-since_s / of->tau_s), (float)of->variance);
+        row[GOE_STATE_COLUMN + GOE_BEARING] = (float)of->slope[k];
+        row[GOE_RESIDUAL] = (float)(of->residual[k] - of->slope[k] * state);
+        goe_side_memory_recall(&side, row, &own);
+        const float weight = 1.0f / sqrtf(own);
+        for (int c = 0; c < (int)GOE_COLUMNS; c++) {
+            row[c] *= weight;
+        }
+        const double by = (double)row[GOE_STATE_COLUMN + GOE_BEARING];
+        information += by * by;
+        change[GOE_BEARING] = (float)(by * (double)row[GOE_RESIDUAL] / information);
+        goe_side_memory_learn(&side, row, weight, 0.0f);
+        state += (double)change[GOE_BEARING];
+        goe_side_memory_follow(&side, change);
+    }
+    *x = state;
+    *variance = 1.0 / information;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- tests -- */
+
+static series_t any_series(void) {
+    series_t s;
+    s.variance = pow(10.0, check_random_between(&any, -4.0, 0.0));
+    s.tau_s = check_random_between(&any, 0.2, 3.0);
+    s.prior = pow(10.0, check_random_between(&any, -1.0, 2.0));
+    double time_s = 0.0;
+    for (int k = 0; k < IMAGES; k++) {
+        time_s += check_random_between(&any, 0.02, 0.5);
+        s.time_s[k] = time_s;
+        s.slope[k] = check_random_between(&any, -2.0, 2.0);
+        s.white[k] = s.variance * pow(10.0, check_random_between(&any, -2.0, 1.0));
+        s.residual[k] = check_random_normal(&any) * sqrt(s.variance);
+    }
+    return s;
+}
+
+/* GIVEN a side whose error is a first-order process WHEN its images come one by one THEN value and variance are those of all
+ * images at once, with the error's whole covariance. */
+static void it_is_as_good_as_all_images_at_once(void) {
+    any = check_random_start("series");
+    for (int n = 0; n < CASES; n++) {
+        double expected;
+        double expected_variance;
+        double x;
+        double variance;
+        const series_t s = any_series();
+        expect(&s, &expected, &expected_variance);
+        filter(&s, &x, &variance);
+        CHECK_CLOSE(SHARE, 0.0, (x - expected) / sqrt(expected_variance));
+        CHECK_CLOSE(SHARE, 1.0, variance / expected_variance);
+    }
+}
+
+/* GIVEN a row that was refused THEN nothing is learnt from it. */
+static void a_refused_row_teaches_nothing(void) {
+    goe_side_memory_t side;
+    goe_side_memory_t before;
+    float row[GOE_COLUMNS];
+    memset(&side, 0, sizeof side);
+    for (size_t c = 0; c < GOE_COLUMNS; c++) {
+        row[c] = 0.0f;
+    }
+    goe_side_memory_fade(&side, 1.0f, 0.01f);
+    before = side;
+    goe_side_memory_learn(&side, row, 0.0f, 0.0f);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &side, sizeof side);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(it_is_as_good_as_all_images_at_once);
+    RUN_TEST(a_refused_row_teaches_nothing);
+    return UNITY_END();
+}
