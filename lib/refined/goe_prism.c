@@ -101,7 +101,7 @@ static void into_axes(const goe_observation_t *obs, const float v[3], float to[3
 
 typedef enum { FOOT, HEAD, EITHER } end_t;
 
-/* The touching point on the side of the outward normal, which is given in the camera's axes. (R29), (R30). False if it is not
+/* The touching point on the side of the outward normal, which is given in the camera's axes. (R26), (R27). False if it is not
  * ahead. */
 static bool touch(const goe_observation_t *obs, const ellipse_t *o, const float normal[3], end_t end, touch_t *t) {
     const float e[3] = {obs->ex, obs->ey, obs->ez};
@@ -159,7 +159,7 @@ static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y)
 
 static float sign_of(size_t side) { return side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f; }
 
-/* By the line as it lies where it touches, which the first call tells about, (R31). */
+/* By the line as it lies where it touches, which the first call tells about, (R28). */
 static bool touch_bent(const goe_observation_t *obs, const ellipse_t *o, size_t side, const float straight[3],
                        end_t end, touch_t *t) {
     if (!touch(obs, o, straight, end, t)) {
@@ -211,7 +211,7 @@ static goe_gradient_t gradient_of(const goe_observation_t *obs, const touch_t *t
     return to;
 }
 
-/* (R32). */
+/* (R29). */
 static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t side, float variance, goe_rows_t *rows) {
     touch_t t;
     const goe_camera_t *camera = &obs->settings->camera;

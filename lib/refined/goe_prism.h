@@ -5,7 +5,7 @@
  * w e^(s + c) along the line of sight of the first image; the support function of an ellipse is smooth, has no corners to
  * mistake, and is exact for a mast, and for a wall that is seen end-on or broadside. Boxes hardly tell how deep a thing is:
  * s, with a prior of its own, is estimated, and c stands for what a pilot must still reckon with; it is considered, never
- * estimated. (R28) to (R33). */
+ * estimated. (R25) to (R29), (R33). */
 #ifndef GOE_PRISM_H
 #define GOE_PRISM_H
 

@@ -1,7 +1,7 @@
 /* The error of a box's side that stays alike from image to image. SPDX-License-Identifier: MIT
  *
  * A first-order process of the sigma s and the time constant tau. As the obstacle stands still, the residuals so far tell what
- * the error is, given the state: it is linear in the state, so that the process needs no state of its own. (R25) to (R27). */
+ * the error is, given the state: it is linear in the state, so that the process needs no state of its own. (R30) to (R32). */
 #ifndef GOE_SIDE_MEMORY_H
 #define GOE_SIDE_MEMORY_H
 

@@ -159,6 +159,16 @@ def test_demo(built: Path, set_up: None) -> None:
     assert Path(page).read_text(encoding="utf-8").rstrip().endswith("</html>")
 
 
+def test_the_example_prints_what_the_readme_says(built: Path) -> None:
+    lines = output_of(built / "tests" / "readme_example").splitlines()
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    said = " ".join(readme.split("It first answers with the second image: ")[1].split("\n## ")[0].split())
+    first = re.fullmatch(r"ok +(.* m ahead), +(.* to the left), +(.* m) wide, +(.* m) high", lines[0])
+    assert first is not None and len(lines) == 9
+    assert said.startswith("{}, {}, {} wide and {} high, and with the tenth ".format(*first.groups()))
+    assert f"tenth {lines[-1].split(', ')[0].split(maxsplit=1)[1]}" in said
+
+
 def test_sizes() -> None:
     text = output_of("tools/sizes.sh", "x86-64 gcc -Os")
     readme = (ROOT / "lib" / "README.md").read_text(encoding="utf-8")
