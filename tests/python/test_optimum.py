@@ -13,7 +13,7 @@ from goe_tools.__main__ import main
 from goe_tools.logs.obslog import LogError, read_log, write_log
 from goe_tools.optimum import model
 from goe_tools.optimum.bound import bound
-from goe_tools.optimum.flights.flight import LEFT, RIGHT, TOP, Obstacle
+from goe_tools.optimum.flights.flight import LEFT, RIGHT, TOP, Flight, Obstacle
 from goe_tools.optimum.flights.logged import from_log
 from goe_tools.optimum.flights.measured import measure
 from goe_tools.optimum.flights.noise import FIELD, NOISES, Noise
@@ -24,7 +24,16 @@ from goe_tools.optimum.goals import command
 from goe_tools.optimum.goals.goal import Goal
 from goe_tools.optimum.goals.kitti import caught
 from goe_tools.optimum.judge import judge, renamed, renamed_sigma
-from goe_tools.optimum.library import MODEL_BOX, MODEL_DISC, Track, boxes_of, estimate, library_path, settings_of
+from goe_tools.optimum.library import (
+    MODEL_BOX,
+    MODEL_DISC,
+    MODEL_PRISM,
+    Track,
+    boxes_of,
+    estimate,
+    library_path,
+    settings_of,
+)
 
 CORNER = Path(__file__).resolve().parents[1] / "data" / "corner"
 EXACT = Noise(pixel_px=0.0)
@@ -330,6 +339,33 @@ def test_the_size_of_the_image_is_a_setting(built: Path) -> None:
     assert (told["camera.width_px"], told["camera.height_px"]) == (1280.0, 960.0)
     with pytest.raises(ValueError, match=r"camera\.height_px"):
         estimate(replace(flight, image_size_px=(1280.0, -1.0)))
+
+
+def boxed(images: int) -> Flight:
+    """Exact boxes, no points, of a disc before a level camera: left and right are tangents, top and bottom touch the
+    roof and the foot where they are nearest along the axis."""
+    flight = measure(disc_scene(), EXACT).first(images)
+    truth, camera = flight.truth, flight.camera
+    ahead, radius = truth.z0_m - (flight.position_ned_m - flight.position_ned_m[0])[:, 0], 0.5 * truth.width_m
+    bearing, half = np.arctan2(truth.x0_m, ahead), np.arcsin(radius / np.hypot(truth.x0_m, ahead))
+    left, right = (camera.cx + camera.fx * np.tan(bearing + side * half) for side in (-1, 1))
+    top, bottom = (camera.cy + camera.fy * down / (ahead - radius) for down in (20.0 - truth.height_m, 20.0))
+    return replace(
+        flight, seen=np.zeros_like(flight.seen), attitude=np.tile([1.0, 0.0, 0.0, 0.0], (images, 1)),
+        box_px=np.stack([left, top, right, bottom], -1), image_size_px=(1280.0, 1280.0),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("double", [False, True])
+def test_the_library_over_boxes_alone(built: Path, double: bool) -> None:
+    flight = boxed(80)
+    assert flight.box_px is not None
+    flight.box_px[5] = np.nan
+    track = estimate(flight, double=double)
+    assert track.status[5] == 4  # nothing seen
+    assert track.model[-1] == MODEL_PRISM
+    error = (track.values[-1] - flight.truth.values)[[0, 1, 3, 5]]
+    assert np.abs(error).max() < 0.01
 
 
 def test_a_goal_is_met_within_its_range() -> None:
