@@ -334,14 +334,21 @@ SETTINGS = {  # by --set, and their defaults
     "navigation.height_bias_m": 0.5,
     "navigation.velocity_bias_m_s": 0.05,
     "navigation.position_walk_m": 0.05,
+    "navigation.position_white_m": 0,
+    "navigation.ground_m": 2,
     "detector.point_px": 0.5,
     "detector.point_share": 0,
     "detector.point_correlation": 0,
     "detector.shape_share": 0,
+    "detector.box_px": 1,
+    "detector.box_share": 0.07,
+    "detector.correlation_s": 1.2,
+    "detector.cut_noise": 1,
     "refined.typical_size_m": 6,
     "refined.gate_sigma": 5,
     "refined.huber_sigma": 2.5,
     "refined.misfit_max": 1.9,
+    "refined.range_share": 0.25,
     "refined.top_is_highest": 0,
     "window.points": 8,
     "window.line_points": 8,
@@ -351,12 +358,13 @@ SETTINGS = {  # by --set, and their defaults
     "window.orientation_memory": 20,
     "window.min_baseline_m": 0.1,
 }
-OTHERWISE = {  # values that change what the refined method, or else the window, says of the corner log or the chimney
+OTHERWISE = {  # values that change what the refined method, or else the window, says of a log
     "refined": {
         **{name: 0.2 for name in SETTINGS if name.startswith(("detector.", "navigation."))},
         "refined.typical_size_m": 30,
         "refined.gate_sigma": 1,
         "refined.huber_sigma": 0.5,
+        "refined.range_share": 0.01,
         "refined.top_is_highest": 1,
     },
     "window": {
@@ -371,13 +379,15 @@ OTHERWISE = {  # values that change what the refined method, or else the window,
 }
 
 
-def test_each_setting_is_set(log: Path) -> None:
+def test_each_setting_is_set(log: Path, tmp_path: Path) -> None:
+    cut = [{**row, "box_right_px": row["box_right_px"] if k < 30 else ""} for k, row in enumerate(boxes())]
+    folders = (CORNER, log, write_log(tmp_path / "boxes", table(cut, COLUMNS + SIDES)))
     assert {"refined.misfit_max"} | {name for told in OTHERWISE.values() for name in told} == set(SETTINGS)
     for method, told in OTHERWISE.items():
-        usual = [call("--method", method, folder).stdout for folder in (CORNER, log)]
+        usual = [call("--method", method, folder, check=None).stdout for folder in folders]
         for name, value in told.items():
             option = f"--set={name}={value}"
-            changed = [call("--method", method, option, folder, check=None).stdout for folder in (CORNER, log)]
+            changed = [call("--method", method, option, folder, check=None).stdout for folder in folders]
             assert all(changed) and changed != usual, name
 
 
@@ -462,6 +472,50 @@ def test_height_above_ground_is_used(tmp_path: Path, log: Path) -> None:
 def test_empty_boxes_and_resets_change_nothing(tmp_path: Path, log: Path, columns: list[str]) -> None:
     other = write_log(tmp_path / "other", table(chimney(), COLUMNS + columns))
     assert call(other).stdout == call(log).stdout
+
+
+# -------------------------------------------------------------------------------------------------- bounding boxes
+
+
+def boxes(frames: int = 40) -> list[Row]:
+    """A chimney of 6 m diameter and 20 m height at (200, -30) m as a detector's boxes: its foot at the bottom."""
+    rows = []
+    for row, seen in zip(chimney(frames), [pose_row(0.1 * k, 1.5 * k) for k in range(frames)]):
+        ahead = 200.0 - 1.5 * len(rows)
+        top, bottom = (pixel(ahead, 0.0, down)[1] for down in (ALTITUDE_M - 20.0, ALTITUDE_M))
+        seen.update(zip(SIDES, (row["left_u"], f"{top:.9g}", row["right_u"], f"{bottom:.9g}")))
+        rows.append(seen)
+    return rows
+
+
+def test_boxes_alone_are_enough(tmp_path: Path) -> None:
+    last = replay(write_log(tmp_path, table(boxes(), COLUMNS + SIDES)))[-1]
+    assert (last["status"], last["model"]) == ("ok", "prism")
+    for name, truth in {"center_n": 200.0, "center_e": -30.0, "width": 6.0, "height": 20.0}.items():
+        if last[f"{name}_m"]:
+            assert abs(number(last, f"{name}_m") - truth) < 2.0 * number(last, f"{name}_sd_m")
+    assert number(last, "z_m") == pytest.approx(200.0 - 1.5 * 39, rel=0.1)
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_each_side_is_seen_if_it_is_given(tmp_path: Path, side: str) -> None:
+    """The library refuses a side that is no number, and asks for no number of a side that is not seen."""
+    rows = [{**row, **{name: "" for name in SIDES if name != side}} for row in boxes(4)]
+    rows[1][side], rows[2][side], rows[3][side] = "nan", "", "2e5"
+    out = replay(write_log(tmp_path, table(rows, COLUMNS + SIDES)), check=1)
+    assert [row["status"] for row in out] == ["collecting", "not_finite", "nothing_seen", "out_of_range"]
+
+
+@pytest.mark.parametrize(
+    ("side", "border"),
+    [("box_left_px", 1.0), ("box_right_px", 1919.0), ("box_bottom_px", 1079.0)],  # of 1920 x 1080 px
+)
+def test_a_side_at_the_border_is_none(tmp_path: Path, side: str, border: float) -> None:
+    """The size of the image reaches the library: what lies at its border is as good as empty, elsewhere it is not."""
+    whole = boxes()
+    at_border, empty = ([*whole[:20], *({**row, side: text} for row in whole[20:])] for text in (border, ""))
+    told = [call(write_log(tmp_path, table(rows, COLUMNS + SIDES))).stdout for rows in (whole, at_border, empty)]
+    assert told[0] != told[1] == told[2]
 
 
 # ------------------------------------------------------------------------------------------- resets of the autopilot
