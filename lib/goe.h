@@ -272,6 +272,8 @@ typedef struct {
     float huber_sigma;    /* a point farther off than this counts less, sigmas; 0.5 to 100; default 2.5 */
     float misfit_max;     /* goe_estimate_t.misfit above which the obstacle is suspect; 0.01 to 1e3; default 1.9. Less where
                              shape_share or box_share stand for what is the same in every image */
+    float range_share;    /* a position is reported once its sigma is below this share of the range, without what no image can
+                             show (GOE_MODEL_PRISM); 0.01 to 10; default 0.25 */
     bool top_is_highest;  /* `top` is the highest point in the image also when seen from above the roof: see goe_image_t.top;
                              default false */
 } goe_refined_settings_t;
@@ -360,7 +362,7 @@ typedef struct {
 
 /* One-sigma of each quantity; units as the quantity.
  * Refined: of the true error, as far as goe_navigation_t and goe_detector_t describe the sensors; a quantity is valid once its
- * sigma was below 25 % (x0, z0: of the range at the filter's start), 30 % (width, length, height) or 10 degrees in two images
+ * sigma was below refined.range_share (25 %; x0, z0: of the range at the filter's start), 30 % (width, length, height) or 10 degrees in two images
  * in a row.
  * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
  * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:

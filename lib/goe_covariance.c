@@ -45,8 +45,20 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
     return true;
 }
 
+static bool is_of_prism(const goe_estimator_t *estimator) {
+    return estimator->filter.phase == GOE_PHASE_PRISM && is_of_filter(goe_latest_estimate(estimator));
+}
+
+float goe_latest_camera_height(const goe_estimator_t *estimator) {
+    return is_of_prism(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
+}
+
 float goe_latest_height_bias(const goe_estimator_t *estimator) {
-    return is_of_filter(goe_latest_estimate(estimator)) ? estimator->filter.state[GOE_HEIGHT_BIAS] : 0.0f;
+    const float *state = estimator->filter.state;
+    if (is_of_prism(estimator)) {
+        return state[GOE_PRISM_GROUND] / state[GOE_INVERSE_RANGE];
+    }
+    return is_of_filter(goe_latest_estimate(estimator)) ? state[GOE_HEIGHT_BIAS] : 0.0f;
 }
 #else
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
@@ -55,6 +67,8 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
     (void)covariance;
     return false;
 }
+
+float goe_latest_camera_height(const goe_estimator_t *estimator) { return estimator->motion.height_m; }
 
 float goe_latest_height_bias(const goe_estimator_t *estimator) {
     (void)estimator;

@@ -163,6 +163,7 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #if GOE_WITH_REFINED
     if (goe_is_refined(estimator)) {
         move_center(&estimator->estimate, pose->reset_delta_ned_m);
+        goe_filter_move_datum(&estimator->filter, pose->reset_delta_ned_m[2]);
     }
 #endif
 }

@@ -61,6 +61,7 @@
     X(refined.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point farther off is left out") \
     X(refined.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point farther off counts less") \
     X(refined.misfit_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "misfit above which the obstacle is suspect") \
+    X(refined.range_share, REAL, "", 0.01f, 10.0f, 0.25f, "sigma over range up to which a position is reported") \
     X(refined.top_is_highest, TRUTH, "", 0, 1, 0, "top is the highest point in the image, also from above")
 #else
 #define GOE_SETTINGS_REFINED(X)

@@ -112,6 +112,22 @@ typedef struct {    /* refined/goe_box.c: what the report calls the edges of a b
     bool decided;
 } goe_naming_t;
 
+/* refined/goe_filter.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
+ * in. */
+typedef struct {
+    float ground_m; /* down of the ground, by the first image of the track */
+    float height_m; /* of the camera above it, latest image */
+    bool begun;
+} goe_datum_t;
+
+/* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell it. It
+ * hangs on the state: value + by' (x - state), and the variance is what it is uncertain by beyond that. */
+typedef struct {
+    float by[GOE_STATES];
+    float value;    /* focal lengths */
+    float variance; /* 0: the side was never measured */
+} goe_side_memory_t;
+
 #define GOE_NIS_NONE (-1.0f)
 
 typedef struct {      /* refined/goe_health.c: how the images fit */
@@ -139,10 +155,12 @@ typedef struct {
     goe_leaving_t leaving;
     goe_health_t health;
     goe_axes_t axes;
-    float state[GOE_STATES]; /* by goe_state_index_t */
-    goe_triangle_t root;     /* R: R'R is the information of the state */
-    goe_inverse_t inverse;   /* of R, after the latest image: R^-1 R^-1' is the covariance */
-    goe_matrix_t rows;       /* of the image at hand */
+    goe_datum_t datum;
+    goe_side_memory_t side[4]; /* by goe_box_side_t */
+    float state[GOE_STATES];   /* by goe_state_index_t */
+    goe_triangle_t root;       /* R: R'R is the information of the state */
+    goe_inverse_t inverse;     /* of R, after the latest image: R^-1 R^-1' is the covariance */
+    goe_matrix_t rows;         /* of the image at hand */
 } goe_filter_t;
 
 /* ------------------------------------------------------------------------------------------------------- estimator -- */

@@ -26,7 +26,8 @@ void goe_outline_of(const goe_estimate_t *estimate, goe_outline_t *o) {
     o->width_axis.z = estimate->width_axis[1];
     o->half = (estimate->valid & GOE_HAS_WIDTH) ? 0.5f * estimate->width_m : 0.0f;
     o->length = estimate->length_m;
-    o->box = estimate->model != GOE_MODEL_DISC && (estimate->valid & needed) == needed;
+    o->box =
+        estimate->model != GOE_MODEL_DISC && estimate->model != GOE_MODEL_PRISM && (estimate->valid & needed) == needed;
 }
 
 void goe_outline_corner_along(const goe_outline_t *o, const goe_xz_t *m, float side, float end, goe_affine_t *at) {

@@ -76,8 +76,8 @@ void goe_violation_foresee(const goe_estimator_t *estimator, const goe_plan_t *p
     const goe_estimate_t *estimate = goe_latest_estimate(estimator);
     goe_outline_of(estimate, &outline);
     goe_approach_course(&estimator->motion, plan, &course);
-    const float height_m =
-        estimator->motion.height_m - (estimate->height_m - goe_latest_height_bias(estimator)); /* over the top now */
+    const float height_m = goe_latest_camera_height(estimator) -
+                           (estimate->height_m - goe_latest_height_bias(estimator)); /* over the top now */
     goe_approach_find(&outline, &course, covariance, height_m, &approach);
     hazard->has_clearance = (estimate->valid & GOE_HAS_HEIGHT) != 0u;
     report(&outline, &course, &approach, plan, covariance, hazard);

@@ -20,6 +20,23 @@ void goe_camera_mounting(const goe_camera_t *camera, float camera_to_body[9]) {
     }
 }
 
+/* Brown-Conrady. */
+goe_distorted_t goe_camera_distort(const goe_camera_t *camera, float x, float y) {
+    const float r2 = x * x + y * y;
+    const float radial = 1.0f + r2 * (camera->k1 + r2 * (camera->k2 + r2 * camera->k3));
+    const float slope =
+        2.0f * (camera->k1 + r2 * (2.0f * camera->k2 + 3.0f * r2 * camera->k3)); /* of radial by r2 / 2 */
+    const float p1 = camera->p1;
+    const float p2 = camera->p2;
+    goe_distorted_t to;
+    to.x = x * radial + 2.0f * p1 * x * y + p2 * (r2 + 2.0f * x * x);
+    to.y = y * radial + p1 * (r2 + 2.0f * y * y) + 2.0f * p2 * x * y;
+    to.xx = radial + x * x * slope + 2.0f * p1 * y + 6.0f * p2 * x;
+    to.xy = x * y * slope + 2.0f * p1 * x + 2.0f * p2 * y;
+    to.yy = radial + y * y * slope + 6.0f * p1 * y + 2.0f * p2 * x;
+    return to;
+}
+
 /* Brown-Conrady, inverted by the fixed-point iteration x <- (x_distorted - tangential(x)) / radial(x). */
 bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y) {
     const float distorted_x = *ray_x;

@@ -15,6 +15,14 @@ static inline bool goe_camera_distorts(const goe_camera_t *camera) {
             GOE_MAGNITUDE_BITS) != 0u;
 }
 
+/* The lens model at the ray (x, y, 1): where it is seen, and the derivatives of that. */
+typedef struct {
+    float x, y;
+    float xx, xy, yy; /* of x by x; of x by y, which is that of y by x; of y by y */
+} goe_distorted_t;
+
+goe_distorted_t goe_camera_distort(const goe_camera_t *camera, float x, float y);
+
 /* Inverts the lens model at the distorted ray (*ray_x, *ray_y, 1). False, with the ray untouched, if it cannot be. */
 bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y);
 

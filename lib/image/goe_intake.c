@@ -28,11 +28,25 @@ static uint32_t largest_pixel(const goe_image_t *image) {
 
 GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_is_checked);
 
+static uint32_t with_side(uint32_t so_far, const goe_box_t *box, unsigned side, float px) {
+    return (box->seen & side) != 0 ? goe_larger_bits(so_far, goe_magnitude(px)) : so_far;
+}
+
+static uint32_t largest_side(const goe_box_t *box) {
+    uint32_t largest = with_side(0u, box, GOE_SEES_LEFT, box->left_px);
+    largest = with_side(largest, box, GOE_SEES_TOP, box->top_px);
+    largest = with_side(largest, box, GOE_SEES_RIGHT, box->right_px);
+    return with_side(largest, box, GOE_SEES_BOTTOM, box->bottom_px);
+}
+
 /* Not finite outranks out of range, which outranks a bad attitude. */
 static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {
     const goe_pose_t *pose = &image->pose;
     const uint32_t height = goe_magnitude(pose->height_m);
-    const uint32_t pixel = largest_pixel(image);
+    uint32_t pixel = largest_pixel(image);
+    if (image->box.seen != 0) {
+        pixel = goe_larger_bits(pixel, largest_side(&image->box));
+    }
     uint32_t position = goe_largest_of_three(pose->position_ned_m);
     if (reset && pose->reset_delta_known) {
         position = goe_larger_bits(position, goe_largest_of_three(pose->reset_delta_ned_m));

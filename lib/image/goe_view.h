@@ -24,9 +24,19 @@ typedef struct {
     bool usable; /* seen, ahead, and within the lens model */
 } goe_point_t;
 
+/* The sides of a box. */
+typedef enum { GOE_BOX_LEFT, GOE_BOX_TOP, GOE_BOX_RIGHT, GOE_BOX_BOTTOM, GOE_BOX_SIDES } goe_box_side_t;
+
+typedef struct {
+    float px[GOE_BOX_SIDES]; /* raw image */
+    uint8_t usable;          /* GOE_SEES_... */
+    bool cut;                /* left or right is missing, or near the image's border */
+} goe_sides_t;
+
 typedef struct {
     goe_point_t point[GOE_FEATURES]; /* by goe_feature_t */
-    bool seen;                       /* any of them, in the image */
+    goe_sides_t sides;               /* of the image's box; no side is usable if it has none */
+    bool seen;                       /* any point or side, in the image */
     const goe_image_t *image;        /* as it was given */
     const goe_motion_t *motion;      /* the track's own motion up to this image */
     const float *camera_to_body;     /* rotations, row by row */

@@ -12,7 +12,7 @@ GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_
 GOE_STATIC_ASSERT(GOE_BIAS_Y == GOE_BIAS_X + 1 && GOE_BIAS_Z == GOE_BIAS_X + 2, the_biases_follow_each_other);
 
 bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings) {
-    return filter->phase >= (settings->model == GOE_MODEL_LINE ? GOE_PHASE_BOX_FACE : GOE_PHASE_DISC);
+    return filter->phase >= (settings->model == GOE_MODEL_LINE ? GOE_PHASE_BOX_FACE : GOE_PHASE_PRISM);
 }
 
 void goe_filter_clear(goe_filter_t *filter) {
@@ -41,6 +41,28 @@ void goe_filter_invert(goe_filter_t *filter) {
 
 void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) {
     goe_srif_inflate(&filter->root, state, 0.0f, state, 1.0f, sigma);
+}
+
+/* Down in the camera's axes is a row of camera -> T, as T is level. */
+static float camera_down_m(const float offset_m[3], const goe_view_t *view) {
+    const float *down = &view->camera_to_trajectory[3];
+    float arm_m = 0.0f;
+    for (size_t i = 0; i < 3; i++) {
+        for (size_t j = 0; j < 3; j++) {
+            arm_m += down[i] * view->camera_to_body[3 * j + i] * offset_m[j];
+        }
+    }
+    return view->image->pose.position_ned_m[2] + arm_m;
+}
+
+void goe_filter_take_height(goe_filter_t *filter, const float offset_m[3], const goe_view_t *view) {
+    goe_datum_t *datum = &filter->datum;
+    const float down_m = camera_down_m(offset_m, view);
+    if (!datum->begun) {
+        datum->ground_m = view->motion->height_m + down_m;
+        datum->begun = true;
+    }
+    datum->height_m = datum->ground_m - down_m;
 }
 
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {

@@ -3,6 +3,7 @@
 #ifndef GOE_FILTER_H
 #define GOE_FILTER_H
 
+#include "image/goe_view.h"
 #include "maths/goe_xz.h"
 #include "refined/goe_srif.h"
 
@@ -27,6 +28,18 @@ typedef enum {
 
 GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
 
+/* What the same places hold while the obstacle is a prism, see goe_prism.h. All over Z0. */
+enum {
+    GOE_PRISM_GROUND = GOE_HEIGHT_BIAS,    /* (true minus given height of the camera)/Z0 */
+    GOE_PRISM_DEPTH = GOE_SIDE_X,          /* log of the depth along Z over the width */
+    GOE_PRISM_HALF = GOE_FRONT_X,          /* half width across Z */
+    GOE_PRISM_TOP = GOE_DEPTH_DIFFERENCE,  /* (H - ground offset)/Z0, like GOE_TOP */
+    GOE_PRISM_UNSEEN = GOE_TOP,            /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
+    GOE_PRISM_ESTIMATED = GOE_PRISM_UNSEEN /* states before this one are estimated */
+};
+
+GOE_STATIC_ASSERT(GOE_PRISM_UNSEEN == GOE_STATES - 1, what_is_not_estimated_comes_last);
+
 /* Places of the states in goe_substitution_t. */
 enum { GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH, GOE_OF_TOP };
 
@@ -37,7 +50,7 @@ GOE_STATIC_ASSERT(GOE_KEPT == GOE_SIDE_X, the_first_states_are_those_that_are_ke
 /* The phases, and what leads from one to the next.
  *
  *           left and right, or base_left and base_right seen
- *             NONE ------------------------> DISC
+ *  PRISM <--- NONE ------------------------> DISC
  *              ^                              |  \ deeper at one end, range known, no base edge: goe_chord_start
  *              |                              |   \-> CHORD -- an end has left it, a face came into view: learns that end
  *   captured,  |   base corners agree:        |         |  \    anew, stays
@@ -48,9 +61,12 @@ GOE_STATIC_ASSERT(GOE_KEPT == GOE_SIDE_X, the_first_states_are_those_that_are_ke
  *              |                      second face in view: goe_box_change
  *              \--- from every phase
  *
+ * PRISM: an upright bounding box with left and right seen, no base corners, no line asked for; it stays one.
+ *
  * A box may also exchange the names of front and side, without leaving its phase (goe_box_change). */
 typedef enum {
     GOE_PHASE_NONE,       /* not started */
+    GOE_PHASE_PRISM,      /* something upright, by its bounding boxes */
     GOE_PHASE_DISC,       /* a disc, also as a stand-in for a box whose orientation is not known yet */
     GOE_PHASE_CHORD,      /* the line between the silhouette's ends: a box of which no base corner was seen */
     GOE_PHASE_BOX_FACE,   /* a box of which one face was seen: its length is held, not estimated */
@@ -92,6 +108,12 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 }
 
 /* ------------------------------------------------------------------------------------------------------------ axes -- */
+
+/* Takes an image's height, and what down has changed by. offset_m: of the camera, body axes. */
+void goe_filter_take_height(goe_filter_t *filter, const float offset_m[3], const goe_view_t *view);
+
+/* The autopilot's down jumped by this. */
+static inline void goe_filter_move_datum(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
 
 /* The state's axes become T's, with their origin at the camera now. */
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);

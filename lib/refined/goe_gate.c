@@ -45,6 +45,15 @@ static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
     }
 }
 
+/* Of the image's own position error in a row, or in the difference of two. */
+static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, float other) {
+    float sum = 0.0f;
+    for (size_t c = 0; c < 3; c++) {
+        sum += goe_square(rows->shift[row][c] - other * rows->shift[middle][c]);
+    }
+    return sum;
+}
+
 /* (R16): normalised square of a row's residual, or of the difference of two rows'. */
 static float innovation(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, size_t row,
                         size_t middle) {
@@ -60,6 +69,9 @@ static float innovation(const goe_settings_t *settings, const goe_filter_t *filt
     }
     for (size_t c = 0; c < GOE_STATES; c++) {
         weight[c] = a[GOE_STATE_COLUMN + c] - other * b[GOE_STATE_COLUMN + c];
+    }
+    if (rows->shifts) {
+        attitude += shift_variance(rows, row, middle, other) / (white * white);
     }
     const float residual = a[GOE_RESIDUAL] - other * b[GOE_RESIDUAL];
     const float own = rows->variance[row] + other * rows->variance[middle];
@@ -116,10 +128,14 @@ static void scale_row(float row[GOE_COLUMNS], float weight) {
 
 GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);
 
+float goe_gate_repeated(const goe_settings_t *settings, const goe_filter_t *filter) {
+    const float correlation = filter->phase == GOE_PHASE_PRISM ? 0.0f : settings->detector.point_correlation;
+    return (1.0f + correlation) / (1.0f - correlation);
+}
+
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
     belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
-    const float correlation = settings->detector.point_correlation;
-    const float repeated = (1.0f + correlation) / (1.0f - correlation);
+    const float repeated = goe_gate_repeated(settings, filter);
     judge(settings, filter, rows, true, &belief);
     judge(settings, filter, rows, false, &belief);
     for (size_t i = 0; i < rows->count; i++) {
@@ -128,7 +144,8 @@ goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t 
         const float weight = sqrtf(belief.factor[rows->feature[i]] / (rows->variance[i] * repeated));
         belief.verdict.measured |= flag;
         belief.verdict.rows += refused ? 0 : 1;
-        scale_row(rows->matrix->row[i], refused ? 0.0f : weight);
+        rows->variance[i] = refused ? 0.0f : weight;
+        scale_row(rows->matrix->row[i], rows->variance[i]);
     }
     return belief.verdict;
 }

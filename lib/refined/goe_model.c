@@ -1,18 +1,35 @@
 /* Dispatch to the models. SPDX-License-Identifier: MIT */
 #include "refined/goe_model.h"
 
+#include <string.h>
+
 #include "refined/goe_box.h"
 #include "refined/goe_box_start.h"
 #include "refined/goe_chord.h"
 #include "refined/goe_disc.h"
+#include "refined/goe_prism.h"
 
 #if GOE_WITH_REFINED
 
-bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs) {
-    if (!goe_disc_start(obs, filter->state, &filter->root)) {
+/* Base corners tell more than a box: with them it starts as a disc that stands in for one. */
+static bool shows_prism(const goe_settings_t *settings, const goe_view_t *view) {
+    const goe_point_t *p = view->point;
+    return view->sides.usable != 0 && settings->model != GOE_MODEL_LINE &&
+           !(p[GOE_POINT_BASE_LEFT].usable && p[GOE_POINT_BASE_RIGHT].usable);
+}
+
+bool goe_model_place(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view) {
+    goe_filter_place_axes(filter, view->motion);
+    return shows_prism(settings, view) && goe_prism_face(filter, settings, view);
+}
+
+bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool prism) {
+    if (!(prism ? goe_prism_start(obs, filter->state, &filter->root)
+                : goe_disc_start(obs, filter->state, &filter->root))) {
         return false;
     }
-    goe_filter_enter(filter, GOE_PHASE_DISC);
+    goe_filter_enter(filter, prism ? GOE_PHASE_PRISM : GOE_PHASE_DISC);
+    memset(filter->side, 0, sizeof filter->side);
     filter->stand_in = false;
     goe_srif_invert_diagonal(&filter->root, &filter->inverse);
     goe_filter_settle(filter);
@@ -30,6 +47,7 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
         case GOE_PHASE_BOX:
         case GOE_PHASE_BOX_OUTLINE:
             return goe_box_change(filter, obs);
+        case GOE_PHASE_PRISM:
         case GOE_PHASE_NONE:
         default:
             return false;
@@ -37,7 +55,9 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
 }
 
 void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
-    if (goe_filter_is_box(filter)) {
+    if (filter->phase == GOE_PHASE_PRISM) {
+        goe_prism_rows(filter, obs, rows);
+    } else if (goe_filter_is_box(filter)) {
         obs->depth_variance = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE);
         obs->two_faces = filter->phase != GOE_PHASE_BOX_FACE;
         goe_box_rows(obs, rows);
@@ -49,14 +69,39 @@ void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *ro
     }
 }
 
-void goe_model_follow(goe_filter_t *filter, const goe_verdict_t *verdict) {
-    if (filter->phase == GOE_PHASE_CHORD) {
-        goe_chord_follow(filter, verdict);
+void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+    if (filter->phase == GOE_PHASE_PRISM) {
+        goe_prism_recall(filter, obs, rows);
     }
 }
 
+void goe_model_learn(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows,
+                     const goe_verdict_t *verdict) {
+    if (filter->phase == GOE_PHASE_CHORD) {
+        goe_chord_follow(filter, verdict);
+    } else if (filter->phase == GOE_PHASE_PRISM) {
+        goe_prism_learn(filter, obs, rows);
+    }
+}
+
+float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows) {
+    float change[GOE_STATES];
+    const bool prism = filter->phase == GOE_PHASE_PRISM;
+    const float nis = prism ? goe_srif_update_considering(&filter->root, nuisance_root, rows->matrix, change)
+                            : goe_srif_update(&filter->root, nuisance_root, rows->matrix, change);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        filter->state[i] += change[i];
+    }
+    if (prism) {
+        goe_prism_follow(filter, change);
+    }
+    return nis;
+}
+
 void goe_model_shape(const goe_filter_t *filter, goe_shape_t *shape) {
-    if (goe_filter_is_box(filter)) {
+    if (filter->phase == GOE_PHASE_PRISM) {
+        goe_prism_shape(filter, shape);
+    } else if (goe_filter_is_box(filter)) {
         goe_box_shape(filter, shape);
     } else if (filter->phase == GOE_PHASE_CHORD) {
         goe_chord_shape(filter, shape);

@@ -6,8 +6,11 @@
 #include "refined/goe_observation.h"
 #include "refined/goe_shape.h"
 
-/* Starts the filter by the first model, a disc. False if the image does not show enough. */
-bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs);
+/* Places the filter's axes for a start by this image. Returns whether that would be a prism. */
+bool goe_model_place(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view);
+
+/* Starts the filter by the first model, a disc or a prism. False if the image does not show enough. */
+bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool prism);
 
 /* Changes the model if the image shows that another fits. Returns whether it did; the image that brings a change is not used
  * for more, because it costs as much as a measurement. */
@@ -16,8 +19,15 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs);
 /* Prepares the filter for the rows of an image, and appends them. */
 void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows);
 
+/* Before the gate. */
+void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
+
 /* After the gate. */
-void goe_model_follow(goe_filter_t *filter, const goe_verdict_t *verdict);
+void goe_model_learn(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows,
+                     const goe_verdict_t *verdict);
+
+/* The update by whitened rows, and what follows the change of the state. Returns the normalised innovation squared. */
+float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows);
 
 /* Quantities with their derivatives. */
 void goe_model_shape(const goe_filter_t *filter, goe_shape_t *shape);

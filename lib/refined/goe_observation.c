@@ -72,7 +72,11 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     turn_rotation(view->camera_to_trajectory, filter->axes.turn_cos, filter->axes.turn_sin, obs->camera_to_axes);
     find_body(obs, view->camera_to_body);
     obs->camera_m = goe_filter_camera(filter, view->motion);
+    obs->steady_height_m = filter->datum.height_m;
     obs->height_m = view->motion->height_m;
+    obs->sides = &view->sides;
+    obs->since_s = 0.0f;
+    obs->position_sd = 0.0f;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
     return put_in_order(obs);
@@ -154,6 +158,7 @@ float goe_observation_size_variance(const goe_observation_t *obs) {
 
 void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix) {
     rows->matrix = matrix;
+    rows->shifts = false;
     rows->count = 0;
 }
 

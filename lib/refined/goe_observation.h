@@ -11,9 +11,13 @@ typedef struct {
     goe_point_t
         point[GOE_FEATURES]; /* by goe_feature_t, aligned with the state's axes; usable: measured in this image */
     float camera_to_axes[9], body_to_axes[9];
-    float ex, ey, ez;     /* attitude bias about the state's axes, rad */
-    goe_xz_t camera_m;    /* camera since the filter's start, the state's axes */
-    float height_m;       /* camera above ground, as given */
+    float ex, ey, ez;  /* attitude bias about the state's axes, rad */
+    goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
+    float height_m;    /* camera above ground, as given */
+    const goe_sides_t *sides;
+    float steady_height_m; /* the same by the changes of down, see goe_datum_t */
+    float since_s;         /* since the image used before; 0: there is none */
+    float position_sd; /* prism: one sigma of the image's own position error, m, with what the uncertain range adds */
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;       /* box: both were seen, its length is estimated */
     bool base;            /* both outer base corners are seen */
@@ -27,6 +31,8 @@ typedef struct {
     float variance[GOE_ROWS_MAX];
     uint8_t feature[GOE_ROWS_MAX];
     size_t count;
+    float shift[GOE_BOX_SIDES][3]; /* prism: by unit errors of the image's own position, which all rows share */
+    bool shifts;                   /* there are such errors */
 } goe_rows_t;
 
 /* An image coordinate that is predicted, and its derivatives by the point (X, Y, Z) and by the attitude's error about the

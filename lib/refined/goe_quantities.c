@@ -13,7 +13,6 @@
 
 #if GOE_WITH_REFINED
 
-#define RANGE_SHARE 0.25f /* sigma over value up to which the range is reported */
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
 #define ORIENTATION_MAX_RAD 0.174532925f
@@ -97,14 +96,14 @@ static bool is_known(float value, float sigma, float least, float share) {
 }
 
 static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
-    return q->value[quantity] > 0.0f && is_known(q->value[quantity], q->sigma[quantity], least, EXTENT_SHARE);
+    return q->value[quantity] > 0.0f && is_known(q->value[quantity], q->worked_out[quantity], least, EXTENT_SHARE);
 }
 
-static bool is_position(const goe_filter_t *filter, const goe_quantities_t *q) {
+static bool is_position(const goe_filter_t *filter, const goe_quantities_t *q, float share) {
     return goe_within(q->value[GOE_X0] + filter->axes.start_dx_m, METRES_MAX) &&
            goe_within(q->value[GOE_Z0] + filter->axes.start_dz_m, METRES_MAX) &&
-           goe_within(q->sigma[GOE_X0], RANGE_SHARE * q->value[GOE_Z0]) &&
-           is_known(q->value[GOE_Z0], q->sigma[GOE_Z0], 0.0f, RANGE_SHARE);
+           goe_within(q->worked_out[GOE_X0], share * q->value[GOE_Z0]) &&
+           is_known(q->value[GOE_Z0], q->worked_out[GOE_Z0], 0.0f, share);
 }
 
 /* The extents of a box by its outline count only after some images, and if these fit. */
@@ -128,8 +127,8 @@ static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t
 }
 
 /* Which of the quantities this image knows well enough; values count from the filter's start. */
-static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q) {
-    if (!is_position(filter, q)) {
+static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q, float range_share) {
+    if (!is_position(filter, q, range_share)) {
         return 0;
     }
     return GOE_HAS_POSITION | (is_extent(q, GOE_HEIGHT, HEIGHT_MIN_M) ? GOE_HAS_HEIGHT : 0u) |
@@ -141,12 +140,14 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q)
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            goe_quantities_t *q) {
     for (int i = 0; i < GOE_QUANTITIES; i++) {
+        const float unseen = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
         const float variance =
             variance_of(filter, shape->quantity[i].by) * (depends_on_corner(i) ? shape->early : 1.0f) +
             drift_variance(motion, drift, shape, q->box, i);
         q->value[i] = shape->quantity[i].value;
         q->sigma[i] = sqrtf(variance + goe_box_outline_variance(filter, shape, drift.camera_m, i,
                                                                 goe_square(q->sigma[GOE_ORIENTATION])));
+        q->worked_out[i] = unseen > 0.0f ? sqrtf(goe_larger(variance - unseen, 0.0f)) : q->sigma[i];
     }
 }
 
@@ -180,9 +181,10 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
+    q->prism = filter->phase == GOE_PHASE_PRISM;
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, q);
-    q->now = known_now(filter, q);
+    q->now = known_now(filter, q, settings->refined.range_share);
     q->known = q->now & filter->known;
     q->value[GOE_X0] += filter->axes.start_dx_m;
     q->value[GOE_Z0] += filter->axes.start_dz_m;
@@ -200,6 +202,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     goe_model_shape(filter, &shape);
     if (from_datum) {
         shape.quantity[GOE_HEIGHT].by[GOE_HEIGHT_BIAS] = 0.0f;
+        shape.quantity[GOE_HEIGHT].by[GOE_INVERSE_RANGE] += shape.datum_by_range;
     }
     const float early = sqrtf(shape.early);
     for (int i = 0; i < GOE_QUANTITIES; i++) {

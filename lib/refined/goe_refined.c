@@ -14,6 +14,7 @@
 #include "refined/goe_box.h"
 #include "refined/goe_health.h"
 #include "refined/goe_model.h"
+#include "refined/goe_prism.h"
 #include "refined/goe_report.h"
 
 #if GOE_WITH_REFINED
@@ -54,40 +55,42 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
 
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict) {
     goe_rows_t rows;
-    float change[GOE_STATES];
     const float white = obs->settings->navigation.attitude_white_deg * GOE_RAD_PER_DEG;
     goe_rows_clear(&rows, &filter->rows);
     goe_model_rows(filter, obs, &rows);
     goe_rows_end(&rows, obs);
     allow_for_curvature(filter, obs, &rows);
+    goe_model_recall(filter, obs, &rows);
     *verdict = goe_gate_apply(obs->settings, filter, &rows);
-    goe_model_follow(filter, verdict);
+    goe_model_learn(filter, obs, &rows, verdict);
     if (verdict->rows == 0) {
         goe_health_take_refused(&filter->health, *verdict);
         return false;
     }
-    const float nis = goe_srif_update(&filter->root, 1.0f / white, rows.matrix, change);
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        filter->state[i] += change[i];
-    }
+    const float nis = goe_model_update(filter, 1.0f / white, &rows);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
-    const float correlation = obs->settings->detector.point_correlation;
-    goe_health_take(&filter->health, *verdict, nis * ((1.0f + correlation) / (1.0f - correlation)));
+    goe_health_take(&filter->health, *verdict, nis * goe_gate_repeated(obs->settings, filter));
     return true;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- image -- */
 
+/* What an image's own position error does, with the second order that the uncertain range adds; and the time since. */
+static void note_time(const goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
+    const float relative2 =
+        goe_filter_variance(filter, GOE_INVERSE_RANGE) / goe_square(filter->state[GOE_INVERSE_RANGE]);
+    obs->since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
+    obs->position_sd = obs->settings->navigation.position_white_m * sqrtf(1.0f + relative2);
+}
+
 /* False if the image does not start the filter. */
 static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                        goe_observation_t *obs, unsigned *swapped) {
     const bool running = filter->phase != GOE_PHASE_NONE;
-    if (!running) {
-        goe_filter_place_axes(filter, view->motion);
-    }
+    const bool prism = !running && goe_model_place(filter, settings, view);
     *swapped = goe_observation_open(obs, settings, filter, view);
-    if (!running && !goe_model_start(filter, obs)) {
+    if (!running && !goe_model_start(filter, obs, prism)) {
         return false;
     }
     if (!running) {
@@ -121,9 +124,12 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
                         unsigned *swapped) {
     goe_observation_t obs;
     goe_health_expect(&filter->health);
-    if (!open_image(filter, settings, view, &obs, swapped)) {
+    *swapped = 0;
+    goe_filter_take_height(filter, settings->camera.offset_m, view);
+    if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
+    note_time(filter, view->motion, &obs);
     let_time_pass(filter, &settings->navigation, view->motion->time_us);
     goe_observation_linearise(&obs);
     return !goe_model_change(filter, &obs) && use_image(filter, &obs);

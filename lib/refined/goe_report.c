@@ -36,7 +36,7 @@ static void report_orientation(const goe_quantities_t *q, goe_estimate_t *estima
 }
 
 static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
-    estimate->model = q->box ? GOE_MODEL_BOX : GOE_MODEL_DISC;
+    estimate->model = q->box ? GOE_MODEL_BOX : (q->prism ? GOE_MODEL_PRISM : GOE_MODEL_DISC);
     estimate->fresh = true;
     estimate->valid = q->known;
     report_position(q, motion, estimate);

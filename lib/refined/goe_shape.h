@@ -29,7 +29,9 @@ typedef struct {
     goe_xz_t length_axis; /* unit vector, T axes; along the edge that is reported as side */
     float scale_m;        /* Z0: the unit of the state */
     float place_m2;       /* variance of the centre beyond that of the state */
-    float early;          /* factor on the variance of orientation, width and length, see goe_box_shape() */
+    float
+        datum_by_range; /* what the height above the altimeter's zero changes by with 1/Z0, beyond the height itself */
+    float early;        /* factor on the variance of orientation, width and length, see goe_box_shape() */
 } goe_shape_t;
 
 /* Sets by[] to the derivatives of by_x X + by_z Z of a spot, metres, X and Z in the state's axes. */

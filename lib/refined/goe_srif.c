@@ -99,12 +99,12 @@ static void remove_nuisances(float root, goe_matrix_t *matrix) {
     }
 }
 
-static void reflect_states(goe_triangle_t *root, goe_matrix_t *matrix, float right[GOE_STATES]) {
+static void reflect_states(goe_triangle_t *root, goe_matrix_t *matrix, size_t states, float right[GOE_STATES]) {
     reflection_t to;
     float *r = root->element;
-    for (size_t j = 0; j < GOE_STATES; j++) {
+    memset(right, 0, GOE_STATES * sizeof right[0]);
+    for (size_t j = 0; j < states; j++) {
         const size_t column = GOE_STATE_COLUMN + j;
-        right[j] = 0.0f;
         if (reflect(matrix, column, *r, &to)) {
             *r = to.diagonal;
             apply(matrix, column, &to, column + 1, GOE_RESIDUAL, r + 1, 1);
@@ -126,12 +126,22 @@ static void solve_back(const goe_triangle_t *root, float right[GOE_STATES]) {
     }
 }
 
-float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]) {
+GOE_NOINLINE static float update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t states,
+                                 float change[GOE_STATES]) {
     remove_nuisances(nuisance_root, matrix);
-    reflect_states(root, matrix, change);
+    reflect_states(root, matrix, states, change);
     solve_back(root, change);
     const column_t residual = load(&matrix->row[0][GOE_RESIDUAL]);
     return dot(residual, residual, 0.0f);
+}
+
+float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]) {
+    return update(root, nuisance_root, matrix, GOE_STATES, change);
+}
+
+float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
+                                  float change[GOE_STATES]) {
+    return update(root, nuisance_root, matrix, GOE_STATES - 1, change);
 }
 
 /* ------------------------------------------------------------------------------------------------------ process noise -- */
@@ -229,6 +239,11 @@ float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STA
     p = w0 * v[45] + w1 * v[46] + w2 * v[47] + w3 * v[48] + w4 * v[49] + w5 * v[50] + w6 * v[51] + w7 * v[52] +
         w8 * v[53] + w9 * v[54];
     return sum + p * p;
+}
+
+float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
+    const float last = dot_run(weight, &inverse->element[goe_inverse_column(GOE_STATES - 1)], GOE_STATES);
+    return last * last;
 }
 
 /* From the last one on, as element j needs the weights up to j. */

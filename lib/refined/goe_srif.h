@@ -25,6 +25,11 @@ static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return
  * squared. */
 float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]);
 
+/* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if it were
+ * known to be 0, and what is known of it stays as it was; the inverse then holds its part in the variances of the others. */
+float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
+                                  float change[GOE_STATES]);
+
 /* Adds variance sigma^2 along the states first and last, first <= last, with the weights of each; sigma > 0. For first = last
  * the weight is last_weight. */
 void goe_srif_inflate(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
@@ -41,6 +46,9 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
 
 /* Variance of w' x. */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
+
+/* The part of it that is the last state's own. */
+float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
 /* w becomes R^-1' w, whose squared norm is that variance: the derivative in terms of independent unit errors. */
 void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]);

@@ -9,7 +9,7 @@
 #include "scene.h"
 
 #define IMAGES 188
-#define PHASES 6
+#define PHASES 7
 
 /* Which features the detector gives. */
 typedef enum { SEE_ALL, SEE_OUTLINE, SEE_OUTLINE_FIRST, SEE_LEAPS } sight_t;
@@ -23,7 +23,8 @@ static bool happened[PHASES][PHASES]; /* from, to: of two images one after the o
 static bool learnt_anew, exchanged;
 
 static const bool allowed[PHASES][PHASES] = {
-    [GOE_PHASE_NONE] = {[GOE_PHASE_DISC] = true},
+    [GOE_PHASE_NONE] = {[GOE_PHASE_PRISM] = true, [GOE_PHASE_DISC] = true},
+    [GOE_PHASE_PRISM] = {[GOE_PHASE_NONE] = true},
     [GOE_PHASE_DISC] =
         {[GOE_PHASE_NONE] = true, [GOE_PHASE_CHORD] = true, [GOE_PHASE_BOX_FACE] = true, [GOE_PHASE_BOX] = true},
     [GOE_PHASE_CHORD] =

@@ -252,7 +252,7 @@ static void check_estimate(void) {
 }
 
 static void check_filter(const goe_filter_t *filter) {
-    TEST_ASSERT_TRUE(filter->phase <= 5u);
+    TEST_ASSERT_TRUE(filter->phase <= 6u);
     TEST_ASSERT_TRUE(filter->health.images >= 0 && filter->health.nis_rows >= 0);
     const float sums[] = {filter->health.recent_nis, filter->health.nis, filter->health.mean_nis,
                           filter->leaving.outward, filter->leaving.turning};

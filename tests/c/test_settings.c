@@ -78,6 +78,7 @@ static const number_t numbers[] = {
     NUMBER(refined.gate_sigma, 1.0f, 100.0f, 5.0f),
     NUMBER(refined.huber_sigma, 0.5f, 100.0f, 2.5f),
     NUMBER(refined.misfit_max, 1.0e-2f, 1.0e3f, 1.9f),
+    NUMBER(refined.range_share, 1.0e-2f, 10.0f, 0.25f),
 };
 
 static const count_t counts[] = {

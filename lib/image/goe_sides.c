@@ -1,0 +1,123 @@
+/* Sides of a box. SPDX-License-Identifier: MIT */
+#include "image/goe_sides.h"
+
+#include <math.h>
+
+#include "maths/goe_scalar.h"
+
+#define UPRIGHT 0.01f   /* sine of a lean that needs no turning back */
+#define COSINE_MIN 0.5f /* of twice the lean: beyond 30 degrees a box hardly tells its width from its height */
+#define DIRECTION_MIN                                                                                                  \
+    0.1f /* length of the vertical in the image, focal lengths: seen from straight above it has none */
+
+GOE_STATIC_ASSERT(GOE_SEES_LEFT == 1u << GOE_BOX_LEFT && GOE_SEES_TOP == 1u << GOE_BOX_TOP &&
+                      GOE_SEES_RIGHT == 1u << GOE_BOX_RIGHT && GOE_SEES_BOTTOM == 1u << GOE_BOX_BOTTOM,
+                  every_side_has_its_bit);
+
+static bool has(unsigned set, unsigned sides) { return (set & sides) == sides; }
+
+/* Of the image's width. 0: nothing is near a border that is not known. */
+static bool is_near(float px, float size_px, float distance_px) {
+    return size_px > 0.0f && (px < distance_px || px > size_px - 1.0f - distance_px);
+}
+
+static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides, float share) {
+    const float distance_px = share * camera->width_px;
+    unsigned set = 0;
+    for (unsigned i = 0; i < GOE_BOX_SIDES; i++) {
+        const float size_px = (i & 1u) ? camera->height_px : camera->width_px;
+        set |= is_near(sides->px[i], size_px, distance_px) ? 1u << i : 0u;
+    }
+    return set & sides->usable;
+}
+
+void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
+    const goe_box_t *box = &view->image->box;
+    goe_sides_t *sides = &view->sides;
+    sides->px[GOE_BOX_LEFT] = box->left_px;
+    sides->px[GOE_BOX_TOP] = box->top_px;
+    sides->px[GOE_BOX_RIGHT] = box->right_px;
+    sides->px[GOE_BOX_BOTTOM] = box->bottom_px;
+    sides->usable = (uint8_t)(box->seen & GOE_SEES_BOX);
+    const bool swapped = (has(sides->usable, GOE_SEES_LEFT | GOE_SEES_RIGHT) && !(box->left_px < box->right_px)) ||
+                         (has(sides->usable, GOE_SEES_TOP | GOE_SEES_BOTTOM) && !(box->top_px < box->bottom_px));
+    if (swapped) {
+        goe_fault_count(faults, GOE_SWAPPED);
+        sides->usable = 0;
+    }
+    sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_share));
+    const unsigned wide = GOE_SEES_LEFT | GOE_SEES_RIGHT;
+    sides->cut = !has(sides->usable, wide) || (near_border(camera, sides, camera->cut_share) & wide) != 0u;
+}
+
+/* --------------------------------------------------------------------------------------------------------- points -- */
+
+/* The box about its middle (x, y), focal lengths; unit vector down the obstacle's verticals there. */
+typedef struct {
+    float x, y, half_width, half_height, down_x, down_y;
+} frame_t;
+
+static bool find_down(const goe_view_t *view, frame_t *frame) {
+    const float *r = view->camera_to_trajectory;
+    const float x = r[3] - frame->x * r[5];
+    const float y = r[4] - frame->y * r[5];
+    const float length = sqrtf(x * x + y * y);
+    if (!(length >= DIRECTION_MIN)) {
+        return false;
+    }
+    frame->down_x = x / length;
+    frame->down_y = y / length;
+    return true;
+}
+
+/* An upright box about a leaning rectangle: half width = w c + h s, half height = w s + h c. */
+static bool turn_back(frame_t *frame, bool has_height) {
+    const float c = goe_absolute(frame->down_y);
+    const float s = goe_absolute(frame->down_x);
+    if (s < UPRIGHT) {
+        return true;
+    }
+    const float cosine = c * c - s * s;
+    if (!has_height || cosine < COSINE_MIN) {
+        return false;
+    }
+    const float width = (frame->half_width * c - frame->half_height * s) / cosine;
+    frame->half_height = (frame->half_height * c - frame->half_width * s) / cosine;
+    frame->half_width = width;
+    return frame->half_width > 0.0f && frame->half_height > 0.0f;
+}
+
+static goe_pixel_t pixel_at(const goe_camera_t *camera, float x, float y) {
+    const goe_pixel_t pixel = {x * camera->fx_px + camera->cx_px, y * camera->fy_px + camera->cy_px, true};
+    return pixel;
+}
+
+void goe_sides_points(const goe_camera_t *camera, const goe_view_t *view, goe_pixel_t *left, goe_pixel_t *right,
+                      goe_pixel_t *top) {
+    const goe_sides_t *sides = &view->sides;
+    const float *px = sides->px;
+    const bool has_top = has(sides->usable, GOE_SEES_TOP);
+    const bool has_height = has(sides->usable, GOE_SEES_TOP | GOE_SEES_BOTTOM);
+    left->seen = right->seen = top->seen = false;
+    if (!has(sides->usable, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+        return;
+    }
+    const float bottom_px = has_height ? px[GOE_BOX_BOTTOM] : (has_top ? px[GOE_BOX_TOP] : camera->cy_px);
+    const float top_px = has_top ? px[GOE_BOX_TOP] : bottom_px;
+    frame_t frame = {(0.5f * (px[GOE_BOX_LEFT] + px[GOE_BOX_RIGHT]) - camera->cx_px) / camera->fx_px,
+                     (0.5f * (top_px + bottom_px) - camera->cy_px) / camera->fy_px,
+                     0.5f * (px[GOE_BOX_RIGHT] - px[GOE_BOX_LEFT]) / camera->fx_px,
+                     0.5f * (bottom_px - top_px) / camera->fy_px,
+                     0.0f,
+                     1.0f};
+    if (!find_down(view, &frame) || !turn_back(&frame, has_height)) {
+        return;
+    }
+    const float across_x = frame.half_width * frame.down_y;
+    const float across_y = -frame.half_width * frame.down_x;
+    *left = pixel_at(camera, frame.x - across_x, frame.y - across_y);
+    *right = pixel_at(camera, frame.x + across_x, frame.y + across_y);
+    if (has_top) {
+        *top = pixel_at(camera, frame.x - frame.half_height * frame.down_x, frame.y - frame.half_height * frame.down_y);
+    }
+}

@@ -1,0 +1,40 @@
+/* Something upright, seen by its upright bounding boxes. SPDX-License-Identifier: MIT
+ *
+ * A side of the box is an image line, and the plane through it and the camera touches the obstacle: left and right at an upright
+ * edge's foot or head, top and bottom at the rim. The footprint is an ellipse about (X0, Z0), half widths w across and
+ * w e^(s + c) along the line of sight of the first image; the support function of an ellipse is smooth, has no corners to
+ * mistake, and is exact for a mast, and for a wall that is seen end-on or broadside. Boxes hardly tell how deep a thing is:
+ * s, with a prior of its own, is estimated, and c stands for what a pilot must still reckon with; it is considered, never
+ * estimated. (R28) to (R33). */
+#ifndef GOE_PRISM_H
+#define GOE_PRISM_H
+
+#include "refined/goe_gate.h"
+#include "refined/goe_observation.h"
+#include "refined/goe_shape.h"
+
+/* Turns the filter's axes so that Z points at the obstacle. False if left and right are not measured. */
+bool goe_prism_face(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view);
+
+/* First guess: state and root from one image, in axes that face the obstacle. False if it is out of range. */
+bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
+
+/* Whether an image comes so soon after the one before that its errors are the same: it is not used. */
+bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion);
+
+/* Appends the rows of a box. since_s: since the image used before. */
+void goe_prism_rows(const goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
+
+/* After goe_rows_end(): takes what is known of the sides' errors out of the rows. */
+void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
+
+/* After the gate: keeps what the rows tell of these errors, and frees the rows of the image's position noise, which they share. */
+void goe_prism_learn(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
+
+/* After the update. */
+void goe_prism_follow(goe_filter_t *filter, const float change[GOE_STATES]);
+
+/* Quantities. */
+void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);
+
+#endif
