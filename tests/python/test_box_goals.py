@@ -15,7 +15,7 @@ from goe_tools.optimum.goals import boxes
 from goe_tools.optimum.goals.goal import Goal
 from goe_tools.optimum.goals.work import QUICK
 from goe_tools.optimum.judge import HEIGHT, WIDTH, X0, Z0
-from goe_tools.optimum.library import METHODS, MODEL_PRISM, Track
+from goe_tools.optimum.library import METHODS, MODEL_PRISM, Track, camera_settings, estimate, library_path
 
 NAN = math.nan
 AMOUNT = replace(QUICK, boxes=1)
@@ -152,8 +152,9 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     settings_told: dict[str, dict[str, float]] = {}
 
     def estimate(flight: Flight, settings: dict[str, float]) -> Track:
-        settings_told[flight.name] = settings
-        return made_up(flight, from_image=9 if flight.name == "val_robot/4" else 0)
+        every_track = "refined.range_share" in settings
+        settings_told[f"{flight.name} every" if every_track else flight.name] = settings
+        return made_up(flight, from_image=9 if flight.name == "val_robot/4" and not every_track else 0)
 
     monkeypatch.setattr(boxes, "estimate", estimate)
     goals = boxes.recorded_goals("boxes", AMOUNT)
@@ -164,8 +165,27 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     assert kitti["X0 error at the end, median"].values["X0"] == pytest.approx(0.5)
     assert kitti["X0 error at the end, median"].met is False and kitti["no answer"].met
     odmd = {goal.name: goal for goal in goals if goal.group == "boxes: ODMD, val_robot"}
-    assert odmd["depth error, 2 tracks, mean"].values["Z0"] == pytest.approx(0.5)  # 0.5 m of 100 m
-    assert odmd["answered"].values == {"tracks": 50.0} and not odmd["answered"].met
-    assert len(settings_told) == 4
+    assert odmd["depth error, answered tracks, mean"].values["Z0"] == pytest.approx(0.5)  # 0.5 m of 100 m
+    assert odmd["answered, of 2"].values == {"tracks": 50.0} and not odmd["answered, of 2"].met
+    every = odmd["depth error with range_share 10"]
+    assert every.values["mean"] == pytest.approx(0.75) and every.values["answered"] == 100.0  # 0.5 m of 50 m too
+    assert every.met is None
+    assert len(settings_told) == 6
     assert settings_told["val_robot/1"]["navigation.position_white_m"] == 2.0
     assert not [name for name in settings_told["FEED/seq/1"] if name.startswith(("navigation.", "detector."))]
+
+
+def test_the_library_tells_prisms() -> None:
+    """Boxes and default settings go through to the library, and its answers come back about the middle."""
+    try:
+        library_path()
+    except FileNotFoundError as reason:
+        pytest.skip(str(reason))
+    flight = box_flight(MAST, BoxOptions(roll_deg=10.0), 2)
+    track = estimate(flight, camera_settings(flight))
+    assert set(track.model[track.valid[:, Z0]]) == {MODEL_PRISM}
+    judged = boxes.perform(boxes.Simulated(MAST, BoxOptions(roll_deg=10.0), 2))
+    told = judged.error[-1, list(boxes.TOLD)]
+    assert (np.abs(told) < 4 * judged.sigma[-1, list(boxes.TOLD)]).all()
+    assert abs(judged.error[-1, Z0]) < 0.03 * flight.truth.z0_m
+    assert boxes.images_until_answer(judged) <= 6
