@@ -438,7 +438,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * GOE_NOT_INITIALISED. If several faults meet in one image all are counted; a failed solution is reported rather than a
  * feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
- * Cost: at most 25000 instructions, 1100 bytes of stack; 30000 with lens distortion; window: 2550. No loop runs longer than
+ * Cost: at most 25000 instructions, 1126 bytes of stack; 30000 with lens distortion; window: 2550. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 

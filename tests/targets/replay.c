@@ -102,6 +102,10 @@ void replay_read_image(const logged_image_t *logged, goe_image_t *image) {
         read_numbers(&logged->bits[12 + 2 * i], &pixels[i]->v_px, 1);
         pixels[i]->seen = ((logged->seen >> i) & 1u) != 0u;
     }
+    if (logged->box != 0u) {
+        read_numbers(&logged->bits[11], &image->box.left_px, 4);
+        image->box.seen = logged->box;
+    }
 }
 
 void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_settings_t *settings) {
@@ -121,9 +125,11 @@ void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_
                              &camera->offset_m[0],
                              &camera->offset_m[1],
                              &camera->offset_m[2],
-                             &settings->heading_deg};
+                             &settings->heading_deg,
+                             &camera->width_px,
+                             &camera->height_px};
     goe_settings_default(settings);
-    for (int i = 0; i < 16; i++) {
+    for (int i = 0; i < 18; i++) {
         read_numbers(&track->bits[i], fields[i], 1);
     }
     settings->method = method;
@@ -132,6 +138,9 @@ void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_
     settings->window.line_points = track->line_points;
     settings->window.orientation_memory = track->orientation_memory;
     settings->heading_auto = track->heading_auto != 0u;
+#if GOE_WITH_REFINED
+    settings->navigation.position_white_m = (float)track->position_white_m;
+#endif
 }
 
 replay_t replay_start(void) {

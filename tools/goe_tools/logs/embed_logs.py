@@ -7,6 +7,7 @@ noise.
     corner       a box met at its corner, whole pixels, oscillating attitude, all six features: read by each model
     kitti_like   a parked car passed at 9 m/s, boxes of a detector (0.7 px and 2.5 % of the width, one-sigma)
     lens         the corner through a distorting lens and a mounted camera off the vehicle's reference point
+    boxes        upright boxes of a detector in a bank, cut by the border; with position noise; through the lens
     degenerate   every fault, reset and refusal of the header, and inputs at the ends of their ranges
 """
 
@@ -29,6 +30,7 @@ TIME_UNKNOWN_US = -(2**63)
 DETECTOR_SIGMA_PX = 0.7
 DETECTOR_SIGMA_OF_WIDTH = 0.025
 MODELS = {"auto": 1, "disc": 2, "line": 3}
+SIDES = ("left", "top", "right", "bottom")
 INFINITY = math.inf
 NAN = math.nan
 
@@ -44,6 +46,7 @@ class Image:
     pixels: dict[str, tuple[float, float]]
     reset_count: int = 0
     reset_delta_m: tuple[float, float, float] | None = None
+    box_px: dict[str, float] = field(default_factory=dict)  # by side, those that are seen
 
 
 @dataclass
@@ -58,6 +61,7 @@ class Track:
     line_points: int = 8
     orientation_memory: int = 20
     heading_deg: float | None = None
+    position_white_m: int = 0
     own_images: bool = True
 
 
@@ -122,6 +126,25 @@ def detector_boxes(scene: Scene, seed: int) -> list[Image]:
         top = image.pixels["top"][1] + error["top"]
         middle = image.pixels["left"][1] + error["bottom"]
         image.pixels = {"left": (left, middle), "right": (right, middle), "top": (0.5 * (left + right), top)}
+        result.append(image)
+    return result
+
+
+def upright_boxes(scene: Scene, seed: int) -> list[Image]:
+    """The points' bounding boxes, noisy; now and then a side is missing, a box is swapped or not there."""
+    generator = random.Random(seed)
+    result = []
+    for k, image in enumerate(images_of(scene)):
+        u = [pixel[0] for pixel in image.pixels.values()]
+        v = [pixel[1] for pixel in image.pixels.values()]
+        if u:
+            sides = (min(u), min(v), max(u), max(v))
+            image.box_px = {side: at + generator.gauss(0.0, 2.0) for side, at in zip(SIDES, sides)}
+        if k % 7 == 5 and image.box_px:
+            del image.box_px[SIDES[k // 7 % 4]]
+        if k == 20 and image.box_px:
+            image.box_px["left"], image.box_px["right"] = image.box_px["right"], image.box_px["left"]
+        image.pixels = {}
         result.append(image)
     return result
 
@@ -295,6 +318,11 @@ def make_book() -> Book:
     lens = dataclasses.replace(CORNER, run_s=3.5, camera=LENS_CAMERA, rounding="none", pixel_sigma_px=0.5)
     book.add(Track("lens", LENS_CAMERA, images_of(lens), line_points=5))
     book.again("lens_folded", camera=dataclasses.replace(LENS_CAMERA, k1=-9.0, k2=4.0, p1=3.0))
+    banked = dataclasses.replace(CORNER, wobble_deg=9.0, fps_hz=10.0, z0_m=110.0)
+    book.add(Track("boxes", CORNER.camera, upright_boxes(banked, seed=3)))
+    book.again("boxes_disc", model="disc", position_white_m=1)
+    lens_boxes = dataclasses.replace(lens, run_s=2.5)
+    book.add(Track("lens_boxes", LENS_CAMERA, upright_boxes(lens_boxes, seed=4)))
     book.add(Track("degenerate_spoiled", CORNER.camera, spoiled()))
     book.again("degenerate_spoiled_line", model="line", window=4)
     book.add(Track("degenerate_still", CORNER.camera, still()))
@@ -329,8 +357,11 @@ def _image_lines(image: Image) -> Iterator[str]:
     known = int(image.reset_delta_m is not None)
     delta = image.reset_delta_m or (0.0, 0.0, 0.0)
     pixels = [value for name in FEATURES for value in image.pixels.get(name, (0.0, 0.0))]
+    box = sum(1 << i for i, side in enumerate(SIDES) if side in image.box_px)
+    if box:
+        pixels[:4] = [image.box_px.get(side, 0.0) for side in SIDES]
     numbers = [*image.position_m, image.height_m, *image.attitude, *delta]
-    yield f"    {{{time}, 0x{seen:02X}u, {image.reset_count}u, {known}u,"
+    yield f"    {{{time}, 0x{seen:02X}u, 0x{box:02X}u, {image.reset_count}u, {known}u,"
     yield f"     {{{_row(numbers[:8])},"
     yield f"      {_row([*numbers[8:], *pixels[:5]])},"
     yield f"      {_row(pixels[5:])}}}}},"
@@ -339,9 +370,9 @@ def _image_lines(image: Image) -> Iterator[str]:
 def _track_lines(track: Track, first: int) -> Iterator[str]:
     c = track.camera
     numbers = [c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.mount_yaw_deg, c.mount_pitch_deg,
-               c.mount_roll_deg, c.offset_x_m, c.offset_y_m, c.offset_z_m, track.heading_deg or 0.0]  # fmt: skip
+               c.mount_roll_deg, c.offset_x_m, c.offset_y_m, c.offset_z_m, track.heading_deg or 0.0, c.width, c.height]  # fmt: skip
     yield f'    {{"{track.name}", {first}, {len(track.images)}, {MODELS[track.model]}, {track.window},'
-    yield f"     {track.line_points}, {track.orientation_memory}, {int(track.heading_deg is None)},"
+    yield f"     {track.line_points}, {track.orientation_memory}, {int(track.heading_deg is None)}, {track.position_white_m},"
     yield f"     {{{_row(numbers[:8])},"
     yield f"      {_row(numbers[8:])}}}}},"
 
