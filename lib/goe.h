@@ -427,7 +427,7 @@ void goe_settings_default(goe_settings_t *settings);
  *                   Set to null unless GOE_BAD_SETTINGS is returned.
  * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS (a method that was left out among these); on failure the estimator is
  * left as it was.
- * Cost: at most 6000 instructions, 160 bytes of stack. */
+ * Cost: at most 7000 instructions, 160 bytes of stack. */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 

@@ -376,6 +376,12 @@ static bool frame_of(const scene_t *scene, const flight_t *flight, const scene_t
 static void see_upright_box(const scene_t *scene, const flight_t *flight, const scene_truth_t *at, goe_image_t *image) {
     frame_t f = {0.0f, 0.0f, 0.0f, 0.0f};
     const bool seen = frame_of(scene, flight, at, &f);
+    if (scene->boxes) {
+        image->left.seen = image->right.seen = image->top.seen = false;
+        image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+        image->box = (goe_box_t){f.left, f.top, f.right, f.bottom, seen ? GOE_SEES_BOX : 0u};
+        return;
+    }
     image->left = (goe_pixel_t){f.left, 0.5f * (f.top + f.bottom), seen};
     image->right = (goe_pixel_t){f.right, 0.5f * (f.top + f.bottom), seen};
     image->top = (goe_pixel_t){0.5f * (f.left + f.right), f.top, seen};
@@ -424,7 +430,7 @@ void scene_image(const scene_t *scene, int k, goe_image_t *image, scene_truth_t 
             *base[i] = project(scene, &now, points.base[i]);
         }
     }
-    if (scene->upright_boxes) {
+    if (scene->upright_boxes || scene->boxes) {
         see_upright_box(scene, &now, told, image);
     }
 }

@@ -37,6 +37,7 @@ typedef struct {
     double ground_d_m;
     bool upright_boxes; /* left, right, top: the middles of the sides of the upright bounding box in the raw image, as a
                            detector gives it; no base corners */
+    bool boxes;         /* the upright bounding box, and no points */
     bool top_nearest;   /* top: the roof's point nearest to the camera; otherwise the highest in the image */
     goe_camera_t camera;
 } scene_t;

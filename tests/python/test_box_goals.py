@@ -165,11 +165,11 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     assert kitti["X0 error at the end, median"].values["X0"] == pytest.approx(0.5)
     assert kitti["X0 error at the end, median"].met is False and kitti["no answer"].met
     odmd = {goal.name: goal for goal in goals if goal.group == "boxes: ODMD, val_robot"}
-    assert odmd["depth error, answered tracks, mean"].values["Z0"] == pytest.approx(0.5)  # 0.5 m of 100 m
-    assert odmd["answered, of 2"].values == {"tracks": 50.0} and not odmd["answered, of 2"].met
-    every = odmd["depth error with range_share 10"]
-    assert every.values["mean"] == pytest.approx(0.75) and every.values["answered"] == 100.0  # 0.5 m of 50 m too
-    assert every.met is None
+    assert odmd["depth error, mean"].values["Z0"] == pytest.approx(0.75)  # 0.5 m of 100 m and of 50 m
+    assert odmd["answered, of 2"].values == {"tracks": 100.0} and odmd["answered, of 2"].met
+    default = odmd["depth error by default settings"]
+    assert default.values["mean"] == pytest.approx(0.5) and default.values["answered"] == 50.0
+    assert default.met is None
     assert len(settings_told) == 6
     assert settings_told["val_robot/1"]["navigation.position_white_m"] == 2.0
     assert not [name for name in settings_told["FEED/seq/1"] if name.startswith(("navigation.", "detector."))]

@@ -370,9 +370,11 @@ def _image_lines(image: Image) -> Iterator[str]:
 def _track_lines(track: Track, first: int) -> Iterator[str]:
     c = track.camera
     numbers = [c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.mount_yaw_deg, c.mount_pitch_deg,
-               c.mount_roll_deg, c.offset_x_m, c.offset_y_m, c.offset_z_m, track.heading_deg or 0.0, c.width, c.height]  # fmt: skip
+               c.mount_roll_deg, c.offset_x_m, c.offset_y_m, c.offset_z_m, track.heading_deg or 0.0,
+               c.width, c.height]  # fmt: skip
     yield f'    {{"{track.name}", {first}, {len(track.images)}, {MODELS[track.model]}, {track.window},'
-    yield f"     {track.line_points}, {track.orientation_memory}, {int(track.heading_deg is None)}, {track.position_white_m},"
+    yield f"     {track.line_points}, {track.orientation_memory}, {int(track.heading_deg is None)},"
+    yield f"     {track.position_white_m},"
     yield f"     {{{_row(numbers[:8])},"
     yield f"      {_row(numbers[8:])}}}}},"
 

@@ -32,7 +32,7 @@ class Setting:
     def default(self) -> str:
         """A default outside its range says that the user has to set it."""
         inside = float(self.low) <= float(self.value) <= float(self.high)
-        return self.value if inside and not self.name.startswith("camera.c") else "must be set"
+        return self.value if inside and self.name not in ("camera.cx_px", "camera.cy_px") else "must be set"
 
     @property
     def limit(self) -> str:
