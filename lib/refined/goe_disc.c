@@ -130,7 +130,7 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     const bool wide = outline_features(obs, &left, &right);
     const float width = wide ? obs->point[right].x - obs->point[left].x : 0.0f;
     const float shape = obs->settings->detector.shape_share + (obs->base ? STAND_IN_SHAPE : 0.0f);
-    const float extra = goe_square(shape * width) + goe_square(obs->settings->detector.point_share * width);
+    const float extra = goe_square(shape * width) + goe_square(obs->outline_share * width);
     add_tangent(obs, &circle, left, -1.0f, extra, rows);
     add_tangent(obs, &circle, right, 1.0f, extra, rows);
     add_top(obs, &circle, extra, rows);

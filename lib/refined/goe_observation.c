@@ -77,6 +77,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->sides = &view->sides;
     obs->since_s = 0.0f;
     obs->position_sd = 0.0f;
+    obs->outline_share = settings->detector.point_share;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
     return put_in_order(obs);
@@ -150,7 +151,7 @@ float goe_observation_size_variance(const goe_observation_t *obs) {
     if (!left->usable || !right->usable) {
         return 0.0f;
     }
-    const float sigma = obs->settings->detector.point_share * (right->x - left->x);
+    const float sigma = obs->outline_share * (right->x - left->x);
     return sigma * sigma;
 }
 

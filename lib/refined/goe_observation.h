@@ -17,6 +17,7 @@ typedef struct {
     const goe_sides_t *sides;
     float steady_height_m; /* the same by the changes of down, see goe_datum_t */
     float since_s;         /* since the image used before; 0: there is none */
+    float outline_share;   /* one sigma of left, right and top beyond the pixel noise, of their width */
     float position_sd; /* prism: one sigma of the image's own position error, m, with what the uncertain range adds */
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;       /* box: both were seen, its length is estimated */
@@ -79,7 +80,7 @@ goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t
 
 goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature);
 
-/* Variance of a silhouette point beyond the pixel noise: goe_detector_t.box_share. */
+/* Variance of left, right or top beyond the pixel noise: outline_share. */
 float goe_observation_size_variance(const goe_observation_t *obs);
 
 /* ------------------------------------------------------------------------------------------------------------ rows -- */

@@ -9,6 +9,7 @@
 #include <math.h>
 
 #include "maths/goe_angle.h"
+#include "maths/goe_exp.h"
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 #include "refined/goe_box.h"
@@ -20,6 +21,7 @@
 #if GOE_WITH_REFINED
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
+#define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -76,11 +78,23 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
 
 /* -------------------------------------------------------------------------------------------------------------- image -- */
 
+/* Points that stand for the sides of a box have its errors; as they are not remembered, the variance counts
+ * (1 + fade)/(1 - fade) times, which for a first-order process is that of a long mean. */
+static float outline_share(const goe_detector_t *detector, float since_s) {
+    const float tau_s = detector->correlation_s;
+    const float fade = tau_s > 0.0f ? goe_exp(-since_s / tau_s) : 0.0f;
+    const float kept = fade < FADE_MAX ? fade : FADE_MAX;
+    return detector->box_share * sqrtf((1.0f + kept) / (1.0f - kept));
+}
+
 /* What an image's own position error does, with the second order that the uncertain range adds; and the time since. */
 static void note_time(const goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
     const float relative2 =
         goe_filter_variance(filter, GOE_INVERSE_RANGE) / goe_square(filter->state[GOE_INVERSE_RANGE]);
     obs->since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
+    if (obs->sides->usable != 0) {
+        obs->outline_share = outline_share(&obs->settings->detector, obs->since_s);
+    }
     obs->position_sd = obs->settings->navigation.position_white_m * sqrtf(1.0f + relative2);
 }
 

@@ -8,6 +8,8 @@
 #define RESIDUAL_BOUND 2.0e-6 /* rounding of a state that a close range divides by, for derivatives of 1 */
 #define SLOPE_BOUND 2.0e-3    /* of the largest derivative by a state, and the last digits of small differences */
 
+static const goe_sides_t no_sides; /* an image without a box */
+
 /* Product of rotations about x, y, z. */
 static void rotation_of(double x, double y, double z, double m[9]) {
     const double cx = cos(x);
@@ -43,6 +45,7 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting->settings.camera.fx_px = 914.0f;
     sighting->settings.camera.fy_px = 850.0f;
     sighting->sight.settings = &sighting->settings;
+    sighting->sight.sides = &no_sides;
     sighting->sight.state = sighting->state;
     sighting->sight.camera_m.x = 3.0f;
     sighting->sight.camera_m.z = 25.0f;

@@ -130,7 +130,7 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
     measure(GOE_POINT_TOP);
     for (int i = 0; i < 2; i++) {
         sighting.settings.detector.shape_share = i ? 0.12f : 0.0f;
-        sighting.settings.detector.point_share = i ? 0.05f : 0.0f;
+        sighting.sight.outline_share = i ? 0.05f : 0.0f;
         goe_rows_clear(&sighting.rows, &sighting.matrix);
         goe_disc_rows(&sighting.sight, &sighting.rows);
         memcpy(variance[i], sighting.rows.variance, sizeof variance[i]);

@@ -150,7 +150,7 @@ static void the_spread_is_that_of_the_alignment(void) {
 static void size_noise_is_a_share_of_the_width(void) {
     any = check_random_start("size");
     sighting_start(&sighting, &any);
-    sighting.settings.detector.point_share = 0.03f;
+    sighting.sight.outline_share = 0.03f;
     sighting.sight.point[GOE_POINT_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
     sighting.sight.point[GOE_POINT_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
     CHECK_CLOSE(1.0e-10, 3.6e-5, goe_observation_size_variance(&sighting.sight));

@@ -210,8 +210,105 @@ static void a_missing_side_gives_no_row(void) {
     TEST_ASSERT_EQUAL_FLOAT(right, sighting.matrix.row[0][GOE_STATE_COLUMN + GOE_BEARING]);
 }
 
+/* A flight past a truck whose base corners are seen, by its box, too. Returns the error of Z0 in sigmas; model: what is told. */
+static double fly_with_corners(bool corners, double roll_deg, goe_model_t *model) {
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t image;
+    scene_truth_t truth;
+    scene_default(&scene);
+    scene.roll_deg = roll_deg;
+    goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 45; k++) {
+        goe_image_t boxed;
+        scene_t box_scene = scene;
+        box_scene.boxes = true;
+        scene_image(&scene, k, &image, &truth);
+        scene_image(&box_scene, k, &boxed, NULL);
+        image.box = boxed.box;
+        image.left.u_px = image.right.u_px = image.top.v_px = 0.0f; /* not read */
+        if (!corners) {
+            image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+        }
+        (void)goe_update(&estimator, &image, &estimate);
+    }
+    *model = estimate.model;
+    TEST_ASSERT_TRUE(estimate.fresh && (estimate.valid & GOE_HAS_WIDTH));
+    return fabs((double)estimate.z0_m - scene.z0_m) / (double)estimate.sigma.z0_m;
+}
+
+/* GIVEN a box and base corners THEN the box stands for left, right and top, and the corners make a box of it; without corners
+ * it is a prism. */
+static void a_box_goes_with_base_corners(void) {
+    goe_model_t model;
+    TEST_ASSERT_TRUE(fly_with_corners(true, 0.0, &model) < 2.0);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, model);
+    TEST_ASSERT_TRUE(fly_with_corners(true, 8.0, &model) < 2.0);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, model);
+    (void)fly_with_corners(false, 8.0, &model);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_PRISM, model);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ height -- */
+
+typedef enum { STEADY, NOISY_ALTIMETER, FILTER_JUMPS } height_t;
+
+static goe_estimate_t fly_box(height_t height) {
+    static const float jump_m[3] = {3.0f, -2.0f, 5.0f};
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t image;
+    scene_default(&scene);
+    scene.boxes = true;
+    scene.glide_deg = 2.0;
+    goe_settings_t settings = scene_settings(&scene);
+    settings.camera.offset_m[0] = 0.7f;
+    settings.camera.offset_m[2] = 0.3f;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 45; k++) {
+        scene_image(&scene, k, &image, NULL);
+        if (height == NOISY_ALTIMETER && k > 0) {
+            image.pose.height_m += (float)check_random_normal(&any);
+        }
+        for (int i = 0; height == FILTER_JUMPS && k >= 20 && i < 3; i++) {
+            image.pose.position_ned_m[i] += jump_m[i];
+            image.pose.reset_delta_ned_m[i] = jump_m[i];
+            image.pose.reset_count = 1;
+            image.pose.reset_delta_known = true;
+        }
+        (void)goe_update(&estimator, &image, &estimate);
+    }
+    TEST_ASSERT_TRUE(estimate.fresh && (estimate.valid & GOE_HAS_HEIGHT));
+    return estimate;
+}
+
+/* GIVEN boxes THEN the noise of the altimeter after the first image changes nothing, not even the last bit. */
+static void an_altimeter_s_noise_is_in_one_image_only(void) {
+    any = check_random_start("altimeter");
+    const goe_estimate_t steady = fly_box(STEADY);
+    const goe_estimate_t noisy = fly_box(NOISY_ALTIMETER);
+    TEST_ASSERT_EQUAL_FLOAT(steady.z0_m, noisy.z0_m);
+    TEST_ASSERT_EQUAL_FLOAT(steady.height_m, noisy.height_m);
+    TEST_ASSERT_EQUAL_FLOAT(steady.sigma.z0_m, noisy.sigma.z0_m);
+}
+
+/* GIVEN a jump of the autopilot's filter, down among it, of known size THEN the answer is that of a flight without one. */
+static void a_jump_of_the_filter_moves_the_datum(void) {
+    any = check_random_start("jump");
+    const goe_estimate_t steady = fly_box(STEADY);
+    const goe_estimate_t jumped = fly_box(FILTER_JUMPS);
+    CHECK_CLOSE(0.01 * (double)steady.sigma.z0_m, steady.z0_m, jumped.z0_m);
+    CHECK_CLOSE(0.01 * (double)steady.sigma.height_m, steady.height_m, jumped.height_m);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);
+    RUN_TEST(a_jump_of_the_filter_moves_the_datum);
+    RUN_TEST(a_box_goes_with_base_corners);
     RUN_TEST(rows_are_those_of_the_touching_planes);
     RUN_TEST(a_lens_is_linearised_where_a_side_touches);
     RUN_TEST(a_missing_side_gives_no_row);
