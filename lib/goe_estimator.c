@@ -230,14 +230,17 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
         return status;
     }
     status = goe_intake_check(&estimator->motion, image);
-    const bool taken = status == GOE_OK;
-    if (taken) {
+    if (status == GOE_OK && goe_is_refined(estimator)) {
+        status = goe_intake_check_noise(&image->noise);
+    }
+    if (status == GOE_OK) {
         status = take_image(estimator, image);
+        *estimate = *goe_latest_estimate(estimator);
     } else {
         goe_count_cause(estimator->causes, status);
+        *estimate = *goe_latest_estimate(estimator);
+        estimate->fresh = false;
     }
-    *estimate = *goe_latest_estimate(estimator);
-    estimate->fresh = estimate->fresh && taken;
     set_age(estimator, image->pose.time_us, estimate);
     return status;
 }

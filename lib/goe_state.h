@@ -117,7 +117,7 @@ typedef struct {    /* refined/goe_box.c: what the report calls the edges of a b
 typedef struct {
     float ground_m; /* down of the ground, by the first image of the track */
     float height_m; /* of the camera above it, latest image */
-    bool begun;
+    float sd_m;     /* one sigma of the first height, as its image gave it; 0: as in the settings */
 } goe_datum_t;
 
 /* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell it. It
@@ -150,6 +150,7 @@ typedef struct {
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
     bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
     goe_naming_t naming;
+    bool has_datum;          /* the datum is that of the track\'s first image */
     float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since `inverse` was taken */
     goe_candidate_t candidate;
     goe_leaving_t leaving;

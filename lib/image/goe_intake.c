@@ -7,7 +7,10 @@
 #define POSITION_MAX_M 1.0e6f
 #define HEIGHT_MAX_M 1.0e5f
 #define PIXEL_MAX_PX 1.0e5f
-#define ATTITUDE_MAX 2.0f         /* per element: keeps the squares finite */
+#define ATTITUDE_MAX 2.0f /* per element: keeps the squares finite */
+#define NOISE_MAX_DEG 30.0f
+#define NOISE_MAX_M 1.0e3f
+#define NOISE_MAX_PX 100.0f
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
@@ -78,4 +81,17 @@ goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *ima
         return GOE_BAD_TIME;
     }
     return is_unit(q, attitude) ? GOE_OK : GOE_BAD_ATTITUDE;
+}
+
+goe_status_t goe_intake_check_noise(const goe_image_noise_t *noise) {
+    const uint32_t attitude = goe_magnitude(noise->attitude_deg);
+    const uint32_t height = goe_magnitude(noise->height_m);
+    const uint32_t pixel = goe_magnitude(noise->pixel_px);
+    if (goe_larger_bits(goe_larger_bits(attitude, height), pixel) >= GOE_INFINITY_BITS) {
+        return GOE_NOT_FINITE;
+    }
+    const bool within = attitude <= goe_magnitude(NOISE_MAX_DEG) && height <= goe_magnitude(NOISE_MAX_M) &&
+                        pixel <= goe_magnitude(NOISE_MAX_PX);
+    const bool negative = noise->attitude_deg < 0.0f || noise->height_m < 0.0f || noise->pixel_px < 0.0f;
+    return within && !negative ? GOE_OK : GOE_OUT_OF_RANGE;
 }

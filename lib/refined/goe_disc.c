@@ -148,8 +148,7 @@ static float first_range_m(const goe_observation_t *obs, float size) {
     if (obs->base && obs->height_m > 0.0f) {
         const float y = 0.5f * (obs->point[GOE_POINT_BASE_LEFT].y + obs->point[GOE_POINT_BASE_RIGHT].y);
         const float sigma = sqrtf(goe_square(navigation->attitude_bias_deg * GOE_RAD_PER_DEG) +
-                                  goe_square(navigation->attitude_white_deg * GOE_RAD_PER_DEG) +
-                                  goe_square(goe_observation_pixel(obs)));
+                                  goe_square(obs->white_rad) + goe_square(goe_observation_pixel(obs)));
         if (y > GROUND_SIGMAS * sigma) {
             return obs->height_m / y;
         }

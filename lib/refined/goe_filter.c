@@ -58,9 +58,10 @@ static float camera_down_m(const float offset_m[3], const goe_view_t *view) {
 void goe_filter_take_height(goe_filter_t *filter, const float offset_m[3], const goe_view_t *view) {
     goe_datum_t *datum = &filter->datum;
     const float down_m = camera_down_m(offset_m, view);
-    if (!datum->begun) {
+    if (!filter->has_datum) {
         datum->ground_m = view->motion->height_m + down_m;
-        datum->begun = true;
+        datum->sd_m = view->image->noise.height_m;
+        filter->has_datum = true;
     }
     datum->height_m = datum->ground_m - down_m;
 }

@@ -55,10 +55,9 @@ static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, f
 }
 
 /* (R16): normalised square of a row's residual, or of the difference of two rows'. */
-static float innovation(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, size_t row,
-                        size_t middle) {
+static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size_t row, size_t middle) {
     float weight[GOE_STATES];
-    const float white = settings->navigation.attitude_white_deg * GOE_RAD_PER_DEG;
+    const float white = rows->white_rad;
     const float other = row == middle ? 0.0f : 1.0f;
     const float *a = rows->matrix->row[row];
     const float *b = rows->matrix->row[middle];
@@ -101,13 +100,12 @@ static void judge(const goe_settings_t *settings, const goe_filter_t *filter, co
     const float gate = settings->refined.gate_sigma;
     const float huber = settings->refined.huber_sigma;
     gather(rows, along_x, &group);
-    const float alone = group.count > 0 ? innovation(settings, filter, rows, group.middle, group.middle) : 0.0f;
+    const float alone = group.count > 0 ? innovation(filter, rows, group.middle, group.middle) : 0.0f;
     const bool common = alone <= gate * gate; /* a middle that is off itself tells nothing of the others */
     for (size_t i = 0; i < group.count; i++) {
         const size_t row = group.row[i];
         const size_t feature = rows->feature[row];
-        const float squared =
-            row == group.middle ? alone : innovation(settings, filter, rows, row, common ? group.middle : row);
+        const float squared = row == group.middle ? alone : innovation(filter, rows, row, common ? group.middle : row);
         if (along_x && group.count == 2 && row != group.middle) {
             note_odd(rows, &group, row, squared, &belief->verdict);
         }

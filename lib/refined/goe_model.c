@@ -75,12 +75,11 @@ void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_ro
     }
 }
 
-void goe_model_learn(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows,
-                     const goe_verdict_t *verdict) {
+void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t *verdict) {
     if (filter->phase == GOE_PHASE_CHORD) {
         goe_chord_follow(filter, verdict);
     } else if (filter->phase == GOE_PHASE_PRISM) {
-        goe_prism_learn(filter, obs, rows);
+        goe_prism_learn(filter, rows);
     }
 }
 

@@ -23,8 +23,7 @@ void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *ro
 void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After the gate. */
-void goe_model_learn(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows,
-                     const goe_verdict_t *verdict);
+void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t *verdict);
 
 /* The update by whitened rows, and what follows the change of the state. Returns the normalised innovation squared. */
 float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows);

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "maths/goe_angle.h"
+
 #if GOE_WITH_REFINED
 
 #define ABEAM 0.02f         /* third component of an aligned point's ray after the turn */
@@ -64,6 +66,16 @@ static void find_body(goe_observation_t *obs, const float camera_to_body[9]) {
     }
 }
 
+static float given_or(float given, float setting) { return given > 0.0f ? given : setting; }
+
+static void take_noise(goe_observation_t *obs, const goe_image_noise_t *noise) {
+    const goe_settings_t *settings = obs->settings;
+    obs->white_rad = given_or(noise->attitude_deg, settings->navigation.attitude_white_deg) * GOE_RAD_PER_DEG;
+    obs->point_px = given_or(noise->pixel_px, settings->detector.point_px);
+    obs->height_sd_m = given_or(obs->height_sd_m, settings->navigation.height_bias_m);
+    obs->side_px = given_or(noise->pixel_px, settings->detector.box_px);
+}
+
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view) {
     obs->settings = settings;
@@ -77,6 +89,8 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->sides = &view->sides;
     obs->since_s = 0.0f;
     obs->position_sd = 0.0f;
+    obs->height_sd_m = filter->datum.sd_m;
+    take_noise(obs, &view->image->noise);
     obs->outline_share = settings->detector.point_share;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
@@ -134,7 +148,7 @@ goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t
 goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature) {
     const float *h = obs->camera_to_axes;
     const goe_point_t *p = &obs->point[feature];
-    const float scale = (h[2] * p->x + h[5] * p->y + h[8]) * obs->settings->detector.point_px;
+    const float scale = (h[2] * p->x + h[5] * p->y + h[8]) * obs->point_px;
     const float u = scale / obs->settings->camera.fx_px;
     const float v = scale / obs->settings->camera.fy_px;
     const float xu = (h[0] - p->x * h[6]) * u;

@@ -15,9 +15,12 @@ typedef struct {
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
     float height_m;    /* camera above ground, as given */
     const goe_sides_t *sides;
-    float steady_height_m; /* the same by the changes of down, see goe_datum_t */
-    float since_s;         /* since the image used before; 0: there is none */
-    float outline_share;   /* one sigma of left, right and top beyond the pixel noise, of their width */
+    float steady_height_m;   /* the same by the changes of down, see goe_datum_t */
+    float height_sd_m;       /* one sigma of its constant error */
+    float since_s;           /* since the image used before; 0: there is none */
+    float white_rad;         /* one sigma of the image's own attitude error */
+    float point_px, side_px; /* ... of a point, and of a box's side */
+    float outline_share;     /* one sigma of left, right and top beyond the pixel noise, of their width */
     float position_sd; /* prism: one sigma of the image's own position error, m, with what the uncertain range adds */
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;       /* box: both were seen, its length is estimated */
@@ -33,6 +36,7 @@ typedef struct {
     uint8_t feature[GOE_ROWS_MAX];
     size_t count;
     float shift[GOE_BOX_SIDES][3]; /* prism: by unit errors of the image's own position, which all rows share */
+    float white_rad;               /* one sigma of the nuisances */
     bool shifts;                   /* there are such errors */
 } goe_rows_t;
 
@@ -60,7 +64,7 @@ void goe_observation_project_y(const goe_observation_t *obs, float x, float y, f
 
 /* One sigma of a pixel, focal lengths. */
 static inline float goe_observation_pixel(const goe_observation_t *obs) {
-    return obs->settings->detector.point_px / obs->settings->camera.fx_px;
+    return obs->point_px / obs->settings->camera.fx_px;
 }
 
 /* (R1): the state's reference point relative to the camera now, units of Z0. */

@@ -254,7 +254,7 @@ static float size_of(const goe_observation_t *obs, bool level) {
 static float white_variance(const goe_observation_t *obs, size_t side) {
     const goe_detector_t *detector = &obs->settings->detector;
     const float size = size_of(obs, is_level(side));
-    const float pixel = detector->box_px / focal_px(&obs->settings->camera, side);
+    const float pixel = obs->side_px / focal_px(&obs->settings->camera, side);
     return goe_square(pixel) + goe_square(SCATTER_SHARE * size) +
            (obs->sides->cut ? goe_square(detector->cut_noise * size) : 0.0f);
 }
@@ -317,8 +317,8 @@ static void free_of_shift(goe_rows_t *rows) {
     }
 }
 
-void goe_prism_learn(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
-    const float white = obs->settings->navigation.attitude_white_deg * GOE_RAD_PER_DEG;
+void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows) {
+    const float white = rows->white_rad;
     for (size_t i = 0; i < rows->count; i++) {
         const float *row = rows->matrix->row[i];
         const float weight = rows->variance[i];
@@ -381,23 +381,23 @@ bool goe_prism_face(goe_filter_t *filter, const goe_settings_t *settings, const 
     return true;
 }
 
-static float height_sd_m(const goe_navigation_t *navigation) {
-    return sqrtf(goe_square(navigation->height_bias_m) + goe_square(navigation->ground_m));
+static float height_sd_m(const goe_observation_t *obs) {
+    return sqrtf(goe_square(obs->height_sd_m) + goe_square(obs->settings->navigation.ground_m));
 }
 
 /* From flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. size: angular. */
 static float first_range_m(const goe_observation_t *obs, float size, const goe_point_t *foot) {
     const goe_settings_t *s = obs->settings;
-    const float attitude = goe_square(s->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) +
-                           goe_square(s->navigation.attitude_white_deg * GOE_RAD_PER_DEG);
-    const float foot_sd = sqrtf(attitude + goe_square(s->detector.box_px / s->camera.fy_px) +
+    const float attitude = goe_square(s->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
+    const float foot_sd = sqrtf(attitude + goe_square(obs->side_px / s->camera.fy_px) +
                                 goe_square(FOOT_SHARE * s->detector.box_share * size));
-    const bool grounded = foot->usable && foot->y > GROUND_SIGMAS * foot_sd &&
-                          obs->steady_height_m > GROUND_SIGMAS * height_sd_m(&s->navigation);
+    const bool grounded =
+        foot->usable && foot->y > GROUND_SIGMAS * foot_sd && obs->steady_height_m > GROUND_SIGMAS * height_sd_m(obs);
     return grounded ? obs->steady_height_m / foot->y * (1.0f + NEAR_SIDE * size) : s->refined.typical_size_m / size;
 }
 
-static void set_root(const goe_settings_t *settings, const float state[GOE_STATES], float width, goe_triangle_t *root) {
+static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
+    const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;
     const float bias = navigation->attitude_bias_deg * GOE_RAD_PER_DEG;
     const float q = state[GOE_INVERSE_RANGE];
@@ -406,7 +406,7 @@ static void set_root(const goe_settings_t *settings, const float state[GOE_STATE
     sd[GOE_BIAS_X] = bias;
     sd[GOE_BIAS_Y] = bias;
     sd[GOE_BIAS_Z] = sqrtf(goe_square(bias) + goe_square(HEADING_ARM * navigation->velocity_bias_m_s));
-    sd[GOE_PRISM_GROUND] = goe_larger(height_sd_m(navigation) * q, GROUND_MIN);
+    sd[GOE_PRISM_GROUND] = goe_larger(height_sd_m(obs) * q, GROUND_MIN);
     sd[GOE_BEARING] = BEARING_FREEDOM;
     sd[GOE_INVERSE_RANGE] = RANGE_FREEDOM * q;
     sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
@@ -444,10 +444,10 @@ bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_
     state[GOE_INVERSE_RANGE] = q;
     state[GOE_PRISM_HALF] = 0.5f * size;
     state[GOE_PRISM_TOP] = obs->steady_height_m * q - (head.usable ? head.y : 0.0f);
-    if (height_sd_m(&settings->navigation) > NO_ALTIMETER_M && foot.usable) {
+    if (height_sd_m(obs) > NO_ALTIMETER_M && foot.usable) {
         state[GOE_PRISM_GROUND] = foot.y - obs->steady_height_m * q;
     }
-    set_root(settings, state, size, root);
+    set_root(obs, state, size, root);
     return true;
 }
 

@@ -29,7 +29,7 @@ void goe_prism_rows(const goe_filter_t *filter, const goe_observation_t *obs, go
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After the gate: keeps what the rows tell of these errors, and frees the rows of the image's position noise, which they share. */
-void goe_prism_learn(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
+void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows);
 
 /* After the update. */
 void goe_prism_follow(goe_filter_t *filter, const float change[GOE_STATES]);

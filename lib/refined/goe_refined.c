@@ -57,19 +57,19 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
 
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict) {
     goe_rows_t rows;
-    const float white = obs->settings->navigation.attitude_white_deg * GOE_RAD_PER_DEG;
     goe_rows_clear(&rows, &filter->rows);
+    rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
     goe_rows_end(&rows, obs);
     allow_for_curvature(filter, obs, &rows);
     goe_model_recall(filter, obs, &rows);
     *verdict = goe_gate_apply(obs->settings, filter, &rows);
-    goe_model_learn(filter, obs, &rows, verdict);
+    goe_model_learn(filter, &rows, verdict);
     if (verdict->rows == 0) {
         goe_health_take_refused(&filter->health, *verdict);
         return false;
     }
-    const float nis = goe_model_update(filter, 1.0f / white, &rows);
+    const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
     goe_health_take(&filter->health, *verdict, nis * goe_gate_repeated(obs->settings, filter));

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "maths/goe_angle.h"
+
 #define STEP 1.0e-6
 #define RESIDUAL_BOUND 2.0e-6 /* rounding of a state that a close range divides by, for derivatives of 1 */
 #define SLOPE_BOUND 2.0e-3    /* of the largest derivative by a state, and the last digits of small differences */
@@ -46,6 +48,10 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting->settings.camera.fy_px = 850.0f;
     sighting->sight.settings = &sighting->settings;
     sighting->sight.sides = &no_sides;
+    sighting->sight.point_px = sighting->settings.detector.point_px;
+    sighting->sight.side_px = sighting->settings.detector.box_px;
+    sighting->sight.white_rad = sighting->settings.navigation.attitude_white_deg * GOE_RAD_PER_DEG;
+    sighting->sight.height_sd_m = sighting->settings.navigation.height_bias_m;
     sighting->sight.state = sighting->state;
     sighting->sight.camera_m.x = 3.0f;
     sighting->sight.camera_m.z = 25.0f;

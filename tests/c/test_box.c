@@ -271,7 +271,7 @@ static void a_missed_near_corner_is_told_from_a_single_face(void) {
         memset(truth, 0, 3 * sizeof truth[0]);
         sighting_look(&sighting);
         sighting.sight.two_faces = true;
-        sighting.settings.detector.point_px = 0.2f;
+        sighting.sight.point_px = 0.2f;
         const double clearly = 6.0 * 0.2 / 914.0;
         if (!find_visible(corner, visible, &count) || count != 3) {
             continue;

@@ -70,7 +70,7 @@ static void a_front_alone_is_exact(void) {
         const place_t left = {middle.x - 0.5 * w * cos(b), middle.z + 0.5 * w * sin(b)};
         const place_t right = {middle.x + 0.5 * w * cos(b), middle.z - 0.5 * w * sin(b)};
         show_face(left, right);
-        sighting.settings.detector.point_px = 0.05f;
+        sighting.sight.point_px = 0.05f;
         sighting.settings.navigation.attitude_bias_deg = 0.05f;
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const place_t reference = reference_of(&box);
@@ -99,7 +99,7 @@ static void a_side_alone_has_its_near_end_on_the_front(void) {
             continue; /* that side is not seen */
         }
         show_face(on_right ? near : far, on_right ? far : near);
-        sighting.settings.detector.point_px = 0.05f;
+        sighting.sight.point_px = 0.05f;
         sighting.settings.navigation.attitude_bias_deg = 0.05f;
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const place_t reference = reference_of(&box);
@@ -119,7 +119,7 @@ static void the_sigma_covers_the_noise(void) {
     any = check_random_start("sigma");
     for (int n = 0; n < draws; n++) {
         show_face((place_t){-6.0, 51.0}, (place_t){2.0, 49.0});
-        sighting.settings.detector.point_px = 0.3f;
+        sighting.sight.point_px = 0.3f;
         for (size_t i = GOE_POINT_BASE_LEFT; i <= GOE_POINT_BASE_RIGHT; i += 2) {
             sighting.sight.point[i].x += (float)(0.3 / 914.0 * check_random_normal(&any));
             sighting.sight.point[i].y += (float)(0.3 / 914.0 * check_random_normal(&any));
@@ -160,7 +160,7 @@ static void two_faces_of_equal_depth_are_right_to_first_order(void) {
         const double range = check_random_between(&any, 80.0, 200.0);
         const double bearing = check_random_between(&any, -0.5, 0.5);
         show_two_faces(left, right, range, bearing);
-        sighting.settings.detector.point_px = 0.1f;
+        sighting.sight.point_px = 0.1f;
         TEST_ASSERT_TRUE(goe_footprint_two_faces(&sighting.sight, &box));
         const double deep = sqrt(left * right);
         const double share = 3.0 * deep / range * (1.0 + fabs(tan(bearing)) * deep);
@@ -220,7 +220,7 @@ static void what_one_face_does_not_tell_is_refused(void) {
     sighting.sight.point[GOE_POINT_BASE_RIGHT].y *= 3.0f; /* no corner is that near */
     TEST_ASSERT_FALSE(one_face());
     good_face();
-    sighting.settings.detector.point_px = 20.0f; /* orientation worse than 0.2 rad */
+    sighting.sight.point_px = 20.0f; /* orientation worse than 0.2 rad */
     TEST_ASSERT_FALSE(one_face());
     show_face((place_t){-20.0, 51.0}, (place_t){20.0, 49.0}); /* larger than 0.4 of the range */
     TEST_ASSERT_FALSE(one_face());

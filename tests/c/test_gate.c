@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "maths/goe_angle.h"
 
 #define FOCAL_PX 914.0
 #define PIXEL_PX 0.5
@@ -40,6 +41,7 @@ void setUp(void) {
         filter.inverse.element[goe_inverse_column(i) + i] = 1.0e-6f;
     }
     goe_rows_clear(&rows, &matrix);
+    rows.white_rad = settings.navigation.attitude_white_deg * GOE_RAD_PER_DEG;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         if (i != GOE_POINT_TOP) {
             add_row(i, false);
@@ -160,7 +162,7 @@ static void a_suspicious_point_counts_less(void) {
     const size_t feature = GOE_POINT_BASE_NEAR;
     for (int n = 0; n < 4; n++) {
         setUp();
-        settings.navigation.attitude_white_deg = 1.0e-4f;
+        rows.white_rad = 1.0e-4f * GOE_RAD_PER_DEG;
         for (size_t i = 0; i < rows.count; i++) { /* its difference from the middle one has both points' noise */
             *residual(i) =
                 rows.feature[i] == feature && is_along_y(i) ? (float)(normalised[n] * sqrt(2.0) * SIGMA) : 0.0f;
@@ -173,13 +175,13 @@ static void a_suspicious_point_counts_less(void) {
 }
 
 static void the_limits_are_settings(void) {
-    settings.navigation.attitude_white_deg = 1.0e-4f;
+    rows.white_rad = 1.0e-4f * GOE_RAD_PER_DEG;
     settings.refined.gate_sigma = 3.0f;
     *residual(0) = (float)(3.2 * sqrt(2.0) * SIGMA);
     apply();
     TEST_ASSERT_EQUAL_HEX32(1u << rows.feature[0], verdict.refused);
     setUp();
-    settings.navigation.attitude_white_deg = 1.0e-4f;
+    rows.white_rad = 1.0e-4f * GOE_RAD_PER_DEG;
     settings.refined.gate_sigma = 100.0f;
     settings.refined.huber_sigma = 1.0f;
     *residual(0) = (float)(10.0 * sqrt(2.0) * SIGMA);

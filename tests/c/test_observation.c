@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "maths/goe_angle.h"
 #include "sighting.h"
 
 #define CASES 500
@@ -129,14 +130,13 @@ static void the_spread_is_that_of_the_alignment(void) {
         double by_u[2];
         double by_v[2];
         sighting_start(&sighting, &any);
-        sighting.settings.detector.point_px = (float)check_random_between(&any, 0.1, 3.0);
+        sighting.sight.point_px = (float)check_random_between(&any, 0.1, 3.0);
         const double u = check_random_between(&any, -600.0, 600.0);
         const double v = check_random_between(&any, -500.0, 500.0);
         align(&sighting, u, v, aligned);
         sighting.sight.point[GOE_POINT_TOP] = (goe_point_t){(float)aligned[0], (float)aligned[1], true};
         differentiate(&sighting, u, v, by_u, by_v);
-        const double variance =
-            (double)sighting.settings.detector.point_px * (double)sighting.settings.detector.point_px;
+        const double variance = (double)sighting.sight.point_px * (double)sighting.sight.point_px;
         const double xx = variance * (by_u[0] * by_u[0] + by_v[0] * by_v[0]);
         const double xy = variance * (by_u[0] * by_u[1] + by_v[0] * by_v[1]);
         const double yy = variance * (by_u[1] * by_u[1] + by_v[1] * by_v[1]);
@@ -162,6 +162,7 @@ static void size_noise_is_a_share_of_the_width(void) {
 
 static goe_estimator_t estimator;
 static goe_view_t view;
+static goe_image_t image;
 static const float identity[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f};
 
 static void start(void) {
@@ -174,6 +175,8 @@ static void start(void) {
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     memset(&view, 0, sizeof view);
     memcpy(view.camera_to_trajectory, identity, sizeof identity);
+    memset(&image, 0, sizeof image);
+    view.image = &image;
     view.motion = &estimator.motion;
     view.camera_to_body = estimator.camera_to_body;
 }
@@ -225,6 +228,23 @@ static void an_edge_takes_two_base_corners(void) {
     TEST_ASSERT_TRUE(sight.edge);
 }
 
+/* GIVEN an image that knows its own errors THEN they stand in for the settings; 0 leaves these. */
+static void an_image_may_know_its_own_errors(void) {
+    goe_observation_t sight;
+    start();
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    CHECK_CLOSE(1.0e-9, (double)estimator.settings.navigation.attitude_white_deg * (double)GOE_RAD_PER_DEG,
+                sight.white_rad);
+    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.point_px, sight.point_px);
+    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.box_px, sight.side_px);
+    image.noise.attitude_deg = 2.0f;
+    image.noise.pixel_px = 7.0f;
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    CHECK_CLOSE(1.0e-6, 2.0 * (double)GOE_RAD_PER_DEG, sight.white_rad);
+    TEST_ASSERT_EQUAL_FLOAT(7.0f, sight.point_px);
+    TEST_ASSERT_EQUAL_FLOAT(7.0f, sight.side_px);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(derivatives_are_those_of_the_projection);
@@ -235,5 +255,6 @@ int main(void) {
     RUN_TEST(the_body_is_where_the_mounting_puts_it);
     RUN_TEST(points_out_of_order_do_not_count);
     RUN_TEST(an_edge_takes_two_base_corners);
+    RUN_TEST(an_image_may_know_its_own_errors);
     return UNITY_END();
 }

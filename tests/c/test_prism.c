@@ -304,8 +304,33 @@ static void a_jump_of_the_filter_moves_the_datum(void) {
     CHECK_CLOSE(0.01 * (double)steady.sigma.height_m, steady.height_m, jumped.height_m);
 }
 
+/* GIVEN errors of an image that are none THEN the image is refused, and nothing changes; by the window method they are not read. */
+static void errors_of_an_image_are_checked(void) {
+    static const float bad[] = {-1.0f, 31.0f, 1.0e30f};
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t image;
+    scene_default(&scene);
+    goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    scene_image(&scene, 0, &image, NULL);
+    for (int i = 0; i < 3; i++) {
+        image.noise.attitude_deg = bad[i];
+        CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
+    }
+    image.noise.attitude_deg = 0.0f;
+    image.noise.height_m = check_from_bits(0x7FC00000u);
+    CHECK_STATUS(GOE_NOT_FINITE, goe_update(&estimator, &image, &estimate));
+    TEST_ASSERT_FALSE(estimator.motion.started);
+    settings.method = GOE_METHOD_WINDOW;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    CHECK_STATUS(GOE_COLLECTING, goe_update(&estimator, &image, &estimate));
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);
     RUN_TEST(a_jump_of_the_filter_moves_the_datum);
     RUN_TEST(a_box_goes_with_base_corners);

@@ -401,6 +401,10 @@ static goe_pixel_t any_pixel(float (*number)(void)) {
     return pixel;
 }
 
+static float any_own_noise(float (*number)(void)) {
+    return one_in(2) ? 0.0f : one_in(20) ? number() : any_from(0.0f, 30.0f);
+}
+
 static void fill_features(goe_image_t *image, float (*number)(void)) {
     image->left = any_pixel(number);
     image->right = any_pixel(number);
@@ -413,6 +417,9 @@ static void fill_features(goe_image_t *image, float (*number)(void)) {
     image->box.right_px = number();
     image->box.bottom_px = number();
     image->box.seen = (uint8_t)(one_in(3) ? 0u : below(256));
+    image->noise.attitude_deg = any_own_noise(number);
+    image->noise.height_m = any_own_noise(number);
+    image->noise.pixel_px = any_own_noise(number);
 }
 
 static void any_attitude(float q[4]) {

@@ -33,7 +33,8 @@ ARCTAN_CASES, SINCOS_CASES, LENS_CASES, WINDOW_CASES = 240, 200, 24, 48
 DOUBLE_TOLERANCE = 1e-9
 EXIT_DIFFERENT = 1
 CORNER = ROOT / "tests" / "data" / "corner"
-NO_BOX = "{.seen = 0}"  # the window method, which this data is of, knows points only
+# The window method, which this data is of, knows neither boxes nor the errors of an image.
+NO_BOX = "{.seen = 0}, {0.0f, 0.0f, 0.0f}"
 VALID = {
     "GOE_HAS_POSITION": "x0_m",
     "GOE_HAS_LENGTH": "length_m",
