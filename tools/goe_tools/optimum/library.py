@@ -124,18 +124,22 @@ def _library(double: bool) -> ctypes.CDLL:
     return library
 
 
-def settings_of(flight: Flight, noise: Noise | None = None, method: str = "refined") -> dict[str, float]:
-    """Settings by name for a flight's camera and for its noise, as a user would state them."""
-    noise, camera = flight.noise if noise is None else noise, flight.camera
+def camera_settings(flight: Flight) -> dict[str, float]:
+    """Settings by name for a flight's camera and for the axes of T."""
+    camera = flight.camera
     result = {f"camera.{name}_px": getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
     result |= {f"camera.{name}": getattr(camera, name) for name in ("k1", "k2", "p1", "p2", "k3")}
     result |= {f"camera.mount_{axis}_deg": getattr(camera, f"mount_{axis}_deg") for axis in ("yaw", "pitch", "roll")}
     result |= {f"camera.{name}_px": size for name, size in zip(("width", "height"), flight.image_size_px)}
     result |= {f"camera.offset_m[{i}]": getattr(camera, f"offset_{axis}_m") for i, axis in enumerate("xyz")}
-    result |= {
+    return result | {"heading_auto": 0.0, "heading_deg": camera.heading_deg or 0.0}
+
+
+def settings_of(flight: Flight, noise: Noise | None = None, method: str = "refined") -> dict[str, float]:
+    """Settings by name for a flight's camera and for its noise, as a user would state them."""
+    noise = flight.noise if noise is None else noise
+    result = camera_settings(flight) | {
         "refined.top_is_highest": float(flight.top_is_highest),
-        "heading_auto": 0.0,
-        "heading_deg": camera.heading_deg or 0.0,
         "method": float(METHODS[method]),
     }
     result |= {setting: getattr(noise, name) for name, setting in SETTING_OF.items()}

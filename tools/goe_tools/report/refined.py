@@ -23,6 +23,7 @@ GROUPS = {  # beginnings of the goals' groups, and what they are
     "early": "Early warning",
     "recorded": "Autopilots' recorded flights",
     "kitti": "KITTI's cars",
+    "boxes": "Upright bounding boxes",
     "rivals": "Other methods",
 }
 

@@ -15,4 +15,6 @@ measured   from a scene to a flight
 simulated  scenes of the paper's Table 2, and random ones
 recorded   scenes of recorded flights of autopilots
 logged     flights of logs with truth
+boxes      simulated flights whose features are upright bounding boxes
+box_logs   recorded boxes with truth: KITTI's cars, ODMD
 """

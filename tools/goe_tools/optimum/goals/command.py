@@ -15,6 +15,7 @@ from pathlib import Path
 from ..flights.logged import KITTI_FOLDER
 from ..flights.recorded import RECORDED_FOLDER
 from ..library import library_path
+from .boxes import boxes_group
 from .early import early_group
 from .field import field_group
 from .float32 import float32_group
@@ -37,6 +38,7 @@ GROUPS: dict[str, Callable[[str, Amount], list[Goal]]] = {
     "early": early_group,
     "recorded": recorded_group,
     "kitti": kitti_group,
+    "boxes": boxes_group,
     "rivals": rivals_group,
 }
 ABSENT = {

@@ -16,6 +16,7 @@ from ..flights.simulated import paper_scenes, random_scenes
 from .outcome import Outcome, Task, perform
 from .output import print_worst
 
+Job = TypeVar("Job")
 Result = TypeVar("Result")
 
 
@@ -31,21 +32,22 @@ class Amount:
     recorded: int  # passes of each recorded flight and seed
     recorded_seeds: int
     precision_seeds: int
+    boxes: int  # flights of each case of upright boxes
     jobs: int = 1
     worst: int = 0  # flights to be named, those of the largest NEES
 
 
 QUICK = Amount(
     seeds=6, field_seeds=4, random=100, offline=90, rivals=40, recorded=40, recorded_seeds=2,
-    precision_seeds=1,
+    precision_seeds=1, boxes=8,
 )  # fmt: skip
 FULL = Amount(
     seeds=24, field_seeds=16, random=400, offline=10**6, rivals=300, recorded=60, recorded_seeds=3,
-    precision_seeds=3,
+    precision_seeds=3, boxes=40,
 )  # fmt: skip
 
 
-def each(work: Callable[[Task], Result], tasks: Sequence[Task], jobs: int, title: str) -> list[Result]:
+def each(work: Callable[[Job], Result], tasks: Sequence[Job], jobs: int, title: str) -> list[Result]:
     progress = {"total": len(tasks), "desc": title, "disable": None, "leave": False}
     if jobs == 1:
         return [work(task) for task in tqdm(tasks, **progress)]
