@@ -28,6 +28,8 @@ static void log_camera(const camera_t *from, goe_camera_t *to) {
     to->offset_m[0] = number_to_float(from->offset_m.x);
     to->offset_m[1] = number_to_float(from->offset_m.y);
     to->offset_m[2] = number_to_float(from->offset_m.z);
+    to->width_px = number_to_float(from->width_px);
+    to->height_px = number_to_float(from->height_px);
 }
 
 static void log_value(frame_t *row, frame_value_t name, double value) {
@@ -83,13 +85,13 @@ void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings) {
     goe_detector_t *detector = &settings->detector;
     goe_navigation_t *navigation = &settings->navigation;
     const double rounding_px = sensors->rounding ? ROUNDING_PX : 0.0;
-    (void)memset(detector, 0, sizeof *detector);
-    (void)memset(navigation, 0, sizeof *navigation);
     detector->point_px = at_least(hypot(hypot(sensors->pixel_px, sensors->detector_px), rounding_px), LEAST_PIXEL_PX);
     detector->point_share = number_to_float(sensors->detector_width);
     detector->point_correlation = number_to_float(sensors->detector_correlation);
+    detector->shape_share = 0.0f;
     navigation->attitude_bias_deg = at_least(sensors->attitude_bias_deg, LEAST_ANGLE_DEG);
     navigation->attitude_white_deg = at_least(sensors->attitude_noise_deg, LEAST_ANGLE_DEG);
+    navigation->attitude_drift_deg = 0.0f;
     navigation->height_bias_m = at_least(sensors->altimeter_m, LEAST_HEIGHT_M);
     navigation->velocity_bias_m_s = number_to_float(sensors->velocity_bias_mps);
     navigation->position_walk_m = number_to_float(sensors->position_walk_m);

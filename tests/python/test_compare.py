@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.logs.obslog import read_log, write_log
+from goe_tools.logs.obslog import ObservationLog, read_log, write_log
 from goe_tools.logs.scene import Scene, make_log
 from goe_tools.reference import compare
 from goe_tools.reference.settings import Settings
@@ -59,6 +60,19 @@ def test_one_bad_log_among_good_ones(corner_folder: Path, tmp_path: Path, fake_r
 def test_a_log_without_any_estimate(tmp_path: Path, fake_replay) -> None:
     write_log(tmp_path / "short", make_log(Scene(run_s=0.5)))
     assert run(fake_replay(exit_status=1), tmp_path / "short") == 0
+
+
+def test_what_the_references_do_not_know(corner_log: ObservationLog, tmp_path: Path, fake_replay, capsys) -> None:
+    boxed = [replace(frame, box_px=(1.0, None, None, None)) for frame in corner_log.frames[-1:]]
+    write_log(tmp_path / "boxes", replace(corner_log, frames=corner_log.frames[:-1] + boxed))
+    assert run(fake_replay(), tmp_path / "boxes") == 2
+    assert "frames.csv: holds bounding boxes" in capsys.readouterr().err
+    counted = [replace(frame, reset_count=7) for frame in corner_log.frames]
+    write_log(tmp_path / "resets", replace(corner_log, frames=corner_log.frames[:9] + counted[9:]))
+    assert run(fake_replay(), tmp_path / "resets") == 2
+    assert "frames.csv: reset_count: changes within a track" in capsys.readouterr().err
+    write_log(tmp_path / "counted", replace(corner_log, frames=counted))  # a count alone is no reset
+    assert run(fake_replay(), tmp_path / "counted") == 0
 
 
 def test_bad_input(corner_folder: Path, tmp_path: Path, fake_replay, capsys) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -91,6 +92,29 @@ def test_empty_fields_are_not_measured(tmp_path: Path) -> None:
     assert math.isnan(pose.position_m[0])  # a bad measurement, not bad input
 
 
+def test_boxes_and_resets(tmp_path: Path) -> None:
+    header = HEADER + ",reset_d_m,reset_count,box_bottom_px,box_left_px,box_right_px,box_top_px,reset_n_m,reset_e_m"
+    whole, cut, none = frames(
+        tmp_path, header, ROW + ",0.5,258,40,10,30,20,3,-2", ROW + ",0.5,,,10.5,,,3,", ROW + ",,,,,,,,"
+    )
+    assert (whole.box_px, whole.reset_count, whole.reset_delta_m) == ((10.0, 20.0, 30.0, 40.0), 258, (3.0, -2.0, 0.5))
+    assert (cut.box_px, cut.reset_count, cut.reset_delta_m) == ((10.5, None, None, None), 0, None)
+    assert (none.box_px, none.reset_count, none.reset_delta_m) == (None, 0, None)
+    assert frames(tmp_path, HEADER, ROW) == [none]
+
+
+def test_boxes_and_resets_are_written_where_there_are_any(tmp_path: Path, corner_log: ObservationLog) -> None:
+    plain, first = corner_log.frames, corner_log.frames[0]
+    boxes = [replace(first, box_px=(1.5, 2.5, 3.5, None)), *plain[1:]]
+    resets = [replace(frame, reset_count=7, reset_delta_m=(0.1, -0.2, 0.3)) for frame in plain[1:]]
+    for given in (plain, boxes, [first, *resets], boxes[:1] + resets, [first, replace(plain[1], reset_count=2)]):
+        write_log(tmp_path, replace(corner_log, frames=given))
+        assert read_frames(tmp_path / "frames.csv") == given
+        header = (tmp_path / "frames.csv").read_text().splitlines()[0]
+        assert ("box" in header) == (given[0].box_px is not None)
+        assert ("reset" in header) == (given[1].reset_count != 0)
+
+
 def test_line_ends_and_blank_lines(tmp_path: Path) -> None:
     assert len(frames(tmp_path, HEADER, ROW, "", ROW, end="\r\n")) == 2
     assert len(read_frames(write(tmp_path / "frames.csv", "\ufeff" + HEADER + "\n" + ROW))) == 1
@@ -116,6 +140,10 @@ def test_time_stamps(tmp_path: Path, t_s: str, time_us: int) -> None:
     [
         ((HEADER.replace(",qy", ""), ROW), "1: qy: column is missing"),
         ((HEADER + ",left_u", ROW + ",3"), "1: left_v: column is missing"),
+        ((HEADER + ",reset_n_m", ROW + ",3"), "1: reset_count: column is missing, reset_n_m is there"),
+        ((HEADER + ",box_top_px,box_top_px", ROW + ",3,3"), "1: box_top_px: column is given twice"),
+        ((HEADER + ",box_top_px", ROW + ",high"), "2: box_top_px: 'high' is not a number"),
+        ((HEADER + ",reset_count", ROW + ",1.0"), "2: reset_count: '1.0' is not an integer"),
         ((HEADER + ",d_m", ROW + ",3"), "1: d_m: column is given twice"),
         ((HEADER, ROW, ROW + ",4"), "3: 10 fields under 9 columns"),
         ((HEADER, ROW, "1,2"), "3: 2 fields under 9 columns"),

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.__main__ import main
+from goe_tools.logs.obslog import LogError, read_log, write_log
 from goe_tools.optimum import model
 from goe_tools.optimum.bound import bound
 from goe_tools.optimum.flights.flight import LEFT, RIGHT, TOP, Obstacle
@@ -23,7 +24,7 @@ from goe_tools.optimum.goals import command
 from goe_tools.optimum.goals.goal import Goal
 from goe_tools.optimum.goals.kitti import caught
 from goe_tools.optimum.judge import judge, renamed, renamed_sigma
-from goe_tools.optimum.library import MODEL_BOX, MODEL_DISC, Track, estimate, library_path, settings_of
+from goe_tools.optimum.library import MODEL_BOX, MODEL_DISC, Track, boxes_of, estimate, library_path, settings_of
 
 CORNER = Path(__file__).resolve().parents[1] / "data" / "corner"
 EXACT = Noise(pixel_px=0.0)
@@ -212,6 +213,23 @@ def test_the_truth_of_a_log_without_the_simulators_columns(tmp_path: Path) -> No
     assert np.allclose(plain.truth.values, told.truth.values, atol=1e-6)
 
 
+def test_the_boxes_of_a_log(tmp_path: Path) -> None:
+    log = read_log(CORNER)
+    frames = [replace(frame, box_px=(1.0, 2.0, None, 4.0)) for frame in log.frames]
+    frames[3] = replace(frames[3], box_px=None)
+    write_log(tmp_path, replace(log, frames=frames))
+    (flight,), (plain,) = from_log(tmp_path), from_log(CORNER)
+    assert flight.image_size_px == plain.image_size_px == (log.camera.width, log.camera.height)
+    assert plain.box_px is None
+    assert flight.box_px is not None and flight.box_px.shape == (121, 4)
+    assert np.array_equal(flight.box_px[2], [1.0, 2.0, np.nan, 4.0], equal_nan=True)
+    assert np.isnan(flight.box_px[3]).all()
+    assert np.array_equal(flight.first(3).box_px, flight.box_px[:3], equal_nan=True)
+    write_log(tmp_path, replace(log, frames=[*log.frames[:60], *(replace(f, reset_count=1) for f in log.frames[60:])]))
+    with pytest.raises(LogError, match="reset_count: changes within track 1"):
+        from_log(tmp_path)
+
+
 @pytest.mark.parametrize("command", ["bound", "offline"])
 def test_commands(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("scipy")
@@ -295,6 +313,23 @@ def test_the_library_over_a_flight(built: Path) -> None:
         estimate(flight, noise__of_nothing=1.0)
     with pytest.raises(ValueError, match=r"camera\.fx_px"):
         estimate(flight, camera__fx_px=-1.0)
+
+
+def test_sides_that_are_not_seen_have_no_bit() -> None:
+    sides = np.array([[1.0, 2.0, 3.0, 4.0], [np.nan, 2.0, np.nan, 4.0], [1.0, np.nan, 3.0, np.nan], [np.nan] * 4])
+    flight = replace(measure(box_scene(), EXACT), box_px=sides)
+    told, seen = boxes_of(flight)
+    assert seen.tolist() == [0x0F, 0x0A, 0x05, 0x00] and seen.dtype == np.uint8
+    assert np.array_equal(told, np.nan_to_num(sides)) and told.dtype == np.float32
+    assert boxes_of(replace(flight, box_px=None)) == ()
+
+
+def test_the_size_of_the_image_is_a_setting(built: Path) -> None:
+    flight = replace(measure(box_scene(), EXACT), image_size_px=(1280.0, 960.0))
+    told = settings_of(flight)
+    assert (told["camera.width_px"], told["camera.height_px"]) == (1280.0, 960.0)
+    with pytest.raises(ValueError, match=r"camera\.height_px"):
+        estimate(replace(flight, image_size_px=(1280.0, -1.0)))
 
 
 def test_a_goal_is_met_within_its_range() -> None:

@@ -15,12 +15,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 Pixel = tuple[float, float]
+Box = tuple[float | None, float | None, float | None, float | None]  # left, top, right, bottom; None: not seen
 
 TIME_LIMIT_US = 9.2e18  # just inside 64 bits
 FEATURES = ("left", "right", "top", "base_left", "base_near", "base_right")
 POSE_COLUMNS = ("n_m", "e_m", "d_m", "qw", "qx", "qy", "qz")
 REQUIRED_COLUMNS = ("t_s", "id", *POSE_COLUMNS)
-FRAME_COLUMNS = (*REQUIRED_COLUMNS, "agl_m", *(f"{feature}_{axis}" for feature in FEATURES for axis in "uv"))
+POINT_COLUMNS = tuple(f"{feature}_{axis}" for feature in FEATURES for axis in "uv")
+BOX_COLUMNS = ("box_left_px", "box_top_px", "box_right_px", "box_bottom_px")
+RESET_COLUMN = "reset_count"
+JUMP_COLUMNS = ("reset_n_m", "reset_e_m", "reset_d_m")
+FRAME_COLUMNS = (*REQUIRED_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, RESET_COLUMN, *JUMP_COLUMNS)
 TRUTH_COLUMNS = (
     "id",
     "static",
@@ -87,6 +92,9 @@ class Frame:
     base_left: Pixel | None = None
     base_near: Pixel | None = None
     base_right: Pixel | None = None
+    box_px: Box | None = None  # upright bounding box in the raw image; None: no side is seen
+    reset_count: int = 0  # of the autopilot's filter
+    reset_delta_m: tuple[float, float, float] | None = None  # by how much the position jumped, NED; None: not known
 
     @property
     def height_m(self) -> float:
@@ -121,6 +129,10 @@ class ObservationLog:
     camera: Camera
     frames: list[Frame]
     truth: dict[int, Truth] = field(default_factory=dict)  # by id
+
+    def resets(self) -> set[int]:
+        """Ids of the tracks in which the autopilot's filter was reset."""
+        return {key for key, frames in self.tracks().items() if len({frame.reset_count for frame in frames}) > 1}
 
     def tracks(self) -> dict[int, list[Frame]]:
         """The frames of each id, in the log's order."""
@@ -210,6 +222,9 @@ def _rows(path: Path, required: Sequence[str], known: Sequence[str]) -> Iterator
                 if (f"{name}_u" in header) != (f"{name}_v" in header):
                     absent = f"{name}_v" if f"{name}_u" in header else f"{name}_u"
                     raise LogError(path, reader.line_num, absent, "column is missing")
+            jumps = [name for name in JUMP_COLUMNS if name in header]
+            if jumps and RESET_COLUMN not in header:
+                raise LogError(path, reader.line_num, RESET_COLUMN, f"column is missing, {jumps[0]} is there")
             continue
         if len(row) != len(header):
             raise LogError(path, reader.line_num, "", f"{len(row)} fields under {len(header)} columns")
@@ -229,6 +244,17 @@ def _pixel(row: dict[str, str], path: Path, line: int, feature: str) -> Pixel | 
     return None if u is None or v is None else (u, v)
 
 
+def _box(row: dict[str, str], path: Path, line: int) -> Box | None:
+    left, top, right, bottom = (_optional(row, path, line, column) for column in BOX_COLUMNS)
+    box = (left, top, right, bottom)
+    return None if box == (None, None, None, None) else box
+
+
+def _jump(row: dict[str, str], path: Path, line: int) -> tuple[float, float, float] | None:
+    n, e, d = (_optional(row, path, line, column) for column in JUMP_COLUMNS)
+    return None if n is None or e is None or d is None else (n, e, d)
+
+
 def read_frames(path: Path) -> list[Frame]:
     """Reads frames.csv. An empty pose field becomes NaN: a bad measurement, which is no bad input."""
     path = Path(path)
@@ -244,6 +270,9 @@ def read_frames(path: Path) -> list[Frame]:
                 attitude=(qw, qx, qy, qz),
                 agl_m=_optional(row, path, line, "agl_m"),
                 **{feature: _pixel(row, path, line, feature) for feature in FEATURES},
+                box_px=_box(row, path, line),
+                reset_count=_integer(row[RESET_COLUMN], path, line, RESET_COLUMN) if row.get(RESET_COLUMN) else 0,
+                reset_delta_m=_jump(row, path, line),
             )
         )
     return frames
@@ -305,15 +334,22 @@ def write_camera(path: Path, camera: Camera, comment: str = "") -> None:
 
 
 def write_frames(path: Path, frames: Sequence[Frame]) -> None:
-    header = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz"]
-    header += [f"{feature}_{axis}" for feature in FEATURES for axis in "uv"]
+    """Columns of boxes and of resets stand there if a frame has any."""
+    boxes = any(frame.box_px is not None for frame in frames)
+    resets = any(frame.reset_count != 0 or frame.reset_delta_m is not None for frame in frames)
+    header = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz", *POINT_COLUMNS]
+    header += [*BOX_COLUMNS] if boxes else []
+    header += [*JUMP_COLUMNS, RESET_COLUMN] if resets else []
     with open(path, "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header)
         for frame in frames:
             pixels = [getattr(frame, feature) or (None, None) for feature in FEATURES]
             numbers = [*frame.position_m, frame.agl_m, *frame.attitude, *(value for pixel in pixels for value in pixel)]
-            writer.writerow([_text(frame.t_s), frame.id, *(_text(number) for number in numbers)])
+            numbers += (frame.box_px or (None,) * len(BOX_COLUMNS)) if boxes else ()
+            numbers += (frame.reset_delta_m or (None,) * len(JUMP_COLUMNS)) if resets else ()
+            row = [_text(frame.t_s), frame.id, *(_text(number) for number in numbers)]
+            writer.writerow([*row, frame.reset_count] if resets else row)
 
 
 def write_truth(path: Path, truth: dict[int, Truth]) -> None:

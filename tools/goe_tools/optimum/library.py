@@ -155,7 +155,7 @@ def _settings(library: ctypes.CDLL, values: dict[str, float]) -> ctypes.Array:
     return buffer
 
 
-def _boxes(flight: Flight) -> tuple[np.ndarray, ...]:
+def boxes_of(flight: Flight) -> tuple[np.ndarray, ...]:
     """Sides (K, 4) and their seen bits (K,); nothing for a flight without boxes."""
     if flight.box_px is None:
         return ()
@@ -177,7 +177,7 @@ def estimate(
     arrays = (
         np.rint(flight.time_s * 1e6).astype(np.int64), np.ascontiguousarray(pose),
         np.ascontiguousarray(flight.pixel_px, np.float32), np.ascontiguousarray(flight.seen, np.uint8),
-        *_boxes(flight),
+        *boxes_of(flight),
     )  # fmt: skip
     label = np.zeros((images, len(LABELS)), np.int32)
     number = np.zeros((images, len(NUMBERS)), np.float32)

@@ -41,7 +41,7 @@ from rich.table import Table
 from tqdm import tqdm
 
 from ..logs.estimates import NUMBERS, QUANTITIES, Estimate, read_estimates, sigma_name
-from ..logs.obslog import LogError, ObservationLog, read_log
+from ..logs.obslog import RESET_COLUMN, LogError, ObservationLog, read_log
 from ..places import ROOT
 from .mirror32 import Mirror32
 from .reference64 import Reference64, Report
@@ -188,6 +188,15 @@ def run_replay(replay: Path, folder: Path, settings: Settings) -> list[tuple[flo
         return read_estimates(out)
 
 
+def check_comparable(log: ObservationLog, folder: Path) -> None:
+    """The references follow the paper: points, and a position that does not jump."""
+    path = folder / "frames.csv"
+    if any(frame.box_px is not None for frame in log.frames):
+        raise LogError(path, 0, "", "holds bounding boxes, which the references do not know")
+    if log.resets():
+        raise LogError(path, 0, RESET_COLUMN, "changes within a track, and the references know no resets")
+
+
 def compare_rows(
     log: ObservationLog, answers: Sequence[tuple[float, int, Estimate]], settings: Settings, label: str = ""
 ) -> Result:
@@ -297,6 +306,7 @@ def run(arguments: argparse.Namespace) -> int:
     beyond = False
     for folder in arguments.logs:
         log = read_log(folder)
+        check_comparable(log, folder)
         result = compare_rows(log, run_replay(replay, folder, settings), settings, str(folder))
         print_result(console, str(folder), result)
         for failure in result.failures():

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...logs.obslog import FEATURES, Frame, LogError, ObservationLog, Truth, read_log
+from ...logs.obslog import FEATURES, RESET_COLUMN, Frame, LogError, ObservationLog, Truth, read_log
 from ...places import ROOT
 from .flight import Flight, Obstacle
 from .noise import FIELD, Noise
@@ -56,6 +56,8 @@ def _flight_of(log: ObservationLog, frames: Sequence[Frame], truth: Truth, name:
     points = [[getattr(frame, feature) or (math.nan, math.nan) for feature in FEATURES] for frame in frames]
     pixels = np.array(points, float)
     seen = np.isfinite(pixels).all(-1)
+    none = (math.nan,) * 4
+    boxes = [[math.nan if side is None else side for side in frame.box_px or none] for frame in frames]
     offset = np.array([log.camera.offset_x_m, log.camera.offset_y_m, log.camera.offset_z_m])
     origin = position[0] + matrices(attitude[0]) @ offset
     time_s = np.array([frame.t_s for frame in frames])
@@ -63,17 +65,21 @@ def _flight_of(log: ObservationLog, frames: Sequence[Frame], truth: Truth, name:
         name, name.split("/")[0], replace(log.camera, heading_deg=math.degrees(heading)), time_s,
         np.where(seen[..., None], pixels, 0.0), seen, position, attitude,
         np.array([frame.height_m for frame in frames]), _obstacle_of(truth, origin[:2], heading, kind), FIELD,
+        box_px=np.array(boxes) if np.isfinite(boxes).any() else None,
+        image_size_px=(log.camera.width, log.camera.height),
     )  # fmt: skip
 
 
 def from_log(folder: Path, kind: str | None = None) -> list[Flight]:
-    """A flight for each track with truth of a log folder; images with a bad pose are left out.
+    """A flight for each track with truth of a log folder; images with a bad pose are left out, a reset is an error.
 
     kind: None: box if the truth has a length, otherwise disc; or one of the two (disc: (x0, z0) is the centre)."""
     folder = Path(folder)
     log = read_log(folder)
     if not log.truth:
         raise LogError(folder / "truth.csv", 0, "", "there is no truth")
+    for key in log.resets() & log.truth.keys():
+        raise LogError(folder / "frames.csv", 0, RESET_COLUMN, f"changes within track {key}, a flight has no resets")
     result = []
     for key, frames in log.tracks().items():
         good = [f for f in frames if np.isfinite([f.t_s, *f.position_m, *f.attitude, f.height_m]).all()]
