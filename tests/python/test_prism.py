@@ -1,4 +1,4 @@
-"""The library's prism against its reference in another form, and the reference's derivatives.
+"""The library's prism against its reference in another form, the reference's derivatives, and the bound.
 
 The library gets what float32 holds of each flight, and so does the reference: what is left is rounding."""
 
@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from goe_tools.optimum.flights.boxes import BUILDING, MAST, WALL, BoxOptions, box_flight
+from goe_tools.optimum import prism_filter
+from goe_tools.optimum.flights.boxes import BUILDING, EXACT, MAST, WALL, BoxOptions, box_flight
 from goe_tools.optimum.flights.flight import Flight
 from goe_tools.optimum.library import MODEL_PRISM, Track, camera_settings, estimate, library_path
 from goe_tools.optimum.prism import (
@@ -33,6 +34,7 @@ from goe_tools.optimum.prism import (
     row_of,
     sights,
 )
+from goe_tools.optimum.prism_bound import bound_of, true_state
 from goe_tools.optimum.prism_filter import PrismTrack, follow
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
@@ -276,3 +278,48 @@ def test_sides_that_are_measured() -> None:
     assert np.isfinite(sides).sum(1).tolist() == [4, 0, 0, 4, 1, 3, 4]
     assert cut.tolist() == [False, True, True, True, True, True, False]
     assert np.isfinite(measured_sides(boxes, (0.0, 0.0), Told())[0]).sum(1).tolist() == [4, 0, 0, 4, 4, 3, 4]
+
+
+# -------------------------------------------------------------------------------------------------------- the bound
+
+
+def noise(times: float, **change: float) -> Told:
+    """All that counts for the bound."""
+    usual = Told(box_share=0.0, ground_m=0.0, disc=True)
+    names = ("box_px", "attitude_bias_deg", "attitude_white_deg", "height_bias_m", "velocity_bias_m_s")
+    return replace(usual, **{name: times * getattr(usual, name) for name in names}, **change)
+
+
+def test_a_bound_grows_with_the_noise() -> None:
+    flight = box_flight(MAST, replace(EXACT, roll_deg=10.0), 1)
+    once, twice = bound_of(flight, noise(1.0, cut_noise=0.5)), bound_of(flight, noise(2.0, cut_noise=1.0))
+    assert twice[TOLD] == pytest.approx(2 * once[TOLD], rel=1e-3) and np.isnan(once[[2, 4]]).all()
+    shorter = bound_of(flight.first(len(flight.time_s) // 2), noise(1.0))
+    assert (shorter[TOLD] > 1.2 * once[TOLD]).all()
+
+
+def test_an_error_that_stays_alike_is_no_white_one() -> None:
+    """One that is gone at the next image averages out; one that lasts does not, but differences cancel it."""
+    flight = box_flight(MAST, replace(EXACT, roll_deg=10.0), 1)
+    still = {"attitude_bias_deg": 0.0, "attitude_white_deg": 0.0, "velocity_bias_m_s": 0.0, "height_bias_m": 0.0}
+    told = replace(noise(1.0), box_px=0.1, box_share=0.05, **still)
+    white, usual, long = (bound_of(flight, replace(told, correlation_s=tau)) for tau in (0.0, 1.2, 100.0))
+    equal = bound_of(flight, replace(told, correlation_s=1e-3))
+    assert equal[TOLD] == pytest.approx(white[TOLD], rel=1e-6)
+    assert usual[Z0] > 1.5 * white[Z0] and long[Z0] < usual[Z0]
+
+
+@pytest.mark.parametrize("roll", [2.0, 10.0])
+def test_a_recursive_estimator_does_not_undercut_the_bound(monkeypatch: pytest.MonkeyPatch, roll: float) -> None:
+    """With what both reckon with: no error of the path, no white share of a side."""
+    monkeypatch.setattr(prism_filter, "SCATTER_SHARE", 0.0)
+    told = replace(noise(1.0), velocity_bias_m_s=0.0, position_walk_m=0.0, box_px=2.0)
+    flight = box_flight(MAST, replace(EXACT, roll_deg=roll), 1)
+    ratio = (follow(flight, told).sigma[-1] / bound_of(flight, told))[TOLD]
+    assert (ratio > 0.99).all() and (ratio < 1.5).all(), ratio
+
+
+def test_the_bound_is_that_of_a_mast() -> None:
+    assert true_state(box_flight(MAST, EXACT, 1))[S] == 0.0
+    with pytest.raises(ValueError, match="disc"):
+        bound_of(box_flight(BUILDING, EXACT, 1), Told())
