@@ -103,14 +103,19 @@ def test_good_answers_meet_every_goal(
         return made_up(flight)
 
     monkeypatch.setattr(boxes, "estimate", estimate)
+    monkeypatch.setattr(boxes, "bound_of", lambda flight, noise: np.full(6, 0.4))
     goals = boxes.boxes_group("boxes", AMOUNT)
     assert all(goal.met for goal in goals if goal.asked)
-    assert sum(bool(goal.asked) for goal in goals) == 22 + 8 + 8  # rolling, Gaussian, height
+    assert sum(bool(goal.asked) for goal in goals) == 22 + 8 + 5 + 8  # rolling, Gaussian, its bound, height
+    assert all(goal.values["Z0"] == pytest.approx(0.5 / 0.4) for goal in goals if goal.name.endswith("RMSE / bound"))
     (first,) = by_name(goals, "mast: first answer")
     assert set(first.values.values()) == {3.0}
     assert "left out: KITTI's boxes, ODMD's val_robot" in capsys.readouterr().out
     others = {name for settings in told for name in settings if not name.startswith("camera.")}
-    assert others == {"heading_auto", "heading_deg", "navigation.height_bias_m"}
+    of_bound = {"model": 2.0, "detector.box_px": 0.5, "detector.box_share": 0.0, "navigation.ground_m": 0.0}
+    assert others == {"heading_auto", "heading_deg", "navigation.height_bias_m", *of_bound}
+    alike = [settings for settings in told if "model" in settings]
+    assert len(alike) == 5 and all(of_bound.items() <= settings.items() for settings in alike)
     assert sum("navigation.height_bias_m" in settings for settings in told) == 2  # without an altimeter
     assert {settings["camera.width_px"] for settings in told} == {1280.0}
 

@@ -108,7 +108,7 @@ def test_undistort_inverts_the_lens() -> None:
     camera = replace(pinhole(), k1=-0.2, k2=0.05, p1=0.001, p2=-0.002, k3=-0.01)
     pixel = np.random.default_rng(1).uniform(100.0, 1180.0, (50, 2))
     point, slope = model.undistort(camera, pixel)
-    again = model._distorted(camera, point) * [camera.fx, camera.fy] + [camera.cx, camera.cy]
+    again = model.distorted(camera, point) * [camera.fx, camera.fy] + [camera.cx, camera.cy]
     assert np.abs(again - pixel).max() < 1e-9
     moved, _ = model.undistort(camera, pixel + np.array([1e-4, 0.0]))
     assert np.allclose((moved - point) / 1e-4, slope[..., 0], rtol=1e-5, atol=1e-9)

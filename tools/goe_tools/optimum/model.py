@@ -50,7 +50,7 @@ MAX_SINE = 0.98  # of a disc's half angle
 # ------------------------------------------------------------------------------------------------------------ the view
 
 
-def _distorted(camera: Camera, point: np.ndarray) -> np.ndarray:
+def distorted(camera: Camera, point: np.ndarray) -> np.ndarray:
     x, y = point[..., 0], point[..., 1]
     r2 = x * x + y * y
     radial = 1 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3))
@@ -59,26 +59,26 @@ def _distorted(camera: Camera, point: np.ndarray) -> np.ndarray:
     return np.stack([u, v], -1)
 
 
-def _lens_slope(camera: Camera, point: np.ndarray) -> np.ndarray:
+def lens_slope(camera: Camera, point: np.ndarray) -> np.ndarray:
     """(..., 2, 2): derivative of the distorted by the undistorted point."""
     columns = []
     for axis in range(2):
         step = np.zeros(2, complex)
         step[axis] = 1j * COMPLEX_STEP
-        columns.append(_distorted(camera, point + step).imag / COMPLEX_STEP)
+        columns.append(distorted(camera, point + step).imag / COMPLEX_STEP)
     return np.stack(columns, -1)
 
 
 def undistort(camera: Camera, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Undistorted normalised points (..., 2) of pixels, and their derivative (..., 2, 2) by the pixel, 1/px."""
     focal = np.array([camera.fx, camera.fy])
-    distorted = (pixel - [camera.cx, camera.cy]) / focal
-    point = distorted.copy()
+    wanted = (pixel - [camera.cx, camera.cy]) / focal
+    point = wanted.copy()
     if any((camera.k1, camera.k2, camera.p1, camera.p2, camera.k3)):
         for _ in range(LENS_ROUNDS):  # Newton
-            error = _distorted(camera, point) - distorted
-            point = point - np.linalg.solve(_lens_slope(camera, point), error[..., None])[..., 0]
-    return point, np.linalg.inv(_lens_slope(camera, point)) / focal
+            error = distorted(camera, point) - wanted
+            point = point - np.linalg.solve(lens_slope(camera, point), error[..., None])[..., 0]
+    return point, np.linalg.inv(lens_slope(camera, point)) / focal
 
 
 @dataclass

@@ -17,6 +17,8 @@ from ..flights.boxes import BUILDING, MAST, WALL, BoxOptions, Solid, box_flight
 from ..flights.flight import Flight
 from ..judge import HEIGHT, X0, Z0
 from ..library import METHODS, camera_settings, estimate
+from ..prism import Told
+from ..prism_bound import bound_of
 from .goal import OPEN, Goal, Range, named, names_of
 from .measures import nan_quantile
 from .work import Amount, each
@@ -30,6 +32,9 @@ CONFIDENT_SIGMA = 5.0  # an error beyond that ...
 CONFIDENT_IMAGES = 5  # ... in so many images in a row, while nothing is suspect
 CONFIDENT_MOST: Range = (0.0, 1.0)  # % of the tracks
 FIRST_MOST: Range = (0.0, 6.0)  # images until the first answer
+BOUND_ROLLS_DEG = (0.0, 2.0, 5.0, 10.0, 25.0)
+BOUND_MOST: Range = (0.0, 1.3)
+BOUND_TOLD = Told(box_px=0.5, box_share=0.0, ground_m=0.0, disc=True)  # the noise as it is flown
 KITTI_PATH_M = 3.0
 NO_ALTIMETER = {"navigation.height_bias_m": 1000.0}
 ODMD_SETTINGS = {  # there is no ground; positions as the sets' makers perturbed them
@@ -83,6 +88,12 @@ def perform(task: Simulated | Recorded) -> BoxOutcome:
     if isinstance(task, Recorded):
         return _outcome(task.flight, task.settings)
     return _outcome(box_flight(task.solid, task.options, task.seed), task.settings)
+
+
+def over_bound(task: Simulated) -> np.ndarray:
+    """(6,): error of a flight's last answers over the Cramer-Rao bound of the noise in ``BOUND_TOLD``."""
+    outcome = perform(task)
+    return last_errors([outcome])[0] / bound_of(outcome.flight, BOUND_TOLD)
 
 
 # ------------------------------------------------------------------------------------------------------------- figures
@@ -208,6 +219,22 @@ def _gauss_goals(group: str, amount: Amount) -> list[Goal]:
     return result
 
 
+def _bound_goals(group: str, amount: Amount) -> list[Goal]:
+    """How near the errors at the end come to what no estimator can better: a mast, white noise alone in the boxes."""
+    usual = Told().settings()
+    settings = {name: value for name, value in BOUND_TOLD.settings().items() if value != usual[name]}
+    result = []
+    for roll in BOUND_ROLLS_DEG:
+        options = BoxOptions(roll_deg=roll, box_px=BOUND_TOLD.box_px, box_share=BOUND_TOLD.box_share)
+        tasks = [Simulated(MAST, options, seed, settings) for seed in range(1, amount.boxes + 1)]
+        squares = np.array(each(over_bound, tasks, amount.jobs, f"{group} bound {roll:g}")) ** 2
+        there = np.isfinite(squares)
+        ratio = np.sqrt(np.where(there.any(0), np.nansum(squares, 0) / np.maximum(there.sum(0), 1), math.nan))
+        name = f"{MAST.name}, roll {roll:g} deg: RMSE / bound"
+        result.append(Goal(group, name, "1", _told(ratio), BOUND_MOST, names_of(TOLD)))
+    return result
+
+
 def _height_goals(group: str, amount: Amount) -> list[Goal]:
     """Altimeters that are noisy or absent, and ground that is not level."""
     usual = BoxOptions(roll_deg=SMALL_ROLL_DEG)
@@ -307,5 +334,6 @@ def boxes_group(group: str, amount: Amount) -> list[Goal]:
     """Upright bounding boxes in place of points."""
     result = _roll_goals(f"{group}: detector noise, rolling", amount)
     result += _gauss_goals(f"{group}: Gaussian 0.5 px", amount)
+    result += _bound_goals(f"{group}: Gaussian 0.5 px", amount)
     result += _height_goals(f"{group}: height above ground", amount)
     return result + recorded_goals(group, amount)
