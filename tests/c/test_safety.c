@@ -402,7 +402,7 @@ static goe_pixel_t any_pixel(float (*number)(void)) {
 }
 
 static float any_own_noise(float (*number)(void)) {
-    return one_in(2) ? 0.0f : one_in(20) ? number() : any_from(0.0f, 30.0f);
+    return one_in(2) ? 0.0f : one_in(60) ? number() : any_from(0.0f, 30.0f);
 }
 
 static void fill_features(goe_image_t *image, float (*number)(void)) {
@@ -416,7 +416,7 @@ static void fill_features(goe_image_t *image, float (*number)(void)) {
     image->box.top_px = number();
     image->box.right_px = number();
     image->box.bottom_px = number();
-    image->box.seen = (uint8_t)(one_in(3) ? 0u : below(256));
+    image->box.seen = (uint8_t)(one_in(4) ? below(256) : 0u);
     image->noise.attitude_deg = any_own_noise(number);
     image->noise.height_m = any_own_noise(number);
     image->noise.pixel_px = any_own_noise(number);
