@@ -40,6 +40,7 @@ enum {
 typedef struct {
     char *word[WORD_COUNT];
     double x0, z0, reach, run, alpha, altitude, glide, speed, fps, course;
+    double roll_amplitude, roll_rate;
     double wind_speed, wind_from, flight_start;
     double image_width, image_height, fx, fy, cx, cy, k1, k2, p1, p2, k3;
     double camera_roll, camera_pitch, camera_yaw, offset_x, offset_y, offset_z;
@@ -67,6 +68,9 @@ static struct poptOption scene_options[] = {
     WORD("path", WORD_PATH, "WHAT", "straight, arc:R (R > 0 turns right) or weave:A,T (amplitude m, period s)"),
     WORD("speed-profile", WORD_SPEED_PROFILE, "WHAT", "constant or ramp:A (m/s^2)"),
     WORD("wind", WORD_WIND, "WHAT", "turbulence: none, dryden:light or dryden:moderate"),
+    NUMBER("roll-amplitude-deg", roll_amplitude, "DEG",
+           "the aircraft rolls by a sine, on top of what it flies; default 0"),
+    NUMBER("roll-rate-hz", roll_rate, "HZ", "frequency of the sine; default 0.4"),
     NUMBER("wind-speed", wind_speed, "MPS", "mean wind"),
     NUMBER("wind-from", wind_from, "DEG", "where the mean wind comes from"),
     WORD("flight", WORD_FLIGHT, "FILE",
@@ -167,6 +171,8 @@ static void set_flight(flight_case_t *setup) {
     set(&setup->speed_mps, given.speed);
     set(&setup->fps_hz, given.fps);
     set(&setup->course_deg, given.course);
+    set(&setup->roll_amplitude_deg, given.roll_amplitude);
+    set(&setup->roll_rate_hz, given.roll_rate);
     set(&setup->wind_mps, given.wind_speed);
     set(&setup->wind_from_deg, given.wind_from);
     set(&setup->recording_start_s, given.flight_start);

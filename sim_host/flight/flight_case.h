@@ -14,9 +14,11 @@
  * Z at altitude_m over the ground.
  * In wind or turbulence the aircraft flies in the same air for RUN_IN_S before the start, so that it begins as disturbed as it
  * goes on; then its position (not its motion) is put on the path's start.
+ * A rolling aircraft: from the start of the run a sine is added to the flown roll angle. It turns the camera and leaves the
+ * path as it is: the sway of a whole roll period at usual rates is less than a metre.
  * With a recording, the camera sees from the recorded true pose and the log carries the recorded estimate. Z then points from
  * the true place at the start to the one at reach_s, whose distance is Z0, unless course or z0 are given. Path, speed, slope,
- * wind and the pose part of the noise do not apply.
+ * wind, roll and the pose part of the noise do not apply.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -46,8 +48,9 @@ typedef struct {
     double speed_mps, reach_s, run_s, fps_hz;
     double course_deg; /* clockwise from north */
     path_t path;
-    double w20_mps;                 /* turbulence, see turbulence.h */
-    double wind_mps, wind_from_deg; /* mean wind */
+    double roll_amplitude_deg, roll_rate_hz; /* a sine on top of the flown attitude, about the body's forward axis */
+    double w20_mps;                          /* turbulence, see turbulence.h */
+    double wind_mps, wind_from_deg;          /* mean wind */
     camera_t camera;
     sensor_noise_t noise;
     uint64_t seed;
@@ -77,7 +80,8 @@ typedef struct {
 } flight_log_t;
 
 /* Paper's defaults for a shape: the scenario of a named obstacle (middle side distance, orientation 0, level, its first
- * altitude), otherwise 30 m to the side at half height, run 18 s, reach 20 s. Rounded pixels, cylinder as tangents. */
+ * altitude), otherwise 30 m to the side at half height, run 18 s, reach 20 s. Rounded pixels, cylinder as tangents, no
+ * roll. */
 bool flight_case_default(flight_case_t *setup, const char *obstacle);
 
 /* One of scenario_get(), as the paper flew it: rounded pixels, cylinder as a point cloud. */
