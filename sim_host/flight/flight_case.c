@@ -240,6 +240,13 @@ static void expose(const flight_case_t *setup, const flight_log_t *log, sensors_
     frame->airspeed_mps = exposure->airspeed_mps;
     frame->exact = features_project(&log->obstacle, setup->cylinder_model, camera, &view);
     frame->measured = sensors_features(sensors, &frame->exact, camera);
+    memset(&frame->exact_box, 0, sizeof frame->exact_box);
+    memset(&frame->measured_box, 0, sizeof frame->measured_box);
+    if (setup->features == LOG_BOXES) {
+        const image_box_t whole = image_box_project(&log->obstacle, camera, &view);
+        frame->exact_box = image_box_clipped(&whole, camera);
+        frame->measured_box = sensors_box(sensors, &whole, camera, t_s);
+    }
     frame->true_agl_m = log->obstacle.ground_d_m - view.eye_ned_m.z;
     const pose_t sensed = sensors_pose(sensors, &exposure->truth, t_s);
     if (setup->recording == NULL) {

@@ -30,6 +30,7 @@
 #include <stdint.h>
 
 #include "camera_model.h"
+#include "image_box.h"
 #include "image_features.h"
 #include "obstacle.h"
 #include "path.h"
@@ -42,6 +43,7 @@
 typedef struct {
     obstacle_t obstacle; /* its shape; the place is set by the flight */
     cylinder_model_t cylinder_model;
+    log_features_t features;
     double x0_m;
     double z0_m; /* NaN: from reach_s */
     double alpha_deg, altitude_m, glide_deg;
@@ -64,7 +66,8 @@ typedef struct {
     pose_t truth, logged;     /* of the vehicle's reference point */
     double true_agl_m, agl_m; /* camera above ground: as it is, as the altimeter says */
     features_t exact, measured;
-    double airspeed_mps; /* 0 for recordings */
+    image_box_t exact_box, measured_box; /* LOG_BOXES alone; cut at the image's border */
+    double airspeed_mps;                 /* 0 for recordings */
 } flight_frame_t;
 
 typedef struct {
@@ -80,8 +83,8 @@ typedef struct {
 } flight_log_t;
 
 /* Paper's defaults for a shape: the scenario of a named obstacle (middle side distance, orientation 0, level, its first
- * altitude), otherwise 30 m to the side at half height, run 18 s, reach 20 s. Rounded pixels, cylinder as tangents, no
- * roll. */
+ * altitude), otherwise 30 m to the side at half height, run 18 s, reach 20 s. Rounded pixels, cylinder as tangents, base
+ * corners in the log, no roll. */
 bool flight_case_default(flight_case_t *setup, const char *obstacle);
 
 /* One of scenario_get(), as the paper flew it: rounded pixels, cylinder as a point cloud. */
