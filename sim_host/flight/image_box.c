@@ -2,6 +2,7 @@
 #include "image_box.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define CURVES_MAX 12 /* edges of a box; of a cylinder two rims and two lines on the wall are enough */
@@ -116,6 +117,17 @@ static void look_along(const outline_t *outline, extreme_t extremes[SIDE_COUNT],
     }
 }
 
+/* Of a straight edge with an image all along, which its ends tell as the field is convex. */
+static bool look_at_ends(const outline_t *outline, extreme_t extremes[SIDE_COUNT], const curve_t *edge) {
+    double from[2], to[2];
+    if (!see(outline, edge, 0.0, from) || !see(outline, edge, 1.0, to)) {
+        return false;
+    }
+    include(extremes, 0.0, from);
+    include(extremes, 1.0, to);
+    return true;
+}
+
 static double out_at(const outline_t *outline, const curve_t *curve, double s, int side) {
     double pixel[2];
     return see(outline, curve, s, pixel) ? outwards(pixel, side) : -HUGE_VAL;
@@ -139,6 +151,16 @@ static double refined(const outline_t *outline, const curve_t *curve, const extr
     return fmax(best->out_px, out_at(outline, curve, 0.5 * (low + high), side));
 }
 
+/* Without a lens a straight edge is straight in the image, and its ends reach farthest. */
+static bool is_bent(const camera_t *camera, const curve_t *curve) {
+    const double lens[] = {camera->k1, camera->k2, camera->p1, camera->p2, camera->k3};
+    bool bent = curve->radius_m > 0.0;
+    for (size_t i = 0; i < sizeof lens / sizeof lens[0]; i++) {
+        bent = bent || fabs(lens[i]) > 0.0;
+    }
+    return bent;
+}
+
 /* Every curve is refined, not the best of them alone: where a rim meets the wall, the rim's farthest point may lie between two
  * steps and reach farther than the wall's end. */
 static void include_curve(const outline_t *outline, double out_px[SIDE_COUNT], const curve_t *curve) {
@@ -147,9 +169,13 @@ static void include_curve(const outline_t *outline, double out_px[SIDE_COUNT], c
         extremes[side].out_px = -HUGE_VAL;
         extremes[side].s = 0.0;
     }
-    look_along(outline, extremes, curve);
+    const bool bent = is_bent(outline->camera, curve);
+    if (bent || !look_at_ends(outline, extremes, curve)) {
+        look_along(outline, extremes, curve);
+    }
     for (int side = 0; side < SIDE_COUNT && isfinite(extremes[side].out_px); side++) {
-        out_px[side] = fmax(out_px[side], refined(outline, curve, &extremes[side], side));
+        const extreme_t *best = &extremes[side];
+        out_px[side] = fmax(out_px[side], bent ? refined(outline, curve, best, side) : best->out_px);
     }
 }
 
