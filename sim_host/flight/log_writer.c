@@ -50,13 +50,8 @@ static void put_attitude(FILE *file, quat_t q) {
     put(file, q.z);
 }
 
-/* Of points only left, right and top, which come first. */
-static int points_logged(log_features_t features) {
-    return features == LOG_CORNERS ? FEATURE_COUNT : features == LOG_POINTS ? FEATURE_TOP + 1 : 0;
-}
-
 static void put_features(FILE *file, log_features_t logged, const features_t *features) {
-    for (int i = 0; i < points_logged(logged); i++) {
+    for (int i = 0; i < features_logged(logged); i++) {
         const feature_t *feature = &features->feature[i];
         if (feature->seen) {
             put(file, feature->u_px);
@@ -78,7 +73,7 @@ static void put_box(FILE *file, log_features_t logged, const image_box_t *box) {
 }
 
 static void put_feature_names(FILE *file, log_features_t logged) {
-    for (int i = 0; i < points_logged(logged); i++) {
+    for (int i = 0; i < features_logged(logged); i++) {
         (void)fprintf(file, ",%s_u,%s_v", FEATURE_NAMES[i], FEATURE_NAMES[i]);
     }
     for (int side = 0; side < SIDE_COUNT && logged == LOG_BOXES; side++) {
