@@ -135,7 +135,8 @@ static const char *put_rows(FILE *rows, const planned_flight_t *flight, case_set
 static const char *run_over(const planned_flight_t *flight, case_setting_t setting, const flight_log_t *log,
                             case_sample_t *samples, FILE *rows) {
     const char *fault = case_run(&flight->setup, log, setting, samples);
-    const bool switches = setting.model == GOE_MODEL_AUTO && flight->setup.obstacle.kind == OBSTACLE_BOX;
+    const bool switches = setting.model == GOE_MODEL_AUTO && flight->setup.obstacle.kind == OBSTACLE_BOX &&
+                          flight->setup.features != LOG_BOXES; /* boxes show no corners to switch by */
     if (fault == NULL) {
         fault = put_rows(rows, flight, setting, log, samples);
     }

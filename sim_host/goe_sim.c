@@ -32,6 +32,7 @@ enum {
     WORD_NOISE,
     WORD_CYLINDER,
     WORD_FLIGHT,
+    WORD_FEATURES,
     WORD_OUT,
     WORD_COUNT
 };
@@ -40,10 +41,12 @@ enum {
 typedef struct {
     char *word[WORD_COUNT];
     double x0, z0, reach, run, alpha, altitude, glide, speed, fps, course;
+    double roll_amplitude, roll_rate;
     double wind_speed, wind_from, flight_start;
     double image_width, image_height, fx, fy, cx, cy, k1, k2, p1, p2, k3;
     double camera_roll, camera_pitch, camera_yaw, offset_x, offset_y, offset_z;
     double pixel_noise, outlier_rate, outlier_size, detector_px, detector_width, detector_correlation;
+    double box_px, box_share, box_correlation;
     double attitude_bias, attitude_noise, position_walk, velocity_bias, altimeter_bias, drop_rate, time_jitter;
     long long seed;
     int paper_case, list_cases, rounding;
@@ -67,6 +70,9 @@ static struct poptOption scene_options[] = {
     WORD("path", WORD_PATH, "WHAT", "straight, arc:R (R > 0 turns right) or weave:A,T (amplitude m, period s)"),
     WORD("speed-profile", WORD_SPEED_PROFILE, "WHAT", "constant or ramp:A (m/s^2)"),
     WORD("wind", WORD_WIND, "WHAT", "turbulence: none, dryden:light or dryden:moderate"),
+    NUMBER("roll-amplitude-deg", roll_amplitude, "DEG",
+           "the aircraft rolls by a sine, on top of what it flies; default 0"),
+    NUMBER("roll-rate-hz", roll_rate, "HZ", "frequency of the sine; default 0.4"),
     NUMBER("wind-speed", wind_speed, "MPS", "mean wind"),
     NUMBER("wind-from", wind_from, "DEG", "where the mean wind comes from"),
     WORD("flight", WORD_FLIGHT, "FILE",
@@ -93,12 +99,16 @@ static struct poptOption camera_options[] = {
     NUMBER("offset-x", offset_x, "M", "camera from the position's reference point, body forward"),
     NUMBER("offset-y", offset_y, "M", "body right"),
     NUMBER("offset-z", offset_z, "M", "body down"),
+    WORD("features", WORD_FEATURES, "WHAT",
+         "what the log carries: points (left, right, top), corners (base corners too) or boxes (upright bounding "
+         "boxes); "
+         "default corners"),
     WORD("cylinder", WORD_CYLINDER, "WHAT", "tangent (exact) or cloud (points on the wall); default tangent"),
     POPT_TABLEEND};
 
 static struct poptOption noise_options[] = {
     WORD("noise", WORD_NOISE, "WHAT",
-         SENSOR_NOISE_FORMS "; default rounding. The options below change single figures of it"),
+         SENSOR_NOISE_FORMS "; default rounding, of boxes detector. The options below change single figures of it"),
     {"rounding", '\0', POPT_ARG_INT, &given.rounding, 0, "1: whole pixels, 0: not", "0|1"},
     NUMBER("pixel-noise", pixel_noise, "PX", "one sigma, white"),
     NUMBER("outlier-rate", outlier_rate, "0..1", "share of features that are displaced"),
@@ -106,6 +116,10 @@ static struct poptOption noise_options[] = {
     NUMBER("detector-px", detector_px, "PX", "detector noise, constant part of one sigma"),
     NUMBER("detector-width", detector_width, "0..", "detector noise, share of the silhouette's width"),
     NUMBER("detector-correlation", detector_correlation, "0..1", "detector noise, from frame to frame"),
+    NUMBER("box-px", box_px, "PX", "a box's sides: one sigma, white; default of boxes 0.5"),
+    NUMBER("box-share", box_share, "0..",
+           "one sigma that stays alike, share of the box's width (left, right) or height (top, bottom); default 0.04"),
+    NUMBER("box-correlation", box_correlation, "S", "how long it stays alike, time constant; default 1"),
     NUMBER("attitude-bias", attitude_bias, "DEG", "one sigma per body axis, constant over a run"),
     NUMBER("attitude-noise", attitude_noise, "DEG", "one sigma per body axis, white"),
     NUMBER("position-walk", position_walk, "M", "random walk, one sigma per axis after a second"),
@@ -167,6 +181,8 @@ static void set_flight(flight_case_t *setup) {
     set(&setup->speed_mps, given.speed);
     set(&setup->fps_hz, given.fps);
     set(&setup->course_deg, given.course);
+    set(&setup->roll_amplitude_deg, given.roll_amplitude);
+    set(&setup->roll_rate_hz, given.roll_rate);
     set(&setup->wind_mps, given.wind_speed);
     set(&setup->wind_from_deg, given.wind_from);
     set(&setup->recording_start_s, given.flight_start);
@@ -205,6 +221,9 @@ static void set_noise(sensor_noise_t *noise) {
     set(&noise->detector_px, given.detector_px);
     set(&noise->detector_width, given.detector_width);
     set(&noise->detector_correlation, given.detector_correlation);
+    set(&noise->box_px, given.box_px);
+    set(&noise->box_share, given.box_share);
+    set(&noise->box_correlation_s, given.box_correlation);
     set(&noise->attitude_bias_deg, given.attitude_bias);
     set(&noise->attitude_noise_deg, given.attitude_noise);
     set(&noise->position_walk_m, given.position_walk);
@@ -215,6 +234,17 @@ static void set_noise(sensor_noise_t *noise) {
     if (given.rounding >= 0) {
         noise->rounding = given.rounding != 0;
     }
+}
+
+static bool parse_features(const char *text, log_features_t *features) {
+    static const char *const names[] = {[LOG_CORNERS] = "corners", [LOG_POINTS] = "points", [LOG_BOXES] = "boxes"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (strcmp(text, names[i]) == 0) {
+            *features = (log_features_t)i;
+            return true;
+        }
+    }
+    return false;
 }
 
 /* The case of the command line; otherwise the name of the bad option, and what it may be. */
@@ -247,8 +277,14 @@ static const char *set_case(flight_case_t *setup, const char **reason) {
     if (given.word[WORD_WIND] != NULL && !turbulence_parse(given.word[WORD_WIND], &setup->w20_mps)) {
         return "--wind";
     }
+    *reason = "points, corners or boxes";
+    if (given.word[WORD_FEATURES] != NULL && !parse_features(given.word[WORD_FEATURES], &setup->features)) {
+        return "--features";
+    }
     *reason = SENSOR_NOISE_FORMS;
-    if (given.word[WORD_NOISE] != NULL && !sensor_noise_parse(given.word[WORD_NOISE], &setup->noise)) {
+    const char *usual_noise = setup->features == LOG_BOXES ? "detector" : NULL;
+    const char *noise = given.word[WORD_NOISE] != NULL ? given.word[WORD_NOISE] : usual_noise;
+    if (noise != NULL && !sensor_noise_parse(noise, &setup->noise)) {
         return "--noise";
     }
     *reason = "tangent or cloud";

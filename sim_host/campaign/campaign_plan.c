@@ -8,8 +8,8 @@
 
 #include "turbulence.h"
 
-const char *const STUDY_NAMES[STUDY_COUNT] = {"paper",    "arc",      "weave", "ramp",        "wind",
-                                              "attitude", "position", "field", "conditioning"};
+const char *const STUDY_NAMES[STUDY_COUNT] = {"paper",    "arc",      "weave", "ramp",         "wind",
+                                              "attitude", "position", "field", "conditioning", "boxes"};
 
 /* --------------------------------------------------------------------------------------------------------- studies -- */
 
@@ -46,6 +46,7 @@ static const group_t GROUPS[] = {
     {"wind", BIT(STUDY_WIND)},
     {"noise", BIT(STUDY_ATTITUDE) | BIT(STUDY_POSITION) | BIT(STUDY_FIELD)},
     {"conditioning", BIT(STUDY_CONDITIONING)},
+    {"boxes", BIT(STUDY_BOXES)},
     {"all", BIT(STUDY_COUNT) - 1u},
 };
 #define GROUPS_COUNT (sizeof GROUPS / sizeof GROUPS[0])
@@ -254,10 +255,42 @@ static void add_conditioning(campaign_plan_t *plan, int seed) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------------ boxes -- */
+
+static const double ROLLS_DEG[] = {0.0, 5.0, 10.0, 25.0};
+#define ROLLS_COUNT (sizeof ROLLS_DEG / sizeof ROLLS_DEG[0])
+#define SEED_STEP 1000u /* more than there are cases in Table 2 */
+
+static bool boxes_are_flown(const variant_t *variant, const scenario_t *scenario) {
+    scenario_t first;
+    return is_flown(variant, scenario) && !(fabs(scenario->glide_deg) > 0.0) &&
+           scenario_find(scenario->obstacle, &first) && !(scenario->altitude_m > first.altitude_m);
+}
+
+/* The same flights, with the same errors of the sensors, at each roll. Every flight has random numbers of its own: how often
+ * an error is within its sigmas is told by flights, not by images of one flight. */
+static void add_boxes(campaign_plan_t *plan, int seed) {
+    static const variant_t variant = {STUDY_BOXES, "straight", "constant", "none", "field"};
+    static const case_setting_t settings[] = {{GOE_METHOD_WINDOW, GOE_MODEL_AUTO, PLAN_WINDOW},
+                                              {GOE_METHOD_REFINED, GOE_MODEL_AUTO, PLAN_WINDOW}};
+    for (size_t i = 0; i < ROLLS_COUNT * (size_t)scenario_count(); i++) {
+        const int number = (int)(i % (size_t)scenario_count());
+        const scenario_t scenario = scenario_get(number);
+        if (boxes_are_flown(&variant, &scenario)) {
+            planned_flight_t *flight = add_flight(plan, &variant, &scenario, number, seed);
+            flight->setup.features = LOG_BOXES;
+            flight->setup.roll_amplitude_deg = ROLLS_DEG[i / (size_t)scenario_count()];
+            flight->setup.seed = SEED_STEP * (uint64_t)seed + (uint64_t)number;
+            flight->run[flight->runs++] = settings[0];
+            flight->run[flight->runs++] = settings[1];
+        }
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------- plan -- */
 
 bool campaign_plan_make(unsigned studies, int seeds, campaign_plan_t *plan) {
-    const size_t most = (size_t)seeds * (VARIANTS_COUNT * (size_t)scenario_count() + MOST_CONDITIONING);
+    const size_t most = (size_t)seeds * ((VARIANTS_COUNT + ROLLS_COUNT) * (size_t)scenario_count() + MOST_CONDITIONING);
     plan->count = 0;
     plan->flights = malloc(most * sizeof *plan->flights);
     if (plan->flights == NULL) {
@@ -270,6 +303,9 @@ bool campaign_plan_make(unsigned studies, int seeds, campaign_plan_t *plan) {
     }
     for (int seed = 1; seed <= seeds && (studies & BIT(STUDY_CONDITIONING)) != 0; seed++) {
         add_conditioning(plan, seed);
+    }
+    for (int seed = 1; seed <= seeds && (studies & BIT(STUDY_BOXES)) != 0; seed++) {
+        add_boxes(plan, seed);
     }
     return true;
 }

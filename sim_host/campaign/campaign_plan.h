@@ -9,6 +9,8 @@
  *   attitude, position, field     errors of the own attitude, of the own position and height, and all sensors of the field
  *   conditioning  one obstacle of each type at its middle side distance, turned by 20 degrees, in level flight; from there
  *                 one at a time: window, side distance, orientation, image rate
+ *   boxes         Table 2 level, lowest and at those orientations, with upright boxes instead of points and all sensors of
+ *                 the field, from an aircraft that rolls by 0, 5, 10 and 25 degrees
  * The above are runs of the window method. Over every flight goes the refined method too, once, with its own choice of the
  * model and the flight's noise as its settings.
  *
@@ -37,12 +39,13 @@ typedef enum {
     STUDY_POSITION,
     STUDY_FIELD,
     STUDY_CONDITIONING,
+    STUDY_BOXES,
     STUDY_COUNT
 } study_t;
 
 extern const char *const STUDY_NAMES[STUDY_COUNT];
 
-#define STUDY_GROUPS "paper, paths, wind, noise, conditioning or all"
+#define STUDY_GROUPS "paper, paths, wind, noise, conditioning, boxes or all"
 #define PLAN_RUNS_MAX 12
 #define PLAN_WINDOW 8                     /* points, as in the paper */
 #define PLAN_FIRST_CONDITIONING_CASE 1000 /* cases of other studies bear their number in Table 2 */

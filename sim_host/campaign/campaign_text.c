@@ -70,7 +70,11 @@ void campaign_text_cases_header(FILE *stream) {
             (void)fprintf(stream, ",%s_mean_pct,%s_two_sigma_pct,%s_rmse_pct", name, name, name);
         }
     }
-    (void)fputs(",baseline_m,condition,fps_hz\n", stream);
+    (void)fputs(",baseline_m,condition,fps_hz,roll_deg", stream);
+    for (int q = 0; q < CASE_QUANTITIES; q++) {
+        (void)fprintf(stream, ",%s_covered", QUANTITIES[q].name);
+    }
+    (void)fputc('\n', stream);
 }
 
 static void put_statistics(FILE *stream, const error_statistics_t *s) {
@@ -115,6 +119,10 @@ void campaign_text_cases_row(FILE *stream, const planned_flight_t *flight, case_
     put(stream, statistics->baseline_m);
     put(stream, statistics->condition);
     put(stream, setup->fps_hz);
+    put(stream, setup->roll_amplitude_deg);
+    for (int q = 0; q < CASE_QUANTITIES; q++) {
+        put(stream, statistics->covered[q]);
+    }
     (void)fputc('\n', stream);
 }
 

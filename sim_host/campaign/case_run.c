@@ -44,7 +44,19 @@ static void log_feature(frame_t *row, frame_value_t name_u, const feature_t *fea
     }
 }
 
-static void log_frame(const flight_frame_t *frame, frame_t *row) {
+static void log_box(frame_t *row, const image_box_t *box) {
+    static const frame_value_t sides[SIDE_COUNT] = {
+        [SIDE_LEFT] = FRAME_BOX_LEFT_PX,
+        [SIDE_TOP] = FRAME_BOX_TOP_PX,
+        [SIDE_RIGHT] = FRAME_BOX_RIGHT_PX,
+        [SIDE_BOTTOM] = FRAME_BOX_BOTTOM_PX,
+    };
+    for (int side = 0; side < SIDE_COUNT && box->seen; side++) {
+        log_value(row, sides[side], box->side_px[side]);
+    }
+}
+
+static void log_frame(const flight_frame_t *frame, log_features_t logged, frame_t *row) {
     static const frame_value_t features[FEATURE_COUNT] = {
         [FEATURE_LEFT] = FRAME_LEFT_U,
         [FEATURE_RIGHT] = FRAME_RIGHT_U,
@@ -64,8 +76,11 @@ static void log_frame(const flight_frame_t *frame, frame_t *row) {
     log_value(row, FRAME_QX, pose->attitude.x);
     log_value(row, FRAME_QY, pose->attitude.y);
     log_value(row, FRAME_QZ, pose->attitude.z);
-    for (int i = 0; i < FEATURE_COUNT; i++) {
+    for (int i = 0; i < features_logged(logged); i++) {
         log_feature(row, features[i], &frame->measured.feature[i]);
+    }
+    if (logged == LOG_BOXES) {
+        log_box(row, &frame->measured_box);
     }
 }
 
@@ -126,7 +141,7 @@ const char *case_run(const flight_case_t *setup, const flight_log_t *log, case_s
     for (size_t i = 0; i < log->count; i++) {
         frame_t row;
         goe_image_t image;
-        log_frame(&log->frames[i], &row);
+        log_frame(&log->frames[i], setup->features, &row);
         frame_to_image(&row, &image);
         samples[i].status = goe_update(&estimator, &image, &samples[i].estimate);
         samples[i].condition =

@@ -28,7 +28,7 @@ typedef struct {
 } case_sample_t;
 
 /* What the refined method is told of the sensors: their true errors, as a user knows them from data sheets. Outliers are
- * left to its gate. */
+ * left to its gate. Of boxes the defaults stand, which hold for real detectors and obstacles of any shape. */
 void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings);
 
 /* Runs the library over log, which setup flew. samples: room for log->count of them.

@@ -106,12 +106,33 @@ static error_statistics_t describe(const case_errors_t *errors, size_t count, ca
     return s;
 }
 
+static double sigma_of(const goe_estimate_t *estimate, case_quantity_t quantity) {
+    const goe_sigma_t *sigma = &estimate->sigma;
+    const float by_quantity[CASE_QUANTITIES] = {
+        [CASE_Z0] = sigma->z0_m,         [CASE_X0] = sigma->x0_m,         [CASE_WIDTH] = sigma->width_m,
+        [CASE_LENGTH] = sigma->length_m, [CASE_HEIGHT] = sigma->height_m, [CASE_ORIENTATION] = sigma->orientation_deg,
+    };
+    return (double)by_quantity[quantity];
+}
+
+static double covered(const case_sample_t *const *used, const case_errors_t *errors, size_t count,
+                      case_quantity_t quantity) {
+    size_t there = 0, within = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double error = errors[i].error[quantity];
+        there += isnan(error) ? 0u : 1u;
+        within += fabs(error) <= 2.0 * sigma_of(&used[i]->estimate, quantity) ? 1u : 0u;
+    }
+    return there > 0 ? (double)within / (double)there : NONE;
+}
+
 static void describe_nothing(const flight_log_t *log, const case_sample_t *samples, case_statistics_t *result) {
     const goe_estimate_t blank = {.model = GOE_MODEL_NONE};
     const case_errors_t errors = case_errors(log, log->count > 0 ? &samples[log->count - 1].estimate : &blank);
     for (int q = 0; q < CASE_QUANTITIES; q++) {
         const error_statistics_t none = {errors.truth[q], NONE, NONE, NONE};
         result->quantity[q] = none;
+        result->covered[q] = NONE;
     }
     result->swapped = false;
     result->line_share = NONE;
@@ -145,6 +166,7 @@ static void describe_used(const flight_log_t *log, const case_sample_t *const *u
     }
     for (int q = 0; q < CASE_QUANTITIES; q++) {
         result->quantity[q] = describe(errors, count, (case_quantity_t)q);
+        result->covered[q] = covered(used, errors, count, (case_quantity_t)q);
     }
     result->swapped = errors[count - 1].swapped;
     result->line_share = (double)lines / (double)count;

@@ -11,6 +11,9 @@
 #define MOST_FRAMES 1000000.0
 #define LONGEST_S 100000.0
 #define STEEPEST_DEG 30.0
+#define LARGEST_ROLL_DEG 80.0
+#define FASTEST_ROLL_HZ 10.0
+#define USUAL_ROLL_HZ 0.4
 #define TIME_ROUNDING 1e-9 /* frames: run_s times fps_hz may miss a whole number by rounding */
 
 typedef struct {
@@ -39,6 +42,7 @@ bool flight_case_default(flight_case_t *setup, const char *obstacle) {
     setup->fps_hz = SCENARIO_FPS_HZ;
     setup->camera = camera_default();
     setup->noise.rounding = true;
+    setup->roll_rate_hz = USUAL_ROLL_HZ;
     setup->seed = 1;
     scenario_t scenario;
     if (scenario_find(obstacle, &scenario)) {
@@ -83,6 +87,10 @@ static const char *aircraft_fault(const flight_case_t *setup) {
     }
     if (!within(setup->wind_from_deg, -360.0, 360.0)) {
         return "wind direction: must be -360 to 360 deg";
+    }
+    if (!within(setup->roll_amplitude_deg, 0.0, LARGEST_ROLL_DEG) ||
+        !within(setup->roll_rate_hz, 0.0, FASTEST_ROLL_HZ)) {
+        return "roll: the amplitude must be 0 to 80 deg, the rate 0 to 10 Hz";
     }
     double alpha;
     controls_t trim;
@@ -195,6 +203,11 @@ static const char *take_off(flight_t *flight, const flight_case_t *setup, const 
     return NULL;
 }
 
+static quat_t rolled(const flight_case_t *setup, quat_t attitude, double t_s) {
+    const vec3_t roll = {radians(setup->roll_amplitude_deg) * sin(2.0 * SIM_PI * setup->roll_rate_hz * t_s), 0.0, 0.0};
+    return setup->roll_amplitude_deg > 0.0 ? quat_multiply(attitude, quat_from_rotation_vector(roll)) : attitude;
+}
+
 /* Flies on to the time of an exposure. Between steps the state is moved on from the last one without changing it, so that
  * the flight does not depend on when frames are taken. Returns why the flight ended, or null. */
 static const char *fly_to(flight_t *flight, const obstacle_t *obstacle, double t_s, exposure_t *exposure) {
@@ -213,7 +226,7 @@ static const char *fly_to(flight_t *flight, const obstacle_t *obstacle, double t
         state = aircraft_advance(&state, &flight->aircraft.command, &flight->air, rest_s);
     }
     exposure->truth.position_ned_m = state.position_ned_m;
-    exposure->truth.attitude = state.attitude;
+    exposure->truth.attitude = rolled(flight->setup, state.attitude, t_s);
     exposure->estimated = exposure->truth;
     exposure->airspeed_mps = aircraft_airspeed(&state, &flight->air);
     return NULL;
@@ -227,6 +240,13 @@ static void expose(const flight_case_t *setup, const flight_log_t *log, sensors_
     frame->airspeed_mps = exposure->airspeed_mps;
     frame->exact = features_project(&log->obstacle, setup->cylinder_model, camera, &view);
     frame->measured = sensors_features(sensors, &frame->exact, camera);
+    memset(&frame->exact_box, 0, sizeof frame->exact_box);
+    memset(&frame->measured_box, 0, sizeof frame->measured_box);
+    if (setup->features == LOG_BOXES) {
+        const image_box_t whole = image_box_project(&log->obstacle, camera, &view);
+        frame->exact_box = image_box_clipped(&whole, camera);
+        frame->measured_box = sensors_box(sensors, &whole, camera, t_s);
+    }
     frame->true_agl_m = log->obstacle.ground_d_m - view.eye_ned_m.z;
     const pose_t sensed = sensors_pose(sensors, &exposure->truth, t_s);
     if (setup->recording == NULL) {

@@ -14,9 +14,11 @@
  * Z at altitude_m over the ground.
  * In wind or turbulence the aircraft flies in the same air for RUN_IN_S before the start, so that it begins as disturbed as it
  * goes on; then its position (not its motion) is put on the path's start.
+ * A rolling aircraft: from the start of the run a sine is added to the flown roll angle. It turns the camera and leaves the
+ * path as it is: the sway of a whole roll period at usual rates is less than a metre.
  * With a recording, the camera sees from the recorded true pose and the log carries the recorded estimate. Z then points from
  * the true place at the start to the one at reach_s, whose distance is Z0, unless course or z0 are given. Path, speed, slope,
- * wind and the pose part of the noise do not apply.
+ * wind, roll and the pose part of the noise do not apply.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -28,6 +30,7 @@
 #include <stdint.h>
 
 #include "camera_model.h"
+#include "image_box.h"
 #include "image_features.h"
 #include "obstacle.h"
 #include "path.h"
@@ -40,14 +43,16 @@
 typedef struct {
     obstacle_t obstacle; /* its shape; the place is set by the flight */
     cylinder_model_t cylinder_model;
+    log_features_t features;
     double x0_m;
     double z0_m; /* NaN: from reach_s */
     double alpha_deg, altitude_m, glide_deg;
     double speed_mps, reach_s, run_s, fps_hz;
     double course_deg; /* clockwise from north */
     path_t path;
-    double w20_mps;                 /* turbulence, see turbulence.h */
-    double wind_mps, wind_from_deg; /* mean wind */
+    double roll_amplitude_deg, roll_rate_hz; /* a sine on top of the flown attitude, about the body's forward axis */
+    double w20_mps;                          /* turbulence, see turbulence.h */
+    double wind_mps, wind_from_deg;          /* mean wind */
     camera_t camera;
     sensor_noise_t noise;
     uint64_t seed;
@@ -61,7 +66,8 @@ typedef struct {
     pose_t truth, logged;     /* of the vehicle's reference point */
     double true_agl_m, agl_m; /* camera above ground: as it is, as the altimeter says */
     features_t exact, measured;
-    double airspeed_mps; /* 0 for recordings */
+    image_box_t exact_box, measured_box; /* LOG_BOXES alone; cut at the image's border */
+    double airspeed_mps;                 /* 0 for recordings */
 } flight_frame_t;
 
 typedef struct {
@@ -77,7 +83,8 @@ typedef struct {
 } flight_log_t;
 
 /* Paper's defaults for a shape: the scenario of a named obstacle (middle side distance, orientation 0, level, its first
- * altitude), otherwise 30 m to the side at half height, run 18 s, reach 20 s. Rounded pixels, cylinder as tangents. */
+ * altitude), otherwise 30 m to the side at half height, run 18 s, reach 20 s. Rounded pixels, cylinder as tangents, base
+ * corners in the log, no roll. */
 bool flight_case_default(flight_case_t *setup, const char *obstacle);
 
 /* One of scenario_get(), as the paper flew it: rounded pixels, cylinder as a point cloud. */

@@ -10,6 +10,10 @@
 
 const char *const FEATURE_NAMES[FEATURE_COUNT] = {"left", "right", "top", "base_left", "base_near", "base_right"};
 
+int features_logged(log_features_t logged) {
+    return logged == LOG_CORNERS ? FEATURE_COUNT : logged == LOG_POINTS ? FEATURE_TOP + 1 : 0;
+}
+
 typedef struct {
     const camera_t *camera;
     const view_t *view;

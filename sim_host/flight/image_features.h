@@ -42,6 +42,12 @@ typedef struct {
     double width_px; /* of the silhouette, right minus left, also if it reaches out of the frame; 0 if unknown */
 } features_t;
 
+/* What a log carries: left, right and top; base corners too; or upright boxes (image_box.h) and no points. */
+typedef enum { LOG_CORNERS, LOG_POINTS, LOG_BOXES } log_features_t;
+
+/* How many of the features, from the first on. */
+int features_logged(log_features_t logged);
+
 typedef enum { CYLINDER_TANGENT, CYLINDER_CLOUD } cylinder_model_t;
 
 /* "left", "right", "top", "base_left", "base_near", "base_right" */

@@ -50,8 +50,8 @@ static void put_attitude(FILE *file, quat_t q) {
     put(file, q.z);
 }
 
-static void put_features(FILE *file, const features_t *features) {
-    for (int i = 0; i < FEATURE_COUNT; i++) {
+static void put_features(FILE *file, log_features_t logged, const features_t *features) {
+    for (int i = 0; i < features_logged(logged); i++) {
         const feature_t *feature = &features->feature[i];
         if (feature->seen) {
             put(file, feature->u_px);
@@ -62,9 +62,22 @@ static void put_features(FILE *file, const features_t *features) {
     }
 }
 
-static void put_feature_names(FILE *file) {
-    for (int i = 0; i < FEATURE_COUNT; i++) {
+static void put_box(FILE *file, log_features_t logged, const image_box_t *box) {
+    for (int side = 0; side < SIDE_COUNT && logged == LOG_BOXES; side++) {
+        if (box->seen) {
+            put(file, box->side_px[side]);
+        } else {
+            (void)fputc(',', file);
+        }
+    }
+}
+
+static void put_feature_names(FILE *file, log_features_t logged) {
+    for (int i = 0; i < features_logged(logged); i++) {
         (void)fprintf(file, ",%s_u,%s_v", FEATURE_NAMES[i], FEATURE_NAMES[i]);
+    }
+    for (int side = 0; side < SIDE_COUNT && logged == LOG_BOXES; side++) {
+        (void)fprintf(file, ",%s", SIDE_NAMES[side]);
     }
     (void)fputc('\n', file);
 }
@@ -101,9 +114,8 @@ static void write_camera(FILE *file, const flight_case_t *setup, const flight_lo
 }
 
 static void write_frames(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
-    (void)setup;
     (void)fputs("t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz", file);
-    put_feature_names(file);
+    put_feature_names(file, setup->features);
     for (size_t i = 0; i < log->count; i++) {
         const flight_frame_t *frame = &log->frames[i];
         put_time(file, frame->time_us);
@@ -111,15 +123,15 @@ static void write_frames(FILE *file, const flight_case_t *setup, const flight_lo
         put_vector(file, frame->logged.position_ned_m);
         put(file, frame->agl_m);
         put_attitude(file, frame->logged.attitude);
-        put_features(file, &frame->measured);
+        put_features(file, setup->features, &frame->measured);
+        put_box(file, setup->features, &frame->measured_box);
         (void)fputc('\n', file);
     }
 }
 
 static void write_truth_frames(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
-    (void)setup;
     (void)fputs("t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz,airspeed_mps", file);
-    put_feature_names(file);
+    put_feature_names(file, setup->features);
     for (size_t i = 0; i < log->count; i++) {
         const flight_frame_t *frame = &log->frames[i];
         put_time(file, frame->time_us);
@@ -128,7 +140,8 @@ static void write_truth_frames(FILE *file, const flight_case_t *setup, const fli
         put(file, frame->true_agl_m);
         put_attitude(file, frame->truth.attitude);
         put(file, frame->airspeed_mps);
-        put_features(file, &frame->exact);
+        put_features(file, setup->features, &frame->exact);
+        put_box(file, setup->features, &frame->exact_box);
         (void)fputc('\n', file);
     }
 }

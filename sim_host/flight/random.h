@@ -22,7 +22,10 @@ enum {
     STREAM_POSITION = 6,
     STREAM_ALTIMETER = 7,
     STREAM_DROP = 8,
-    STREAM_TIME = 9
+    STREAM_TIME = 9,
+    STREAM_BOX_PIXEL = 10,
+    STREAM_BOX_DETECTOR = 11,
+    STREAM_BOX_OUTLIER = 12
 };
 
 typedef struct {

@@ -9,6 +9,13 @@
 
 #define LARGEST_JITTER 0.45 /* frame intervals: frames keep their order */
 
+/* Sides of upright boxes, measured on recorded feeds of detectors. */
+static void set_box_detector(sensor_noise_t *noise) {
+    noise->box_px = 0.5;
+    noise->box_share = 0.04;
+    noise->box_correlation_s = 1.0;
+}
+
 bool sensor_noise_parse(const char *text, sensor_noise_t *noise) {
     memset(noise, 0, sizeof *noise);
     if (strcmp(text, "none") == 0) {
@@ -27,22 +34,27 @@ bool sensor_noise_parse(const char *text, sensor_noise_t *noise) {
         noise->position_walk_m = 0.05;
         noise->velocity_bias_mps = 0.05;
         noise->altimeter_m = 0.5;
+        set_box_detector(noise);
         return true;
     }
     if (strcmp(text, "detector") == 0) {
         noise->detector_px = 0.7;
         noise->detector_width = 0.025;
         noise->detector_correlation = 0.5;
+        set_box_detector(noise);
         return true;
     }
-    return text_numbers(text, "pixel:", &noise->pixel_px, 1) && noise->pixel_px >= 0.0;
+    const bool read = text_numbers(text, "pixel:", &noise->pixel_px, 1) && noise->pixel_px >= 0.0;
+    noise->box_px = noise->pixel_px;
+    return read;
 }
 
 const char *sensor_noise_fault(const sensor_noise_t *noise) {
-    const double sizes[] = {noise->pixel_px,        noise->outlier_px,        noise->detector_px,
-                            noise->detector_width,  noise->attitude_bias_deg, noise->attitude_noise_deg,
-                            noise->position_walk_m, noise->velocity_bias_mps, noise->altimeter_m,
-                            noise->time_jitter_s};
+    const double sizes[] = {
+        noise->pixel_px,          noise->outlier_px,         noise->detector_px,     noise->detector_width,
+        noise->attitude_bias_deg, noise->attitude_noise_deg, noise->position_walk_m, noise->velocity_bias_mps,
+        noise->altimeter_m,       noise->time_jitter_s,      noise->box_px,          noise->box_share,
+        noise->box_correlation_s};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         if (!(sizes[i] >= 0.0 && sizes[i] <= 1e6)) {
             return "a noise figure must be 0 to 1e6";
@@ -77,6 +89,9 @@ sensors_t sensors_start(const sensor_noise_t *noise, uint64_t seed) {
     s.position = random_start(seed, STREAM_POSITION);
     s.drop = random_start(seed, STREAM_DROP);
     s.time = random_start(seed, STREAM_TIME);
+    s.box_pixel = random_start(seed, STREAM_BOX_PIXEL);
+    s.box_detector = random_start(seed, STREAM_BOX_DETECTOR);
+    s.box_outlier = random_start(seed, STREAM_BOX_OUTLIER);
     random_t altimeter = random_start(seed, STREAM_ALTIMETER);
     s.attitude_bias_rad = normal_vector(&s.attitude, radians(noise->attitude_bias_deg));
     s.velocity_bias_mps = normal_vector(&s.position, noise->velocity_bias_mps);
@@ -149,4 +164,32 @@ features_t sensors_features(sensors_t *sensors, const features_t *truth, const c
         }
     }
     return measured;
+}
+
+/* As step_detector, in time instead of frames: boxes of any image rate forget alike. */
+static void step_box(sensors_t *sensors, double t_s) {
+    const double constant_s = sensors->noise.box_correlation_s;
+    const bool remembers = sensors->box_started && constant_s > 0.0;
+    const double keep = remembers ? exp(-fmax(t_s - sensors->box_state_s, 0.0) / constant_s) : 0.0;
+    const double fresh = sqrt(1.0 - keep * keep);
+    for (int side = 0; side < SIDE_COUNT; side++) {
+        sensors->box_state[side] = keep * sensors->box_state[side] + fresh * random_normal(&sensors->box_detector);
+    }
+    sensors->box_state_s = t_s;
+    sensors->box_started = true;
+}
+
+image_box_t sensors_box(sensors_t *sensors, const image_box_t *truth, const camera_t *camera, double t_s) {
+    const sensor_noise_t *noise = &sensors->noise;
+    image_box_t measured = *truth;
+    step_box(sensors, t_s);
+    for (int side = 0; side < SIDE_COUNT; side++) {
+        const double white = noise->box_px * random_normal(&sensors->box_pixel);
+        const double alike = noise->box_share * image_box_size_px(truth, side) * sensors->box_state[side];
+        const bool outlier = random_uniform(&sensors->box_outlier) < noise->outlier_rate;
+        const double direction = random_uniform(&sensors->box_outlier) < 0.5 ? -1.0 : 1.0;
+        const double side_px = truth->side_px[side] + white + alike + (outlier ? direction * noise->outlier_px : 0.0);
+        measured.side_px[side] = noise->rounding ? floor(side_px + 0.5) : side_px;
+    }
+    return image_box_clipped(&measured, camera);
 }

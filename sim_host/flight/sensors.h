@@ -7,6 +7,9 @@
  *               a random direction; then, if wanted, rounding to whole pixels. A feature that leaves the frame is lost.
  *   detector    noise of an object detector: each coordinate of each feature has a variance of detector_px^2 +
  *               (detector_width * width of the silhouette)^2 and is correlated from frame to frame
+ *   box         of an upright box each side has noise of its own: white of box_px, plus box_share of the box's width (left,
+ *               right) or height (top, bottom) that is forgotten with the time constant box_correlation_s; then outliers: a
+ *               side is displaced inwards or outwards; then rounding; then the image's border cuts the box
  *   attitude    constant error drawn once a run plus white noise, one sigma about each body axis
  *   position    random walk from 0 at the start plus a constant velocity error drawn once a run, north, east and down
  *   altimeter   constant error of the height over ground drawn once a run
@@ -22,6 +25,7 @@
 #include <stdint.h>
 
 #include "camera_model.h"
+#include "image_box.h"
 #include "image_features.h"
 #include "random.h"
 
@@ -30,6 +34,7 @@ typedef struct {
     double pixel_px;
     double outlier_rate, outlier_px;
     double detector_px, detector_width, detector_correlation;
+    double box_px, box_share, box_correlation_s;
     double attitude_bias_deg, attitude_noise_deg;
     double position_walk_m; /* after one second; grows with the square root of time */
     double velocity_bias_mps;
@@ -40,9 +45,12 @@ typedef struct {
 
 typedef struct {
     sensor_noise_t noise;
-    random_t pixel, detector, outlier, attitude, position, drop, time;
+    random_t pixel, detector, outlier, attitude, position, drop, time, box_pixel, box_detector, box_outlier;
     double detector_state[FEATURE_COUNT][2]; /* unit variance */
     bool detector_started;
+    double box_state[SIDE_COUNT]; /* unit variance */
+    double box_state_s;           /* time of it */
+    bool box_started;
     vec3_t attitude_bias_rad, velocity_bias_mps, walk_m;
     double altimeter_m, walked_s;
 } sensors_t;
@@ -52,9 +60,11 @@ typedef struct {
 /* Reads one of SENSOR_NOISE_FORMS:
  *   none       every figure 0
  *   rounding   whole pixels: the paper
- *   pixel:S    white noise of S px
- *   field      pixel 0.5 px, outliers 2 % of 15 px, attitude 0.5 deg + 0.1 deg, velocity 0.05 m/s, walk 0.05 m, altimeter 0.5 m
- *   detector   sqrt((0.7 px)^2 + (0.025 width)^2), correlation 0.5 */
+ *   pixel:S    white noise of S px, also of a box's sides
+ *   field      pixel 0.5 px, outliers 2 % of 15 px, attitude 0.5 deg + 0.1 deg, velocity 0.05 m/s, walk 0.05 m, altimeter 0.5 m;
+ *              boxes as detector
+ *   detector   points: sqrt((0.7 px)^2 + (0.025 width)^2), correlation 0.5; boxes: 0.5 px white, 0.04 of the size for 1 s,
+ *              as measured on recorded feeds of detectors */
 bool sensor_noise_parse(const char *text, sensor_noise_t *noise);
 
 /* Null if the figures can be used, otherwise what is wrong. */
@@ -67,5 +77,8 @@ bool sensors_frame_lost(sensors_t *sensors);
 double sensors_time_error(sensors_t *sensors, double frame_interval_s);
 pose_t sensors_pose(sensors_t *sensors, const pose_t *truth, double t_s);
 features_t sensors_features(sensors_t *sensors, const features_t *truth, const camera_t *camera);
+
+/* If boxes are logged. */
+image_box_t sensors_box(sensors_t *sensors, const image_box_t *truth, const camera_t *camera, double t_s);
 
 #endif

@@ -20,6 +20,7 @@ OBSTACLES = {  # W, L, H, side distances, altitudes
 ANGLES = (-45.0, -20.0, 0.0, 20.0, 45.0)
 FRACTIONS = (0.2, 0.4, 0.6, 1.0)
 QUANTITIES = ("z0", "x0", "width", "length", "height", "orientation")
+BOX_ROLLS = (0.0, 5.0, 10.0, 25.0)
 REFINED_SHARE = 0.05  # of the window method's spread
 SPREAD = {  # of the error, in percent of the truth or (height, orientation) metres and degrees, by model
     "disc": {"z0": 2.0, "x0": 12.0, "width": 30.0, "height": 0.8},
@@ -68,6 +69,7 @@ def _row(
         "method": "window", "model": model, "fraction": fraction, "frames": 144,
         "solved": 130, "used": round(130 * fraction), "fresh_line_share": line, "swapped": 0,
         "baseline_m": 15.0 * rng.uniform(0.9, 1.1), "condition": 20.0 * far * rng.uniform(0.8, 1.3),
+        "roll_deg": 0.0, "z0_covered": None, "x0_covered": None, "height_covered": None,
     }  # fmt: skip
     row.update(other)
     disc = model == "disc" or (model == "auto" and setup["obstacle"] == "cylinder")
@@ -134,6 +136,18 @@ def refined_rows(seeds: int = 1, studies: bool = True) -> list[dict[str, Any]]:
             if abs(setup["alpha_deg"]) != 20.0 and setup["glide_deg"] == 0.0:
                 found.append(_row(rng, setup, "auto", 1, fraction, REFINED_SHARE * scale, method="refined",
                                   study="field", **change))  # fmt: skip
+    return found
+
+
+def box_rows() -> list[dict[str, Any]]:
+    """Both methods by upright boxes: refined gains by roll, its sigmas hold; window is far off."""
+    rng = np.random.default_rng(20260103)
+    found = []
+    for roll, setup, fraction in product(BOX_ROLLS, setups()[:20], FRACTIONS):
+        for method, scale, covered in (("refined", 1.0 / (1.0 + roll / 10.0), 0.94), ("window", 40.0, 0.55)):
+            shares = dict.fromkeys(("z0_covered", "x0_covered", "height_covered"), covered)
+            found.append(_row(rng, setup, "auto", 1, fraction, scale, method=method, study="boxes", noise="field",
+                              roll_deg=roll, **shares))  # fmt: skip
     return found
 
 
@@ -224,6 +238,7 @@ def _series(setup: dict[str, Any]) -> list[dict[str, Any]]:
 def write_campaign(folder: Path, seeds: int = 1, studies: bool = True, refined: bool = True) -> Path:
     (folder / "series").mkdir(parents=True)
     table = rows(seeds, studies) + (refined_rows(seeds, studies) if refined else [])
+    table += box_rows() if refined and studies else []
     _write_csv(folder / "cases.csv", table)
     for setup in setups():
         if setup["obstacle"] == "building" and setup["alpha_deg"] == -20.0:

@@ -97,6 +97,7 @@ RUN_BY = {
     "goe_replay --set": By("tests/host/test_replay.py", '"--set"'),
     "goe_replay --settings": By("tools/goe_tools/reference/settings_table.py", '"--settings"'),
     "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
+    "goe_sim --features": By("tests/sim/test_sim_boxes.py", '"--features"'),
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
     "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),

@@ -6,6 +6,7 @@ import csv
 import math
 import re
 import xml.etree.ElementTree as ET
+from html import unescape
 from html.parser import HTMLParser
 from io import StringIO
 from pathlib import Path
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 from goe_tools.logs.obslog import LogError
 from goe_tools.optimum import paper_table3 as t3
-from goe_tools.report import page, terminal
+from goe_tools.report import boxes, page, terminal
 from goe_tools.report import refined as rf
 from goe_tools.report import statistics as st
 from goe_tools.report.data import Campaign, Cases, read_campaign
@@ -246,6 +247,46 @@ def test_refined_sentences(campaign: Campaign) -> None:
     assert "lowest is 81.7 %: W" in shares
     assert "X₀ by triangulation (GTSAM) (0.53\u00a0m against 0.70\u00a0m)" in " ".join(refined_prose.rivals(goals))
     assert "cylinder 16.8 s instead of 4.59 s" in " ".join(refined_prose.early(goals))
+
+
+def test_boxes_by_roll_follow_from_the_rows(campaign: Campaign) -> None:
+    rows = boxes.by_roll(campaign)
+    assert [(row.roll_deg, row.flights) for row in rows] == [(0.0, 20), (5.0, 20), (10.0, 20), (25.0, 20)]
+    with (campaign.folder / "cases.csv").open(encoding="utf-8") as file:
+        found = [
+            row for row in csv.DictReader(file)
+            if (row["study"], row["method"], row["fraction"], row["roll_deg"]) == ("boxes", "refined", "0.4", "25")
+        ]  # fmt: skip
+    for quantity in ("z0", "x0", "height"):
+        errors_m = [float(row[f"{quantity}_rmse"]) for row in found if row[f"{quantity}_rmse"]]
+        assert rows[3].refined.error_m[quantity] == pytest.approx(np.median(errors_m), rel=1e-12)
+        assert rows[3].refined.covered[quantity] == pytest.approx(94.0)
+        assert rows[3].window.covered[quantity] == pytest.approx(55.0)
+
+
+def test_boxes_sentences_say_what_roll_does() -> None:
+    def rows(*z0: float) -> list[boxes.RollRow]:
+        window = boxes.Answers({"z0": 200.0}, {"z0": 50.0, "x0": 60.0})
+        return [
+            boxes.RollRow(10.0 * k, 5, window, boxes.Answers({"z0": error}, {"z0": 90.0 + k, "x0": 95.0}))
+            for k, error in enumerate(z0)
+        ]
+
+    for errors_m, effect in (((4.0, 3.0), "helps"), ((4.0, 4.4), "changes little for"), ((4.0, 5.0), "harms")):
+        said = boxes.sentences(rows(*errors_m))
+        assert said[0].startswith(f"Roll {effect} refined: its error of Z₀ is 4.0 m at 0° of roll and {errors_m[1]} m")
+        assert "hold 90 to 95 % of refined's answers and 50 to 60 % of the window" in said[1] and "200 m off" in said[1]
+    assert boxes.sentences([]) == []
+
+
+def test_the_page_shows_boxes_where_they_were_flown(campaign: Campaign, written: Path, tmp_path: Path) -> None:
+    section = section_of(written.read_text(encoding="utf-8"), "boxes")
+    rows = boxes.by_roll(campaign)
+    assert section.count('<th scope="row">') == 4 and "(20 flights)" in section
+    assert f"<b>{number(rows[3].refined.error_m['z0'])}</b>" in section
+    assert all(sentence in unescape(section) for sentence in boxes.sentences(rows))
+    without = page.render_page(read_campaign(write_campaign(tmp_path / "c", studies=False)), [])
+    assert 'id="boxes"' not in without and "#boxes" not in without
 
 
 def section_of(text: str, name: str) -> str:

@@ -180,6 +180,34 @@ def test_the_other_studies_fly_the_same_cases(everything: Path, paper: Path) -> 
         assert not mine, f"{study}: unexpected variants"
 
 
+def test_boxes_are_flown_level_low_and_rolling(everything: Path) -> None:
+    rows = [row for row in read_rows(everything / "cases.csv") if row["study"] == "boxes"]
+    low = {name: altitudes[0] for name, (_, altitudes, _) in TABLE2.items()}
+    setups = [s for s in table2() if s[2] == low[s[0]] and s[3] in (-20, 0, 45) and s[4] == 0]
+    assert len(setups) == 30
+    runs = itertools.product(setups, (0.0, 5.0, 10.0, 25.0), ("window", "refined"), FRACTIONS)
+    assert Counter(
+        (setup_of(row), float(row["roll_deg"]), row["method"], float(row["fraction"])) for row in rows
+    ) == Counter(runs)
+    assert {(row["model"], row["noise"], row["seed"]) for row in rows} == {("auto", "field", "1")}
+    others = [row for row in read_rows(everything / "cases.csv") if row["study"] != "boxes"]
+    assert {row["roll_deg"] for row in others} == {"0"}
+
+
+def test_refined_knows_how_far_off_it_is_by_boxes_at_any_roll(everything: Path) -> None:
+    """And answers every flight."""
+    rows = [row for row in read_rows(everything / "cases.csv") if row["study"] == "boxes" and row["fraction"] == "0.4"]
+    for roll in ("0", "5", "10", "25"):
+        refined, window = (
+            [row for row in rows if (row["method"], row["roll_deg"]) == (method, roll)]
+            for method in ("refined", "window")
+        )
+        for quantity in ("z0", "x0", "height"):
+            assert np.mean(column(refined, f"{quantity}_covered")) > 0.88
+            ratio = column(refined, f"{quantity}_rmse") / column(window, f"{quantity}_rmse")
+            assert np.isfinite(ratio).all() and np.median(ratio) < 0.5
+
+
 def test_conditioning_varies_one_thing_at_a_time(everything: Path) -> None:
     rows = [
         row
@@ -244,6 +272,21 @@ def test_in_process_is_sim_and_replay(
         assert direct.count("ok,disc,") + direct.count("ok,line,") + direct.count("ok,box,") > 20
 
 
+@pytest.mark.parametrize("roll", ["0", "25"])
+@pytest.mark.parametrize("name", list(BITS_CASES))
+def test_in_process_is_sim_and_replay_with_boxes(
+    programs: dict[str, Path], goe_sim: Path, tmp_path: Path, name: str, roll: str
+) -> None:
+    case = str(BITS_CASES[name])
+    boxes = ("--features", "boxes", "--roll-amplitude-deg", roll, "--noise", "field")
+    fly(goe_sim, tmp_path / "log", "--case", case, *boxes)
+    for method, model in (("window", "disc"), ("refined", "prism")):
+        probe = [str(programs["campaign_probe"]), case, "field", "tangent", method, "auto", "8", roll]
+        direct = subprocess.run(probe, capture_output=True, text=True, check=True).stdout
+        assert direct == replay(programs, tmp_path / "log", "auto", 8, method)
+        assert direct.count(f"ok,{model},") > 20
+
+
 @pytest.mark.parametrize("name", list(BITS_CASES))
 def test_series_is_sim_and_replay(
     programs: dict[str, Path], goe_sim: Path, paper: Path, tmp_path: Path, name: str
@@ -300,10 +343,13 @@ def check_quantity(row: Row, used: list[Row], q: str, unit: str) -> None:
     error = column(used, f"{q}_{unit}") - column(used, f"{q}_true_{unit}")
     if q == "orientation":
         error = fold(error)
-    error = error[np.isfinite(error)]
+    there = np.isfinite(error)
+    error = error[there]
     if not len(error):
-        assert row[f"{q}_mean"] == row[f"{q}_two_sigma"] == row[f"{q}_rmse"] == ""
+        assert row[f"{q}_mean"] == row[f"{q}_two_sigma"] == row[f"{q}_rmse"] == row[f"{q}_covered"] == ""
         return
+    within = np.abs(error) <= 2.0 * column(used, f"{q}_sd_{unit}")[there]
+    assert float(row[f"{q}_covered"]) == pytest.approx(within.mean(), abs=1e-8)
     wanted = {"mean": error.mean(), "two_sigma": 2.0 * error.std(), "rmse": np.sqrt(np.mean(error**2))}
     digits = 1e-8 * max(1.0, abs(truth))  # of both columns
     for measure, value in wanted.items():

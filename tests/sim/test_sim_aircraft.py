@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from sim_support import fly, poses, run
 
 COLUMNS = (
@@ -205,3 +206,31 @@ def test_turbulence_is_ridden_out(goe_sim: Path, tmp_path: Path, wind: str, heig
     assert 0.2 < np.sqrt(np.mean(np.square(errors))) < height
     assert 0.1 < np.sqrt(np.mean(np.square(speeds))) < airspeed
     assert 1.0 < np.sqrt(np.mean(np.square(rolls))) < 12.0
+
+
+def test_roll_is_a_sine_on_top_of_the_flight(goe_sim: Path, tmp_path: Path) -> None:
+    options = ("--obstacle", "cylinder", "--wind", "dryden:light", "--seed", "3", "--altitude", "40")
+    level = fly(goe_sim, tmp_path / "level", *options)
+    rolling = fly(goe_sim, tmp_path / "rolling", *options, "--roll-amplitude-deg", "10", "--roll-rate-hz", "0.3")
+    (there, flown), (same, turned) = poses(level.exact), poses(rolling.exact)
+    assert np.array_equal(there, same)
+    angle = np.radians(10.0) * np.sin(2 * np.pi * 0.3 * level.exact["t_s"])
+    expected = flown * Rotation.from_rotvec(np.column_stack([angle, 0 * angle, 0 * angle]))
+    assert (expected.inv() * turned).magnitude() == pytest.approx(np.zeros(len(angle)), abs=1e-7)
+
+
+def test_roll_has_its_amplitude_and_its_usual_rate(goe_sim: Path, tmp_path: Path) -> None:
+    log = fly(goe_sim, tmp_path / "log", "--obstacle", "cylinder", "--roll-amplitude-deg", "25", "--fps", "40")
+    roll_deg = poses(log.exact)[1].as_euler("ZYX", degrees=True)[:, 2]
+    assert roll_deg.max() == pytest.approx(25.0, abs=0.05) and roll_deg.min() == pytest.approx(-25.0, abs=0.05)
+    upward = log.exact["t_s"][np.flatnonzero(np.diff(np.sign(roll_deg)) > 0)]
+    assert len(upward) > 5 and np.diff(upward) == pytest.approx(np.full(len(upward) - 1, 1 / 0.4), abs=0.051)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [("--roll-amplitude-deg", "-1"), ("--roll-amplitude-deg", "nan"), ("--roll-rate-hz", "11")],
+)
+def test_a_roll_that_cannot_be_is_refused(goe_sim: Path, tmp_path: Path, options: tuple[str, ...]) -> None:
+    done = run(goe_sim, "--out", tmp_path / "log", *options, expect=2)
+    assert "roll" in done.stderr and not list(tmp_path.iterdir())

@@ -20,7 +20,8 @@ COUNTS = ("frames", "solved", "used")
 QUANTITIES = ("z0", "x0", "width", "length", "height", "orientation")
 IN_PERCENT = ("z0", "x0", "width", "length")
 MEASURES = ("mean", "two_sigma", "rmse")
-OPTIONAL = ("fresh_line_share", "swapped", "baseline_m", "condition")
+COVERED = ("z0", "x0", "height")
+OPTIONAL = ("fresh_line_share", "swapped", "baseline_m", "condition", *(f"{q}_covered" for q in COVERED))
 SAME_CASE = ("obstacle", "model", "side_m", "alpha_deg", "altitude_m", "glide_deg")
 
 
@@ -125,6 +126,7 @@ def read_campaign(folder: Path, method: str = "window", goals: Path | None = Non
             raise LogError(path, 1, name, "this column is missing")
     for name in OPTIONAL:
         columns.setdefault(name, np.full(len(columns["case"]), np.nan))
+    columns.setdefault("roll_deg", np.zeros(len(columns["case"])))
     for name in (*SETUP, *COUNTS):
         missing = np.flatnonzero(~np.isfinite(columns[name]))
         if len(missing):

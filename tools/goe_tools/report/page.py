@@ -16,9 +16,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
 from ..optimum import paper_table3 as t3
+from . import boxes
 from . import refined as rf
 from . import statistics as st
-from .data import Campaign
+from .data import COVERED, Campaign
 from .figures import FIGURES
 from .figures.drawing import render
 from .goals_file import QUANTITIES, GoalRow, Goals
@@ -292,6 +293,25 @@ def _refined(campaign: Campaign) -> dict[str, Any] | None:
     }
 
 
+def _boxes(campaign: Campaign) -> dict[str, Any] | None:
+    """The section on upright boxes; None if they were not flown."""
+    rows = boxes.by_roll(campaign)
+    if not rows:
+        return None
+    told = []
+    for row in rows:
+        cells = [
+            {"refined": number(of[0][q]), "window": number(of[1][q]), "head": f"{SYMBOLS[q]} {head}"}
+            for head, of in (
+                ("[m]", (row.refined.error_m, row.window.error_m)),
+                ("in 2σ [%]", (row.refined.covered, row.window.covered)),
+            )
+            for q in COVERED
+        ]  # fmt: skip
+        told.append({"roll": f"{row.roll_deg:g}°", "flights": row.flights, "cells": cells})
+    return {"rows": told, "heads": [cell["head"] for cell in told[0]["cells"]], "sentences": boxes.sentences(rows)}
+
+
 def _version(campaign: Campaign) -> str:
     version = str(campaign.facts.get("version", ""))
     return version if version[:1].isdigit() else ""
@@ -326,6 +346,7 @@ def render_page(campaign: Campaign, figures: list[PageFigure]) -> str:
         line_apart=st.line_apart(cases),
         window_effect=studies.window_effect(campaign),
         refined=_refined(campaign),
+        boxes=_boxes(campaign),
         real=rp.real_data(campaign),
         goal_symbols=[GOAL_SYMBOLS[name] for name in QUANTITIES],
         figures=figures,

@@ -283,7 +283,7 @@ def quartiles_by(rows: Cases, factor: str, values: np.ndarray) -> tuple[np.ndarr
 def campaign_counts(campaign: Campaign) -> dict[str, Any]:
     """What the page's head tells, from the rows alone."""
     whole = campaign.cases.select(fraction=max(campaign.cases.levels("fraction")))
-    flights = set(whole.keys(("study", "case", "seed", "path", "speed_profile", "wind", "noise")))
+    flights = set(whole.keys(("study", "case", "seed", "path", "speed_profile", "wind", "noise", "roll_deg")))
     return {
         "runs": len(whole),
         "flights": len(flights),

@@ -1,0 +1,88 @@
+"""Upright boxes from a rolling aircraft: what both methods make of them, by roll."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..optimum.paper_table3 import FRACTION
+from .data import COVERED, Campaign, Cases
+from .style import number
+
+ALIKE = 1.15  # errors whose ratio is within this are called alike
+
+
+@dataclass(frozen=True)
+class Answers:
+    """By quantity: root mean square error, median over the flights, m; share of the answers within two of their own
+    sigmas, mean over the flights, percent."""
+
+    error_m: dict[str, float]
+    covered: dict[str, float]
+
+
+@dataclass(frozen=True)
+class RollRow:
+    roll_deg: float
+    flights: int
+    window: Answers
+    refined: Answers
+
+
+def _answers(runs: Cases) -> Answers:
+    def of(column: str, middle: str) -> float:
+        values = runs[column][np.isfinite(runs[column])]
+        return float(getattr(np, middle)(values)) if len(values) else float("nan")
+
+    return Answers(
+        {q: of(f"{q}_rmse", "median") for q in COVERED}, {q: 100.0 * of(f"{q}_covered", "mean") for q in COVERED}
+    )
+
+
+def by_roll(campaign: Campaign) -> list[RollRow]:
+    """By ascending roll; empty if the campaign did not fly them."""
+    if campaign.refined is None:
+        return []
+    window, refined = (cases.select(study="boxes", fraction=FRACTION) for cases in (campaign.cases, campaign.refined))
+    rows = []
+    for roll in refined.levels("roll_deg"):
+        runs = [cases.select(roll_deg=roll) for cases in (window, refined)]
+        rows.append(RollRow(roll, len(runs[1]), *(_answers(of_one) for of_one in runs)))
+    return rows
+
+
+def _span(values: list[float]) -> str:
+    low, high = number(min(values)), number(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def sentences(rows: list[RollRow]) -> list[str]:
+    """What is seen, from the numbers."""
+    if not rows:
+        return []
+    level, most = rows[0], rows[-1]
+    said = []
+    if len(rows) > 1:
+        before, after = level.refined.error_m["z0"], most.refined.error_m["z0"]
+        ratio = after / before if before > 0.0 else float("nan")
+        effect = "changes little for" if 1.0 / ALIKE <= ratio <= ALIKE else "helps" if ratio < 1.0 else "harms"
+        said.append(
+            f"Roll {effect} refined: its error of Z₀ is {number(before)} m at {level.roll_deg:g}° of roll and "
+            f"{number(after)} m at {most.roll_deg:g}°."
+        )
+    shares = [[share for row in rows for share in of(row).covered.values()] for of in (_refined, _window)]
+    errors = [[of(row).error_m["z0"] for row in rows] for of in (_refined, _window)]
+    said.append(
+        f"Two of its own sigmas hold {_span(shares[0])} % of refined's answers and {_span(shares[1])} % of the window "
+        f"method's, whose Z₀ is {_span(errors[1])} m off."
+    )
+    return said
+
+
+def _refined(row: RollRow) -> Answers:
+    return row.refined
+
+
+def _window(row: RollRow) -> Answers:
+    return row.window
