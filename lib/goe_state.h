@@ -125,7 +125,7 @@ typedef struct {
 typedef struct {
     float by[GOE_STATES];
     float value;    /* focal lengths */
-    float variance; /* 0: the side was never measured */
+    float variance; /* not positive: the side was never measured, and its error is as large as any */
 } goe_side_memory_t;
 
 #define GOE_NIS_NONE (-1.0f)

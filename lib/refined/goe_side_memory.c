@@ -6,9 +6,12 @@
 #if GOE_WITH_REFINED
 
 void goe_side_memory_fade(goe_side_memory_t *side, float fade, float variance) {
-    const float before = side->variance > 0.0f ? side->variance : variance;
-    const float now = fade * fade * before + (1.0f - fade * fade) * variance;
-    side->variance = side->variance > 0.0f && now < variance ? now : variance;
+    if (!(side->variance > 0.0f)) {
+        side->variance = -variance;
+        return;
+    }
+    const float now = fade * fade * side->variance + (1.0f - fade * fade) * variance;
+    side->variance = now < variance ? now : variance;
     side->value *= fade;
     for (size_t i = 0; i < GOE_STATES; i++) {
         side->by[i] *= fade;
@@ -21,21 +24,22 @@ void goe_side_memory_recall(const goe_side_memory_t *side, float row[GOE_COLUMNS
         by[i] -= side->by[i];
     }
     row[GOE_RESIDUAL] -= side->value;
-    *variance += side->variance;
+    *variance += goe_absolute(side->variance);
 }
 
 void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float common) {
     if (!(weight > 0.0f)) {
         return;
     }
-    const float share = side->variance * weight * weight / (1.0f + common);
+    const float variance = goe_absolute(side->variance);
+    const float share = variance * weight * weight / (1.0f + common);
     const float gain = share / weight;
     const float *by = &row[GOE_STATE_COLUMN];
     for (size_t i = 0; i < GOE_STATES; i++) {
         side->by[i] += gain * by[i];
     }
     side->value += gain * row[GOE_RESIDUAL];
-    side->variance -= share * side->variance;
+    side->variance = variance - share * variance;
 }
 
 void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_STATES]) {

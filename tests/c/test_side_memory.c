@@ -154,8 +154,25 @@ static void a_refused_row_teaches_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &side, sizeof side);
 }
 
+/* GIVEN a side that comes into view late, of a box that has grown THEN its error is as large as that box makes it. */
+static void a_side_measured_late_starts_afresh(void) {
+    goe_side_memory_t side;
+    float row[GOE_COLUMNS] = {0.0f};
+    float variance = 0.0f;
+    memset(&side, 0, sizeof side);
+    for (int k = 1; k <= 10; k++) {
+        goe_side_memory_fade(&side, 0.95f, 0.01f * (float)k);
+    }
+    goe_side_memory_recall(&side, row, &variance);
+    TEST_ASSERT_EQUAL_FLOAT(0.1f, variance);
+    row[GOE_RESIDUAL] = 1.0f;
+    goe_side_memory_learn(&side, row, 3.0f, 0.0f);
+    TEST_ASSERT_TRUE(side.variance > 0.0f && side.variance < 0.1f);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_side_measured_late_starts_afresh);
     RUN_TEST(it_is_as_good_as_all_images_at_once);
     RUN_TEST(a_refused_row_teaches_nothing);
     return UNITY_END();

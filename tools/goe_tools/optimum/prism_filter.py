@@ -73,13 +73,16 @@ class Memory:
 
     value: float
     by: np.ndarray  # (10,)
-    variance: float  # 0: before the first image
+    variance: float
+    learnt: bool = False  # the side was measured
 
     def fade(self, share: float, variance: float) -> None:
-        before = self.variance or variance
+        if not self.learnt:
+            self.variance = variance
+            return
         self.value *= share
         self.by = self.by * share
-        self.variance = min(share**2 * before + (1 - share**2) * variance, variance)
+        self.variance = min(share**2 * self.variance + (1 - share**2) * variance, variance)
 
 
 @dataclass
@@ -255,6 +258,7 @@ class PrismFilter:
             memory.value += gain * rows.residual[i]
             memory.by = memory.by + gain * rows.slope[i]
             memory.variance -= gain * memory.variance
+            memory.learnt = True
 
     def _update(self, rows: Rows, shared: np.ndarray) -> None:
         slope, by_c = rows.slope[:, :C], rows.slope[:, C]
