@@ -34,7 +34,7 @@ DOUBLE_TOLERANCE = 1e-9
 EXIT_DIFFERENT = 1
 CORNER = ROOT / "tests" / "data" / "corner"
 # The window method, which this data is of, knows neither boxes nor the errors of an image.
-NO_BOX = "{.seen = 0}, {0.0f, 0.0f, 0.0f}"
+NO_BOX = "{.seen = 0}, {.pixel_px = 0}"
 VALID = {
     "GOE_HAS_POSITION": "x0_m",
     "GOE_HAS_LENGTH": "length_m",
