@@ -331,7 +331,8 @@ typedef struct {
 #define GOE_SEES_BOTTOM 0x08u
 #define GOE_SEES_BOX 0x0Fu /* all four */
 
-/* What autopilot or detector know of this image's own errors, one sigma each; 0: as in the settings. A pose that is late belongs
+/* What autopilot or detector know of this image's own errors, one sigma each; 0: as in the settings; less than the least that
+ * the setting takes counts as that. A pose that is late belongs
  * here: 20 ms at 24 degrees a second are 0.5 degrees. Refined method. */
 typedef struct {
     float attitude_deg; /* instead of navigation.attitude_white_deg; 0 to 30 */
@@ -351,8 +352,8 @@ typedef struct {
     goe_pose_t pose;
     goe_pixel_t left, right; /* leftmost and rightmost point of the silhouette */
     goe_pixel_t top;         /* point of the roof's edge over the nearest base corner, of a disc the nearest point of the
-                                upper rim. Seen from below the roof and not far from the axis it is the highest point in the image; from above, the highest one
-                                is another: refined.top_is_highest */
+                                upper rim. Seen from below the roof and not far from the axis it is the highest point in
+                                the image; from above, the highest one is another: refined.top_is_highest */
     goe_pixel_t base_left, base_near, base_right; /* visible corners of the base on the ground, in image order;
                                 base_near lies between two visible faces, and is not seen when one face alone is */
     goe_box_t box;
@@ -371,8 +372,8 @@ typedef struct {
 
 /* One-sigma of each quantity; units as the quantity.
  * Refined: of the true error, as far as goe_navigation_t and goe_detector_t describe the sensors; a quantity is valid once its
- * sigma was below refined.range_share (25 %; x0, z0: of the range at the filter's start), 30 % (width, length, height) or 10 degrees in two images
- * in a row.
+ * sigma was below refined.range_share (25 %; x0, z0: of the range at the filter's start), 30 % (width, length, height) or 10
+ * degrees in two images in a row; of a prism (GOE_MODEL_PRISM) without what no image can show.
  * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
  * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:
  * then the orientation's is 0, and those of length and height hold only what the solution gives them. */

@@ -4,10 +4,14 @@
 #include <string.h>
 
 #include "maths/goe_angle.h"
+#include "maths/goe_scalar.h"
 
 #if GOE_WITH_REFINED
 
-#define ABEAM 0.02f         /* third component of an aligned point's ray after the turn */
+#define ABEAM 0.02f           /* third component of an aligned point's ray after the turn */
+#define WHITE_MIN_DEG 1.0e-4f /* errors of an image: as of the settings */
+#define PIXEL_MIN_PX 0.05f
+#define HEIGHT_SD_MIN_M 1.0e-3f
 #define FORWARD_MIN 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
@@ -66,14 +70,17 @@ static void find_body(goe_observation_t *obs, const float camera_to_body[9]) {
     }
 }
 
-static float given_or(float given, float setting) { return given > 0.0f ? given : setting; }
+static float given_or(float given, float least, float setting) {
+    return given > 0.0f ? goe_larger(given, least) : setting;
+}
 
 static void take_noise(goe_observation_t *obs, const goe_image_noise_t *noise) {
     const goe_settings_t *settings = obs->settings;
-    obs->white_rad = given_or(noise->attitude_deg, settings->navigation.attitude_white_deg) * GOE_RAD_PER_DEG;
-    obs->point_px = given_or(noise->pixel_px, settings->detector.point_px);
-    obs->height_sd_m = given_or(obs->height_sd_m, settings->navigation.height_bias_m);
-    obs->side_px = given_or(noise->pixel_px, settings->detector.box_px);
+    const goe_navigation_t *navigation = &settings->navigation;
+    obs->white_rad = given_or(noise->attitude_deg, WHITE_MIN_DEG, navigation->attitude_white_deg) * GOE_RAD_PER_DEG;
+    obs->point_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.point_px);
+    obs->side_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.box_px);
+    obs->height_sd_m = given_or(obs->height_sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_m);
 }
 
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
