@@ -319,7 +319,7 @@ typedef struct {
 } goe_pixel_t;
 
 /* The upright bounding box of a detector in the raw image, each side a straight line of the raw pixels. Feed raw detections, not
- * a tracker's smoothed boxes: smoothing lags, and shrinks large boxes by 5 to 12 %, which no sigma knows of. */
+ * a tracker's smoothed boxes: smoothing lags, and shrinks boxes that grow, which no sigma knows of. */
 typedef struct {
     float left_px, top_px, right_px, bottom_px; /* read only if seen; each +-1e5; left < right, top < bottom */
     uint8_t seen;                               /* GOE_SEES_...; 0: no box. Without the bit: cut, hidden or not believed */
@@ -332,8 +332,8 @@ typedef struct {
 #define GOE_SEES_BOX 0x0Fu /* all four */
 
 /* What autopilot or detector know of this image's own errors, one sigma each; 0: as in the settings; less than the least that
- * the setting takes counts as that. A pose that is late belongs
- * here: 20 ms at 24 degrees a second are 0.5 degrees. Refined method. */
+ * the setting takes counts as that. A pose that is late belongs here: 20 ms at 24 degrees a second are 0.5 degrees. Refined
+ * method. */
 typedef struct {
     float attitude_deg; /* instead of navigation.attitude_white_deg; 0 to 30 */
     float height_m;     /* instead of navigation.height_bias_m, in the image whose height counts; boxes; 0 to 1e3 */

@@ -13,13 +13,12 @@
 
 #if GOE_WITH_REFINED
 
-#define AHEAD_MIN 0.02f     /* of a touching point, units of Z0 */
-#define LEVEL_MIN 1.0e-6f   /* horizontal part of a side's normal: without one the nearest point touches */
-#define REACH_MIN 1.0e-9f   /* of the footprint, units of Z0 */
-#define DEPTH_LIMIT 2.0f    /* |s|: 7 times as deep as wide, or as flat */
-#define SCATTER_SHARE 0.01f /* white part of a side's error, of the box's size */
-#define EARLY_SHARE                                                                                                    \
-    0.08f /* of the time constant: sooner, the differences of two boxes are those of their linearisation */
+#define AHEAD_MIN 0.02f        /* of a touching point, units of Z0 */
+#define LEVEL_MIN 1.0e-6f      /* horizontal part of a side's normal: without one the nearest point touches */
+#define REACH_MIN 1.0e-9f      /* of the footprint, units of Z0 */
+#define DEPTH_MAX 2.0f         /* |s|: 7 times as deep as wide, or as flat */
+#define SCATTER_SHARE 0.01f    /* white part of a side's error, of the box's size */
+#define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearisation's */
 #define GAP_MAX_US 1000000000u /* as the filter's: a longer gap counts as this one */
 #define GROUND_SIGMAS 3.0f     /* by which the foot must lie below the horizon to give the range */
 #define FOOT_SHARE 0.6f        /* of box_share of the width, in that sigma */
@@ -336,7 +335,7 @@ void goe_prism_follow(goe_filter_t *filter, const float change[GOE_STATES]) {
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         goe_side_memory_follow(&filter->side[side], change);
     }
-    *depth = *depth > DEPTH_LIMIT ? DEPTH_LIMIT : (*depth > -DEPTH_LIMIT ? *depth : -DEPTH_LIMIT);
+    *depth = *depth > DEPTH_MAX ? DEPTH_MAX : (*depth > -DEPTH_MAX ? *depth : -DEPTH_MAX);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- start -- */

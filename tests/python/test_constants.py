@@ -8,14 +8,15 @@ from pathlib import Path
 ROOM = Path(__file__).resolve().parents[2] / "lib" / "refined"
 KINDS = set("dlsgbc")
 
-DEFINITION = re.compile(r"^#define (\w+) \(?(-?[0-9][0-9.]*(?:e-?[0-9]+)?)[fu]*\)?(?:\s|$)", re.MULTILINE)
+DEFINITION = re.compile(r"^#define (\w+) +\(?(-?[0-9][0-9.]*(?:e-?[0-9]+)?)[fu]*\)?(?:\s|$)", re.MULTILINE)
 TABLE_ROW = re.compile(r"^\| (goe_\w+\.[ch]) \| `(\w+)` \| ([^ |]+) \| (\w) \| (.+) \|$", re.MULTILINE)
 LABEL = re.compile(r"\(R(\d+)\)$", re.MULTILINE)
 
 
 def numbers_in(sources: dict[str, str]) -> dict[tuple[str, str], float]:
     """Every macro that is a number, by file and name."""
-    return {(file, name): float(value) for file, text in sources.items() for name, value in DEFINITION.findall(text)}
+    joined = {file: text.replace("\\\n", " ") for file, text in sources.items()}
+    return {(file, name): float(value) for file, text in joined.items() for name, value in DEFINITION.findall(text)}
 
 
 def room_sources() -> dict[str, str]:
@@ -36,7 +37,8 @@ def test_the_table_has_every_constant_of_the_sources_with_its_value() -> None:
 
 def test_a_constant_is_found_however_it_is_written() -> None:
     text = "#define A 1.0e-3f /* x */\n#define B (-1.0f)\n#define C 4000000000u\n#define D GOE_STATES\n#define E_H\n"
-    assert numbers_in({"f": text}) == {("f", "A"): 1e-3, ("f", "B"): -1.0, ("f", "C"): 4e9}
+    text += "#define F    \\\n    2.5f /* y */\n"
+    assert numbers_in({"f": text}) == {("f", "A"): 1e-3, ("f", "B"): -1.0, ("f", "C"): 4e9, ("f", "F"): 2.5}
 
 
 def test_equations_are_numbered_in_order() -> None:
