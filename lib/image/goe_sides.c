@@ -13,8 +13,6 @@ GOE_STATIC_ASSERT(GOE_SEES_LEFT == 1u << GOE_BOX_LEFT && GOE_SEES_TOP == 1u << G
                       GOE_SEES_RIGHT == 1u << GOE_BOX_RIGHT && GOE_SEES_BOTTOM == 1u << GOE_BOX_BOTTOM,
                   every_side_has_its_bit);
 
-static bool has(unsigned set, unsigned sides) { return (set & sides) == sides; }
-
 /* Of the image's width. 0: nothing is near a border that is not known. */
 static bool is_near(float px, float size_px, float distance_px) {
     return size_px > 0.0f && (px < distance_px || px > size_px - 1.0f - distance_px);
@@ -38,15 +36,15 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
     sides->px[GOE_BOX_RIGHT] = box->right_px;
     sides->px[GOE_BOX_BOTTOM] = box->bottom_px;
     sides->usable = (uint8_t)(box->seen & GOE_SEES_BOX);
-    const bool swapped = (has(sides->usable, GOE_SEES_LEFT | GOE_SEES_RIGHT) && !(box->left_px < box->right_px)) ||
-                         (has(sides->usable, GOE_SEES_TOP | GOE_SEES_BOTTOM) && !(box->top_px < box->bottom_px));
+    const bool swapped = (goe_sides_see(sides, GOE_SEES_LEFT | GOE_SEES_RIGHT) && !(box->left_px < box->right_px)) ||
+                         (goe_sides_see(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM) && !(box->top_px < box->bottom_px));
     if (swapped) {
         goe_fault_count(faults, GOE_SWAPPED);
         sides->usable = 0;
     }
     sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_share));
     const unsigned wide = GOE_SEES_LEFT | GOE_SEES_RIGHT;
-    sides->cut = !has(sides->usable, wide) || (near_border(camera, sides, camera->cut_share) & wide) != 0u;
+    sides->cut = !goe_sides_see(sides, wide) || (near_border(camera, sides, camera->cut_share) & wide) != 0u;
 }
 
 /* --------------------------------------------------------------------------------------------------------- points -- */
@@ -95,10 +93,10 @@ void goe_sides_points(const goe_camera_t *camera, const goe_view_t *view, goe_pi
                       goe_pixel_t *top) {
     const goe_sides_t *sides = &view->sides;
     const float *px = sides->px;
-    const bool has_top = has(sides->usable, GOE_SEES_TOP);
-    const bool has_height = has(sides->usable, GOE_SEES_TOP | GOE_SEES_BOTTOM);
+    const bool has_top = goe_sides_see(sides, GOE_SEES_TOP);
+    const bool has_height = goe_sides_see(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM);
     left->seen = right->seen = top->seen = false;
-    if (!has(sides->usable, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+    if (!goe_sides_see(sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
         return;
     }
     const float bottom_px = has_height ? px[GOE_BOX_BOTTOM] : (has_top ? px[GOE_BOX_TOP] : camera->cy_px);

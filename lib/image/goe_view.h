@@ -33,6 +33,9 @@ typedef struct {
     bool cut;                /* left or right is missing, or near the image's border */
 } goe_sides_t;
 
+/* Whether all of these sides (GOE_SEES_...) are measured. */
+static inline bool goe_sides_see(const goe_sides_t *sides, unsigned set) { return (sides->usable & set) == set; }
+
 typedef struct {
     goe_point_t point[GOE_FEATURES]; /* by goe_feature_t */
     goe_sides_t sides;               /* of the image's box; no side is usable if it has none */

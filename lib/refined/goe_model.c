@@ -56,7 +56,7 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
 
 void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
     if (filter->phase == GOE_PHASE_PRISM) {
-        goe_prism_rows(filter, obs, rows);
+        goe_prism_rows(obs, rows);
     } else if (goe_filter_is_box(filter)) {
         obs->depth_variance = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE);
         obs->two_faces = filter->phase != GOE_PHASE_BOX_FACE;

@@ -94,7 +94,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->steady_height_m = filter->datum.height_m;
     obs->height_m = view->motion->height_m;
     obs->sides = &view->sides;
-    obs->since_s = 0.0f;
+    obs->fade = 0.0f;
     obs->position_sd = 0.0f;
     obs->height_sd_m = filter->datum.sd_m;
     take_noise(obs, &view->image->noise);

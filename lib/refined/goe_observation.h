@@ -17,7 +17,7 @@ typedef struct {
     const goe_sides_t *sides;
     float steady_height_m;   /* the same by the changes of down, see goe_datum_t */
     float height_sd_m;       /* one sigma of its constant error */
-    float since_s;           /* since the image used before; 0: there is none */
+    float fade;              /* what the error of a box's side keeps since the image used before */
     float white_rad;         /* one sigma of the image's own attitude error */
     float point_px, side_px; /* ... of a point, and of a box's side */
     float outline_share;     /* one sigma of left, right and top beyond the pixel noise, of their width */

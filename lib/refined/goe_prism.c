@@ -24,6 +24,7 @@
 #define FOOT_SHARE 0.6f        /* of box_share of the width, in that sigma */
 #define NEAR_SIDE 0.5f         /* the foot is nearer than the middle by half the width */
 #define RANGE_MIN_M 1.0f       /* of a first guess */
+#define RANGE_MAX_M 1.0e6f     /* the same */
 #define NO_ALTIMETER_M 50.0f   /* sigma of the height from which on the first box sets it */
 #define HEADING_ARM 0.08f      /* s/m: a yaw bias this large per m/s looks like a velocity bias */
 #define BEARING_FREEDOM 1.0f   /* one sigma of the first guess of X0/Z0 */
@@ -35,6 +36,11 @@
 #define DISC_FREEDOM 1.0e-3f   /* both, where a disc is asked for */
 #define GROUND_MIN 1.0e-6f     /* one sigma of the ground's offset, units of Z0 */
 
+GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == GOE_BOX_SIDES * sizeof(goe_side_memory_t),
+                  every_side_has_a_memory);
+GOE_STATIC_ASSERT(GOE_BOX_RIGHT == GOE_BOX_LEFT + 2 && GOE_BOX_BOTTOM == GOE_BOX_TOP + 2 && GOE_BOX_TOP == 1,
+                  level_sides_are_odd_and_opposite_ones_two_apart);
+
 static const uint8_t feature_of[GOE_BOX_SIDES] = {GOE_POINT_LEFT, GOE_POINT_TOP, GOE_POINT_RIGHT, GOE_POINT_BASE_NEAR};
 
 static size_t side_of(uint8_t feature) {
@@ -45,8 +51,6 @@ static size_t side_of(uint8_t feature) {
 }
 
 static bool is_level(size_t side) { return (side & 1u) != 0u; } /* top, bottom */
-
-static bool sees(const goe_sides_t *sides, unsigned set) { return (sides->usable & set) == set; }
 
 static float focal_px(const goe_camera_t *camera, size_t side) {
     return is_level(side) ? camera->fy_px : camera->fx_px;
@@ -243,7 +247,7 @@ static float size_of(const goe_observation_t *obs, bool level) {
     const goe_sides_t *sides = obs->sides;
     const float *x = obs->state;
     const size_t first = level ? GOE_BOX_TOP : GOE_BOX_LEFT;
-    if (sees(sides, level ? GOE_SEES_TOP | GOE_SEES_BOTTOM : GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+    if (goe_sides_see(sides, level ? GOE_SEES_TOP | GOE_SEES_BOTTOM : GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
         return (sides->px[first + 2u] - sides->px[first]) / focal_px(camera, first);
     }
     const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
@@ -258,13 +262,12 @@ static float white_variance(const goe_observation_t *obs, size_t side) {
            (obs->sides->cut ? goe_square(detector->cut_noise * size) : 0.0f);
 }
 
-void goe_prism_rows(const goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     ellipse_t ellipse;
-    (void)filter;
     describe(obs, &ellipse);
     rows->shifts = obs->position_sd > 0.0f;
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
-        if (sees(obs->sides, 1u << side)) {
+        if (goe_sides_see(obs->sides, 1u << side)) {
             add_side(obs, &ellipse, side, white_variance(obs, side), rows);
         }
     }
@@ -279,10 +282,9 @@ bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settin
 
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     const goe_detector_t *detector = &obs->settings->detector;
-    const float tau_s = detector->correlation_s;
-    const float fade = tau_s > 0.0f ? goe_exp(-obs->since_s / tau_s) : 0.0f;
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
-        goe_side_memory_fade(&filter->side[side], fade, goe_square(detector->box_share * size_of(obs, is_level(side))));
+        goe_side_memory_fade(&filter->side[side], obs->fade,
+                             goe_square(detector->box_share * size_of(obs, is_level(side))));
     }
     for (size_t i = 0; i < rows->count; i++) {
         goe_side_memory_recall(&filter->side[side_of(rows->feature[i])], rows->matrix->row[i], &rows->variance[i]);
@@ -358,7 +360,7 @@ static bool ray_of(const goe_settings_t *settings, const float camera_to_axes[9]
 /* Of the box, as far as it is seen. */
 static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
     *x = 0.5f * (coordinate(camera, sides, GOE_BOX_LEFT) + coordinate(camera, sides, GOE_BOX_RIGHT));
-    *y = sees(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM)
+    *y = goe_sides_see(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM)
              ? 0.5f * (coordinate(camera, sides, GOE_BOX_TOP) + coordinate(camera, sides, GOE_BOX_BOTTOM))
              : 0.0f;
 }
@@ -367,7 +369,7 @@ bool goe_prism_face(goe_filter_t *filter, const goe_settings_t *settings, const 
     float x;
     float y;
     goe_point_t ray;
-    if (!sees(&view->sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+    if (!goe_sides_see(&view->sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
         return false;
     }
     middle_of(&settings->camera, &view->sides, &x, &y);
@@ -427,15 +429,15 @@ bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_
     float x;
     float y;
     middle_of(camera, sides, &x, &y);
-    if (sees(sides, GOE_SEES_TOP)) {
+    if (goe_sides_see(sides, GOE_SEES_TOP)) {
         (void)ray_of(settings, obs->camera_to_axes, x, coordinate(camera, sides, GOE_BOX_TOP), &head);
     }
-    if (sees(sides, GOE_SEES_BOTTOM)) {
+    if (goe_sides_see(sides, GOE_SEES_BOTTOM)) {
         (void)ray_of(settings, obs->camera_to_axes, x, coordinate(camera, sides, GOE_BOX_BOTTOM), &foot);
     }
     const float size = size_of(obs, false) / (1.0f + x * x);
     const float range_m = first_range_m(obs, size, &foot);
-    if (!(range_m >= RANGE_MIN_M) || !goe_within(range_m, 1.0e6f)) {
+    if (!(range_m >= RANGE_MIN_M) || !goe_within(range_m, RANGE_MAX_M)) {
         return false;
     }
     const float q = 1.0f / range_m;

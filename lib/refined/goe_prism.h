@@ -22,8 +22,8 @@ bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_
 /* Whether an image comes so soon after the one before that its errors are the same: it is not used. */
 bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion);
 
-/* Appends the rows of a box. since_s: since the image used before. */
-void goe_prism_rows(const goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
+/* Appends the rows of a box. */
+void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After goe_rows_end(): takes what is known of the sides' errors out of the rows. */
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);

@@ -80,20 +80,21 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
 
 /* Points that stand for the sides of a box have its errors; as they are not remembered, the variance counts
  * (1 + fade)/(1 - fade) times, which for a first-order process is that of a long mean. */
-static float outline_share(const goe_detector_t *detector, float since_s) {
-    const float tau_s = detector->correlation_s;
-    const float fade = tau_s > 0.0f ? goe_exp(-since_s / tau_s) : 0.0f;
+static float outline_share(const goe_detector_t *detector, float fade) {
     const float kept = fade < FADE_MAX ? fade : FADE_MAX;
     return detector->box_share * sqrtf((1.0f + kept) / (1.0f - kept));
 }
 
-/* What an image's own position error does, with the second order that the uncertain range adds; and the time since. */
+/* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
+ * the uncertain range adds. */
 static void note_time(const goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
+    const goe_detector_t *detector = &obs->settings->detector;
     const float relative2 =
         goe_filter_variance(filter, GOE_INVERSE_RANGE) / goe_square(filter->state[GOE_INVERSE_RANGE]);
-    obs->since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
-    if (obs->sides->usable != 0) {
-        obs->outline_share = outline_share(&obs->settings->detector, obs->since_s);
+    if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
+        const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
+        obs->fade = detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
+        obs->outline_share = outline_share(detector, obs->fade);
     }
     obs->position_sd = obs->settings->navigation.position_white_m * sqrtf(1.0f + relative2);
 }

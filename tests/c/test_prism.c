@@ -123,10 +123,8 @@ static void measure(const double truth[GOE_STATES]) {
 }
 
 static void make_rows(void) {
-    goe_filter_t filter;
-    memset(&filter, 0, sizeof filter);
     goe_rows_clear(&sighting.rows, &sighting.matrix);
-    goe_prism_rows(&filter, &sighting.sight, &sighting.rows);
+    goe_prism_rows(&sighting.sight, &sighting.rows);
     goe_rows_end(&sighting.rows, &sighting.sight);
 }
 
