@@ -366,14 +366,16 @@ typedef struct {
 #define GOE_HAS_POSITION 0x01u    /* x0, z0, x, z, residual, baseline */
 #define GOE_HAS_LENGTH 0x02u      /* length: line or box, side edge seen from aside */
 #define GOE_HAS_HEIGHT 0x04u      /* height */
-#define GOE_HAS_ORIENTATION 0x08u /* orientation, other_side, both axes */
+#define GOE_HAS_ORIENTATION 0x08u /* orientation, other_side, both axes in T and in north and east */
 #define GOE_HAS_CENTER 0x10u      /* centre: disc; or line or box with length */
 #define GOE_HAS_WIDTH 0x20u       /* width */
 
 /* One-sigma of each quantity; units as the quantity.
- * Refined: of the true error, as far as goe_navigation_t and goe_detector_t describe the sensors; a quantity is valid once its
- * sigma was below refined.range_share (25 %; x0, z0: of the range at the filter's start), 30 % (width, length, height) or 10
- * degrees in two images in a row; of a prism (GOE_MODEL_PRISM) without what no image can show.
+ * Refined: of the true error, as far as goe_navigation_t and goe_detector_t describe the sensors; and wider, never narrower, if
+ * the track itself scatters more than they say, or its residuals are alike from image to image, as those of late poses are. A
+ * quantity is valid once its sigma, without that, was below refined.range_share (25 %; x0, z0: of the range at the filter's
+ * start), 30 % (width, length, height) or 10 degrees in two images in a row; of a prism (GOE_MODEL_PRISM) without what no image
+ * can show.
  * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
  * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:
  * then the orientation's is 0, and those of length and height hold only what the solution gives them. */
@@ -406,7 +408,10 @@ typedef struct {
     float other_side_deg;  /* front edge (width axis), same convention */
     float length_axis[2];  /* unit vector (X, Z) along the side edge */
     float width_axis[2];   /* unit vector (X, Z) along the front edge, to the right of length_axis */
-    float center_north_m, center_east_m; /* middle of the base, NED as of the latest pose */
+    float length_axis_ne[2], width_axis_ne[2]; /* the same in (north, east) */
+    float trajectory_heading_deg; /* of T's Z axis, clockwise from north, -180 to 180; holds from the track's first image on */
+    float center_north_m, center_east_m; /* middle of the base, NED as of the latest pose ... */
+    float center_ne_m2;                  /* ... and the covariance of the two, whose variances are the sigmas squared */
     float residual;        /* window: root mean square residual of (5), in the rows' own unit m/S; refined: 0 */
     float baseline_m;      /* window: root of the summed squared spread of the camera's path over the window; refined:
                               distance of the camera from where the track began */

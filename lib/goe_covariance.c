@@ -36,7 +36,7 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
 
 /* False if the estimate is not the filter's. */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
-    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    const goe_estimate_t *estimate = &estimator->estimate;
     if (!is_of_filter(estimate)) {
         return false;
     }
@@ -46,7 +46,7 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
 }
 
 static bool is_of_prism(const goe_estimator_t *estimator) {
-    return estimator->filter.phase == GOE_PHASE_PRISM && is_of_filter(goe_latest_estimate(estimator));
+    return estimator->filter.phase == GOE_PHASE_PRISM && is_of_filter(&estimator->estimate);
 }
 
 float goe_latest_camera_height(const goe_estimator_t *estimator) {
@@ -58,7 +58,7 @@ float goe_latest_height_bias(const goe_estimator_t *estimator) {
     if (is_of_prism(estimator)) {
         return state[GOE_PRISM_GROUND] / state[GOE_INVERSE_RANGE];
     }
-    return is_of_filter(goe_latest_estimate(estimator)) ? state[GOE_HEIGHT_BIAS] : 0.0f;
+    return is_of_filter(&estimator->estimate) ? state[GOE_HEIGHT_BIAS] : 0.0f;
 }
 #else
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
@@ -82,7 +82,7 @@ goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_d
     if (status != GOE_OK) {
         return status;
     }
-    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    const goe_estimate_t *estimate = &estimator->estimate;
     if (!(estimate->valid & GOE_HAS_POSITION)) {
         return GOE_COLLECTING;
     }

@@ -26,6 +26,7 @@
 typedef struct {
     int64_t time_us;                /* latest image of the track */
     float heading_cos, heading_sin; /* of T's Z axis, from north */
+    float heading_deg;              /* the same, -180 to 180 */
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
     float height_m;                 /* camera above ground, latest image */
@@ -57,9 +58,7 @@ typedef struct { /* window/goe_orientation.c */
     int count;           /* saturates at orientation_memory */
 } goe_orientation_t;
 
-typedef struct {            /* window/goe_window.c */
-    int64_t solved_time_us; /* image of the last solution */
-    goe_estimate_t estimate;
+typedef struct { /* window/goe_window.c */
     goe_orientation_t orientation;
     goe_mean_t length, height;
     goe_fit_ring_t disc, line;
@@ -128,11 +127,19 @@ typedef struct {
     float variance; /* not positive: the side was never measured, and its error is as large as any */
 } goe_side_memory_t;
 
+/* refined/goe_scatter.c: residuals of one image with those of the image before. A series: a coordinate of a feature. */
+#define GOE_SERIES (2 * GOE_FEATURES)
+typedef struct {
+    float before[GOE_SERIES]; /* sigmas; 0: none */
+    float products, squares;
+} goe_scatter_t;
+
 #define GOE_NIS_NONE (-1.0f)
 
 typedef struct {      /* refined/goe_health.c: how the images fit */
     float nis;        /* normalised innovation squared of the latest image */
     float mean_nis;   /* of nis over rows: running mean over the track */
+    float excess;     /* of nis over rows, above 1: the mean over the whole track, begun with eight images of none */
     float recent_nis; /* ... over some ten images of the filter's present phase; GOE_NIS_NONE: not begun */
     int16_t nis_rows;
     int16_t images;                /* of the track that gave rows, saturating */
@@ -157,6 +164,7 @@ typedef struct {
     goe_health_t health;
     goe_axes_t axes;
     goe_datum_t datum;
+    goe_scatter_t scatter;
     goe_side_memory_t side[4]; /* by goe_box_side_t */
     float state[GOE_STATES];   /* by goe_state_index_t */
     goe_triangle_t root;       /* R: R'R is the information of the state */
@@ -172,9 +180,9 @@ typedef struct {
     uint32_t causes[GOE_CAUSES];
     float camera_to_body[9];
     goe_settings_t settings;
-#if GOE_WITH_REFINED
     goe_estimate_t estimate;  /* after the latest image, by whatever method */
     int64_t estimate_time_us; /* image behind the estimate */
+#if GOE_WITH_REFINED
     goe_filter_t filter;
 #endif
 #if GOE_WITH_WINDOW

@@ -73,7 +73,7 @@ void goe_violation_foresee(const goe_estimator_t *estimator, const goe_plan_t *p
     goe_outline_t outline;
     goe_course_t course;
     goe_approach_t approach;
-    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    const goe_estimate_t *estimate = &estimator->estimate;
     goe_outline_of(estimate, &outline);
     goe_approach_course(&estimator->motion, plan, &course);
     const float height_m = goe_latest_camera_height(estimator) -

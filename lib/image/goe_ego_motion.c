@@ -25,6 +25,15 @@ static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, co
     }
 }
 
+/* -180 to 180. */
+static float heading_of(float c, float s) {
+    const float half_deg = goe_arctan_rad(s, c < 0.0f ? -c : c) * GOE_DEG_PER_RAD;
+    if (c >= 0.0f) {
+        return half_deg;
+    }
+    return s >= 0.0f ? 180.0f - half_deg : -180.0f - half_deg;
+}
+
 static void camera_position(const goe_settings_t *settings, const goe_pose_t *pose, const float body_to_ned[9],
                             float position[2]) {
     float arm[3];
@@ -59,6 +68,7 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     camera_position(settings, pose, body_to_ned, position);
     if (!motion->started) {
         fix_heading(motion, settings, body_to_ned);
+        motion->heading_deg = heading_of(motion->heading_cos, motion->heading_sin);
         memcpy(motion->origin_ne_m, position, sizeof position);
         motion->started = true;
     } else if (goe_motion_reset(motion, pose)) {

@@ -22,6 +22,12 @@ static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float
     *east_m = motion->origin_ne_m[1] + (s * z_m + c * x_m);
 }
 
+/* A direction (X, Z) in T to (north, east). */
+static inline void goe_motion_turn(const goe_motion_t *motion, const float axis[2], float axis_ne[2]) {
+    axis_ne[0] = motion->heading_cos * axis[1] - motion->heading_sin * axis[0];
+    axis_ne[1] = motion->heading_sin * axis[1] + motion->heading_cos * axis[0];
+}
+
 /* The estimate's reference point relative to the camera at the latest image, if it is known. */
 static inline void goe_motion_relate(const goe_motion_t *motion, goe_estimate_t *estimate) {
     if (estimate->valid & GOE_HAS_POSITION) {

@@ -12,7 +12,8 @@ typedef struct {
     float sigma[GOE_QUANTITIES];
     float worked_out[GOE_QUANTITIES];  /* ... without what no image can show: decides what is known */
     goe_xz_t length_axis;              /* unit vector, T axes */
-    float center_m[2], center_sd_m[2]; /* north, east; holds with GOE_HAS_CENTER */
+    float center_m[2], center_sd_m[2]; /* north, east; holds with GOE_HAS_CENTER ... */
+    float center_ne_m2;                /* ... as does the covariance of the two */
     bool box, prism;
 } goe_quantities_t;
 

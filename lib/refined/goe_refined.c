@@ -17,6 +17,7 @@
 #include "refined/goe_model.h"
 #include "refined/goe_prism.h"
 #include "refined/goe_report.h"
+#include "refined/goe_scatter.h"
 
 #if GOE_WITH_REFINED
 
@@ -64,6 +65,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     allow_for_curvature(filter, obs, &rows);
     goe_model_recall(filter, obs, &rows);
     *verdict = goe_gate_apply(obs->settings, filter, &rows);
+    goe_scatter_take(&filter->scatter, &rows);
     goe_model_learn(filter, &rows, verdict);
     if (verdict->rows == 0) {
         goe_health_take_refused(&filter->health, *verdict);

@@ -58,6 +58,7 @@ static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, 
     if (q->known & GOE_HAS_CENTER) {
         estimate->center_north_m = q->center_m[0];
         estimate->center_east_m = q->center_m[1];
+        estimate->center_ne_m2 = q->center_ne_m2;
         estimate->sigma.center_north_m = q->center_sd_m[0];
         estimate->sigma.center_east_m = q->center_sd_m[1];
     }

@@ -47,10 +47,15 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
 /* Variance of w' x. */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
+/* The same if the first GOE_UNWEIGHTED weights are 0, for half of that. */
+#define GOE_UNWEIGHTED 3
+float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
+
 /* The part of it that is the last state's own. */
 float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
-/* w becomes R^-1' w, whose squared norm is that variance: the derivative in terms of independent unit errors. */
+/* w becomes R^-1' w, whose squared norm is that variance: the derivative in terms of independent unit errors. Of a w whose
+ * first GOE_UNWEIGHTED elements are 0, and remain so. */
 void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]);
 
 /* Covariance of the first GOE_KEPT states; upper half. */

@@ -16,9 +16,12 @@
 #include <string.h>
 
 #include "check.h"
+#include "refined/goe_gate.h"
+#include "refined/goe_scatter.h"
 #include "scene.h"
 
 #define UPDATES_EACH 60000
+#define SCATTER_MAX 400.0f /* 21 times the told variance, 19 for residuals that are alike to 0.9 */
 #define GUARD_BYTES 64
 #define GUARD 0xC3
 
@@ -147,6 +150,14 @@ static void check_ranges(const goe_estimate_t *e) {
     TEST_ASSERT_TRUE(e->nis_rows > 0 || is_zero(&e->nis));
 }
 
+/* By how much the track's own scatter widens what the filter found. */
+static double widening(void) {
+    const goe_filter_t *filter = &memory.estimator.filter;
+    const float factor = goe_scatter_factor(filter, goe_gate_repeated(&memory.estimator.settings, filter));
+    TEST_ASSERT_TRUE(factor >= 1.0f && factor <= SCATTER_MAX);
+    return sqrt((double)factor);
+}
+
 /* What goe_sigma_t says of the refined method. */
 static void check_refined(const goe_estimate_t *e) {
     static const float two_metres = 2.0f;
@@ -167,11 +178,14 @@ static void check_refined(const goe_estimate_t *e) {
         TEST_ASSERT_FALSE(e->valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH));
         return;
     }
-    TEST_ASSERT_TRUE(within_share(&s->z0_m, (double)memory.estimator.settings.refined.range_share, &range_m));
-    TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3, &e->width_m));
-    TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3, &e->length_m));
-    TEST_ASSERT_TRUE(within_share(&s->height_m, 0.3, within(&e->height_m, two_metres) ? &two_metres : &e->height_m));
-    TEST_ASSERT_TRUE(within(&s->orientation_deg, 10.001f));
+    const double wider = widening(); /* scatter widens a sigma, and silences none */
+    const double share = (double)memory.estimator.settings.refined.range_share;
+    TEST_ASSERT_TRUE(within_share(&s->z0_m, share * wider, &range_m));
+    TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3 * wider, &e->width_m));
+    TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3 * wider, &e->length_m));
+    TEST_ASSERT_TRUE(
+        within_share(&s->height_m, 0.3 * wider, within(&e->height_m, two_metres) ? &two_metres : &e->height_m));
+    TEST_ASSERT_TRUE(within(&s->orientation_deg, (float)(10.001 * wider)));
     TEST_ASSERT_TRUE(e->model == GOE_MODEL_BOX || !(e->valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH)));
 }
 
@@ -262,6 +276,7 @@ static void check_filter(const goe_filter_t *filter) {
     const float sums[] = {filter->health.recent_nis, filter->health.nis, filter->health.mean_nis,
                           filter->leaving.outward, filter->leaving.turning};
     check_finite(sums, 5, "residuals");
+    check_finite(filter->scatter.before, GOE_SERIES + 2, "scatter");
     if (filter->phase != 0u) { /* otherwise the next image starts it anew */
         check_finite(filter->state, GOE_STATES, "state");
         check_finite(filter->root.element, sizeof filter->root / sizeof(float), "root");

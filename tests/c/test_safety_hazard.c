@@ -43,7 +43,7 @@ static float magnitude_up_to(double limit) { return (float)fabs((double)up_to(li
 
 /* Any answer within the ranges that the library keeps. */
 static void give_any_answer(void) {
-    goe_estimate_t *e = &estimator.window.estimate;
+    goe_estimate_t *e = &estimator.estimate;
     const double orientation = check_random_between(&any, -90.0, 90.0);
     const double b = (below(4u) ? orientation : (double)((int)below(4u) - 1) * 45.0) * 0.017453292519943295;
     memset(e, 0, sizeof *e);

@@ -18,6 +18,9 @@ estimate moves by z c if it is not. K is the gain by P alone.
 
     P <- (I - K J) P (I - K J)' + K N K'        z <- z - K (J z + J_c)          all others' covariance: P + z z' var(c)
 
+A track that scatters more than it was told, or whose residuals are alike from image to image, widens its sigmas: the
+variance is multiplied by ``Scatter.factor``.
+
 Left out is what the library does once sides do not fit image after image: it frees the top, or starts anew."""
 
 from __future__ import annotations
@@ -65,6 +68,8 @@ HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
 PATH_MIN_M = 0.1
 DISC_SD = 1e-3  # of s and c where a disc is asked for
+SCATTER_CLIP, SCATTER_KEPT, SCATTER_SEED, ALIKE_MOST = 10.0, 0.985, 10.0, 0.9
+MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
 
 
 @dataclass
@@ -83,6 +88,39 @@ class Memory:
         self.value *= share
         self.by = self.by * share
         self.variance = min(share**2 * self.variance + (1 - share**2) * variance, variance)
+
+
+@dataclass
+class Scatter:
+    """Of normalised residuals: how large they are against what was told, and how alike to those of the image before."""
+
+    before: np.ndarray  # (4,) by side, sigmas; 0: none
+    products: float = 0.0
+    squares: float = 0.0
+    recent: float = 0.0  # mean of nis over rows, of the latest images
+    whole: float = 0.0  # of what it is above 1, over the whole track
+    images: int = 0
+
+    def take(self, side: np.ndarray, residual: np.ndarray) -> None:
+        now = np.zeros(4)
+        now[side] = np.clip(residual, -SCATTER_CLIP, SCATTER_CLIP)
+        both = (now != 0) & (self.before != 0)
+        self.products = SCATTER_KEPT * self.products + float(now[both] @ self.before[both])
+        self.squares = SCATTER_KEPT * self.squares + 0.5 * float(
+            now[both] @ now[both] + self.before[both] @ self.before[both]
+        )
+        self.before = now
+
+    def take_fit(self, ratio: float) -> None:
+        self.images += 1
+        heard = self.images + MEAN_SEEDS
+        self.recent += (min(ratio, RATIO_MOST) - self.recent) / min(heard, MEAN_IMAGES)
+        self.whole += (min(ratio - 1, RATIO_MOST) - self.whole) / heard
+
+    def factor(self) -> float:
+        alike = min(self.products / (self.squares + SCATTER_SEED), ALIKE_MOST)
+        series = max((1 + alike) / (1 - alike), 1.0)
+        return max(series * max(self.recent, 1 + self.whole), 1.0)
 
 
 @dataclass
@@ -115,6 +153,7 @@ class PrismFilter:
         self.told = told
         self.state: np.ndarray | None = None  # (10,)
         self.doubted = self.refused = 0  # of the latest image
+        self.scatter = Scatter(np.zeros(4))
 
     # --------------------------------------------------------------------------------------------------------- start
 
@@ -260,6 +299,11 @@ class PrismFilter:
             memory.variance -= gain * memory.variance
             memory.learnt = True
 
+    def _nis(self, rows: Rows, shared: np.ndarray) -> float:
+        slope = rows.slope[:, :C]
+        expected = slope @ self.covariance @ slope.T + shared + np.diag(rows.own)
+        return float(rows.residual @ np.linalg.solve(expected, rows.residual))
+
     def _update(self, rows: Rows, shared: np.ndarray) -> None:
         slope, by_c = rows.slope[:, :C], rows.slope[:, C]
         noise = shared + np.diag(rows.own)
@@ -298,12 +342,17 @@ class PrismFilter:
         factor = np.minimum(self.told.huber_sigma / np.sqrt(np.maximum(ratio, 1e-30)), 1.0)
         names = ("side", "residual", "slope", "own", "about", "shift")
         rows.own = rows.own / factor
+        poor = 2 * self.refused >= len(kept)
+        self.scatter.take(rows.side, np.where(kept, rows.residual / np.sqrt(rows.own), 0.0))
         rows = Rows(*(getattr(rows, name)[kept] for name in names))
         if not kept.any():
+            self.scatter.take_fit(RATIO_MOST)
             return False
         white = np.radians(self.told.attitude_white_deg)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
         self._learn(rows, shared)
+        nis = self._nis(rows, shared)
+        self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
         self._update(rows, shared)
         return True
 
@@ -315,7 +364,7 @@ class PrismFilter:
         told = self.told
         values = quantities(self.state, self.turn)
         slopes = quantity_slopes(self.state, self.turn)
-        variance = np.einsum("ij,jk,ik->i", slopes, self.full_covariance(), slopes)
+        variance = np.einsum("ij,jk,ik->i", slopes, self.full_covariance(), slopes) * self.scatter.factor()
         span_s = in_t.time_s - self.start_s
         path_m = max(float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]])), PATH_MIN_M)
         share = told.velocity_bias_m_s * span_s / path_m

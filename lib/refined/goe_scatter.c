@@ -1,0 +1,54 @@
+/* Scatter beyond what was told. SPDX-License-Identifier: MIT */
+#include "refined/goe_scatter.h"
+
+#include <string.h>
+
+#include "maths/goe_scalar.h"
+
+#if GOE_WITH_REFINED
+
+#define KEPT 0.985f          /* of the sums from image to image: some 67 images count */
+#define RESIDUAL_MAX 10.0f   /* sigmas: one outlier must not decide */
+#define SEED 10.0f           /* squares that are always there: few images alone say little */
+#define CORRELATION_MAX 0.9f /* beyond it the sums cannot tell */
+
+static float clipped(float residual) {
+    if (goe_magnitude(residual) >= GOE_INFINITY_BITS) {
+        return 0.0f;
+    }
+    if (residual > RESIDUAL_MAX) {
+        return RESIDUAL_MAX;
+    }
+    return residual < -RESIDUAL_MAX ? -RESIDUAL_MAX : residual;
+}
+
+/* A refused row is 0, and joins nothing. */
+void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
+    float now[GOE_SERIES] = {0.0f};
+    scatter->products *= KEPT;
+    scatter->squares *= KEPT;
+    for (size_t i = 0; i < rows->count; i++) {
+        const bool second = i > 0 && rows->feature[i - 1] == rows->feature[i]; /* of a corner: along y */
+        const size_t series = 2u * rows->feature[i] + (second ? 1u : 0u);
+        const float residual = clipped(rows->matrix->row[i][GOE_RESIDUAL]);
+        const float before = scatter->before[series];
+        now[series] = residual;
+        if (goe_magnitude(before) != 0u && goe_magnitude(residual) != 0u) {
+            scatter->products += residual * before;
+            scatter->squares += 0.5f * (residual * residual + before * before);
+        }
+    }
+    memcpy(scatter->before, now, sizeof now);
+}
+
+float goe_scatter_factor(const goe_filter_t *filter, float repeated) {
+    const goe_scatter_t *scatter = &filter->scatter;
+    const float correlation = scatter->products / (scatter->squares + SEED);
+    const float alike = correlation < CORRELATION_MAX ? correlation : CORRELATION_MAX;
+    const float series = alike > 0.0f ? (1.0f + alike) / ((1.0f - alike) * repeated) : 1.0f;
+    const float scale = goe_larger(filter->health.mean_nis, 1.0f + filter->health.excess);
+    const float factor = scale * goe_larger(series, 1.0f);
+    return goe_larger(factor, 1.0f);
+}
+
+#endif
