@@ -10,6 +10,7 @@
 #define KEPT 0.985f          /* of the sums from image to image: some 67 images count */
 #define RESIDUAL_MAX 10.0f   /* sigmas: one outlier must not decide */
 #define SEED 10.0f           /* squares that are always there: few images alone say little */
+#define CHANCE 0.07f         /* one sigma that the mean of NIS and the correlation have over their memory */
 #define CORRELATION_MAX 0.9f /* beyond it the sums cannot tell */
 
 static float clipped(float residual) {
@@ -41,14 +42,17 @@ void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
     memcpy(scatter->before, now, sizeof now);
 }
 
+/* What of an excess is not chance: nothing of a small one, nearly all of a large one. */
+static float beyond_chance(float excess) { return excess > CHANCE ? excess - CHANCE * CHANCE / excess : 0.0f; }
+
 float goe_scatter_factor(const goe_filter_t *filter, float repeated) {
     const goe_scatter_t *scatter = &filter->scatter;
-    const float correlation = scatter->products / (scatter->squares + SEED);
+    const float excess = goe_larger(filter->health.mean_nis - 1.0f, filter->health.excess);
+    const float scale = 1.0f + (excess > 0.0f ? beyond_chance(excess) : excess);
+    const float correlation = beyond_chance(scatter->products / (scatter->squares + SEED));
     const float alike = correlation < CORRELATION_MAX ? correlation : CORRELATION_MAX;
-    const float series = alike > 0.0f ? (1.0f + alike) / ((1.0f - alike) * repeated) : 1.0f;
-    const float scale = goe_larger(filter->health.mean_nis, 1.0f + filter->health.excess);
-    const float factor = scale * goe_larger(series, 1.0f);
-    return goe_larger(factor, 1.0f);
+    const float series = goe_larger((1.0f + alike) / ((1.0f - alike) * repeated), 1.0f);
+    return goe_larger(scale * series, 1.0f);
 }
 
 #endif

@@ -70,6 +70,7 @@ PATH_MIN_M = 0.1
 DISC_SD = 1e-3  # of s and c where a disc is asked for
 SCATTER_CLIP, SCATTER_KEPT, SCATTER_SEED, ALIKE_MOST = 10.0, 0.985, 10.0, 0.9
 MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
+CHANCE = 0.07  # one sigma of both means: only what is beyond widens
 
 
 @dataclass
@@ -88,6 +89,10 @@ class Memory:
         self.value *= share
         self.by = self.by * share
         self.variance = min(share**2 * self.variance + (1 - share**2) * variance, variance)
+
+
+def _beyond_chance(excess: float) -> float:
+    return excess - CHANCE**2 / excess if excess > CHANCE else 0.0
 
 
 @dataclass
@@ -118,9 +123,10 @@ class Scatter:
         self.whole += (min(ratio - 1, RATIO_MOST) - self.whole) / heard
 
     def factor(self) -> float:
-        alike = min(self.products / (self.squares + SCATTER_SEED), ALIKE_MOST)
-        series = max((1 + alike) / (1 - alike), 1.0)
-        return max(series * max(self.recent, 1 + self.whole), 1.0)
+        alike = min(_beyond_chance(self.products / (self.squares + SCATTER_SEED)), ALIKE_MOST)
+        excess = max(self.recent - 1, self.whole)
+        scale = 1 + (_beyond_chance(excess) if excess > 0 else excess)
+        return max(scale * (1 + alike) / (1 - alike), 1.0)
 
 
 @dataclass
