@@ -117,6 +117,14 @@
 #error "GOE_WINDOW_MAX must be 3 to 64"
 #endif
 
+/* Cameras of one aircraft, 1 to 8. Each further one costs 112 bytes. */
+#ifndef GOE_CAMERAS_MAX
+#define GOE_CAMERAS_MAX 1
+#endif
+#if GOE_CAMERAS_MAX < 1 || GOE_CAMERAS_MAX > 8
+#error "GOE_CAMERAS_MAX must be 1 to 8"
+#endif
+
 #if defined(__GNUC__) || defined(__clang__)
 #define GOE_NODISCARD __attribute__((warn_unused_result))
 #else
@@ -279,7 +287,12 @@ typedef struct {
 } goe_refined_settings_t;
 
 typedef struct {
-    goe_camera_t camera;
+    goe_camera_t camera; /* number 0 */
+#if GOE_CAMERAS_MAX > 1
+    goe_camera_t more_cameras[GOE_CAMERAS_MAX - 1]; /* numbers 1 on, each with the ranges of camera; default: fx_px 0, none.
+                                                       They are taken as mounted exactly to one another: what that is off by
+                                                       belongs into navigation.attitude_white_deg */
+#endif
     goe_method_t method; /* window or refined; default refined (if compiled in) */
     goe_model_t model;   /* auto, disc or line; default auto */
     bool heading_auto;   /* T's Z axis = the vehicle's yaw at the track's first image; default true */
@@ -358,6 +371,8 @@ typedef struct {
                                 base_near lies between two visible faces, and is not seen when one face alone is */
     goe_box_t box;
     goe_image_noise_t noise;
+    uint8_t camera; /* number of the camera that took it; GOE_OUT_OF_RANGE if there is none of that number. A track passes from
+                       one to the other: pose.height_m is that of the camera at hand */
 } goe_image_t;
 
 /* ---------------------------------------------------------------------------------------------------------- output -- */

@@ -210,21 +210,23 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #endif
 }
 
-static void open_view(goe_estimator_t *estimator, const goe_image_t *image, goe_view_t *view, goe_faults_t *faults) {
+static void open_view(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera, goe_view_t *view,
+                      goe_faults_t *faults) {
     view->image = image;
     view->motion = &estimator->motion;
-    view->camera_to_body = estimator->camera_to_body;
+    view->camera = camera;
+    view->camera_to_body = estimator->camera_to_body[image->camera];
     goe_motion_follow(&estimator->motion, &estimator->settings, view);
-    goe_align_points(&estimator->settings.camera, view, faults);
+    goe_align_points(camera, view, faults);
 }
 
-static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image) {
+static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
     goe_view_t view;
     goe_faults_t faults = {estimator->causes, GOE_OK};
     if (goe_motion_reset(&estimator->motion, &image->pose)) {
         follow_reset(estimator, &image->pose);
     }
-    open_view(estimator, image, &view, &faults);
+    open_view(estimator, image, camera, &view, &faults);
 #if GOE_WITH_REFINED
     if (goe_is_refined(estimator)) {
         return take_refined(estimator, &view, &faults);
@@ -259,7 +261,12 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
     }
     memset(estimator, 0, sizeof *estimator);
     estimator->settings = *settings;
-    goe_camera_mounting(&settings->camera, estimator->camera_to_body);
+    for (unsigned i = 0; i < GOE_CAMERAS_MAX; i++) {
+        const goe_camera_t *camera = goe_camera_of(settings, i);
+        if (camera) {
+            goe_camera_mounting(camera, estimator->camera_to_body[i]);
+        }
+    }
     forget_track(estimator);
     estimator->ready = GOE_READY;
     return GOE_OK;
@@ -275,12 +282,16 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
         return status;
     }
     status = goe_intake_check(&estimator->motion, image);
+    const goe_camera_t *camera = goe_camera_of(&estimator->settings, image->camera);
+    if (status == GOE_OK && !camera) {
+        status = GOE_OUT_OF_RANGE;
+    }
     if (status == GOE_OK && goe_is_refined(estimator)) {
         status = goe_intake_check_noise(&image->noise);
     }
     const bool taken = status == GOE_OK;
     if (taken) {
-        status = take_image(estimator, image);
+        status = take_image(estimator, image, camera);
     } else {
         goe_count_cause(estimator->causes, status);
     }

@@ -157,6 +157,7 @@ typedef struct {
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
     bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
     goe_naming_t naming;
+    uint8_t camera;          /* that took the latest image */
     bool has_datum;          /* the datum is that of the track\'s first image */
     float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since `inverse` was taken */
     goe_candidate_t candidate;
@@ -178,7 +179,7 @@ typedef struct {
     goe_motion_t motion;
     uint32_t ready; /* tells an initialised estimator from any other memory */
     uint32_t causes[GOE_CAUSES];
-    float camera_to_body[9];
+    float camera_to_body[GOE_CAMERAS_MAX][9];
     goe_settings_t settings;
     goe_estimate_t estimate;  /* after the latest image, by whatever method */
     int64_t estimate_time_us; /* image behind the estimate */

@@ -5,7 +5,7 @@
 #include "image/goe_view.h"
 
 /* Takes the pose of view->image: fixes T and its origin at the track's first image, compensates a reset of known delta, and
- * sets dx_m, dz_m (displacement of the camera since the first image, T axes). view->camera_to_body must be set;
+ * sets dx_m, dz_m (displacement of the camera since the first image, T axes). view->camera and its rotation must be set;
  * view->camera_to_trajectory is set: the rotation of this image's rays into T. */
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
 

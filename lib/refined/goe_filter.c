@@ -44,20 +44,20 @@ void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sig
 }
 
 /* Down in the camera's axes is a row of camera -> T, as T is level. */
-static float camera_down_m(const float offset_m[3], const goe_view_t *view) {
+static float camera_down_m(const goe_view_t *view) {
     const float *down = &view->camera_to_trajectory[3];
     float arm_m = 0.0f;
     for (size_t i = 0; i < 3; i++) {
         for (size_t j = 0; j < 3; j++) {
-            arm_m += down[i] * view->camera_to_body[3 * j + i] * offset_m[j];
+            arm_m += down[i] * view->camera_to_body[3 * j + i] * view->camera->offset_m[j];
         }
     }
     return view->image->pose.position_ned_m[2] + arm_m;
 }
 
-void goe_filter_take_height(goe_filter_t *filter, const float offset_m[3], const goe_view_t *view) {
+void goe_filter_take_height(goe_filter_t *filter, const goe_view_t *view) {
     goe_datum_t *datum = &filter->datum;
-    const float down_m = camera_down_m(offset_m, view);
+    const float down_m = camera_down_m(view);
     if (!filter->has_datum) {
         datum->ground_m = view->motion->height_m + down_m;
         datum->sd_m = view->image->noise.height_m;

@@ -109,8 +109,8 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 
 /* ------------------------------------------------------------------------------------------------------------ axes -- */
 
-/* Takes an image's height, and what down has changed by. offset_m: of the camera, body axes. */
-void goe_filter_take_height(goe_filter_t *filter, const float offset_m[3], const goe_view_t *view);
+/* Takes an image's height, and what down has changed by. */
+void goe_filter_take_height(goe_filter_t *filter, const goe_view_t *view);
 
 /* The autopilot's down jumped by this. */
 static inline void goe_filter_move_datum(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }

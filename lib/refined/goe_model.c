@@ -20,7 +20,7 @@ static bool shows_prism(const goe_settings_t *settings, const goe_view_t *view) 
 
 bool goe_model_place(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view) {
     goe_filter_place_axes(filter, view->motion);
-    return shows_prism(settings, view) && goe_prism_face(filter, settings, view);
+    return shows_prism(settings, view) && goe_prism_face(filter, view);
 }
 
 bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool prism) {

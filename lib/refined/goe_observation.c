@@ -86,6 +86,8 @@ static void take_noise(goe_observation_t *obs, const goe_image_noise_t *noise) {
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view) {
     obs->settings = settings;
+    obs->camera = view->camera;
+    obs->number = view->image->camera;
     obs->state = filter->state;
     turn_points(obs, filter, view);
     turn_rotation(view->camera_to_trajectory, filter->axes.turn_cos, filter->axes.turn_sin, obs->camera_to_axes);
@@ -156,8 +158,8 @@ goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t 
     const float *h = obs->camera_to_axes;
     const goe_point_t *p = &obs->point[feature];
     const float scale = (h[2] * p->x + h[5] * p->y + h[8]) * obs->point_px;
-    const float u = scale / obs->settings->camera.fx_px;
-    const float v = scale / obs->settings->camera.fy_px;
+    const float u = scale / obs->camera->fx_px;
+    const float v = scale / obs->camera->fy_px;
     const float xu = (h[0] - p->x * h[6]) * u;
     const float xv = (h[1] - p->x * h[7]) * v;
     const float yu = (h[3] - p->y * h[6]) * u;

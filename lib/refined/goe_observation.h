@@ -7,12 +7,14 @@
 
 typedef struct {
     const goe_settings_t *settings;
+    const goe_camera_t *camera;
     const float *state;
     goe_point_t
         point[GOE_FEATURES]; /* by goe_feature_t, aligned with the state's axes; usable: measured in this image */
     float camera_to_axes[9], body_to_axes[9];
     float ex, ey, ez;  /* attitude bias about the state's axes, rad */
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
+    uint8_t number;    /* of the camera */
     float height_m;    /* camera above ground, as given */
     const goe_sides_t *sides;
     float steady_height_m;   /* the same by the changes of down, see goe_datum_t */
@@ -63,9 +65,7 @@ void goe_observation_project_x(const goe_observation_t *obs, float x, float y, f
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
 /* One sigma of a pixel, focal lengths. */
-static inline float goe_observation_pixel(const goe_observation_t *obs) {
-    return obs->point_px / obs->settings->camera.fx_px;
-}
+static inline float goe_observation_pixel(const goe_observation_t *obs) { return obs->point_px / obs->camera->fx_px; }
 
 /* (R1): the state's reference point relative to the camera now, units of Z0. */
 static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {

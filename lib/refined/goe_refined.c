@@ -89,14 +89,16 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
  * the uncertain range adds. */
-static void note_time(const goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
+static void note_time(goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     const float relative2 =
         goe_filter_variance(filter, GOE_INVERSE_RANGE) / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
         const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
-        obs->fade = detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
+        const bool same = filter->camera == obs->number; /* what was alike in one camera says nothing of another */
+        obs->fade = same && detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
         obs->outline_share = outline_share(detector, obs->fade);
+        filter->camera = obs->number;
     }
     obs->position_sd = obs->settings->navigation.position_white_m * sqrtf(1.0f + relative2);
 }
@@ -142,7 +144,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_observation_t obs;
     goe_health_expect(&filter->health);
     *swapped = 0;
-    goe_filter_take_height(filter, settings->camera.offset_m, view);
+    goe_filter_take_height(filter, view);
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }

@@ -149,7 +149,7 @@ static void measure_length(goe_window_t *window, frame_t *frame) {
     if (estimate->model != GOE_MODEL_LINE || !frame->faces.measured || !frame->faces.side) {
         return;
     }
-    const float min_x = frame->settings->window.side_min_px / frame->settings->camera.fx_px;
+    const float min_x = frame->settings->window.side_min_px / frame->view->camera->fx_px;
     const goe_status_t fault = goe_extent_length(&frame->faces, &frame->front, frame->turn, estimate, min_x, &extent);
     goe_fault_note(&frame->faults, fault);
     if (fault == GOE_OK) {

@@ -47,6 +47,7 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting->settings.camera.fx_px = 914.0f;
     sighting->settings.camera.fy_px = 850.0f;
     sighting->sight.settings = &sighting->settings;
+    sighting->sight.camera = &sighting->settings.camera;
     sighting->sight.sides = &no_sides;
     sighting->sight.point_px = sighting->settings.detector.point_px;
     sighting->sight.side_px = sighting->settings.detector.box_px;

@@ -285,7 +285,7 @@ static void check_filter(const goe_filter_t *filter) {
 
 static void check_state(void) {
     const goe_estimator_t *e = &memory.estimator;
-    check_finite(e->camera_to_body, 9, "mounting");
+    check_finite(e->camera_to_body[0], 9, "mounting");
     check_finite(&e->motion.heading_cos, 2, "heading");
     check_finite(e->motion.origin_ne_m, 2, "origin");
     check_finite(&e->motion.dx_m, 2, "displacement");
