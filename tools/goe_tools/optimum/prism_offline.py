@@ -60,8 +60,8 @@ AHEAD_MIN = 1e-3  # of a touching point, units of Z0
 TOUCHING_ROUNDS = 30
 TOUCHING = 1e-10  # rad: the touching points stay
 NEAREST = np.array([0.0, -1.0])  # direction of the rim's point that is nearest to the camera
-SETTLED = 1e-5  # of a step, in sigmas of the states: it ends a round ...
-STAYED = 1e-3  # ... and of a round: it ends the fit
+SETTLED = 1e-4  # of a step, in sigmas of the states: it ends a round ...
+STAYED = 1e-2  # ... and of a round: it ends the fit
 DAMPING, DAMPING_MIN, DAMPING_MAX = 1e-3, 1e-12, 1e12  # of the steps, over the information's diagonal
 EASED, HARDENED = 0.1, 10.0  # its factors after a step that lowers the cost, and after one that does not
 
