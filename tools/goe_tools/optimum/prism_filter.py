@@ -67,10 +67,18 @@ NO_ALTIMETER_M = 50.0  # sigma of the height from which on the first box tells i
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
 PATH_MIN_M = 0.1
-DISC_SD = 1e-3  # of s and c where a disc is asked for
+DEPTH_SD = 0.3  # of s
+UNSEEN_SD = 3.0  # of c
+DISC_SD = 1e-3  # of both where a disc is asked for
+
 SCATTER_CLIP, SCATTER_KEPT, SCATTER_SEED, ALIKE_MOST = 10.0, 0.985, 10.0, 0.9
 MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
 CHANCE = 0.07  # one sigma of both means: only what is beyond widens
+
+
+def depth_sds(told: Told) -> tuple[float, float]:
+    """One sigma of s and of c before the first image."""
+    return (DISC_SD, DISC_SD) if told.disc else (DEPTH_SD, UNSEEN_SD)
 
 
 @dataclass
@@ -220,7 +228,7 @@ class PrismFilter:
         sd[G] = max(told.height_sd_m * q, GROUND_MIN)
         sd[[A, Q, W]] = 1.0, 2.0 * q, 2.5 * width
         sd[E] = 10 * max(abs(self.state[E]), width)
-        sd[[S, C]] = (DISC_SD, DISC_SD) if told.disc else (0.3, 3.0)
+        sd[[S, C]] = depth_sds(told)
         return sd
 
     # ------------------------------------------------------------------------------------------------------- an image
