@@ -146,7 +146,7 @@ def set_up() -> None:
 def few_flights(monkeypatch: pytest.MonkeyPatch) -> None:
     few = replace(
         work.QUICK, seeds=1, field_seeds=1, random=4, offline=2, rivals=2, recorded=1, recorded_seeds=1,
-        precision_seeds=1, boxes=1,
+        precision_seeds=1, boxes=1, attack=1, hazard=4,
     )  # fmt: skip
     monkeypatch.setattr(goals, "QUICK", few)
     monkeypatch.setattr(goals, "FULL", few)
