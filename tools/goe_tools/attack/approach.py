@@ -28,6 +28,11 @@ BINS = (0.05, 0.2, 0.5, 0.8, 0.95)  # of told probabilities; between the first a
 BIN_LEAST = 30  # images in a bin, to be judged
 COVERED_SIGMA = 2.0
 RUNS = 1000
+
+# The lines of a row.
+TRUE_SHARE, OFF, COVERED = "true share by told", "told less true", "within 2 sigma"
+UNWARNED, FALSE, FLOWN = f"unwarned {AHEAD_S:g} s ahead", "warned at 2x the margin", "flown"
+
 HAZARD_BASE = Scenario(collides=True, size_m=(3.0, 25.0)).by(
     weave_m=0.0, climb_m_s=1.0, height_m=(5.0, 25.0), aside_m=(-15.0, 50.0), reach_s=(12.0, 22.0)
 )

@@ -41,13 +41,13 @@ def goals_of(group: str, row: HazardRow, runs: Sequence[Run]) -> list[Goal]:
     coverage = approach.coverage(runs)
     unwarned, false = {"violators": approach.unwarned(runs)}, {"passes": approach.false_warnings(runs)}
     return [
-        Goal(group, f"{row.name}: true share by told", "1", {level: t[1] for level, t in told.items()}),
-        Goal(group, f"{row.name}: told less true", "1", off, (0.0, row.told_within), judged or LEVELS),
-        Goal(group, f"{row.name}: within 2 sigma", "%", coverage, COVERED, tuple(coverage)),
-        Goal(group, f"{row.name}: unwarned {approach.AHEAD_S:g} s ahead", "%", unwarned, (0.0, row.unwarned_most),
+        Goal(group, f"{row.name}: {approach.TRUE_SHARE}", "1", {level: t[1] for level, t in told.items()}),
+        Goal(group, f"{row.name}: {approach.OFF}", "1", off, (0.0, row.told_within), judged or LEVELS),
+        Goal(group, f"{row.name}: {approach.COVERED}", "%", coverage, COVERED, tuple(coverage)),
+        Goal(group, f"{row.name}: {approach.UNWARNED}", "%", unwarned, (0.0, row.unwarned_most),
              ("violators",)),
-        Goal(group, f"{row.name}: warned at 2x the margin", "%", false, FALSE_MOST, ("passes",)),
-        Goal(group, f"{row.name}: flown", "runs", approach.counts(runs)),
+        Goal(group, f"{row.name}: {approach.FALSE}", "%", false, FALSE_MOST, ("passes",)),
+        Goal(group, f"{row.name}: {approach.FLOWN}", "runs", approach.counts(runs)),
     ]  # fmt: skip
 
 
