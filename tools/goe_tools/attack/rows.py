@@ -67,6 +67,7 @@ def suspect(percent: float) -> Ask:
 BASE = Scenario()
 BASELINE = Ask(COVER, (90.0, 98.0))
 QUIET = Ask(ODD, (0.0, 1.0), (FLAGGED,))
+STILL = Ask(REASON, (0.0, 1.0), (EVER,))  # nothing moves
 TOLD_ASKED = (cover(90), wrong(4))
 SHAPE_ASKED = (cover(88, "X0", "Z0"), wrong(5))
 L_ASKED = (cover(88, "X0", "Z0"), wrong(5, POSITION))  # an L has no width and length of the library's kind
@@ -83,12 +84,13 @@ SLOW = BASE.by(speed_m_s=(3.0, 3.0), reach_s=(20.0, 20.0), ahead_m=(60.0, 110.0)
 GAP = BASE.by(speed_m_s=(12.0, 15.0), reach_s=(15.0, 25.0), gap_s=60.0)
 CIRCLING = BASE.by(path="circling", reach_s=(600.0, 600.0))
 AS_TOLD = [
-    Row("as told", "baseline", BASE, asked=(BASELINE, suspect(1), QUIET), tracks_share=4.0),
+    Row("as told", "baseline", BASE, asked=(BASELINE, suspect(1), QUIET, STILL), tracks_share=4.0),
     Row("as told", "baseline", BASE.by(features="outline"), asked=(suspect(1), QUIET)),
-    Row("as told", "baseline", BASE.by(features="boxes"), asked=(cover(90), suspect(1), QUIET), tracks_share=4.0),
-    Row("as told", "slow flight, 3 m/s", SLOW, asked=(suspect(2), QUIET)),
+    Row("as told", "baseline", BASE.by(features="boxes"), asked=(cover(90), suspect(1), QUIET, STILL),
+        tracks_share=4.0),
+    Row("as told", "slow flight, 3 m/s", SLOW, asked=(suspect(2), QUIET, STILL)),
     Row("as told", "slow flight, 3 m/s", SLOW.by(features="boxes"), asked=(suspect(2), QUIET)),
-    Row("as told", "hover", BASE.by(path="hover", reach_s=(20.0, 20.0)), asked=(suspect(2), QUIET)),
+    Row("as told", "hover", BASE.by(path="hover", reach_s=(20.0, 20.0)), asked=(suspect(2), QUIET, STILL)),
     Row("as told", "orbit", BASE.by(path="orbit"), asked=(cover(90), suspect(10))),
     Row("as told", "orbit, most of a circle", BASE.by(path="full orbit"), asked=(suspect(10),)),
     Row("as told", "60 Hz", BASE.by(rate_hz=60.0), asked=(cover(90),)),
@@ -194,6 +196,8 @@ CONVENTIONS = [
     *(Row("conventions", name, BASE.by(convention=name), OWN_HEADING)
       for name in ("roll sign", "pitch sign", "position ENU", "height in feet", "all in feet")),
     Row("conventions", "mounting pitch sign (8 deg)", LOOKING_DOWN, OWN_HEADING),
+    *(Row("conventions", f"{name}, {what}", flown.by(convention=name), OWN_HEADING)
+      for what, flown in (("3 m/s", SLOW), ("cylinders", BASE.by(kind="cylinder"))) for name in CLEAR_CONVENTIONS),
     *(Row("conventions", name, BASE.by(features="boxes", convention=name), OWN_HEADING) for name in CLEAR_CONVENTIONS),
 ]  # fmt: skip
 

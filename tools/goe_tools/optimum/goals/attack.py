@@ -121,6 +121,8 @@ def _lines(row: Row, results: Sequence[tuple[Outcome, Figures]]) -> dict[str, tu
             lines[rows.LATENESS] = "%", {rows.FLAGGED: judging.told_within(outcomes, rows.LATE, rows.FLAG_S)}
         if any(ask.line == rows.ODD for ask in row.asked):
             lines[rows.ODD] = "%", {rows.FLAGGED: judging.odd_within(outcomes, rows.FLAG_S)}
+        if any(ask.line == rows.REASON for ask in row.asked):
+            lines[rows.REASON] = "%", {rows.EVER: judging.told_within(outcomes, MOVES, math.inf)}
     lines.setdefault(rows.SUSPECT, ("%", suspected))
     return lines
 
