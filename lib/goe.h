@@ -240,6 +240,9 @@ typedef struct {
     float position_walk_m;    /* random walk of the own position, m per square root of a second; 0 to 100; default 0.05 */
     float position_white_m;   /* error of the own position that is new in each image, each axis, m; 0 to 100; default 0.
                                  Upright boxes only */
+    float height_white_m;     /* error of height_m that is new in each image, m; 0 to 1e3; default 0: none, and points take each
+                                 image's height as it is. Otherwise the height moves by the changes of down, and every image's
+                                 height is a reading of where it began, whose mean the filter learns */
     float ground_m;           /* upright boxes: how far the obstacle's ground may lie off that which height_m is above, added to
                                  height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
 } goe_navigation_t;

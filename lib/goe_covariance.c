@@ -45,20 +45,18 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
     return true;
 }
 
-static bool is_of_prism(const goe_estimator_t *estimator) {
-    return estimator->filter.phase == GOE_PHASE_PRISM && is_of_filter(&estimator->estimate);
+static bool is_steady(const goe_estimator_t *estimator) {
+    return is_of_filter(&estimator->estimate) &&
+           goe_filter_is_steady(&estimator->filter, &estimator->settings.navigation);
 }
 
 float goe_latest_camera_height(const goe_estimator_t *estimator) {
-    return is_of_prism(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
+    return is_steady(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
 }
 
 float goe_latest_height_bias(const goe_estimator_t *estimator) {
     const float *state = estimator->filter.state;
-    if (is_of_prism(estimator)) {
-        return state[GOE_PRISM_GROUND] / state[GOE_INVERSE_RANGE];
-    }
-    return is_of_filter(&estimator->estimate) ? state[GOE_HEIGHT_BIAS] : 0.0f;
+    return is_of_filter(&estimator->estimate) ? state[GOE_GROUND] / state[GOE_INVERSE_RANGE] : 0.0f;
 }
 #else
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {

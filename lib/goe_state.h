@@ -25,6 +25,7 @@
 /* image/goe_ego_motion.c: own motion over the track. */
 typedef struct {
     int64_t time_us;                /* latest image of the track */
+    int64_t start_time_us;          /* its first one */
     float heading_cos, heading_sin; /* of T's Z axis, from north */
     float heading_deg;              /* the same, -180 to 180 */
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
@@ -114,9 +115,12 @@ typedef struct {    /* refined/goe_box.c: what the report calls the edges of a b
 /* refined/goe_filter.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
  * in. */
 typedef struct {
-    float ground_m; /* down of the ground, by the first image of the track */
+    float ground_m; /* down of the ground, by the heights before the filter's start */
     float height_m; /* of the camera above it, latest image */
     float sd_m;     /* one sigma of the first height, as its image gave it; 0: as in the settings */
+    float mean_m;   /* by how much all heights so far, freed of the changes of down, lie above that ground on average */
+    float information, moment; /* of the offset, which the filter has been told: 1/m^2, and times its mean */
+    uint16_t readings;         /* heights so far, saturating */
 } goe_datum_t;
 
 /* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell it. It
@@ -130,8 +134,9 @@ typedef struct {
 /* refined/goe_scatter.c: residuals of one image with those of the image before. A series: a coordinate of a feature. */
 #define GOE_SERIES (2 * GOE_FEATURES)
 typedef struct {
-    float before[GOE_SERIES]; /* sigmas; 0: none */
+    float before[GOE_SERIES]; /* sigmas */
     float products, squares;
+    uint16_t seen; /* bit i: series i has a residual of the image before */
 } goe_scatter_t;
 
 #define GOE_NIS_NONE (-1.0f)
@@ -159,6 +164,7 @@ typedef struct {
     goe_naming_t naming;
     uint8_t camera;          /* that took the latest image */
     bool has_datum;          /* the datum is that of the track\'s first image */
+    float walk_s[2];         /* time since the walk of the own position was last added along X, and along Z */
     float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since `inverse` was taken */
     goe_candidate_t candidate;
     goe_leaving_t leaving;

@@ -68,6 +68,7 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     camera_position(view->camera, pose, body_to_ned, position);
     if (!motion->started) {
         fix_heading(motion, settings, body_to_ned);
+        motion->start_time_us = pose->time_us;
         motion->heading_deg = heading_of(motion->heading_cos, motion->heading_sin);
         memcpy(motion->origin_ne_m, position, sizeof position);
         motion->started = true;

@@ -30,6 +30,9 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     }
     goe_filter_enter(filter, prism ? GOE_PHASE_PRISM : GOE_PHASE_DISC);
     memset(filter->side, 0, sizeof filter->side);
+    filter->datum.information = 1.0f / goe_observation_height_variance(obs, prism);
+    filter->datum.moment = 0.0f;
+    memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->stand_in = false;
     goe_srif_invert_diagonal(&filter->root, &filter->inverse);
     goe_filter_settle(filter);

@@ -84,7 +84,7 @@ static void describe(const goe_observation_t *obs, ellipse_t *o) {
     o->center = goe_observation_reference(obs);
     o->half = x[GOE_PRISM_HALF];
     o->depth = o->half * goe_exp(x[GOE_PRISM_DEPTH]);
-    o->ground = obs->steady_height_m * x[GOE_INVERSE_RANGE] + x[GOE_PRISM_GROUND];
+    o->ground = obs->steady_height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
     o->roof = obs->steady_height_m * x[GOE_INVERSE_RANGE] - x[GOE_PRISM_TOP];
 }
 
@@ -227,7 +227,7 @@ static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t si
     float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], measured, variance, &g);
     const float outward = g.x * t.outward.x + g.z * t.outward.z;
     const float along = o->depth * t.outward.z;
-    by[GOE_PRISM_GROUND] = t.foot ? g.y : 0.0f;
+    by[GOE_GROUND] = t.foot ? g.y : 0.0f;
     by[GOE_BEARING] = g.x;
     by[GOE_INVERSE_RANGE] = g.y * obs->steady_height_m + goe_rows_by_range(obs, g.x, g.z);
     by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
@@ -251,7 +251,7 @@ static float size_of(const goe_observation_t *obs, bool level) {
         return (sides->px[first + 2u] - sides->px[first]) / focal_px(camera, first);
     }
     const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
-    return goe_larger(level ? x[GOE_PRISM_TOP] + x[GOE_PRISM_GROUND] : 2.0f * x[GOE_PRISM_HALF], 0.0f) / ahead;
+    return goe_larger(level ? x[GOE_PRISM_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_PRISM_HALF], 0.0f) / ahead;
 }
 
 static float white_variance(const goe_observation_t *obs, size_t side) {
@@ -381,9 +381,7 @@ bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view) {
     return true;
 }
 
-static float height_sd_m(const goe_observation_t *obs) {
-    return sqrtf(goe_square(obs->height_sd_m) + goe_square(obs->settings->navigation.ground_m));
-}
+static float height_sd_m(const goe_observation_t *obs) { return sqrtf(goe_observation_height_variance(obs, true)); }
 
 /* From flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. size: angular. */
 static float first_range_m(const goe_observation_t *obs, float size, const goe_point_t *foot) {
@@ -406,7 +404,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     sd[GOE_BIAS_X] = bias;
     sd[GOE_BIAS_Y] = bias;
     sd[GOE_BIAS_Z] = sqrtf(goe_square(bias) + goe_square(HEADING_ARM * navigation->velocity_bias_m_s));
-    sd[GOE_PRISM_GROUND] = goe_larger(height_sd_m(obs) * q, GROUND_MIN);
+    sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * q, GROUND_MIN);
     sd[GOE_BEARING] = BEARING_FREEDOM;
     sd[GOE_INVERSE_RANGE] = RANGE_FREEDOM * q;
     sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
@@ -444,7 +442,7 @@ bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_
     state[GOE_PRISM_HALF] = 0.5f * size;
     state[GOE_PRISM_TOP] = obs->steady_height_m * q - (head.usable ? head.y : 0.0f);
     if (height_sd_m(obs) > NO_ALTIMETER_M && foot.usable) {
-        state[GOE_PRISM_GROUND] = foot.y - obs->steady_height_m * q;
+        state[GOE_GROUND] = foot.y - obs->steady_height_m * q;
     }
     set_root(obs, state, size, root);
     return true;
@@ -467,12 +465,10 @@ void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     width->value = 2.0f * x[GOE_PRISM_HALF] * scale_m;
     width->by[GOE_INVERSE_RANGE] = -scale_m * width->value;
     width->by[GOE_PRISM_HALF] = 2.0f * scale_m;
-    memset(height, 0, sizeof *height);
-    height->value = (x[GOE_PRISM_TOP] + x[GOE_PRISM_GROUND]) * scale_m;
+    height->value = (x[GOE_PRISM_TOP] + x[GOE_GROUND]) * scale_m;
     height->by[GOE_INVERSE_RANGE] = -scale_m * height->value;
+    height->by[GOE_TOP] = 0.0f; /* which is another state here */
     height->by[GOE_PRISM_TOP] = scale_m;
-    height->by[GOE_PRISM_GROUND] = scale_m;
-    shape->datum_by_range = x[GOE_PRISM_GROUND] * scale_m * scale_m;
 }
 
 #endif

@@ -46,6 +46,13 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
     return drift;
 }
 
+/* (R23), from the track's first image to the filter's start: X0 and Z0 alone count from there. */
+static float early_variance(const goe_filter_t *filter, const goe_navigation_t *navigation,
+                            const goe_motion_t *motion) {
+    const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, TIME_MAX_US);
+    return goe_square(navigation->velocity_bias_m_s * s) + goe_square(navigation->position_walk_m) * s;
+}
+
 static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe_shape_t *shape, bool box,
                             int quantity) {
     const float share2 = goe_square(drift.share);
@@ -65,12 +72,11 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 
 /* --------------------------------------------------------------------------------------------------------- variance -- */
 
-/* Derivatives become those in terms of independent unit errors: their squared norm is the variance. */
-static void project(const goe_filter_t *filter, float by[GOE_STATES]) {
+/* Derivatives become those in terms of independent unit errors: their squared norm is the variance. Returns what the condition
+ * that makes a disc moved the quantity by, (R7). */
+static float project(const goe_filter_t *filter, float by[GOE_STATES]) {
     goe_srif_project(&filter->inverse, by);
-    if (filter->phase == GOE_PHASE_DISC) {
-        goe_disc_condition(filter, by);
-    }
+    return filter->phase == GOE_PHASE_DISC ? goe_disc_condition(filter, by) : 0.0f;
 }
 
 static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
@@ -80,14 +86,15 @@ static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum
     return sum;
 }
 
-GOE_STATIC_ASSERT(GOE_HEIGHT_BIAS == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
+GOE_STATIC_ASSERT(GOE_GROUND == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
 
-/* The derivatives are used up. */
-static float variance_of(const goe_filter_t *filter, float by[GOE_STATES]) {
+/* The derivatives are used up. *moved2: what a disc's condition adds, see project(). */
+static float variance_of(const goe_filter_t *filter, float by[GOE_STATES], float *moved2) {
+    *moved2 = 0.0f;
     if (filter->phase != GOE_PHASE_DISC) {
         return goe_srif_variance_of_rest(&filter->inverse, by);
     }
-    project(filter, by);
+    *moved2 = goe_square(project(filter, by));
     return dot(by, by, 0.0f);
 }
 
@@ -149,12 +156,14 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
                            float scatter, goe_quantities_t *q) {
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const float unseen = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
-        const float found = variance_of(filter, shape->quantity[i].by) * (depends_on_corner(i) ? shape->early : 1.0f);
+        float moved2;
+        const float found =
+            variance_of(filter, shape->quantity[i].by, &moved2) * (depends_on_corner(i) ? shape->early : 1.0f);
         const float told =
             drift_variance(motion, drift, shape, q->box, i) +
             goe_box_outline_variance(filter, shape, drift.camera_m, i, goe_square(q->worked_out[GOE_ORIENTATION]));
         q->value[i] = shape->quantity[i].value;
-        q->sigma[i] = sqrtf(scatter * found + told);
+        q->sigma[i] = sqrtf(scatter * found + told + moved2);
         q->worked_out[i] = sqrtf(goe_larger(found - unseen, 0.0f) + told);
     }
 }
@@ -170,11 +179,12 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
                      place.z * shape->scale_m + filter->axes.start_dz_m, &q->center_m[0], &q->center_m[1]);
     const float drifted = drift_variance(motion, drift, shape, q->box, GOE_Z0);
     float variance[3]; /* along north, east, and (1, 1), which tells how the two go together */
+    float by[3][GOE_STATES] = {{0.0f}};
     for (int i = 0; i < 3; i++) {
-        float by[GOE_STATES] = {0.0f};
+        float moved2;
         goe_shape_place(&shape->middle, shape->scale_m, i == 0 ? -s : (i == 1 ? c : c - s),
-                        i == 0 ? c : (i == 1 ? s : c + s), by);
-        variance[i] = scatter * variance_of(filter, by);
+                        i == 0 ? c : (i == 1 ? s : c + s), by[i]);
+        variance[i] = scatter * variance_of(filter, by[i], &moved2) + moved2;
     }
     q->center_sd_m[0] = sqrtf(variance[0] + drifted);
     q->center_sd_m[1] = sqrtf(variance[1] + drifted);
@@ -192,13 +202,16 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
                          goe_quantities_t *quantities) {
     goe_quantities_t *q = quantities;
     goe_shape_t shape;
-    memset(q, 0, sizeof *q);
+    q->now = 0;
+    q->known = 0;
+    q->worked_out[GOE_ORIENTATION] = 0.0f;
     goe_model_shape(filter, &shape);
     if (!(filter->state[GOE_INVERSE_RANGE] > 0.0f) || !(shape.scale_m > 0.0f)) {
         return;
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     const float scatter = scatter_of(filter, settings);
+    q->early_m2 = early_variance(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
     q->prism = filter->phase == GOE_PHASE_PRISM;
     q->length_axis = shape.length_axis;
@@ -220,23 +233,27 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     goe_model_shape(filter, &shape);
     if (from_datum) {
-        shape.quantity[GOE_HEIGHT].by[GOE_HEIGHT_BIAS] = 0.0f;
+        shape.quantity[GOE_HEIGHT].by[GOE_GROUND] = 0.0f;
         shape.quantity[GOE_HEIGHT].by[GOE_INVERSE_RANGE] += shape.datum_by_range;
     }
     const float scatter = sqrtf(scatter_of(filter, settings));
     const float early = sqrtf(shape.early) * scatter;
+    float moved[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
-        project(filter, by);
+        moved[i] = project(filter, by);
         const float factor = depends_on_corner(i) ? early : scatter;
         for (int k = 0; k < GOE_STATES; k++) {
             by[k] *= factor;
         }
         for (int j = 0; j <= i; j++) {
             const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
-            const float sum = dot(by, shape.quantity[j].by, drifted);
+            const float sum = dot(by, shape.quantity[j].by, drifted + moved[i] * moved[j]);
             covariance[i][j] = sum;
             covariance[j][i] = sum;
+        }
+        if (i <= GOE_Z0 && !from_datum) { /* the camera now has no part in it */
+            covariance[i][i] += early_variance(filter, &settings->navigation, motion);
         }
         covariance[i][i] +=
             goe_box_outline_variance(filter, &shape, drift.camera_m, i, covariance[GOE_ORIENTATION][GOE_ORIENTATION]);

@@ -7,6 +7,7 @@
 #include "refined/goe_refined.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "maths/goe_angle.h"
 #include "maths/goe_exp.h"
@@ -23,26 +24,53 @@
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
+#define HEIGHT_GROWN 1.0e-3f   /* of the information of the heights: less waits for more */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
+/* (R14). A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
+static void walk_along_z(goe_filter_t *filter, float sigma) {
+    float direction[GOE_STATES];
+    memcpy(direction, filter->state, sizeof direction);
+    if (filter->phase == GOE_PHASE_PRISM) {
+        direction[GOE_PRISM_DEPTH] = 0.0f;
+        direction[GOE_PRISM_UNSEEN] = 0.0f;
+    }
+    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
+}
+
+/* Along X and Z in turn, image by image: each time for as long as it has not been. */
+static void walk(goe_filter_t *filter, float walk_m, float since_s) {
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    filter->walk_s[0] += since_s;
+    filter->walk_s[1] += since_s;
+    filter->walk2 += goe_square(walk_m * q) * since_s;
+    const size_t axis = filter->walk_s[1] > filter->walk_s[0] ? 1u : 0u;
+    const float sigma = walk_m * q * sqrtf(filter->walk_s[axis]);
+    if (!(sigma > 0.0f)) {
+        return;
+    }
+    filter->walk_s[axis] = 0.0f;
+    if (axis == 0u) {
+        goe_filter_inflate(filter, GOE_BEARING, sigma);
+    } else {
+        walk_along_z(filter, sigma);
+    }
+}
+
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, int64_t time_us) {
-    const float root_s = sqrtf(goe_time_between_s(filter->time_us, time_us, GAP_MAX_US));
-    const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * root_s;
-    const float walk = navigation->position_walk_m * root_s * filter->state[GOE_INVERSE_RANGE];
+    const float since_s = goe_time_between_s(filter->time_us, time_us, GAP_MAX_US);
+    const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
     filter->time_us = time_us;
     filter->drift_rad2 += drift * drift;
-    filter->walk2 += walk * walk;
     if (drift > 0.0f) {
         goe_filter_inflate(filter, GOE_BIAS_X, drift);
         goe_filter_inflate(filter, GOE_BIAS_Y, drift);
         goe_filter_inflate(filter, GOE_BIAS_Z, drift);
     }
-    if (walk > 0.0f) {
-        goe_filter_inflate(filter, GOE_BEARING, walk);
-    }
+    walk(filter, navigation->position_walk_m, since_s);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
@@ -54,6 +82,28 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
     for (size_t i = 0; i < rows->count; i++) {
         rows->variance[i] += goe_square(rows->matrix->row[i][GOE_STATE_COLUMN + GOE_INVERSE_RANGE] * missed);
     }
+}
+
+/* All heights so far tell the offset of the first with the information 1/(constant error^2 + white^2/n). Of that a row adds what
+ * it has grown by; the constant error is in all of them, and is not counted twice. */
+static void add_height(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+    goe_datum_t *datum = &filter->datum;
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
+    const float information = 1.0f / variance;
+    const float grown = information - datum->information;
+    const float moment = information * datum->mean_m;
+    if (rows->count >= GOE_ROWS_MAX || !(grown > HEIGHT_GROWN * information)) {
+        return; /* later */
+    }
+    const float weight = sqrtf(grown);
+    const float offset_m = filter->state[GOE_GROUND] / q;
+    float *row = rows->matrix->row[rows->count];
+    row[GOE_STATE_COLUMN + GOE_GROUND] = weight / q;
+    row[GOE_STATE_COLUMN + GOE_INVERSE_RANGE] = -weight * offset_m / q;
+    row[GOE_RESIDUAL] = weight * ((moment - datum->moment) / grown - offset_m);
+    datum->information = information;
+    datum->moment = moment;
 }
 
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict) {
@@ -70,6 +120,10 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     if (verdict->rows == 0) {
         goe_health_take_refused(&filter->health, *verdict);
         return false;
+    }
+    if (obs->settings->navigation.height_white_m > 0.0f) {
+        add_height(filter, obs, &rows);
+        verdict->rows += rows.count < GOE_ROWS_MAX ? 1 : 0;
     }
     const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
@@ -144,7 +198,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_observation_t obs;
     goe_health_expect(&filter->health);
     *swapped = 0;
-    goe_filter_take_height(filter, view);
+    goe_filter_take_height(filter, &settings->navigation, view);
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }

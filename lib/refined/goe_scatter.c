@@ -1,8 +1,6 @@
 /* Scatter beyond what was told. SPDX-License-Identifier: MIT */
 #include "refined/goe_scatter.h"
 
-#include <string.h>
-
 #include "maths/goe_scalar.h"
 
 #if GOE_WITH_REFINED
@@ -14,32 +12,38 @@
 #define CORRELATION_MAX 0.9f /* beyond it the sums cannot tell */
 
 static float clipped(float residual) {
+    if (goe_within(residual, RESIDUAL_MAX)) {
+        return residual;
+    }
     if (goe_magnitude(residual) >= GOE_INFINITY_BITS) {
         return 0.0f;
     }
-    if (residual > RESIDUAL_MAX) {
-        return RESIDUAL_MAX;
-    }
-    return residual < -RESIDUAL_MAX ? -RESIDUAL_MAX : residual;
+    return residual > 0.0f ? RESIDUAL_MAX : -RESIDUAL_MAX;
 }
 
-/* A refused row is 0, and joins nothing. */
+/* A refused row joins nothing. */
 void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
-    float now[GOE_SERIES] = {0.0f};
-    scatter->products *= KEPT;
-    scatter->squares *= KEPT;
+    unsigned seen = 0;
+    float products = scatter->products * KEPT;
+    float squares = scatter->squares * KEPT;
     for (size_t i = 0; i < rows->count; i++) {
         const bool second = i > 0 && rows->feature[i - 1] == rows->feature[i]; /* of a corner: along y */
         const size_t series = 2u * rows->feature[i] + (second ? 1u : 0u);
         const float residual = clipped(rows->matrix->row[i][GOE_RESIDUAL]);
         const float before = scatter->before[series];
-        now[series] = residual;
-        if (goe_magnitude(before) != 0u && goe_magnitude(residual) != 0u) {
-            scatter->products += residual * before;
-            scatter->squares += 0.5f * (residual * residual + before * before);
+        if (!(rows->variance[i] > 0.0f)) {
+            continue;
         }
+        if ((scatter->seen >> series & 1u) != 0) {
+            products += residual * before;
+            squares += 0.5f * (residual * residual + before * before);
+        }
+        scatter->before[series] = residual;
+        seen |= 1u << series;
     }
-    memcpy(scatter->before, now, sizeof now);
+    scatter->products = products;
+    scatter->squares = squares;
+    scatter->seen = (uint16_t)seen;
 }
 
 /* What of an excess is not chance: nothing of a small one, nearly all of a large one. */

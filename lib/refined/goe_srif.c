@@ -148,15 +148,14 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
 
 /* A disturbance d of the state, x = x' + direction d, enters as a row (1/sigma) d = 0; Givens rotations then take it out of
  * the triangle again. In terms of sigma, not 1/sigma: a tiny one must not overflow. */
-void goe_srif_inflate(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
-                      float sigma) {
+void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma) {
     float row[GOE_STATES];
     memset(row, 0, sizeof row);
     for (size_t i = last + 1; i-- > 0;) {
         float *r = &root->element[goe_srif_row(i)];
-        float b = -(r[last] * last_weight);
-        if (i <= first && first < last) {
-            b -= r[first] * first_weight;
+        float b = 0.0f;
+        for (size_t k = i > first ? i : first; k <= last; k++) {
+            b -= r[k] * direction[k];
         }
         const float t = sigma * b;
         const float c = 1.0f / sqrtf(1.0f + t * t);

@@ -578,7 +578,8 @@ static void correlated_errors_are_accounted_for(void) {
     const goe_estimate_t *e = &estimator.estimate;
     goe_latest_covariance(&estimator, true, covariance);
     factorise(covariance);
-    const double datum_m = (double)estimator.filter.state[GOE_HEIGHT_BIAS];
+    const double datum_m =
+        (double)estimator.filter.state[GOE_GROUND] / (double)estimator.filter.state[GOE_INVERSE_RANGE];
     const obstacle_t mean = {true,
                              (double)e->x_m,
                              (double)e->z_m,

@@ -71,9 +71,10 @@ DEPTH_SD = 0.3  # of s
 UNSEEN_SD = 3.0  # of c
 DISC_SD = 1e-3  # of both where a disc is asked for
 
-SCATTER_CLIP, SCATTER_KEPT, SCATTER_SEED, ALIKE_MOST = 10.0, 0.985, 10.0, 0.9
+SCATTER_KEPT, ALIKE_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as the library holds them
+SCATTER_CLIP, SCATTER_SEED = 10.0, 10.0
 MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
-CHANCE = 0.07  # one sigma of both means: only what is beyond widens
+CHANCE = float(np.float32(0.07))  # one sigma of both means: only what is beyond widens
 
 
 def depth_sds(told: Told) -> tuple[float, float]:
@@ -168,6 +169,7 @@ class PrismFilter:
         self.state: np.ndarray | None = None  # (10,)
         self.doubted = self.refused = 0  # of the latest image
         self.scatter = Scatter(np.zeros(4))
+        self.first_s: float | None = None  # the track's first image
 
     # --------------------------------------------------------------------------------------------------------- start
 
@@ -217,6 +219,7 @@ class PrismFilter:
         sd = self._prior_sd(size)
         self.covariance, self.by_c, self.c_sd = np.diag(sd[:C] ** 2), np.zeros(C), float(sd[C])
         self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
+        self.walked_s = np.zeros(2)  # since the walk was added along X, and along Z
         return True
 
     def _prior_sd(self, width: float) -> np.ndarray:
@@ -241,10 +244,21 @@ class PrismFilter:
         return result
 
     def _pass_time(self, span_s: float) -> None:
+        """The position walks along X and Z in turn: a step along Z rescales the lengths in units of Z0."""
         drift, walk = np.radians(self.told.attitude_drift_deg), self.told.position_walk_m * self.state[Q]
         noise = np.zeros(C)
-        noise[BX : BX + 3], noise[A] = drift**2, walk**2
-        self.covariance = self.covariance + np.diag(noise * span_s)
+        noise[BX : BX + 3] = drift**2
+        self.walked_s += span_s
+        axis = int(self.walked_s[1] > self.walked_s[0])
+        direction = np.zeros(C)
+        if axis == 0:
+            direction[A] = 1.0
+        else:
+            direction[[G, A, Q, W, E]] = self.state[[G, A, Q, W, E]]
+        waited_s, self.walked_s[axis] = float(self.walked_s[axis]), 0.0
+        self.covariance = (
+            self.covariance + np.diag(noise * span_s) + walk**2 * waited_s * np.outer(direction, direction)
+        )
 
     def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
         """Residuals and derivatives as measured, and the white variances with what the linearisation misses."""
@@ -335,6 +349,7 @@ class PrismFilter:
     def take(self, in_t: Sight) -> bool:
         """An image; whether it told something."""
         self.doubted = self.refused = 0
+        self.first_s = in_t.time_s if self.first_s is None else self.first_s
         if self.state is None:
             if not self.start(in_t):
                 return False
@@ -384,7 +399,8 @@ class PrismFilter:
         share = told.velocity_bias_m_s * span_s / path_m
         above_m = max(abs(values[3]), abs(values[3] - in_t.given_height_m))
         variance += (share * np.array([values[1], values[1], values[2], above_m])) ** 2
-        variance[:2] += told.position_walk_m**2 * span_s
+        before_s = self.start_s - self.first_s  # X0 and Z0 count from the track's first image
+        variance[:2] += told.position_walk_m**2 * (span_s + before_s) + (told.velocity_bias_m_s * before_s) ** 2
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)
 
