@@ -95,6 +95,7 @@ static goe_image_t image_of(const goe_batch_track_t *track, int k) {
     if (track->box_px != NULL) {
         image.box = box_of(track, k);
     }
+    image.camera = track->camera != NULL ? track->camera[k] : 0;
     return image;
 }
 

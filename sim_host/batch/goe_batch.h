@@ -24,7 +24,7 @@ typedef float goe_batch_float_t;
 size_t goe_batch_settings_size(void);
 void goe_batch_default(goe_settings_t *settings);
 
-/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "method", ...); whole numbers and truth
+/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "more_cameras[0].fx_px", "method", ...); whole numbers and truth
  * values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
 int goe_batch_set(goe_settings_t *settings, const char *name, double value);
 
@@ -40,6 +40,7 @@ typedef struct {
     const uint8_t *seen;               /* [images][GOE_BATCH_FEATURES] */
     const goe_batch_float_t *box_px;   /* [images][GOE_BATCH_BOX]; null: no boxes */
     const uint8_t *box_seen;           /* [images] GOE_SEES_...; null only if box_px is */
+    const uint8_t *camera;             /* [images] number of that which took it; null: the first */
 } goe_batch_track_t;
 
 typedef struct {

@@ -341,6 +341,26 @@ def test_the_size_of_the_image_is_a_setting(built: Path) -> None:
         estimate(replace(flight, image_size_px=(1280.0, -1.0)))
 
 
+@pytest.mark.parametrize("double", [False, True])
+def test_the_library_over_two_cameras(built: Path, double: bool) -> None:
+    """A second camera like the first is as good as one; one that looks elsewhere is not; none at all is refused."""
+    flight = measure(box_scene(), EXACT)
+    one = settings_of(flight)
+    cameras = np.arange(len(flight.time_s)) >= len(flight.time_s) // 2
+    second = {name.replace("camera.", "more_cameras[0]."): one[name] for name in one if name.startswith("camera.")}
+    turned = second | {"more_cameras[0].mount_yaw_deg": second["more_cameras[0].mount_yaw_deg"] + 5.0}
+    plain, alike, apart, none = (
+        estimate(flight, one | settings, double=double, cameras=numbers)
+        for settings, numbers in (({}, None), (second, cameras), (turned, cameras), ({}, cameras))
+    )
+    assert np.isfinite(plain.values[-1]).any() and np.array_equal(plain.values, alike.values, equal_nan=True)
+    assert np.array_equal(plain.values[~cameras], apart.values[~cameras], equal_nan=True)
+    assert not np.array_equal(plain.values, apart.values, equal_nan=True)
+    assert ((none.status == -11) == cameras).all()  # out of range
+    with pytest.raises(ValueError, match=r"more_cameras\[0\]\.of_nothing"):
+        estimate(flight, one | {"more_cameras[0].of_nothing": 1.0})
+
+
 def boxed(images: int) -> Flight:
     """Exact boxes, no points, of a disc before a level camera: left and right are tangents, top and bottom touch the
     roof and the foot where they are nearest along the axis."""

@@ -57,6 +57,7 @@ class _Track(ctypes.Structure):
         ("seen", ctypes.c_void_p),
         ("box_px", ctypes.c_void_p),
         ("box_seen", ctypes.c_void_p),
+        ("camera", ctypes.c_void_p),
     )
 
 
@@ -165,10 +166,12 @@ def boxes_of(flight: Flight) -> tuple[np.ndarray, ...]:
 
 
 def estimate(
-    flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False, **change: float
-) -> Track:
+    flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False,
+    cameras: np.ndarray | None = None, **change: float,
+) -> Track:  # fmt: skip
     """Runs the library over a flight. ``settings``: by default ``settings_of(flight)``; ``change``: single ones on top,
-    with "__" for the dot (``noise__pixel_px=0.5``). ``double``: computed in float64."""
+    with "__" for the dot (``noise__pixel_px=0.5``). ``double``: computed in float64.
+    ``cameras``: (K,) number of the camera of each image; number 1 is that of the settings ``more_cameras[0]``."""
     library = _library(double)
     values = dict(settings_of(flight) if settings is None else settings)
     values.update({name.replace("__", "."): value for name, value in change.items()})
@@ -179,12 +182,16 @@ def estimate(
         np.ascontiguousarray(flight.pixel_px, np.float32), np.ascontiguousarray(flight.seen, np.uint8),
         *boxes_of(flight),
     )  # fmt: skip
+    track = _Track(images, *(array.ctypes.data for array in arrays))
+    if cameras is not None:
+        numbers = np.ascontiguousarray(cameras, np.uint8)
+        track.camera = numbers.ctypes.data
     label = np.zeros((images, len(LABELS)), np.int32)
     number = np.zeros((images, len(NUMBERS)), np.float32)
     covariance = np.zeros((images, 6, 6), np.float32)
     bad = ctypes.c_char_p()
     status = library.goe_batch_run(
-        _settings(library, values), ctypes.byref(_Track(images, *(a.ctypes.data for a in arrays))),
+        _settings(library, values), ctypes.byref(track),
         ctypes.byref(_Answer(label.ctypes.data, number.ctypes.data, covariance.ctypes.data)), ctypes.byref(bad),
     )  # fmt: skip
     if status != 0:
