@@ -251,6 +251,13 @@ def test_commands(command: str, capsys: pytest.CaptureFixture[str]) -> None:
         assert np.abs(np.array(line.split()[4:], float)).max() < 3.0
 
 
+def test_a_log_of_two_cameras_is_told(tmp_path: Path) -> None:
+    log = read_log(CORNER)
+    write_log(tmp_path, replace(log, camera2=log.camera))
+    with pytest.raises(LogError, match=r"camera\.ini: camera2: a second camera, a flight has one"):
+        from_log(tmp_path)
+
+
 def test_a_log_without_truth_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("camera.ini", "frames.csv"):
         (tmp_path / name).write_text((CORNER / name).read_text())
