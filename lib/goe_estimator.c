@@ -210,8 +210,8 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #endif
 }
 
-static void open_view(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera, goe_view_t *view,
-                      goe_faults_t *faults) {
+static void open_view(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera,
+                      goe_view_t *view, goe_faults_t *faults) {
     view->image = image;
     view->motion = &estimator->motion;
     view->camera = camera;

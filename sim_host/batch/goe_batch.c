@@ -111,6 +111,7 @@ static goe_image_t image_of(const goe_batch_track_t *track, int k) {
             take(image.pose.reset_delta_ned_m, jump_m, 3);
         }
     }
+    image.camera = track->camera != NULL ? track->camera[k] : 0;
     return image;
 }
 

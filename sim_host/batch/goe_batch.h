@@ -25,7 +25,7 @@ typedef float goe_batch_float_t;
 size_t goe_batch_settings_size(void);
 void goe_batch_default(goe_settings_t *settings);
 
-/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "method", ...); whole numbers and truth
+/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "more_cameras[0].fx_px", "method", ...); whole numbers and truth
  * values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
 int goe_batch_set(goe_settings_t *settings, const char *name, double value);
 
@@ -55,6 +55,7 @@ typedef struct {
     const goe_batch_float_t *velocity; /* [images][3] planned, NED, m/s; null only if there are no plans */
     int plans;
     const goe_batch_plan_t *plan; /* [plans] */
+    const uint8_t *camera;        /* [images] number of that which took it; null: the first */
 } goe_batch_track_t;
 
 typedef struct {

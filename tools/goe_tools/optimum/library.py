@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -66,6 +66,7 @@ class _Track(ctypes.Structure):
         ("velocity", ctypes.c_void_p),
         ("plans", ctypes.c_int),
         ("plan", ctypes.c_void_p),
+        ("camera", ctypes.c_void_p),
     )
 
 
@@ -104,6 +105,7 @@ class Images:
     reset_m: np.ndarray | None = None  # (K, 3) by how much it jumped; NaN: not known
     velocity_m_s: np.ndarray | None = None  # (K, 3) planned, for goe_hazard
     plans: tuple[Plan, ...] = ()
+    camera: np.ndarray | None = None  # (K,) number of the camera; number 1 is that of the settings more_cameras[0]
 
 
 @dataclass
@@ -217,13 +219,15 @@ def _settings(library: ctypes.CDLL, values: dict[str, float]) -> ctypes.Array:
 
 
 def estimate(
-    flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False, **change: float
-) -> Track:
+    flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False,
+    cameras: np.ndarray | None = None, **change: float,
+) -> Track:  # fmt: skip
     """Runs the library over a flight. ``settings``: by default ``settings_of(flight)``; ``change``: single ones on top,
-    with "__" for the dot (``noise__pixel_px=0.5``). ``double``: computed in float64."""
+    with "__" for the dot (``noise__pixel_px=0.5``). ``double``: computed in float64.
+    ``cameras``: (K,) number of the camera of each image; number 1 is that of the settings ``more_cameras[0]``."""
     values = dict(settings_of(flight) if settings is None else settings)
     values.update({name.replace("__", "."): value for name, value in change.items()})
-    return run(images_of(flight), values, double=double)
+    return run(replace(images_of(flight), camera=cameras), values, double=double)
 
 
 def boxes_of(flight: Flight | Images) -> tuple[np.ndarray, ...]:
@@ -254,6 +258,8 @@ def _given(images: Images) -> dict[str, np.ndarray]:
     if images.reset_count is not None and images.reset_m is not None:
         given["reset_count"] = np.ascontiguousarray(images.reset_count, np.uint8)
         given["reset_m"] = np.ascontiguousarray(images.reset_m, np.float32)
+    if images.camera is not None:
+        given["camera"] = np.ascontiguousarray(images.camera, np.uint8)
     if images.plans and images.velocity_m_s is not None:
         given["velocity"] = np.ascontiguousarray(images.velocity_m_s, np.float32)
         plans = [(p.margin_m, p.clearance_m, p.doubt, p.drift_m_s) for p in images.plans]
