@@ -51,8 +51,8 @@
  *   6 m diameter stands at north 200, east -30. Then Z0 = 200 m, X0 = -30 m, width = 6 m.
  *   After 50 m of flight: Z = 150 m, X = -30 m, and X0, Z0 stay as they were.
  *
- *   The track's first image fixes T and its origin, whether or not anything is seen in it. Call goe_reset when an obstacle
- *   comes into view: what lies more than 87 degrees from Z cannot be used.
+ *   The first image in which something is seen is the track's first image: it fixes T and its origin. What lies more than 87
+ *   degrees from Z cannot be used: after a turn call goe_reset.
  *
  *   Jumps: x0, z0, x and z move by half the obstacle's size when a disc becomes a line or box. Refined: front and side keep
  *   their names until the side lies more than 52 degrees (tan b = 1.3) from Z; then width and length, their sigmas,
@@ -243,6 +243,8 @@ typedef struct {
     float height_white_m;     /* error of height_m that is new in each image, m; 0 to 1e3; default 0: none, and points take each
                                  image's height as it is. Otherwise the height moves by the changes of down, and every image's
                                  height is a reading of where it began, whose mean the filter learns */
+    float slope;              /* slope of the ground that height_m is above, m per m flown; 0 to 1; default 0. The height at the
+                                 filter's start is off by height_bias_m all the same: on a slope by it times the range, too */
     float ground_m;           /* upright boxes: how far the obstacle's ground may lie off that which height_m is above, added to
                                  height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
 } goe_navigation_t;
@@ -427,7 +429,8 @@ typedef struct {
     float length_axis[2];  /* unit vector (X, Z) along the side edge */
     float width_axis[2];   /* unit vector (X, Z) along the front edge, to the right of length_axis */
     float length_axis_ne[2], width_axis_ne[2]; /* the same in (north, east) */
-    float trajectory_heading_deg; /* of T's Z axis, clockwise from north, -180 to 180; holds from the track's first image on */
+    float trajectory_heading_deg; /* of T's Z axis, clockwise from north, -180 to 180; before the track's first image: where the
+                                     nose points */
     float center_north_m, center_east_m; /* middle of the base, NED as of the latest pose ... */
     float center_ne_m2;                  /* ... and the covariance of the two, whose variances are the sigmas squared */
     float residual;        /* window: root mean square residual of (5), in the rows' own unit m/S; refined: 0 */
@@ -486,12 +489,14 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  * Cost: at most 8500 instructions, 800 bytes of stack. */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
-/* What the aircraft is about to do: fly on from the latest image's position at constant velocity. Slower than 0.1 m/s over
+/* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over
  * the ground it is taken as standing still, also when it climbs or descends. */
 typedef struct {
     float velocity_ned_m_s[3]; /* relative to the ground, each +-1e3 */
     float margin_m;            /* the outline of the obstacle must stay farther away than this, horizontally; 0 to 1e4 */
     float clearance_m;         /* ... or its top must lie deeper than this below the aircraft; 0 to 1e4 */
+    float since_image_s;       /* how long ago the latest image was taken: the detector's latency, or its silence. It has flown at
+                                  that velocity since, and times count from now; 0 to 1e3; 0: from that image */
 } goe_plan_t;
 
 /* What will become of it. Sigmas are to first order, from the covariance of the estimate; goe_plan_t is taken as exact.
@@ -515,8 +520,9 @@ typedef struct {
 } goe_hazard_t;
 
 /* Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. The outline is the disc, or the box
- * as far as it is known: without orientation or length the circle of its width about the reference point, without width
- * (GOE_HAS_WIDTH) that point alone, so that margin_m has to cover the obstacle's size. A suspect or stale estimate asks for
+ * as far as it is known: without orientation or length the circle of its width about the reference point, refined also while
+ * the width is not known well enough to be told; window, without width: that point alone, so that margin_m has to cover the
+ * obstacle's size. A suspect or stale estimate asks for
  * wider margins, not for silence: README.md, "Going around, or not".
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,

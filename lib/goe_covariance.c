@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "maths/goe_angle.h"
+#include "maths/goe_scalar.h"
 #include "refined/goe_quantities.h"
 
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
@@ -58,6 +59,18 @@ float goe_latest_height_bias(const goe_estimator_t *estimator) {
     const float *state = estimator->filter.state;
     return is_of_filter(&estimator->estimate) ? state[GOE_GROUND] / state[GOE_INVERSE_RANGE] : 0.0f;
 }
+float goe_latest_reach(const goe_estimator_t *estimator) {
+    const goe_filter_t *filter = &estimator->filter;
+    const float *x = filter->state;
+    if (!is_of_filter(&estimator->estimate)) {
+        return 0.0f;
+    }
+    if (filter->phase == GOE_PHASE_PRISM) {
+        return x[GOE_PRISM_HALF] / x[GOE_INVERSE_RANGE];
+    }
+    const float side = goe_filter_is_box(filter) ? goe_absolute(x[GOE_SIDE_X]) : 0.0f;
+    return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
+}
 #else
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
     (void)estimator;
@@ -69,6 +82,11 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
 float goe_latest_camera_height(const goe_estimator_t *estimator) { return estimator->motion.height_m; }
 
 float goe_latest_height_bias(const goe_estimator_t *estimator) {
+    (void)estimator;
+    return 0.0f;
+}
+
+float goe_latest_reach(const goe_estimator_t *estimator) {
     (void)estimator;
     return 0.0f;
 }

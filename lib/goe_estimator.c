@@ -218,6 +218,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     view->camera_to_body = estimator->camera_to_body[image->camera];
     goe_motion_follow(&estimator->motion, &estimator->settings, view);
     goe_align_points(camera, view, faults);
+    estimator->motion.started |= view->seen;
 }
 
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
@@ -272,6 +273,13 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
     return GOE_OK;
 }
 
+/* Nothing changes but a counter; the answer is the older one. */
+static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, goe_estimate_t *estimate) {
+    goe_count_cause(estimator->causes, status);
+    *estimate = estimator->estimate;
+    estimate->fresh = false;
+}
+
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate) {
     if (!estimate) {
         return GOE_BAD_ARGUMENT;
@@ -289,14 +297,12 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
     if (status == GOE_OK && goe_is_refined(estimator)) {
         status = goe_intake_check_noise(&image->noise);
     }
-    const bool taken = status == GOE_OK;
-    if (taken) {
+    if (status == GOE_OK) {
         status = take_image(estimator, image, camera);
+        copy_estimate(estimate, &estimator->estimate);
     } else {
-        goe_count_cause(estimator->causes, status);
+        refuse(estimator, status, estimate);
     }
-    copy_estimate(estimate, &estimator->estimate);
-    estimate->fresh = estimate->fresh && taken;
     complete(estimator, image->pose.time_us, estimate);
     return status;
 }

@@ -31,7 +31,7 @@ typedef struct {
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
     float height_m;                 /* camera above ground, latest image */
-    bool started;                   /* a first image was taken; the fields above hold */
+    bool started; /* something was seen: T and its origin are fixed, at the image in which it was first */
     uint8_t reset_count;
 } goe_motion_t;
 
@@ -154,6 +154,10 @@ typedef struct {      /* refined/goe_health.c: how the images fit */
     bool base_refused;             /* base corners proved to be none: they are not used */
 } goe_health_t;
 
+typedef struct {
+    float dx_m, dz_m;
+} goe_place_t;
+
 /* What is small comes first: instructions reach the beginning of an object by shorter forms. */
 typedef struct {
     int64_t time_us;      /* of the latest image that the filter took */
@@ -164,6 +168,10 @@ typedef struct {
     goe_naming_t naming;
     uint8_t camera;          /* that took the latest image */
     bool has_datum;          /* the datum is that of the track\'s first image */
+    float ground_scale;      /* 1/Z0 for which the sigma of GOE_GROUND was set, over the present one */
+    float flown_m;           /* along the path since the filter's start, over ground */
+    float sloped_m;          /* ... up to which the ground's slope was added */
+    goe_place_t last;        /* camera in the image before, T axes */
     float walk_s[2];         /* time since the walk of the own position was last added along X, and along Z */
     float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since `inverse` was taken */
     goe_candidate_t candidate;

@@ -23,6 +23,7 @@
 #define TOP_FREEDOM 10.0f    /* ... of the top */
 #define SKEWED_SIGMAS2 18.0f /* twice the log-likelihood ratio of chord against disc; cylinders stay below 14 */
 #define VARIANCE_MIN 1.0e-30f
+#define CHANCE_SHARE 0.5f /* of the skew's variance that is taken for a true disc's chance when it is answered for */
 #define HEADING_ARM 0.08f /* s/m: a yaw bias this large per m/s looks like a velocity bias */
 #define BASE_NOISE 2.0f   /* variance of a base corner's y as range of the centre, over its own */
 
@@ -236,7 +237,9 @@ float goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES]
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
         projected[j] -= along * v[goe_inverse_column(j) + GOE_SIDE_X];
     }
-    return along * filter->state[GOE_SIDE_X];
+    const float by_chance = CHANCE_SHARE * skew_variance(filter);
+    const float beyond2 = goe_square(filter->state[GOE_SIDE_X]) - by_chance;
+    return beyond2 > 0.0f ? along * sqrtf(beyond2) : 0.0f;
 }
 
 void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape) {

@@ -32,6 +32,9 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     memset(filter->side, 0, sizeof filter->side);
     filter->datum.information = 1.0f / goe_observation_height_variance(obs, prism);
     filter->datum.moment = 0.0f;
+    filter->ground_scale = 1.0f;
+    filter->flown_m = 0.0f;
+    filter->sloped_m = 0.0f;
     memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->stand_in = false;
     goe_srif_invert_diagonal(&filter->root, &filter->inverse);
@@ -91,9 +94,11 @@ float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *ro
     const bool prism = filter->phase == GOE_PHASE_PRISM;
     const float nis = prism ? goe_srif_update_considering(&filter->root, nuisance_root, rows->matrix, change)
                             : goe_srif_update(&filter->root, nuisance_root, rows->matrix, change);
+    const float before = filter->state[GOE_INVERSE_RANGE];
     for (size_t i = 0; i < GOE_STATES; i++) {
         filter->state[i] += change[i];
     }
+    filter->ground_scale *= before / filter->state[GOE_INVERSE_RANGE];
     if (prism) {
         goe_prism_follow(filter, change);
     }

@@ -34,6 +34,7 @@ typedef struct {
     goe_xz_t camera_m; /* since the filter's start */
     float share;       /* of lengths, and rad */
     float walk_m2;
+    float turned_m2; /* a path that leads back on itself is not scaled: what of the drift is left */
 } drift_t;
 
 static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
@@ -43,6 +44,8 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
     const float path_m = sqrtf(goe_xz_dot(drift.camera_m, drift.camera_m));
     drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
     drift.walk_m2 = goe_square(navigation->position_walk_m) * s;
+    const float straight = filter->flown_m > path_m ? path_m / filter->flown_m : 1.0f;
+    drift.turned_m2 = goe_square(navigation->velocity_bias_m_s * s) * (1.0f - straight * straight);
     return drift;
 }
 
@@ -60,7 +63,8 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
     switch (quantity) {
         case GOE_X0:
         case GOE_Z0:
-            return share2 * goe_square(shape->quantity[GOE_Z0].value) + drift.walk_m2 + shape->place_m2;
+            return share2 * goe_square(shape->quantity[GOE_Z0].value) + drift.walk_m2 + drift.turned_m2 +
+                   shape->place_m2;
         case GOE_ORIENTATION:
             return box ? share2 : 0.0f;
         case GOE_HEIGHT:

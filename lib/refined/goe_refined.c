@@ -25,6 +25,8 @@
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 #define HEIGHT_GROWN 1.0e-3f   /* of the information of the heights: less waits for more */
+#define GROUND_NARROW 0.95f    /* of ground_scale: told too well */
+#define GROUND_WIDE 1.05f      /* ... not well enough */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -59,6 +61,30 @@ static void walk(goe_filter_t *filter, float walk_m, float since_s) {
     }
 }
 
+/* Along the path, which in a turn is longer than the way to where it began. */
+static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
+    const float dx_m = motion->dx_m - filter->last.dx_m;
+    const float dz_m = motion->dz_m - filter->last.dz_m;
+    filter->flown_m += sqrtf(dx_m * dx_m + dz_m * dz_m);
+    filter->last.dx_m = motion->dx_m;
+    filter->last.dz_m = motion->dz_m;
+}
+
+/* The ground below the altimeter rises or falls, one does not know which: after a way d the height is off by slope d more, and its
+ * variance has grown by the difference of the squares. The top counts from the altimeter's zero, which moves along. */
+static void climb_ground(goe_filter_t *filter, const goe_navigation_t *navigation) {
+    float direction[GOE_STATES] = {0.0f};
+    const float grown2 = goe_square(filter->flown_m) - goe_square(filter->sloped_m);
+    const float sigma = navigation->slope * filter->state[GOE_INVERSE_RANGE] * sqrtf(goe_larger(grown2, 0.0f));
+    if (!(sigma > 0.0f) || goe_filter_is_steady(filter, navigation)) {
+        return;
+    }
+    direction[GOE_GROUND] = 1.0f;
+    direction[GOE_TOP] = -1.0f;
+    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_TOP, sigma);
+    filter->sloped_m = filter->flown_m;
+}
+
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, int64_t time_us) {
     const float since_s = goe_time_between_s(filter->time_us, time_us, GAP_MAX_US);
@@ -71,6 +97,7 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
         goe_filter_inflate(filter, GOE_BIAS_Z, drift);
     }
     walk(filter, navigation->position_walk_m, since_s);
+    climb_ground(filter, navigation);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
@@ -82,6 +109,34 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
     for (size_t i = 0; i < rows->count; i++) {
         rows->variance[i] += goe_square(rows->matrix->row[i][GOE_STATE_COLUMN + GOE_INVERSE_RANGE] * missed);
     }
+}
+
+/* What is known of the height beforehand is in metres, its state in units of Z0: as the range becomes known, their ratio moves,
+ * and what was told of the state at the first guess is put right. */
+static void widen_ground(goe_filter_t *filter, const goe_observation_t *obs) {
+    const float scale = filter->ground_scale;
+    if (scale > GROUND_NARROW) {
+        return;
+    }
+    const float share2 = 1.0f - goe_square(goe_larger(scale, 0.0f));
+    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
+    goe_filter_inflate(filter, GOE_GROUND, filter->state[GOE_INVERSE_RANGE] * sqrtf(share2 * variance));
+    filter->ground_scale = 1.0f;
+}
+
+static void narrow_ground(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+    const float scale = filter->ground_scale;
+    if (!(scale >= GROUND_WIDE) || rows->count >= GOE_ROWS_MAX) {
+        return;
+    }
+    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float weight = sqrtf((1.0f - 1.0f / goe_square(scale)) / variance) / q;
+    float *row = rows->matrix->row[rows->count];
+    row[GOE_STATE_COLUMN + GOE_GROUND] = weight;
+    row[GOE_RESIDUAL] = -weight * filter->state[GOE_GROUND];
+    rows->count++;
+    filter->ground_scale = 1.0f;
 }
 
 /* All heights so far tell the offset of the first with the information 1/(constant error^2 + white^2/n). Of that a row adds what
@@ -108,6 +163,7 @@ static void add_height(goe_filter_t *filter, const goe_observation_t *obs, goe_r
 
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict) {
     goe_rows_t rows;
+    widen_ground(filter, obs);
     goe_rows_clear(&rows, &filter->rows);
     rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
@@ -121,9 +177,9 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
         goe_health_take_refused(&filter->health, *verdict);
         return false;
     }
+    narrow_ground(filter, obs, &rows);
     if (obs->settings->navigation.height_white_m > 0.0f) {
         add_height(filter, obs, &rows);
-        verdict->rows += rows.count < GOE_ROWS_MAX ? 1 : 0;
     }
     const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
@@ -168,6 +224,8 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
     }
     if (!running) {
         filter->time_us = view->motion->time_us;
+        filter->last.dx_m = view->motion->dx_m;
+        filter->last.dz_m = view->motion->dz_m;
     }
     return true;
 }
@@ -202,6 +260,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
+    fly_on(filter, view->motion);
     note_time(filter, view->motion, &obs);
     let_time_pass(filter, &settings->navigation, view->motion->time_us);
     goe_observation_linearise(&obs);

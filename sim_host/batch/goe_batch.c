@@ -120,6 +120,7 @@ static void ask(const goe_estimator_t *estimator, const goe_estimate_t *estimate
     const float doubt = estimate->suspect ? (float)asked->doubt : 1.0f;
     const float old_m = (float)asked->drift_m_s * estimate->age_s;
     goe_plan_t plan;
+    plan.since_image_s = 0.0f;
     take(plan.velocity_ned_m_s, velocity, 3);
     plan.margin_m = doubt * (float)asked->margin_m + old_m;
     plan.clearance_m = doubt * (float)asked->clearance_m + old_m;

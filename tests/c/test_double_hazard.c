@@ -74,7 +74,7 @@ static goe_hazard_t foresee(const goe_plan_t *plan) {
 
 /* heading north: T's X is east, its Z north */
 static goe_plan_t plan_of(double z_m_s, double x_m_s, double climb_m_s) {
-    const goe_plan_t plan = {{(float)z_m_s, (float)x_m_s, (float)-climb_m_s}, 5.0f, 10.0f};
+    const goe_plan_t plan = {{(float)z_m_s, (float)x_m_s, (float)-climb_m_s}, 5.0f, 10.0f, 0.0f};
     return plan;
 }
 

@@ -232,6 +232,7 @@ static goe_plan_t any_plan(bool *legal) {
     }
     plan.margin_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
     plan.clearance_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
+    plan.since_image_s = bits ? any_bits() : fabsf(any_within(1.0e3f));
     *legal = !bits;
     return plan;
 }

@@ -66,7 +66,7 @@ def namings(truth: Truth) -> np.ndarray:
         width, length = (solid.width_m, solid.length_m) if turn == 0 else (solid.length_m, solid.width_m)
         out = np.array([math.sin(angle), math.cos(angle)])  # along the side edge
         faces = [truth.middle_m - sign * 0.5 * length * out for sign in (1.0, -1.0)]
-        front = min(faces, key=lambda face: float(np.hypot(*(face - truth.seen_from_m))))  # it faces the camera
+        front = min(faces, key=lambda face: float(np.hypot(*face)))  # it faces the camera
         result.append([*front, folded(np.array(angle)), width, length, solid.height_m])
     return np.array(result)
 
@@ -84,7 +84,7 @@ def width_across(truth: Truth) -> float:
     solid = truth.solid
     if solid.kind == "cylinder":
         return solid.width_m
-    sight = truth.middle_m - truth.seen_from_m
+    sight = truth.middle_m
     sight = sight / np.linalg.norm(sight)
     return float(np.ptp(np.concatenate(solid.bases()) @ np.array([sight[1], -sight[0]])))
 

@@ -54,11 +54,10 @@ class Scenario:
 
 @dataclass
 class Truth:
-    """T axes of the track's first image."""
+    """T axes of the track's first image: the first one that shows something."""
 
     solid: Solid
     middle_m: np.ndarray  # (2,) X, Z
-    seen_from_m: np.ndarray  # (2,) X, Z of the camera in the first image that shows it
     axis_rad: float  # T's Z axis, clockwise from north
     velocity_ned_m_s: np.ndarray  # (2,) north, east of the obstacle
     path_velocity_ned_m_s: np.ndarray  # (K, 3) of the aircraft, true
@@ -160,14 +159,23 @@ def _seen(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[
     return np.where(whole[:, None, None], pixel, np.nan), None
 
 
-def _truth(world: _World, part: slice, first_seen: int) -> Truth:
-    path, axis = world.path, world.path.axis_rad
+def _axis(world: _World, first_seen: int) -> float:
+    """T's Z axis from the course's forward: where a path says, or where the nose points when something is first seen."""
+    if world.path.trimmed:
+        return world.path.axis_rad
+    nose = world.path.at(world.path.time_s[first_seen : first_seen + 1])[1][0, :, 0]
+    return math.atan2(nose[1], nose[0])
+
+
+def _truth(world: _World, part: slice, first_seen: int, axis: float) -> Truth:
+    path = world.path
     time, place, middle = path.time_s[part], world.place_m[part], world.middle_m[part]
     to_t = np.array([[-math.sin(axis), math.cos(axis)], [math.cos(axis), math.sin(axis)]])  # (forward, right) -> (X, Z)
     about_middle = place - np.append(middle[0], 0.0)
     return Truth(
-        replace(world.solid, orientation_rad=world.solid.orientation_rad - axis), (middle[0] - place[0, :2]) @ to_t,
-        (world.place_m[first_seen] - place[0])[:2] @ to_t, world.axis_rad, world.velocity_m_s @ world.to_ned[:2, :2].T,
+        replace(world.solid, orientation_rad=world.solid.orientation_rad - axis),
+        (middle[0] - world.place_m[first_seen, :2]) @ to_t,
+        world.axis_rad - path.axis_rad + axis, world.velocity_m_s @ world.to_ned[:2, :2].T,
         path.velocity(time) @ world.to_ned.T, about_middle @ world.to_ned.T,
     )  # fmt: skip
 
@@ -191,12 +199,13 @@ def _one(scenario: Scenario, number: int, attempt: int) -> Told | None:
     )
     steps = np.diff(jumped, axis=0, prepend=jumped[:1])
     seen = np.isfinite(pixel[part]).all(-1)
-    truth = _truth(world, part, int(np.argmax(shown)))
+    first_seen = int(np.argmax(shown))
+    truth = _truth(world, part, first_seen, _axis(world, first_seen))
     return Told(
         number, time - time[0], pose.position_m, pose.quaternion, pose.height_m,
         np.where(seen[..., None], pixel[part], 0.0), seen, None if box is None else box[part],
         np.cumsum(np.abs(steps).max(1) > 0), steps, truth.path_velocity_ned_m_s + pose.velocity_error_m_s,
-        _settings(world.stand.camera, scenario.wrong, math.degrees(world.axis_rad), noise), truth,
+        _settings(world.stand.camera, scenario.wrong, math.degrees(truth.axis_rad), noise), truth,
     )  # fmt: skip
 
 

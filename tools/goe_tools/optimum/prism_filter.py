@@ -67,6 +67,7 @@ NO_ALTIMETER_M = 50.0  # sigma of the height from which on the first box tells i
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
 PATH_MIN_M = 0.1
+GROUND_NARROW, GROUND_WIDE = (float(np.float32(scale)) for scale in (0.95, 1.05))
 DEPTH_SD = 0.3  # of s
 UNSEEN_SD = 3.0  # of c
 DISC_SD = 1e-3  # of both where a disc is asked for
@@ -219,6 +220,9 @@ class PrismFilter:
         sd = self._prior_sd(size)
         self.covariance, self.by_c, self.c_sd = np.diag(sd[:C] ** 2), np.zeros(C), float(sd[C])
         self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
+        self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
+        self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)  # after the latest image, and since
+        self.ground_scale = 1.0  # 1/Z0 for which the sigma of G was set, over the present one
         self.walked_s = np.zeros(2)  # since the walk was added along X, and along Z
         return True
 
@@ -248,6 +252,8 @@ class PrismFilter:
         drift, walk = np.radians(self.told.attitude_drift_deg), self.told.position_walk_m * self.state[Q]
         noise = np.zeros(C)
         noise[BX : BX + 3] = drift**2
+        self.gained[BX : BX + 3] += drift**2 * span_s
+        self.gained[A] += walk**2 * span_s
         self.walked_s += span_s
         axis = int(self.walked_s[1] > self.walked_s[0])
         direction = np.zeros(C)
@@ -291,10 +297,10 @@ class PrismFilter:
             rows.own[i] += memory.variance
 
     def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
-        """Normalised square of a weighted sum of residuals."""
+        """Normalised square of a weighted sum of residuals. What a walk along Z and a ground that is widened add is left out."""
         slope = weight @ rows.slope
         white = np.radians(self.told.attitude_white_deg)
-        variance = slope @ self.full_covariance() @ slope + weight**2 @ rows.own
+        variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
         variance += white**2 * np.sum((weight @ rows.about) ** 2) + np.sum((weight @ rows.shift) ** 2)
         return float((weight @ rows.residual) ** 2 / variance)
 
@@ -327,6 +333,29 @@ class PrismFilter:
             memory.variance -= gain * memory.variance
             memory.learnt = True
 
+    def _widen_ground(self) -> None:
+        """The height's sigma is in metres, that of G over Z0: put right as the range becomes known."""
+        if self.ground_scale <= GROUND_NARROW:
+            self.covariance[G, G] += (1 - self.ground_scale**2) * (self.told.height_sd_m * self.state[Q]) ** 2
+            self.ground_scale = 1.0
+
+    def _narrow_ground(self, rows: Rows) -> float:
+        """As a measurement beside the rows; its part of the innovations squared."""
+        if self.ground_scale < GROUND_WIDE:
+            return 0.0
+        weight2 = (1 - 1 / self.ground_scale**2) / (self.told.height_sd_m * self.state[Q]) ** 2
+        variance = self.covariance[G, G] + 1 / weight2
+        gain = self.covariance[:, G] / variance
+        nis, change = float(self.state[G] ** 2 / variance), -gain * self.state[G]
+        self.covariance = self.covariance - np.outer(gain, self.covariance[G])
+        self.by_c = self.by_c - gain * self.by_c[G]
+        self.state = self.state + np.append(change, 0.0)
+        rows.residual = rows.residual - rows.slope[:, :C] @ change
+        for memory in self.memory:
+            memory.value -= memory.by[:C] @ change
+        self.ground_scale = 1.0
+        return nis
+
     def _nis(self, rows: Rows, shared: np.ndarray) -> float:
         slope = rows.slope[:, :C]
         expected = slope @ self.covariance @ slope.T + shared + np.diag(rows.own)
@@ -355,11 +384,14 @@ class PrismFilter:
                 return False
         elif in_t.time_s - self.time_s < EARLY_SHARE * self.told.correlation_s:
             return False
+        self.flown_m += float(np.linalg.norm((in_t.moved_m - self.last_m)[[0, 2]]))
+        self.last_m = in_t.moved_m
         sight = in_t.turned(self.turn, self.origin_m)
         span_s = min(in_t.time_s - self.time_s, GAP_MAX_S)
         self.time_s = in_t.time_s
         q_variance = self.full_covariance()[Q, Q]
         self._pass_time(span_s)
+        self._widen_ground()
         rows = self._rows(sight, q_variance)
         self._recall(sight, span_s, rows)
         if rows is None:
@@ -380,9 +412,13 @@ class PrismFilter:
         white = np.radians(self.told.attitude_white_deg)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
         self._learn(rows, shared)
-        nis = self._nis(rows, shared)
+        before = self.state[Q]
+        nis = self._narrow_ground(rows)
+        nis += self._nis(rows, shared)
         self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
         self._update(rows, shared)
+        self.ground_scale *= before / self.state[Q]
+        self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)
         return True
 
     # ----------------------------------------------------------------------------------------------------- quantities
@@ -400,6 +436,9 @@ class PrismFilter:
         above_m = max(abs(values[3]), abs(values[3] - in_t.given_height_m))
         variance += (share * np.array([values[1], values[1], values[2], above_m])) ** 2
         before_s = self.start_s - self.first_s  # X0 and Z0 count from the track's first image
+        way_m = float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]]))
+        straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # a path that leads back is not scaled
+        variance[:2] += (told.velocity_bias_m_s * span_s) ** 2 * (1 - straight**2)
         variance[:2] += told.position_walk_m**2 * (span_s + before_s) + (told.velocity_bias_m_s * before_s) ** 2
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)
