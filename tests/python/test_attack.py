@@ -313,7 +313,7 @@ def test_what_is_odd_within_three_seconds() -> None:
 
 def truth_of(solid: Solid, x_m: float = 10.0, z_m: float = 100.0) -> Truth:
     still = np.zeros((1, 3))
-    return Truth(solid, np.array([x_m, z_m]), np.zeros(2), 0.0, np.zeros(2), still, still)
+    return Truth(solid, np.array([x_m, z_m]), 0.0, np.zeros(2), still, still)
 
 
 def answers_of(model: int, values: list[float]) -> Answers:

@@ -160,7 +160,7 @@ def _seen(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[
 
 
 def _axis(world: _World, first_seen: int) -> float:
-    """T's Z axis from the course's forward: where a path says, or where the nose points when something is first seen."""
+    """T's Z axis from the course's forward: as the path says, or of the nose when something is first seen."""
     if world.path.trimmed:
         return world.path.axis_rad
     nose = world.path.at(world.path.time_s[first_seen : first_seen + 1])[1][0, :, 0]

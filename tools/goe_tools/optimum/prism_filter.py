@@ -297,7 +297,7 @@ class PrismFilter:
             rows.own[i] += memory.variance
 
     def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
-        """Normalised square of a weighted sum of residuals. What a walk along Z and a ground that is widened add is left out."""
+        """Normalised square of a weighted sum of residuals, without what a walk along Z and a widened ground add."""
         slope = weight @ rows.slope
         white = np.radians(self.told.attitude_white_deg)
         variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
