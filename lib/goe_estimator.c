@@ -80,11 +80,14 @@ static void forget_track(goe_estimator_t *estimator) {
 #endif
 }
 
+#if GOE_WITH_WINDOW
+/* Of the window, which tells by its answer alone whether it solved. */
 static void note_solved(goe_estimator_t *estimator) {
     if (estimator->estimate.fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
     }
 }
+#endif
 
 /* ------------------------------------------------------------------------------------------------------------- refined -- */
 
@@ -99,10 +102,11 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
                                    bool measured) {
     const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
                                                       &estimator->estimate);
-    if (!fresh) {
+    if (fresh) {
+        estimator->estimate_time_us = estimator->motion.time_us;
+    } else {
         grow_old(estimator);
     }
-    note_solved(estimator);
     goe_report_fit(&estimator->filter, &estimator->settings, &estimator->estimate);
     if (fresh) {
         return faults->first == GOE_OK ? GOE_OK : GOE_PARTIAL;

@@ -32,7 +32,7 @@
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
 /* (R14). A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
-static void walk_along_z(goe_filter_t *filter, float sigma) {
+static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     float direction[GOE_STATES];
     memcpy(direction, filter->state, sizeof direction);
     if (filter->phase == GOE_PHASE_PRISM) {
@@ -72,7 +72,7 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 
 /* The ground below the altimeter rises or falls, one does not know which: after a way d the height is off by slope d more, and its
  * variance has grown by the difference of the squares. The top counts from the altimeter's zero, which moves along. */
-static void climb_ground(goe_filter_t *filter, const goe_navigation_t *navigation) {
+static GOE_NOINLINE void climb_ground(goe_filter_t *filter, const goe_navigation_t *navigation) {
     float direction[GOE_STATES] = {0.0f};
     const float grown2 = goe_square(filter->flown_m) - goe_square(filter->sloped_m);
     const float sigma = navigation->slope * filter->state[GOE_INVERSE_RANGE] * sqrtf(goe_larger(grown2, 0.0f));

@@ -121,9 +121,7 @@ class Scatter:
         now[side] = np.clip(residual, -SCATTER_CLIP, SCATTER_CLIP)
         both = (now != 0) & (self.before != 0)
         self.products = SCATTER_KEPT * self.products + float(now[both] @ self.before[both])
-        self.squares = SCATTER_KEPT * self.squares + 0.5 * float(
-            now[both] @ now[both] + self.before[both] @ self.before[both]
-        )
+        self.squares = SCATTER_KEPT * self.squares + float(now[both] @ now[both])
         self.before = now
 
     def take_fit(self, ratio: float) -> None:
