@@ -214,6 +214,23 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #endif
 }
 
+/* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be used: the
+ * track begins here. */
+static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
+    goe_motion_t *motion = &estimator->motion;
+    motion->sighted = true;
+    bool ahead = !estimator->settings.heading_auto;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        ahead = ahead || view->point[i].usable;
+    }
+    if (!ahead) {
+        motion->started = false;
+        faults->first = GOE_OK;
+        goe_motion_follow(motion, &estimator->settings, view);
+        goe_align_points(view->camera, view, faults);
+    }
+}
+
 static void open_view(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera,
                       goe_view_t *view, goe_faults_t *faults) {
     view->image = image;
@@ -222,7 +239,9 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     view->camera_to_body = estimator->camera_to_body[image->camera];
     goe_motion_follow(&estimator->motion, &estimator->settings, view);
     goe_align_points(camera, view, faults);
-    estimator->motion.started |= view->seen;
+    if (!estimator->motion.sighted && view->seen) {
+        sight(estimator, view, faults);
+    }
 }
 
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
