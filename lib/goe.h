@@ -236,7 +236,8 @@ typedef struct {
     float attitude_white_deg; /* attitude error that is new in each image, degrees; 1e-4 to 30; default 0.1 */
     float attitude_drift_deg; /* random walk of the attitude error, degrees per square root of a second; 0 to 30; default 0 */
     float height_bias_m;      /* constant error of goe_pose_t.height_m over the obstacle's ground, m; 1e-3 to 1e3;
-                                 default 0.5 */
+                                 default 0.5. No image shows that it is larger: ground 5 m off and told as 0.5, by base corners,
+                                 leaves Z0 within 2 sigma in 56 % of the answers, H in 32 % */
     float velocity_bias_m_s;  /* constant error of the own horizontal velocity, each axis, m/s; 0 to 100; default 0.05 */
     float position_walk_m;    /* random walk of the own position, m per square root of a second; 0 to 100; default 0.05 */
     float position_white_m;   /* error of the own position that is new in each image, each axis, m; 0 to 100; default 0.
@@ -414,7 +415,9 @@ typedef struct {
     bool suspect;          /* refined: the residuals do not fit a static obstacle of this model (misfit > misfit_max): it
                               moves, or it is of another shape, or the errors are larger than given; or a disc was asked for
                               and its silhouette is not that of one; or what was given as base corners proved to be none and
-                              is left out. The sigmas may then be too small: widen the margins, never drop a warning */
+                              is left out. The sigmas may then be too small: widen the margins, never drop a warning. Motion
+                              along the line of sight looks like another size: oncoming at 15 m/s, 31 % of the tracks are
+                              suspect after 4 s and 60 % ever. All lengths in another unit are never noticed */
     int points;            /* images behind the answer: the window, or all that were used; at most 32767; 0 if none */
     float age_s;           /* since the image of the last solution, refused images included; 0 if fresh or none; at
                               most 4000. It stands still when goe_update is not called */
