@@ -24,16 +24,17 @@
 /* Every call hands out an estimate. Four words at a time are two instructions on ARM; memcpy() does not know that they are
  * aligned, and takes twice as long. */
 #if defined(__GNUC__)
+#define BLOCK_BYTES 32u
+#define ESTIMATE_BLOCKS (sizeof(goe_estimate_t) / BLOCK_BYTES)
+
 typedef struct __attribute__((may_alias)) {
-    uint32_t word[8];
+    uint32_t word[BLOCK_BYTES / 4u];
 } block_t;
 
-#define ESTIMATE_BLOCKS (sizeof(goe_estimate_t) / sizeof(block_t))
-
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) {
-    block_t *t = (block_t *)(void *)to;
-    const block_t *f = (const block_t *)(const void *)from;
-    const size_t copied = ESTIMATE_BLOCKS * sizeof(block_t);
+    block_t *t = (block_t *)to;
+    const block_t *f = (const block_t *)from;
+    const size_t copied = ESTIMATE_BLOCKS * BLOCK_BYTES;
     for (size_t i = 0; i < ESTIMATE_BLOCKS; i++) {
         t[i] = f[i];
     }
