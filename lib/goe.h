@@ -245,8 +245,8 @@ typedef struct {
     float height_white_m;     /* error of height_m that is new in each image, m; 0 to 1e3; default 0: none, and points take each
                                  image's height as it is. Otherwise the height moves by the changes of down, and every image's
                                  height is a reading of where it began, whose mean the filter learns */
-    float slope;              /* slope of the ground that height_m is above, m per m flown; 0 to 1; default 0. The height at the
-                                 filter's start is off by height_bias_m all the same: on a slope by it times the range, too */
+    float slope;              /* slope of the ground that height_m is above, m per m flown; 0 to 1; default 0. It lets the height
+                                 go wrong on the way; what it is wrong by at first, slope times range, is height_bias_m's */
     float ground_m;           /* upright boxes: how far the obstacle's ground may lie off that which height_m is above, added to
                                  height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
 } goe_navigation_t;
@@ -325,7 +325,8 @@ typedef struct {
     float position_ned_m[3]; /* vehicle's reference point, each +-1e6, in steps of 6 cm out there and of 1 mm within 1e4;
                                 with points, down is checked only; with boxes it changes the height */
     float height_m;          /* of the camera itself above the ground at the obstacle, +-1e5; window: no obstacle height
-                                if it is <= 0. Boxes: that of the track's first image counts, from then on the changes of down */
+                                if it is <= 0. Boxes: that of the first image with a box counts, from then on the changes of down;
+                                with navigation.height_white_m the mean of all, boxes and points */
     float attitude[4];       /* w, x, y, z; body FRD to NED; normalised here, refused if its norm is off by over 1 % */
     uint8_t reset_count;     /* the filter's reset counter, any start, wraps */
     bool reset_delta_known;  /* read only when reset_count changed */
@@ -356,7 +357,8 @@ typedef struct {
  * method. */
 typedef struct {
     float attitude_deg; /* instead of navigation.attitude_white_deg; 0 to 30 */
-    float height_m;     /* instead of navigation.height_bias_m, in the image whose height counts; boxes; 0 to 1e3 */
+    float height_m;     /* instead of navigation.height_bias_m, in the first image with a box, whose height counts (with
+                           navigation.height_white_m: in the track's first); 0 to 1e3 */
     float pixel_px;     /* instead of detector.point_px, and of box_px; 0 to 100 */
 } goe_image_noise_t;
 
@@ -492,8 +494,8 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  * Cost: at most 8500 instructions, 800 bytes of stack. */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
-/* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over
- * the ground it is taken as standing still, also when it climbs or descends. */
+/* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over the ground it is taken as standing
+ * still, also when it climbs or descends. */
 typedef struct {
     float velocity_ned_m_s[3]; /* relative to the ground, each +-1e3 */
     float margin_m;            /* the outline of the obstacle must stay farther away than this, horizontally; 0 to 1e4 */
@@ -525,8 +527,7 @@ typedef struct {
 /* Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. The outline is the disc, or the box
  * as far as it is known: without orientation or length the circle of its width about the reference point, refined also while
  * the width is not known well enough to be told; window, without width: that point alone, so that margin_m has to cover the
- * obstacle's size. A suspect or stale estimate asks for
- * wider margins, not for silence: README.md, "Going around, or not".
+ * obstacle's size. A suspect or stale estimate asks for wider margins, not for silence: README.md, "Going around, or not".
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,
  * GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED.

@@ -1,4 +1,5 @@
-/* The image in the state's axes, projection under a small attitude bias, noise of the points, rows. SPDX-License-Identifier: MIT */
+/* The image in the state's axes, projection under a small attitude bias, noise of the points, rows.
+ * SPDX-License-Identifier: MIT */
 #include "refined/goe_observation.h"
 
 #include <math.h>
@@ -209,7 +210,8 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, flo
     return by;
 }
 
-/* Y/Z at which the edge was measured, with the attitude bias taken off, and what its derivatives by the bias add to those of x. */
+/* Y/Z at which the edge was measured, with the attitude bias taken off, and what its derivatives by the bias add to those
+ * of x. */
 static float edge_height(const goe_observation_t *obs, const goe_point_t *p) {
     return p->y + obs->ex * (1.0f + p->y * p->y) - obs->ez * p->x - obs->ey * p->x * p->y;
 }

@@ -106,8 +106,8 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
 float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
                     const goe_gradient_t *gradient);
 
-/* An upright edge at the place (X, Z), seen along x at the height at which it was measured, freed of the attitude bias. Null if the feature is not
- * usable. more: variance beyond the pixel noise. */
+/* An upright edge at the place (X, Z), seen along x at the height at which it was measured, freed of the attitude bias.
+ * Null if the feature is not usable. more: variance beyond the pixel noise. */
 float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
                          float more, goe_gradient_t *of_x);
 

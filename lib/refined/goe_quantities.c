@@ -28,8 +28,8 @@ static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION
 
 /* ------------------------------------------------------------------------------------------------------------- drift -- */
 
-/* (R23): constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no image shows
- * that. */
+/* (R23): constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no
+ * image shows that. */
 typedef struct {
     goe_xz_t camera_m; /* since the filter's start */
     float share;       /* of lengths, and rad */

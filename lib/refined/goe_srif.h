@@ -20,9 +20,9 @@ static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
 
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
-/* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state. nuisance_root: 1/sigma of
- * the nuisances. *matrix is used up. Returns the squared norm that is left of the residuals: the normalised innovation
- * squared. */
+/* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state. nuisance_root:
+ * 1/sigma of the nuisances. *matrix is used up. Returns the squared norm that is left of the residuals: the normalised
+ * innovation squared. */
 float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]);
 
 /* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if it were

@@ -25,8 +25,8 @@ typedef float goe_batch_float_t;
 size_t goe_batch_settings_size(void);
 void goe_batch_default(goe_settings_t *settings);
 
-/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "more_cameras[0].fx_px", "method", ...); whole numbers and truth
- * values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
+/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "more_cameras[0].fx_px", "method", ...);
+ * whole numbers and truth values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
 int goe_batch_set(goe_settings_t *settings, const char *name, double value);
 
 /* Names of the columns of labels, numbers and hazards, in order; null after the last. */
