@@ -5,6 +5,7 @@
 
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
+#include "refined/goe_ground.h"
 #include "refined/goe_quantities.h"
 
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
@@ -48,7 +49,7 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
 
 static bool is_steady(const goe_estimator_t *estimator) {
     return is_of_filter(&estimator->estimate) &&
-           goe_filter_is_steady(&estimator->filter, &estimator->settings.navigation);
+           goe_ground_is_steady(&estimator->filter, &estimator->settings.navigation);
 }
 
 float goe_latest_camera_height(const goe_estimator_t *estimator) {

@@ -12,6 +12,7 @@
 #include "image/goe_ego_motion.h"
 #include "image/goe_intake.h"
 #include "maths/goe_time.h"
+#include "refined/goe_ground.h"
 #include "refined/goe_refined.h"
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
@@ -210,13 +211,13 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #if GOE_WITH_REFINED
     if (goe_is_refined(estimator)) {
         move_center(&estimator->estimate, pose->reset_delta_ned_m);
-        goe_filter_move_datum(&estimator->filter, pose->reset_delta_ned_m[2]);
+        goe_ground_move(&estimator->filter, pose->reset_delta_ned_m[2]);
     }
 #endif
 }
 
-/* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be used: the
- * track begins here. */
+/* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be
+ * used: the track begins here. */
 static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
     goe_motion_t *motion = &estimator->motion;
     motion->sighted = true;

@@ -113,19 +113,20 @@ typedef struct {    /* refined/goe_box.c: what the report calls the edges of a b
     bool decided;
 } goe_naming_t;
 
-/* refined/goe_filter.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
+/* refined/goe_ground.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
  * in. */
 typedef struct {
     float ground_m; /* down of the ground, by the heights before the filter's start */
     float height_m; /* of the camera above it, latest image */
     float sd_m;     /* one sigma of the first height, as its image gave it; 0: as in the settings */
     float mean_m;   /* by how much all heights so far, freed of the changes of down, lie above that ground on average */
+    float first;    /* information of the height that the filter began with, 1/m^2 */
     float information, moment; /* of the offset, which the filter has been told: 1/m^2, and times its mean */
     uint16_t readings;         /* heights so far, saturating */
 } goe_datum_t;
 
-/* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell it. It
- * hangs on the state: value + by' (x - state), and the variance is what it is uncertain by beyond that. */
+/* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell
+ * it. It hangs on the state: value + by' (x - state), and the variance is what it is uncertain by beyond that. */
 typedef struct {
     float by[GOE_STATES];
     float value;    /* focal lengths */
@@ -168,7 +169,7 @@ typedef struct {
     bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
     goe_naming_t naming;
     uint8_t camera;          /* that took the latest image */
-    bool has_datum;          /* the datum is that of the track\'s first image */
+    bool has_datum;          /* the datum is that of the track's first image */
     float ground_scale;      /* 1/Z0 for which the sigma of GOE_GROUND was set, over the present one */
     float flown_m;           /* along the path since the filter's start, over ground */
     float sloped_m;          /* ... up to which the ground's slope was added */

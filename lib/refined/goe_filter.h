@@ -108,17 +108,6 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 
 /* ------------------------------------------------------------------------------------------------------------ axes -- */
 
-/* Takes an image's height, and what down has changed by. Upright boxes count by it, and heights with a white error do. */
-void goe_filter_take_height(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view);
-
-/* Whether the height moves by the changes of down. */
-static inline bool goe_filter_is_steady(const goe_filter_t *filter, const goe_navigation_t *navigation) {
-    return filter->phase == GOE_PHASE_PRISM || navigation->height_white_m > 0.0f;
-}
-
-/* The autopilot's down jumped by this. */
-static inline void goe_filter_move_datum(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
-
 /* The state's axes become T's, with their origin at the camera now. */
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);
 
