@@ -96,8 +96,17 @@ static void note_solved(goe_estimator_t *estimator) {
 #if GOE_WITH_REFINED
 /* No new answer: the last one grows old, and follows the motion. */
 static void grow_old(goe_estimator_t *estimator) {
-    estimator->estimate.fresh = false;
-    goe_motion_relate(&estimator->motion, &estimator->estimate);
+    goe_estimate_t *estimate = &estimator->estimate;
+    const goe_motion_t *motion = &estimator->motion;
+    estimate->fresh = false;
+    goe_motion_relate(motion, estimate);
+    if (estimate->valid & GOE_HAS_VELOCITY) {
+        const float s = goe_time_between_s(estimator->estimate_time_us, motion->time_us, AGE_MAX_US);
+        const float north_m = estimate->velocity_north_m_s * s;
+        const float east_m = estimate->velocity_east_m_s * s;
+        estimate->x_m += motion->heading_cos * east_m - motion->heading_sin * north_m;
+        estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
+    }
 }
 
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
@@ -175,6 +184,9 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const bool reported = goe_filter_reports(&estimator->filter, settings);
     const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
     const bool reports = goe_filter_reports(&estimator->filter, settings);
+#if GOE_BESIDE
+    goe_motion_mark(&estimator->motion, view->image->pose.attitude);
+#endif
 #if GOE_WITH_WINDOW
     if (!reported && !(reports && (estimator->estimate.valid & GOE_HAS_POSITION))) {
         const goe_status_t status = solve_window(estimator, view, faults);

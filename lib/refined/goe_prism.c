@@ -229,8 +229,8 @@ static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t si
     const float outward = g.x * t.outward.x + g.z * t.outward.z;
     const float along = o->depth * t.outward.z;
     by[GOE_GROUND] = t.foot ? g.y : 0.0f;
-    by[GOE_BEARING] = g.x;
-    by[GOE_INVERSE_RANGE] = g.y * obs->steady_height_m + goe_rows_by_range(obs, g.x, g.z);
+    goe_rows_place(by, obs, g.x, g.z);
+    by[GOE_INVERSE_RANGE] += g.y * obs->steady_height_m;
     by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
     by[GOE_PRISM_HALF] = outward * t.reach / o->half;
     by[GOE_PRISM_TOP] = t.foot ? 0.0f : -g.y;
@@ -333,7 +333,7 @@ void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows) {
     }
 }
 
-void goe_prism_follow(goe_filter_t *filter, const float change[GOE_STATES]) {
+void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]) {
     float *depth = &filter->state[GOE_PRISM_DEPTH];
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         goe_side_memory_follow(&filter->side[side], change);
@@ -413,7 +413,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     sd[GOE_PRISM_HALF] = HALF_FREEDOM * width;
     sd[GOE_PRISM_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_PRISM_TOP]), width);
     sd[GOE_PRISM_UNSEEN] = disc ? DISC_FREEDOM : DEPTH_UNSEEN;
-    memset(root, 0, sizeof *root);
+    goe_srif_clear(root);
     for (size_t i = 0; i < GOE_STATES; i++) {
         root->element[goe_srif_row(i) + i] = 1.0f / sd[i];
     }

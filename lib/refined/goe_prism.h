@@ -33,7 +33,7 @@ void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_ro
 void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows);
 
 /* After the update. */
-void goe_prism_follow(goe_filter_t *filter, const float change[GOE_STATES]);
+void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 
 /* Quantities. */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);

@@ -17,6 +17,7 @@
 #include "refined/goe_ground.h"
 #include "refined/goe_health.h"
 #include "refined/goe_model.h"
+#include "refined/goe_mover.h"
 #include "refined/goe_prism.h"
 #include "refined/goe_report.h"
 #include "refined/goe_scatter.h"
@@ -66,11 +67,13 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->flown_m += sqrtf(dx_m * dx_m + dz_m * dz_m);
     filter->last.dx_m = motion->dx_m;
     filter->last.dz_m = motion->dz_m;
+#if GOE_BESIDE
+    goe_filter_pace(filter, motion);
+#endif
 }
 
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
-static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, int64_t time_us) {
-    const float since_s = goe_time_between_s(filter->time_us, time_us, GAP_MAX_US);
+static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s, int64_t time_us) {
     const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
     filter->time_us = time_us;
     filter->drift_rad2 += drift * drift;
@@ -94,13 +97,16 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
     }
 }
 
-static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict) {
+static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict, float change[GOE_UNKNOWNS]) {
     goe_rows_t rows;
     goe_ground_widen(filter);
     goe_rows_clear(&rows, &filter->rows);
     rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
     goe_rows_end(&rows, obs);
+#if GOE_BESIDE
+    goe_mover_columns(obs, &rows);
+#endif
     allow_for_curvature(filter, obs, &rows);
     goe_model_recall(filter, obs, &rows);
     *verdict = goe_gate_apply(obs->settings, filter, &rows);
@@ -111,7 +117,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
         return false;
     }
     verdict->rows += goe_ground_tell(filter, obs, &rows);
-    const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows);
+    const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
     goe_health_take(&filter->health, *verdict, nis * goe_gate_repeated(obs->settings, filter));
@@ -129,12 +135,11 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
  * the uncertain range adds. */
-static void note_time(goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
+static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     const float relative2 =
         goe_filter_variance(filter, GOE_INVERSE_RANGE) / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
-        const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
         const bool same = filter->camera == obs->number; /* what was alike in one camera says nothing of another */
         obs->fade = same && detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
         obs->outline_share = outline_share(detector, obs->fade);
@@ -160,14 +165,30 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
     return true;
 }
 
-GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs) {
+/* Whether the obstacle has just been found to move. */
+static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
+                           float since_s) {
+#if GOE_BESIDE
+    return goe_mover_judge(filter, obs, change, since_s);
+#else
+    (void)filter;
+    (void)obs;
+    (void)change;
+    (void)since_s;
+    return false;
+#endif
+}
+
+GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs, float since_s) {
     goe_verdict_t verdict;
+    float change[GOE_UNKNOWNS];
     (void)goe_count_image(&filter->phase_images);
-    const bool measured = measure(filter, obs, &verdict);
+    const bool measured = measure(filter, obs, &verdict, change);
     if (goe_filter_is_box(filter)) {
         goe_box_clip(filter);
     }
-    if (goe_health_judge(filter, obs->settings, verdict)) {
+    const bool moves = measured && starts_to_move(filter, obs, change, since_s);
+    if (goe_health_judge(filter, obs->settings, verdict) || moves) {
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
     }
@@ -190,11 +211,12 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
+    const float since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
     fly_on(filter, view->motion);
-    note_time(filter, view->motion, &obs);
-    let_time_pass(filter, &settings->navigation, view->motion->time_us);
+    note_time(filter, since_s, &obs);
+    let_time_pass(filter, &settings->navigation, since_s, view->motion->time_us);
     goe_observation_linearise(&obs);
-    return !goe_model_change(filter, &obs) && use_image(filter, &obs);
+    return !goe_model_change(filter, &obs) && use_image(filter, &obs, since_s);
 }
 
 bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,

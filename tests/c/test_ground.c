@@ -61,12 +61,13 @@ static void start(float range_m, float height_sd_m) {
 
 /* Tells the filter what it is to hear, without any other row. Returns how many rows that were. */
 static int tell(void) {
+    float change[GOE_UNKNOWNS];
     goe_rows_clear(&rows, &matrix);
     memset(&matrix, 0, sizeof matrix);
     rows.white_rad = 1.0e-3f;
     const int told = goe_ground_tell(&filter, &obs, &rows);
     TEST_ASSERT_EQUAL_INT(told, (int)rows.count);
-    (void)goe_model_update(&filter, 1.0f / rows.white_rad, &rows);
+    (void)goe_model_update(&filter, 1.0f / rows.white_rad, &rows, change);
     goe_filter_invert(&filter);
     return told;
 }
