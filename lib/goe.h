@@ -211,7 +211,7 @@ typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2 } goe_method_t;
  * about z, then pitch about the new y, then roll about the newest x. A camera that looks left has a negative yaw. */
 typedef struct {
     float fx_px;           /* focal length along x, px; 1 to 1e5; no default: must be set. No image shows that it is off: by
-                              3 %, untold, W is within 2 sigma in 50 % of the answers, H in 68 %, Z0 in 91 % */
+                              3 %, untold, W is within 2 sigma in 51 % of the answers, H in 68 %, Z0 in 91 % */
     float fy_px;           /* ... along y; 1 to 1e5; no default: must be set */
     float cx_px;           /* principal point, px; -1e5 to 1e5; no default: must be set */
     float cy_px;           /* principal point, px; -1e5 to 1e5; no default: must be set */
@@ -441,8 +441,8 @@ typedef struct {
                               moves, or it is of another shape, or the errors are larger than given; or a disc was asked for
                               and its silhouette is not that of one; or what was given as base corners proved to be none and
                               is left out. The sigmas may then be too small: widen the margins, never drop a warning. Motion
-                              along the line of sight looks like another size: oncoming at 15 m/s, 61 % of the tracks with
-                              base corners are told to move after 4 s and 72 % ever, of outlines 22 % ever. All lengths in
+                              along the line of sight looks like another size: oncoming at 15 m/s, 60 % of the tracks with
+                              base corners are told to move after 4 s and 72 % ever, of outlines 19 % ever. All lengths in
                               another unit are never noticed */
     goe_reason_t reason;   /* of that; GOE_REASON_LATE also of an estimate that is not suspect */
     int points;            /* images behind the answer: the window, or all that were used; at most 32767; 0 if none */
