@@ -1,0 +1,183 @@
+/* Pose history. SPDX-License-Identifier: MIT
+ *
+ * Two rings, as autopilots publish attitude and position apart and at rates of their own. The newest sample is overwritten
+ * while it lies less than 20 ms behind the one before it: so 4 ms samples leave gaps just under 24 ms, the newest sample is
+ * always there, and 32 of them last for 0.6 s. */
+#include "goe_history.h"
+
+#include <math.h>
+
+#include "goe_flight_maths.h"
+
+#define THIN_US 20000
+#define GAP_MAX_US 500000 /* over a longer gap nothing is interpolated */
+#define NONE (-1)
+
+void goe_flight_history_clear(goe_flight_history_t *history) { memset(history, 0, sizeof *history); }
+
+/* ------------------------------------------------------------------------------------------------------------- rings -- */
+
+/* Place of the sample `back` before the newest in a ring whose next free place is `next`. */
+static int place(int next, int back) { return (next + 2 * GOE_FLIGHT_SAMPLES - 1 - back) % GOE_FLIGHT_SAMPLES; }
+
+/* Where a sample goes, given the times of the newest and the one before it; NONE: it is not newer. */
+static int place_for(uint8_t *next, uint8_t *count, uint32_t time_us, uint32_t newest_us, uint32_t before_us) {
+    if (*count > 0 && goe_flight_between_us(time_us, newest_us) <= 0) {
+        return NONE;
+    }
+    if (*count > 1 && goe_flight_between_us(newest_us, before_us) < THIN_US) {
+        return place(*next, 0);
+    }
+    const int here = *next;
+    *next = (uint8_t)((here + 1) % GOE_FLIGHT_SAMPLES);
+    *count = (uint8_t)(*count < GOE_FLIGHT_SAMPLES ? *count + 1 : GOE_FLIGHT_SAMPLES);
+    return here;
+}
+
+bool goe_flight_history_add_attitude(goe_flight_history_t *history, uint32_t time_us, const float q[4]) {
+    const int next = history->attitude_next;
+    const int here = place_for(&history->attitude_next, &history->attitude_count, time_us,
+                               history->attitude[place(next, 0)].time_us, history->attitude[place(next, 1)].time_us);
+    if (here == NONE) {
+        return false;
+    }
+    history->attitude[here].time_us = time_us;
+    memcpy(history->attitude[here].q, q, sizeof history->attitude[here].q);
+    return true;
+}
+
+bool goe_flight_history_add_position(goe_flight_history_t *history, uint32_t time_us, const float ned_m[3]) {
+    const int next = history->position_next;
+    const int here = place_for(&history->position_next, &history->position_count, time_us,
+                               history->position[place(next, 0)].time_us, history->position[place(next, 1)].time_us);
+    if (here == NONE) {
+        return false;
+    }
+    history->position[here].time_us = time_us;
+    memcpy(history->position[here].ned_m, ned_m, sizeof history->position[here].ned_m);
+    return true;
+}
+
+void goe_flight_history_shift(goe_flight_history_t *history, const float jump_ned_m[3]) {
+    for (int k = 0; k < GOE_FLIGHT_SAMPLES; k++) {
+        for (int i = 0; i < 3; i++) {
+            history->position[k].ned_m[i] += jump_ned_m[i];
+        }
+    }
+}
+
+const goe_flight_history_attitude_t *goe_flight_history_newest_attitude(const goe_flight_history_t *history) {
+    return history->attitude_count > 0 ? &history->attitude[place(history->attitude_next, 0)] : NULL;
+}
+
+const goe_flight_history_position_t *goe_flight_history_newest_position(const goe_flight_history_t *history) {
+    return history->position_count > 0 ? &history->position[place(history->position_next, 0)] : NULL;
+}
+
+/* ----------------------------------------------------------------------------------------------------- interpolation -- */
+
+/* Two samples about a time: so many back from the newest, and how far on from the older to the newer. */
+typedef struct {
+    int newer, older;
+    float share;
+} bracket_t;
+
+static goe_flight_status_t judge(int count, int back, uint32_t time_us, uint32_t newer_us, uint32_t older_us,
+                                 bracket_t *found) {
+    const int32_t gap_us = goe_flight_between_us(newer_us, older_us);
+    if (back >= count || gap_us > GAP_MAX_US) {
+        return GOE_FLIGHT_TOO_OLD;
+    }
+    found->older = back;
+    found->newer = back > 0 ? back - 1 : 0;
+    found->share = back > 0 ? (float)goe_flight_between_us(time_us, older_us) / (float)gap_us : 0.0f;
+    return GOE_FLIGHT_OK;
+}
+
+static goe_flight_status_t find_attitude(const goe_flight_history_t *h, uint32_t time_us, bracket_t *found) {
+    int back = 0;
+    while (back < h->attitude_count &&
+           goe_flight_between_us(time_us, h->attitude[place(h->attitude_next, back)].time_us) < 0) {
+        back++;
+    }
+    if (back == 0 && time_us != h->attitude[place(h->attitude_next, 0)].time_us) {
+        return GOE_FLIGHT_TOO_NEW;
+    }
+    return judge(h->attitude_count, back, time_us,
+                 h->attitude[place(h->attitude_next, back > 0 ? back - 1 : 0)].time_us,
+                 h->attitude[place(h->attitude_next, back)].time_us, found);
+}
+
+static goe_flight_status_t find_position(const goe_flight_history_t *h, uint32_t time_us, bracket_t *found) {
+    int back = 0;
+    while (back < h->position_count &&
+           goe_flight_between_us(time_us, h->position[place(h->position_next, back)].time_us) < 0) {
+        back++;
+    }
+    if (back == 0 && time_us != h->position[place(h->position_next, 0)].time_us) {
+        return GOE_FLIGHT_TOO_NEW;
+    }
+    return judge(h->position_count, back, time_us,
+                 h->position[place(h->position_next, back > 0 ? back - 1 : 0)].time_us,
+                 h->position[place(h->position_next, back)].time_us, found);
+}
+
+static float dot(const float a[4], const float b[4]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
+
+/* Along the shorter arc: q and -q are the same attitude. */
+static void blend_attitude(const float from[4], const float to[4], float share, float q[4]) {
+    const float towards = dot(from, to) < 0.0f ? -share : share;
+    for (int i = 0; i < 4; i++) {
+        q[i] = (1.0f - share) * from[i] + towards * to[i];
+    }
+    const float norm = sqrtf(dot(q, q)); /* at least 0.7: the two lie within half a turn */
+    for (int i = 0; i < 4; i++) {
+        q[i] /= norm;
+    }
+}
+
+/* Of the turn between two attitudes, |2 vec(a* b)|^2, by |vec|^2 = 1 - dot^2; without cancellation for small turns. */
+static float turn_square(const float a[4], const float b[4]) {
+    const float sign = dot(a, b) < 0.0f ? -1.0f : 1.0f;
+    float square = 0.0f;
+    for (int i = 0; i < 4; i++) {
+        square += goe_flight_square(a[i] - sign * b[i]);
+    }
+    return 4.0f * square;
+}
+
+static float rate_rms_deg_s(const goe_flight_history_t *h) {
+    float turns = 0.0f; /* integral of the rate's square */
+    float time_s = 0.0f;
+    for (int back = 0; back + 1 < h->attitude_count; back++) {
+        const goe_flight_history_attitude_t *newer = &h->attitude[place(h->attitude_next, back)];
+        const goe_flight_history_attitude_t *older = &h->attitude[place(h->attitude_next, back + 1)];
+        const float step_s = goe_flight_between_s(newer->time_us, older->time_us);
+        turns += turn_square(newer->q, older->q) / step_s;
+        time_s += step_s;
+    }
+    return time_s > 0.0f ? sqrtf(turns / time_s) * GOE_FLIGHT_DEG_PER_RAD : 0.0f;
+}
+
+goe_flight_status_t goe_flight_history_at(const goe_flight_history_t *history, uint32_t time_us,
+                                          goe_flight_history_pose_t *pose) {
+    bracket_t turn;
+    bracket_t move;
+    if (history->attitude_count == 0 || history->position_count == 0) {
+        return GOE_FLIGHT_NO_POSE;
+    }
+    const goe_flight_status_t attitude = find_attitude(history, time_us, &turn);
+    const goe_flight_status_t position = find_position(history, time_us, &move);
+    if (attitude != GOE_FLIGHT_OK || position != GOE_FLIGHT_OK) {
+        return attitude < 0 || position < 0 ? GOE_FLIGHT_TOO_OLD : GOE_FLIGHT_TOO_NEW;
+    }
+    blend_attitude(history->attitude[place(history->attitude_next, turn.older)].q,
+                   history->attitude[place(history->attitude_next, turn.newer)].q, turn.share, pose->q);
+    const float *older = history->position[place(history->position_next, move.older)].ned_m;
+    const float *newer = history->position[place(history->position_next, move.newer)].ned_m;
+    for (int i = 0; i < 3; i++) {
+        pose->ned_m[i] = older[i] + move.share * (newer[i] - older[i]);
+    }
+    pose->rate_deg_s = rate_rms_deg_s(history);
+    return GOE_FLIGHT_OK;
+}
