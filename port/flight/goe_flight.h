@@ -103,7 +103,7 @@ typedef struct {
     float clearance_m;   /* over the top; 0 to 1000; 10 */
     float violation_max; /* probability of violating both from which on there is a reaction; 0.001 to 1; 0.1 */
     float doubt;         /* factor on margin and clearance while the estimate is suspect; 1 to 10; 1.5 */
-    float drift_m_s;     /* by which both grow while the estimate is not renewed; 0 to 100; 2 */
+    float drift_m_s;     /* by which both grow while the estimate is not renewed; 0 to 100; 1 */
     /* what the aircraft can do */
     float bank_deg;    /* of an avoiding turn; 5 to 70; 30 */
     float roll_in_s;   /* from the order to that turn, link and mode change included; 0 to 20; 1.5 */

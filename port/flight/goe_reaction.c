@@ -14,6 +14,8 @@
 #define SURE_SIGMA 2.0f
 #define SPEED_MIN_M_S 1.0f
 #define TIME_MAX_S 1.0e4f
+#define LATE_VIOLATION                                                                                                 \
+    0.5f /* where no action comes in time, a hazard that is less likely than not is no reason for one */
 #define NOBODY (-1)
 
 /* Everything about one obstacle on a course: right is positive aside. */
@@ -264,7 +266,9 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
         return 0.0f;
     }
     const option_t option = choose(flight, &e, worst, own);
-    const bool is_hazard = flight->slot[worst].hazard.violation >= flight->settings.violation_max && e.ahead_m > 0.0f;
+    const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, flight->settings.violation_max)
+                                                     : flight->settings.violation_max;
+    const bool is_hazard = flight->slot[worst].hazard.violation >= most && e.ahead_m > 0.0f;
     const bool is_new = r->action == GOE_FLIGHT_NONE || r->slot != worst;
     if (is_due(r, &flight->settings, &e, option.needed_s, is_hazard && is_new, own->time_us)) {
         order(flight, worst, &e, &option, own);

@@ -19,7 +19,7 @@ from synthetic_campaign import write_campaign
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("lib", "port", "sim_host", "tests", "tools")
-PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "cmake", "ctest")
+PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "goe_avoid", "cmake", "ctest")
 SECONDS = 300
 
 # ------------------------------------------------------------------------------------------------ what the READMEs say
@@ -99,6 +99,7 @@ RUN_BY = {
     "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
     "goe_sim --features": By("tests/sim/test_sim_boxes.py", '"--features"'),
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
+    "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
     "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
     "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
