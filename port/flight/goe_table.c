@@ -19,9 +19,9 @@ static bool is_good_pixel(const goe_pixel_t *p) {
 
 static bool is_good_box(const goe_box_t *b) {
     const float side[4] = {b->left_px, b->top_px, b->right_px, b->bottom_px};
-    const uint8_t bit[4] = {GOE_SEES_LEFT, GOE_SEES_TOP, GOE_SEES_RIGHT, GOE_SEES_BOTTOM};
+    const uint8_t mask[4] = {GOE_SEES_LEFT, GOE_SEES_TOP, GOE_SEES_RIGHT, GOE_SEES_BOTTOM};
     for (int i = 0; i < 4; i++) {
-        if ((b->seen & bit[i]) != 0u && !goe_flight_within(side[i], COORDINATE_MAX_PX)) {
+        if ((b->seen & mask[i]) != 0u && !goe_flight_within(side[i], COORDINATE_MAX_PX)) {
             return false;
         }
     }
