@@ -31,6 +31,10 @@ foreach(board IN LISTS GOE_TARGET_BOARDS)
     target_link_options(replay_${board} PRIVATE LINKER:-Map,${CMAKE_CURRENT_BINARY_DIR}/replay_${board}.map)
     goe_check_hash(replay_${board} replay_${board})
 
+    goe_image(flight_${board} ${board} flight_main.c $<TARGET_OBJECTS:replay_parts>)
+    target_link_libraries(flight_${board} PRIVATE goe_flight)
+    goe_check_flight_hash(flight_${board} flight_${board})
+
     goe_image(stack_${board} ${board} stack_main.c $<TARGET_OBJECTS:replay_parts>)
     target_link_libraries(stack_${board} PRIVATE goe)
     add_test(NAME stack_${board} COMMAND stack_${board})
