@@ -300,10 +300,11 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
 
 /* -------------------------------------------------------------------------------------------------------------- pose -- */
 
-static float attitude_sd_deg(const goe_flight_t *flight, float rate_deg_s, uint32_t time_sd_us) {
-    const float late_deg = rate_deg_s * (float)time_sd_us * GOE_FLIGHT_S_PER_US;
-    const float white_deg = flight->camera.attitude_white_deg;
-    return goe_flight_smaller(sqrtf(white_deg * white_deg + late_deg * late_deg), ATTITUDE_SD_MAX_DEG);
+static float attitude_sd_deg(const goe_flight_t *flight, const goe_flight_history_pose_t *pose, uint32_t time_sd_us) {
+    const float late_deg = pose->rate_deg_s * (float)time_sd_us * GOE_FLIGHT_S_PER_US;
+    const float square = goe_flight_square(flight->camera.attitude_white_deg) + goe_flight_square(pose->spread_deg) +
+                         goe_flight_square(late_deg);
+    return goe_flight_smaller(sqrtf(square), ATTITUDE_SD_MAX_DEG);
 }
 
 static float height_sd_m(const goe_flight_t *flight) {
@@ -320,7 +321,7 @@ static goe_flight_status_t look_back(const goe_flight_t *flight, uint32_t time_u
     if (status == GOE_FLIGHT_OK) {
         view->time_us = time_us;
         view->estimator_us = flight->base_us + goe_flight_between_us(time_us, (uint32_t)flight->base_us);
-        view->attitude_sd_deg = attitude_sd_deg(flight, view->pose.rate_deg_s, time_sd_us);
+        view->attitude_sd_deg = attitude_sd_deg(flight, &view->pose, time_sd_us);
         view->ground_down_m = flight->ground_down_m;
         view->height_sd_m = height_sd_m(flight);
     }

@@ -350,8 +350,8 @@ GOE_NODISCARD goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t f
 goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_attitude_t *sample);
 goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_position_t *sample);
 
-/* The pose at a time: position linear, attitude along the shorter arc between the two samples about it; height_m by the best
- * source that is known now. pose->time_us does not wrap and is in the same clock.
+/* The pose at a time: position linear between the two samples about it, attitude by the cubic through them and their neighbours,
+ * as far as these are there; height_m by the best source that is known now. pose->time_us does not wrap and is in the same clock.
  *   attitude_sd_deg  what the attitude is uncertain by for a time whose one sigma is time_sd_us; null if not wanted
  * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED; all zero unless _OK. */
 goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us, goe_pose_t *pose,

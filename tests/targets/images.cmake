@@ -31,16 +31,17 @@ foreach(board IN LISTS GOE_TARGET_BOARDS)
     target_link_options(replay_${board} PRIVATE LINKER:-Map,${CMAKE_CURRENT_BINARY_DIR}/replay_${board}.map)
     goe_check_hash(replay_${board} replay_${board})
 
-    goe_image(flight_${board} ${board} flight_main.c $<TARGET_OBJECTS:replay_parts>)
-    target_link_libraries(flight_${board} PRIVATE goe_flight)
-    goe_check_flight_hash(flight_${board} flight_${board})
-
     goe_image(stack_${board} ${board} stack_main.c $<TARGET_OBJECTS:replay_parts>)
     target_link_libraries(stack_${board} PRIVATE goe)
     add_test(NAME stack_${board} COMMAND stack_${board})
     set_tests_properties(stack_${board} PROPERTIES LABELS targets TIMEOUT 60
         PASS_REGULAR_EXPRESSION "stack goe_update [1-9][0-9]*\n")
 endforeach()
+
+# The flight layer, on the larger board alone where there are two: four obstacles do not fit into 16 KiB.
+goe_image(flight_${GOE_TARGET_BOARD} ${GOE_TARGET_BOARD} flight_main.c $<TARGET_OBJECTS:replay_parts>)
+target_link_libraries(flight_${GOE_TARGET_BOARD} PRIVATE goe_flight)
+goe_check_flight_hash(flight_${GOE_TARGET_BOARD} flight_${GOE_TARGET_BOARD})
 
 # ---------------------------------------------------------------------------------------------------------- self-check
 
