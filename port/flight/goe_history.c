@@ -20,15 +20,31 @@ void goe_flight_history_clear(goe_flight_history_t *history) { memset(history, 0
 
 /* ------------------------------------------------------------------------------------------------------------- rings -- */
 
-/* Place of the sample `back` before the newest in a ring whose next free place is `next`. */
-static int place(int next, int back) { return (next + 2 * GOE_FLIGHT_SAMPLES - 1 - back) % GOE_FLIGHT_SAMPLES; }
+enum { ATTITUDES, POSITIONS };
 
-/* Where a sample goes, given the times of the newest and the one before it; NONE: it is not newer. */
-static int place_for(uint8_t *next, uint8_t *count, uint32_t time_us, uint32_t newest_us, uint32_t before_us) {
+/* Place of the sample `back` before the newest in a ring whose next free place is `next`. */
+static int place(int next, int back) {
+    return (int)((unsigned)(next + 2 * GOE_FLIGHT_SAMPLES - 1 - back) % GOE_FLIGHT_SAMPLES);
+}
+
+static int count_of(const goe_flight_history_t *h, int ring) {
+    return ring == ATTITUDES ? h->attitude_count : h->position_count;
+}
+
+static uint32_t time_of(const goe_flight_history_t *h, int ring, int back) {
+    return ring == ATTITUDES ? h->attitude[place(h->attitude_next, back)].time_us
+                             : h->position[place(h->position_next, back)].time_us;
+}
+
+/* Where a sample of this time goes, the ring's end moved on if it needs a place of its own; NONE: it is not newer. */
+static int make_place(goe_flight_history_t *h, int ring, uint32_t time_us) {
+    uint8_t *next = ring == ATTITUDES ? &h->attitude_next : &h->position_next;
+    uint8_t *count = ring == ATTITUDES ? &h->attitude_count : &h->position_count;
+    const uint32_t newest_us = time_of(h, ring, 0);
     if (*count > 0 && goe_flight_between_us(time_us, newest_us) <= 0) {
         return NONE;
     }
-    if (*count > 1 && goe_flight_between_us(newest_us, before_us) < THIN_US) {
+    if (*count > 1 && goe_flight_between_us(newest_us, time_of(h, ring, 1)) < THIN_US) {
         return place(*next, 0);
     }
     const int here = *next;
@@ -38,27 +54,21 @@ static int place_for(uint8_t *next, uint8_t *count, uint32_t time_us, uint32_t n
 }
 
 bool goe_flight_history_add_attitude(goe_flight_history_t *history, uint32_t time_us, const float q[4]) {
-    const int next = history->attitude_next;
-    const int here = place_for(&history->attitude_next, &history->attitude_count, time_us,
-                               history->attitude[place(next, 0)].time_us, history->attitude[place(next, 1)].time_us);
-    if (here == NONE) {
-        return false;
+    const int here = make_place(history, ATTITUDES, time_us);
+    if (here != NONE) {
+        history->attitude[here].time_us = time_us;
+        memcpy(history->attitude[here].q, q, sizeof history->attitude[here].q);
     }
-    history->attitude[here].time_us = time_us;
-    memcpy(history->attitude[here].q, q, sizeof history->attitude[here].q);
-    return true;
+    return here != NONE;
 }
 
 bool goe_flight_history_add_position(goe_flight_history_t *history, uint32_t time_us, const float ned_m[3]) {
-    const int next = history->position_next;
-    const int here = place_for(&history->position_next, &history->position_count, time_us,
-                               history->position[place(next, 0)].time_us, history->position[place(next, 1)].time_us);
-    if (here == NONE) {
-        return false;
+    const int here = make_place(history, POSITIONS, time_us);
+    if (here != NONE) {
+        history->position[here].time_us = time_us;
+        memcpy(history->position[here].ned_m, ned_m, sizeof history->position[here].ned_m);
     }
-    history->position[here].time_us = time_us;
-    memcpy(history->position[here].ned_m, ned_m, sizeof history->position[here].ned_m);
-    return true;
+    return here != NONE;
 }
 
 void goe_flight_history_shift(goe_flight_history_t *history, const float jump_ned_m[3]) {
@@ -85,44 +95,25 @@ typedef struct {
     float share;
 } bracket_t;
 
-static goe_flight_status_t judge(int count, int back, uint32_t time_us, uint32_t newer_us, uint32_t older_us,
-                                 bracket_t *found) {
-    const int32_t gap_us = goe_flight_between_us(newer_us, older_us);
-    if (back >= count || gap_us > GAP_MAX_US) {
-        return GOE_FLIGHT_TOO_OLD;
+static goe_flight_status_t find(const goe_flight_history_t *h, int ring, uint32_t time_us, bracket_t *found) {
+    const int count = count_of(h, ring);
+    int back = 0;
+    while (back < count && goe_flight_between_us(time_us, time_of(h, ring, back)) < 0) {
+        back++;
     }
     found->older = back;
     found->newer = back > 0 ? back - 1 : 0;
-    found->share = back > 0 ? (float)goe_flight_between_us(time_us, older_us) / (float)gap_us : 0.0f;
+    found->share = 0.0f;
+    if (back == 0) {
+        return time_us == time_of(h, ring, 0) ? GOE_FLIGHT_OK : GOE_FLIGHT_TOO_NEW;
+    }
+    const uint32_t older_us = time_of(h, ring, back);
+    const int32_t gap_us = goe_flight_between_us(time_of(h, ring, back - 1), older_us);
+    if (back == count || gap_us > GAP_MAX_US) {
+        return GOE_FLIGHT_TOO_OLD;
+    }
+    found->share = (float)goe_flight_between_us(time_us, older_us) / (float)gap_us;
     return GOE_FLIGHT_OK;
-}
-
-static goe_flight_status_t find_attitude(const goe_flight_history_t *h, uint32_t time_us, bracket_t *found) {
-    int back = 0;
-    while (back < h->attitude_count &&
-           goe_flight_between_us(time_us, h->attitude[place(h->attitude_next, back)].time_us) < 0) {
-        back++;
-    }
-    if (back == 0 && time_us != h->attitude[place(h->attitude_next, 0)].time_us) {
-        return GOE_FLIGHT_TOO_NEW;
-    }
-    return judge(h->attitude_count, back, time_us,
-                 h->attitude[place(h->attitude_next, back > 0 ? back - 1 : 0)].time_us,
-                 h->attitude[place(h->attitude_next, back)].time_us, found);
-}
-
-static goe_flight_status_t find_position(const goe_flight_history_t *h, uint32_t time_us, bracket_t *found) {
-    int back = 0;
-    while (back < h->position_count &&
-           goe_flight_between_us(time_us, h->position[place(h->position_next, back)].time_us) < 0) {
-        back++;
-    }
-    if (back == 0 && time_us != h->position[place(h->position_next, 0)].time_us) {
-        return GOE_FLIGHT_TOO_NEW;
-    }
-    return judge(h->position_count, back, time_us,
-                 h->position[place(h->position_next, back > 0 ? back - 1 : 0)].time_us,
-                 h->position[place(h->position_next, back)].time_us, found);
 }
 
 static float dot(const float a[4], const float b[4]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
@@ -220,8 +211,8 @@ goe_flight_status_t goe_flight_history_at(const goe_flight_history_t *history, u
     if (history->attitude_count == 0 || history->position_count == 0) {
         return GOE_FLIGHT_NO_POSE;
     }
-    const goe_flight_status_t attitude = find_attitude(history, time_us, &turn);
-    const goe_flight_status_t position = find_position(history, time_us, &move);
+    const goe_flight_status_t attitude = find(history, ATTITUDES, time_us, &turn);
+    const goe_flight_status_t position = find(history, POSITIONS, time_us, &move);
     if (attitude != GOE_FLIGHT_OK || position != GOE_FLIGHT_OK) {
         return attitude < 0 || position < 0 ? GOE_FLIGHT_TOO_OLD : GOE_FLIGHT_TOO_NEW;
     }

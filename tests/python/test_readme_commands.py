@@ -87,6 +87,8 @@ RUN_BY = {
     "cmake --build --preset": By("tools/test.sh", "cmake --build --preset"),
     "ctest --preset": By("tools/test.sh", "ctest --preset"),
     "build/tests/targets/replay": By("tests/targets/host.cmake", "goe_check_hash(replay replay)"),
+    "build/tests/targets/flight_replay": By("tests/targets/host.cmake", "goe_check_flight_hash(flight_replay"),
+    "build/tests/flight/flight_recorded": By("tests/flight/CMakeLists.txt", "flight_recorded"),
     "host_builds.sh": By("tests/targets/host.cmake", "host_builds.sh"),
     "host_self_check.sh": By("tests/targets/host.cmake", "host_self_check.sh"),
     "build_target.sh": By("tests/targets/host.cmake", "build_target.sh"),
@@ -172,7 +174,9 @@ def test_the_example_prints_what_the_readme_says(built: Path) -> None:
 
 
 def test_sizes() -> None:
-    text = output_of("tools/sizes.sh", "x86-64 gcc -Os")
+    text, flight = output_of("tools/sizes.sh", "x86-64 gcc -Os").split("| flight layer, obstacles", 1)
+    flight_page = (ROOT / "port" / "flight" / "README.md").read_text(encoding="utf-8")
+    assert all(row in flight_page for row in re.findall(r"^\| \d+ \| \d+ \|$", flight, re.MULTILINE))
     readme = (ROOT / "lib" / "README.md").read_text(encoding="utf-8")
     states = re.findall(r"^\| \d+ \| \d+ \|$", text, re.MULTILINE)
     (code,) = re.findall(r"^\| x86.*$", text, re.MULTILINE)
