@@ -160,7 +160,7 @@ static void advance(goe_flight_t *flight, uint32_t time_us) {
     const int32_t on_us = goe_flight_between_us(time_us, (uint32_t)flight->base_us);
     const bool first = flight->history.attitude_count + flight->history.position_count == 0;
     if (first || on_us > 0) {
-        flight->base_us += first ? (int64_t)(uint32_t)(time_us - (uint32_t)flight->base_us) : on_us;
+        flight->base_us += first ? (int64_t)(time_us - (uint32_t)flight->base_us) : on_us;
     }
 }
 
