@@ -264,6 +264,7 @@ tells='tests passed|Total Test time' add "ctest: targets" \
     ctest --test-dir build/tests/targets --output-on-failure -j "$jobs" # every target under QEMU
 if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
     after="ctest: targets" add "cost ledger" "$python" -m goe_tools ledger --check # of the builds that ctest has made
+    after="cost ledger" add "cost of the flight layer" "$python" -m goe_tools flight_cost
 else
     skip "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
 fi

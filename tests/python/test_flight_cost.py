@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from goe_tools.cost.flight import PUBLIC, calls_of, ranges_of, table
+from goe_tools.cost.flight import HEADER, PUBLIC, calls_of, exceeded, ranges_of, stated, table
 from goe_tools.cost.instructions import Spread
 
 
@@ -23,3 +23,12 @@ def test_a_row_for_each_call() -> None:
     assert text.splitlines()[0].endswith("| Cortex-M4F gcc -Os |")
     assert text.splitlines()[2] == "| `goe_flight_init` | 2 / 3 |"
     assert len(text.splitlines()) == 2 + len(PUBLIC)
+
+
+def test_more_than_the_manual_states_is_told() -> None:
+    limits = stated(HEADER.read_text(encoding="utf-8"))
+    assert list(limits) == list(PUBLIC)
+    within = {name: Spread(1, 2.0, limit) for name, limit in limits.items()}
+    assert exceeded({"m4f-gcc-os": within}, limits) == []
+    more = {**within, "goe_flight_frame": Spread(1, 2.0, limits["goe_flight_frame"] + 1)}
+    assert len(exceeded({"m4f-gcc-os": more, "m0plus-gcc-os": more}, limits)) == 1

@@ -105,6 +105,7 @@ RUN_BY = {
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
     "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
     "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
+    "python -m goe_tools flight_cost": By("tools/test.sh", "goe_tools flight_cost"),
     "python -m goe_tools ledger": By("tools/test.sh", "goe_tools ledger"),
     "python -m goe_tools ledger --check": By("tools/test.sh", "goe_tools ledger --check"),
     "python -m goe_tools ledger --write": By("tests/python/test_cost.py", '"ledger", "--write"'),

@@ -2,6 +2,8 @@
 
 python -m goe_tools flight_cost            on the Cortex-M4F with gcc -Os and -O2
 python -m goe_tools flight_cost m33-gcc-o2
+
+It fails if a call on the Cortex-M4F takes more than goe_flight.h states.
 """
 
 from __future__ import annotations
@@ -16,10 +18,13 @@ from pathlib import Path
 from .building import Build, build
 from .instructions import Spread, build_plugin
 from .ledger import BUILDS
-from .running import LedgerError, output_of
+from .running import ROOT, LedgerError, output_of
 from .targets import compiler_title, missing_tool, processor_title
 
-PRESETS = ("m4f-gcc-os", "m4f-gcc-o2")
+PRESETS = ("m4f-gcc-os", "m4f-gcc-o2")  # of which goe_flight.h states the cost
+HEADER = ROOT / "port" / "flight" / "goe_flight.h"
+SLOTS = 4
+EXIT_MORE = 1
 PUBLIC = (  # those that are called in flight
     "goe_flight_init",
     "goe_flight_attitude",
@@ -68,6 +73,23 @@ def measured(built: Build, folder: Path) -> dict[str, Spread]:
     return spreads
 
 
+def stated(header: str) -> dict[str, int]:
+    """The most instructions of each call, by the paragraph of the manual."""
+    (paragraph,) = re.findall(r"^ \* Cost +(.*?)^ \* Failure", header, re.MULTILINE | re.DOTALL)
+    numbers = [int(n.replace(",", "")) for n in re.findall(r"\b\d{1,3}(?:,\d{3})+\b|\b\d{3}\b", paragraph)]
+    sample, frame, assessment, obstacle, sectors, slot = numbers
+    return dict(zip(PUBLIC, (SLOTS * slot, sample, sample, frame, assessment, obstacle, sectors)))
+
+
+def exceeded(columns: dict[str, dict[str, Spread]], limits: dict[str, int]) -> list[str]:
+    return [
+        f"{preset}: {name}: {spreads[name].max} instructions, goe_flight.h states {limits[name]}"
+        for preset, spreads in columns.items()
+        for name in PUBLIC
+        if preset in PRESETS and spreads[name].max > limits[name]
+    ]
+
+
 def table(columns: dict[str, dict[str, Spread]]) -> str:
     titles = [f"{processor_title(preset)} {compiler_title(preset)}" for preset in columns]
     lines = ["| instructions per call: mean / most | " + " | ".join(titles) + " |", "|---|" + "---|" * len(titles)]
@@ -86,4 +108,6 @@ def run(arguments: argparse.Namespace) -> int:
         with tempfile.TemporaryDirectory() as name:
             columns[preset] = measured(build(preset, arguments.build), Path(name))
     print(table(columns))
-    return 0
+    more = exceeded(columns, stated(HEADER.read_text(encoding="utf-8")))
+    print("".join(f"{line}\n" for line in more), end="", file=sys.stderr)
+    return EXIT_MORE if more else 0
