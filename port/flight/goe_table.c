@@ -203,6 +203,9 @@ void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
         const float most_s = i == flight->reaction.slot ? goe_flight_larger(ORDERED_S, flight->settings.forget_s)
                                                         : flight->settings.forget_s;
         slot->used = slot->used && unseen_s <= most_s;
+        if (!slot->used && i == flight->reaction.slot) {
+            flight->reaction.slot = NOBODY; /* whoever gets the slot next is not what the order is about */
+        }
     }
 }
 

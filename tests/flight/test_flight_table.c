@@ -153,6 +153,18 @@ static void what_is_not_seen_any_more_is_given_up(void) {
     TEST_ASSERT_EQUAL(0, slots_used());
 }
 
+/* What comes into a slot that was given up is not what an order was about. */
+static void an_order_does_not_pass_to_the_next_in_its_slot(void) {
+    (void)flown_fly(&flown, 3.04); /* an image came with sample 150 */
+    flown.flight.reaction.action = GOE_FLIGHT_LEFT;
+    flown.flight.reaction.slot = 0;
+    flown.flight.slot[0].seen_us -= 31000000u;
+    const goe_flight_assessment_t now = flown_fly(&flown, 0.02);
+    TEST_ASSERT_EQUAL(0, slots_used());
+    TEST_ASSERT_EQUAL(-1, now.avoided);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, now.action); /* for hold_s */
+}
+
 static void a_dead_detector_is_not_a_clear_sky(void) {
     flown.scene.width_m = flown.scene.length_m = 4.0;
     flown.scene.height_m = 12.0;
@@ -235,6 +247,7 @@ int main(void) {
     RUN_TEST(a_detector_without_ids_is_followed_by_place);
     RUN_TEST(another_obstacle_takes_nothing_over);
     RUN_TEST(what_is_not_seen_any_more_is_given_up);
+    RUN_TEST(an_order_does_not_pass_to_the_next_in_its_slot);
     RUN_TEST(a_dead_detector_is_not_a_clear_sky);
     RUN_TEST(early_frames_are_kept_by_the_caller);
     RUN_TEST(an_image_may_come_in_parts);
