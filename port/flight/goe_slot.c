@@ -10,6 +10,7 @@
 #define LEVEL_NOSE_MIN 1.0e-3f
 #define AROUND 0.25f /* a box is taken as larger by this share: detectors and predictions err */
 #define OVERLAP_MIN 0.3f
+#define ALIKE 3.0f /* a box this many times as wide or high as the latest one is of another thing */
 #define PIXEL_MAX 32000.0f
 #define SIZE_MIN_PX 8.0f
 
@@ -242,6 +243,16 @@ static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *ca
     return goe_flight_geometry_project(camera, pose, point, pixel);
 }
 
+static bool is_alike(const int16_t a[4], const int16_t b[4]) {
+    bool alike = true;
+    for (int axis = 0; axis < 2; axis++) {
+        const float one = (float)(a[axis + 2] - a[axis]);
+        const float other = (float)(b[axis + 2] - b[axis]);
+        alike = alike && one <= ALIKE * other && other <= ALIKE * one;
+    }
+    return alike;
+}
+
 float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
                              const goe_flight_history_pose_t *pose, const int16_t box_px[4]) {
     float pixel[2];
@@ -249,7 +260,7 @@ float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_cam
         const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
         return overlap >= OVERLAP_MIN ? overlap : 0.0f;
     }
-    if (!predict(slot, camera, pose, pixel)) {
+    if (!is_alike(slot->box_px, box_px) || !predict(slot, camera, pose, pixel)) {
         return 0.0f;
     }
     float claim = 1.0f;

@@ -118,6 +118,26 @@ static void a_renumbered_obstacle_keeps_its_track(void) {
     TEST_ASSERT_TRUE((flown.flight.slot[0].valid & GOE_HAS_POSITION) != 0u);
 }
 
+/* While the obstacle is not seen, a box of another size over its place does not become its. */
+static void a_box_of_another_size_takes_nothing_over(void) {
+    (void)flown_fly(&flown, 3.0);
+    flown.sees = false;
+    for (int k = 0; k < 20; k++) {
+        (void)flown_step(&flown);
+        if (flown.sample % 5 == 3) {
+            goe_flight_detection_t other = flown_detection(&flown, flown.sample - 1);
+            const float wide_px = other.box.right_px - other.box.left_px;
+            other.id = 50u + (uint32_t)k;
+            other.box.left_px -= 2.0f * wide_px;
+            other.box.right_px += 2.0f * wide_px;
+            const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &other, 1);
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(7u, flown.flight.slot[0].id);
+    TEST_ASSERT_EQUAL(0, flown.flight.counters.renumbered);
+}
+
 static void a_detector_without_ids_is_followed_by_place(void) {
     flown.id = 0u;
     const goe_flight_assessment_t now = flown_fly(&flown, 4.0);
@@ -244,6 +264,7 @@ int main(void) {
     RUN_TEST(a_low_score_is_not_looked_at);
     RUN_TEST(false_detections_evict_nobody);
     RUN_TEST(a_renumbered_obstacle_keeps_its_track);
+    RUN_TEST(a_box_of_another_size_takes_nothing_over);
     RUN_TEST(a_detector_without_ids_is_followed_by_place);
     RUN_TEST(another_obstacle_takes_nothing_over);
     RUN_TEST(what_is_not_seen_any_more_is_given_up);
