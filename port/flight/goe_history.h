@@ -8,8 +8,8 @@
 typedef struct {
     float q[4];
     float ned_m[3];
-    float rate_deg_s;   /* of the attitude: root mean square over the history */
-    float spread_deg;   /* one sigma of what interpolation misses of the attitude */
+    float rate_deg_s; /* of the attitude: root mean square over the history */
+    float spread_deg; /* one sigma of what interpolation misses of the attitude */
 } goe_flight_history_pose_t;
 
 void goe_flight_history_clear(goe_flight_history_t *history);
