@@ -51,8 +51,8 @@
  *   6 m diameter stands at north 200, east -30. Then Z0 = 200 m, X0 = -30 m, width = 6 m.
  *   After 50 m of flight: Z = 150 m, X = -30 m, and X0, Z0 stay as they were.
  *
- *   The track's first image fixes T and its origin, whether or not anything is seen in it. Call goe_reset when an obstacle
- *   comes into view: what lies more than 87 degrees from Z cannot be used.
+ *   The first image in which something is seen is the track's first image: it fixes T and its origin. What lies more than 87
+ *   degrees from Z cannot be used: after a turn call goe_reset.
  *
  *   Jumps: x0, z0, x and z move by half the obstacle's size when a disc becomes a line or box. Refined: front and side keep
  *   their names until the side lies more than 52 degrees (tan b = 1.3) from Z; then width and length, their sigmas,
@@ -115,6 +115,14 @@
 #endif
 #if GOE_WINDOW_MAX < 3 || GOE_WINDOW_MAX > 64
 #error "GOE_WINDOW_MAX must be 3 to 64"
+#endif
+
+/* Cameras of one aircraft, 1 to 8. Each further one costs 112 bytes. */
+#ifndef GOE_CAMERAS_MAX
+#define GOE_CAMERAS_MAX 1
+#endif
+#if GOE_CAMERAS_MAX < 1 || GOE_CAMERAS_MAX > 8
+#error "GOE_CAMERAS_MAX must be 1 to 8"
 #endif
 
 #if defined(__GNUC__) || defined(__clang__)
@@ -232,6 +240,11 @@ typedef struct {
     float position_walk_m;    /* random walk of the own position, m per square root of a second; 0 to 100; default 0.05 */
     float position_white_m;   /* error of the own position that is new in each image, each axis, m; 0 to 100; default 0.
                                  Upright boxes only */
+    float height_white_m;     /* error of height_m that is new in each image, m; 0 to 1e3; default 0: none, and points take each
+                                 image's height as it is. Otherwise the height moves by the changes of down, and every image's
+                                 height is a reading of where it began, whose mean the filter learns */
+    float slope;              /* slope of the ground that height_m is above, m per m flown; 0 to 1; default 0. The height at the
+                                 filter's start is off by height_bias_m all the same: on a slope by it times the range, too */
     float ground_m;           /* upright boxes: how far the obstacle's ground may lie off that which height_m is above, added to
                                  height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
 } goe_navigation_t;
@@ -279,7 +292,12 @@ typedef struct {
 } goe_refined_settings_t;
 
 typedef struct {
-    goe_camera_t camera;
+    goe_camera_t camera; /* number 0 */
+#if GOE_CAMERAS_MAX > 1
+    goe_camera_t more_cameras[GOE_CAMERAS_MAX - 1]; /* numbers 1 on, each with the ranges of camera; default: fx_px 0, none.
+                                                       They are taken as mounted exactly to one another: what that is off by
+                                                       belongs into navigation.attitude_white_deg */
+#endif
     goe_method_t method; /* window or refined; default refined (if compiled in) */
     goe_model_t model;   /* auto, disc or line; default auto */
     bool heading_auto;   /* T's Z axis = the vehicle's yaw at the track's first image; default true */
@@ -358,6 +376,8 @@ typedef struct {
                                 base_near lies between two visible faces, and is not seen when one face alone is */
     goe_box_t box;
     goe_image_noise_t noise;
+    uint8_t camera; /* number of the camera that took it; GOE_OUT_OF_RANGE if there is none of that number. A track passes from
+                       one to the other: pose.height_m is that of the camera at hand */
 } goe_image_t;
 
 /* ---------------------------------------------------------------------------------------------------------- output -- */
@@ -366,14 +386,16 @@ typedef struct {
 #define GOE_HAS_POSITION 0x01u    /* x0, z0, x, z, residual, baseline */
 #define GOE_HAS_LENGTH 0x02u      /* length: line or box, side edge seen from aside */
 #define GOE_HAS_HEIGHT 0x04u      /* height */
-#define GOE_HAS_ORIENTATION 0x08u /* orientation, other_side, both axes */
+#define GOE_HAS_ORIENTATION 0x08u /* orientation, other_side, both axes in T and in north and east */
 #define GOE_HAS_CENTER 0x10u      /* centre: disc; or line or box with length */
 #define GOE_HAS_WIDTH 0x20u       /* width */
 
 /* One-sigma of each quantity; units as the quantity.
- * Refined: of the true error, as far as goe_navigation_t and goe_detector_t describe the sensors; a quantity is valid once its
- * sigma was below refined.range_share (25 %; x0, z0: of the range at the filter's start), 30 % (width, length, height) or 10
- * degrees in two images in a row; of a prism (GOE_MODEL_PRISM) without what no image can show.
+ * Refined: of the true error, as far as goe_navigation_t and goe_detector_t describe the sensors; and wider, never narrower, if
+ * the track itself scatters more than they say, or its residuals are alike from image to image, as those of late poses are. A
+ * quantity is valid once its sigma, without that, was below refined.range_share (25 %; x0, z0: of the range at the filter's
+ * start), 30 % (width, length, height) or 10 degrees in two images in a row; of a prism (GOE_MODEL_PRISM) without what no image
+ * can show.
  * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
  * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:
  * then the orientation's is 0, and those of length and height hold only what the solution gives them. */
@@ -406,7 +428,11 @@ typedef struct {
     float other_side_deg;  /* front edge (width axis), same convention */
     float length_axis[2];  /* unit vector (X, Z) along the side edge */
     float width_axis[2];   /* unit vector (X, Z) along the front edge, to the right of length_axis */
-    float center_north_m, center_east_m; /* middle of the base, NED as of the latest pose */
+    float length_axis_ne[2], width_axis_ne[2]; /* the same in (north, east) */
+    float trajectory_heading_deg; /* of T's Z axis, clockwise from north, -180 to 180; before the track's first image: where the
+                                     nose points */
+    float center_north_m, center_east_m; /* middle of the base, NED as of the latest pose ... */
+    float center_ne_m2;                  /* ... and the covariance of the two, whose variances are the sigmas squared */
     float residual;        /* window: root mean square residual of (5), in the rows' own unit m/S; refined: 0 */
     float baseline_m;      /* window: root of the summed squared spread of the camera's path over the window; refined:
                               distance of the camera from where the track began */
@@ -463,12 +489,14 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  * Cost: at most 8500 instructions, 800 bytes of stack. */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
-/* What the aircraft is about to do: fly on from the latest image's position at constant velocity. Slower than 0.1 m/s over
+/* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over
  * the ground it is taken as standing still, also when it climbs or descends. */
 typedef struct {
     float velocity_ned_m_s[3]; /* relative to the ground, each +-1e3 */
     float margin_m;            /* the outline of the obstacle must stay farther away than this, horizontally; 0 to 1e4 */
     float clearance_m;         /* ... or its top must lie deeper than this below the aircraft; 0 to 1e4 */
+    float since_image_s;       /* how long ago the latest image was taken: the detector's latency, or its silence. It has flown at
+                                  that velocity since, and times count from now; 0 to 1e3; 0: from that image */
 } goe_plan_t;
 
 /* What will become of it. Sigmas are to first order, from the covariance of the estimate; goe_plan_t is taken as exact.
@@ -492,8 +520,9 @@ typedef struct {
 } goe_hazard_t;
 
 /* Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. The outline is the disc, or the box
- * as far as it is known: without orientation or length the circle of its width about the reference point, without width
- * (GOE_HAS_WIDTH) that point alone, so that margin_m has to cover the obstacle's size. A suspect or stale estimate asks for
+ * as far as it is known: without orientation or length the circle of its width about the reference point, refined also while
+ * the width is not known well enough to be told; window, without width: that point alone, so that margin_m has to cover the
+ * obstacle's size. A suspect or stale estimate asks for
  * wider margins, not for silence: README.md, "Going around, or not".
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "maths/goe_angle.h"
+#include "maths/goe_scalar.h"
 #include "refined/goe_quantities.h"
 
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
@@ -36,7 +37,7 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
 
 /* False if the estimate is not the filter's. */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
-    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    const goe_estimate_t *estimate = &estimator->estimate;
     if (!is_of_filter(estimate)) {
         return false;
     }
@@ -45,20 +46,30 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
     return true;
 }
 
-static bool is_of_prism(const goe_estimator_t *estimator) {
-    return estimator->filter.phase == GOE_PHASE_PRISM && is_of_filter(goe_latest_estimate(estimator));
+static bool is_steady(const goe_estimator_t *estimator) {
+    return is_of_filter(&estimator->estimate) &&
+           goe_filter_is_steady(&estimator->filter, &estimator->settings.navigation);
 }
 
 float goe_latest_camera_height(const goe_estimator_t *estimator) {
-    return is_of_prism(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
+    return is_steady(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
 }
 
 float goe_latest_height_bias(const goe_estimator_t *estimator) {
     const float *state = estimator->filter.state;
-    if (is_of_prism(estimator)) {
-        return state[GOE_PRISM_GROUND] / state[GOE_INVERSE_RANGE];
+    return is_of_filter(&estimator->estimate) ? state[GOE_GROUND] / state[GOE_INVERSE_RANGE] : 0.0f;
+}
+float goe_latest_reach(const goe_estimator_t *estimator) {
+    const goe_filter_t *filter = &estimator->filter;
+    const float *x = filter->state;
+    if (!is_of_filter(&estimator->estimate)) {
+        return 0.0f;
     }
-    return is_of_filter(goe_latest_estimate(estimator)) ? state[GOE_HEIGHT_BIAS] : 0.0f;
+    if (filter->phase == GOE_PHASE_PRISM) {
+        return x[GOE_PRISM_HALF] / x[GOE_INVERSE_RANGE];
+    }
+    const float side = goe_filter_is_box(filter) ? goe_absolute(x[GOE_SIDE_X]) : 0.0f;
+    return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
 }
 #else
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
@@ -74,6 +85,11 @@ float goe_latest_height_bias(const goe_estimator_t *estimator) {
     (void)estimator;
     return 0.0f;
 }
+
+float goe_latest_reach(const goe_estimator_t *estimator) {
+    (void)estimator;
+    return 0.0f;
+}
 #endif
 
 goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
@@ -82,7 +98,7 @@ goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_d
     if (status != GOE_OK) {
         return status;
     }
-    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    const goe_estimate_t *estimate = &estimator->estimate;
     if (!(estimate->valid & GOE_HAS_POSITION)) {
         return GOE_COLLECTING;
     }

@@ -14,4 +14,7 @@ goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_d
 float goe_latest_camera_height(const goe_estimator_t *estimator);
 float goe_latest_height_bias(const goe_estimator_t *estimator);
 
+/* Half of the obstacle's extent about its reference point as far as it is seen, m, also while no width can be told; 0: not known. */
+float goe_latest_reach(const goe_estimator_t *estimator);
+
 #endif

@@ -21,18 +21,27 @@
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
-static int64_t solved_time_us(const goe_estimator_t *estimator) {
-#if GOE_WITH_REFINED
-    if (goe_is_refined(estimator)) {
-        return estimator->estimate_time_us;
+/* Every call hands out an estimate. Four words at a time are two instructions on ARM; memcpy() does not know that they are
+ * aligned, and takes twice as long. */
+#if defined(__GNUC__)
+typedef struct __attribute__((may_alias)) {
+    uint32_t word[8];
+} block_t;
+
+#define ESTIMATE_BLOCKS (sizeof(goe_estimate_t) / sizeof(block_t))
+
+static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) {
+    block_t *t = (block_t *)(void *)to;
+    const block_t *f = (const block_t *)(const void *)from;
+    const size_t copied = ESTIMATE_BLOCKS * sizeof(block_t);
+    for (size_t i = 0; i < ESTIMATE_BLOCKS; i++) {
+        t[i] = f[i];
     }
-#endif
-#if GOE_WITH_WINDOW
-    return estimator->window.solved_time_us;
-#else
-    return GOE_TIME_UNKNOWN;
-#endif
+    memcpy((unsigned char *)to + copied, (const unsigned char *)from + copied, sizeof *to - copied);
 }
+#else
+static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) { *to = *from; }
+#endif
 
 /* The estimate grows old while images are refused, too, as far as their times can be believed. */
 static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
@@ -42,20 +51,39 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
     }
     const int64_t latest_us = estimator->motion.time_us;
     const int64_t now_us = image_us > latest_us ? image_us : latest_us;
-    estimate->age_s = goe_time_between_s(solved_time_us(estimator), now_us, AGE_MAX_US);
+    estimate->age_s = goe_time_between_s(estimator->estimate_time_us, now_us, AGE_MAX_US);
+}
+
+/* What every answer is told with, also a refused image's. */
+static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
+    set_age(estimator, image_us, estimate);
+    estimate->trajectory_heading_deg = estimator->motion.heading_deg;
+    if (estimate->valid & GOE_HAS_ORIENTATION) {
+        goe_motion_turn(&estimator->motion, estimate->length_axis, estimate->length_axis_ne);
+        estimate->width_axis_ne[0] = -estimate->length_axis_ne[1]; /* to its right */
+        estimate->width_axis_ne[1] = estimate->length_axis_ne[0];
+    }
 }
 
 static void forget_track(goe_estimator_t *estimator) {
     memset(&estimator->motion, 0, sizeof estimator->motion);
     estimator->motion.time_us = GOE_TIME_UNKNOWN;
+    memset(&estimator->estimate, 0, sizeof estimator->estimate);
+    estimator->estimate_time_us = GOE_TIME_UNKNOWN;
 #if GOE_WITH_WINDOW
     goe_window_clear(&estimator->window);
 #endif
 #if GOE_WITH_REFINED
-    goe_filter_clear(&estimator->filter);
-    memset(&estimator->estimate, 0, sizeof estimator->estimate);
-    estimator->estimate_time_us = GOE_TIME_UNKNOWN;
+    if (goe_is_refined(estimator)) { /* the window needs no filter, and has no time for one */
+        goe_filter_clear(&estimator->filter);
+    }
 #endif
+}
+
+static void note_solved(goe_estimator_t *estimator) {
+    if (estimator->estimate.fresh) {
+        estimator->estimate_time_us = estimator->motion.time_us;
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------------- refined -- */
@@ -71,11 +99,10 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
                                    bool measured) {
     const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
                                                       &estimator->estimate);
-    if (fresh) {
-        estimator->estimate_time_us = estimator->motion.time_us;
-    } else {
+    if (!fresh) {
         grow_old(estimator);
     }
+    note_solved(estimator);
     goe_report_fit(&estimator->filter, &estimator->settings, &estimator->estimate);
     if (fresh) {
         return faults->first == GOE_OK ? GOE_OK : GOE_PARTIAL;
@@ -98,8 +125,8 @@ static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
 }
 
 /* Points out of order: pairs that the refined method found, once for each. */
-static void note_swapped(goe_estimator_t *estimator, unsigned swapped, bool count, goe_faults_t *faults) {
-    for (unsigned i = 0; i < swapped && count; i++) {
+static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_faults_t *faults) {
+    for (unsigned i = 0; i < swapped; i++) {
         goe_count_cause(estimator->causes, GOE_SWAPPED);
     }
     if (swapped > 0 && faults->first == GOE_OK) {
@@ -108,41 +135,56 @@ static void note_swapped(goe_estimator_t *estimator, unsigned swapped, bool coun
 }
 
 #if GOE_WITH_WINDOW
-/* A filter that has not started, or has only a disc where a box was asked for, leaves the answer to the window; a stale
- * answer of its own is worth more than none, or than a stale one of the window's. */
-static goe_status_t report_window(goe_estimator_t *estimator, goe_status_t status) {
-    goe_estimate_t *estimate = &estimator->estimate;
-    if (estimator->window.estimate.fresh || estimate->method != GOE_METHOD_REFINED ||
-        !(estimate->valid & GOE_HAS_POSITION)) {
-        *estimate = estimator->window.estimate;
-        estimator->estimate_time_us = estimator->window.solved_time_us;
+/* The window solves beside an answer of the filter's, which is worth more than none: only a fresh one takes its place. */
+static GOE_NOINLINE goe_status_t solve_beside(goe_estimator_t *estimator, const goe_view_t *view,
+                                              const goe_faults_t *faults) {
+    goe_estimate_t answer;
+    memset(&answer, 0, sizeof answer);
+    const goe_status_t status =
+        goe_window_update(&estimator->window, &estimator->settings, view, GOE_WINDOW_SOLVES, faults, &answer);
+    if (answer.fresh || !(estimator->estimate.valid & GOE_HAS_POSITION)) {
+        estimator->estimate = answer;
         return status;
     }
     grow_old(estimator);
-    goe_report_fit(&estimator->filter, &estimator->settings, estimate);
+    goe_report_fit(&estimator->filter, &estimator->settings, &estimator->estimate);
     return status == GOE_COLLECTING ? GOE_HELD : status;
 }
 
-static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
-    unsigned swapped;
-    const goe_settings_t *settings = &estimator->settings;
-    goe_filter_t *filter = &estimator->filter;
-    const goe_window_task_t task = goe_filter_reports(filter, settings) ? GOE_WINDOW_COLLECTS : GOE_WINDOW_SOLVES;
-    const goe_status_t status = goe_window_update(&estimator->window, settings, view, task, faults);
-    const bool measured = goe_refined_update(filter, settings, view, &swapped);
-    note_swapped(estimator, swapped, task == GOE_WINDOW_COLLECTS, faults); /* a window that solves has counted */
-    return goe_filter_reports(filter, settings) ? report_refined(estimator, view, faults, measured)
-                                                : report_window(estimator, status);
-}
-#else
-static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
-    unsigned swapped;
-    const bool measured = goe_refined_update(&estimator->filter, &estimator->settings, view, &swapped);
-    const bool reports = goe_filter_reports(&estimator->filter, &estimator->settings);
-    note_swapped(estimator, swapped, true, faults);
-    return report_refined(estimator, view, faults, measured && reports);
+static goe_status_t solve_window(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults) {
+    const goe_status_t status = estimator->estimate.method == GOE_METHOD_REFINED
+                                    ? solve_beside(estimator, view, faults)
+                                    : goe_window_update(&estimator->window, &estimator->settings, view,
+                                                        GOE_WINDOW_SOLVES, faults, &estimator->estimate);
+    note_solved(estimator);
+    return status;
 }
 #endif
+
+/* A filter that has not started, or has only a disc where a box was asked for, leaves the answer to the window; one that starts
+ * in this image does, too, unless it has an older answer; one that stops in this image keeps its own. */
+static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
+    const goe_settings_t *settings = &estimator->settings;
+    unsigned swapped;
+    const bool reported = goe_filter_reports(&estimator->filter, settings);
+    const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
+    const bool reports = goe_filter_reports(&estimator->filter, settings);
+#if GOE_WITH_WINDOW
+    if (!reported && !(reports && (estimator->estimate.valid & GOE_HAS_POSITION))) {
+        const goe_status_t status = solve_window(estimator, view, faults);
+        if (!reports || estimator->estimate.fresh) {
+            return status;
+        }
+    } else {
+        (void)goe_window_update(&estimator->window, settings, view, GOE_WINDOW_COLLECTS, faults, NULL);
+        note_swapped(estimator, swapped, faults); /* a window that solves has counted them */
+    }
+#else
+    (void)reported;
+    note_swapped(estimator, swapped, faults);
+#endif
+    return report_refined(estimator, view, faults, measured && reports);
+}
 
 static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_status_t status = update_refined(estimator, view, faults);
@@ -168,28 +210,34 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #endif
 }
 
-static void open_view(goe_estimator_t *estimator, const goe_image_t *image, goe_view_t *view, goe_faults_t *faults) {
+static void open_view(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera,
+                      goe_view_t *view, goe_faults_t *faults) {
     view->image = image;
     view->motion = &estimator->motion;
-    view->camera_to_body = estimator->camera_to_body;
+    view->camera = camera;
+    view->camera_to_body = estimator->camera_to_body[image->camera];
     goe_motion_follow(&estimator->motion, &estimator->settings, view);
-    goe_align_points(&estimator->settings.camera, view, faults);
+    goe_align_points(camera, view, faults);
+    estimator->motion.started |= view->seen;
 }
 
-static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image) {
+static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
     goe_view_t view;
     goe_faults_t faults = {estimator->causes, GOE_OK};
     if (goe_motion_reset(&estimator->motion, &image->pose)) {
         follow_reset(estimator, &image->pose);
     }
-    open_view(estimator, image, &view, &faults);
+    open_view(estimator, image, camera, &view, &faults);
 #if GOE_WITH_REFINED
     if (goe_is_refined(estimator)) {
         return take_refined(estimator, &view, &faults);
     }
 #endif
 #if GOE_WITH_WINDOW
-    return goe_window_update(&estimator->window, &estimator->settings, &view, GOE_WINDOW_SOLVES, &faults);
+    const goe_status_t status = goe_window_update(&estimator->window, &estimator->settings, &view, GOE_WINDOW_SOLVES,
+                                                  &faults, &estimator->estimate);
+    note_solved(estimator);
+    return status;
 #else
     return GOE_COLLECTING; /* not reached: goe_init() admits no other method */
 #endif
@@ -214,10 +262,22 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
     }
     memset(estimator, 0, sizeof *estimator);
     estimator->settings = *settings;
-    goe_camera_mounting(&settings->camera, estimator->camera_to_body);
+    for (unsigned i = 0; i < GOE_CAMERAS_MAX; i++) {
+        const goe_camera_t *camera = goe_camera_of(settings, i);
+        if (camera) {
+            goe_camera_mounting(camera, estimator->camera_to_body[i]);
+        }
+    }
     forget_track(estimator);
     estimator->ready = GOE_READY;
     return GOE_OK;
+}
+
+/* Nothing changes but a counter; the answer is the older one. */
+static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, goe_estimate_t *estimate) {
+    goe_count_cause(estimator->causes, status);
+    *estimate = estimator->estimate;
+    estimate->fresh = false;
 }
 
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate) {
@@ -230,18 +290,20 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
         return status;
     }
     status = goe_intake_check(&estimator->motion, image);
+    const goe_camera_t *camera = goe_camera_of(&estimator->settings, image->camera);
+    if (status == GOE_OK && !camera) {
+        status = GOE_OUT_OF_RANGE;
+    }
     if (status == GOE_OK && goe_is_refined(estimator)) {
         status = goe_intake_check_noise(&image->noise);
     }
     if (status == GOE_OK) {
-        status = take_image(estimator, image);
-        *estimate = *goe_latest_estimate(estimator);
+        status = take_image(estimator, image, camera);
+        copy_estimate(estimate, &estimator->estimate);
     } else {
-        goe_count_cause(estimator->causes, status);
-        *estimate = *goe_latest_estimate(estimator);
-        estimate->fresh = false;
+        refuse(estimator, status, estimate);
     }
-    set_age(estimator, image->pose.time_us, estimate);
+    complete(estimator, image->pose.time_us, estimate);
     return status;
 }
 

@@ -1,5 +1,4 @@
-/* The estimator as the calls read it: whether it is ready, and the estimate after the latest image.
- * SPDX-License-Identifier: MIT */
+/* The estimator as the calls read it: whether it is ready, and by which method. SPDX-License-Identifier: MIT */
 #ifndef GOE_LATEST_H
 #define GOE_LATEST_H
 
@@ -22,17 +21,6 @@ static inline goe_status_t goe_check_ready(const goe_estimator_t *estimator) {
         return GOE_BAD_ARGUMENT;
     }
     return estimator->ready == GOE_READY ? GOE_OK : GOE_NOT_INITIALISED;
-}
-
-/* The estimate after the latest image. */
-static inline const goe_estimate_t *goe_latest_estimate(const goe_estimator_t *estimator) {
-#if !GOE_WITH_REFINED
-    return &estimator->window.estimate;
-#elif !GOE_WITH_WINDOW
-    return &estimator->estimate;
-#else
-    return goe_is_refined(estimator) ? &estimator->estimate : &estimator->window.estimate;
-#endif
 }
 
 #endif

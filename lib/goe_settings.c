@@ -73,12 +73,18 @@ void goe_settings_default(goe_settings_t *settings) {
     for (size_t i = 0; i < SETTINGS; i++) {
         write_field((unsigned char *)settings + places[i], kinds[i], ranges[i].value);
     }
+#if GOE_CAMERAS_MAX > 1
+    for (size_t i = 0; i + 1 < GOE_CAMERAS_MAX; i++) {
+        settings->more_cameras[i] = settings->camera;
+    }
+#endif
 }
 
-const char *goe_settings_first_bad(const goe_settings_t *settings) {
+/* Of the first `count` settings, at `from`. */
+static const char *first_bad(const unsigned char *from, size_t count) {
     const char *name = names;
-    for (size_t i = 0; i < SETTINGS; i++) {
-        const float value = read_field((const unsigned char *)settings + places[i], kinds[i]);
+    for (size_t i = 0; i < count; i++) {
+        const float value = read_field(from + places[i], kinds[i]);
         if (goe_magnitude(value) >= GOE_INFINITY_BITS || !(value >= ranges[i].low && value <= ranges[i].high)) {
             return name;
         }
@@ -86,4 +92,32 @@ const char *goe_settings_first_bad(const goe_settings_t *settings) {
         }
     }
     return NULL;
+}
+
+#if GOE_CAMERAS_MAX > 1
+#define COUNTED(field, kind, unit, low, high, value, text) +1
+#define CAMERA_SETTINGS (0u GOE_SETTINGS_CAMERA(COUNTED))
+
+GOE_STATIC_ASSERT(offsetof(goe_settings_t, camera) == 0, the_settings_of_the_camera_come_first);
+
+static const char *first_bad_camera(const goe_settings_t *settings) {
+    const char *bad = NULL;
+    for (size_t i = 0; !bad && i + 1 < GOE_CAMERAS_MAX; i++) {
+        const goe_camera_t *camera = &settings->more_cameras[i];
+        if (goe_magnitude(camera->fx_px) != 0u) {
+            bad = first_bad((const unsigned char *)camera, CAMERA_SETTINGS);
+        }
+    }
+    return bad;
+}
+#else
+static const char *first_bad_camera(const goe_settings_t *settings) {
+    (void)settings;
+    return NULL;
+}
+#endif
+
+const char *goe_settings_first_bad(const goe_settings_t *settings) {
+    const char *bad = first_bad((const unsigned char *)settings, SETTINGS);
+    return bad ? bad : first_bad_camera(settings);
 }

@@ -48,6 +48,8 @@
     X(navigation.velocity_bias_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity") \
     X(navigation.position_walk_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the own position") \
     X(navigation.position_white_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of the own position that is new in each image; boxes") \
+    X(navigation.height_white_m, REAL, "m", 0.0f, 1.0e3f, 0.0f, "error of the height that is new in each image") \
+    X(navigation.slope, REAL, "", 0.0f, 1.0f, 0.0f, "slope of the ground that the height is above, m per m flown") \
     X(navigation.ground_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "how far the obstacle's ground may lie off; boxes") \
     X(detector.point_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image; rounding: 0.3") \
     X(detector.point_share, REAL, "", 0.0f, 1.0f, 0.0f, "error of left, right, top as points, of the width") \

@@ -25,11 +25,13 @@
 /* image/goe_ego_motion.c: own motion over the track. */
 typedef struct {
     int64_t time_us;                /* latest image of the track */
+    int64_t start_time_us;          /* its first one */
     float heading_cos, heading_sin; /* of T's Z axis, from north */
+    float heading_deg;              /* the same, -180 to 180 */
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
     float height_m;                 /* camera above ground, latest image */
-    bool started;                   /* a first image was taken; the fields above hold */
+    bool started; /* something was seen: T and its origin are fixed, at the image in which it was first */
     uint8_t reset_count;
 } goe_motion_t;
 
@@ -57,9 +59,7 @@ typedef struct { /* window/goe_orientation.c */
     int count;           /* saturates at orientation_memory */
 } goe_orientation_t;
 
-typedef struct {            /* window/goe_window.c */
-    int64_t solved_time_us; /* image of the last solution */
-    goe_estimate_t estimate;
+typedef struct { /* window/goe_window.c */
     goe_orientation_t orientation;
     goe_mean_t length, height;
     goe_fit_ring_t disc, line;
@@ -115,9 +115,12 @@ typedef struct {    /* refined/goe_box.c: what the report calls the edges of a b
 /* refined/goe_filter.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
  * in. */
 typedef struct {
-    float ground_m; /* down of the ground, by the first image of the track */
+    float ground_m; /* down of the ground, by the heights before the filter's start */
     float height_m; /* of the camera above it, latest image */
     float sd_m;     /* one sigma of the first height, as its image gave it; 0: as in the settings */
+    float mean_m;   /* by how much all heights so far, freed of the changes of down, lie above that ground on average */
+    float information, moment; /* of the offset, which the filter has been told: 1/m^2, and times its mean */
+    uint16_t readings;         /* heights so far, saturating */
 } goe_datum_t;
 
 /* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell it. It
@@ -128,11 +131,20 @@ typedef struct {
     float variance; /* not positive: the side was never measured, and its error is as large as any */
 } goe_side_memory_t;
 
+/* refined/goe_scatter.c: residuals of one image with those of the image before. A series: a coordinate of a feature. */
+#define GOE_SERIES (2 * GOE_FEATURES)
+typedef struct {
+    float before[GOE_SERIES]; /* sigmas */
+    float products, squares;
+    uint16_t seen; /* bit i: series i has a residual of the image before */
+} goe_scatter_t;
+
 #define GOE_NIS_NONE (-1.0f)
 
 typedef struct {      /* refined/goe_health.c: how the images fit */
     float nis;        /* normalised innovation squared of the latest image */
     float mean_nis;   /* of nis over rows: running mean over the track */
+    float excess;     /* of nis over rows, above 1: the mean over the whole track, begun with eight images of none */
     float recent_nis; /* ... over some ten images of the filter's present phase; GOE_NIS_NONE: not begun */
     int16_t nis_rows;
     int16_t images;                /* of the track that gave rows, saturating */
@@ -142,6 +154,10 @@ typedef struct {      /* refined/goe_health.c: how the images fit */
     bool base_refused;             /* base corners proved to be none: they are not used */
 } goe_health_t;
 
+typedef struct {
+    float dx_m, dz_m;
+} goe_place_t;
+
 /* What is small comes first: instructions reach the beginning of an object by shorter forms. */
 typedef struct {
     int64_t time_us;      /* of the latest image that the filter took */
@@ -150,13 +166,20 @@ typedef struct {
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
     bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
     goe_naming_t naming;
+    uint8_t camera;          /* that took the latest image */
     bool has_datum;          /* the datum is that of the track\'s first image */
+    float ground_scale;      /* 1/Z0 for which the sigma of GOE_GROUND was set, over the present one */
+    float flown_m;           /* along the path since the filter's start, over ground */
+    float sloped_m;          /* ... up to which the ground's slope was added */
+    goe_place_t last;        /* camera in the image before, T axes */
+    float walk_s[2];         /* time since the walk of the own position was last added along X, and along Z */
     float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since `inverse` was taken */
     goe_candidate_t candidate;
     goe_leaving_t leaving;
     goe_health_t health;
     goe_axes_t axes;
     goe_datum_t datum;
+    goe_scatter_t scatter;
     goe_side_memory_t side[4]; /* by goe_box_side_t */
     float state[GOE_STATES];   /* by goe_state_index_t */
     goe_triangle_t root;       /* R: R'R is the information of the state */
@@ -170,11 +193,11 @@ typedef struct {
     goe_motion_t motion;
     uint32_t ready; /* tells an initialised estimator from any other memory */
     uint32_t causes[GOE_CAUSES];
-    float camera_to_body[9];
+    float camera_to_body[GOE_CAMERAS_MAX][9];
     goe_settings_t settings;
-#if GOE_WITH_REFINED
     goe_estimate_t estimate;  /* after the latest image, by whatever method */
     int64_t estimate_time_us; /* image behind the estimate */
+#if GOE_WITH_REFINED
     goe_filter_t filter;
 #endif
 #if GOE_WITH_WINDOW

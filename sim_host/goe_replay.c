@@ -273,8 +273,10 @@ static int replay(const options_t *options) {
     if (!apply_options(options, &settings)) {
         return EXIT_BAD_INPUT;
     }
-    frame_reader_t *reader =
-        camera_file_read(options->camera, &settings, &error) ? frame_reader_open(options->frames, &error) : NULL;
+    frame_reader_t *reader = NULL;
+    if (camera_file_read(options->camera, &settings, &error)) {
+        reader = frame_reader_open(options->frames, camera_file_cameras(&settings), &error);
+    }
     if (reader == NULL) {
         (void)print_error(&error);
         return EXIT_BAD_INPUT;

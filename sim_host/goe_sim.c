@@ -15,6 +15,7 @@
 #include "flight_case.h"
 #include "log_writer.h"
 #include "scenario.h"
+#include "text_numbers.h"
 #include "turbulence.h"
 
 #define EXIT_ENDED_EARLY 1
@@ -33,6 +34,7 @@ enum {
     WORD_CYLINDER,
     WORD_FLIGHT,
     WORD_FEATURES,
+    WORD_SECOND_CAMERA,
     WORD_OUT,
     WORD_COUNT
 };
@@ -99,6 +101,9 @@ static struct poptOption camera_options[] = {
     NUMBER("offset-x", offset_x, "M", "camera from the position's reference point, body forward"),
     NUMBER("offset-y", offset_y, "M", "body right"),
     NUMBER("offset-z", offset_z, "M", "body down"),
+    WORD("second-camera", WORD_SECOND_CAMERA, "YAW,PITCH",
+         "another camera like the first, mounted so (DEG); a row is that of the one that sees the whole obstacle, or "
+         "has it nearer to its axis"),
     WORD("features", WORD_FEATURES, "WHAT",
          "what the log carries: points (left, right, top), corners (base corners too) or boxes (upright bounding "
          "boxes); "
@@ -214,6 +219,22 @@ static void set_camera(camera_t *camera) {
     set(&camera->offset_m.z, given.offset_z);
 }
 
+/* False: the word is not understood. To be called when the first camera is set. */
+static bool set_second_camera(flight_case_t *setup) {
+    double angle_deg[2];
+    if (given.word[WORD_SECOND_CAMERA] == NULL) {
+        return true;
+    }
+    setup->cameras = 2;
+    setup->camera[1] = setup->camera[0];
+    if (!text_numbers(given.word[WORD_SECOND_CAMERA], "", angle_deg, 2)) {
+        return false;
+    }
+    setup->camera[1].mount_yaw_deg = angle_deg[0];
+    setup->camera[1].mount_pitch_deg = angle_deg[1];
+    return true;
+}
+
 static void set_noise(sensor_noise_t *noise) {
     set(&noise->pixel_px, given.pixel_noise);
     set(&noise->outlier_rate, given.outlier_rate);
@@ -303,9 +324,10 @@ static const char *set_case(flight_case_t *setup, const char **reason) {
         return "--seed";
     }
     set_flight(setup);
-    set_camera(&setup->camera);
+    set_camera(&setup->camera[0]);
     set_noise(&setup->noise);
-    return NULL;
+    *reason = "YAW,PITCH in degrees";
+    return set_second_camera(setup) ? NULL : "--second-camera";
 }
 
 static int list_cases(void) {

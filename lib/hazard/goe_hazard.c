@@ -8,18 +8,21 @@
 
 #define VELOCITY_MAX_M_S 1.0e3f
 #define DISTANCE_MAX_M 1.0e4f
+#define SINCE_MAX_S 1.0e3f
 
 /* GOE_OK, or why the plan is refused. */
 static goe_status_t check_plan(const goe_plan_t *plan) {
     const uint32_t velocity = goe_largest_of_three(plan->velocity_ned_m_s);
     const uint32_t margin = goe_magnitude(plan->margin_m);
     const uint32_t clearance = goe_magnitude(plan->clearance_m);
-    if (velocity >= GOE_INFINITY_BITS || margin >= GOE_INFINITY_BITS || clearance >= GOE_INFINITY_BITS) {
+    const uint32_t since = goe_magnitude(plan->since_image_s);
+    if (goe_larger_bits(goe_larger_bits(velocity, since), goe_larger_bits(margin, clearance)) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
     const bool within = velocity <= goe_magnitude(VELOCITY_MAX_M_S) && margin <= goe_magnitude(DISTANCE_MAX_M) &&
-                        clearance <= goe_magnitude(DISTANCE_MAX_M);
-    return within && plan->margin_m >= 0.0f && plan->clearance_m >= 0.0f ? GOE_OK : GOE_OUT_OF_RANGE;
+                        clearance <= goe_magnitude(DISTANCE_MAX_M) && since <= goe_magnitude(SINCE_MAX_S);
+    const bool negative = plan->margin_m < 0.0f || plan->clearance_m < 0.0f || plan->since_image_s < 0.0f;
+    return within && !negative ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
 goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard) {

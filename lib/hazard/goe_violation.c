@@ -68,15 +68,25 @@ static void report(const goe_outline_t *o, const goe_course_t *course, const goe
     }
 }
 
+/* The obstacle from where the camera is now. */
+static void fly_on(const goe_course_t *course, float s, goe_outline_t *outline) {
+    outline->reference.x -= course->speed_m_s * s * course->ahead.x;
+    outline->reference.z -= course->speed_m_s * s * course->ahead.z;
+}
+
 void goe_violation_foresee(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_covariance_t covariance,
                            goe_hazard_t *hazard) {
     goe_outline_t outline;
     goe_course_t course;
     goe_approach_t approach;
-    const goe_estimate_t *estimate = goe_latest_estimate(estimator);
+    const goe_estimate_t *estimate = &estimator->estimate;
     goe_outline_of(estimate, &outline);
+    if (!outline.box) {
+        outline.half = goe_larger(outline.half, goe_bounded(goe_latest_reach(estimator)));
+    }
     goe_approach_course(&estimator->motion, plan, &course);
-    const float height_m = goe_latest_camera_height(estimator) -
+    fly_on(&course, plan->since_image_s, &outline);
+    const float height_m = goe_latest_camera_height(estimator) + course.climb_m_s * plan->since_image_s -
                            (estimate->height_m - goe_latest_height_bias(estimator)); /* over the top now */
     goe_approach_find(&outline, &course, covariance, height_m, &approach);
     hazard->has_clearance = (estimate->valid & GOE_HAS_HEIGHT) != 0u;

@@ -5,6 +5,20 @@
 #include "goe.h"
 #include "maths/goe_scalar.h"
 
+/* The camera of that number; null if there is none. */
+static inline const goe_camera_t *goe_camera_of(const goe_settings_t *settings, unsigned number) {
+    const goe_camera_t *camera = &settings->camera;
+#if GOE_CAMERAS_MAX > 1
+    if (number > 0) {
+        camera = number < GOE_CAMERAS_MAX ? &settings->more_cameras[number - 1u] : NULL;
+        return camera && camera->fx_px > 0.0f ? camera : NULL;
+    }
+    return camera;
+#else
+    return number == 0 ? camera : NULL;
+#endif
+}
+
 /* Camera -> body (FRD) of the mounting angles. */
 void goe_camera_mounting(const goe_camera_t *camera, float camera_to_body[9]);
 

@@ -25,10 +25,19 @@ static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, co
     }
 }
 
-static void camera_position(const goe_settings_t *settings, const goe_pose_t *pose, const float body_to_ned[9],
+/* -180 to 180. */
+static float heading_of(float c, float s) {
+    const float half_deg = goe_arctan_rad(s, c < 0.0f ? -c : c) * GOE_DEG_PER_RAD;
+    if (c >= 0.0f) {
+        return half_deg;
+    }
+    return s >= 0.0f ? 180.0f - half_deg : -180.0f - half_deg;
+}
+
+static void camera_position(const goe_camera_t *camera, const goe_pose_t *pose, const float body_to_ned[9],
                             float position[2]) {
     float arm[3];
-    goe_rotation_apply(body_to_ned, settings->camera.offset_m, arm);
+    goe_rotation_apply(body_to_ned, camera->offset_m, arm);
     position[0] = pose->position_ned_m[0] + arm[0];
     position[1] = pose->position_ned_m[1] + arm[1];
 }
@@ -56,11 +65,12 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     float body_to_ned[9];
     float position[2];
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
-    camera_position(settings, pose, body_to_ned, position);
+    camera_position(view->camera, pose, body_to_ned, position);
     if (!motion->started) {
         fix_heading(motion, settings, body_to_ned);
+        motion->start_time_us = pose->time_us;
+        motion->heading_deg = heading_of(motion->heading_cos, motion->heading_sin);
         memcpy(motion->origin_ne_m, position, sizeof position);
-        motion->started = true;
     } else if (goe_motion_reset(motion, pose)) {
         for (int i = 0; i < 2; i++) {
             motion->origin_ne_m[i] += pose->reset_delta_ned_m[i];

@@ -5,7 +5,7 @@
 #include "image/goe_view.h"
 
 /* Takes the pose of view->image: fixes T and its origin at the track's first image, compensates a reset of known delta, and
- * sets dx_m, dz_m (displacement of the camera since the first image, T axes). view->camera_to_body must be set;
+ * sets dx_m, dz_m (displacement of the camera since the first image, T axes). view->camera and its rotation must be set;
  * view->camera_to_trajectory is set: the rotation of this image's rays into T. */
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
 
@@ -20,6 +20,12 @@ static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float
     const float s = motion->heading_sin;
     *north_m = motion->origin_ne_m[0] + (c * z_m - s * x_m);
     *east_m = motion->origin_ne_m[1] + (s * z_m + c * x_m);
+}
+
+/* A direction (X, Z) in T to (north, east). */
+static inline void goe_motion_turn(const goe_motion_t *motion, const float axis[2], float axis_ne[2]) {
+    axis_ne[0] = motion->heading_cos * axis[1] - motion->heading_sin * axis[0];
+    axis_ne[1] = motion->heading_sin * axis[1] + motion->heading_cos * axis[0];
 }
 
 /* The estimate's reference point relative to the camera at the latest image, if it is known. */

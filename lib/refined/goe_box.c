@@ -101,7 +101,7 @@ static void describe(const goe_observation_t *obs, outline_t *o) {
     o->curvature = CURVATURE * 2.0f * goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X] / (e->sum * e->sum * e->sum) *
                    obs->depth_variance;
     o->middle = goe_observation_reference(obs);
-    o->ground = (obs->height_m + x[GOE_HEIGHT_BIAS]) * x[GOE_INVERSE_RANGE];
+    o->ground = obs->height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
     o->top = goe_observation_roof(obs);
     const float length = e->side.length;
     const float vx = e->side.along.x / length;
@@ -195,7 +195,6 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
                                          size_t corner, goe_rows_t *rows) {
     goe_gradient_t gx;
     goe_gradient_t gy;
-    const float height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
     const goe_point_t *measured = &obs->point[feature];
     const goe_spread_t spread = goe_observation_spread(obs, feature);
     const float share = spread.xy / spread.xx;
@@ -210,13 +209,13 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     float *by = goe_rows_add(rows, feature, measured->x, spread.xx, &gx);
     const float along_x = by[GOE_BEHIND_STATES];
     set_corner(rows, by, obs, o, corner, &gx);
-    by[GOE_INVERSE_RANGE] += gx.y * height_m;
-    by[GOE_HEIGHT_BIAS] = gx.y * obs->state[GOE_INVERSE_RANGE];
+    by[GOE_INVERSE_RANGE] += gx.y * obs->height_m;
+    by[GOE_GROUND] = gx.y;
     by = goe_rows_add(rows, feature, measured->y, spread.yy - share * spread.xy, &gy);
     by[GOE_BEHIND_STATES] -= share * along_x;
     set_corner(rows, by, obs, o, corner, &gy);
-    by[GOE_INVERSE_RANGE] += gy.y * height_m;
-    by[GOE_HEIGHT_BIAS] = gy.y * obs->state[GOE_INVERSE_RANGE];
+    by[GOE_INVERSE_RANGE] += gy.y * obs->height_m;
+    by[GOE_GROUND] = gy.y;
 }
 
 /* (R12): the upright edge over an outer corner, at the height at which it was measured. */
@@ -288,7 +287,10 @@ void goe_box_clip(goe_filter_t *filter) {
 /* While one face is visible the other edge's length is unobservable; if it were free, relinearisation would pull it to zero.
  * So it is held until its face comes into view. */
 static void free_length(goe_filter_t *filter, float side) {
-    goe_srif_inflate(&filter->root, GOE_SIDE_X, filter->state[GOE_SIDE_X], GOE_DEPTH_DIFFERENCE, side, LENGTH_FREED);
+    float direction[GOE_STATES] = {0.0f};
+    direction[GOE_SIDE_X] = filter->state[GOE_SIDE_X];
+    direction[GOE_DEPTH_DIFFERENCE] = side;
+    goe_srif_spread(&filter->root, direction, GOE_SIDE_X, GOE_DEPTH_DIFFERENCE, LENGTH_FREED);
     goe_filter_invert(filter);
     filter->phase = GOE_PHASE_BOX; /* the same box: what counts its images goes on */
 }
@@ -298,6 +300,7 @@ static void exchange_state(float x[GOE_STATES]) {
     const float sign = sign_of(x[GOE_SIDE_X]);
     const float scale = 1.0f / (1.0f + 0.5f * x[GOE_DEPTH_DIFFERENCE]);
     const float side = x[GOE_SIDE_X];
+    x[GOE_GROUND] *= scale;
     x[GOE_BEARING] = (x[GOE_BEARING] + 0.5f * (sign * x[GOE_FRONT_X] + side)) * scale;
     x[GOE_INVERSE_RANGE] *= scale;
     x[GOE_SIDE_X] = -sign * x[GOE_FRONT_X] * scale;
@@ -314,13 +317,14 @@ static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     const float scale = 1.0f / (1.0f + 0.5f * is[GOE_DEPTH_DIFFERENCE]);
     memset(&old, 0, sizeof old);
     for (size_t k = 0; k < GOE_CHANGED; k++) {
-        old.by[k][GOE_OF_DEPTH] = -0.5f * scale * was[GOE_BEARING + k];
+        old.by[k][GOE_OF_DEPTH] = -0.5f * scale * was[GOE_GROUND + k];
     }
     old.by[GOE_OF_DEPTH][GOE_OF_DEPTH] -= scale;
     old.by[GOE_OF_BEARING][GOE_OF_SIDE] = 0.5f * scale;
     old.by[GOE_OF_BEARING][GOE_OF_FRONT] = 0.5f * scale * sign;
     old.by[GOE_OF_SIDE][GOE_OF_FRONT] = -scale * sign;
     old.by[GOE_OF_FRONT][GOE_OF_SIDE] = scale * sign;
+    old.by[GOE_OF_GROUND][GOE_OF_GROUND] = scale;
     old.by[GOE_OF_BEARING][GOE_OF_BEARING] = scale;
     old.by[GOE_OF_RANGE][GOE_OF_RANGE] = scale;
     old.by[GOE_OF_TOP][GOE_OF_TOP] = scale;

@@ -146,7 +146,7 @@ static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m,
 bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box) {
     face_t face;
     face.range_m = range_of(obs);
-    face.height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
+    face.height_m = obs->height_m + obs->state[GOE_GROUND] / obs->state[GOE_INVERSE_RANGE];
     if (!obs->base || !(face.range_m >= RANGE_MIN_M) || !(obs->height_m >= HEIGHT_MIN_M) ||
         !(face.height_m >= HEIGHT_MIN_M) || !place_face(obs, &face)) {
         return false;
@@ -233,6 +233,17 @@ static void turn_covariance(const float x[GOE_STATES], float c, float s, float c
     covariance[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] = m * m * qq;
 }
 
+/* GOE_GROUND is counted in another Z0. */
+static void scale_ground(float scale, float covariance[GOE_KEPT][GOE_KEPT]) {
+    for (size_t i = 0; i < GOE_GROUND; i++) {
+        covariance[i][GOE_GROUND] *= scale;
+    }
+    for (size_t i = GOE_GROUND; i < GOE_KEPT; i++) {
+        covariance[GOE_GROUND][i] *= scale;
+    }
+    covariance[GOE_GROUND][GOE_GROUND] *= scale;
+}
+
 /* From a disc to the box of the footprint. The nuisances and the range keep their covariance; the reference moves by up to
  * the box's size, and the disc was only a stand-in. both: two faces are seen. */
 static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool both) {
@@ -249,7 +260,10 @@ static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool bot
         BEARING_GROWTH * c[GOE_BEARING][GOE_BEARING] + goe_square(BEARING_FREEDOM * size) + BEARING_FLOOR2;
     c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] =
         RANGE_GROWTH * c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] + goe_square(size * box->q);
-    x[GOE_TOP] *= box->q / x[GOE_INVERSE_RANGE];
+    const float scale = box->q / x[GOE_INVERSE_RANGE];
+    x[GOE_TOP] *= scale;
+    x[GOE_GROUND] *= scale;
+    scale_ground(scale, c);
     x[GOE_BEARING] = box->a;
     x[GOE_INVERSE_RANGE] = box->q;
     x[GOE_SIDE_X] = box->length * box->sine;

@@ -194,6 +194,7 @@ static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
         return false;
     }
     const float scale = 1.0f / zeta;
+    x[GOE_GROUND] *= scale;
     x[GOE_BEARING] = (x[GOE_BEARING] + faces->shift.x) * scale;
     x[GOE_INVERSE_RANGE] *= scale;
     x[GOE_SIDE_X] = faces->side.x * scale;
@@ -216,7 +217,7 @@ static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES
     for (size_t i = 0; i < 3; i++) {
         const float side = box.side.by[i];
         for (size_t k = 0; k < GOE_CHANGED; k++) {
-            old->by[k][GOE_OF_SIDE + i] = -0.5f * scale * was[GOE_BEARING + k] * side;
+            old->by[k][GOE_OF_SIDE + i] = -0.5f * scale * was[GOE_GROUND + k] * side;
         }
         old->by[GOE_OF_SIDE][GOE_OF_SIDE + i] += scale * (box.front.by[i] + side_sign * side);
         old->by[GOE_OF_DEPTH][GOE_OF_SIDE + i] = turn * is[GOE_FRONT_X] * side;
@@ -225,6 +226,7 @@ static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES
     old->by[GOE_OF_BEARING][GOE_OF_SIDE] += 0.5f * scale;
     old->by[GOE_OF_FRONT][GOE_OF_SIDE] += side_sign * scale;
     old->by[GOE_OF_FRONT][GOE_OF_FRONT] += scale;
+    old->by[GOE_OF_GROUND][GOE_OF_GROUND] = scale;
     old->by[GOE_OF_BEARING][GOE_OF_BEARING] = scale;
     old->by[GOE_OF_RANGE][GOE_OF_RANGE] = scale;
     old->by[GOE_OF_TOP][GOE_OF_TOP] = scale;

@@ -23,6 +23,7 @@
 #define TOP_FREEDOM 10.0f    /* ... of the top */
 #define SKEWED_SIGMAS2 18.0f /* twice the log-likelihood ratio of chord against disc; cylinders stay below 14 */
 #define VARIANCE_MIN 1.0e-30f
+#define CHANCE_SHARE 0.5f /* of the skew's variance that is taken for a true disc's chance when it is answered for */
 #define HEADING_ARM 0.08f /* s/m: a yaw bias this large per m/s looks like a velocity bias */
 #define BASE_NOISE 2.0f   /* variance of a base corner's y as range of the centre, over its own */
 
@@ -108,16 +109,16 @@ static void add_base(const goe_observation_t *obs, const circle_t *o, goe_featur
                      goe_rows_t *rows) {
     goe_gradient_t g;
     const float q = obs->state[GOE_INVERSE_RANGE];
-    const float height_m = obs->height_m + obs->state[GOE_HEIGHT_BIAS];
-    float *by = goe_rows_add_level(rows, obs, o->center, height_m * q, feature, 0.0f, &g);
+    const float ground = obs->height_m * q + obs->state[GOE_GROUND];
+    float *by = goe_rows_add_level(rows, obs, o->center, ground, feature, 0.0f, &g);
     if (!by) {
         return;
     }
     float *variance = goe_rows_last_variance(rows);
     *variance = *variance * BASE_NOISE + goe_square(g.at * width);
-    by[GOE_HEIGHT_BIAS] = g.y * q;
+    by[GOE_GROUND] = g.y;
     by[GOE_BEARING] = g.x;
-    by[GOE_INVERSE_RANGE] = g.y * height_m - g.x * obs->camera_m.x - g.z * obs->camera_m.z;
+    by[GOE_INVERSE_RANGE] = g.y * obs->height_m - g.x * obs->camera_m.x - g.z * obs->camera_m.z;
 }
 
 void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
@@ -156,7 +157,8 @@ static float first_range_m(const goe_observation_t *obs, float size) {
     return obs->settings->refined.typical_size_m / size;
 }
 
-static void set_first_root(const goe_settings_t *settings, const float state[GOE_STATES], goe_triangle_t *root) {
+static void set_first_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
+    const goe_settings_t *settings = obs->settings;
     const float bias = settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG;
     const float top =
         goe_absolute(state[GOE_TOP]) > state[GOE_FRONT_X] ? goe_absolute(state[GOE_TOP]) : state[GOE_FRONT_X];
@@ -165,7 +167,7 @@ static void set_first_root(const goe_settings_t *settings, const float state[GOE
     *goe_srif_at(root, GOE_BIAS_Y, GOE_BIAS_Y) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Z, GOE_BIAS_Z) =
         1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_m_s));
-    *goe_srif_at(root, GOE_HEIGHT_BIAS, GOE_HEIGHT_BIAS) = 1.0f / settings->navigation.height_bias_m;
+    *goe_srif_at(root, GOE_GROUND, GOE_GROUND) = 1.0f / (obs->height_sd_m * state[GOE_INVERSE_RANGE]);
     *goe_srif_at(root, GOE_BEARING, GOE_BEARING) = 1.0f / BEARING_FREEDOM;
     *goe_srif_at(root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0f / (RANGE_FREEDOM * state[GOE_INVERSE_RANGE]);
     *goe_srif_at(root, GOE_SIDE_X, GOE_SIDE_X) = 1.0f / state[GOE_FRONT_X];
@@ -198,7 +200,7 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
     state[GOE_FRONT_X] = size * range_m / z0_m;
     state[GOE_DEPTH_DIFFERENCE] = state[GOE_FRONT_X];
     state[GOE_TOP] = (obs->height_m - top * range_m) / z0_m;
-    set_first_root(obs->settings, state, root);
+    set_first_root(obs, state, root);
     return true;
 }
 
@@ -225,7 +227,7 @@ static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
     }
 }
 
-void goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES]) {
+float goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES]) {
     const float *v = filter->inverse.element;
     float along = 0.0f;
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
@@ -235,6 +237,9 @@ void goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES])
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
         projected[j] -= along * v[goe_inverse_column(j) + GOE_SIDE_X];
     }
+    const float by_chance = CHANCE_SHARE * skew_variance(filter);
+    const float beyond2 = goe_square(filter->state[GOE_SIDE_X]) - by_chance;
+    return beyond2 > 0.0f ? along * sqrtf(beyond2) : 0.0f;
 }
 
 void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape) {

@@ -18,7 +18,8 @@ bool goe_disc_is_skewed(const goe_filter_t *filter);
 /* Quantities, under the condition that the disc has no skew (GOE_SIDE_X = 0). */
 void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
-/* The same condition on a derivative in terms of independent unit errors (goe_srif_project). */
-void goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES]);
+/* The same condition on a derivative in terms of independent unit errors (goe_srif_project). Returns by how much it moves the
+ * quantity, which is in error by as much if the obstacle is no disc. */
+float goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES]);
 
 #endif

@@ -40,28 +40,48 @@ void goe_filter_invert(goe_filter_t *filter) {
 }
 
 void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) {
-    goe_srif_inflate(&filter->root, state, 0.0f, state, 1.0f, sigma);
+    float direction[GOE_STATES];
+    direction[state] = 1.0f;
+    goe_srif_spread(&filter->root, direction, state, state, sigma);
 }
 
 /* Down in the camera's axes is a row of camera -> T, as T is level. */
-static float camera_down_m(const float offset_m[3], const goe_view_t *view) {
+static float camera_down_m(const goe_view_t *view) {
     const float *down = &view->camera_to_trajectory[3];
     float arm_m = 0.0f;
     for (size_t i = 0; i < 3; i++) {
         for (size_t j = 0; j < 3; j++) {
-            arm_m += down[i] * view->camera_to_body[3 * j + i] * offset_m[j];
+            arm_m += down[i] * view->camera_to_body[3 * j + i] * view->camera->offset_m[j];
         }
     }
     return view->image->pose.position_ned_m[2] + arm_m;
 }
 
-void goe_filter_take_height(goe_filter_t *filter, const float offset_m[3], const goe_view_t *view) {
+/* Before the filter starts the ground is where the mean of the heights puts it. */
+static void read_height(goe_datum_t *datum, bool started, float down_m, float height_m) {
+    const float off_m = height_m + down_m - datum->ground_m;
+    datum->readings = (uint16_t)(datum->readings < UINT16_MAX ? datum->readings + 1 : UINT16_MAX);
+    datum->mean_m += (off_m - datum->mean_m) / (float)datum->readings;
+    if (!started) {
+        datum->ground_m += datum->mean_m;
+        datum->mean_m = 0.0f;
+    }
+}
+
+void goe_filter_take_height(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view) {
     goe_datum_t *datum = &filter->datum;
-    const float down_m = camera_down_m(offset_m, view);
+    const bool white = navigation->height_white_m > 0.0f;
+    if (!view->motion->started || (!white && view->image->box.seen == 0 && !filter->has_datum)) {
+        return; /* points alone take each image's height as it is */
+    }
+    const float down_m = camera_down_m(view);
     if (!filter->has_datum) {
         datum->ground_m = view->motion->height_m + down_m;
         datum->sd_m = view->image->noise.height_m;
         filter->has_datum = true;
+    }
+    if (white) {
+        read_height(datum, filter->phase != GOE_PHASE_NONE, down_m, view->motion->height_m);
     }
     datum->height_m = datum->ground_m - down_m;
 }

@@ -14,7 +14,7 @@ typedef enum {
     GOE_BIAS_X, /* attitude bias about body x, y, z: small rotation from the true to the given attitude, rad */
     GOE_BIAS_Y,
     GOE_BIAS_Z,
-    GOE_HEIGHT_BIAS,   /* true minus given height of the camera above the obstacle's ground, m */
+    GOE_GROUND,        /* (true minus given height of the camera above the obstacle's ground)/Z0 */
     GOE_BEARING,       /* X0/Z0 */
     GOE_INVERSE_RANGE, /* 1/Z0, 1/m */
     GOE_SIDE_X, /* box: L sin(b)/Z0. Disc and chord, a depth: how much deeper the right end lies than the left one, over Z0;
@@ -22,7 +22,7 @@ typedef enum {
     GOE_FRONT_X, /* box: W cos(b)/Z0; disc: diameter/Z0; chord: how much farther to the right its right end lies */
     GOE_DEPTH_DIFFERENCE, /* box: (L cos(b) - W |sin(b)|)/Z0: how much deeper the side reaches than the front; otherwise
                              idle */
-    GOE_TOP,              /* (H - GOE_HEIGHT_BIAS)/Z0: the top above the altimeter's own zero */
+    GOE_TOP,              /* H/Z0 - GOE_GROUND: the top above the altimeter's own zero */
     GOE_STATE_COUNT
 } goe_state_index_t;
 
@@ -30,10 +30,9 @@ GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
 
 /* What the same places hold while the obstacle is a prism, see goe_prism.h. All over Z0. */
 enum {
-    GOE_PRISM_GROUND = GOE_HEIGHT_BIAS,    /* (true minus given height of the camera)/Z0 */
     GOE_PRISM_DEPTH = GOE_SIDE_X,          /* log of the depth along Z over the width */
     GOE_PRISM_HALF = GOE_FRONT_X,          /* half width across Z */
-    GOE_PRISM_TOP = GOE_DEPTH_DIFFERENCE,  /* (H - ground offset)/Z0, like GOE_TOP */
+    GOE_PRISM_TOP = GOE_DEPTH_DIFFERENCE,  /* like GOE_TOP */
     GOE_PRISM_UNSEEN = GOE_TOP,            /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
     GOE_PRISM_ESTIMATED = GOE_PRISM_UNSEEN /* states before this one are estimated */
 };
@@ -41,9 +40,9 @@ enum {
 GOE_STATIC_ASSERT(GOE_PRISM_UNSEEN == GOE_STATES - 1, what_is_not_estimated_comes_last);
 
 /* Places of the states in goe_substitution_t. */
-enum { GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH, GOE_OF_TOP };
+enum { GOE_OF_GROUND, GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH, GOE_OF_TOP };
 
-GOE_STATIC_ASSERT(GOE_BEARING + GOE_CHANGED == GOE_STATES && GOE_BEARING + GOE_OF_TOP == GOE_TOP,
+GOE_STATIC_ASSERT(GOE_GROUND + GOE_CHANGED == GOE_STATES && GOE_GROUND + GOE_OF_TOP == GOE_TOP,
                   the_last_states_are_those_that_change);
 GOE_STATIC_ASSERT(GOE_KEPT == GOE_SIDE_X, the_first_states_are_those_that_are_kept);
 
@@ -109,8 +108,13 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 
 /* ------------------------------------------------------------------------------------------------------------ axes -- */
 
-/* Takes an image's height, and what down has changed by. offset_m: of the camera, body axes. */
-void goe_filter_take_height(goe_filter_t *filter, const float offset_m[3], const goe_view_t *view);
+/* Takes an image's height, and what down has changed by. Upright boxes count by it, and heights with a white error do. */
+void goe_filter_take_height(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view);
+
+/* Whether the height moves by the changes of down. */
+static inline bool goe_filter_is_steady(const goe_filter_t *filter, const goe_navigation_t *navigation) {
+    return filter->phase == GOE_PHASE_PRISM || navigation->height_white_m > 0.0f;
+}
 
 /* The autopilot's down jumped by this. */
 static inline void goe_filter_move_datum(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }

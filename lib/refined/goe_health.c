@@ -44,6 +44,7 @@ static void average_track(goe_health_t *health, float ratio) {
     health->images = (int16_t)(health->images < INT16_MAX ? health->images + 1 : INT16_MAX);
     const int heard = health->images + MEAN_SEEDS;
     average(&health->mean_nis, ratio, 1.0f / (float)(heard < MEAN_IMAGES ? heard : MEAN_IMAGES));
+    average(&health->excess, ratio - 1.0f, 1.0f / (float)heard);
 }
 
 void goe_health_expect(goe_health_t *health) {

@@ -20,7 +20,7 @@ static bool shows_prism(const goe_settings_t *settings, const goe_view_t *view) 
 
 bool goe_model_place(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view) {
     goe_filter_place_axes(filter, view->motion);
-    return shows_prism(settings, view) && goe_prism_face(filter, settings, view);
+    return shows_prism(settings, view) && goe_prism_face(filter, view);
 }
 
 bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool prism) {
@@ -30,6 +30,12 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     }
     goe_filter_enter(filter, prism ? GOE_PHASE_PRISM : GOE_PHASE_DISC);
     memset(filter->side, 0, sizeof filter->side);
+    filter->datum.information = 1.0f / goe_observation_height_variance(obs, prism);
+    filter->datum.moment = 0.0f;
+    filter->ground_scale = 1.0f;
+    filter->flown_m = 0.0f;
+    filter->sloped_m = 0.0f;
+    memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->stand_in = false;
     goe_srif_invert_diagonal(&filter->root, &filter->inverse);
     goe_filter_settle(filter);
@@ -88,9 +94,11 @@ float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *ro
     const bool prism = filter->phase == GOE_PHASE_PRISM;
     const float nis = prism ? goe_srif_update_considering(&filter->root, nuisance_root, rows->matrix, change)
                             : goe_srif_update(&filter->root, nuisance_root, rows->matrix, change);
+    const float before = filter->state[GOE_INVERSE_RANGE];
     for (size_t i = 0; i < GOE_STATES; i++) {
         filter->state[i] += change[i];
     }
+    filter->ground_scale *= before / filter->state[GOE_INVERSE_RANGE];
     if (prism) {
         goe_prism_follow(filter, change);
     }

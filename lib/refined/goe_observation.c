@@ -1,6 +1,7 @@
 /* The image in the state's axes, projection under a small attitude bias, noise of the points, rows. SPDX-License-Identifier: MIT */
 #include "refined/goe_observation.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "maths/goe_angle.h"
@@ -74,18 +75,25 @@ static float given_or(float given, float least, float setting) {
     return given > 0.0f ? goe_larger(given, least) : setting;
 }
 
-static void take_noise(goe_observation_t *obs, const goe_image_noise_t *noise) {
+static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const goe_image_noise_t *noise) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;
     obs->white_rad = given_or(noise->attitude_deg, WHITE_MIN_DEG, navigation->attitude_white_deg) * GOE_RAD_PER_DEG;
     obs->point_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.point_px);
     obs->side_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.box_px);
     obs->height_sd_m = given_or(obs->height_sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_m);
+    if (navigation->height_white_m > 0.0f) {
+        const float readings = (float)filter->datum.readings;
+        obs->height_m = filter->datum.height_m;
+        obs->height_sd_m = sqrtf(goe_square(obs->height_sd_m) + goe_square(navigation->height_white_m) / readings);
+    }
 }
 
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view) {
     obs->settings = settings;
+    obs->camera = view->camera;
+    obs->number = view->image->camera;
     obs->state = filter->state;
     turn_points(obs, filter, view);
     turn_rotation(view->camera_to_trajectory, filter->axes.turn_cos, filter->axes.turn_sin, obs->camera_to_axes);
@@ -97,7 +105,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->fade = 0.0f;
     obs->position_sd = 0.0f;
     obs->height_sd_m = filter->datum.sd_m;
-    take_noise(obs, &view->image->noise);
+    take_noise(obs, filter, &view->image->noise);
     obs->outline_share = settings->detector.point_share;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
@@ -156,8 +164,8 @@ goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t 
     const float *h = obs->camera_to_axes;
     const goe_point_t *p = &obs->point[feature];
     const float scale = (h[2] * p->x + h[5] * p->y + h[8]) * obs->point_px;
-    const float u = scale / obs->settings->camera.fx_px;
-    const float v = scale / obs->settings->camera.fy_px;
+    const float u = scale / obs->camera->fx_px;
+    const float v = scale / obs->camera->fy_px;
     const float xu = (h[0] - p->x * h[6]) * u;
     const float xv = (h[1] - p->x * h[7]) * v;
     const float yu = (h[3] - p->y * h[6]) * u;
@@ -194,11 +202,23 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, flo
     row[0] = gradient->ey;
     row[1] = gradient->ex;
     row[2] = gradient->ez;
-    for (size_t state = GOE_HEIGHT_BIAS; state < GOE_STATES; state++) {
+    for (size_t state = GOE_GROUND; state < GOE_STATES; state++) {
         by[state] = 0.0f;
     }
     by[GOE_BEHIND_STATES] = measured - gradient->at;
     return by;
+}
+
+/* Y/Z at which the edge was measured, with the attitude bias taken off, and what its derivatives by the bias add to those of x. */
+static float edge_height(const goe_observation_t *obs, const goe_point_t *p) {
+    return p->y + obs->ex * (1.0f + p->y * p->y) - obs->ez * p->x - obs->ey * p->x * p->y;
+}
+
+static void add_height_of_edge(const goe_point_t *p, float z, goe_gradient_t *of_x) {
+    const float by_height = of_x->y * z;
+    of_x->ex += by_height * (1.0f + p->y * p->y);
+    of_x->ez -= by_height * p->x;
+    of_x->ey -= by_height * p->x * p->y;
 }
 
 float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
@@ -207,7 +227,8 @@ float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_
     if (!measured->usable) {
         return NULL;
     }
-    goe_observation_project_x(obs, place.x, measured->y * place.z, place.z, of_x);
+    goe_observation_project_x(obs, place.x, edge_height(obs, measured) * place.z, place.z, of_x);
+    add_height_of_edge(measured, place.z, of_x);
     return goe_rows_add(rows, feature, measured->x, goe_observation_spread(obs, feature).xx + more, of_x);
 }
 

@@ -7,16 +7,18 @@
 
 typedef struct {
     const goe_settings_t *settings;
+    const goe_camera_t *camera;
     const float *state;
     goe_point_t
         point[GOE_FEATURES]; /* by goe_feature_t, aligned with the state's axes; usable: measured in this image */
     float camera_to_axes[9], body_to_axes[9];
     float ex, ey, ez;  /* attitude bias about the state's axes, rad */
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
+    uint8_t number;    /* of the camera */
     float height_m;    /* camera above ground, as given */
     const goe_sides_t *sides;
     float steady_height_m;   /* the same by the changes of down, see goe_datum_t */
-    float height_sd_m;       /* one sigma of its constant error */
+    float height_sd_m;       /* one sigma of its error: of the constant one, and of the mean of all readings */
     float fade;              /* what the error of a box's side keeps since the image used before */
     float white_rad;         /* one sigma of the image's own attitude error */
     float point_px, side_px; /* ... of a point, and of a box's side */
@@ -62,10 +64,14 @@ void goe_observation_linearise(goe_observation_t *obs);
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x);
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
-/* One sigma of a pixel, focal lengths. */
-static inline float goe_observation_pixel(const goe_observation_t *obs) {
-    return obs->point_px / obs->settings->camera.fx_px;
+/* Variance of the height above the obstacle's ground, m2; of a prism that ground may lie off. */
+static inline float goe_observation_height_variance(const goe_observation_t *obs, bool prism) {
+    const float ground_m = prism ? obs->settings->navigation.ground_m : 0.0f;
+    return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
+
+/* One sigma of a pixel, focal lengths. */
+static inline float goe_observation_pixel(const goe_observation_t *obs) { return obs->point_px / obs->camera->fx_px; }
 
 /* (R1): the state's reference point relative to the camera now, units of Z0. */
 static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {
@@ -100,7 +106,7 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
 float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
                     const goe_gradient_t *gradient);
 
-/* An upright edge at the place (X, Z), seen along x at the height at which it was measured. Null if the feature is not
+/* An upright edge at the place (X, Z), seen along x at the height at which it was measured, freed of the attitude bias. Null if the feature is not
  * usable. more: variance beyond the pixel noise. */
 float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
                          float more, goe_gradient_t *of_x);

@@ -84,7 +84,7 @@ static void describe(const goe_observation_t *obs, ellipse_t *o) {
     o->center = goe_observation_reference(obs);
     o->half = x[GOE_PRISM_HALF];
     o->depth = o->half * goe_exp(x[GOE_PRISM_DEPTH]);
-    o->ground = obs->steady_height_m * x[GOE_INVERSE_RANGE] + x[GOE_PRISM_GROUND];
+    o->ground = obs->steady_height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
     o->roof = obs->steady_height_m * x[GOE_INVERSE_RANGE] - x[GOE_PRISM_TOP];
 }
 
@@ -169,7 +169,7 @@ static bool touch_bent(const goe_observation_t *obs, const ellipse_t *o, size_t 
         return false;
     }
     const float sign = sign_of(side);
-    const line_t line = line_at(&obs->settings->camera, side, t->x, t->y);
+    const line_t line = line_at(obs->camera, side, t->x, t->y);
     const float bent[3] = {sign * line.by_x, sign * line.by_y, -sign * (line.by_x * t->x + line.by_y * t->y)};
     return touch(obs, o, bent, end, t);
 }
@@ -177,7 +177,7 @@ static bool touch_bent(const goe_observation_t *obs, const ellipse_t *o, size_t 
 /* Touches by the plane through the raw coordinate `at`. With a lens foot and head are tried, as the line is not straight between
  * them. */
 static bool touch_side(const goe_observation_t *obs, const ellipse_t *o, size_t side, float at, touch_t *t) {
-    const goe_camera_t *camera = &obs->settings->camera;
+    const goe_camera_t *camera = obs->camera;
     const float sign = sign_of(side);
     const float straight[3] = {is_level(side) ? 0.0f : sign, is_level(side) ? sign : 0.0f, -sign * at};
     if (!goe_camera_distorts(camera)) {
@@ -217,7 +217,7 @@ static goe_gradient_t gradient_of(const goe_observation_t *obs, const touch_t *t
 /* (R29). */
 static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t side, float variance, goe_rows_t *rows) {
     touch_t t;
-    const goe_camera_t *camera = &obs->settings->camera;
+    const goe_camera_t *camera = obs->camera;
     const float measured = coordinate(camera, obs->sides, side);
     if (!touch_side(obs, o, side, measured, &t)) {
         return;
@@ -227,7 +227,7 @@ static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t si
     float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], measured, variance, &g);
     const float outward = g.x * t.outward.x + g.z * t.outward.z;
     const float along = o->depth * t.outward.z;
-    by[GOE_PRISM_GROUND] = t.foot ? g.y : 0.0f;
+    by[GOE_GROUND] = t.foot ? g.y : 0.0f;
     by[GOE_BEARING] = g.x;
     by[GOE_INVERSE_RANGE] = g.y * obs->steady_height_m + goe_rows_by_range(obs, g.x, g.z);
     by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
@@ -243,7 +243,7 @@ static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t si
 
 /* The box's size along a side's coordinate, focal lengths: as measured, or as predicted. */
 static float size_of(const goe_observation_t *obs, bool level) {
-    const goe_camera_t *camera = &obs->settings->camera;
+    const goe_camera_t *camera = obs->camera;
     const goe_sides_t *sides = obs->sides;
     const float *x = obs->state;
     const size_t first = level ? GOE_BOX_TOP : GOE_BOX_LEFT;
@@ -251,13 +251,13 @@ static float size_of(const goe_observation_t *obs, bool level) {
         return (sides->px[first + 2u] - sides->px[first]) / focal_px(camera, first);
     }
     const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
-    return goe_larger(level ? x[GOE_PRISM_TOP] + x[GOE_PRISM_GROUND] : 2.0f * x[GOE_PRISM_HALF], 0.0f) / ahead;
+    return goe_larger(level ? x[GOE_PRISM_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_PRISM_HALF], 0.0f) / ahead;
 }
 
 static float white_variance(const goe_observation_t *obs, size_t side) {
     const goe_detector_t *detector = &obs->settings->detector;
     const float size = size_of(obs, is_level(side));
-    const float pixel = obs->side_px / focal_px(&obs->settings->camera, side);
+    const float pixel = obs->side_px / focal_px(obs->camera, side);
     return goe_square(pixel) + goe_square(SCATTER_SHARE * size) +
            (obs->sides->cut ? goe_square(detector->cut_noise * size) : 0.0f);
 }
@@ -343,10 +343,9 @@ void goe_prism_follow(goe_filter_t *filter, const float change[GOE_STATES]) {
 /* -------------------------------------------------------------------------------------------------------------- start -- */
 
 /* Aligned ray, in the state's axes, of the raw point (x, y) focal lengths. False if it does not point ahead. */
-static bool ray_of(const goe_settings_t *settings, const float camera_to_axes[9], float x, float y, goe_point_t *ray) {
+static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], float x, float y, goe_point_t *ray) {
     float undistorted[2] = {x, y};
-    if (goe_camera_distorts(&settings->camera) &&
-        !goe_camera_undistort(&settings->camera, &undistorted[0], &undistorted[1])) {
+    if (goe_camera_distorts(camera) && !goe_camera_undistort(camera, &undistorted[0], &undistorted[1])) {
         return false;
     }
     const float *r = camera_to_axes;
@@ -365,15 +364,15 @@ static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, floa
              : 0.0f;
 }
 
-bool goe_prism_face(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view) {
+bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view) {
     float x;
     float y;
     goe_point_t ray;
     if (!goe_sides_see(&view->sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
         return false;
     }
-    middle_of(&settings->camera, &view->sides, &x, &y);
-    if (!ray_of(settings, view->camera_to_trajectory, x, y, &ray)) {
+    middle_of(view->camera, &view->sides, &x, &y);
+    if (!ray_of(view->camera, view->camera_to_trajectory, x, y, &ray)) {
         return false;
     }
     const float norm = sqrtf(1.0f + ray.x * ray.x);
@@ -382,15 +381,13 @@ bool goe_prism_face(goe_filter_t *filter, const goe_settings_t *settings, const 
     return true;
 }
 
-static float height_sd_m(const goe_observation_t *obs) {
-    return sqrtf(goe_square(obs->height_sd_m) + goe_square(obs->settings->navigation.ground_m));
-}
+static float height_sd_m(const goe_observation_t *obs) { return sqrtf(goe_observation_height_variance(obs, true)); }
 
 /* From flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. size: angular. */
 static float first_range_m(const goe_observation_t *obs, float size, const goe_point_t *foot) {
     const goe_settings_t *s = obs->settings;
     const float attitude = goe_square(s->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
-    const float foot_sd = sqrtf(attitude + goe_square(obs->side_px / s->camera.fy_px) +
+    const float foot_sd = sqrtf(attitude + goe_square(obs->side_px / obs->camera->fy_px) +
                                 goe_square(FOOT_SHARE * s->detector.box_share * size));
     const bool grounded =
         foot->usable && foot->y > GROUND_SIGMAS * foot_sd && obs->steady_height_m > GROUND_SIGMAS * height_sd_m(obs);
@@ -407,7 +404,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     sd[GOE_BIAS_X] = bias;
     sd[GOE_BIAS_Y] = bias;
     sd[GOE_BIAS_Z] = sqrtf(goe_square(bias) + goe_square(HEADING_ARM * navigation->velocity_bias_m_s));
-    sd[GOE_PRISM_GROUND] = goe_larger(height_sd_m(obs) * q, GROUND_MIN);
+    sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * q, GROUND_MIN);
     sd[GOE_BEARING] = BEARING_FREEDOM;
     sd[GOE_INVERSE_RANGE] = RANGE_FREEDOM * q;
     sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
@@ -421,8 +418,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
 }
 
 bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root) {
-    const goe_settings_t *settings = obs->settings;
-    const goe_camera_t *camera = &settings->camera;
+    const goe_camera_t *camera = obs->camera;
     const goe_sides_t *sides = obs->sides;
     goe_point_t head = {0.0f, 0.0f, false};
     goe_point_t foot = {0.0f, 0.0f, false};
@@ -430,10 +426,10 @@ bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_
     float y;
     middle_of(camera, sides, &x, &y);
     if (goe_sides_see(sides, GOE_SEES_TOP)) {
-        (void)ray_of(settings, obs->camera_to_axes, x, coordinate(camera, sides, GOE_BOX_TOP), &head);
+        (void)ray_of(camera, obs->camera_to_axes, x, coordinate(camera, sides, GOE_BOX_TOP), &head);
     }
     if (goe_sides_see(sides, GOE_SEES_BOTTOM)) {
-        (void)ray_of(settings, obs->camera_to_axes, x, coordinate(camera, sides, GOE_BOX_BOTTOM), &foot);
+        (void)ray_of(camera, obs->camera_to_axes, x, coordinate(camera, sides, GOE_BOX_BOTTOM), &foot);
     }
     const float size = size_of(obs, false) / (1.0f + x * x);
     const float range_m = first_range_m(obs, size, &foot);
@@ -446,7 +442,7 @@ bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_
     state[GOE_PRISM_HALF] = 0.5f * size;
     state[GOE_PRISM_TOP] = obs->steady_height_m * q - (head.usable ? head.y : 0.0f);
     if (height_sd_m(obs) > NO_ALTIMETER_M && foot.usable) {
-        state[GOE_PRISM_GROUND] = foot.y - obs->steady_height_m * q;
+        state[GOE_GROUND] = foot.y - obs->steady_height_m * q;
     }
     set_root(obs, state, size, root);
     return true;
@@ -469,12 +465,10 @@ void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     width->value = 2.0f * x[GOE_PRISM_HALF] * scale_m;
     width->by[GOE_INVERSE_RANGE] = -scale_m * width->value;
     width->by[GOE_PRISM_HALF] = 2.0f * scale_m;
-    memset(height, 0, sizeof *height);
-    height->value = (x[GOE_PRISM_TOP] + x[GOE_PRISM_GROUND]) * scale_m;
+    height->value = (x[GOE_PRISM_TOP] + x[GOE_GROUND]) * scale_m;
     height->by[GOE_INVERSE_RANGE] = -scale_m * height->value;
+    height->by[GOE_TOP] = 0.0f; /* which is another state here */
     height->by[GOE_PRISM_TOP] = scale_m;
-    height->by[GOE_PRISM_GROUND] = scale_m;
-    shape->datum_by_range = x[GOE_PRISM_GROUND] * scale_m * scale_m;
 }
 
 #endif

@@ -14,7 +14,7 @@
 #include "refined/goe_shape.h"
 
 /* Turns the filter's axes so that Z points at the obstacle. False if left and right are not measured. */
-bool goe_prism_face(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view);
+bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view);
 
 /* First guess: state and root from one image, in axes that face the obstacle. False if it is out of range. */
 bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);

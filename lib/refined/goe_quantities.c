@@ -9,7 +9,9 @@
 #include "maths/goe_time.h"
 #include "refined/goe_box.h"
 #include "refined/goe_disc.h"
+#include "refined/goe_gate.h"
 #include "refined/goe_model.h"
+#include "refined/goe_scatter.h"
 
 #if GOE_WITH_REFINED
 
@@ -32,6 +34,7 @@ typedef struct {
     goe_xz_t camera_m; /* since the filter's start */
     float share;       /* of lengths, and rad */
     float walk_m2;
+    float turned_m2; /* a path that leads back on itself is not scaled: what of the drift is left */
 } drift_t;
 
 static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
@@ -41,7 +44,16 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
     const float path_m = sqrtf(goe_xz_dot(drift.camera_m, drift.camera_m));
     drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
     drift.walk_m2 = goe_square(navigation->position_walk_m) * s;
+    const float straight = filter->flown_m > path_m ? path_m / filter->flown_m : 1.0f;
+    drift.turned_m2 = goe_square(navigation->velocity_bias_m_s * s) * (1.0f - straight * straight);
     return drift;
+}
+
+/* (R23), from the track's first image to the filter's start: X0 and Z0 alone count from there. */
+static float early_variance(const goe_filter_t *filter, const goe_navigation_t *navigation,
+                            const goe_motion_t *motion) {
+    const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, TIME_MAX_US);
+    return goe_square(navigation->velocity_bias_m_s * s) + goe_square(navigation->position_walk_m) * s;
 }
 
 static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe_shape_t *shape, bool box,
@@ -51,7 +63,8 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
     switch (quantity) {
         case GOE_X0:
         case GOE_Z0:
-            return share2 * goe_square(shape->quantity[GOE_Z0].value) + drift.walk_m2 + shape->place_m2;
+            return share2 * goe_square(shape->quantity[GOE_Z0].value) + drift.walk_m2 + drift.turned_m2 +
+                   shape->place_m2;
         case GOE_ORIENTATION:
             return box ? share2 : 0.0f;
         case GOE_HEIGHT:
@@ -63,12 +76,11 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 
 /* --------------------------------------------------------------------------------------------------------- variance -- */
 
-/* Derivatives become those in terms of independent unit errors: their squared norm is the variance. */
-static void project(const goe_filter_t *filter, float by[GOE_STATES]) {
+/* Derivatives become those in terms of independent unit errors: their squared norm is the variance. Returns what the condition
+ * that makes a disc moved the quantity by, (R7). */
+static float project(const goe_filter_t *filter, float by[GOE_STATES]) {
     goe_srif_project(&filter->inverse, by);
-    if (filter->phase == GOE_PHASE_DISC) {
-        goe_disc_condition(filter, by);
-    }
+    return filter->phase == GOE_PHASE_DISC ? goe_disc_condition(filter, by) : 0.0f;
 }
 
 static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
@@ -78,12 +90,15 @@ static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum
     return sum;
 }
 
-/* The derivatives are used up. */
-static float variance_of(const goe_filter_t *filter, float by[GOE_STATES]) {
+GOE_STATIC_ASSERT(GOE_GROUND == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
+
+/* The derivatives are used up. *moved2: what a disc's condition adds, see project(). */
+static float variance_of(const goe_filter_t *filter, float by[GOE_STATES], float *moved2) {
+    *moved2 = 0.0f;
     if (filter->phase != GOE_PHASE_DISC) {
-        return goe_srif_variance(&filter->inverse, by);
+        return goe_srif_variance_of_rest(&filter->inverse, by);
     }
-    project(filter, by);
+    *moved2 = goe_square(project(filter, by));
     return dot(by, by, 0.0f);
 }
 
@@ -122,7 +137,7 @@ static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t
     if (q->box && filter->phase != GOE_PHASE_BOX_FACE && is_extent(q, GOE_LENGTH, 0.0f)) {
         known |= GOE_HAS_LENGTH;
     }
-    if (q->box && goe_within(q->sigma[GOE_ORIENTATION], ORIENTATION_MAX_RAD)) {
+    if (q->box && goe_within(q->worked_out[GOE_ORIENTATION], ORIENTATION_MAX_RAD)) {
         known |= GOE_HAS_ORIENTATION;
     }
     return known;
@@ -139,59 +154,78 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
+/* scatter: factor on the variance of what the filter found. It widens the sigmas; what is known is decided without it, as doubt must
+ * not silence an answer. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
-                           goe_quantities_t *q) {
+                           float scatter, goe_quantities_t *q) {
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const float unseen = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
-        const float variance =
-            variance_of(filter, shape->quantity[i].by) * (depends_on_corner(i) ? shape->early : 1.0f) +
-            drift_variance(motion, drift, shape, q->box, i);
+        float moved2;
+        const float found =
+            variance_of(filter, shape->quantity[i].by, &moved2) * (depends_on_corner(i) ? shape->early : 1.0f);
+        const float told =
+            drift_variance(motion, drift, shape, q->box, i) +
+            goe_box_outline_variance(filter, shape, drift.camera_m, i, goe_square(q->worked_out[GOE_ORIENTATION]));
         q->value[i] = shape->quantity[i].value;
-        q->sigma[i] = sqrtf(variance + goe_box_outline_variance(filter, shape, drift.camera_m, i,
-                                                                goe_square(q->sigma[GOE_ORIENTATION])));
-        q->worked_out[i] = unseen > 0.0f ? sqrtf(goe_larger(variance - unseen, 0.0f)) : q->sigma[i];
+        q->sigma[i] = sqrtf(scatter * found + told + moved2);
+        q->worked_out[i] = sqrtf(goe_larger(found - unseen, 0.0f) + told);
     }
 }
 
 /* The middle of the base, in north and east. */
 static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape, drift_t drift,
-                       goe_quantities_t *q) {
+                       float scatter, goe_quantities_t *q) {
     const goe_xz_t place = goe_filter_into_trajectory(filter, shape->middle.at);
     /* from the state's axes to north: the heading of T and the turn */
     const float c = motion->heading_cos * filter->axes.turn_cos - motion->heading_sin * filter->axes.turn_sin;
     const float s = motion->heading_sin * filter->axes.turn_cos + motion->heading_cos * filter->axes.turn_sin;
     goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m,
                      place.z * shape->scale_m + filter->axes.start_dz_m, &q->center_m[0], &q->center_m[1]);
-    for (int i = 0; i < 2; i++) {
-        float by[GOE_STATES] = {0.0f};
-        goe_shape_place(&shape->middle, shape->scale_m, i == 0 ? -s : c, i == 0 ? c : s, by);
-        q->center_sd_m[i] = sqrtf(variance_of(filter, by) + drift_variance(motion, drift, shape, q->box, GOE_Z0));
+    const float drifted = drift_variance(motion, drift, shape, q->box, GOE_Z0);
+    float variance[3]; /* along north, east, and (1, 1), which tells how the two go together */
+    float by[3][GOE_STATES] = {{0.0f}};
+    for (int i = 0; i < 3; i++) {
+        float moved2;
+        goe_shape_place(&shape->middle, shape->scale_m, i == 0 ? -s : (i == 1 ? c : c - s),
+                        i == 0 ? c : (i == 1 ? s : c + s), by[i]);
+        variance[i] = scatter * variance_of(filter, by[i], &moved2) + moved2;
     }
+    q->center_sd_m[0] = sqrtf(variance[0] + drifted);
+    q->center_sd_m[1] = sqrtf(variance[1] + drifted);
+    q->center_ne_m2 = 0.5f * (variance[2] - variance[0] - variance[1]);
     if (goe_within(q->center_sd_m[0], METRES_MAX) && goe_within(q->center_sd_m[1], METRES_MAX)) {
         q->known |= GOE_HAS_CENTER;
     }
+}
+
+static float scatter_of(const goe_filter_t *filter, const goe_settings_t *settings) {
+    return goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
 }
 
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          goe_quantities_t *quantities) {
     goe_quantities_t *q = quantities;
     goe_shape_t shape;
-    memset(q, 0, sizeof *q);
+    q->now = 0;
+    q->known = 0;
+    q->worked_out[GOE_ORIENTATION] = 0.0f;
     goe_model_shape(filter, &shape);
     if (!(filter->state[GOE_INVERSE_RANGE] > 0.0f) || !(shape.scale_m > 0.0f)) {
         return;
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
+    const float scatter = scatter_of(filter, settings);
+    q->early_m2 = early_variance(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
     q->prism = filter->phase == GOE_PHASE_PRISM;
     q->length_axis = shape.length_axis;
-    set_quantities(filter, motion, &shape, drift, q);
+    set_quantities(filter, motion, &shape, drift, scatter, q);
     q->now = known_now(filter, q, settings->refined.range_share);
     q->known = q->now & filter->known;
     q->value[GOE_X0] += filter->axes.start_dx_m;
     q->value[GOE_Z0] += filter->axes.start_dz_m;
     if ((q->known & GOE_HAS_POSITION) && (!q->box || (q->known & GOE_HAS_LENGTH))) {
-        set_center(filter, motion, &shape, drift, q);
+        set_center(filter, motion, &shape, drift, scatter, q);
     }
 }
 
@@ -203,22 +237,27 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     goe_model_shape(filter, &shape);
     if (from_datum) {
-        shape.quantity[GOE_HEIGHT].by[GOE_HEIGHT_BIAS] = 0.0f;
+        shape.quantity[GOE_HEIGHT].by[GOE_GROUND] = 0.0f;
         shape.quantity[GOE_HEIGHT].by[GOE_INVERSE_RANGE] += shape.datum_by_range;
     }
-    const float early = sqrtf(shape.early);
+    const float scatter = sqrtf(scatter_of(filter, settings));
+    const float early = sqrtf(shape.early) * scatter;
+    float moved[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
-        project(filter, by);
-        const float factor = depends_on_corner(i) ? early : 1.0f;
+        moved[i] = project(filter, by);
+        const float factor = depends_on_corner(i) ? early : scatter;
         for (int k = 0; k < GOE_STATES; k++) {
             by[k] *= factor;
         }
         for (int j = 0; j <= i; j++) {
             const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
-            const float sum = dot(by, shape.quantity[j].by, drifted);
+            const float sum = dot(by, shape.quantity[j].by, drifted + moved[i] * moved[j]);
             covariance[i][j] = sum;
             covariance[j][i] = sum;
+        }
+        if (i <= GOE_Z0 && !from_datum) { /* the camera now has no part in it */
+            covariance[i][i] += early_variance(filter, &settings->navigation, motion);
         }
         covariance[i][i] +=
             goe_box_outline_variance(filter, &shape, drift.camera_m, i, covariance[GOE_ORIENTATION][GOE_ORIENTATION]);

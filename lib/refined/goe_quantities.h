@@ -10,9 +10,11 @@ typedef struct {
     unsigned known;              /* ... and the one before knew, too; 0: the rest does not hold */
     float value[GOE_QUANTITIES]; /* X0, Z0 from the track's first image, T axes; m, orientation in rad */
     float sigma[GOE_QUANTITIES];
+    float early_m2; /* variance of X0 and Z0 by what the own position drifted before the filter's start */
     float worked_out[GOE_QUANTITIES];  /* ... without what no image can show: decides what is known */
     goe_xz_t length_axis;              /* unit vector, T axes */
-    float center_m[2], center_sd_m[2]; /* north, east; holds with GOE_HAS_CENTER */
+    float center_m[2], center_sd_m[2]; /* north, east; holds with GOE_HAS_CENTER ... */
+    float center_ne_m2;                /* ... as does the covariance of the two */
     bool box, prism;
 } goe_quantities_t;
 

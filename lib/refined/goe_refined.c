@@ -7,6 +7,7 @@
 #include "refined/goe_refined.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "maths/goe_angle.h"
 #include "maths/goe_exp.h"
@@ -17,31 +18,86 @@
 #include "refined/goe_model.h"
 #include "refined/goe_prism.h"
 #include "refined/goe_report.h"
+#include "refined/goe_scatter.h"
 
 #if GOE_WITH_REFINED
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
+#define HEIGHT_GROWN 1.0e-3f   /* of the information of the heights: less waits for more */
+#define GROUND_NARROW 0.95f    /* of ground_scale: told too well */
+#define GROUND_WIDE 1.05f      /* ... not well enough */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
+/* (R14). A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
+static void walk_along_z(goe_filter_t *filter, float sigma) {
+    float direction[GOE_STATES];
+    memcpy(direction, filter->state, sizeof direction);
+    if (filter->phase == GOE_PHASE_PRISM) {
+        direction[GOE_PRISM_DEPTH] = 0.0f;
+        direction[GOE_PRISM_UNSEEN] = 0.0f;
+    }
+    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
+}
+
+/* Along X and Z in turn, image by image: each time for as long as it has not been. */
+static void walk(goe_filter_t *filter, float walk_m, float since_s) {
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    filter->walk_s[0] += since_s;
+    filter->walk_s[1] += since_s;
+    filter->walk2 += goe_square(walk_m * q) * since_s;
+    const size_t axis = filter->walk_s[1] > filter->walk_s[0] ? 1u : 0u;
+    const float sigma = walk_m * q * sqrtf(filter->walk_s[axis]);
+    if (!(sigma > 0.0f)) {
+        return;
+    }
+    filter->walk_s[axis] = 0.0f;
+    if (axis == 0u) {
+        goe_filter_inflate(filter, GOE_BEARING, sigma);
+    } else {
+        walk_along_z(filter, sigma);
+    }
+}
+
+/* Along the path, which in a turn is longer than the way to where it began. */
+static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
+    const float dx_m = motion->dx_m - filter->last.dx_m;
+    const float dz_m = motion->dz_m - filter->last.dz_m;
+    filter->flown_m += sqrtf(dx_m * dx_m + dz_m * dz_m);
+    filter->last.dx_m = motion->dx_m;
+    filter->last.dz_m = motion->dz_m;
+}
+
+/* The ground below the altimeter rises or falls, one does not know which: after a way d the height is off by slope d more, and its
+ * variance has grown by the difference of the squares. The top counts from the altimeter's zero, which moves along. */
+static void climb_ground(goe_filter_t *filter, const goe_navigation_t *navigation) {
+    float direction[GOE_STATES] = {0.0f};
+    const float grown2 = goe_square(filter->flown_m) - goe_square(filter->sloped_m);
+    const float sigma = navigation->slope * filter->state[GOE_INVERSE_RANGE] * sqrtf(goe_larger(grown2, 0.0f));
+    if (!(sigma > 0.0f) || goe_filter_is_steady(filter, navigation)) {
+        return;
+    }
+    direction[GOE_GROUND] = 1.0f;
+    direction[GOE_TOP] = -1.0f;
+    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_TOP, sigma);
+    filter->sloped_m = filter->flown_m;
+}
+
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, int64_t time_us) {
-    const float root_s = sqrtf(goe_time_between_s(filter->time_us, time_us, GAP_MAX_US));
-    const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * root_s;
-    const float walk = navigation->position_walk_m * root_s * filter->state[GOE_INVERSE_RANGE];
+    const float since_s = goe_time_between_s(filter->time_us, time_us, GAP_MAX_US);
+    const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
     filter->time_us = time_us;
     filter->drift_rad2 += drift * drift;
-    filter->walk2 += walk * walk;
     if (drift > 0.0f) {
         goe_filter_inflate(filter, GOE_BIAS_X, drift);
         goe_filter_inflate(filter, GOE_BIAS_Y, drift);
         goe_filter_inflate(filter, GOE_BIAS_Z, drift);
     }
-    if (walk > 0.0f) {
-        goe_filter_inflate(filter, GOE_BEARING, walk);
-    }
+    walk(filter, navigation->position_walk_m, since_s);
+    climb_ground(filter, navigation);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
@@ -55,8 +111,59 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
     }
 }
 
+/* What is known of the height beforehand is in metres, its state in units of Z0: as the range becomes known, their ratio moves,
+ * and what was told of the state at the first guess is put right. */
+static void widen_ground(goe_filter_t *filter, const goe_observation_t *obs) {
+    const float scale = filter->ground_scale;
+    if (scale > GROUND_NARROW) {
+        return;
+    }
+    const float share2 = 1.0f - goe_square(goe_larger(scale, 0.0f));
+    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
+    goe_filter_inflate(filter, GOE_GROUND, filter->state[GOE_INVERSE_RANGE] * sqrtf(share2 * variance));
+    filter->ground_scale = 1.0f;
+}
+
+static void narrow_ground(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+    const float scale = filter->ground_scale;
+    if (!(scale >= GROUND_WIDE) || rows->count >= GOE_ROWS_MAX) {
+        return;
+    }
+    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float weight = sqrtf((1.0f - 1.0f / goe_square(scale)) / variance) / q;
+    float *row = rows->matrix->row[rows->count];
+    row[GOE_STATE_COLUMN + GOE_GROUND] = weight;
+    row[GOE_RESIDUAL] = -weight * filter->state[GOE_GROUND];
+    rows->count++;
+    filter->ground_scale = 1.0f;
+}
+
+/* All heights so far tell the offset of the first with the information 1/(constant error^2 + white^2/n). Of that a row adds what
+ * it has grown by; the constant error is in all of them, and is not counted twice. */
+static void add_height(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+    goe_datum_t *datum = &filter->datum;
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
+    const float information = 1.0f / variance;
+    const float grown = information - datum->information;
+    const float moment = information * datum->mean_m;
+    if (rows->count >= GOE_ROWS_MAX || !(grown > HEIGHT_GROWN * information)) {
+        return; /* later */
+    }
+    const float weight = sqrtf(grown);
+    const float offset_m = filter->state[GOE_GROUND] / q;
+    float *row = rows->matrix->row[rows->count];
+    row[GOE_STATE_COLUMN + GOE_GROUND] = weight / q;
+    row[GOE_STATE_COLUMN + GOE_INVERSE_RANGE] = -weight * offset_m / q;
+    row[GOE_RESIDUAL] = weight * ((moment - datum->moment) / grown - offset_m);
+    datum->information = information;
+    datum->moment = moment;
+}
+
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict) {
     goe_rows_t rows;
+    widen_ground(filter, obs);
     goe_rows_clear(&rows, &filter->rows);
     rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
@@ -64,10 +171,15 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     allow_for_curvature(filter, obs, &rows);
     goe_model_recall(filter, obs, &rows);
     *verdict = goe_gate_apply(obs->settings, filter, &rows);
+    goe_scatter_take(&filter->scatter, &rows);
     goe_model_learn(filter, &rows, verdict);
     if (verdict->rows == 0) {
         goe_health_take_refused(&filter->health, *verdict);
         return false;
+    }
+    narrow_ground(filter, obs, &rows);
+    if (obs->settings->navigation.height_white_m > 0.0f) {
+        add_height(filter, obs, &rows);
     }
     const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
@@ -87,14 +199,16 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
  * the uncertain range adds. */
-static void note_time(const goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
+static void note_time(goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     const float relative2 =
         goe_filter_variance(filter, GOE_INVERSE_RANGE) / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
         const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
-        obs->fade = detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
+        const bool same = filter->camera == obs->number; /* what was alike in one camera says nothing of another */
+        obs->fade = same && detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
         obs->outline_share = outline_share(detector, obs->fade);
+        filter->camera = obs->number;
     }
     obs->position_sd = obs->settings->navigation.position_white_m * sqrtf(1.0f + relative2);
 }
@@ -110,6 +224,8 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
     }
     if (!running) {
         filter->time_us = view->motion->time_us;
+        filter->last.dx_m = view->motion->dx_m;
+        filter->last.dz_m = view->motion->dz_m;
     }
     return true;
 }
@@ -140,10 +256,11 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_observation_t obs;
     goe_health_expect(&filter->health);
     *swapped = 0;
-    goe_filter_take_height(filter, settings->camera.offset_m, view);
+    goe_filter_take_height(filter, &settings->navigation, view);
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
+    fly_on(filter, view->motion);
     note_time(filter, view->motion, &obs);
     let_time_pass(filter, &settings->navigation, view->motion->time_us);
     goe_observation_linearise(&obs);

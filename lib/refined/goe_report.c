@@ -16,11 +16,11 @@
 static void report_position(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
     estimate->x0_m = q->value[GOE_X0];
     estimate->z0_m = q->value[GOE_Z0];
-    estimate->sigma.x0_m = q->sigma[GOE_X0];
-    estimate->sigma.z0_m = q->sigma[GOE_Z0];
+    estimate->sigma.x0_m = sqrtf(goe_square(q->sigma[GOE_X0]) + q->early_m2);
+    estimate->sigma.z0_m = sqrtf(goe_square(q->sigma[GOE_Z0]) + q->early_m2);
     goe_motion_relate(motion, estimate);
-    estimate->sigma.x_m = estimate->sigma.x0_m;
-    estimate->sigma.z_m = estimate->sigma.z0_m;
+    estimate->sigma.x_m = q->sigma[GOE_X0];
+    estimate->sigma.z_m = q->sigma[GOE_Z0];
     estimate->baseline_m = sqrtf(goe_square(motion->dx_m) + goe_square(motion->dz_m));
 }
 
@@ -58,6 +58,7 @@ static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, 
     if (q->known & GOE_HAS_CENTER) {
         estimate->center_north_m = q->center_m[0];
         estimate->center_east_m = q->center_m[1];
+        estimate->center_ne_m2 = q->center_ne_m2;
         estimate->sigma.center_north_m = q->center_sd_m[0];
         estimate->sigma.center_east_m = q->center_sd_m[1];
     }

@@ -28,10 +28,11 @@ void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], cons
     shape->quantity[GOE_Z0].value = place.z * scale_m;
     goe_shape_place(reference, scale_m, c, s, shape->quantity[GOE_X0].by);
     goe_shape_place(reference, scale_m, -s, c, shape->quantity[GOE_Z0].by);
-    height->value = x[GOE_TOP] * scale_m + x[GOE_HEIGHT_BIAS];
-    height->by[GOE_INVERSE_RANGE] = -scale_m * scale_m * x[GOE_TOP];
-    height->by[GOE_HEIGHT_BIAS] = 1.0f;
+    height->value = (x[GOE_TOP] + x[GOE_GROUND]) * scale_m;
+    height->by[GOE_INVERSE_RANGE] = -scale_m * height->value;
+    height->by[GOE_GROUND] = scale_m;
     height->by[GOE_TOP] = scale_m;
+    shape->datum_by_range = x[GOE_GROUND] * scale_m * scale_m;
 }
 
 void goe_shape_line(const goe_filter_t *filter, const float x[GOE_STATES], goe_shape_t *shape) {

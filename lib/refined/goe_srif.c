@@ -148,15 +148,14 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
 
 /* A disturbance d of the state, x = x' + direction d, enters as a row (1/sigma) d = 0; Givens rotations then take it out of
  * the triangle again. In terms of sigma, not 1/sigma: a tiny one must not overflow. */
-void goe_srif_inflate(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
-                      float sigma) {
+void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma) {
     float row[GOE_STATES];
     memset(row, 0, sizeof row);
     for (size_t i = last + 1; i-- > 0;) {
         float *r = &root->element[goe_srif_row(i)];
-        float b = -(r[last] * last_weight);
-        if (i <= first && first < last) {
-            b -= r[first] * first_weight;
+        float b = 0.0f;
+        for (size_t k = i > first ? i : first; k <= last; k++) {
+            b -= r[k] * direction[k];
         }
         const float t = sigma * b;
         const float c = 1.0f / sqrtf(1.0f + t * t);
@@ -241,6 +240,28 @@ float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STA
     return sum + p * p;
 }
 
+GOE_STATIC_ASSERT(GOE_UNWEIGHTED == 3, the_variance_of_the_rest_is_written_out_from_the_fourth_state);
+
+float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
+    const float *v = inverse->element;
+    const float w3 = weight[3], w4 = weight[4], w5 = weight[5], w6 = weight[6];
+    const float w7 = weight[7], w8 = weight[8], w9 = weight[9];
+    float p = w3 * v[9];
+    float sum = p * p;
+    p = w3 * v[13] + w4 * v[14];
+    sum += p * p;
+    p = w3 * v[18] + w4 * v[19] + w5 * v[20];
+    sum += p * p;
+    p = w3 * v[24] + w4 * v[25] + w5 * v[26] + w6 * v[27];
+    sum += p * p;
+    p = w3 * v[31] + w4 * v[32] + w5 * v[33] + w6 * v[34] + w7 * v[35];
+    sum += p * p;
+    p = w3 * v[39] + w4 * v[40] + w5 * v[41] + w6 * v[42] + w7 * v[43] + w8 * v[44];
+    sum += p * p;
+    p = w3 * v[48] + w4 * v[49] + w5 * v[50] + w6 * v[51] + w7 * v[52] + w8 * v[53] + w9 * v[54];
+    return sum + p * p;
+}
+
 float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
     const float last = dot_run(weight, &inverse->element[goe_inverse_column(GOE_STATES - 1)], GOE_STATES);
     return last * last;
@@ -248,8 +269,9 @@ float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GO
 
 /* From the last one on, as element j needs the weights up to j. */
 void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]) {
-    for (size_t j = GOE_STATES; j-- > 0;) {
-        weight[j] = dot_run(weight, &inverse->element[goe_inverse_column(j)], j + 1);
+    for (size_t j = GOE_STATES; j-- > GOE_UNWEIGHTED;) {
+        const float *column = &inverse->element[goe_inverse_column(j)];
+        weight[j] = dot_run(&weight[GOE_UNWEIGHTED], &column[GOE_UNWEIGHTED], j + 1 - GOE_UNWEIGHTED);
     }
 }
 

@@ -30,10 +30,8 @@ float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *m
 float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
                                   float change[GOE_STATES]);
 
-/* Adds variance sigma^2 along the states first and last, first <= last, with the weights of each; sigma > 0. For first = last
- * the weight is last_weight. */
-void goe_srif_inflate(goe_triangle_t *root, size_t first, float first_weight, size_t last, float last_weight,
-                      float sigma);
+/* Adds variance sigma^2 along a direction, of which the states from first to last are read and the others are 0; sigma > 0. */
+void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma);
 
 /* *inverse = R^-1. */
 void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse);
@@ -47,10 +45,15 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
 /* Variance of w' x. */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
+/* The same if the first GOE_UNWEIGHTED weights are 0, for half of that. */
+#define GOE_UNWEIGHTED 3
+float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
+
 /* The part of it that is the last state's own. */
 float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
-/* w becomes R^-1' w, whose squared norm is that variance: the derivative in terms of independent unit errors. */
+/* w becomes R^-1' w, whose squared norm is that variance: the derivative in terms of independent unit errors. Of a w whose
+ * first GOE_UNWEIGHTED elements are 0, and remain so. */
 void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]);
 
 /* Covariance of the first GOE_KEPT states; upper half. */
@@ -63,7 +66,7 @@ void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float 
                               goe_triangle_t *root, goe_inverse_t *inverse);
 
 /* Derivatives of the last GOE_CHANGED states, by as many others that take their place. */
-#define GOE_CHANGED 6
+#define GOE_CHANGED 7
 typedef struct {
     float by[GOE_CHANGED][GOE_CHANGED]; /* [old][new] */
 } goe_substitution_t;

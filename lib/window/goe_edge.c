@@ -21,13 +21,13 @@ static float heading_deg(const goe_point_t *a, const goe_point_t *b) {
 }
 
 /* edge->left and edge->right are usable; from and to are their pixels. */
-static void measure_edge(const goe_settings_t *settings, const goe_pixel_t *from, const goe_pixel_t *to,
+static void measure_edge(const goe_settings_t *settings, float fx_px, const goe_pixel_t *from, const goe_pixel_t *to,
                          goe_edge_t *edge) {
     const goe_point_t *left = edge->left;
     const goe_point_t *right = edge->right;
     const float du = to->u_px - from->u_px;
     const float dv = to->v_px - from->v_px;
-    const float rise_px = goe_absolute(right->y - left->y) * settings->camera.fx_px;
+    const float rise_px = goe_absolute(right->y - left->y) * fx_px;
     edge->counts = du * du + dv * dv > settings->window.edge_min_px * settings->window.edge_min_px;
     edge->has_heading = edge->counts && rise_px > settings->window.orientation_min_px;
     edge->heading_deg = edge->has_heading ? heading_deg(left, right) : 0.0f;
@@ -40,7 +40,7 @@ static void add_edge(const goe_settings_t *settings, const goe_view_t *view, goe
         goe_edge_t *edge = &edges->edge[edges->count++];
         edge->left = &view->point[from];
         edge->right = &view->point[to];
-        measure_edge(settings, &pixels[from], &pixels[to], edge);
+        measure_edge(settings, view->camera->fx_px, &pixels[from], &pixels[to], edge);
     }
 }
 

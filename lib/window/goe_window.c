@@ -25,6 +25,7 @@ typedef struct {
     const goe_settings_t *settings;
     const goe_view_t *view;
     const goe_motion_t *motion;
+    goe_estimate_t *estimate;
     goe_edges_t edges;
     goe_faces_t faces;
     goe_turn_t turn;  /* filtered orientation */
@@ -33,10 +34,7 @@ typedef struct {
     bool disc_row, line_row; /* the image added a row to that model's ring */
 } frame_t;
 
-void goe_window_clear(goe_window_t *window) {
-    memset(window, 0, sizeof *window);
-    window->solved_time_us = GOE_TIME_UNKNOWN;
-}
+void goe_window_clear(goe_window_t *window) { memset(window, 0, sizeof *window); }
 
 /* ------------------------------------------------------------------------------------------------- rows of one image -- */
 
@@ -106,14 +104,13 @@ static goe_model_t reported_model(const goe_window_t *window, const goe_settings
     return window->line.count >= line_points_needed(settings) ? GOE_MODEL_LINE : GOE_MODEL_DISC;
 }
 
-static void take_fit(goe_window_t *window, const frame_t *frame, goe_model_t model) {
-    goe_estimate_t *estimate = &window->estimate;
+static void take_fit(const frame_t *frame, goe_model_t model) {
+    goe_estimate_t *estimate = frame->estimate;
     estimate->method = GOE_METHOD_WINDOW;
     estimate->model = model;
     estimate->valid |= GOE_HAS_POSITION | GOE_HAS_WIDTH;
     estimate->fresh = true;
     estimate->points = frame->settings->window.points;
-    window->solved_time_us = frame->motion->time_us;
 }
 
 /* GOE_OK: solved. GOE_COLLECTING, GOE_HELD: nothing to solve. Otherwise why there is no solution. */
@@ -127,9 +124,9 @@ static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
     if (!(model == GOE_MODEL_LINE ? frame->line_row : frame->disc_row)) {
         return GOE_HELD;
     }
-    const goe_status_t status = goe_fit_solve(ring, length, frame->settings->window.min_baseline_m, &window->estimate);
+    const goe_status_t status = goe_fit_solve(ring, length, frame->settings->window.min_baseline_m, frame->estimate);
     if (status == GOE_OK) {
-        take_fit(window, frame, model);
+        take_fit(frame, model);
     }
     return status;
 }
@@ -147,12 +144,12 @@ static void take_extent(goe_mean_t *mean, int length, const goe_extent_t *extent
 }
 
 static void measure_length(goe_window_t *window, frame_t *frame) {
-    goe_estimate_t *estimate = &window->estimate;
+    goe_estimate_t *estimate = frame->estimate;
     goe_extent_t extent;
     if (estimate->model != GOE_MODEL_LINE || !frame->faces.measured || !frame->faces.side) {
         return;
     }
-    const float min_x = frame->settings->window.side_min_px / frame->settings->camera.fx_px;
+    const float min_x = frame->settings->window.side_min_px / frame->view->camera->fx_px;
     const goe_status_t fault = goe_extent_length(&frame->faces, &frame->front, frame->turn, estimate, min_x, &extent);
     goe_fault_note(&frame->faults, fault);
     if (fault == GOE_OK) {
@@ -162,7 +159,7 @@ static void measure_length(goe_window_t *window, frame_t *frame) {
 }
 
 static void measure_height(goe_window_t *window, frame_t *frame) {
-    goe_estimate_t *estimate = &window->estimate;
+    goe_estimate_t *estimate = frame->estimate;
     const goe_point_t *top = &frame->view->point[GOE_POINT_TOP];
     goe_extent_t extent;
     if (!top->usable) {
@@ -176,9 +173,9 @@ static void measure_height(goe_window_t *window, frame_t *frame) {
     }
 }
 
-static void report_orientation(goe_window_t *window, goe_turn_t turn) {
-    const goe_orientation_t *orientation = &window->orientation;
-    goe_estimate_t *estimate = &window->estimate;
+static void report_orientation(const goe_orientation_t *orientation, const frame_t *frame) {
+    const goe_turn_t turn = frame->turn;
+    goe_estimate_t *estimate = frame->estimate;
     if (orientation->count == 0) {
         return;
     }
@@ -197,6 +194,7 @@ static void clear_center(goe_estimate_t *estimate) {
     estimate->valid &= ~GOE_HAS_CENTER;
     estimate->center_north_m = 0.0f;
     estimate->center_east_m = 0.0f;
+    estimate->center_ne_m2 = 0.0f;
     estimate->sigma.center_north_m = 0.0f;
     estimate->sigma.center_east_m = 0.0f;
 }
@@ -225,6 +223,7 @@ static void report_center(goe_estimate_t *estimate, const goe_motion_t *motion) 
     }
     estimate->valid |= GOE_HAS_CENTER;
     goe_motion_place(motion, x_m, z_m, &estimate->center_north_m, &estimate->center_east_m);
+    estimate->center_ne_m2 = c * s * (variance_z - variance_x);
     estimate->sigma.center_north_m = sqrtf(c * c * variance_z + s * s * variance_x);
     estimate->sigma.center_east_m = sqrtf(s * s * variance_z + c * c * variance_x);
 }
@@ -254,36 +253,37 @@ static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
 }
 
 static void start_frame(frame_t *frame, const goe_settings_t *settings, const goe_view_t *view,
-                        const goe_faults_t *faults) {
+                        const goe_faults_t *faults, goe_estimate_t *estimate) {
     frame->settings = settings;
     frame->view = view;
     frame->motion = view->motion;
+    frame->estimate = estimate;
     frame->faults = *faults;
     frame->disc_row = false;
     frame->line_row = false;
 }
 
 goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *settings, const goe_view_t *view,
-                               goe_window_task_t task, const goe_faults_t *faults) {
+                               goe_window_task_t task, const goe_faults_t *faults, goe_estimate_t *estimate) {
     frame_t frame;
-    start_frame(&frame, settings, view, faults);
+    start_frame(&frame, settings, view, faults, estimate);
     const goe_status_t fault = add_disc_row(window, &frame);
-    window->estimate.fresh = false;
     if (task == GOE_WINDOW_COLLECTS) {
         return GOE_HELD;
     }
+    estimate->fresh = false;
     goe_fault_note(&frame.faults, fault);
     find_faces(window, &frame);
     add_line_row(window, &frame);
 
     const goe_status_t solving = solve(window, &frame);
-    goe_motion_relate(view->motion, &window->estimate);
-    report_orientation(window, frame.turn);
+    goe_motion_relate(view->motion, estimate);
+    report_orientation(&window->orientation, &frame);
     if (solving == GOE_OK) {
         measure_length(window, &frame);
         measure_height(window, &frame);
     }
-    report_center(&window->estimate, view->motion);
+    report_center(estimate, view->motion);
     return judge(&frame, solving);
 }
 

@@ -13,9 +13,9 @@ typedef enum {
 /* Forgets the track. */
 void goe_window_clear(goe_window_t *window);
 
-/* Takes one image and, if it solves, brings window->estimate up to date. Returns what to say of the image. faults: those met
- * so far; more are counted. */
+/* Takes one image and, if it solves, brings *estimate, the window's own or an empty one, up to date. Returns what to say of the
+ * image. faults: those met so far; more are counted. */
 goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *settings, const goe_view_t *view,
-                               goe_window_task_t task, const goe_faults_t *faults);
+                               goe_window_task_t task, const goe_faults_t *faults, goe_estimate_t *estimate);
 
 #endif

@@ -1,7 +1,7 @@
 /* Hazards from now. SPDX-License-Identifier: MIT
  *
- * goe_hazard() counts from the latest image, which is some tenths of a second old: its time is shortened by that. What a turn
- * bends of the path in half a second, the longest (goe_flight_table_follow), is less than a metre. */
+ * The latest image is some tenths of a second old. What a turn has bent of the path since, in half a second at the longest
+ * (goe_flight_table_follow), is less than a metre. */
 #include "goe_lookout.h"
 
 #include "goe_flight_maths.h"
@@ -9,6 +9,7 @@
 #define URGENCY_PER_S 0.1f /* 10 s of time halve the weight of a violation */
 #define DISTANCE_MAX_M 1.0e4f
 #define VELOCITY_MAX_M_S 1.0e3f
+#define SINCE_MAX_S 1.0e3f
 
 float goe_flight_lookout_doubt(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     return slot->suspect ? flight->settings.doubt : 1.0f;
@@ -30,6 +31,7 @@ static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t
     const float drift_m = goe_flight_lookout_drift_m(flight, slot, now_us);
     plan.margin_m = goe_flight_smaller(doubt * flight->settings.margin_m + drift_m, DISTANCE_MAX_M);
     plan.clearance_m = goe_flight_smaller(doubt * flight->settings.clearance_m + drift_m, DISTANCE_MAX_M);
+    plan.since_image_s = goe_flight_clamped(goe_flight_between_s(now_us, slot->taken_us), 0.0f, SINCE_MAX_S);
     for (int i = 0; i < 3; i++) {
         plan.velocity_ned_m_s[i] = goe_flight_clamped(flight->velocity_ned_m_s[i], -VELOCITY_MAX_M_S, VELOCITY_MAX_M_S);
     }
@@ -37,10 +39,7 @@ static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t
                      goe_hazard(&slot->estimator, &plan, &slot->hazard) == GOE_OK;
     if (!slot->assessed) {
         memset(&slot->hazard, 0, sizeof slot->hazard);
-        return;
     }
-    const float elapsed_s = goe_flight_larger(goe_flight_between_s(now_us, slot->taken_us), 0.0f);
-    slot->hazard.time_s = goe_flight_larger(slot->hazard.time_s - elapsed_s, 0.0f);
 }
 
 int goe_flight_lookout_assess(goe_flight_t *flight, uint32_t now_us) {

@@ -27,12 +27,20 @@ static const char *const number_names[GOE_BATCH_NUMBERS] = {
     "x0_sd_m", "z0_sd_m", "orientation_sd_deg", "width_sd_m", "length_sd_m", "height_sd_m",
     "nis",     "misfit"};
 
+static const char *const hazard_names[GOE_BATCH_HAZARD] = {"status",         "time_s",    "miss_m",
+                                                           "clearance_m",    "time_sd_s", "miss_sd_m",
+                                                           "clearance_sd_m", "violation", "has_clearance"};
+
 const char *goe_batch_label(int column) {
     return column >= 0 && column < GOE_BATCH_LABELS ? label_names[column] : NULL;
 }
 
 const char *goe_batch_number(int column) {
     return column >= 0 && column < GOE_BATCH_NUMBERS ? number_names[column] : NULL;
+}
+
+const char *goe_batch_hazard(int column) {
+    return column >= 0 && column < GOE_BATCH_HAZARD ? hazard_names[column] : NULL;
 }
 
 /* Copies; in double precision the numbers are rounded here. */
@@ -95,7 +103,34 @@ static goe_image_t image_of(const goe_batch_track_t *track, int k) {
     if (track->box_px != NULL) {
         image.box = box_of(track, k);
     }
+    if (track->reset_count != NULL) {
+        const goe_batch_float_t *jump_m = track->reset_m + (size_t)k * 3;
+        image.pose.reset_count = track->reset_count[k];
+        image.pose.reset_delta_known = isfinite(jump_m[0]) && isfinite(jump_m[1]) && isfinite(jump_m[2]);
+        if (image.pose.reset_delta_known) {
+            take(image.pose.reset_delta_ned_m, jump_m, 3);
+        }
+    }
+    image.camera = track->camera != NULL ? track->camera[k] : 0;
     return image;
+}
+
+static void ask(const goe_estimator_t *estimator, const goe_estimate_t *estimate, const goe_batch_float_t *velocity,
+                const goe_batch_plan_t *asked, goe_batch_float_t *answer) {
+    const float doubt = estimate->suspect ? (float)asked->doubt : 1.0f;
+    const float old_m = (float)asked->drift_m_s * estimate->age_s;
+    goe_plan_t plan;
+    plan.since_image_s = 0.0f;
+    take(plan.velocity_ned_m_s, velocity, 3);
+    plan.margin_m = doubt * (float)asked->margin_m + old_m;
+    plan.clearance_m = doubt * (float)asked->clearance_m + old_m;
+    goe_hazard_t hazard;
+    const goe_status_t status = goe_hazard(estimator, &plan, &hazard);
+    const float columns[GOE_BATCH_HAZARD] = {
+        (float)status,         hazard.time_s,    hazard.miss_m,
+        hazard.clearance_m,    hazard.time_sd_s, hazard.miss_sd_m,
+        hazard.clearance_sd_m, hazard.violation, hazard.has_clearance ? 1.0f : 0.0f};
+    put(answer, columns, GOE_BATCH_HAZARD);
 }
 
 int goe_batch_run(const goe_settings_t *settings, const goe_batch_track_t *track, const goe_batch_answer_t *answer,
@@ -118,6 +153,11 @@ int goe_batch_run(const goe_settings_t *settings, const goe_batch_track_t *track
                 put(answer->covariance + ((size_t)k * GOE_QUANTITIES + (size_t)i) * GOE_QUANTITIES, covariance[i],
                     GOE_QUANTITIES);
             }
+        }
+        for (int i = 0; i < track->plans; i++) {
+            const size_t place = (size_t)k * (size_t)track->plans + (size_t)i;
+            ask(&estimator, &estimate, track->velocity + (size_t)k * 3, track->plan + i,
+                answer->hazard + place * GOE_BATCH_HAZARD);
         }
     }
     return GOE_OK;

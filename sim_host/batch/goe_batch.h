@@ -14,6 +14,7 @@
 #define GOE_BATCH_BOX 4      /* left, top, right, bottom in px */
 #define GOE_BATCH_LABELS 8   /* goe_batch_label() names them */
 #define GOE_BATCH_NUMBERS 14 /* goe_batch_number() names them */
+#define GOE_BATCH_HAZARD 9   /* goe_batch_hazard() names them */
 
 /* Of the arrays: float, also where double_precision.h makes doubles of the library's floats. */
 #ifndef GOE_BATCH_FLOAT
@@ -24,13 +25,21 @@ typedef float goe_batch_float_t;
 size_t goe_batch_settings_size(void);
 void goe_batch_default(goe_settings_t *settings);
 
-/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "method", ...); whole numbers and truth
+/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "more_cameras[0].fx_px", "method", ...); whole numbers and truth
  * values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
 int goe_batch_set(goe_settings_t *settings, const char *name, double value);
 
-/* Names of the columns of labels and numbers, in order; null after the last. */
+/* Names of the columns of labels, numbers and hazards, in order; null after the last. */
 const char *goe_batch_label(int column);
 const char *goe_batch_number(int column);
+const char *goe_batch_hazard(int column);
+
+/* What goe_hazard() is asked after each image, by the README's rule: margin and clearance grow with doubt and age. */
+typedef struct {
+    goe_batch_float_t margin_m, clearance_m;
+    goe_batch_float_t doubt;     /* times both while the estimate is suspect; 1: as they are */
+    goe_batch_float_t drift_m_s; /* times the estimate's age, added to both; 0: as they are */
+} goe_batch_plan_t;
 
 typedef struct {
     int images;
@@ -40,12 +49,20 @@ typedef struct {
     const uint8_t *seen;               /* [images][GOE_BATCH_FEATURES] */
     const goe_batch_float_t *box_px;   /* [images][GOE_BATCH_BOX]; null: no boxes */
     const uint8_t *box_seen;           /* [images] GOE_SEES_...; null only if box_px is */
+    const uint8_t *reset_count;        /* [images] of the autopilot's filter; null: no reset */
+    const goe_batch_float_t
+        *reset_m; /* [images][3] by how much it jumped, NaN: not known; null only if reset_count is */
+    const goe_batch_float_t *velocity; /* [images][3] planned, NED, m/s; null only if there are no plans */
+    int plans;
+    const goe_batch_plan_t *plan; /* [plans] */
+    const uint8_t *camera;        /* [images] number of that which took it; null: the first */
 } goe_batch_track_t;
 
 typedef struct {
     int32_t *label;                /* [images][GOE_BATCH_LABELS] */
     goe_batch_float_t *number;     /* [images][GOE_BATCH_NUMBERS] */
     goe_batch_float_t *covariance; /* [images][GOE_QUANTITIES][GOE_QUANTITIES], m and deg; null: not wanted */
+    goe_batch_float_t *hazard;     /* [images][plans][GOE_BATCH_HAZARD]; null only if there are no plans */
 } goe_batch_answer_t;
 
 /* Runs one estimator over a track. Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS with the field's name. */

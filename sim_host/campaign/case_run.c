@@ -67,6 +67,7 @@ static void log_frame(const flight_frame_t *frame, log_features_t logged, frame_
     };
     const pose_t *pose = &frame->logged;
     (void)memset(row, 0, sizeof *row);
+    row->camera = frame->camera;
     row->time_s = (double)frame->time_us / US_PER_S; /* the double next to the decimal number that the log shows */
     log_value(row, FRAME_N_M, pose->position_ned_m.x);
     log_value(row, FRAME_E_M, pose->position_ned_m.y);
@@ -128,7 +129,10 @@ const char *case_run(const flight_case_t *setup, const flight_log_t *log, case_s
     goe_estimator_t estimator;
     const char *bad_field = "settings";
     goe_settings_default(&settings);
-    log_camera(&setup->camera, &settings.camera);
+    log_camera(&setup->camera[0], &settings.camera);
+    if (setup->cameras > 1) {
+        log_camera(&setup->camera[1], &settings.more_cameras[0]);
+    }
     settings.heading_auto = false;
     settings.heading_deg = number_to_float(degrees(log->course_rad));
     settings.method = setting.method;

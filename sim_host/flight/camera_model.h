@@ -11,6 +11,8 @@
 
 #include "rotation.h"
 
+#define CAMERAS_MAX 2
+
 typedef struct {
     double width_px, height_px;
     double fx_px, fy_px, cx_px, cy_px;

@@ -40,7 +40,8 @@ bool flight_case_default(flight_case_t *setup, const char *obstacle) {
     setup->z0_m = (double)NAN;
     setup->speed_mps = SCENARIO_SPEED_MPS;
     setup->fps_hz = SCENARIO_FPS_HZ;
-    setup->camera = camera_default();
+    setup->camera[0] = camera_default();
+    setup->cameras = 1;
     setup->noise.rounding = true;
     setup->roll_rate_hz = USUAL_ROLL_HZ;
     setup->seed = 1;
@@ -117,7 +118,10 @@ const char *flight_case_fault(const flight_case_t *setup) {
     if (!(setup->fps_hz > 0.0 && setup->fps_hz <= 1000.0 && setup->run_s * setup->fps_hz < MOST_FRAMES)) {
         return "fps: must be more than 0, at most 1000 Hz, and give fewer than a million frames";
     }
-    const char *fault = camera_fault(&setup->camera);
+    const char *fault = NULL;
+    for (int i = 0; i < setup->cameras && fault == NULL; i++) {
+        fault = camera_fault(&setup->camera[i]);
+    }
     if (fault == NULL) {
         fault = sensor_noise_fault(&setup->noise);
     }
@@ -232,9 +236,36 @@ static const char *fly_to(flight_t *flight, const obstacle_t *obstacle, double t
     return NULL;
 }
 
+/* How far the middle of the obstacle lies off the camera's axis. */
+static double off_axis_rad(const obstacle_t *obstacle, const view_t *view) {
+    const vec3_t middle = {obstacle->center_n_m, obstacle->center_e_m, obstacle->ground_d_m - 0.5 * obstacle->height_m};
+    const vec3_t ray = mat3_apply(&view->ned_to_camera, vec3_sub(middle, view->eye_ned_m));
+    return atan2(hypot(ray.x, ray.y), ray.z);
+}
+
+/* The number of the camera whose image goes into the log. */
+static int choose_camera(const flight_case_t *setup, const obstacle_t *obstacle, const pose_t *pose) {
+    bool best_whole = false;
+    double best_rad = HUGE_VAL;
+    int best = 0;
+    for (int i = 0; i < setup->cameras && setup->cameras > 1; i++) {
+        const view_t view = camera_view(&setup->camera[i], pose);
+        const image_box_t box = image_box_project(obstacle, &setup->camera[i], &view);
+        const bool whole = image_box_whole(&box, &setup->camera[i]);
+        const double rad = off_axis_rad(obstacle, &view);
+        if (whole != best_whole ? whole : rad < best_rad) {
+            best_whole = whole;
+            best_rad = rad;
+            best = i;
+        }
+    }
+    return best;
+}
+
 static void expose(const flight_case_t *setup, const flight_log_t *log, sensors_t *sensors, const exposure_t *exposure,
                    double t_s, flight_frame_t *frame) {
-    const camera_t *camera = &setup->camera;
+    frame->camera = choose_camera(setup, &log->obstacle, &exposure->truth);
+    const camera_t *camera = &setup->camera[frame->camera];
     const view_t view = camera_view(camera, &exposure->truth);
     frame->truth = exposure->truth;
     frame->airspeed_mps = exposure->airspeed_mps;
@@ -267,7 +298,8 @@ static void settle_truth(const flight_case_t *setup, flight_log_t *log) {
         folded += SIM_PI;
     }
     log->orientation_deg = degrees(folded);
-    const vec3_t eye = log->count > 0 ? camera_view(&setup->camera, &log->frames[0].truth).eye_ned_m
+    const flight_frame_t *first = log->frames;
+    const vec3_t eye = log->count > 0 ? camera_view(&setup->camera[first->camera], &first->truth).eye_ned_m
                                       : to_ned(log->course_rad, 0.0, 0.0, 0.0);
     const double n = o->center_n_m - eye.x, e = o->center_e_m - eye.y;
     log->z0_m = c * n + s * e;
@@ -337,7 +369,9 @@ const char *flight_case_fly(const flight_case_t *given, flight_log_t *log) {
         return fault;
     }
     flight_case_t setup = *given;
-    camera_prepare(&setup.camera);
+    for (int i = 0; i < setup.cameras; i++) {
+        camera_prepare(&setup.camera[i]);
+    }
     path_prepare(&setup.path, setup.speed_mps);
     log->obstacle = setup.obstacle;
     flight_t flight;

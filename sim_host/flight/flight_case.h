@@ -16,6 +16,9 @@
  * goes on; then its position (not its motion) is put on the path's start.
  * A rolling aircraft: from the start of the run a sine is added to the flown roll angle. It turns the camera and leaves the
  * path as it is: the sway of a whole roll period at usual rates is less than a metre.
+ * With two cameras, every image is taken by both, and the row is that of the camera that sees the whole obstacle; if both or
+ * neither do, of the one whose axis is nearer to its middle. The detector's error goes on over the change: it is the worse for
+ * an estimator that what one camera gets wrong the other gets wrong alike.
  * With a recording, the camera sees from the recorded true pose and the log carries the recorded estimate. Z then points from
  * the true place at the start to the one at reach_s, whose distance is Z0, unless course or z0 are given. Path, speed, slope,
  * wind, roll and the pose part of the noise do not apply.
@@ -53,7 +56,8 @@ typedef struct {
     double roll_amplitude_deg, roll_rate_hz; /* a sine on top of the flown attitude, about the body's forward axis */
     double w20_mps;                          /* turbulence, see turbulence.h */
     double wind_mps, wind_from_deg;          /* mean wind */
-    camera_t camera;
+    camera_t camera[CAMERAS_MAX];
+    int cameras; /* 1 or 2 */
     sensor_noise_t noise;
     uint64_t seed;
     const recorded_flight_t *recording; /* null: the simulated aircraft flies */
@@ -63,8 +67,9 @@ typedef struct {
 
 typedef struct {
     int64_t time_us;          /* of the exposure */
+    int camera;               /* number of that whose image it is */
     pose_t truth, logged;     /* of the vehicle's reference point */
-    double true_agl_m, agl_m; /* camera above ground: as it is, as the altimeter says */
+    double true_agl_m, agl_m; /* that camera above ground: as it is, as the altimeter says */
     features_t exact, measured;
     image_box_t exact_box, measured_box; /* LOG_BOXES alone; cut at the image's border */
     double airspeed_mps;                 /* 0 for recordings */

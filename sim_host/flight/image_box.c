@@ -206,6 +206,11 @@ double image_box_size_px(const image_box_t *box, int side) {
     return box->side_px[low + 2] - box->side_px[low];
 }
 
+bool image_box_whole(const image_box_t *box, const camera_t *camera) {
+    return box->seen && box->side_px[SIDE_LEFT] >= 0.0 && box->side_px[SIDE_TOP] >= 0.0 &&
+           box->side_px[SIDE_RIGHT] <= camera->width_px - 1.0 && box->side_px[SIDE_BOTTOM] <= camera->height_px - 1.0;
+}
+
 image_box_t image_box_clipped(const image_box_t *box, const camera_t *camera) {
     image_box_t clipped = *box;
     for (int side = 0; side < SIDE_COUNT; side++) {

@@ -31,6 +31,9 @@ image_box_t image_box_project(const obstacle_t *obstacle, const camera_t *camera
 /* Its width, of left and right, or its height, of top and bottom. */
 double image_box_size_px(const image_box_t *box, int side);
 
+/* None of it lies beyond the border. */
+bool image_box_whole(const image_box_t *box, const camera_t *camera);
+
 /* Sides beyond the border put at the outermost pixels, 0 or size - 1. Not seen if less than 2 px of width or height remain:
  * detectors find nothing so small. */
 image_box_t image_box_clipped(const image_box_t *box, const camera_t *camera);

@@ -72,7 +72,16 @@ static void put_box(FILE *file, log_features_t logged, const image_box_t *box) {
     }
 }
 
-static void put_feature_names(FILE *file, log_features_t logged) {
+/* A log of one camera has no such column. */
+static void put_camera_number(FILE *file, const flight_case_t *setup, const flight_frame_t *frame) {
+    if (setup->cameras > 1) {
+        (void)fprintf(file, ",%d", frame->camera);
+    }
+}
+
+static void put_image_names(FILE *file, const flight_case_t *setup) {
+    const log_features_t logged = setup->features;
+    (void)fputs(setup->cameras > 1 ? ",camera" : "", file);
     for (int i = 0; i < features_logged(logged); i++) {
         (void)fprintf(file, ",%s_u,%s_v", FEATURE_NAMES[i], FEATURE_NAMES[i]);
     }
@@ -86,36 +95,42 @@ static void put_time(FILE *file, int64_t time_us) {
     (void)fprintf(file, "%" PRId64 ".%06" PRId64, time_us / 1000000, time_us % 1000000);
 }
 
-static void put_key(FILE *file, const char *key, double value) {
+static void put_key(FILE *file, const char *owner, const char *key, double value) {
     char text[NUMBER_SIZE];
-    (void)fprintf(file, "%s = %s\n", key, number(text, value));
+    (void)fprintf(file, "%s.%s = %s\n", owner, key, number(text, value));
+}
+
+static void put_camera(FILE *file, const char *name, const camera_t *camera) {
+    put_key(file, name, "width", camera->width_px);
+    put_key(file, name, "height", camera->height_px);
+    put_key(file, name, "fx", camera->fx_px);
+    put_key(file, name, "fy", camera->fy_px);
+    put_key(file, name, "cx", camera->cx_px);
+    put_key(file, name, "cy", camera->cy_px);
+    put_key(file, name, "k1", camera->k1);
+    put_key(file, name, "k2", camera->k2);
+    put_key(file, name, "p1", camera->p1);
+    put_key(file, name, "p2", camera->p2);
+    put_key(file, name, "k3", camera->k3);
+    put_key(file, name, "mount_roll_deg", camera->mount_roll_deg);
+    put_key(file, name, "mount_pitch_deg", camera->mount_pitch_deg);
+    put_key(file, name, "mount_yaw_deg", camera->mount_yaw_deg);
+    put_key(file, name, "offset_x_m", camera->offset_m.x);
+    put_key(file, name, "offset_y_m", camera->offset_m.y);
+    put_key(file, name, "offset_z_m", camera->offset_m.z);
 }
 
 static void write_camera(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
-    const camera_t *camera = &setup->camera;
-    put_key(file, "camera.width", camera->width_px);
-    put_key(file, "camera.height", camera->height_px);
-    put_key(file, "camera.fx", camera->fx_px);
-    put_key(file, "camera.fy", camera->fy_px);
-    put_key(file, "camera.cx", camera->cx_px);
-    put_key(file, "camera.cy", camera->cy_px);
-    put_key(file, "camera.k1", camera->k1);
-    put_key(file, "camera.k2", camera->k2);
-    put_key(file, "camera.p1", camera->p1);
-    put_key(file, "camera.p2", camera->p2);
-    put_key(file, "camera.k3", camera->k3);
-    put_key(file, "camera.mount_roll_deg", camera->mount_roll_deg);
-    put_key(file, "camera.mount_pitch_deg", camera->mount_pitch_deg);
-    put_key(file, "camera.mount_yaw_deg", camera->mount_yaw_deg);
-    put_key(file, "camera.offset_x_m", camera->offset_m.x);
-    put_key(file, "camera.offset_y_m", camera->offset_m.y);
-    put_key(file, "camera.offset_z_m", camera->offset_m.z);
-    put_key(file, "trajectory.heading_deg", degrees(log->course_rad));
+    put_camera(file, "camera", &setup->camera[0]);
+    if (setup->cameras > 1) {
+        put_camera(file, "camera2", &setup->camera[1]);
+    }
+    put_key(file, "trajectory", "heading_deg", degrees(log->course_rad));
 }
 
 static void write_frames(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
     (void)fputs("t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz", file);
-    put_feature_names(file, setup->features);
+    put_image_names(file, setup);
     for (size_t i = 0; i < log->count; i++) {
         const flight_frame_t *frame = &log->frames[i];
         put_time(file, frame->time_us);
@@ -123,6 +138,7 @@ static void write_frames(FILE *file, const flight_case_t *setup, const flight_lo
         put_vector(file, frame->logged.position_ned_m);
         put(file, frame->agl_m);
         put_attitude(file, frame->logged.attitude);
+        put_camera_number(file, setup, frame);
         put_features(file, setup->features, &frame->measured);
         put_box(file, setup->features, &frame->measured_box);
         (void)fputc('\n', file);
@@ -131,7 +147,7 @@ static void write_frames(FILE *file, const flight_case_t *setup, const flight_lo
 
 static void write_truth_frames(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
     (void)fputs("t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz,airspeed_mps", file);
-    put_feature_names(file, setup->features);
+    put_image_names(file, setup);
     for (size_t i = 0; i < log->count; i++) {
         const flight_frame_t *frame = &log->frames[i];
         put_time(file, frame->time_us);
@@ -140,6 +156,7 @@ static void write_truth_frames(FILE *file, const flight_case_t *setup, const fli
         put(file, frame->true_agl_m);
         put_attitude(file, frame->truth.attitude);
         put(file, frame->airspeed_mps);
+        put_camera_number(file, setup, frame);
         put_features(file, setup->features, &frame->exact);
         put_box(file, setup->features, &frame->exact_box);
         (void)fputc('\n', file);

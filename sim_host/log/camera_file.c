@@ -46,13 +46,23 @@ static const camera_key_t keys[] = {
 #undef AT
 #define KEYS (sizeof keys / sizeof keys[0])
 
+/* The second camera has the keys of the first, which begin otherwise, and its settings lie so much farther on. */
+#define CAMERAS 2
+#define SECOND_NAME "camera2"
+#define SECOND_OFFSET (offsetof(goe_settings_t, more_cameras) - offsetof(goe_settings_t, camera))
+
+typedef struct {
+    char text[32];
+} key_name_t;
+
 typedef struct {
     FILE *stream;
     const char *path;
     char *text; /* of the current line */
     size_t text_room;
     unsigned long line;
-    unsigned long key_line[KEYS]; /* where a key was given; 0: nowhere */
+    unsigned long key_line[CAMERAS][KEYS]; /* where a key was given; 0: nowhere */
+    size_t cameras;                        /* of which any key was given; the first is always asked for */
     goe_settings_t settings;
     bool failed;
     input_error_t *error;
@@ -122,25 +132,38 @@ static char *read_line(char *line, int size, void *user) {
 
 /* ------------------------------------------------------------------------------------------------------------ keys -- */
 
-static void store(goe_settings_t *settings, const camera_key_t *key, float value) {
-    (void)memcpy((char *)settings + key->offset, &value, sizeof value);
+static void store(goe_settings_t *settings, size_t camera, const camera_key_t *key, float value) {
+    (void)memcpy((char *)settings + key->offset + camera * SECOND_OFFSET, &value, sizeof value);
 }
 
-static float stored(const goe_settings_t *settings, const camera_key_t *key) {
+static float stored(const goe_settings_t *settings, size_t camera, const camera_key_t *key) {
     float value = 0.0f;
-    (void)memcpy(&value, (const char *)settings + key->offset, sizeof value);
+    (void)memcpy(&value, (const char *)settings + key->offset + camera * SECOND_OFFSET, sizeof value);
     return value;
 }
 
-static size_t key_index(const char *name) {
-    size_t i = 0;
-    while (i < KEYS && strcmp(keys[i].name, name) != 0) {
-        i++;
-    }
-    return i;
+/* As the file has it. */
+static key_name_t key_name(size_t camera, const camera_key_t *key) {
+    key_name_t name;
+    (void)snprintf(name.text, sizeof name.text, "%s%s", camera == 0 ? "" : SECOND_NAME,
+                   camera == 0 ? key->name : strchr(key->name, '.'));
+    return name;
 }
 
-static void store_text(camera_reader_t *reader, const camera_key_t *key, const char *text) {
+/* False: there is no such key. */
+static bool find_key(const char *name, size_t *camera, size_t *i) {
+    for (*camera = 0; *camera < CAMERAS; (*camera)++) {
+        for (*i = 0; *i < KEYS; (*i)++) {
+            const bool has_key = *camera == 0 || keys[*i].kind != KIND_HEADING;
+            if (has_key && strcmp(key_name(*camera, &keys[*i]).text, name) == 0) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static void store_text(camera_reader_t *reader, size_t camera, const camera_key_t *key, const char *text) {
     double number = 0.0;
     if (key->kind == KIND_HEADING) {
         reader->settings.heading_auto = strcmp(text, HEADING_AUTO) == 0;
@@ -149,10 +172,10 @@ static void store_text(camera_reader_t *reader, const camera_key_t *key, const c
         }
     }
     if (number_parse(text, strlen(text), &number)) {
-        store(&reader->settings, key, number_to_float(number));
+        store(&reader->settings, camera, key, number_to_float(number));
     } else {
-        FAIL(reader, reader->line, key->name, "'%s' is not a number%s", excerpt_of(text, strlen(text)).text,
-             key->kind == KIND_HEADING ? " and not " HEADING_AUTO : "");
+        FAIL(reader, reader->line, key_name(camera, key).text, "'%s' is not a number%s",
+             excerpt_of(text, strlen(text)).text, key->kind == KIND_HEADING ? " and not " HEADING_AUTO : "");
     }
 }
 
@@ -160,25 +183,27 @@ static void store_text(camera_reader_t *reader, const camera_key_t *key, const c
 static int on_key(void *user, const char *section, const char *name, const char *text) {
     (void)section;
     camera_reader_t *reader = user;
-    const size_t i = key_index(name);
-    if (i == KEYS) {
+    size_t camera, i;
+    if (!find_key(name, &camera, &i)) {
         FAIL(reader, reader->line, name, "unknown key");
-    } else if (reader->key_line[i] != 0) {
-        FAIL(reader, reader->line, name, "the key appears twice, first in line %lu", reader->key_line[i]);
+    } else if (reader->key_line[camera][i] != 0) {
+        FAIL(reader, reader->line, name, "the key appears twice, first in line %lu", reader->key_line[camera][i]);
     } else {
-        reader->key_line[i] = reader->line;
-        store_text(reader, &keys[i], text);
+        reader->key_line[camera][i] = reader->line;
+        reader->cameras = camera < reader->cameras ? reader->cameras : camera + 1u;
+        store_text(reader, camera, &keys[i], text);
     }
     return !reader->failed;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- checks -- */
 
-static bool key_missing(const camera_reader_t *reader, size_t i) {
-    return (keys[i].kind == KIND_SIZE || keys[i].kind == KIND_REQUIRED) && reader->key_line[i] == 0;
+static bool key_missing(const camera_reader_t *reader, size_t camera, size_t i) {
+    return (keys[i].kind == KIND_SIZE || keys[i].kind == KIND_REQUIRED) && reader->key_line[camera][i] == 0;
 }
 
-/* The ranges are the library's own: the key is tried alone, on top of settings that are known to be good. */
+/* The ranges are the library's own, the same for every camera: the key is tried alone, of the first one, on top of settings that
+ * are known to be good. */
 static bool value_accepted(const camera_key_t *key, float value) {
     if (key->kind == KIND_SIZE && value < SMALLEST_SIZE_PX) {
         return false;
@@ -190,16 +215,25 @@ static bool value_accepted(const camera_key_t *key, float value) {
     trial.camera.fx_px = 1.0f;
     trial.camera.fy_px = 1.0f;
     trial.heading_auto = false;
-    store(&trial, key, value);
+    store(&trial, 0, key, value);
     return goe_init(&estimator, sizeof estimator, &trial, NULL) == GOE_OK;
 }
 
+static void check_key(camera_reader_t *reader, size_t camera, size_t i) {
+    const key_name_t name = key_name(camera, &keys[i]);
+    if (key_missing(reader, camera, i)) {
+        FAIL(reader, reader->line == 0 ? 1u : reader->line, name.text, "missing key, not found up to here");
+    } else if (!value_accepted(&keys[i], stored(&reader->settings, camera, &keys[i]))) {
+        FAIL(reader, reader->key_line[camera][i], name.text, "out of range");
+    }
+}
+
 static void check_keys(camera_reader_t *reader) {
-    for (size_t i = 0; i < KEYS; i++) {
-        if (key_missing(reader, i)) {
-            FAIL(reader, reader->line == 0 ? 1u : reader->line, keys[i].name, "missing key, not found up to here");
-        } else if (!value_accepted(&keys[i], stored(&reader->settings, &keys[i]))) {
-            FAIL(reader, reader->key_line[i], keys[i].name, "out of range");
+    for (size_t camera = 0; camera < reader->cameras; camera++) {
+        for (size_t i = 0; i < KEYS; i++) {
+            if (camera == 0 || keys[i].kind != KIND_HEADING) {
+                check_key(reader, camera, i);
+            }
         }
     }
 }
@@ -227,6 +261,7 @@ bool camera_file_read(const char *path, goe_settings_t *settings, input_error_t 
     (void)memset(&reader, 0, sizeof reader);
     reader.path = path;
     reader.error = error;
+    reader.cameras = 1;
     reader.settings = *settings;
     read_keys(&reader);
     free(reader.text);
@@ -239,3 +274,5 @@ bool camera_file_read(const char *path, goe_settings_t *settings, input_error_t 
     *settings = reader.settings;
     return true;
 }
+
+int camera_file_cameras(const goe_settings_t *settings) { return settings->more_cameras[0].fx_px > 0.0f ? 2 : 1; }

@@ -59,6 +59,8 @@ static void read_reset(const frame_t *frame, goe_pose_t *pose) {
     }
 }
 
+static uint8_t camera_number(int64_t number) { return number >= 0 && number < UINT8_MAX ? (uint8_t)number : UINT8_MAX; }
+
 void frame_to_image(const frame_t *frame, goe_image_t *image) {
     const goe_image_t empty = {0};
     *image = empty;
@@ -78,4 +80,5 @@ void frame_to_image(const frame_t *frame, goe_image_t *image) {
     image->base_near = image_point(frame, FRAME_BASE_NEAR_U);
     image->base_right = image_point(frame, FRAME_BASE_RIGHT_U);
     read_box(frame, &image->box);
+    image->camera = camera_number(frame->camera);
 }

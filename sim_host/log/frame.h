@@ -10,6 +10,7 @@
 #define FRAME_TIME_NAME "t_s"
 #define FRAME_ID_NAME "id"
 #define FRAME_RESET_COUNT_NAME "reset_count"
+#define FRAME_CAMERA_NAME "camera"
 #define FRAME_TIME_TEXT_MAX 63
 
 /* The columns of numbers. Image points are pairs: u, then v. */
@@ -51,6 +52,7 @@ typedef struct {
     double time_s;
     int64_t id;
     int64_t reset_count;        /* 0: the field is empty or the column absent */
+    int64_t camera;             /* the number of that which took the image; 0: likewise */
     double value[FRAME_VALUES]; /* units as the column's name says; not finite if the log says so */
     bool given[FRAME_VALUES];   /* false: the field is empty or the column absent; value means nothing */
 } frame_t;
@@ -58,7 +60,8 @@ typedef struct {
 /* What the library is shown. An image point is seen if both coordinates are given, a side of the box if its number is. A
  * missing pose value becomes NaN and a time that is not finite or does not fit microseconds GOE_TIME_UNKNOWN, both of which
  * the library refuses. agl_m not given: -d_m. The jump of a reset is known if all three of its numbers are given; of the
- * count the lowest 8 bits go on, as counters wrap at any width. */
+ * count the lowest 8 bits go on, as counters wrap at any width. A camera's number that does not fit becomes one that no camera
+ * has. */
 void frame_to_image(const frame_t *frame, goe_image_t *image);
 
 #endif

@@ -4,6 +4,7 @@
 #include <csv.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -18,7 +19,8 @@
 #define COLUMN_TIME FRAME_VALUES
 #define COLUMN_ID (FRAME_VALUES + 1)
 #define COLUMN_RESET_COUNT (FRAME_VALUES + 2)
-#define COLUMNS_KNOWN (FRAME_VALUES + 3)
+#define COLUMN_CAMERA (FRAME_VALUES + 3)
+#define COLUMNS_KNOWN (FRAME_VALUES + 4)
 
 typedef struct {
     char *name;
@@ -27,6 +29,7 @@ typedef struct {
 
 struct frame_reader {
     char *path;
+    int cameras; /* that there are */
     int descriptor;
     struct csv_parser parser;
     char *buffer;
@@ -60,6 +63,8 @@ static const char *known_name(int meaning) {
             return FRAME_ID_NAME;
         case COLUMN_RESET_COUNT:
             return FRAME_RESET_COUNT_NAME;
+        case COLUMN_CAMERA:
+            return FRAME_CAMERA_NAME;
         default:
             return frame_value_name[meaning];
     }
@@ -168,6 +173,20 @@ static void store_integer(frame_reader_t *reader, int meaning, const char *text,
     }
 }
 
+/* An empty field is the first camera. */
+static void store_camera(frame_reader_t *reader, const char *text, size_t length) {
+    int64_t number = 0;
+    if (length > 0) {
+        store_integer(reader, COLUMN_CAMERA, text, length, &number);
+    }
+    if (number < 0 || number >= reader->cameras) {
+        FAIL_FIELD(reader, reader->row_line, FRAME_CAMERA_NAME,
+                   "there is no camera %" PRId64 ", the camera file describes 0 %s", number,
+                   reader->cameras > 1 ? "and 1" : "alone");
+    }
+    reader->frame->camera = number;
+}
+
 static void store_value(frame_reader_t *reader, int meaning, const char *text, size_t length) {
     if (length == 0) {
         return; /* not measured */
@@ -193,6 +212,8 @@ static void store_field(frame_reader_t *reader, const char *text, size_t length)
         if (length > 0) {
             store_integer(reader, meaning, text, length, &reader->frame->reset_count);
         }
+    } else if (meaning == COLUMN_CAMERA) {
+        store_camera(reader, text, length);
     } else if (meaning != COLUMN_IGNORED) {
         store_value(reader, meaning, text, length);
     }
@@ -352,13 +373,14 @@ static bool start(frame_reader_t *reader, const char *path) {
     return reader->path != NULL && reader->buffer != NULL;
 }
 
-frame_reader_t *frame_reader_open(const char *path, input_error_t *error) {
+frame_reader_t *frame_reader_open(const char *path, int cameras, input_error_t *error) {
     frame_reader_t *reader = calloc(1, sizeof *reader);
     if (reader == NULL || !start(reader, path)) {
         input_error_set(error, path, 0u, NULL, "out of memory");
         frame_reader_close(reader);
         return NULL;
     }
+    reader->cameras = cameras;
     reader->descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (reader->descriptor < 0) {
         FAIL(reader, 0u, NULL, "cannot be opened: %s", strerror(errno));
@@ -381,6 +403,7 @@ frame_reader_result_t frame_reader_next(frame_reader_t *reader, frame_t *frame, 
     reader->row_ready = false;
     (void)memset(frame->given, 0, sizeof frame->given);
     frame->reset_count = 0;
+    frame->camera = 0;
     while (!reader->failed && !reader->row_ready && !reader->finished) {
         step(reader);
     }

@@ -13,8 +13,9 @@ typedef enum {
     FRAME_READER_ERROR /* *error says what is wrong and where; so will every further call */
 } frame_reader_result_t;
 
-/* Opens the file and checks its header line. Null on failure: *error says why. */
-frame_reader_t *frame_reader_open(const char *path, input_error_t *error);
+/* Opens the file and checks its header line. A row of none of the so many cameras is an error: the two files of the log do not
+ * belong together. Null on failure: *error says why. */
+frame_reader_t *frame_reader_open(const char *path, int cameras, input_error_t *error);
 
 frame_reader_result_t frame_reader_next(frame_reader_t *reader, frame_t *frame, input_error_t *error);
 

@@ -13,7 +13,7 @@ typedef struct {
 } setting_fault_t;
 
 /* Sets any field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "method", ...). Whole numbers, truth
- * values (0 or 1) and enumerations as numbers too. Ranges are goe_init()'s affair.
+ * values (0 or 1) and enumerations as numbers too; the second camera as "more_cameras[0].fx_px". Ranges are goe_init()'s affair.
  * False, and nothing set, if there is no such field or the value is not of its kind. */
 bool setting_put(goe_settings_t *settings, const char *name, double value);
 

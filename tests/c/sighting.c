@@ -47,6 +47,7 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting->settings.camera.fx_px = 914.0f;
     sighting->settings.camera.fy_px = 850.0f;
     sighting->sight.settings = &sighting->settings;
+    sighting->sight.camera = &sighting->settings.camera;
     sighting->sight.sides = &no_sides;
     sighting->sight.point_px = sighting->settings.detector.point_px;
     sighting->sight.side_px = sighting->settings.detector.box_px;
@@ -66,14 +67,26 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
 
 void sighting_look(sighting_t *sighting) { goe_observation_linearise(&sighting->sight); }
 
-/* A ray r of the told axes is r + e x r in the true ones, and the other way round with the other sign. */
-void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
-                      double seen[2]) {
-    double e[3];
+static void attitude_bias(const sighting_t *sighting, const double state[GOE_STATES], double e[3]) {
     for (int i = 0; i < 3; i++) {
         const float *row = &sighting->sight.body_to_axes[3 * i];
         e[i] = (double)row[0] * state[0] + (double)row[1] * state[1] + (double)row[2] * state[2];
     }
+}
+
+double sighting_height(const sighting_t *sighting, const double state[GOE_STATES], size_t feature) {
+    const double x = (double)sighting->sight.point[feature].x;
+    const double y = (double)sighting->sight.point[feature].y;
+    double e[3];
+    attitude_bias(sighting, state, e);
+    return y + e[0] * (1.0 + y * y) - e[2] * x - e[1] * x * y;
+}
+
+/* A ray r of the told axes is r + e x r in the true ones, and the other way round with the other sign. */
+void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
+                      double seen[2]) {
+    double e[3];
+    attitude_bias(sighting, state, e);
     const double x = point[0] + e[1] * point[2] - e[2] * point[1];
     const double y = point[1] + e[2] * point[0] - e[0] * point[2];
     const double z = point[2] + e[0] * point[1] - e[1] * point[0];
@@ -84,7 +97,7 @@ void sighting_project(const sighting_t *sighting, const double state[GOE_STATES]
 double sighting_place(sighting_t *sighting, check_random_t *random) {
     sighting_start(sighting, random);
     const double z0_m = check_random_between(random, 60.0, 200.0);
-    sighting->state[GOE_HEIGHT_BIAS] = (float)check_random_between(random, -1.0, 1.0);
+    sighting->state[GOE_GROUND] = (float)(check_random_between(random, -1.0, 1.0) / z0_m);
     sighting->state[GOE_BEARING] = (float)check_random_between(random, -0.5, 0.5);
     sighting->state[GOE_INVERSE_RANGE] = (float)(1.0 / z0_m);
     return z0_m;
@@ -113,7 +126,7 @@ void sighting_check_rows(sighting_t *sighting, sighting_predict_t predict) {
             1.0 + fabs((double)sighting->matrix.row[row][0]) + fabs((double)sighting->matrix.row[row][1]);
         CHECK_CLOSE(RESIDUAL_BOUND * steep, 0.0, sighting->matrix.row[row][GOE_RESIDUAL]);
         for (int i = 0; i < GOE_STATES; i++) {
-            const double step = i == GOE_INVERSE_RANGE ? STEP * 1.0e-2 : i == GOE_HEIGHT_BIAS ? STEP * 1.0e2 : STEP;
+            const double step = i == GOE_INVERSE_RANGE ? STEP * 1.0e-2 : STEP;
             double up[GOE_STATES];
             double down[GOE_STATES];
             memcpy(up, state, sizeof up);

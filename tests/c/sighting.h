@@ -6,6 +6,8 @@
 #include "check.h"
 #include "refined/goe_observation.h"
 
+#define SETTLED 4 /* turns until a fixed point is as near as a float tells */
+
 typedef struct {
     goe_settings_t settings;
     float state[GOE_STATES];
@@ -26,6 +28,9 @@ void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, 
 
 /* What depends on the state, after a change of it. */
 void sighting_look(sighting_t *sighting);
+
+/* Y/Z at which a point of the image was measured, freed of the attitude bias of `state`, to first order. */
+double sighting_height(const sighting_t *sighting, const double state[GOE_STATES], size_t feature);
 
 /* Where the point is seen under the attitude bias of `state`: the exact small-rotation model of goe_observation.h in double. */
 void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],

@@ -20,7 +20,7 @@ static check_random_t any;
 static sighting_t sighting;
 static double truth[GOE_STATES];
 static int seen_at[GOE_FEATURES];   /* corner behind each feature */
-static double held_y[GOE_FEATURES]; /* Y of a silhouette point: where on the vertical edge it was measured */
+static double held_z[GOE_FEATURES]; /* Z of a silhouette point: its height on the edge does not hang on the state's */
 static size_t kind[GOE_ROWS_MAX];   /* feature of each row that should come */
 static bool along_y[GOE_ROWS_MAX];  /* its coordinate */
 static size_t expected_rows;
@@ -102,7 +102,7 @@ static bool find_top(const corner_t corner[4], bool farthest, int *found) {
 static double height_of(const double state[GOE_STATES], int feature) {
     const double h = (double)sighting.sight.height_m;
     return feature == GOE_POINT_TOP ? h * state[GOE_INVERSE_RANGE] - state[GOE_TOP]
-                                    : (h + state[GOE_HEIGHT_BIAS]) * state[GOE_INVERSE_RANGE];
+                                    : h * state[GOE_INVERSE_RANGE] + state[GOE_GROUND];
 }
 
 static void see(const double state[GOE_STATES], int feature, double seen[2]) {
@@ -110,7 +110,8 @@ static void see(const double state[GOE_STATES], int feature, double seen[2]) {
     corners_of(state, corner);
     const corner_t at = corner[seen_at[feature]];
     const bool silhouette = feature == GOE_POINT_LEFT || feature == GOE_POINT_RIGHT;
-    const double y = silhouette ? held_y[feature] : height_of(state, feature);
+    const double y =
+        silhouette ? sighting_height(&sighting, state, (size_t)feature) * held_z[feature] : height_of(state, feature);
     const double point[3] = {at.x, y, at.z};
     sighting_project(&sighting, state, point, seen);
 }
@@ -140,7 +141,7 @@ static void any_box(corner_t corner[4]) {
         const double z0_m = check_random_between(&any, 40.0, 150.0);
         const double w = check_random_between(&any, 2.0, 20.0) / z0_m;
         const double l = check_random_between(&any, 2.0, 20.0) / z0_m;
-        sighting.state[GOE_HEIGHT_BIAS] = (float)check_random_between(&any, -1.0, 1.0);
+        sighting.state[GOE_GROUND] = (float)(check_random_between(&any, -1.0, 1.0) / z0_m);
         sighting.state[GOE_BEARING] = (float)check_random_between(&any, -0.6, 0.6);
         sighting.state[GOE_INVERSE_RANGE] = (float)(1.0 / z0_m);
         sighting.state[GOE_SIDE_X] = (float)(l * sin(b));
@@ -172,9 +173,12 @@ static void measure(int feature, int corner) {
     corners_of(truth, corners);
     seen_at[feature] = corner;
     sighting.sight.point[feature].y = (float)check_random_between(&any, -0.15, 0.15);
-    held_y[feature] = (double)sighting.sight.point[feature].y * corners[corner].z;
-    see(truth, feature, seen);
-    sighting.sight.point[feature].x = (float)seen[0];
+    held_z[feature] = corners[corner].z;
+    sighting.sight.point[feature].x = 0.0f;
+    for (int i = 0; i < SETTLED; i++) { /* the height that is freed of the bias hangs on x a little */
+        see(truth, feature, seen);
+        sighting.sight.point[feature].x = (float)seen[0];
+    }
     if (feature != GOE_POINT_LEFT && feature != GOE_POINT_RIGHT) {
         sighting.sight.point[feature].y = (float)seen[1];
     }

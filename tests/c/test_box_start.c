@@ -208,7 +208,7 @@ static void what_one_face_does_not_tell_is_refused(void) {
     sighting.sight.height_m = 0.2f; /* on the ground: no depth */
     TEST_ASSERT_FALSE(one_face());
     good_face();
-    sighting.state[GOE_HEIGHT_BIAS] = -19.8f;
+    sighting.state[GOE_GROUND] = -19.8f * sighting.state[GOE_INVERSE_RANGE];
     TEST_ASSERT_FALSE(one_face());
     good_face();
     sighting.state[GOE_INVERSE_RANGE] = 1.0f / 25.5f; /* the obstacle is passed */

@@ -74,7 +74,7 @@ static goe_hazard_t foresee(const goe_plan_t *plan) {
 
 /* heading north: T's X is east, its Z north */
 static goe_plan_t plan_of(double z_m_s, double x_m_s, double climb_m_s) {
-    const goe_plan_t plan = {{(float)z_m_s, (float)x_m_s, (float)-climb_m_s}, 5.0f, 10.0f};
+    const goe_plan_t plan = {{(float)z_m_s, (float)x_m_s, (float)-climb_m_s}, 5.0f, 10.0f, 0.0f};
     return plan;
 }
 
@@ -191,7 +191,7 @@ static void any_obstacle_is_met_as_brute_force_says(void) {
         if (speed < 1.0 || (truth.miss_m > 0.0 && truth.miss_m < 0.01)) {
             continue; /* a graze: rounding decides on which side, and the time jumps from a corner to an entry */
         }
-        tell(&estimator.window.estimate, &o);
+        tell(&estimator.estimate, &o);
         const goe_hazard_t hazard = foresee(&plan);
         check_worst(&worst_miss, (double)hazard.miss_m - truth.miss_m);
         check_worst(&worst_time, ((double)hazard.time_s - truth.time_s) * speed);
@@ -210,7 +210,7 @@ static void any_obstacle_is_met_as_brute_force_says(void) {
 static void a_chimney_ahead_is_reached_at_its_near_side(void) {
     const obstacle_t chimney = {false, 0.0, 103.0, 6.0, 0.0, 0.0, 60.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, 1.0);
-    tell(&estimator.window.estimate, &chimney);
+    tell(&estimator.estimate, &chimney);
     const goe_hazard_t hazard = foresee(&plan);
     CHECK_CLOSE(1e-5, 5.0, hazard.time_s);
     CHECK_CLOSE(0.0, 0.0, hazard.miss_m);
@@ -223,7 +223,7 @@ static void turning_t_turns_the_answer_along(void) {
     /* GIVEN T at 30 degrees from north THEN the same flight relative to T meets the same obstacle */
     const obstacle_t o = {true, -15.0, 80.0, 8.0, 20.0, 25.0, 12.0};
     goe_plan_t plan = plan_of(25.0, 3.0, -1.0);
-    tell(&estimator.window.estimate, &o);
+    tell(&estimator.estimate, &o);
     const goe_hazard_t before = foresee(&plan);
     const double angle = 30.0 * RAD_PER_DEG;
     estimator.motion.heading_cos = (float)cos(angle);
@@ -239,8 +239,8 @@ static void turning_t_turns_the_answer_along(void) {
 static void what_lies_behind_is_as_far_as_now(void) {
     const obstacle_t behind = {true, 10.0, -60.0, 8.0, 20.0, 0.0, 12.0};
     const goe_plan_t plan = plan_of(25.0, 0.0, 2.0);
-    tell(&estimator.window.estimate, &behind);
-    estimator.window.estimate.sigma.x0_m = estimator.window.estimate.sigma.z0_m = 1.0f;
+    tell(&estimator.estimate, &behind);
+    estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 1.0f;
     const goe_hazard_t hazard = foresee(&plan);
     CHECK_CLOSE(0.0, 0.0, hazard.time_s);
     CHECK_CLOSE(0.0, 0.0, hazard.time_sd_s);
@@ -254,7 +254,7 @@ static void over_the_roof_the_distance_is_none(void) {
     const obstacle_t o = {true, 0.0, -10.0, 20.0, 30.0, 0.0, 45.0};
     const goe_plan_t level = plan_of(10.0, 0.0, 0.0);
     const goe_plan_t descending = plan_of(10.0, 0.0, -2.0);
-    tell(&estimator.window.estimate, &o);
+    tell(&estimator.estimate, &o);
     const goe_hazard_t now = foresee(&level);
     CHECK_CLOSE(0.0, 0.0, now.time_s);
     CHECK_CLOSE(0.0, 0.0, now.miss_m);
@@ -268,9 +268,9 @@ static void standing_still_the_distance_is_that_of_now(void) {
     const obstacle_t boxes[2] = {{true, 30.0, 0.0, 20.0, 40.0, 0.0, 20.0}, {false, 26.0, 0.0, 12.0, 0.0, 0.0, 20.0}};
     const goe_plan_t still = plan_of(0.0, 0.0, -3.0);
     for (int i = 0; i < 2; i++) {
-        tell(&estimator.window.estimate, &boxes[i]);
-        estimator.window.estimate.sigma.x0_m = 10.0f;
-        estimator.window.estimate.sigma.height_m = 10.0f;
+        tell(&estimator.estimate, &boxes[i]);
+        estimator.estimate.sigma.x0_m = 10.0f;
+        estimator.estimate.sigma.height_m = 10.0f;
         const goe_hazard_t hazard = foresee(&still);
         CHECK_CLOSE(0.0, 0.0, hazard.time_s);
         CHECK_CLOSE(1e-5, 20.0, hazard.miss_m);
@@ -283,7 +283,7 @@ static void standing_still_the_distance_is_that_of_now(void) {
 static void a_camera_in_the_middle_of_a_disc_has_an_answer(void) {
     const obstacle_t o = {false, 0.0, 0.0, 10.0, 0.0, 0.0, 45.0};
     const goe_plan_t plans[2] = {plan_of(0.0, 0.0, 0.0), plan_of(0.0, 15.0, 0.0)};
-    tell(&estimator.window.estimate, &o);
+    tell(&estimator.estimate, &o);
     for (int i = 0; i < 2; i++) {
         const goe_hazard_t hazard = foresee(&plans[i]);
         CHECK_CLOSE(0.0, 0.0, hazard.miss_m);
@@ -294,28 +294,28 @@ static void a_camera_in_the_middle_of_a_disc_has_an_answer(void) {
 static void what_is_not_known_leaves_a_circle_or_a_point(void) {
     const obstacle_t o = {true, 20.0, 100.0, 10.0, 40.0, 0.0, 12.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
-    tell(&estimator.window.estimate, &o);
-    estimator.window.estimate.valid &= ~(GOE_HAS_LENGTH | GOE_HAS_HEIGHT);
-    estimator.window.estimate.length_m = 0.0f;
-    estimator.window.estimate.height_m = 0.0f;
+    tell(&estimator.estimate, &o);
+    estimator.estimate.valid &= ~(GOE_HAS_LENGTH | GOE_HAS_HEIGHT);
+    estimator.estimate.length_m = 0.0f;
+    estimator.estimate.height_m = 0.0f;
     const goe_hazard_t circle = foresee(&plan);
     CHECK_CLOSE(1e-4, 15.0, circle.miss_m);
     CHECK_CLOSE(1e-5, 5.0, circle.time_s);
     TEST_ASSERT_FALSE(circle.has_clearance);
     CHECK_CLOSE(0.0, 0.0, circle.clearance_m);
     CHECK_CLOSE(0.0, 0.0, circle.clearance_sd_m);
-    estimator.window.estimate.valid &= ~GOE_HAS_WIDTH;
-    estimator.window.estimate.width_m = 0.0f;
+    estimator.estimate.valid &= ~GOE_HAS_WIDTH;
+    estimator.estimate.width_m = 0.0f;
     CHECK_CLOSE(1e-4, 20.0, foresee(&plan).miss_m);
 }
 
 static void without_a_height_the_margin_alone_counts(void) {
     const obstacle_t o = {false, 14.0, 100.0, 10.0, 0.0, 0.0, 12.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
-    tell(&estimator.window.estimate, &o);
-    estimator.window.estimate.sigma.x0_m = 4.0f;
+    tell(&estimator.estimate, &o);
+    estimator.estimate.sigma.x0_m = 4.0f;
     CHECK_CLOSE(1e-6, 0.0, foresee(&plan).violation); /* 28 m above what asks for 10 */
-    estimator.window.estimate.valid &= ~GOE_HAS_HEIGHT;
+    estimator.estimate.valid &= ~GOE_HAS_HEIGHT;
     CHECK_CLOSE(2e-6, 0.1586553, foresee(&plan).violation); /* 9 m off, 5 wanted: 1 sigma */
 }
 
@@ -342,7 +342,7 @@ typedef void draw_t(check_random_t *random, const obstacle_t *mean, obstacle_t *
 
 /* Independent errors, as the window's. */
 static void draw_from_sigmas(check_random_t *random, const obstacle_t *mean, obstacle_t *o) {
-    const goe_sigma_t *sigma = &estimator.window.estimate.sigma;
+    const goe_sigma_t *sigma = &estimator.estimate.sigma;
     *o = *mean;
     o->x_m += (double)sigma->x0_m * check_random_normal(random);
     o->z_m += (double)sigma->z0_m * check_random_normal(random);
@@ -372,7 +372,7 @@ static drawn_t draw(const obstacle_t *mean, const goe_plan_t *plan, draw_t *one)
 }
 
 static void give_sigmas(double position, double range, double extent, double orientation_deg, double height) {
-    goe_sigma_t *sigma = &estimator.window.estimate.sigma;
+    goe_sigma_t *sigma = &estimator.estimate.sigma;
     sigma->x0_m = (float)position;
     sigma->z0_m = (float)range;
     sigma->width_m = sigma->length_m = (float)extent;
@@ -390,7 +390,7 @@ static void sigmas_of_a_miss_are_those_of_random_truths(void) {
                                          {true, 30.0, -20.0, 8.0, 15.0, 20.0, 45.0}};
     for (int i = 0; i < 4; i++) {
         const goe_plan_t plan = plan_of(20.0, -1.0, i % 2 ? 1.5 : -1.5);
-        tell(&estimator.window.estimate, &missed[i]);
+        tell(&estimator.estimate, &missed[i]);
         give_sigmas(1.5, 4.0, 1.0, 1.5, 1.2);
         const goe_hazard_t hazard = foresee(&plan);
         const drawn_t drawn = draw(&missed[i], &plan, draw_from_sigmas);
@@ -407,7 +407,7 @@ static void sigmas_of_a_crossing_are_those_of_random_truths(void) {
     for (int i = 0; i < 3; i++) {
         for (int sign = -1; sign <= 1; sign += 2) {
             const goe_plan_t plan = plan_of(20.0, 0.5, 1.5 * sign);
-            tell(&estimator.window.estimate, &crossed[i]);
+            tell(&estimator.estimate, &crossed[i]);
             give_sigmas(1.5, 4.0, 1.0, 1.5, 1.2);
             const goe_hazard_t hazard = foresee(&plan);
             const drawn_t drawn = draw(&crossed[i], &plan, draw_from_sigmas);
@@ -426,7 +426,7 @@ static void a_grazed_edge_does_not_blow_the_sigma_of_the_time_up(void) {
     static const double half_m[3] = {10.0, 20.0, 20.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, -2.0);
     for (int i = 0; i < 3; i++) {
-        tell(&estimator.window.estimate, &grazed[i]);
+        tell(&estimator.estimate, &grazed[i]);
         give_sigmas(2.0, 4.0, 1.0, 1.0, 1.0);
         const drawn_t drawn = draw(&grazed[i], &plan, draw_from_sigmas);
         const goe_hazard_t hazard = foresee(&plan);
@@ -455,7 +455,7 @@ static void the_probability_is_that_of_random_truths(void) {
                               check_random_between(&random, 30.0, 50.0)};
         const goe_plan_t plan =
             plan_of(20.0, check_random_between(&random, -2.0, 2.0), check_random_between(&random, -2.0, 2.0));
-        tell(&estimator.window.estimate, &o);
+        tell(&estimator.estimate, &o);
         give_sigmas(check_random_between(&random, 0.5, 8.0), check_random_between(&random, 1.0, 10.0),
                     check_random_between(&random, 0.1, 1.0), check_random_between(&random, 0.2, 4.0),
                     check_random_between(&random, 0.5, 5.0));
@@ -578,7 +578,8 @@ static void correlated_errors_are_accounted_for(void) {
     const goe_estimate_t *e = &estimator.estimate;
     goe_latest_covariance(&estimator, true, covariance);
     factorise(covariance);
-    const double datum_m = (double)estimator.filter.state[GOE_HEIGHT_BIAS];
+    const double datum_m =
+        (double)estimator.filter.state[GOE_GROUND] / (double)estimator.filter.state[GOE_INVERSE_RANGE];
     const obstacle_t mean = {true,
                              (double)e->x_m,
                              (double)e->z_m,
@@ -638,7 +639,7 @@ static void a_refusal_leaves_zeros(void) {
     check_refused(GOE_BAD_ARGUMENT, NULL, &good);
     check_refused(GOE_BAD_ARGUMENT, &estimator, NULL);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_hazard(&estimator, &good, NULL));
-    tell(&estimator.window.estimate, &o);
+    tell(&estimator.estimate, &o);
     for (int field = 0; field < 5; field++) {
         static const float most[5] = {1e3f, 1e3f, 1e3f, 1e4f, 1e4f};
         goe_plan_t plan = good;

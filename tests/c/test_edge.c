@@ -19,6 +19,7 @@ void setUp(void) {
     memset(&image, 0, sizeof image);
     memset(&view, 0, sizeof view);
     view.image = &image;
+    view.camera = &settings.camera;
     memset(&edges, 0xA5, sizeof edges);
 }
 void tearDown(void) {}

@@ -1,4 +1,4 @@
-/* What the library is shown of a row of frames.csv: boxes and resets. SPDX-License-Identifier: MIT
+/* What the library is shown of a row of frames.csv: boxes, resets and cameras. SPDX-License-Identifier: MIT
  * The columns' way through goe_replay is tested in tests/host. */
 #include <math.h>
 #include <stddef.h>
@@ -77,11 +77,25 @@ static void a_wider_counter_goes_on_in_eight_bits(void) {
     }
 }
 
+/* What fits no number of a camera must not become that of one. */
+static void the_camera_s_number_is_shown_as_it_is(void) {
+    static const struct {
+        int64_t number;
+        uint8_t shown;
+    } cases[] = {{0, 0u}, {1, 1u}, {254, 254u}, {255, 255u}, {256, 255u}, {257, 255u}, {-1, 255u}, {INT64_MAX, 255u}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        frame.camera = cases[i].number;
+        frame_to_image(&frame, &image);
+        TEST_ASSERT_EQUAL_UINT8(cases[i].shown, image.camera);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_side_given_is_seen);
     RUN_TEST(a_side_that_is_no_number_is_shown);
     RUN_TEST(a_jump_is_known_by_all_three_numbers);
     RUN_TEST(a_wider_counter_goes_on_in_eight_bits);
+    RUN_TEST(the_camera_s_number_is_shown_as_it_is);
     return UNITY_END();
 }

@@ -178,7 +178,8 @@ static void start(void) {
     memset(&image, 0, sizeof image);
     view.image = &image;
     view.motion = &estimator.motion;
-    view.camera_to_body = estimator.camera_to_body;
+    view.camera = &settings.camera;
+    view.camera_to_body = estimator.camera_to_body[0];
 }
 
 /* The camera's mounting taken back: a ray along the camera's axis is that of the body's mounting. */
@@ -188,7 +189,7 @@ static void the_body_is_where_the_mounting_puts_it(void) {
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) { /* identity = camera to axes: body to axes is the mounting's inverse */
-            CHECK_CLOSE(1.0e-6, estimator.camera_to_body[3 * j + i], sight.body_to_axes[3 * i + j]);
+            CHECK_CLOSE(1.0e-6, estimator.camera_to_body[0][3 * j + i], sight.body_to_axes[3 * i + j]);
         }
     }
 }

@@ -33,7 +33,7 @@ static double coordinate(const double state[GOE_STATES], size_t side, double phi
     const double half = state[GOE_PRISM_HALF];
     const double depth = half * exp(state[GOE_PRISM_DEPTH] + state[GOE_PRISM_UNSEEN]);
     const double point[3] = {state[GOE_BEARING] - (double)sighting.sight.camera_m.x * q + half * sin(phi),
-                             foot ? h * q + state[GOE_PRISM_GROUND] : h * q - state[GOE_PRISM_TOP],
+                             foot ? h * q + state[GOE_GROUND] : h * q - state[GOE_PRISM_TOP],
                              1.0 - (double)sighting.sight.camera_m.z * q + depth * cos(phi)};
     double seen[2];
     double in_camera[3];
@@ -98,7 +98,7 @@ static void any_prism(double truth[GOE_STATES]) {
     const double z0_m = sighting_place(&sighting, &any);
     roll_camera(check_random_between(&any, -3.1, 3.1));
     sighting.state[GOE_BEARING] = (float)check_random_between(&any, -0.3, 0.3);
-    sighting.state[GOE_PRISM_GROUND] = (float)(check_random_between(&any, -1.0, 1.0) / z0_m);
+    sighting.state[GOE_GROUND] = (float)(check_random_between(&any, -1.0, 1.0) / z0_m);
     sighting.state[GOE_PRISM_HALF] = (float)(check_random_between(&any, 0.5, 12.0) / z0_m);
     sighting.state[GOE_PRISM_DEPTH] = (float)check_random_between(&any, -1.0, 1.0);
     sighting.state[GOE_PRISM_TOP] = (float)(check_random_between(&any, 2.0, 60.0) / z0_m);

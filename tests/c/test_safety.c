@@ -16,9 +16,12 @@
 #include <string.h>
 
 #include "check.h"
+#include "refined/goe_gate.h"
+#include "refined/goe_scatter.h"
 #include "scene.h"
 
 #define UPDATES_EACH 60000
+#define SCATTER_MAX 400.0f /* 21 times the told variance, 19 for residuals that are alike to 0.9 */
 #define GUARD_BYTES 64
 #define GUARD 0xC3
 
@@ -147,6 +150,14 @@ static void check_ranges(const goe_estimate_t *e) {
     TEST_ASSERT_TRUE(e->nis_rows > 0 || is_zero(&e->nis));
 }
 
+/* By how much the track's own scatter widens what the filter found. */
+static double widening(void) {
+    const goe_filter_t *filter = &memory.estimator.filter;
+    const float factor = goe_scatter_factor(filter, goe_gate_repeated(&memory.estimator.settings, filter));
+    TEST_ASSERT_TRUE(factor >= 1.0f && factor <= SCATTER_MAX);
+    return sqrt((double)factor);
+}
+
 /* What goe_sigma_t says of the refined method. */
 static void check_refined(const goe_estimate_t *e) {
     static const float two_metres = 2.0f;
@@ -161,18 +172,21 @@ static void check_refined(const goe_estimate_t *e) {
     const double z_m = (double)e->z0_m - (double)memory.estimator.filter.axes.start_dz_m;
     const float range_m = (float)sqrt(x_m * x_m + z_m * z_m);
     TEST_ASSERT_FALSE(is_zero(&range_m));
-    TEST_ASSERT_TRUE(within(&e->x0_m, 1.0e6f) && within(&e->z0_m, 1.0e6f) && within(&s->x0_m, 1.0e6f));
-    if (e->model == GOE_MODEL_PRISM) { /* what no image can show widens its sigmas, and silences none */
-        TEST_ASSERT_TRUE(within(&s->z0_m, 1.0e6f) && within(&s->width_m, 1.0e6f) && within(&s->height_m, 1.0e6f));
+    TEST_ASSERT_TRUE(within(&e->x0_m, 1.0e6f) && within(&e->z0_m, 1.0e6f) && within(&s->x_m, 1.0e6f));
+    if (e->model == GOE_MODEL_PRISM || e->model == GOE_MODEL_DISC) {
+        /* what no image can show, or that it may be no disc, widens the sigmas and silences none */
+        TEST_ASSERT_TRUE(within(&s->z_m, 1.0e6f) && within(&s->width_m, 1.0e6f) && within(&s->height_m, 1.0e6f));
         TEST_ASSERT_FALSE(e->valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH));
         return;
     }
-    TEST_ASSERT_TRUE(within_share(&s->z0_m, (double)memory.estimator.settings.refined.range_share, &range_m));
-    TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3, &e->width_m));
-    TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3, &e->length_m));
-    TEST_ASSERT_TRUE(within_share(&s->height_m, 0.3, within(&e->height_m, two_metres) ? &two_metres : &e->height_m));
-    TEST_ASSERT_TRUE(within(&s->orientation_deg, 10.001f));
-    TEST_ASSERT_TRUE(e->model == GOE_MODEL_BOX || !(e->valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH)));
+    const double wider = widening(); /* scatter widens a sigma, and silences none */
+    const double share = (double)memory.estimator.settings.refined.range_share;
+    TEST_ASSERT_TRUE(within_share(&s->z_m, share * wider, &range_m));
+    TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3 * wider, &e->width_m));
+    TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3 * wider, &e->length_m));
+    TEST_ASSERT_TRUE(
+        within_share(&s->height_m, 0.3 * wider, within(&e->height_m, two_metres) ? &two_metres : &e->height_m));
+    TEST_ASSERT_TRUE(within(&s->orientation_deg, (float)(10.001 * wider)));
 }
 
 static void check_covariance(const goe_estimate_t *e) {
@@ -218,6 +232,7 @@ static goe_plan_t any_plan(bool *legal) {
     }
     plan.margin_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
     plan.clearance_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
+    plan.since_image_s = bits ? any_bits() : fabsf(any_within(1.0e3f));
     *legal = !bits;
     return plan;
 }
@@ -262,6 +277,7 @@ static void check_filter(const goe_filter_t *filter) {
     const float sums[] = {filter->health.recent_nis, filter->health.nis, filter->health.mean_nis,
                           filter->leaving.outward, filter->leaving.turning};
     check_finite(sums, 5, "residuals");
+    check_finite(filter->scatter.before, GOE_SERIES + 2, "scatter");
     if (filter->phase != 0u) { /* otherwise the next image starts it anew */
         check_finite(filter->state, GOE_STATES, "state");
         check_finite(filter->root.element, sizeof filter->root / sizeof(float), "root");
@@ -270,7 +286,7 @@ static void check_filter(const goe_filter_t *filter) {
 
 static void check_state(void) {
     const goe_estimator_t *e = &memory.estimator;
-    check_finite(e->camera_to_body, 9, "mounting");
+    check_finite(e->camera_to_body[0], 9, "mounting");
     check_finite(&e->motion.heading_cos, 2, "heading");
     check_finite(e->motion.origin_ne_m, 2, "origin");
     check_finite(&e->motion.dx_m, 2, "displacement");

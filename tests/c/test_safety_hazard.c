@@ -43,7 +43,7 @@ static float magnitude_up_to(double limit) { return (float)fabs((double)up_to(li
 
 /* Any answer within the ranges that the library keeps. */
 static void give_any_answer(void) {
-    goe_estimate_t *e = &estimator.window.estimate;
+    goe_estimate_t *e = &estimator.estimate;
     const double orientation = check_random_between(&any, -90.0, 90.0);
     const double b = (below(4u) ? orientation : (double)((int)below(4u) - 1) * 45.0) * 0.017453292519943295;
     memset(e, 0, sizeof *e);
@@ -102,7 +102,8 @@ static int calls(void) {
 
 static void any_answer_and_plan_give_finite_numbers(void) {
     for (int i = 0; i < calls(); i++) {
-        const goe_plan_t plan = {{up_to(1e3), up_to(1e3), up_to(1e3)}, magnitude_up_to(1e4), magnitude_up_to(1e4)};
+        const goe_plan_t plan = {
+            {up_to(1e3), up_to(1e3), up_to(1e3)}, magnitude_up_to(1e4), magnitude_up_to(1e4), magnitude_up_to(1e3)};
         goe_hazard_t hazard;
         give_any_answer();
         const goe_estimator_t before = estimator;
@@ -117,17 +118,18 @@ static void any_bits_of_a_plan_are_refused_or_answered(void) {
     for (int i = 0; i < calls(); i++) {
         goe_plan_t plan;
         goe_hazard_t hazard;
-        uint32_t bits[5];
-        for (int j = 0; j < 5; j++) {
+        uint32_t bits[6];
+        for (int j = 0; j < 6; j++) {
             bits[j] = below(3u) ? check_random_bits(&any) : 0x3F800000u;
         }
         memcpy(plan.velocity_ned_m_s, bits, 3u * sizeof bits[0]);
         memcpy(&plan.margin_m, &bits[3], sizeof bits[3]);
         memcpy(&plan.clearance_m, &bits[4], sizeof bits[4]);
+        memcpy(&plan.since_image_s, &bits[5], sizeof bits[5]);
         give_any_answer();
         memset(&hazard, 0xFF, sizeof hazard);
         bool finite = true;
-        for (int j = 0; j < 5; j++) {
+        for (int j = 0; j < 6; j++) {
             finite = finite && (bits[j] & 0x7F800000u) != 0x7F800000u;
         }
         const goe_status_t status = goe_hazard(&estimator, &plan, &hazard);

@@ -73,6 +73,8 @@ static const number_t numbers[] = {
     NUMBER(navigation.velocity_bias_m_s, 0.0f, 100.0f, 0.05f),
     NUMBER(navigation.position_walk_m, 0.0f, 100.0f, 0.05f),
     NUMBER(navigation.position_white_m, 0.0f, 100.0f, 0.0f),
+    NUMBER(navigation.height_white_m, 0.0f, 1.0e3f, 0.0f),
+    NUMBER(navigation.slope, 0.0f, 1.0f, 0.0f),
     NUMBER(navigation.ground_m, 0.0f, 1.0e3f, 2.0f),
     NUMBER(refined.typical_size_m, 0.1f, 1.0e3f, 6.0f),
     NUMBER(refined.gate_sigma, 1.0f, 100.0f, 5.0f),

@@ -362,48 +362,49 @@ static void the_signs_of_the_rows_are_free(void) {
 
 /* ------------------------------------------------------------------------------------------------------ process noise -- */
 
-static void check_spread(size_t first, float first_weight, size_t last, float last_weight, float sigma) {
+static void check_spread(const float direction[GOE_STATES], size_t first, size_t last, float sigma) {
     goe_triangle_t root;
     random_root(&root);
     dense_t expected = covariance_of(&root);
-    double direction[N] = {0.0};
-    if (first < last) {
-        direction[first] = (double)first_weight;
-    }
-    direction[last] = (double)last_weight;
     for (int i = 0; i < N; i++) {
         for (int j = 0; j < N; j++) {
-            expected.m[i][j] += (double)sigma * (double)sigma * direction[i] * direction[j];
+            expected.m[i][j] += (double)sigma * (double)sigma * (double)direction[i] * (double)direction[j];
         }
     }
-    goe_srif_inflate(&root, first, first_weight, last, last_weight, sigma);
+    goe_srif_spread(&root, direction, first, last, sigma);
     const dense_t actual = covariance_of(&root);
     check_alike(5.0 * SHARE, &expected, &actual);
 }
 
-/* GIVEN a variance along one state, or along two at once THEN the covariance grows by sigma^2 d d', and nothing else
+/* GIVEN a variance along one state, or along several at once THEN the covariance grows by sigma^2 d d', and nothing else
  * changes. */
 static void spreading_adds_to_the_covariance(void) {
     any = check_random_start("spread");
     for (int n = 0; n < CASES; n++) {
         const size_t last = (size_t)check_random_bits(&any) % N;
-        const size_t first = (size_t)check_random_bits(&any) % (last + 1u);
         const float sigma = (float)pow(10.0, check_random_between(&any, -4.0, 1.0));
-        check_spread(last, 0.0f, last, 1.0f, sigma);
-        check_spread(first, first < last ? normal() : 0.0f, last, normal(), sigma);
+        float direction[N] = {0.0f};
+        direction[last] = 1.0f;
+        check_spread(direction, last, last, sigma);
+        for (size_t i = 0; i <= last; i++) {
+            direction[i] = check_random_bits(&any) % 2u ? normal() : 0.0f;
+        }
+        check_spread(direction, 0, last, sigma);
     }
 }
 
 /* GIVEN a sigma so small that its inverse squared is no float any more THEN the root stays as it is. */
 static void a_tiny_sigma_changes_nothing(void) {
     static const float tiny[] = {1.0e-45f, 1.0e-38f, 1.0e-30f, 1.0e-20f, 1.0e-19f, 1.0e-17f};
+    static const float one[N] = {1.0f};
+    static const float two[N] = {[2] = 1.0f, [6] = -0.5f};
     any = check_random_start("tiny sigma");
     for (size_t i = 0; i < sizeof tiny / sizeof tiny[0]; i++) {
         goe_triangle_t root;
         random_root(&root);
         const dense_t before = information_of(&root);
-        goe_srif_inflate(&root, 0, 0.0f, 0, 1.0f, tiny[i]);
-        goe_srif_inflate(&root, 2, 1.0f, 6, -0.5f, tiny[i]);
+        goe_srif_spread(&root, one, 0, 0, tiny[i]);
+        goe_srif_spread(&root, two, 2, 6, tiny[i]);
         const dense_t after = information_of(&root);
         check_alike(SHARE, &before, &after);
     }
@@ -452,13 +453,19 @@ static void a_variance_is_the_covariance_seen_along_the_weights(void) {
         random_root(&root);
         goe_srif_invert(&root, &inverse);
         const dense_t p = covariance_of(&root);
+        const bool rest = n % 2 == 0; /* weights of a quantity, or of a row */
         for (int i = 0; i < N; i++) {
-            weight[i] = check_random_bits(&any) % 3u ? normal() / (float)sqrt(p.m[i][i]) : 0.0f;
+            const bool weighs = check_random_bits(&any) % 3u && !(rest && i < GOE_UNWEIGHTED);
+            weight[i] = weighs ? normal() / (float)sqrt(p.m[i][i]) : 0.0f;
         }
         for (int i = 0; i < N; i++) {
             for (int j = 0; j < N; j++) {
                 expected += (double)weight[i] * p.m[i][j] * (double)weight[j];
             }
+        }
+        CHECK_CLOSE(SHARE * (double)N, expected, goe_srif_variance(&inverse, weight));
+        if (!rest) {
+            continue;
         }
         memcpy(projected, weight, sizeof projected);
         goe_srif_project(&inverse, projected);
@@ -466,7 +473,7 @@ static void a_variance_is_the_covariance_seen_along_the_weights(void) {
             squares += (double)projected[i] * (double)projected[i];
         }
         CHECK_CLOSE(SHARE * (double)N, expected, squares);
-        CHECK_CLOSE(1.0e-5 * (1.0 + squares), squares, goe_srif_variance(&inverse, weight));
+        CHECK_CLOSE(1.0e-5 * (1.0 + squares), squares, goe_srif_variance_of_rest(&inverse, weight));
     }
 }
 

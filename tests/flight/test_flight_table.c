@@ -61,7 +61,7 @@ static void the_hazard_counts_from_now(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us, false, &first));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us + 100000u, false, &later));
     CHECK_CLOSE(1e-4, first.hazard.time_s - 0.1f, later.hazard.time_s);
-    goe_plan_t plan = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f};
+    goe_plan_t plan = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f};
     goe_hazard_t hazard;
     TEST_ASSERT_EQUAL(GOE_OK, goe_hazard(&flown.flight.slot[0].estimator, &plan, &hazard));
     /* the newest sample is number 149, the latest frame that has arrived shows number 140 */

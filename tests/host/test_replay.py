@@ -578,6 +578,63 @@ def test_a_jump_that_is_no_number(tmp_path: Path) -> None:
     assert (out[12]["status"], out[13]["status"]) == ("not_finite", "ok")  # the jump is told again
 
 
+# --------------------------------------------------------------------------------------------------- a second camera
+
+SECOND_CAMERA = CAMERA.replace("camera.", "camera2.")
+
+
+def by_camera(rows: Sequence[Row], number: Any, first: int = 0) -> list[Row]:
+    """The same rows, from the first on taken by the camera of that number."""
+    return [{**row, "camera": number if k >= first else ""} for k, row in enumerate(rows)]
+
+
+@pytest.mark.parametrize("method", ["window", "refined"])
+def test_a_second_camera_like_the_first_changes_nothing(tmp_path: Path, log: Path, method: str) -> None:
+    rows = by_camera(chimney(), 1, first=12)
+    folder = write_log(tmp_path / "two", table(rows, [*COLUMNS, "camera"]), CAMERA + SECOND_CAMERA)
+    assert replay(folder, "--method", method) == replay(log, "--method", method)
+
+
+@pytest.mark.parametrize("key", ["width = 850", "height = 820", "fx = 1100", "fy = 900", "cx = 900", "cy = 500",
+    "k1 = 0.1", "k2 = 0.5", "p1 = 0.02", "p2 = 0.01", "k3 = 2", "mount_roll_deg = 3", "mount_pitch_deg = 2",
+    "mount_yaw_deg = -4", "offset_x_m = 2", "offset_y_m = -1.5", "offset_z_m = 1"])  # fmt: skip
+def test_each_key_of_the_second_camera_is_read(tmp_path: Path, key: str) -> None:
+    """A log of the second camera alone is what a log of that camera as the only one is."""
+    columns, name, value = [*COLUMNS, *SIDES], *key.split(" = ")
+    rows = [{**row, "qw": math.cos(0.1), "qx": math.sin(0.1)} for row in boxes()]  # rolled: no offset is straight down
+    changed = camera_with(f"camera.{name}", value)
+    plain = replay(write_log(tmp_path / "plain", table(rows, columns)))
+    alone = replay(write_log(tmp_path / "alone", table(rows, columns), changed))
+    two = table(by_camera(rows, 1), [*columns, "camera"]), CAMERA + changed.replace("camera.", "camera2.")
+    out = replay(write_log(tmp_path / "two", *two))
+    assert out == alone != plain
+
+
+@pytest.mark.parametrize("numbers", [("", ""), ("0", "0"), ("0", "")])
+def test_the_first_camera_is_the_default(tmp_path: Path, log: Path, numbers: tuple[str, str]) -> None:
+    other = camera_with("camera.fx", "500").replace("camera.", "camera2.")
+    rows = [{**row, "camera": numbers[k % 2]} for k, row in enumerate(chimney())]
+    for camera in (CAMERA, CAMERA + other):
+        assert replay(write_log(tmp_path / "log", table(rows, [*COLUMNS, "camera"]), camera)) == replay(log)
+
+
+def test_the_second_camera_is_no_other_track(tmp_path: Path) -> None:
+    """Its own row of the same image would be at the same time."""
+    rows = [row for pair in zip(chimney(), by_camera(chimney(), 1)) for row in pair]
+    out = replay(write_log(tmp_path, table(rows, [*COLUMNS, "camera"]), CAMERA + SECOND_CAMERA))
+    assert {row["status"] for row in out[1::2]} == {"bad_time"} and out[-2]["status"] == "ok"
+
+
+@pytest.mark.parametrize(("number", "cameras"), [("1", 1), ("2", 2), ("-1", 2), ("256", 2), ("257", 2), ("0x1", 2)])
+def test_a_camera_that_is_not_described_is_bad_input(tmp_path: Path, number: str, cameras: int) -> None:
+    rows = by_camera(chimney(), number, first=7)
+    camera = CAMERA + (SECOND_CAMERA if cameras == 2 else "")
+    folder = write_log(tmp_path / "log", table(rows, [*COLUMNS, "camera"]), camera)
+    described = f"there is no camera {number}, the camera file describes 0 {'and 1' if cameras == 2 else 'alone'}"
+    reason = "'0x1' is not an integer of 64 bits" if number == "0x1" else described
+    assert call(folder, check=2).stderr == f"{folder}/frames.csv:9: camera: {reason}\n"
+
+
 # --------------------------------------------------------------------------------------- bad measurements: a status
 
 
@@ -696,6 +753,7 @@ BAD_FRAMES = [
     ("text for a jump", table(jumped([1], [("x", 0, 0)]), COLUMNS + RESETS), 14, "reset_n_m", "'x' is not a number"),
     ("text for a count", table(jumped(["one"]), COLUMNS + RESETS), 14, "reset_count", "'one' is not an integer"),
     ("fraction for a count", table(jumped(["1.0"]), COLUMNS + RESETS), 14, "reset_count", "'1.0' is not an integer"),
+    ("camera twice", with_columns(add="camera,camera"), 1, "camera", "twice"),
     ("a jump without a count", with_columns(add="reset_e_m"), 1, "reset_count", "missing column, reset_e_m is there"),
     ("CRLF", edited(4, left_u="?").replace("\n", "\r\n"), 6, "left_u", "'?' is not a number"),
     ("CR alone", table(chimney()).replace("\n", "\r"), 1, "", ""),
@@ -740,6 +798,34 @@ BAD_CAMERA = [
     ("lever arm", camera_with("camera.offset_z_m", "20000"), 8, "camera.offset_z_m: out of range"),
     ("heading", camera_with("trajectory.heading_deg", "north"), 8, "trajectory.heading_deg: 'north' is not a number"),
     ("heading out of range", camera_with("trajectory.heading_deg", "361"), 8, "trajectory.heading_deg: out of range"),
+    *[
+        (
+            f"no {key} of the second",
+            CAMERA + camera_with(f"camera.{key}", None).replace("camera.", "camera2."),
+            13,
+            f"camera2.{key}: missing key",
+        )
+        for key in ("width", "height", "fx", "fy", "cx", "cy")
+    ],
+    ("one key of the second", CAMERA + "camera2.mount_yaw_deg = 30\n", 8, "camera2.width: missing key"),
+    ("a second camera alone", CAMERA.replace("camera.", "camera2."), 7, "camera.width: missing key"),
+    ("a third camera", CAMERA + CAMERA.replace("camera.", "camera3."), 9, "camera3.width: unknown key"),
+    (
+        "second twice",
+        CAMERA + "camera2.k1 = 0\ncamera2.k1 = 0\n",
+        9,
+        "camera2.k1: the key appears twice, first in line 8",
+    ),
+    ("text for the second", CAMERA + "camera2.fx = wide\n", 8, "camera2.fx: 'wide' is not a number"),
+    *[
+        (
+            f"{text} of the second",
+            CAMERA + camera_with(f"camera.{name}", text).replace("camera.", "camera2."),
+            line,
+            f"camera2.{name}: out of range",
+        )
+        for name, text, line in (("fx", "0", 14), ("fy", "-1", 14), ("height", "0", 14), ("k1", "nan", 15))
+    ],
     ("no equals sign", CAMERA + "camera.k1 0.1\n", 8, "'camera.k1 0.1' is not of the form"),
     ("no key", CAMERA + "= 0.1\n", 8, "'= 0.1' is not of the form"),
     ("colon", CAMERA + "camera.k1: 0.1\n", 8, "unexpected ':'"),

@@ -202,8 +202,29 @@ def goals() -> list[dict[str, Any]]:
     return found
 
 
-def write_goals(path: Path) -> Path:
-    path.write_text(json.dumps({"quick": True, "goals": goals()}), encoding="utf-8")
+def hostile_goals() -> list[dict[str, Any]]:
+    """Lines of the groups attack and hazard: two attacks, of which one misses its goal, and a row of warnings."""
+    slope, mover = "attack: told errors", "attack: movers"
+    return [
+        _goal(slope, "slope 3 %: within 2 sigma", _six(73.1, 50.2, 64.3, 54.4, None, 67.6), (90, 100), ("X0", "Z0"),
+              "%"),
+        _goal(slope, "slope 3 %: within 2 sigma, W", {"W": 54.4}, (50, 100), unit="%"),
+        _goal(slope, "slope 3 %: wrong by 5 sigma", {"any": 65.0, "position": 35.8}, unit="%"),
+        _goal(slope, "slope 3 %: suspect", {"tracks": 10.8, "images": 2.2, "or covered": 16.7}, unit="%"),
+        _goal(mover, "across 5 m/s: told as moving", {"4 s": 97.0, "8 s": 100.0, "ever": 100.0}, (90, 100), ("4 s",),
+              "%"),
+        _goal(mover, "across 5 m/s: suspect", {"tracks": 100.0, "images": 76.9}, unit="%"),
+        _goal("hazard", "corners, nominal: true share by told", {"0.05 to 0.2": 0.123, "0.2 to 0.5": 0.46}),
+        _goal("hazard", "corners, nominal: told less true", {"0.05 to 0.2": 0.02, "0.2 to 0.5": 0.11}, (0, 0.1)),
+        _goal("hazard", "corners, nominal: within 2 sigma", {"time": 96.0, "miss": 94.0, "clearance": 91.0}, (90, 100),
+              unit="%"),
+        _goal("hazard", "corners, nominal: unwarned 5 s ahead", {"violators": 0.0}, (0, 0), unit="%"),
+    ]  # fmt: skip
+
+
+def write_goals(path: Path, hostile: bool = False) -> Path:
+    told = {"quick": True, "goals": goals() + (hostile_goals() if hostile else [])}
+    path.write_text(json.dumps(told), encoding="utf-8")
     return path
 
 

@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.optimum.flights.box_logs import FOLDER_VARIABLE
-from goe_tools.optimum.flights.boxes import MAST, BoxOptions, box_flight
+from goe_tools.optimum.flights.boxes import BUILDING, MAST, BoxOptions, box_flight
 from goe_tools.optimum.flights.flight import Flight
 from goe_tools.optimum.goals import boxes
 from goe_tools.optimum.goals.goal import Goal
 from goe_tools.optimum.goals.work import QUICK
 from goe_tools.optimum.judge import HEIGHT, WIDTH, X0, Z0
 from goe_tools.optimum.library import METHODS, MODEL_PRISM, Track, camera_settings, estimate, library_path
+from goe_tools.optimum.prism_offline import PrismFit
 
 NAN = math.nan
 AMOUNT = replace(QUICK, boxes=1)
@@ -31,6 +32,11 @@ def made_up(flight: Flight, error: float = 0.5, from_image: int = 2, method: str
         zeros, np.full(images, METHODS[method]), np.full(images, MODEL_PRISM), ~flags, flags, values,
         np.where(np.isfinite(values), 1.0, NAN), np.zeros((images, 6, 6)), zeros, zeros, zeros,
     )  # fmt: skip
+
+
+def fitted(flight: Flight, error: float) -> PrismFit:
+    """An offline fit that is off by ``error`` m."""
+    return PrismFit(flight.truth.values + error, np.ones(6), np.zeros(12), 1.0, 1, 1)
 
 
 def outcome(z0_errors: list[float], suspect: list[bool] | None = None) -> boxes.BoxOutcome:
@@ -88,10 +94,20 @@ def test_the_windows_answers_and_other_quantities_are_not_judged(monkeypatch: py
     assert np.isnan(boxes.perform(task).error).all()
 
 
+@pytest.mark.parametrize("solid", [MAST, BUILDING], ids=lambda solid: solid.name)
+def test_answers_are_held_against_the_fit(monkeypatch: pytest.MonkeyPatch, solid: boxes.Solid) -> None:
+    monkeypatch.setattr(boxes, "estimate", lambda flight, settings: made_up(flight))
+    (task,) = boxes._gauss_tasks(solid, 10.0, AMOUNT)
+    ours, best = boxes.beside_fit(task)
+    assert ours[list(boxes.TOLD)] == pytest.approx(0.5) and np.isnan(ours[WIDTH])
+    assert (best[list(boxes.TOLD)] < [1.0, 5.0, 1.0]).all() and (best[list(boxes.TOLD)] > 1e-3).all()
+
+
 @pytest.fixture
 def told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[dict[str, float]]:
-    """Settings of the flights that are flown; without recorded boxes."""
+    """Settings of the flights that are flown; without recorded boxes, and with an offline fit that is off by 0.4 m."""
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
+    monkeypatch.setattr(boxes, "fit", lambda flight, noise: fitted(flight, -0.4))
     return []
 
 
@@ -106,8 +122,11 @@ def test_good_answers_meet_every_goal(
     monkeypatch.setattr(boxes, "bound_of", lambda flight, noise: np.full(6, 0.4))
     goals = boxes.boxes_group("boxes", AMOUNT)
     assert all(goal.met for goal in goals if goal.asked)
-    assert sum(bool(goal.asked) for goal in goals) == 22 + 8 + 5 + 8  # rolling, Gaussian, its bound, height
+    assert sum(bool(goal.asked) for goal in goals) == 22 + 8 + 5 + 8 + 8  # rolling, Gaussian, bound, fit, height
     assert all(goal.values["Z0"] == pytest.approx(0.5 / 0.4) for goal in goals if goal.name.endswith("RMSE / bound"))
+    beside = [goal for goal in goals if goal.name.endswith("refined / offline fit")]
+    assert len(beside) == 8
+    assert all(list(goal.values.values()) == pytest.approx([0.5 / 0.4] * 3) for goal in beside)
     (first,) = by_name(goals, "mast: first answer")
     assert set(first.values.values()) == {3.0}
     assert "left out: KITTI's boxes, ODMD's val_robot" in capsys.readouterr().out
@@ -115,7 +134,7 @@ def test_good_answers_meet_every_goal(
     of_bound = {"model": 2.0, "detector.box_px": 0.5, "detector.box_share": 0.0, "navigation.ground_m": 0.0}
     assert others == {"heading_auto", "heading_deg", "navigation.height_bias_m", *of_bound}
     alike = [settings for settings in told if "model" in settings]
-    assert len(alike) == 5 and all(of_bound.items() <= settings.items() for settings in alike)
+    assert len(alike) == 5 + 4 and all(of_bound.items() <= settings.items() for settings in alike)
     assert sum("navigation.height_bias_m" in settings for settings in told) == 2  # without an altimeter
     assert {settings["camera.width_px"] for settings in told} == {1280.0}
 

@@ -71,6 +71,9 @@ def test_what_the_references_do_not_know(corner_log: ObservationLog, tmp_path: P
     write_log(tmp_path / "resets", replace(corner_log, frames=corner_log.frames[:9] + counted[9:]))
     assert run(fake_replay(), tmp_path / "resets") == 2
     assert "frames.csv: reset_count: changes within a track" in capsys.readouterr().err
+    write_log(tmp_path / "two", replace(corner_log, camera2=corner_log.camera))
+    assert run(fake_replay(), tmp_path / "two") == 2
+    assert "camera.ini: camera2: a second camera" in capsys.readouterr().err
     write_log(tmp_path / "counted", replace(corner_log, frames=counted))  # a count alone is no reset
     assert run(fake_replay(), tmp_path / "counted") == 0
 

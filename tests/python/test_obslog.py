@@ -12,6 +12,7 @@ from goe_tools.logs.obslog import (
     LogError,
     ObservationLog,
     read_camera,
+    read_cameras,
     read_frames,
     read_log,
     read_truth,
@@ -71,6 +72,61 @@ def test_bad_camera(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(LogError) as error:
         read_camera(write(tmp_path / "camera.ini", text))
     assert str(error.value) == f"{tmp_path}/{message}"
+
+
+SECOND = CAMERA.replace("camera.", "camera2.")  # lines 9 to 16 after the first
+
+
+def test_two_cameras(tmp_path: Path) -> None:
+    text = "camera2.k1 = 0.25\n" + CAMERA + SECOND + "trajectory.heading_deg = 30\n"
+    first, second = read_cameras(write(tmp_path / "camera.ini", text))
+    assert first == Camera(640.0, 480.0, 500.0, 501.0, 320.0, 240.0, heading_deg=30.0)
+    assert second == replace(first, k1=0.25)
+    assert read_cameras(write(tmp_path / "camera.ini", CAMERA)) == [replace(first, heading_deg=None)]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (CAMERA + "camera2.mount_yaw_deg = 3\n", "camera.ini: camera2.width: missing"),
+        (SECOND, "camera.ini: camera.width: missing"),
+        (CAMERA + SECOND.replace("camera2.cy = 240\n", ""), "camera.ini: camera2.cy: missing"),
+        (CAMERA + SECOND + "camera2.fx = 3\n", "camera.ini:17: camera2.fx: given twice"),
+        (CAMERA + SECOND + "camera2.f = 3\n", "camera.ini:17: camera2.f: unknown key"),
+        (CAMERA + SECOND + "camera2.heading_deg = 3\n", "camera.ini:17: camera2.heading_deg: unknown key"),
+        (CAMERA + SECOND + "camera3.k1 = 3\n", "camera.ini:17: camera3.k1: unknown key"),
+        (CAMERA + SECOND + "camera2.k1 = wide\n", "camera.ini:17: camera2.k1: 'wide' is not a number"),
+    ],
+)
+def test_bad_second_camera(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(LogError) as error:
+        read_cameras(write(tmp_path / "camera.ini", text))
+    assert str(error.value) == f"{tmp_path}/{message}"
+
+
+def test_a_second_camera_where_one_alone_is_read(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match=r"camera\.ini: camera2: a second camera"):
+        read_camera(write(tmp_path / "camera.ini", CAMERA + SECOND))
+
+
+def test_the_number_of_the_camera(tmp_path: Path) -> None:
+    text = "\n".join((HEADER + ",camera", ROW + ",1", ROW + ",0", ROW + ",", ""))
+    path = write(tmp_path / "frames.csv", text)
+    assert [frame.camera for frame in read_frames(path)] == [1, 0, 0]
+    write(tmp_path / "camera.ini", CAMERA)
+    with pytest.raises(LogError) as error:
+        read_log(tmp_path)
+    assert str(error.value) == f"{path}:2: camera: there is no camera 1"
+    write(tmp_path / "camera.ini", CAMERA + SECOND)
+    log = read_log(tmp_path)
+    assert log.camera2 == log.camera and [frame.camera for frame in log.frames] == [1, 0, 0]
+
+
+def test_two_cameras_are_written(tmp_path: Path, corner_log: ObservationLog) -> None:
+    frames = [replace(frame, camera=k % 2, reset_count=k % 3) for k, frame in enumerate(corner_log.frames)]
+    second = replace(corner_log.camera, k1=-0.1, mount_yaw_deg=40.0)
+    write_log(tmp_path, ObservationLog(corner_log.camera, frames, corner_log.truth, second))
+    assert read_log(tmp_path) == ObservationLog(corner_log.camera, frames, corner_log.truth, second)
 
 
 def test_columns_in_any_order_and_unknown_ones(tmp_path: Path) -> None:
@@ -144,6 +200,10 @@ def test_time_stamps(tmp_path: Path, t_s: str, time_us: int) -> None:
         ((HEADER + ",box_top_px,box_top_px", ROW + ",3,3"), "1: box_top_px: column is given twice"),
         ((HEADER + ",box_top_px", ROW + ",high"), "2: box_top_px: 'high' is not a number"),
         ((HEADER + ",reset_count", ROW + ",1.0"), "2: reset_count: '1.0' is not an integer"),
+        ((HEADER + ",camera", ROW + ",2"), "2: camera: there is no camera 2"),
+        ((HEADER + ",camera", ROW + ",-1"), "2: camera: there is no camera -1"),
+        ((HEADER + ",camera", ROW + ",left"), "2: camera: 'left' is not an integer"),
+        ((HEADER + ",camera,camera", ROW + ",0,0"), "1: camera: column is given twice"),
         ((HEADER + ",d_m", ROW + ",3"), "1: d_m: column is given twice"),
         ((HEADER, ROW, ROW + ",4"), "3: 10 fields under 9 columns"),
         ((HEADER, ROW, "1,2"), "3: 2 fields under 9 columns"),

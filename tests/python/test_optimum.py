@@ -251,6 +251,13 @@ def test_commands(command: str, capsys: pytest.CaptureFixture[str]) -> None:
         assert np.abs(np.array(line.split()[4:], float)).max() < 3.0
 
 
+def test_a_log_of_two_cameras_is_told(tmp_path: Path) -> None:
+    log = read_log(CORNER)
+    write_log(tmp_path, replace(log, camera2=log.camera))
+    with pytest.raises(LogError, match=r"camera\.ini: camera2: a second camera, a flight has one"):
+        from_log(tmp_path)
+
+
 def test_a_log_without_truth_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("camera.ini", "frames.csv"):
         (tmp_path / name).write_text((CORNER / name).read_text())
@@ -339,6 +346,26 @@ def test_the_size_of_the_image_is_a_setting(built: Path) -> None:
     assert (told["camera.width_px"], told["camera.height_px"]) == (1280.0, 960.0)
     with pytest.raises(ValueError, match=r"camera\.height_px"):
         estimate(replace(flight, image_size_px=(1280.0, -1.0)))
+
+
+@pytest.mark.parametrize("double", [False, True])
+def test_the_library_over_two_cameras(built: Path, double: bool) -> None:
+    """A second camera like the first is as good as one; one that looks elsewhere is not; none at all is refused."""
+    flight = measure(box_scene(), EXACT)
+    one = settings_of(flight)
+    cameras = np.arange(len(flight.time_s)) >= len(flight.time_s) // 2
+    second = {name.replace("camera.", "more_cameras[0]."): one[name] for name in one if name.startswith("camera.")}
+    turned = second | {"more_cameras[0].mount_yaw_deg": second["more_cameras[0].mount_yaw_deg"] + 5.0}
+    plain, alike, apart, none = (
+        estimate(flight, one | settings, double=double, cameras=numbers)
+        for settings, numbers in (({}, None), (second, cameras), (turned, cameras), ({}, cameras))
+    )
+    assert np.isfinite(plain.values[-1]).any() and np.array_equal(plain.values, alike.values, equal_nan=True)
+    assert np.array_equal(plain.values[~cameras], apart.values[~cameras], equal_nan=True)
+    assert not np.array_equal(plain.values, apart.values, equal_nan=True)
+    assert ((none.status == -11) == cameras).all()  # out of range
+    with pytest.raises(ValueError, match=r"more_cameras\[0\]\.of_nothing"):
+        estimate(flight, one | {"more_cameras[0].of_nothing": 1.0})
 
 
 def boxed(images: int) -> Flight:

@@ -150,7 +150,7 @@ def set_up() -> None:
 def few_flights(monkeypatch: pytest.MonkeyPatch) -> None:
     few = replace(
         work.QUICK, seeds=1, field_seeds=1, random=4, offline=2, rivals=2, recorded=1, recorded_seeds=1,
-        precision_seeds=1, boxes=1,
+        precision_seeds=1, boxes=1, attack=1, hazard=4,
     )  # fmt: skip
     monkeypatch.setattr(goals, "QUICK", few)
     monkeypatch.setattr(goals, "FULL", few)
@@ -231,10 +231,19 @@ def test_quick_goals_and_their_report(tmp_path: Path, few_flights: None, built: 
     assert "goals are met" in page.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("group", ["gauss1", "boxes", "float32"])
+@pytest.mark.parametrize("group", ["gauss1", "boxes", "attack,hazard", "float32"])
 def test_goals(group: str, few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["goals", "--only", group]) == 0
     assert re.search(r"\d+ of \d+ goals met", capsys.readouterr().out)
+
+
+def test_goals_of_the_settling_half(few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Other tracks, other figures."""
+    texts = []
+    for half in ("settle", "judge"):
+        assert main(["goals", "--only", "attack", "--half", half]) == 0
+        texts.append(capsys.readouterr().out)
+    assert texts[0] != texts[1]
 
 
 RUN_HERE: dict[str, Callable[..., None]] = {
@@ -246,6 +255,8 @@ RUN_HERE: dict[str, Callable[..., None]] = {
     "ctest -L targets": test_targets_are_listed,
     "python -m goe_tools goals": test_goals,
     "python -m goe_tools goals --only boxes": test_goals,
+    "python -m goe_tools goals --only attack,hazard": test_goals,
+    "python -m goe_tools goals --only attack --half settle": test_goals_of_the_settling_half,
     "python -m goe_tools goals --only float32": test_goals,
     "python -m goe_tools goals --quick": test_quick_goals_and_their_report,
     "python -m goe_tools goals --json": test_quick_goals_and_their_report,

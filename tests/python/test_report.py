@@ -6,6 +6,7 @@ import csv
 import math
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from html import unescape
 from html.parser import HTMLParser
 from io import StringIO
@@ -15,7 +16,7 @@ import numpy as np
 import pytest
 from goe_tools.logs.obslog import LogError
 from goe_tools.optimum import paper_table3 as t3
-from goe_tools.report import boxes, page, terminal
+from goe_tools.report import attacks, boxes, page, terminal
 from goe_tools.report import refined as rf
 from goe_tools.report import statistics as st
 from goe_tools.report.data import Campaign, Cases, read_campaign
@@ -303,6 +304,26 @@ def test_page_shows_the_goals_met_and_missed(campaign: Campaign, written: Path) 
     cell = rf.papers(campaign)[0]
     assert f"±{number(cell.refined)}" in section and f"×{number(cell.factor)}" in section
     assert f"window ±{number(cell.window)}" in section
+
+
+def test_page_shows_where_the_sigma_holds(campaign: Campaign, written: Path, tmp_path: Path) -> None:
+    assert 'id="attacks"' not in written.read_text(encoding="utf-8")
+    hostile = replace(campaign, goals=read_goals(write_goals(tmp_path / "goals.json", hostile=True)))
+    assert hostile.goals is not None
+    section = unescape(section_of(page.render_page(hostile, []), "attacks"))
+    assert re.search(r'class="n miss[^>]*>50<', section) and re.search(r'class="n [^m>]*"[^>]*>54<', section)
+    assert ">65/36<" in section and ">11/2<" in section and ">100/77<" in section
+    assert "told as moving: 4 s 97 %, 8 s 100 %, ever 100 %" in section
+    assert re.search(r'class="n miss[^>]*>0.05 to 0.2: 0.12; 0.2 to 0.5: 0.46<', section) and ">96/94/91<" in section
+    assert section.count("✓ met") == 1 and section.count("✗ missed") == 2
+    assert attacks.sentences(hostile.goals) == [
+        "Of 2 attacks with a goal, 1 meets all that is asked.",
+        "Of 1 row of warnings with a goal, 0 meet all that is asked.",
+        "Positions confidently wrong, and not suspect, in most tracks: slope 3 % (36 %).",
+        "Violators without a warning 5 s ahead, by the README's rule: none.",
+    ]
+    others = section_of(page.render_page(hostile, []), "refined")
+    assert "slope 3 %" not in others and "4 of 6 goals are met" in others
 
 
 def test_page_without_goals_and_without_refined_rows(tmp_path: Path) -> None:

@@ -41,6 +41,8 @@ def documented() -> dict[str, str]:
         for kind, name, size, comment in re.findall(
             r"^ +(\w+) (\w+)(\[3\])?; +/\* (.*?)\*/", body.group(1), re.DOTALL | re.MULTILINE
         ):
+            if kind in STRUCTS.values():
+                continue  # a group: its fields are the settings
             full = f"{group}.{name}" if group else name
             for suffix in ("[0]", "[1]", "[2]") if size else ("",):
                 comments[full + suffix] = f"{kind}: {' '.join(comment.split())}"

@@ -16,6 +16,7 @@ PACKAGE = Path(__file__).resolve().parents[2] / "tools" / "goe_tools"
 FLOORS = (
     ("__init__", "places"),
     ("logs",),
+    ("attack",),
     ("reference", "optimum", "cost"),
     ("report",),
     ("__main__",),

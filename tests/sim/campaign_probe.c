@@ -37,8 +37,10 @@ static int run(const flight_case_t *setup, const flight_log_t *log, case_setting
 int main(int argc, char **argv) {
     flight_case_t setup;
     flight_log_t log;
-    if (argc != 7 && argc != 8) {
-        return fail("usage", "CASE NOISE CYLINDER METHOD MODEL WINDOW [ROLL of an aircraft that logs boxes]");
+    if (argc < 7 || argc > 9) {
+        return fail(
+            "usage",
+            "CASE NOISE CYLINDER METHOD MODEL WINDOW [ROLL of an aircraft that logs boxes [YAW of a second camera]]");
     }
     const scenario_t scenario = scenario_get((int)strtol(argv[1], NULL, 10));
     flight_case_paper(&setup, &scenario);
@@ -46,9 +48,14 @@ int main(int argc, char **argv) {
         return fail(argv[2], SENSOR_NOISE_FORMS);
     }
     setup.cylinder_model = strcmp(argv[3], "cloud") == 0 ? CYLINDER_CLOUD : CYLINDER_TANGENT;
-    if (argc == 8) {
+    if (argc >= 8) {
         setup.features = LOG_BOXES;
         setup.roll_amplitude_deg = strtod(argv[7], NULL);
+    }
+    if (argc == 9) {
+        setup.cameras = 2;
+        setup.camera[1] = setup.camera[0];
+        setup.camera[1].mount_yaw_deg = strtod(argv[8], NULL);
     }
     setup.seed = 1;
     const char *fault = flight_case_fly(&setup, &log);

@@ -69,18 +69,18 @@ def poses(table: dict[str, np.ndarray]) -> tuple[np.ndarray, Rotation]:
 
 
 class Camera:
-    """Pinhole with Brown-Conrady lens, from the values of a camera.ini."""
+    """Pinhole with Brown-Conrady lens, from the values of a camera.ini; name: camera or camera2."""
 
-    def __init__(self, ini: dict[str, float]) -> None:
-        self.ini = ini
+    def __init__(self, ini: dict[str, float], name: str = "camera") -> None:
+        self.ini = ini = {key.removeprefix(f"{name}."): value for key, value in ini.items()}
         turn = Rotation.from_euler(
             "ZYX",
-            [ini["camera.mount_yaw_deg"], ini["camera.mount_pitch_deg"], ini["camera.mount_roll_deg"]],
+            [ini["mount_yaw_deg"], ini["mount_pitch_deg"], ini["mount_roll_deg"]],
             degrees=True,
         )
         axes = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])  # camera x, y, z in body axes
         self.axes_in_body = turn.apply(axes)
-        self.offset = np.array([ini[f"camera.offset_{axis}_m"] for axis in "xyz"])
+        self.offset = np.array([ini[f"offset_{axis}_m"] for axis in "xyz"])
 
     def eye(self, position: np.ndarray, attitude: Rotation) -> np.ndarray:
         return position + attitude.apply(self.offset)
@@ -93,18 +93,18 @@ class Camera:
         with np.errstate(divide="ignore", invalid="ignore"):
             x, y = ray[:, 0] / depth, ray[:, 1] / depth
         r2 = x**2 + y**2
-        k1, k2, p1, p2, k3 = (self.ini[f"camera.{name}"] for name in ("k1", "k2", "p1", "p2", "k3"))
+        k1, k2, p1, p2, k3 = (self.ini[f"{name}"] for name in ("k1", "k2", "p1", "p2", "k3"))
         radial = 1 + k1 * r2 + k2 * r2**2 + k3 * r2**3
         xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x**2)
         yd = y * radial + p1 * (r2 + 2 * y**2) + 2 * p2 * x * y
-        u = self.ini["camera.fx"] * xd + self.ini["camera.cx"]
-        v = self.ini["camera.fy"] * yd + self.ini["camera.cy"]
+        u = self.ini["fx"] * xd + self.ini["cx"]
+        v = self.ini["fy"] * yd + self.ini["cy"]
         return np.column_stack([u, v]), depth
 
     def inside(self, pixels: np.ndarray, depth: np.ndarray, margin: float = 0.0) -> np.ndarray:
         """In the image, by more than the margin (pixels; negative: or almost)."""
         u, v = pixels[:, 0], pixels[:, 1]
-        width, height = self.ini["camera.width"], self.ini["camera.height"]
+        width, height = self.ini["width"], self.ini["height"]
         return (
             (depth > 1e-3)
             & (u >= -0.5 + margin)

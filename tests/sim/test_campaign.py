@@ -287,6 +287,18 @@ def test_in_process_is_sim_and_replay_with_boxes(
         assert direct.count(f"ok,{model},") > 20
 
 
+def test_in_process_is_sim_and_replay_with_two_cameras(
+    programs: dict[str, Path], goe_sim: Path, tmp_path: Path
+) -> None:
+    case, yaw = str(BITS_CASES["cylinder"]), "-10"
+    boxes = ("--features", "boxes", "--noise", "field", "--second-camera", f"{yaw},0")
+    log = fly(goe_sim, tmp_path / "log", "--case", case, *boxes)
+    assert set(log.frames["camera"]) == {0.0, 1.0}
+    probe = [str(programs["campaign_probe"]), case, "field", "tangent", "refined", "auto", "8", "0", yaw]
+    direct = subprocess.run(probe, capture_output=True, text=True, check=True).stdout
+    assert direct == replay(programs, tmp_path / "log", "auto", 8, "refined")
+
+
 @pytest.mark.parametrize("name", list(BITS_CASES))
 def test_series_is_sim_and_replay(
     programs: dict[str, Path], goe_sim: Path, paper: Path, tmp_path: Path, name: str

@@ -60,8 +60,14 @@ static void hash_estimate(replay_t *replay, const goe_estimate_t *e) {
                              e->length_axis[1],
                              e->width_axis[0],
                              e->width_axis[1],
+                             e->length_axis_ne[0],
+                             e->length_axis_ne[1],
+                             e->width_axis_ne[0],
+                             e->width_axis_ne[1],
+                             e->trajectory_heading_deg,
                              e->center_north_m,
                              e->center_east_m,
+                             e->center_ne_m2,
                              e->residual,
                              e->baseline_m,
                              e->nis,
@@ -167,7 +173,7 @@ static void hash_covariance(replay_t *replay, const goe_estimator_t *estimator) 
 
 #if GOE_WITH_HAZARD
 static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f};
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f};
     goe_hazard_t hazard;
     hash_status(replay, goe_hazard(estimator, &plan, &hazard));
     const float numbers[] = {hazard.time_s,    hazard.miss_m,    hazard.clearance_m,   hazard.violation,

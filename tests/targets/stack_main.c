@@ -68,7 +68,7 @@ __attribute__((noinline)) static size_t depth_of_covariance(void) {
 }
 
 __attribute__((noinline)) static size_t depth_of_hazard(void) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f};
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f};
     static goe_hazard_t hazard;
     port_stack_paint();
     const goe_status_t status = goe_hazard(&estimator, &plan, &hazard);

@@ -24,8 +24,9 @@ REQUIRED_COLUMNS = ("t_s", "id", *POSE_COLUMNS)
 POINT_COLUMNS = tuple(f"{feature}_{axis}" for feature in FEATURES for axis in "uv")
 BOX_COLUMNS = ("box_left_px", "box_top_px", "box_right_px", "box_bottom_px")
 RESET_COLUMN = "reset_count"
+CAMERA_COLUMN = "camera"
 JUMP_COLUMNS = ("reset_n_m", "reset_e_m", "reset_d_m")
-FRAME_COLUMNS = (*REQUIRED_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, RESET_COLUMN, *JUMP_COLUMNS)
+FRAME_COLUMNS = (*REQUIRED_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, CAMERA_COLUMN, RESET_COLUMN, *JUMP_COLUMNS)
 TRUTH_COLUMNS = (
     "id",
     "static",
@@ -50,7 +51,8 @@ class LogError(ValueError):
 
 @dataclass
 class Camera:
-    """camera.ini. ``heading_deg`` is the heading of T's Z axis, clockwise from north; None: auto."""
+    """One camera of camera.ini. ``heading_deg`` is the heading of T's Z axis, clockwise from north, the same for
+    each camera; None: auto."""
 
     width: float
     height: float
@@ -75,6 +77,7 @@ class Camera:
 CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.name != "heading_deg")
 REQUIRED_CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.default is dataclasses.MISSING)
 HEADING_KEY = "trajectory.heading_deg"
+CAMERA_NAMES = ("camera", "camera2")  # their keys begin so
 
 
 @dataclass
@@ -93,6 +96,7 @@ class Frame:
     base_near: Pixel | None = None
     base_right: Pixel | None = None
     box_px: Box | None = None  # upright bounding box in the raw image; None: no side is seen
+    camera: int = 0  # number of the one that took the image
     reset_count: int = 0  # of the autopilot's filter
     reset_delta_m: tuple[float, float, float] | None = None  # by how much the position jumped, NED; None: not known
 
@@ -129,6 +133,7 @@ class ObservationLog:
     camera: Camera
     frames: list[Frame]
     truth: dict[int, Truth] = field(default_factory=dict)  # by id
+    camera2: Camera | None = None  # number 1
 
     def resets(self) -> set[int]:
         """Ids of the tracks in which the autopilot's filter was reset."""
@@ -172,10 +177,18 @@ def _read_text(path: Path) -> str:
         raise LogError(path, 0, "", f"not UTF-8 text: {error.reason}") from None
 
 
-def read_camera(path: Path) -> Camera:
-    """Reads camera.ini; an unknown, doubled, missing or non-numeric key is a LogError."""
+def _key_of(key: str) -> tuple[str, str]:
+    """The camera's name and the field of a key; empty if there is none."""
+    if key == HEADING_KEY:
+        return CAMERA_NAMES[0], "heading_deg"
+    owner, _, name = key.partition(".")
+    return (owner, name) if owner in CAMERA_NAMES and name in CAMERA_FIELDS else ("", "")
+
+
+def read_cameras(path: Path) -> list[Camera]:
+    """Reads camera.ini, one camera or two; an unknown, doubled, missing or non-numeric key is a LogError."""
     path = Path(path)
-    values: dict[str, float | None] = {}
+    found: dict[str, dict[str, float | None]] = {CAMERA_NAMES[0]: {}}
     for line, raw in enumerate(_read_text(path).splitlines(), start=1):
         text = raw.split("#", 1)[0].strip()
         if not text:
@@ -183,9 +196,10 @@ def read_camera(path: Path) -> Camera:
         key, equals, value = (part.strip() for part in text.partition("="))
         if not equals:
             raise LogError(path, line, "", f"'{text}' is not of the form key = value")
-        name = "heading_deg" if key == HEADING_KEY else key[len("camera.") :] if key.startswith("camera.") else ""
-        if name not in CAMERA_FIELDS and key != HEADING_KEY:
+        owner, name = _key_of(key)
+        if not owner:
             raise LogError(path, line, key, "unknown key")
+        values = found.setdefault(owner, {})
         if name in values:
             raise LogError(path, line, key, "given twice")
         if key == HEADING_KEY and value == "auto":
@@ -197,10 +211,20 @@ def read_camera(path: Path) -> Camera:
         if name in ("width", "height", "fx", "fy") and number <= 0.0:
             raise LogError(path, line, key, "must be positive")
         values[name] = number
-    for name in REQUIRED_CAMERA_FIELDS:
-        if name not in values:
-            raise LogError(path, 0, f"camera.{name}", "missing")
-    return Camera(**values)  # type: ignore[arg-type]
+    for owner, values in found.items():
+        for name in REQUIRED_CAMERA_FIELDS:
+            if name not in values:
+                raise LogError(path, 0, f"{owner}.{name}", "missing")
+    heading = found[CAMERA_NAMES[0]].get("heading_deg")
+    return [Camera(**values | {"heading_deg": heading}) for values in found.values()]  # type: ignore[arg-type]
+
+
+def read_camera(path: Path) -> Camera:
+    """Reads the camera.ini of one camera; a second one is a LogError, too."""
+    cameras = read_cameras(path)
+    if len(cameras) > 1:
+        raise LogError(path, 0, CAMERA_NAMES[1], "a second camera, of a log that must have one alone")
+    return cameras[0]
 
 
 def _rows(path: Path, required: Sequence[str], known: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
@@ -255,8 +279,16 @@ def _jump(row: dict[str, str], path: Path, line: int) -> tuple[float, float, flo
     return None if n is None or e is None or d is None else (n, e, d)
 
 
-def read_frames(path: Path) -> list[Frame]:
-    """Reads frames.csv. An empty pose field becomes NaN: a bad measurement, which is no bad input."""
+def _camera_number(row: dict[str, str], path: Path, line: int, cameras: int) -> int:
+    text = row.get(CAMERA_COLUMN, "")
+    number = _integer(text, path, line, CAMERA_COLUMN) if text else 0
+    if not 0 <= number < cameras:
+        raise LogError(path, line, CAMERA_COLUMN, f"there is no camera {number}")
+    return number
+
+
+def read_frames(path: Path, cameras: int = len(CAMERA_NAMES)) -> list[Frame]:
+    """Reads frames.csv of so many cameras. An empty pose field becomes NaN: a bad measurement, no bad input."""
     path = Path(path)
     frames = []
     for line, row in _rows(path, REQUIRED_COLUMNS, FRAME_COLUMNS):
@@ -271,6 +303,7 @@ def read_frames(path: Path) -> list[Frame]:
                 agl_m=_optional(row, path, line, "agl_m"),
                 **{feature: _pixel(row, path, line, feature) for feature in FEATURES},
                 box_px=_box(row, path, line),
+                camera=_camera_number(row, path, line, cameras),
                 reset_count=_integer(row[RESET_COLUMN], path, line, RESET_COLUMN) if row.get(RESET_COLUMN) else 0,
                 reset_delta_m=_jump(row, path, line),
             )
@@ -311,10 +344,12 @@ def read_log(folder: Path) -> ObservationLog:
     if not folder.is_dir():
         raise LogError(folder, 0, "", "no such folder")
     truth = folder / "truth.csv"
+    cameras = read_cameras(folder / "camera.ini")
     return ObservationLog(
-        camera=read_camera(folder / "camera.ini"),
-        frames=read_frames(folder / "frames.csv"),
+        camera=cameras[0],
+        frames=read_frames(folder / "frames.csv", len(cameras)),
         truth=read_truth(truth) if truth.exists() else {},
+        camera2=cameras[1] if len(cameras) > 1 else None,
     )
 
 
@@ -326,20 +361,24 @@ def _text(value: float | None) -> str:
     return "" if value is None else repr(float(value))
 
 
-def write_camera(path: Path, camera: Camera, comment: str = "") -> None:
+def write_camera(path: Path, camera: Camera, comment: str = "", camera2: Camera | None = None) -> None:
     lines = [f"# {line}" for line in comment.splitlines()]
-    lines += [f"camera.{name} = {_text(getattr(camera, name))}" for name in CAMERA_FIELDS]
+    for owner, described in zip(CAMERA_NAMES, (camera, camera2)):
+        if described is not None:
+            lines += [f"{owner}.{name} = {_text(getattr(described, name))}" for name in CAMERA_FIELDS]
     lines.append(f"{HEADING_KEY} = {'auto' if camera.heading_deg is None else _text(camera.heading_deg)}")
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def write_frames(path: Path, frames: Sequence[Frame]) -> None:
-    """Columns of boxes and of resets stand there if a frame has any."""
+    """Columns of boxes, of resets and of the camera's number stand there if a frame has any, other than 0."""
     boxes = any(frame.box_px is not None for frame in frames)
     resets = any(frame.reset_count != 0 or frame.reset_delta_m is not None for frame in frames)
     header = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz", *POINT_COLUMNS]
+    numbered = any(frame.camera != 0 for frame in frames)
     header += [*BOX_COLUMNS] if boxes else []
     header += [*JUMP_COLUMNS, RESET_COLUMN] if resets else []
+    header += [CAMERA_COLUMN] if numbered else []
     with open(path, "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header)
@@ -349,7 +388,9 @@ def write_frames(path: Path, frames: Sequence[Frame]) -> None:
             numbers += (frame.box_px or (None,) * len(BOX_COLUMNS)) if boxes else ()
             numbers += (frame.reset_delta_m or (None,) * len(JUMP_COLUMNS)) if resets else ()
             row = [_text(frame.t_s), frame.id, *(_text(number) for number in numbers)]
-            writer.writerow([*row, frame.reset_count] if resets else row)
+            row += [frame.reset_count] if resets else []
+            row += [frame.camera] if numbered else []
+            writer.writerow(row)
 
 
 def write_truth(path: Path, truth: dict[int, Truth]) -> None:
@@ -366,7 +407,7 @@ def write_log(folder: Path, log: ObservationLog, comment: str = "") -> None:
     """Writes camera.ini, frames.csv and, if there is any truth, truth.csv; makes the folder."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    write_camera(folder / "camera.ini", log.camera, comment)
+    write_camera(folder / "camera.ini", log.camera, comment, log.camera2)
     write_frames(folder / "frames.csv", log.frames)
     if log.truth:
         write_truth(folder / "truth.csv", log.truth)

@@ -3,10 +3,11 @@
 flights       flights past obstacles as arrays: simulated, recorded, or any log folder with truth
 model         where the points of a box or a disc lie in the images, float64, independent of the library
 bound         Cramer-Rao bound
+offline       maximum likelihood fit of all images at once
 prism         where the sides of an upright box lie, float64, independent of the library
 prism_filter  ... the library's estimator of it, in another form
 prism_bound   ... Cramer-Rao bound
-offline       maximum likelihood fit of all images at once
+prism_offline ... maximum likelihood fit
 library       the C library over whole tracks
 judge         how far an estimate is from the truth
 precision     the library in float32 against itself in float64

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -27,6 +27,10 @@ LABELS = ("status", "method", "model", "valid", "fresh", "suspect", "points", "n
 NUMBERS = (
     "x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m",
     "x0_sd_m", "z0_sd_m", "orientation_sd_deg", "width_sd_m", "length_sd_m", "height_sd_m", "nis", "misfit",
+)  # fmt: skip
+HAZARD = (
+    "status", "time_s", "miss_m", "clearance_m", "time_sd_s", "miss_sd_m", "clearance_sd_m", "violation",
+    "has_clearance",
 )  # fmt: skip
 TO_RADIANS = np.where(np.arange(6) == 2, np.pi / 180.0, 1.0)
 SETTING_OF = {  # the library's setting for each figure of a noise
@@ -57,11 +61,51 @@ class _Track(ctypes.Structure):
         ("seen", ctypes.c_void_p),
         ("box_px", ctypes.c_void_p),
         ("box_seen", ctypes.c_void_p),
+        ("reset_count", ctypes.c_void_p),
+        ("reset_m", ctypes.c_void_p),
+        ("velocity", ctypes.c_void_p),
+        ("plans", ctypes.c_int),
+        ("plan", ctypes.c_void_p),
+        ("camera", ctypes.c_void_p),
     )
 
 
 class _Answer(ctypes.Structure):
-    _fields_ = (("label", ctypes.c_void_p), ("number", ctypes.c_void_p), ("covariance", ctypes.c_void_p))
+    _fields_ = (
+        ("label", ctypes.c_void_p),
+        ("number", ctypes.c_void_p),
+        ("covariance", ctypes.c_void_p),
+        ("hazard", ctypes.c_void_p),
+    )
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What goe_hazard is asked after each image: the README's margins, which grow while the estimate is suspect
+    (times ``doubt``) and with its age (``drift_m_s``)."""
+
+    margin_m: float
+    clearance_m: float
+    doubt: float = 1.0
+    drift_m_s: float = 0.0
+
+
+@dataclass
+class Images:
+    """What the library is given over a track of K images."""
+
+    time_s: np.ndarray  # (K,)
+    position_ned_m: np.ndarray  # (K, 3)
+    attitude: np.ndarray  # (K, 4) w, x, y, z
+    height_m: np.ndarray  # (K,) of the camera above the ground
+    pixel_px: np.ndarray  # (K, 6, 2) left, right, top, base left, near, right; any number where not seen
+    seen: np.ndarray  # (K, 6)
+    box_px: np.ndarray | None = None  # (K, 4) left, top, right, bottom; NaN where not seen
+    reset_count: np.ndarray | None = None  # (K,) of the autopilot's filter
+    reset_m: np.ndarray | None = None  # (K, 3) by how much it jumped; NaN: not known
+    velocity_m_s: np.ndarray | None = None  # (K, 3) planned, for goe_hazard
+    plans: tuple[Plan, ...] = ()
+    camera: np.ndarray | None = None  # (K,) number of the camera; number 1 is that of the settings more_cameras[0]
 
 
 @dataclass
@@ -80,6 +124,9 @@ class Track:
     nis: np.ndarray  # (K,)
     nis_rows: np.ndarray  # (K,)
     misfit: np.ndarray  # (K,)
+    points: np.ndarray | None = None  # (K,) images behind the answer
+    hazard: dict[str, np.ndarray] = field(default_factory=dict)  # columns of ``HAZARD``, (K, plans)
+    more: dict[str, np.ndarray] = field(default_factory=dict)  # columns that not every version has, (K,)
 
     @property
     def valid(self) -> np.ndarray:
@@ -119,9 +166,25 @@ def _library(double: bool) -> ctypes.CDLL:
     library.goe_batch_run.argtypes = (
         ctypes.c_void_p, ctypes.POINTER(_Track), ctypes.POINTER(_Answer), ctypes.POINTER(ctypes.c_char_p),
     )  # fmt: skip
-    if (_names(library.goe_batch_label), _names(library.goe_batch_number)) != (LABELS, NUMBERS):
-        raise ValueError(f"{path}: is of another version; build its target anew")
+    functions = (library.goe_batch_label, library.goe_batch_number, library.goe_batch_hazard)
+    for function, names in zip(functions, (LABELS, NUMBERS, HAZARD)):
+        if _names(function)[: len(names)] != names:  # a later version may tell more
+            raise ValueError(f"{path}: is of another version; build its target anew")
     return library
+
+
+def has_setting(name: str) -> bool:
+    """Whether the library has a setting of that name."""
+    library = _library(False)
+    buffer = ctypes.create_string_buffer(library.goe_batch_settings_size())
+    library.goe_batch_default(buffer)
+    return bool(library.goe_batch_set(buffer, name.encode(), 0.0) == 0)
+
+
+def reason_names() -> tuple[str, ...]:
+    """Of the numbers in the column ``reason`` of ``Track.more``; none of a library that tells no reasons."""
+    library = _library(False)
+    return _names(library.goe_batch_reason) if hasattr(library, "goe_batch_reason") else ()
 
 
 def camera_settings(flight: Flight) -> dict[str, float]:
@@ -155,7 +218,19 @@ def _settings(library: ctypes.CDLL, values: dict[str, float]) -> ctypes.Array:
     return buffer
 
 
-def boxes_of(flight: Flight) -> tuple[np.ndarray, ...]:
+def estimate(
+    flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False,
+    cameras: np.ndarray | None = None, **change: float,
+) -> Track:  # fmt: skip
+    """Runs the library over a flight. ``settings``: by default ``settings_of(flight)``; ``change``: single ones on top,
+    with "__" for the dot (``noise__pixel_px=0.5``). ``double``: computed in float64.
+    ``cameras``: (K,) number of the camera of each image; number 1 is that of the settings ``more_cameras[0]``."""
+    values = dict(settings_of(flight) if settings is None else settings)
+    values.update({name.replace("__", "."): value for name, value in change.items()})
+    return run(replace(images_of(flight), camera=cameras), values, double=double)
+
+
+def boxes_of(flight: Flight | Images) -> tuple[np.ndarray, ...]:
     """Sides (K, 4) and their seen bits (K,); nothing for a flight without boxes."""
     if flight.box_px is None:
         return ()
@@ -164,32 +239,58 @@ def boxes_of(flight: Flight) -> tuple[np.ndarray, ...]:
     return sides, np.ascontiguousarray(seen @ SEES_SIDES, np.uint8)
 
 
-def estimate(
-    flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False, **change: float
-) -> Track:
-    """Runs the library over a flight. ``settings``: by default ``settings_of(flight)``; ``change``: single ones on top,
-    with "__" for the dot (``noise__pixel_px=0.5``). ``double``: computed in float64."""
+def images_of(flight: Flight) -> Images:
+    return Images(
+        flight.time_s, flight.position_ned_m, flight.attitude, flight.height_m, flight.pixel_px, flight.seen,
+        flight.box_px,
+    )  # fmt: skip
+
+
+def _given(images: Images) -> dict[str, np.ndarray]:
+    """The arrays of goe_batch_track_t by name; what is not given is left out."""
+    pose = np.column_stack([images.position_ned_m, images.height_m, images.attitude])
+    given = {
+        "time_us": np.rint(images.time_s * 1e6).astype(np.int64), "pose": np.ascontiguousarray(pose, np.float32),
+        "pixel_px": np.ascontiguousarray(images.pixel_px, np.float32),
+        "seen": np.ascontiguousarray(images.seen, np.uint8),
+    }  # fmt: skip
+    given |= zip(("box_px", "box_seen"), boxes_of(images))
+    if images.reset_count is not None and images.reset_m is not None:
+        given["reset_count"] = np.ascontiguousarray(images.reset_count, np.uint8)
+        given["reset_m"] = np.ascontiguousarray(images.reset_m, np.float32)
+    if images.camera is not None:
+        given["camera"] = np.ascontiguousarray(images.camera, np.uint8)
+    if images.plans and images.velocity_m_s is not None:
+        given["velocity"] = np.ascontiguousarray(images.velocity_m_s, np.float32)
+        plans = [(p.margin_m, p.clearance_m, p.doubt, p.drift_m_s) for p in images.plans]
+        given["plan"] = np.array(plans, np.float32)
+    return given
+
+
+def run(images: Images, settings: dict[str, float], *, double: bool = False) -> Track:
+    """Runs the library over a track."""
     library = _library(double)
-    values = dict(settings_of(flight) if settings is None else settings)
-    values.update({name.replace("__", "."): value for name, value in change.items()})
-    images = len(flight.time_s)
-    pose = np.column_stack([flight.position_ned_m, flight.height_m, flight.attitude]).astype(np.float32)
-    arrays = (
-        np.rint(flight.time_s * 1e6).astype(np.int64), np.ascontiguousarray(pose),
-        np.ascontiguousarray(flight.pixel_px, np.float32), np.ascontiguousarray(flight.seen, np.uint8),
-        *boxes_of(flight),
-    )  # fmt: skip
-    label = np.zeros((images, len(LABELS)), np.int32)
-    number = np.zeros((images, len(NUMBERS)), np.float32)
-    covariance = np.zeros((images, 6, 6), np.float32)
+    count = len(images.time_s)
+    given = _given(images)
+    plans = len(images.plans) if "plan" in given else 0
+    names = [_names(f) for f in (library.goe_batch_label, library.goe_batch_number, library.goe_batch_hazard)]
+    label = np.zeros((count, len(names[0])), np.int32)
+    number = np.zeros((count, len(names[1])), np.float32)
+    covariance = np.zeros((count, 6, 6), np.float32)
+    hazard = np.zeros((count, plans, len(names[2])), np.float32)
     bad = ctypes.c_char_p()
+    track = _Track(images=count, plans=plans, **{name: array.ctypes.data for name, array in given.items()})
+    answer = _Answer(*(array.ctypes.data for array in (label, number, covariance, hazard)))
     status = library.goe_batch_run(
-        _settings(library, values), ctypes.byref(_Track(images, *(a.ctypes.data for a in arrays))),
-        ctypes.byref(_Answer(label.ctypes.data, number.ctypes.data, covariance.ctypes.data)), ctypes.byref(bad),
-    )  # fmt: skip
+        _settings(library, settings), ctypes.byref(track), ctypes.byref(answer), ctypes.byref(bad)
+    )
     if status != 0:
         raise ValueError(f"the library refuses the setting {bad.value.decode()}" if bad.value else f"status {status}")
-    return _track(label, number.astype(float), covariance.astype(float))
+    result = _track(label, number.astype(float), covariance.astype(float))
+    result.hazard = {name: hazard[..., i].astype(float) for i, name in enumerate(names[2])} if plans else {}
+    result.more = {name: label[:, i] for i, name in enumerate(names[0]) if name not in LABELS}
+    result.more |= {name: number[:, i].astype(float) for i, name in enumerate(names[1]) if name not in NUMBERS}
+    return result
 
 
 def _track(label: np.ndarray, number: np.ndarray, covariance: np.ndarray) -> Track:
@@ -199,4 +300,5 @@ def _track(label: np.ndarray, number: np.ndarray, covariance: np.ndarray) -> Tra
         column["status"], column["method"], column["model"], column["fresh"] != 0, column["suspect"] != 0,
         np.where(valid, number[:, :6] * TO_RADIANS, np.nan), np.where(valid, number[:, 6:12] * TO_RADIANS, np.nan),
         covariance * TO_RADIANS[:, None] * TO_RADIANS, number[:, 12], column["nis_rows"], number[:, 13],
+        column["points"],
     )  # fmt: skip

@@ -74,7 +74,7 @@ def _rows(images: list[Sight], state: np.ndarray) -> list[tuple[Sight, Row]]:
     return result
 
 
-def _noise(rows: list[tuple[Sight, Row]], state: np.ndarray, told: Told) -> np.ndarray:
+def noise_of_rows(rows: list[tuple[Sight, Row]], state: np.ndarray, told: Told) -> np.ndarray:
     """(n, n): covariance of all rows, focal lengths squared."""
     time_s = np.array([sight.time_s for sight, _ in rows])
     side = np.array([row.side for _, row in rows])
@@ -91,7 +91,7 @@ def _noise(rows: list[tuple[Sight, Row]], state: np.ndarray, told: Told) -> np.n
     return np.diag(white) + np.where(same_side, share[:, None] * share * alike, 0.0) + np.where(same_image, moved, 0.0)
 
 
-def _prior_sigmas(state: np.ndarray, told: Told) -> np.ndarray:
+def prior_sigmas(state: np.ndarray, told: Told) -> np.ndarray:
     """(12,): of the states and the velocity over ground; a disc is as deep as it is wide."""
     sigma = np.full(COUNT, WEAK_SIGMA)
     sigma[:3] = max(np.radians(told.attitude_bias_deg), KNOWN_SIGMA)
@@ -111,8 +111,8 @@ def bound_of(flight: Flight, told: Told) -> np.ndarray:
     for i, (sight, row) in enumerate(rows):
         slope[i, : len(STATES)] = row.slope[: len(STATES)]
         slope[i, [VX, VZ]] = -sight.time_s * row.slope[[PX, PX + 2]]  # the path told is too long by velocity times time
-    white = np.linalg.solve(np.linalg.cholesky(_noise(rows, state, told)), slope)
-    information = white.T @ white + np.diag(_prior_sigmas(state, told) ** -2)
+    white = np.linalg.solve(np.linalg.cholesky(noise_of_rows(rows, state, told)), slope)
+    information = white.T @ white + np.diag(prior_sigmas(state, told) ** -2)
     by = np.zeros((len(ORDER), COUNT))
     by[:, : len(STATES)] = quantity_slopes(state, np.eye(3))
     result = np.full(6, np.nan)

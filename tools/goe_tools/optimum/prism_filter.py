@@ -18,6 +18,9 @@ estimate moves by z c if it is not. K is the gain by P alone.
 
     P <- (I - K J) P (I - K J)' + K N K'        z <- z - K (J z + J_c)          all others' covariance: P + z z' var(c)
 
+A track that scatters more than it was told, or whose residuals are alike from image to image, widens its sigmas: the
+variance is multiplied by ``Scatter.factor``.
+
 Left out is what the library does once sides do not fit image after image: it frees the top, or starts anew."""
 
 from __future__ import annotations
@@ -64,7 +67,20 @@ NO_ALTIMETER_M = 50.0  # sigma of the height from which on the first box tells i
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
 PATH_MIN_M = 0.1
-DISC_SD = 1e-3  # of s and c where a disc is asked for
+GROUND_NARROW, GROUND_WIDE = (float(np.float32(scale)) for scale in (0.95, 1.05))
+DEPTH_SD = 0.3  # of s
+UNSEEN_SD = 3.0  # of c
+DISC_SD = 1e-3  # of both where a disc is asked for
+
+SCATTER_KEPT, ALIKE_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as the library holds them
+SCATTER_CLIP, SCATTER_SEED = 10.0, 10.0
+MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
+CHANCE = float(np.float32(0.07))  # one sigma of both means: only what is beyond widens
+
+
+def depth_sds(told: Told) -> tuple[float, float]:
+    """One sigma of s and of c before the first image."""
+    return (DISC_SD, DISC_SD) if told.disc else (DEPTH_SD, UNSEEN_SD)
 
 
 @dataclass
@@ -83,6 +99,44 @@ class Memory:
         self.value *= share
         self.by = self.by * share
         self.variance = min(share**2 * self.variance + (1 - share**2) * variance, variance)
+
+
+def _beyond_chance(excess: float) -> float:
+    return excess - CHANCE**2 / excess if excess > CHANCE else 0.0
+
+
+@dataclass
+class Scatter:
+    """Of normalised residuals: how large they are against what was told, and how alike to those of the image before."""
+
+    before: np.ndarray  # (4,) by side, sigmas; 0: none
+    products: float = 0.0
+    squares: float = 0.0
+    recent: float = 0.0  # mean of nis over rows, of the latest images
+    whole: float = 0.0  # of what it is above 1, over the whole track
+    images: int = 0
+
+    def take(self, side: np.ndarray, residual: np.ndarray) -> None:
+        now = np.zeros(4)
+        now[side] = np.clip(residual, -SCATTER_CLIP, SCATTER_CLIP)
+        both = (now != 0) & (self.before != 0)
+        self.products = SCATTER_KEPT * self.products + float(now[both] @ self.before[both])
+        self.squares = SCATTER_KEPT * self.squares + 0.5 * float(
+            now[both] @ now[both] + self.before[both] @ self.before[both]
+        )
+        self.before = now
+
+    def take_fit(self, ratio: float) -> None:
+        self.images += 1
+        heard = self.images + MEAN_SEEDS
+        self.recent += (min(ratio, RATIO_MOST) - self.recent) / min(heard, MEAN_IMAGES)
+        self.whole += (min(ratio - 1, RATIO_MOST) - self.whole) / heard
+
+    def factor(self) -> float:
+        alike = min(_beyond_chance(self.products / (self.squares + SCATTER_SEED)), ALIKE_MOST)
+        excess = max(self.recent - 1, self.whole)
+        scale = 1 + (_beyond_chance(excess) if excess > 0 else excess)
+        return max(scale * (1 + alike) / (1 - alike), 1.0)
 
 
 @dataclass
@@ -115,6 +169,8 @@ class PrismFilter:
         self.told = told
         self.state: np.ndarray | None = None  # (10,)
         self.doubted = self.refused = 0  # of the latest image
+        self.scatter = Scatter(np.zeros(4))
+        self.first_s: float | None = None  # the track's first image
 
     # --------------------------------------------------------------------------------------------------------- start
 
@@ -164,6 +220,10 @@ class PrismFilter:
         sd = self._prior_sd(size)
         self.covariance, self.by_c, self.c_sd = np.diag(sd[:C] ** 2), np.zeros(C), float(sd[C])
         self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
+        self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
+        self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)  # after the latest image, and since
+        self.ground_scale = 1.0  # 1/Z0 for which the sigma of G was set, over the present one
+        self.walked_s = np.zeros(2)  # since the walk was added along X, and along Z
         return True
 
     def _prior_sd(self, width: float) -> np.ndarray:
@@ -175,7 +235,7 @@ class PrismFilter:
         sd[G] = max(told.height_sd_m * q, GROUND_MIN)
         sd[[A, Q, W]] = 1.0, 2.0 * q, 2.5 * width
         sd[E] = 10 * max(abs(self.state[E]), width)
-        sd[[S, C]] = (DISC_SD, DISC_SD) if told.disc else (0.3, 3.0)
+        sd[[S, C]] = depth_sds(told)
         return sd
 
     # ------------------------------------------------------------------------------------------------------- an image
@@ -188,10 +248,23 @@ class PrismFilter:
         return result
 
     def _pass_time(self, span_s: float) -> None:
+        """The position walks along X and Z in turn: a step along Z rescales the lengths in units of Z0."""
         drift, walk = np.radians(self.told.attitude_drift_deg), self.told.position_walk_m * self.state[Q]
         noise = np.zeros(C)
-        noise[BX : BX + 3], noise[A] = drift**2, walk**2
-        self.covariance = self.covariance + np.diag(noise * span_s)
+        noise[BX : BX + 3] = drift**2
+        self.gained[BX : BX + 3] += drift**2 * span_s
+        self.gained[A] += walk**2 * span_s
+        self.walked_s += span_s
+        axis = int(self.walked_s[1] > self.walked_s[0])
+        direction = np.zeros(C)
+        if axis == 0:
+            direction[A] = 1.0
+        else:
+            direction[[G, A, Q, W, E]] = self.state[[G, A, Q, W, E]]
+        waited_s, self.walked_s[axis] = float(self.walked_s[axis]), 0.0
+        self.covariance = (
+            self.covariance + np.diag(noise * span_s) + walk**2 * waited_s * np.outer(direction, direction)
+        )
 
     def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
         """Residuals and derivatives as measured, and the white variances with what the linearisation misses."""
@@ -224,10 +297,10 @@ class PrismFilter:
             rows.own[i] += memory.variance
 
     def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
-        """Normalised square of a weighted sum of residuals."""
+        """Normalised square of a weighted sum of residuals, without what a walk along Z and a widened ground add."""
         slope = weight @ rows.slope
         white = np.radians(self.told.attitude_white_deg)
-        variance = slope @ self.full_covariance() @ slope + weight**2 @ rows.own
+        variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
         variance += white**2 * np.sum((weight @ rows.about) ** 2) + np.sum((weight @ rows.shift) ** 2)
         return float((weight @ rows.residual) ** 2 / variance)
 
@@ -260,6 +333,34 @@ class PrismFilter:
             memory.variance -= gain * memory.variance
             memory.learnt = True
 
+    def _widen_ground(self) -> None:
+        """The height's sigma is in metres, that of G over Z0: put right as the range becomes known."""
+        if self.ground_scale <= GROUND_NARROW:
+            self.covariance[G, G] += (1 - self.ground_scale**2) * (self.told.height_sd_m * self.state[Q]) ** 2
+            self.ground_scale = 1.0
+
+    def _narrow_ground(self, rows: Rows) -> float:
+        """As a measurement beside the rows; its part of the innovations squared."""
+        if self.ground_scale < GROUND_WIDE:
+            return 0.0
+        weight2 = (1 - 1 / self.ground_scale**2) / (self.told.height_sd_m * self.state[Q]) ** 2
+        variance = self.covariance[G, G] + 1 / weight2
+        gain = self.covariance[:, G] / variance
+        nis, change = float(self.state[G] ** 2 / variance), -gain * self.state[G]
+        self.covariance = self.covariance - np.outer(gain, self.covariance[G])
+        self.by_c = self.by_c - gain * self.by_c[G]
+        self.state = self.state + np.append(change, 0.0)
+        rows.residual = rows.residual - rows.slope[:, :C] @ change
+        for memory in self.memory:
+            memory.value -= memory.by[:C] @ change
+        self.ground_scale = 1.0
+        return nis
+
+    def _nis(self, rows: Rows, shared: np.ndarray) -> float:
+        slope = rows.slope[:, :C]
+        expected = slope @ self.covariance @ slope.T + shared + np.diag(rows.own)
+        return float(rows.residual @ np.linalg.solve(expected, rows.residual))
+
     def _update(self, rows: Rows, shared: np.ndarray) -> None:
         slope, by_c = rows.slope[:, :C], rows.slope[:, C]
         noise = shared + np.diag(rows.own)
@@ -277,16 +378,20 @@ class PrismFilter:
     def take(self, in_t: Sight) -> bool:
         """An image; whether it told something."""
         self.doubted = self.refused = 0
+        self.first_s = in_t.time_s if self.first_s is None else self.first_s
         if self.state is None:
             if not self.start(in_t):
                 return False
         elif in_t.time_s - self.time_s < EARLY_SHARE * self.told.correlation_s:
             return False
+        self.flown_m += float(np.linalg.norm((in_t.moved_m - self.last_m)[[0, 2]]))
+        self.last_m = in_t.moved_m
         sight = in_t.turned(self.turn, self.origin_m)
         span_s = min(in_t.time_s - self.time_s, GAP_MAX_S)
         self.time_s = in_t.time_s
         q_variance = self.full_covariance()[Q, Q]
         self._pass_time(span_s)
+        self._widen_ground()
         rows = self._rows(sight, q_variance)
         self._recall(sight, span_s, rows)
         if rows is None:
@@ -298,13 +403,22 @@ class PrismFilter:
         factor = np.minimum(self.told.huber_sigma / np.sqrt(np.maximum(ratio, 1e-30)), 1.0)
         names = ("side", "residual", "slope", "own", "about", "shift")
         rows.own = rows.own / factor
+        poor = 2 * self.refused >= len(kept)
+        self.scatter.take(rows.side, np.where(kept, rows.residual / np.sqrt(rows.own), 0.0))
         rows = Rows(*(getattr(rows, name)[kept] for name in names))
         if not kept.any():
+            self.scatter.take_fit(RATIO_MOST)
             return False
         white = np.radians(self.told.attitude_white_deg)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
         self._learn(rows, shared)
+        before = self.state[Q]
+        nis = self._narrow_ground(rows)
+        nis += self._nis(rows, shared)
+        self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
         self._update(rows, shared)
+        self.ground_scale *= before / self.state[Q]
+        self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)
         return True
 
     # ----------------------------------------------------------------------------------------------------- quantities
@@ -315,13 +429,17 @@ class PrismFilter:
         told = self.told
         values = quantities(self.state, self.turn)
         slopes = quantity_slopes(self.state, self.turn)
-        variance = np.einsum("ij,jk,ik->i", slopes, self.full_covariance(), slopes)
+        variance = np.einsum("ij,jk,ik->i", slopes, self.full_covariance(), slopes) * self.scatter.factor()
         span_s = in_t.time_s - self.start_s
         path_m = max(float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]])), PATH_MIN_M)
         share = told.velocity_bias_m_s * span_s / path_m
         above_m = max(abs(values[3]), abs(values[3] - in_t.given_height_m))
         variance += (share * np.array([values[1], values[1], values[2], above_m])) ** 2
-        variance[:2] += told.position_walk_m**2 * span_s
+        before_s = self.start_s - self.first_s  # X0 and Z0 count from the track's first image
+        way_m = float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]]))
+        straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # a path that leads back is not scaled
+        variance[:2] += (told.velocity_bias_m_s * span_s) ** 2 * (1 - straight**2)
+        variance[:2] += told.position_walk_m**2 * (span_s + before_s) + (told.velocity_bias_m_s * before_s) ** 2
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)
 

@@ -193,6 +193,8 @@ def check_comparable(log: ObservationLog, folder: Path) -> None:
     path = folder / "frames.csv"
     if any(frame.box_px is not None for frame in log.frames):
         raise LogError(path, 0, "", "holds bounding boxes, which the references do not know")
+    if log.camera2 is not None:
+        raise LogError(folder / "camera.ini", 0, "camera2", "a second camera, which the references do not know")
     if log.resets():
         raise LogError(path, 0, RESET_COLUMN, "changes within a track, and the references know no resets")
 

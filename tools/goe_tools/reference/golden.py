@@ -34,7 +34,7 @@ DOUBLE_TOLERANCE = 1e-9
 EXIT_DIFFERENT = 1
 CORNER = ROOT / "tests" / "data" / "corner"
 # The window method, which this data is of, knows neither boxes nor the errors of an image.
-NO_BOX = "{.seen = 0}, {.pixel_px = 0}"
+NO_BOX = "{.seen = 0}, {.pixel_px = 0}, 0"  # and by the first camera
 VALID = {
     "GOE_HAS_POSITION": "x0_m",
     "GOE_HAS_LENGTH": "length_m",
@@ -262,7 +262,8 @@ def _image(frame: Frame) -> list[str]:
         f"{{{{.time_us = {frame.time_us}, .position_ned_m = {{{position}}},",
         f"   .height_m = {hex_float(frame.height_m)}, .attitude = {{{attitude}}}}},",
         f"  {', '.join(pixels[:3])},",
-        f"  {', '.join(pixels[3:])}, {NO_BOX}}},",
+        f"  {', '.join(pixels[3:])},",
+        f"  {NO_BOX}}},",
     ]
 
 

@@ -4,6 +4,7 @@ data        what goe_campaign wrote
 goals_file  what the goals command wrote
 statistics  ranges, verdicts, comparisons of studies
 refined     the same of the refined method
+attacks     hostile flights of the goals: where the sigma holds, and where not
 style       colours, sizes, names
 prose       sentences that follow from the numbers
 figures     the paper's figures 5 to 14 and our own

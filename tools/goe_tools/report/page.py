@@ -16,7 +16,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
 from ..optimum import paper_table3 as t3
-from . import boxes
+from . import attacks, boxes
 from . import refined as rf
 from . import statistics as st
 from .data import COVERED, Campaign
@@ -260,7 +260,11 @@ def _rivals(goals: Goals) -> list[dict[str, Any]]:
     return tables
 
 
-def _goals(goals: Goals) -> dict[str, Any]:
+def _goals(goals: Goals) -> dict[str, Any] | None:
+    """Without those of the attacks, which have a section of their own; None if there are no others."""
+    goals = attacks.without(goals)
+    if not goals.rows:
+        return None
     parts = (
         ("early", rp.early(goals)), ("bound", rp.bounds(goals)), ("coverage", [*rp.coverage(goals), *rp.nees(goals)]),
         ("flags", rp.flags(goals)),
@@ -312,6 +316,20 @@ def _boxes(campaign: Campaign) -> dict[str, Any] | None:
     return {"rows": told, "heads": [cell["head"] for cell in told[0]["cells"]], "sentences": boxes.sentences(rows)}
 
 
+def _attacks(campaign: Campaign) -> dict[str, Any] | None:
+    """The section on hostile flights; None if the goals have none."""
+    if campaign.goals is None:
+        return None
+    table, warnings = attacks.attack_table(campaign.goals), attacks.warning_table(campaign.goals)
+    if not table and not warnings:
+        return None
+    return {
+        "rows": table, "warnings": warnings, "sentences": attacks.sentences(campaign.goals),
+        "heads": [*(GOAL_SYMBOLS[name] for name in QUANTITIES), "5σ off", "suspect"],
+        "warning_heads": ["told: true", "in 2σ: time/miss/clearance", "unwarned", "false"],
+    }  # fmt: skip
+
+
 def _version(campaign: Campaign) -> str:
     version = str(campaign.facts.get("version", ""))
     return version if version[:1].isdigit() else ""
@@ -347,6 +365,7 @@ def render_page(campaign: Campaign, figures: list[PageFigure]) -> str:
         window_effect=studies.window_effect(campaign),
         refined=_refined(campaign),
         boxes=_boxes(campaign),
+        attacks=_attacks(campaign),
         real=rp.real_data(campaign),
         goal_symbols=[GOAL_SYMBOLS[name] for name in QUANTITIES],
         figures=figures,

@@ -71,13 +71,16 @@ def _flight_of(log: ObservationLog, frames: Sequence[Frame], truth: Truth, name:
 
 
 def from_log(folder: Path, kind: str | None = None) -> list[Flight]:
-    """A flight for each track with truth of a log folder; images with a bad pose are left out, a reset is an error.
+    """A flight for each track with truth of a log folder; images with a bad pose are left out; a reset is an
+    error, and so is a second camera.
 
     kind: None: box if the truth has a length, otherwise disc; or one of the two (disc: (x0, z0) is the centre)."""
     folder = Path(folder)
     log = read_log(folder)
     if not log.truth:
         raise LogError(folder / "truth.csv", 0, "", "there is no truth")
+    if log.camera2 is not None:
+        raise LogError(folder / "camera.ini", 0, "camera2", "a second camera, a flight has one")
     for key in log.resets() & log.truth.keys():
         raise LogError(folder / "frames.csv", 0, RESET_COLUMN, f"changes within track {key}, a flight has no resets")
     result = []

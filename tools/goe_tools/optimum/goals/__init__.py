@@ -8,5 +8,6 @@ outcome      a flight to be judged, and what the methods make of it
 measures     goals that several groups make of their outcomes
 output       the table, and the file for the report
 work         how many flights, in how many processes
-command      runs the groups: pixel_noise, field, recorded, table3, early, kitti, boxes, float32, rivals
+command      runs the groups: pixel_noise, field, recorded, table3, early, kitti, boxes, attack, hazard, float32,
+             rivals
 """

@@ -19,6 +19,7 @@ from ..judge import HEIGHT, X0, Z0
 from ..library import METHODS, camera_settings, estimate
 from ..prism import Told
 from ..prism_bound import bound_of
+from ..prism_offline import fit
 from .goal import OPEN, Goal, Range, named, names_of
 from .measures import nan_quantile
 from .work import Amount, each
@@ -35,6 +36,7 @@ FIRST_MOST: Range = (0.0, 6.0)  # images until the first answer
 BOUND_ROLLS_DEG = (0.0, 2.0, 5.0, 10.0, 25.0)
 BOUND_MOST: Range = (0.0, 1.3)
 BOUND_TOLD = Told(box_px=0.5, box_share=0.0, ground_m=0.0, disc=True)  # the noise as it is flown
+FIT_MOST: Range = (0.0, 1.3)
 KITTI_PATH_M = 3.0
 NO_ALTIMETER = {"navigation.height_bias_m": 1000.0}
 ODMD_SETTINGS = {  # there is no ground; positions as the sets' makers perturbed them
@@ -96,7 +98,20 @@ def over_bound(task: Simulated) -> np.ndarray:
     return last_errors([outcome])[0] / bound_of(outcome.flight, BOUND_TOLD)
 
 
+def beside_fit(task: Simulated) -> np.ndarray:
+    """(2, 6): sizes of the errors of a flight's last answers, and of the offline fit that is told the same."""
+    outcome = perform(task)
+    best = fit(outcome.flight, _gauss_told(task.solid))
+    return np.array([last_errors([outcome])[0], np.abs(best.values - outcome.flight.truth.values)])
+
+
 # ------------------------------------------------------------------------------------------------------------- figures
+
+
+def _rmse(errors: np.ndarray) -> np.ndarray:
+    """Along the first axis, of what is there; NaN for columns without a number."""
+    there = np.isfinite(errors)
+    return np.sqrt(np.where(there.any(0), np.nansum(errors**2, 0) / np.maximum(there.sum(0), 1), math.nan))
 
 
 def coverage(outcomes: Sequence[BoxOutcome]) -> np.ndarray:
@@ -219,19 +234,43 @@ def _gauss_goals(group: str, amount: Amount) -> list[Goal]:
     return result
 
 
+def _gauss_told(solid: Solid) -> Told:
+    """Of a mast its noise; of a building nothing: that its corners are no ellipse's is an error that stays alike."""
+    return BOUND_TOLD if solid is MAST else Told()
+
+
+def _gauss_tasks(solid: Solid, roll_deg: float, amount: Amount) -> list[Simulated]:
+    """With white noise alone in the boxes."""
+    usual = Told().settings()
+    settings = {name: value for name, value in _gauss_told(solid).settings().items() if value != usual[name]}
+    options = BoxOptions(roll_deg=roll_deg, box_px=BOUND_TOLD.box_px, box_share=BOUND_TOLD.box_share)
+    return [Simulated(solid, options, seed, settings) for seed in range(1, amount.boxes + 1)]
+
+
 def _bound_goals(group: str, amount: Amount) -> list[Goal]:
     """How near the errors at the end come to what no estimator can better: a mast, white noise alone in the boxes."""
-    usual = Told().settings()
-    settings = {name: value for name, value in BOUND_TOLD.settings().items() if value != usual[name]}
     result = []
     for roll in BOUND_ROLLS_DEG:
-        options = BoxOptions(roll_deg=roll, box_px=BOUND_TOLD.box_px, box_share=BOUND_TOLD.box_share)
-        tasks = [Simulated(MAST, options, seed, settings) for seed in range(1, amount.boxes + 1)]
-        squares = np.array(each(over_bound, tasks, amount.jobs, f"{group} bound {roll:g}")) ** 2
-        there = np.isfinite(squares)
-        ratio = np.sqrt(np.where(there.any(0), np.nansum(squares, 0) / np.maximum(there.sum(0), 1), math.nan))
+        tasks = _gauss_tasks(MAST, roll, amount)
+        ratio = _rmse(np.array(each(over_bound, tasks, amount.jobs, f"{group} bound {roll:g}")))
         name = f"{MAST.name}, roll {roll:g} deg: RMSE / bound"
         result.append(Goal(group, name, "1", _told(ratio), BOUND_MOST, names_of(TOLD)))
+    return result
+
+
+def _fit_goals(group: str, amount: Amount) -> list[Goal]:
+    """How near they come to those of the fit of all images at once."""
+    result = []
+    for solid in (MAST, BUILDING):
+        for roll in ROLLS_DEG:
+            tasks = _gauss_tasks(solid, roll, amount)
+            errors = np.array(each(beside_fit, tasks, amount.jobs, f"{group} {solid.name} fit {roll:g}"))
+            ours = errors[:, 0]
+            best = np.where(np.isfinite(ours), errors[:, 1], math.nan)
+            name = f"{solid.name}, roll {roll:g} deg"
+            result.append(Goal(group, f"{name}: RMSE of the offline fit", "m", _told(_rmse(best))))
+            ratio = _told(_rmse(ours) / _rmse(best))
+            result.append(Goal(group, f"{name}: refined / offline fit", "1", ratio, FIT_MOST, names_of(TOLD)))
     return result
 
 
@@ -335,5 +374,6 @@ def boxes_group(group: str, amount: Amount) -> list[Goal]:
     result = _roll_goals(f"{group}: detector noise, rolling", amount)
     result += _gauss_goals(f"{group}: Gaussian 0.5 px", amount)
     result += _bound_goals(f"{group}: Gaussian 0.5 px", amount)
+    result += _fit_goals(f"{group}: Gaussian 0.5 px", amount)
     result += _height_goals(f"{group}: height above ground", amount)
     return result + recorded_goals(group, amount)

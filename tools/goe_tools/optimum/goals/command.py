@@ -1,6 +1,6 @@
 """The command ``goals``: every figure that the project promises, beside the figure that is reached.
 
-    python -m goe_tools goals [--quick] [--only GROUP,...] [--json FILE] [--jobs N]
+    python -m goe_tools goals [--quick] [--only GROUP,...] [--json FILE] [--jobs N] [--half HALF]
 
 A new group of goals is a module beside this one and a line in ``GROUPS``.
 """
@@ -12,14 +12,17 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+from ...attack.rows import HALVES
 from ..flights.logged import KITTI_FOLDER
 from ..flights.recorded import RECORDED_FOLDER
 from ..library import library_path
+from .attack import attack_group
 from .boxes import boxes_group
 from .early import early_group
 from .field import field_group
 from .float32 import float32_group
 from .goal import Goal
+from .hazard import hazard_group
 from .kitti import kitti_group
 from .output import as_json, print_group
 from .pixel_noise import gauss_group
@@ -39,6 +42,8 @@ GROUPS: dict[str, Callable[[str, Amount], list[Goal]]] = {
     "recorded": recorded_group,
     "kitti": kitti_group,
     "boxes": boxes_group,
+    "attack": attack_group,
+    "hazard": hazard_group,
     "rivals": rivals_group,
 }
 ABSENT = {
@@ -56,6 +61,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--worst", type=int, default=0, metavar="N", help="name the N worst flights, errors in own sigmas"
     )
+    parser.add_argument(
+        "--half",
+        choices=HALVES,
+        default="judge",
+        help="tracks of the attacks; thresholds are settled by the other half",
+    )
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
 
 
@@ -67,7 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.jobs < 1:
         raise ValueError(f"--jobs {arguments.jobs}: must be at least 1")
     library_path()  # its absence is told before the work begins
-    amount = Amount(**{**vars(QUICK if arguments.quick else FULL), "jobs": arguments.jobs, "worst": arguments.worst})
+    told = {"jobs": arguments.jobs, "worst": arguments.worst, "half": arguments.half}
+    amount = Amount(**{**vars(QUICK if arguments.quick else FULL), **told})
     goals: list[Goal] = []
     for name in chosen:
         found = GROUPS[name](name, amount)

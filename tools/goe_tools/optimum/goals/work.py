@@ -11,6 +11,8 @@ from typing import TypeVar
 import numpy as np
 from tqdm import tqdm
 
+from ...attack.approach import RUNS
+from ...attack.rows import TRACKS_EACH
 from ..flights.noise import NOISES
 from ..flights.simulated import paper_scenes, random_scenes
 from .outcome import Outcome, Task, perform
@@ -33,17 +35,20 @@ class Amount:
     recorded_seeds: int
     precision_seeds: int
     boxes: int  # flights of each case of upright boxes
+    attack: int  # tracks of each attack
+    hazard: int  # runs of each row of warnings
+    half: str = "judge"  # of the attacks' tracks: what settles a threshold must not judge it
     jobs: int = 1
     worst: int = 0  # flights to be named, those of the largest NEES
 
 
 QUICK = Amount(
     seeds=6, field_seeds=4, random=100, offline=90, rivals=40, recorded=40, recorded_seeds=2,
-    precision_seeds=1, boxes=8,
+    precision_seeds=1, boxes=8, attack=40, hazard=200,
 )  # fmt: skip
 FULL = Amount(
     seeds=24, field_seeds=16, random=400, offline=10**6, rivals=300, recorded=60, recorded_seeds=3,
-    precision_seeds=3, boxes=40,
+    precision_seeds=3, boxes=40, attack=TRACKS_EACH, hazard=RUNS,
 )  # fmt: skip
 
 

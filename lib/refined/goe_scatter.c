@@ -1,0 +1,62 @@
+/* Scatter beyond what was told. SPDX-License-Identifier: MIT */
+#include "refined/goe_scatter.h"
+
+#include "maths/goe_scalar.h"
+
+#if GOE_WITH_REFINED
+
+#define KEPT 0.985f          /* of the sums from image to image: some 67 images count */
+#define RESIDUAL_MAX 10.0f   /* sigmas: one outlier must not decide */
+#define SEED 10.0f           /* squares that are always there: few images alone say little */
+#define CHANCE 0.07f         /* one sigma that the mean of NIS and the correlation have over their memory */
+#define CORRELATION_MAX 0.9f /* beyond it the sums cannot tell */
+
+static float clipped(float residual) {
+    if (goe_within(residual, RESIDUAL_MAX)) {
+        return residual;
+    }
+    if (goe_magnitude(residual) >= GOE_INFINITY_BITS) {
+        return 0.0f;
+    }
+    return residual > 0.0f ? RESIDUAL_MAX : -RESIDUAL_MAX;
+}
+
+/* A refused row joins nothing. */
+void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
+    unsigned seen = 0;
+    float products = scatter->products * KEPT;
+    float squares = scatter->squares * KEPT;
+    for (size_t i = 0; i < rows->count; i++) {
+        const bool second = i > 0 && rows->feature[i - 1] == rows->feature[i]; /* of a corner: along y */
+        const size_t series = 2u * rows->feature[i] + (second ? 1u : 0u);
+        const float residual = clipped(rows->matrix->row[i][GOE_RESIDUAL]);
+        const float before = scatter->before[series];
+        if (!(rows->variance[i] > 0.0f)) {
+            continue;
+        }
+        if ((scatter->seen >> series & 1u) != 0) {
+            products += residual * before;
+            squares += 0.5f * (residual * residual + before * before);
+        }
+        scatter->before[series] = residual;
+        seen |= 1u << series;
+    }
+    scatter->products = products;
+    scatter->squares = squares;
+    scatter->seen = (uint16_t)seen;
+}
+
+/* What of an excess is not chance: nothing of a small one, nearly all of a large one. */
+static float beyond_chance(float excess) { return excess > CHANCE ? excess - CHANCE * CHANCE / excess : 0.0f; }
+
+float goe_scatter_factor(const goe_filter_t *filter, float repeated) {
+    const goe_scatter_t *scatter = &filter->scatter;
+    const float excess = goe_larger(filter->health.mean_nis - 1.0f, filter->health.excess);
+    const float scale = 1.0f + (excess > 0.0f ? beyond_chance(excess) : excess);
+    const float correlation = beyond_chance(scatter->products / (scatter->squares + SEED));
+    const float alike = correlation < CORRELATION_MAX ? correlation : CORRELATION_MAX;
+    const float series = goe_larger((1.0f + alike) / ((1.0f - alike) * repeated), 1.0f);
+    return goe_larger(scale * series, 1.0f);
+}
+
+#endif

@@ -1,0 +1,144 @@
+/* What is reported in north and east: T's heading, both axes, the centre and how it is uncertain.
+ * SPDX-License-Identifier: MIT */
+#include <math.h>
+
+#include "check.h"
+#include "scene.h"
+
+#define IMAGES 60
+#define RAD_PER_DEG 0.017453292519943295
+#define ROUNDING 2.0e-3 /* of a sigma: the same flight in other numbers */
+
+static scene_t scene;
+static goe_settings_t settings;
+static goe_estimator_t estimator;
+
+void setUp(void) {
+    scene_default(&scene);
+    settings = scene_settings(&scene);
+    scene.boxes = false;
+}
+void tearDown(void) {}
+
+/* The estimate after a flight on this course. */
+static goe_estimate_t fly(double course_deg) {
+    goe_estimate_t estimate;
+    goe_image_t image;
+    scene.course_deg = course_deg;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < IMAGES; k++) {
+        scene_image(&scene, k, &image, NULL);
+        (void)goe_update(&estimator, &image, &estimate);
+    }
+    return estimate;
+}
+
+/* Angle of b from a, folded into -180 to 180. */
+static double between_deg(double a, double b) { return remainder(b - a, 360.0); }
+
+/* GIVEN a course WHEN an image was taken THEN T's heading is told, also while nothing else is known. */
+static void the_heading_is_told_from_the_first_image_on(void) {
+    for (double course = -170.0; course <= 180.0; course += 25.0) {
+        goe_estimate_t estimate;
+        goe_image_t image;
+        scene.course_deg = course;
+        CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+        scene_image(&scene, 0, &image, NULL);
+        (void)goe_update(&estimator, &image, &estimate);
+        TEST_ASSERT_EQUAL_HEX(0, estimate.valid);
+        CHECK_CLOSE(1.0e-4, 0.0, between_deg(course, (double)estimate.trajectory_heading_deg));
+        image.pose.time_us = GOE_TIME_UNKNOWN; /* refused */
+        CHECK_STATUS(GOE_BAD_TIME, goe_update(&estimator, &image, &estimate));
+        CHECK_CLOSE(1.0e-4, 0.0, between_deg(course, (double)estimate.trajectory_heading_deg));
+    }
+}
+
+/* GIVEN a heading that is set, in any turn THEN it is told between -180 and 180. */
+static void a_set_heading_is_told(void) {
+    settings.heading_auto = false;
+    for (double heading = -360.0; heading <= 360.0; heading += 45.0) {
+        settings.heading_deg = (float)heading;
+        const goe_estimate_t estimate = fly(10.0);
+        CHECK_CLOSE(1.0e-4, 0.0, between_deg(heading, (double)estimate.trajectory_heading_deg));
+        TEST_ASSERT_TRUE(estimate.trajectory_heading_deg >= -180.0f && estimate.trajectory_heading_deg <= 180.0f);
+    }
+}
+
+static void check_axes(const goe_estimate_t *e) {
+    const double azimuth = ((double)e->trajectory_heading_deg + (double)e->orientation_deg) * RAD_PER_DEG;
+    TEST_ASSERT_TRUE(e->valid & GOE_HAS_ORIENTATION);
+    CHECK_CLOSE(1.0e-5, cos(azimuth), e->length_axis_ne[0]);
+    CHECK_CLOSE(1.0e-5, sin(azimuth), e->length_axis_ne[1]);
+    CHECK_CLOSE(1.0e-5, -sin(azimuth), e->width_axis_ne[0]);
+    CHECK_CLOSE(1.0e-5, cos(azimuth), e->width_axis_ne[1]);
+}
+
+/* GIVEN a box on any course, by either method THEN its axes in north and east are the heading and the orientation together. */
+static void the_axes_point_north_and_east(void) {
+    for (double course = -180.0; course < 180.0; course += 40.0) {
+        const goe_estimate_t refined = fly(course);
+        check_axes(&refined);
+    }
+#if GOE_WITH_WINDOW
+    settings = scene_window_settings(&scene);
+    for (double course = -180.0; course < 180.0; course += 40.0) {
+        const goe_estimate_t window = fly(course);
+        check_axes(&window);
+    }
+#endif
+}
+
+/* Covariance of the centre along and across the course, and of the two. */
+typedef struct {
+    double along, across, both;
+} spread_t;
+
+static spread_t spread_of(const goe_estimate_t *e, double course_deg) {
+    const double c = cos(course_deg * RAD_PER_DEG);
+    const double s = sin(course_deg * RAD_PER_DEG);
+    const double nn = (double)e->sigma.center_north_m * (double)e->sigma.center_north_m;
+    const double ee = (double)e->sigma.center_east_m * (double)e->sigma.center_east_m;
+    const double ne = (double)e->center_ne_m2;
+    const spread_t spread = {c * c * nn + 2.0 * c * s * ne + s * s * ee, s * s * nn - 2.0 * c * s * ne + c * c * ee,
+                             c * s * (ee - nn) + (c * c - s * s) * ne};
+    TEST_ASSERT_TRUE(e->valid & GOE_HAS_CENTER);
+    TEST_ASSERT_TRUE(nn * ee - ne * ne > 0.0);
+    return spread;
+}
+
+/* GIVEN one flight on two courses THEN the centre is as uncertain along and across the course, and the two go together alike. */
+static void check_spread_turns(void) {
+    const goe_estimate_t reference = fly(0.0);
+    const spread_t expected = spread_of(&reference, 0.0);
+    const double scale = sqrt(expected.along * expected.across);
+    TEST_ASSERT_TRUE(expected.along != expected.across);
+    for (double course = -150.0; course < 180.0; course += 50.0) {
+        const goe_estimate_t turned = fly(course);
+        const spread_t spread = spread_of(&turned, course);
+        CHECK_CLOSE(ROUNDING * expected.along, expected.along, spread.along);
+        CHECK_CLOSE(ROUNDING * expected.along, expected.across, spread.across);
+        CHECK_CLOSE(ROUNDING * (expected.along + scale), expected.both, spread.both);
+    }
+}
+
+static void the_spread_of_the_centre_turns_with_the_course(void) {
+    check_spread_turns();
+    scene_make_cylinder(&scene);
+    check_spread_turns();
+    scene.boxes = true;
+    check_spread_turns();
+#if GOE_WITH_WINDOW
+    scene.boxes = false;
+    settings = scene_window_settings(&scene);
+    check_spread_turns();
+#endif
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_heading_is_told_from_the_first_image_on);
+    RUN_TEST(a_set_heading_is_told);
+    RUN_TEST(the_axes_point_north_and_east);
+    RUN_TEST(the_spread_of_the_centre_turns_with_the_course);
+    return UNITY_END();
+}

@@ -1,0 +1,502 @@
+"""The hostile flights: what is drawn against another projection, what is measured against outcomes of known figures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from goe_tools.attack import approach, errors, judging, rows, scenario, turns, view
+from goe_tools.attack.judging import BOX, DISC, PRISM, X0, Z0, Answers, Outcome
+from goe_tools.attack.scenario import Scenario, Told, Truth
+from goe_tools.attack.solids import Solid
+from goe_tools.optimum.goals import attack, hazard
+from goe_tools.optimum.goals.goal import NAMES, Goal
+from goe_tools.optimum.goals.work import QUICK
+from goe_tools.optimum.library import METHODS, Track, library_path
+from goe_tools.places import ROOT
+
+NAN = math.nan
+EXACT = {
+    "point_px": 0.0, "box_px": 0.0, "box_share": 0.0, "attitude_bias_deg": 0.0, "attitude_white_deg": 0.0,
+    "velocity_bias_m_s": 0.0, "position_walk_m": 0.0, "height_bias_m": 0.0,
+}  # fmt: skip
+BASE = Scenario(kind="box").by(**EXACT)
+AMOUNT = replace(QUICK, attack=3, hazard=3)
+
+
+@pytest.fixture
+def built() -> None:
+    try:
+        library_path()
+    except FileNotFoundError as reason:
+        pytest.skip(str(reason))
+
+
+# ----------------------------------------------------------------------------------- another projection, point by point
+
+
+def turned(q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """v by the Hamilton product q v q*."""
+    w, u = q[0], q[1:]
+    return v + 2.0 * np.cross(u, np.cross(u, v) + w * v)
+
+
+def pixel(told: Told, image: int, point_ned: np.ndarray) -> np.ndarray:
+    """Of a point, from what is told: a pose without error, a camera that looks ahead or aside by its yaw."""
+    back = told.attitude[image] * [1.0, -1.0, -1.0, -1.0]
+    forward, right, down = turned(back, point_ned - told.position_ned_m[image])
+    yaw = math.radians(told.settings["camera.mount_yaw_deg"])
+    ahead, aside = (
+        forward * math.cos(yaw) + right * math.sin(yaw),
+        right * math.cos(yaw) - forward * math.sin(yaw),
+    )
+    focal = told.settings["camera.fx_px"]
+    return 640.0 + focal / ahead * np.array([aside, down])
+
+
+def bearing(told: Told, image: int, shown: np.ndarray) -> float:
+    """Of a pixel's ray from north, rad."""
+    x, y = (shown - 640.0) / told.settings["camera.fx_px"]
+    yaw = math.radians(told.settings["camera.mount_yaw_deg"])
+    ray = np.array([math.cos(yaw) - x * math.sin(yaw), math.sin(yaw) + x * math.cos(yaw), y])
+    north, east, _ = turned(told.attitude[image], ray)
+    return math.atan2(east, north)
+
+
+def in_ned(told: Told, image: int, x: float, z: float, up: float) -> np.ndarray:
+    """A point of the obstacle, given about its middle in T's axes, where it is in an image."""
+    truth, t = told.truth, told.time_s[image]
+    heading = math.radians(told.settings["heading_deg"])
+    z_all, x_all = truth.middle_m[1] + z, truth.middle_m[0] + x
+    north = z_all * math.cos(heading) - x_all * math.sin(heading) + truth.velocity_ned_m_s[0] * t
+    east = z_all * math.sin(heading) + x_all * math.cos(heading) + truth.velocity_ned_m_s[1] * t
+    ground = told.position_ned_m[0, 2] + told.height_m[0]
+    return np.array([told.position_ned_m[0, 0] + north, told.position_ned_m[0, 1] + east, ground - up])
+
+
+def box_corners(solid: Solid) -> list[tuple[float, float]]:
+    b = solid.orientation_rad
+    result = []
+    for across, along in ((-0.5, -0.5), (-0.5, 0.5), (0.5, 0.5), (0.5, -0.5)):
+        a, s = across * solid.width_m, along * solid.length_m
+        result.append((a * math.cos(b) + s * math.sin(b), -a * math.sin(b) + s * math.cos(b)))
+    return result
+
+
+SEEN_OF = {
+    "static": BASE,
+    "mover": BASE.by(moves="diagonal", moves_m_s=5.0),
+    "orbit": BASE.by(path="orbit"),
+    "hover": BASE.by(path="hover"),
+}
+
+
+@pytest.mark.parametrize("name", SEEN_OF)
+def test_points_and_boxes_are_those_of_the_projected_corners(name: str) -> None:
+    for number in (1, 3):
+        by_points = scenario.fly(SEEN_OF[name], number)
+        by_boxes = scenario.fly(SEEN_OF[name].by(features="boxes"), number)
+        for told in (by_points, by_boxes):
+            checked = 0
+            for k in np.flatnonzero(told.shown)[::9]:
+                corners = box_corners(told.truth.solid)
+                foot = np.array([pixel(told, k, in_ned(told, k, x, z, 0.0)) for x, z in corners])
+                roof = np.array([pixel(told, k, in_ned(told, k, x, z, told.truth.solid.height_m)) for x, z in corners])
+                both = np.concatenate([foot, roof])
+                if told.box_px is not None:
+                    sides = np.array([*both.min(0), *both.max(0)])
+                    assert told.box_px[k] == pytest.approx(np.clip(sides, 0.0, 1279.0), abs=1e-6)
+                    checked += 1
+                    continue
+                for feature, wanted in ((view.LEFT, np.argmin(both[:, 0])), (view.RIGHT, np.argmax(both[:, 0]))):
+                    if told.seen[k, feature]:
+                        assert told.pixel_px[k, feature] == pytest.approx(both[wanted], abs=1e-6)
+                        checked += 1
+                base = told.pixel_px[k, [view.BASE_LEFT, view.BASE_NEAR, view.BASE_RIGHT]]
+                base = base[told.seen[k, [view.BASE_LEFT, view.BASE_NEAR, view.BASE_RIGHT]]]
+                assert all(np.abs(foot - point).max(1).min() < 1e-6 for point in base)
+                bearings = [bearing(told, k, point) for point in base]
+                assert (np.diff(np.unwrap(bearings)) > 0.0).all()
+            assert checked >= 2
+
+
+def test_three_base_corners_show_two_faces() -> None:
+    """The near corner is the nearest one, left and right are its neighbours, and the fourth is hidden."""
+    told = scenario.fly(BASE, 3)
+    k = int(np.flatnonzero(told.seen[:, view.BASE_LEFT :].all(1))[0])
+    corners = box_corners(told.truth.solid)
+    ground = [in_ned(told, k, x, z, 0.0) for x, z in corners]
+    near = int(np.argmin([np.hypot(*(g - told.position_ned_m[k])[:2]) for g in ground]))
+    around = [pixel(told, k, ground[(near + step) % 4]) for step in (-1, 0, 1)]
+    shown = told.pixel_px[k, view.BASE_LEFT :]
+    assert shown[1] == pytest.approx(around[1], abs=1e-6)
+    assert sorted(shown[[0, 2], 0]) == pytest.approx(sorted(a[0] for a in (around[0], around[2])), abs=1e-6)
+
+
+def test_a_cylinder_is_seen_by_its_tangents_and_by_its_rims() -> None:
+    scene = Scenario(kind="cylinder").by(**EXACT)
+    told, boxed = scenario.fly(scene, 5), scenario.fly(scene.by(features="boxes"), 5)
+    radius = 0.5 * told.truth.solid.width_m
+    for k in np.flatnonzero(told.seen[:, [view.LEFT, view.RIGHT]].all(1))[::7]:
+        to_middle = (in_ned(told, k, 0.0, 0.0, 0.0) - told.position_ned_m[k])[:2]
+        away = float(np.hypot(*to_middle))
+        middle = math.atan2(to_middle[1], to_middle[0])
+        for feature, side in ((view.LEFT, -1.0), (view.RIGHT, 1.0)):
+            off = (bearing(told, k, told.pixel_px[k, feature]) - middle + math.pi) % (2 * math.pi) - math.pi
+            assert off == pytest.approx(side * math.asin(radius / away), abs=1e-9)
+    for k in np.flatnonzero(boxed.shown)[::7]:
+        angle = np.linspace(0.0, 2 * math.pi, 721)
+        rim = np.array([
+            pixel(boxed, k, in_ned(boxed, k, radius * math.sin(a), radius * math.cos(a), up))
+            for a in angle for up in (0.0, boxed.truth.solid.height_m)
+        ])  # fmt: skip
+        sides = np.clip([*rim.min(0), *rim.max(0)], 0.0, 1279.0)
+        assert boxed.box_px is not None and boxed.box_px[k] == pytest.approx(sides, abs=0.05)
+
+
+def test_a_mover_looks_like_a_static_obstacle_from_a_frame_that_moves_along() -> None:
+    rng = np.random.default_rng(7)
+    solid = Solid("box", 0.4, 6.0, 9.0, 8.0)
+    eye = np.array([0.0, 0.0, 20.0]) + np.cumsum(rng.uniform(0.0, 2.0, (30, 3)) * [0.2, 1.0, 0.1], 0)
+    attitude = turns.of_angles(*(0.1 * rng.standard_normal((3, 30))))
+    path = np.array([5.0, 90.0]) + np.outer(np.arange(30), [0.7, -1.1])
+    moving = view.Standpoint(view.Camera(), eye, attitude, path)
+    along = np.pad(path - path[0], ((0, 0), (0, 1)))
+    still = view.Standpoint(view.Camera(), eye - along, attitude, np.broadcast_to(path[0], path.shape))
+    assert view.points(solid, moving, True) == pytest.approx(view.points(solid, still, True), abs=1e-9, nan_ok=True)
+    assert view.boxes(solid, moving) == pytest.approx(view.boxes(solid, still), abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["roof", "pylon", "L", "two"])
+def test_other_shapes_lie_within_their_rectangle(kind: str) -> None:
+    solid = Solid(kind, 0.3, 12.0, 8.0, 10.0, gap_m=3.0, setback_m=2.0)
+    points = solid.points()
+    across, along = points[:, :2] @ solid.across, points[:, :2] @ solid.along
+    assert [np.ptp(across), np.ptp(along), points[:, 2].max()] == pytest.approx([12.0, 8.0, 10.0])
+    assert np.hypot(points[:, 0], points[:, 1]).max() <= solid.half_m + 1e-9
+
+
+def test_turns_and_quaternions_agree() -> None:
+    rng = np.random.default_rng(3)
+    angles = rng.uniform(-1.4, 1.4, (3, 50))
+    matrix = turns.of_angles(*angles)
+    assert np.array(turns.angles_of(matrix)) == pytest.approx(angles, abs=1e-12)
+    vector = rng.standard_normal(3)
+    for m, q in zip(matrix, turns.quaternion(matrix)):
+        assert turned(q, vector) == pytest.approx(m @ vector, abs=1e-12)
+    half = turns.quaternion(turns.of_angles(math.pi, 0.0, 0.0))  # w is 0
+    assert np.abs(half) == pytest.approx([0.0, 0.0, 0.0, 1.0], abs=1e-12)
+    spin = rng.standard_normal(3)
+    assert turns.of_vector(spin) @ spin == pytest.approx(spin) and np.linalg.det(
+        turns.of_vector(spin)
+    ) == pytest.approx(1)
+
+
+# ----------------------------------------------------------------------------------------------------------- the errors
+
+
+def test_the_same_number_gives_the_same_flight_whatever_the_errors_are() -> None:
+    exact, late = scenario.fly(BASE, 1), scenario.fly(BASE.by(late_s=0.1), 1)
+    assert exact.pixel_px == pytest.approx(late.pixel_px)
+    flown = np.linalg.norm(np.diff(exact.position_ned_m, axis=0), axis=1) * 8.0
+    lag = np.linalg.norm(exact.position_ned_m - late.position_ned_m, axis=1)
+    assert lag[1:] == pytest.approx(0.1 * flown, rel=0.02)
+    assert scenario.fly(BASE, 3).truth.solid != exact.truth.solid
+
+
+def test_conventions_say_the_same_pose_in_other_axes() -> None:
+    told = scenario.fly(BASE, 1)
+    enu, xyzw = (scenario.fly(BASE.by(convention=name), 1) for name in ("ENU", "xyzw"))
+    n, e, d = told.position_ned_m.T
+    assert enu.position_ned_m == pytest.approx(np.stack([e, n, -d], 1))
+    nose_ned, nose_enu = (turned(t.attitude[4], np.array([1.0, 0.0, 0.0])) for t in (told, enu))
+    assert nose_enu == pytest.approx(nose_ned[[1, 0, 2]] * [1, 1, -1])
+    left_ned, left_enu = (turned(t.attitude[4], v) for t, v in ((told, -np.eye(3)[1]), (enu, np.eye(3)[1])))
+    assert left_enu == pytest.approx(left_ned[[1, 0, 2]] * [1, 1, -1])
+    assert xyzw.attitude[:, [3, 0, 1, 2]] == pytest.approx(told.attitude)
+    feet = scenario.fly(BASE.by(convention="height in feet"), 1)
+    assert feet.height_m == pytest.approx(told.height_m / 0.3048) and (feet.position_ned_m == told.position_ned_m).all()
+
+
+def test_a_reset_is_told_once_and_moves_height_and_position() -> None:
+    told, jumped = scenario.fly(BASE, 1), scenario.fly(BASE.by(reset_m=2.0), 1)
+    (k,) = np.flatnonzero(np.diff(jumped.reset_count, prepend=0))
+    assert abs(jumped.reset_m[k, 2]) == 2.0 and np.count_nonzero(jumped.reset_m) == 1
+    moved = jumped.position_ned_m - told.position_ned_m
+    assert moved[:k] == pytest.approx(0.0) and moved[k:, 2] == pytest.approx(jumped.reset_m[k, 2])
+    assert (jumped.height_m - told.height_m)[k:] == pytest.approx(-jumped.reset_m[k, 2])
+
+
+def test_boxes_are_cut_at_the_border() -> None:
+    told = scenario.fly(rows.CLIPPED, 1)
+    assert told.box_px is not None
+    box = told.box_px[np.isfinite(told.box_px).all(1)]
+    assert box.min() >= 0.0 and box.max() <= 1279.0 and ((box == 0.0) | (box == 1279.0)).any()
+
+
+def test_told_errors_have_the_told_size() -> None:
+    rng = np.random.default_rng(1)
+    process = errors.alike(np.arange(4000) * 0.125, 1.0, 4, rng)
+    assert process.std() == pytest.approx(1.0, abs=0.06)
+    after_1_s = (process[8:] * process[:-8]).mean()
+    assert after_1_s == pytest.approx(math.exp(-1.0), abs=0.06)
+    mount = errors.told_mounting((0.0, 0.0, 0.0), errors.Wrong(mount_off_deg=2.0), rng)
+    assert np.abs(mount) == pytest.approx(2.0, abs=0.1)
+
+
+# ------------------------------------------------------------------------------------------------------------ measuring
+
+
+def outcome(
+    error: list[float] | np.ndarray, suspect: list[bool] | None = None, reason: list[str] | None = None
+) -> Outcome:
+    """Of sigma 1, telling Z0 alone, an image a second."""
+    count = len(error)
+    values = np.full((count, 6), NAN)
+    values[:, Z0] = error
+    flags = np.zeros(count, bool) if suspect is None else np.array(suspect)
+    answers = Answers(
+        np.arange(count, dtype=float), values, np.where(np.isfinite(values), 1.0, NAN), np.full(count, DISC),
+        np.zeros(count, int), flags, np.zeros(count, bool), None if reason is None else np.array(reason),
+    )  # fmt: skip
+    return Outcome(answers, values, answers.sigma)
+
+
+def test_coverage_of_known_figure() -> None:
+    rng = np.random.default_rng(5)
+    share = judging.coverage([outcome(rng.standard_normal(200)) for _ in range(100)])
+    assert share[Z0] == pytest.approx(95.45, abs=0.5) and np.isnan(share[X0])
+    assert judging.coverage([outcome([0.0] * 30 + [3.0] * 10), outcome([NAN, 2.5]), outcome([NAN])])[Z0] == 37.5
+
+
+@pytest.mark.parametrize(
+    ("error", "suspect", "wrong"),
+    [
+        ([6.0] * 5, None, True),
+        ([-6.0] * 5 + [0.0], None, True),
+        ([6.0] * 4 + [0.0] + [6.0] * 4, None, False),
+        ([6.0] * 4 + [NAN] + [6.0] * 4, None, False),
+        ([4.9] * 9, None, False),
+        ([6.0] * 9, [False] * 4 + [True] + [False] * 4, False),
+        ([6.0] * 10, [True] * 5 + [False] * 5, True),
+    ],
+)
+def test_confident_errors_are_runs_of_five(error: list[float], suspect: list[bool] | None, wrong: bool) -> None:
+    judged = outcome(error, suspect)
+    assert judging.is_confidently_wrong(judged) is wrong
+    assert judging.confident([judged, outcome([0.0])]) == {"any": 50.0 * wrong, "position": 50.0 * wrong}
+    assert not judging.is_confidently_wrong(judged, (judging.WIDTH,))
+
+
+def test_flags_and_reasons() -> None:
+    quiet, late, early = (outcome([0.0] * 10, [k >= first for k in range(10)]) for first in (10, 6, 2))
+    assert judging.told_within([quiet, late, early], "moves", 4.0) == pytest.approx(100 / 3)
+    assert judging.told_within([quiet, late, early], "moves", math.inf) == pytest.approx(200 / 3)
+    assert judging.suspected([quiet, early]) == {"tracks": 50.0, "images": 40.0}
+    said = outcome([0.0] * 4, [True] * 4, ["", "poses late", "it moves", "it moves"])
+    assert judging.first_flag_s(said.answers, judging.told(said.answers, "moves")) == 2.0
+    assert judging.told_within([said], "late", 3.0) == 100.0 and judging.told_within([said], "shape", 3.0) == 0.0
+    assert judging.suspect_or_covered([quiet, outcome([3.0] * 9), early, outcome([NAN])]) == 50.0
+
+
+def test_what_is_odd_within_three_seconds() -> None:
+    def odd(**changes: object) -> bool:
+        return judging.is_odd_within(replace(outcome([0.0] * 10).answers, **changes), 3.0)  # type: ignore[arg-type]
+
+    at = lambda *images: np.isin(np.arange(10), images)  # noqa: E731
+    assert not odd() and odd(suspect=at(3)) and not odd(suspect=at(4))
+    assert odd(restarted=at(1, 2)) and not odd(restarted=at(1, 5))
+    assert odd(status=np.where(at(0, 1, 2), -1, 0)) and not odd(status=np.where(at(0, 1, 7, 8, 9), -1, 0))
+
+
+def truth_of(solid: Solid, x_m: float = 10.0, z_m: float = 100.0) -> Truth:
+    still = np.zeros((1, 3))
+    return Truth(solid, np.array([x_m, z_m]), 0.0, np.zeros(2), still, still)
+
+
+def answers_of(model: int, values: list[float]) -> Answers:
+    told = np.array([values])
+    return replace(outcome([0.0]).answers, values=told, sigma=np.ones((1, 6)), model=np.array([model]))
+
+
+def test_a_box_may_be_named_either_way_and_a_disc_is_its_middle() -> None:
+    truth = truth_of(Solid("box", math.radians(30.0), 8.0, 20.0, 5.0))
+    s, c = math.sin(math.radians(30.0)), math.cos(math.radians(30.0))
+    front = [10.0 - 10.0 * s, 100.0 - 10.0 * c, math.radians(30.0), 8.0, 20.0, 5.0]
+    side = [10.0 - 4.0 * c, 100.0 + 4.0 * s, math.radians(-60.0), 20.0, 8.0, 5.0]  # the left face is hidden, ...
+    right = [10.0 + 4.0 * c, 100.0 - 4.0 * s, math.radians(-60.0), 20.0, 8.0, 5.0]  # ... the right one is seen
+    for values, good in ((front, True), (right, True), (side, False)):
+        error = judging.judge(answers_of(BOX, values), truth).error[0]
+        assert (np.abs(error).max() < 1e-9) == good
+    disc = judging.judge(answers_of(DISC, [10.0, 100.0, NAN, 14.0, NAN, 5.0]), truth).error[0]
+    assert disc[:2] == pytest.approx(0.0) and np.isnan(disc[2:]).all()
+    corners = np.array(box_corners(truth.solid)) @ [100.0, -10.0] / math.hypot(100.0, 10.0)
+    prism = judging.judge(answers_of(PRISM, [10.0, 100.0, NAN, float(np.ptp(corners)), NAN, 5.0]), truth).error[0]
+    assert prism[[0, 1, 3, 5]] == pytest.approx(0.0, abs=1e-9) and np.isnan(prism[[2, 4]]).all()
+
+
+# ------------------------------------------------------------------------------------------------------------- warnings
+
+
+def test_closest_approach_to_a_disc_and_to_a_box() -> None:
+    def flown(solid: Solid, east_m: float, down_m_s: float = 0.0) -> approach.Approach:
+        eye, velocity = np.array([[-100.0, east_m, -20.0]]), np.array([[10.0, 0.0, down_m_s]])
+        return approach.closest(replace(truth_of(solid), eye_ned_m=eye, path_velocity_ned_m_s=velocity))
+
+    disc, box = Solid("cylinder", 0.0, 10.0, 10.0, 12.0), Solid("box", 0.0, 10.0, 40.0, 12.0)
+    beside = flown(disc, 30.0)
+    assert [beside.time_s, beside.miss_m, beside.clearance_m] == pytest.approx([10.0, 25.0, 8.0], abs=0.01)
+    head_on = flown(disc, 0.0)
+    assert [head_on.time_s, head_on.miss_m] == pytest.approx([9.5, 0.0], abs=0.011) and head_on.violates
+    assert flown(disc, 3.0).time_s == pytest.approx(10.0 - 0.4, abs=0.011)  # enters 4 m before the middle
+    along = flown(box, 30.0)
+    assert [along.time_s, along.miss_m] == pytest.approx([8.0, 25.0], abs=0.011) and not along.violates
+    assert flown(box, 0.0, 0.5).clearance_m == pytest.approx(8.0 - 0.5 * 12.0, abs=0.02)  # where it leaves the outline
+
+
+def run_of(told: float, violates: bool, soonest_s: float = 30.0, miss_m: float = 40.0) -> approach.Run:
+    time = np.arange(20.0)
+    level, to_go = np.full(20, told), 25.0 - time
+    there = np.ones(20)
+    warnings = approach.Warnings(
+        time, there > 0, to_go, there, np.full(20, 3.0), there, np.full(20, 1.0), there, level, level,
+        soonest_s - time,
+    )  # fmt: skip
+    happened = approach.Approach(25.0, 0.0 if violates else miss_m, 0.0)
+    return approach.Run(warnings, happened)
+
+
+def test_probabilities_warnings_and_coverage_of_known_figures() -> None:
+    runs = [run_of(0.3, violates=k < 4) for k in range(10)] + [run_of(0.9, violates=True)]
+    told = approach.probabilities(runs)
+    assert told["0.2 to 0.5"] == (pytest.approx(0.3), pytest.approx(0.4), 200)
+    assert told["0.8 to 0.95"] == (pytest.approx(0.9), 1.0, 20)
+    covered = approach.coverage([run_of(0.3, violates=False, miss_m=2.0), run_of(0.3, violates=False)])
+    assert covered == {"time": 100.0, "miss": 50.0, "clearance": 100.0}
+    in_time, too_late, never = run_of(0.3, True, 25.0), run_of(0.3, True, 35.0), run_of(0.05, True)
+    assert [approach.first_warning_s(r.warnings) for r in (in_time, never)] == [14.0, math.inf]
+    assert approach.first_warning_s(too_late.warnings) == math.inf  # it lasts 20 s
+    assert approach.unwarned([in_time, too_late, never]) == pytest.approx(200 / 3)
+    assert (
+        approach.false_warnings([run_of(0.3, False), run_of(0.05, False), run_of(0.9, False, miss_m=20.0)]) == 100 / 2
+    )
+
+
+def test_the_rule_is_the_readmes() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    figures = {"MARGIN_M": approach.MARGIN_M, "CLEARANCE_M": approach.CLEARANCE_M, "CLIMB_S": approach.CLIMB_S,
+               "VIOLATION_MAX": approach.VIOLATION_MAX, "DRIFT_M_S": approach.DRIFT_M_S}  # fmt: skip
+    for name, value in figures.items():
+        assert f"#define {name} {value}f" in readme
+    assert f"now->suspect ? {approach.DOUBT}f : 1.0f" in readme
+
+
+# ------------------------------------------------------------------------------------------------------------ the goals
+
+
+def test_rows_are_named_once_and_a_wrong_name_is_told() -> None:
+    titles = [(row.section, row.title) for row in rows.ROWS]
+    assert len(set(titles)) == len(titles)
+    assert rows.row_named("hover").scenario.flown.path == "hover"
+    with pytest.raises(ValueError, match=r"attack 'hoover': not one of baseline; .*hover"):
+        rows.row_named("hoover")
+    with pytest.raises(ValueError, match="half 'odd': not one of judge, settle"):
+        rows.numbers("odd", 3)
+    with pytest.raises(TypeError, match="no_such_error"):
+        BASE.by(no_such_error=1.0)
+
+
+def test_halves_share_no_track_and_two_of_three_are_boxes() -> None:
+    judge, settle = (set(rows.numbers(half, 120)) for half in ("judge", "settle"))
+    assert not judge & settle and len(judge) == len(settle) == 120
+    kinds = [scenario.kind_of(Scenario(), number) for number in judge]
+    assert kinds.count("box") == 80 and kinds.count("cylinder") == 40
+
+
+def good_track(told: Told, more: dict[str, np.ndarray] | None = None) -> Track:
+    """Right answers of sigma 1 m, as a disc or a box from the first image on."""
+    count, solid = len(told.time_s), told.truth.solid
+    values = np.tile(judging.namings(told.truth)[0], (count, 1))
+    if solid.kind == "cylinder":
+        values[:, :2] = told.truth.middle_m
+    zeros, flags = np.zeros(count), np.zeros(count, bool)
+    model = np.full(count, DISC if solid.kind == "cylinder" else BOX)
+    return Track(
+        zeros, np.full(count, METHODS["refined"]), model, ~flags, flags, values, np.ones((count, 6)),
+        np.zeros((count, 6, 6)), zeros, zeros, zeros, np.arange(count), {}, more or {},
+    )  # fmt: skip
+
+
+def test_good_answers_meet_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    truths: list[Told] = []
+    fly = scenario.fly
+    monkeypatch.setattr(scenario, "fly", lambda *given: truths.append(fly(*given)) or truths[-1])
+    monkeypatch.setattr(attack, "run", lambda images, settings: good_track(truths[-1]))
+    monkeypatch.setattr(attack, "has_setting", lambda name: False)
+    for title in ("baseline", "gable roofs, outline"):
+        row = replace(rows.row_named(title), asked=(rows.cover(90), rows.wrong(4), rows.suspect(1)))
+        goals = attack.goals_of("attack", row, [attack.perform(row, number) for number in (1, 3, 5)])
+        met = {goal.name.split(": ")[1]: goal.met for goal in goals}
+        assert met[rows.COVER] and met[rows.WRONG] and met[rows.SUSPECT] and met[rows.ANSWERS] is None
+    mover = rows.row_named("across 5 m/s")
+    goals = attack.goals_of("attack", mover, [attack.perform(mover, 1)])
+    told = {goal.name.split(": ")[1]: goal for goal in goals}
+    assert told[rows.REASON].values[rows.IN_4_S] == 0.0 and told[rows.REASON].met is False
+    assert math.isnan(told[rows.VELOCITY].values[rows.IMAGES]) and told[rows.VELOCITY].met is False
+
+
+def test_reasons_and_velocities_of_a_later_library_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = scenario.fly(BASE.by(moves="across", moves_m_s=5.0), 1)
+    count, velocity = len(told.time_s), told.truth.velocity_ned_m_s
+    more = dict(
+        zip(attack.VELOCITY, ([velocity[0] + 1.0] * count, [velocity[1]] * count, [1.0] * count, [1.0] * count))
+    )
+    more = {name: np.array(values) for name, values in more.items()}
+    more["reason"] = np.arange(count) // 4 % 2
+    monkeypatch.setattr(attack, "reason_names", lambda: ("none", "moves"))
+    answers = attack.answers_of(good_track(told, more), told.time_s)
+    assert judging.first_flag_s(answers, judging.told(answers, rows.MOVES)) == pytest.approx(0.5)
+    outcome_told = Outcome(answers, answers.values, answers.sigma)
+    assert judging.velocity_covered([outcome_told], [velocity]) == 100.0
+    assert judging.velocity_covered([outcome_told], [velocity - [2.0, 0.0]]) == 50.0
+    monkeypatch.setattr(attack, "reason_names", tuple)
+    assert attack.reasons_of(good_track(told, more)) is None
+
+
+def lines_of(goals: list[Goal], title: str) -> dict[str, Goal]:
+    return {goal.name.split(": ")[1]: goal for goal in goals if goal.name.startswith(f"{title}: ")}
+
+
+def test_the_library_over_some_rows(
+    built: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The whole way: a good row is good, late poses are worse, and a setting of no library is left out."""
+    slope = replace(rows.row_named("slope 3 %"), if_known={"navigation.no_such_setting": 1.0})
+    names = ("baseline", "baseline, by boxes", "poses 100 ms late", "ENU")
+    chosen = (*(replace(rows.row_named(name), tracks_share=4.0) for name in names), slope)
+    monkeypatch.setattr(rows, "ROWS", chosen)
+    monkeypatch.setattr(attack, "recorded_scenes", lambda count, seed: [])
+    goals = attack.attack_group("attack", AMOUNT)
+    baseline, late = lines_of(goals, "baseline"), lines_of(goals, "poses 100 ms late")
+    assert min(baseline[rows.COVER].values.values()) > 80.0 and set(baseline[rows.COVER].values) == set(NAMES)
+    assert late[rows.COVER].values["Z0"] < baseline[rows.COVER].values["Z0"]
+    by_boxes = lines_of(goals, "baseline, by boxes")[rows.COVER]
+    assert by_boxes.met and math.isnan(by_boxes.values["L"]) and by_boxes.asked == ("X0", "Z0", "W", "H")
+    assert lines_of(goals, "ENU")[rows.ODD].values[rows.FLAGGED] > 60.0
+    left = lines_of(goals, "slope 3 %")["settings left out"]
+    assert left.values == {"navigation.no_such_setting": 1.0} and left.met is None
+    said = capsys.readouterr().out
+    assert "left out: settings that the library does not have: navigation.no_such_setting" in said
+    assert "left out: recorded flights are not there" in said
+
+
+def test_the_library_warns_of_collision_courses(built: None) -> None:
+    row = approach.ROWS[0]
+    runs = [hazard.perform(row, number) for number in rows.numbers("judge", 40)]
+    violators = [r for r in runs if r.approach.violates]
+    assert len(violators) >= 5 and approach.unwarned(runs) == 0.0
+    goals = {goal.name.split(": ")[1]: goal for goal in hazard.goals_of("hazard", row, runs)}
+    assert goals["within 2 sigma"].values["time"] > 80.0
+    assert goals["flown"].values["violators"] == len(violators)

@@ -1,0 +1,189 @@
+"""What of the truth is told, and how wrong: one sigma each, anew for each track, unless it says otherwise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import turns
+from .motion import Path
+from .view import BASE_LEFT, BASE_NEAR, BASE_RIGHT, LEFT, RIGHT, TOP
+
+FEET_PER_M = 1.0 / 0.3048
+FALSE_POINT_PX = (8.0, 60.0)  # of an outlier, from the truth
+NED_TO_ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])  # its own inverse
+FLIPPED = np.diag([1.0, -1.0, -1.0])  # FRD and FLU, NED and NWU
+WRONG_NEAR_SHARE = (0.2, 0.5)  # where along the base's edge the wrong near corner lies
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """By default the errors that the library's default settings tell of."""
+
+    point_px: float = 0.5
+    point_share: float = 0.0  # of left, right, top: of the width in the image, correlated over alike_s
+    box_px: float = 0.5
+    box_share: float = 0.04  # of a side, of the box's width or height, correlated over alike_s
+    alike_s: float = 1.0
+    attitude_bias_deg: float = 0.5  # each body axis
+    attitude_white_deg: float = 0.1
+    velocity_bias_m_s: float = 0.05  # north, east
+    position_walk_m: float = 0.05  # per sqrt(s), each axis
+    height_bias_m: float = 0.5
+    height_white_m: float = 0.0
+    ground_off_m: float = 0.0  # by exactly so much, up or down
+    slope: float = 0.0  # the ground under the aircraft rises or falls by this towards the obstacle
+    reset_m: float = 0.0  # halfway the told down jumps by so much, up or down, and the height with it; the jump is told
+    late_s: float = 0.0  # the pose is that of so long before
+    mount_off_deg: float = 0.0  # the told mounting, about each axis by exactly so much, either way
+    focal_share: float = 0.0  # the told focal length is too long by this
+    k1: float = 0.0  # of the lens, not told
+    outliers: float = 0.0  # share of the points that lie anywhere near
+    near_wrong: bool = False  # the near base corner is a point of a base's edge, the same one in every image
+    convention: str = ""  # one of CONVENTIONS
+    mount_told_deg: tuple[float, float, float] | None = None  # yaw, pitch, roll; None: as it is
+
+
+@dataclass
+class Pose:
+    """As told, over K images: NED, matrices body -> NED, heights above ground."""
+
+    position_m: np.ndarray
+    attitude: np.ndarray
+    quaternion: np.ndarray
+    height_m: np.ndarray
+    velocity_error_m_s: np.ndarray  # (3,) of the told velocity
+
+
+def _of_matrix(change: Callable[[np.ndarray], np.ndarray]) -> Callable[[Pose], None]:
+    def apply(pose: Pose) -> None:
+        pose.quaternion = turns.quaternion(change(pose.attitude))
+
+    return apply
+
+
+def _order(pose: Pose) -> None:
+    pose.quaternion = pose.quaternion[:, [1, 2, 3, 0]]
+
+
+def _with_angles(yaw: float, pitch: float, roll: float) -> Callable[[np.ndarray], np.ndarray]:
+    def change(matrix: np.ndarray) -> np.ndarray:
+        angles = turns.angles_of(matrix)
+        return turns.of_angles(yaw * angles[0], pitch * angles[1], roll * angles[2])
+
+    return change
+
+
+def _enu(pose: Pose) -> None:
+    """Position east, north, up; attitude FLU -> ENU."""
+    pose.position_m = pose.position_m @ NED_TO_ENU
+    pose.quaternion = turns.quaternion(NED_TO_ENU @ pose.attitude @ FLIPPED)
+
+
+def _position_enu(pose: Pose) -> None:
+    pose.position_m = pose.position_m @ NED_TO_ENU
+
+
+def _nwu(pose: Pose) -> None:
+    """Position north, west, up; attitude FLU -> NWU."""
+    pose.position_m = pose.position_m @ FLIPPED
+    pose.quaternion = turns.quaternion(FLIPPED @ pose.attitude @ FLIPPED)
+
+
+def _height_in_feet(pose: Pose) -> None:
+    pose.height_m = pose.height_m * FEET_PER_M
+
+
+def _all_in_feet(pose: Pose) -> None:
+    pose.height_m, pose.position_m = pose.height_m * FEET_PER_M, pose.position_m * FEET_PER_M
+
+
+CONVENTIONS: dict[str, Callable[[Pose], None]] = {
+    "conjugated": _of_matrix(lambda m: np.swapaxes(m, -1, -2)),
+    "ENU": _enu,
+    "FLU body": _of_matrix(lambda m: m @ FLIPPED),
+    "NWU": _nwu,
+    "xyzw": _order,
+    "roll sign": _of_matrix(_with_angles(1.0, 1.0, -1.0)),
+    "pitch sign": _of_matrix(_with_angles(1.0, -1.0, 1.0)),
+    "position ENU": _position_enu,
+    "height in feet": _height_in_feet,
+    "all in feet": _all_in_feet,
+}
+
+
+def alike(time_s: np.ndarray, constant_s: float, columns: int, rng: np.random.Generator) -> np.ndarray:
+    """(K, columns) of sigma 1 that forgets with a time constant."""
+    result = rng.standard_normal((len(time_s), columns))
+    kept = np.exp(-np.diff(time_s) / constant_s)
+    for k, share in enumerate(kept, start=1):
+        result[k] = share * result[k - 1] + math.sqrt(1.0 - share * share) * result[k]
+    return result
+
+
+def spoil_points(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.random.Generator) -> np.ndarray:
+    """Points (K, 6, 2) as a detector gives them."""
+    pixel = exact + wrong.point_px * rng.standard_normal(exact.shape)
+    drawn = alike(time_s, wrong.alike_s, 3, rng)
+    if wrong.point_share:
+        width = exact[:, RIGHT, 0] - exact[:, LEFT, 0]
+        error = wrong.point_share * width[:, None] * drawn
+        pixel[:, LEFT, 0] += error[:, 0]
+        pixel[:, RIGHT, 0] += error[:, 1]
+        pixel[:, TOP, 1] += np.where(np.isfinite(error[:, 2]), error[:, 2], 0.0)
+    hit = rng.random(exact.shape[:2]) < wrong.outliers
+    size, angle = rng.uniform(*FALSE_POINT_PX, exact.shape[:2]), rng.uniform(0.0, 2 * math.pi, exact.shape[:2])
+    pixel += (hit * size)[..., None] * np.stack([np.cos(angle), np.sin(angle)], -1)
+    share, other = rng.uniform(*WRONG_NEAR_SHARE), rng.choice([BASE_LEFT, BASE_RIGHT])
+    if wrong.near_wrong:
+        pixel[:, BASE_NEAR] += share * (exact[:, other] - exact[:, BASE_NEAR])
+    return pixel
+
+
+def spoil_boxes(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.random.Generator) -> np.ndarray:
+    """Boxes (K, 4) as a detector gives them, not yet cut by the border."""
+    size = np.tile(exact[:, 2:] - exact[:, :2], 2)
+    white = wrong.box_px * rng.standard_normal(exact.shape)
+    return exact + wrong.box_share * size * alike(time_s, wrong.alike_s, 4, rng) + white
+
+
+def told_pose(
+    path: Path, time_s: np.ndarray, to_ned: np.ndarray, origin_m: np.ndarray, obstacle_m: np.ndarray, wrong: Wrong,
+    rng: np.random.Generator,
+) -> tuple[Pose, np.ndarray]:  # fmt: skip
+    """The pose at some of the path's times, and what the autopilot's filter jumped by up to each of them (K, 3).
+    ``to_ned``: the course's axes, which begin at ``origin_m``; ``obstacle_m``: forward, right."""
+    place, body = path.at(time_s - wrong.late_s)
+    place, height = origin_m + place @ to_ned.T, -place[:, 2]
+    count, flown_s = len(time_s), time_s - time_s[0]
+    bias = math.radians(wrong.attitude_bias_deg) * rng.standard_normal(3)
+    white = math.radians(wrong.attitude_white_deg) * rng.standard_normal((count, 3))
+    step = wrong.position_walk_m * np.sqrt(np.diff(time_s, prepend=time_s[0]))[:, None]
+    place = place + np.cumsum(step * rng.standard_normal((count, 3)), 0)
+    drift = np.append(wrong.velocity_bias_m_s * rng.standard_normal(2), 0.0)
+    place = place + drift * flown_s[:, None]
+    up, slope, jump = rng.choice([-1.0, 1.0], 3) * [wrong.ground_off_m, wrong.slope, wrong.reset_m]
+    told = height + up + wrong.height_bias_m * rng.standard_normal() + wrong.height_white_m * rng.standard_normal(count)
+    told = told + slope * np.linalg.norm(path.at(time_s)[0][:, :2] - obstacle_m, axis=1)
+    jumped = np.zeros((count, 3))
+    jumped[count // 2 :, 2] = jump
+    attitude = to_ned @ body @ turns.of_vector(bias + white)
+    pose = Pose(place + jumped, attitude, turns.quaternion(attitude), told - jumped[:, 2], drift)
+    if wrong.convention:
+        CONVENTIONS[wrong.convention](pose)
+    return pose, jumped
+
+
+def told_mounting(
+    mount_deg: tuple[float, float, float], wrong: Wrong, rng: np.random.Generator
+) -> tuple[float, float, float]:
+    """Yaw, pitch, roll, degrees."""
+    if wrong.mount_told_deg is not None:
+        return wrong.mount_told_deg
+    off = math.radians(wrong.mount_off_deg) * rng.choice([-1.0, 1.0], 3)
+    matrix = turns.of_angles(*np.radians(mount_deg)) @ turns.of_vector(off)
+    yaw, pitch, roll = np.degrees(turns.angles_of(matrix))
+    return float(yaw), float(pitch), float(roll)

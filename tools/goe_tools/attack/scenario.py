@@ -1,0 +1,218 @@
+"""One track: flight, obstacle, camera and errors together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from . import errors, motion, solids, turns, view
+from .errors import Wrong
+from .motion import Flown
+from .solids import Solid
+from .view import Camera, Standpoint
+
+SEED = 20260511
+MIN_IMAGES = 12  # with features, for a track
+MIXED = "mixed"  # two boxes to one cylinder
+FEATURES = ("corners", "outline", "boxes")
+ATTEMPTS = 200  # to draw a flight that sees its obstacle
+KEPT_M = 3.0  # the camera stays so far off the obstacle's outline
+ORIGIN_M = 3000.0  # where the flight begins in NED: within this each way
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """What is drawn for a track; every number of it holds for all tracks of a row."""
+
+    flown: Flown = field(default_factory=Flown)
+    kind: str = MIXED  # a solid's, or mixed
+    size_m: tuple[float, float] = (2.0, 25.0)
+    features: str = (
+        "corners"  # left, right, top and base corners; outline: without the corners; boxes: upright boxes alone
+    )
+    wrong: Wrong = field(default_factory=Wrong)
+    mount_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)  # yaw, pitch, roll of the camera
+    moves_m_s: float = 0.0
+    moves: str = ""  # across, diagonal, along, oncoming
+    collides: bool = False  # the camera may come nearer than KEPT_M
+
+    def by(self, **changes: object) -> Scenario:
+        """With other values; those of flight and errors go by their own names."""
+        inner = {name: getattr(self, name) for name in ("flown", "wrong")}
+        own: dict[str, object] = {}
+        for name, value in changes.items():
+            for part, of_part in inner.items():
+                if name in type(of_part).__dataclass_fields__:
+                    inner[part] = replace(of_part, **{name: value})
+                    break
+            else:
+                own[name] = value
+        return replace(self, **inner, **own)  # type: ignore[arg-type]
+
+
+@dataclass
+class Truth:
+    """T axes of the track's first image: the first one that shows something."""
+
+    solid: Solid
+    middle_m: np.ndarray  # (2,) X, Z
+    axis_rad: float  # T's Z axis, clockwise from north
+    velocity_ned_m_s: np.ndarray  # (2,) north, east of the obstacle
+    path_velocity_ned_m_s: np.ndarray  # (K, 3) of the aircraft, true
+    eye_ned_m: np.ndarray  # (K, 3) true, about the obstacle's first middle; down from its ground
+
+
+@dataclass
+class Told:
+    """What an estimator gets: K images; settings by the library's names."""
+
+    number: int
+    time_s: np.ndarray
+    position_ned_m: np.ndarray
+    attitude: np.ndarray
+    height_m: np.ndarray
+    pixel_px: np.ndarray
+    seen: np.ndarray
+    box_px: np.ndarray | None
+    reset_count: np.ndarray
+    reset_m: np.ndarray
+    velocity_ned_m_s: np.ndarray
+    settings: dict[str, float]
+    truth: Truth
+
+    @property
+    def shown(self) -> np.ndarray:
+        """(K,) whether anything of the obstacle is in an image."""
+        shown = self.seen.any(1)
+        return shown if self.box_px is None else shown | np.isfinite(self.box_px).any(1)
+
+
+def kind_of(scenario: Scenario, number: int) -> str:
+    """Of three tracks of a half two pass boxes, one a cylinder."""
+    if scenario.kind != MIXED:
+        return scenario.kind
+    return "cylinder" if number // 2 % 3 == 2 else "box"
+
+
+def _velocity(scenario: Scenario, rng: np.random.Generator) -> np.ndarray:
+    """(2,) forward, right, of the obstacle."""
+    side = float(rng.choice([-1.0, 1.0]))
+    away = float(rng.choice([-1.0, 1.0]))
+    direction = {
+        "": (0.0, 0.0), "across": (0.0, side), "along": (1.0, 0.0), "oncoming": (-1.0, 0.0),
+        "diagonal": (away * math.sqrt(0.5), side * math.sqrt(0.5)),
+    }  # fmt: skip
+    return scenario.moves_m_s * np.array(direction[scenario.moves])
+
+
+def _settings(camera: Camera, wrong: Wrong, axis_deg: float, rng: np.random.Generator) -> dict[str, float]:
+    focal = camera.focal_px * (1.0 + wrong.focal_share)
+    mount = errors.told_mounting(camera.mount_deg, wrong, rng)
+    result = {"camera.fx_px": focal, "camera.fy_px": focal}
+    result |= {"camera.cx_px": camera.middle_px, "camera.cy_px": camera.middle_px}
+    result |= {"camera.width_px": camera.width_px, "camera.height_px": camera.height_px}
+    result |= {f"camera.mount_{name}_deg": angle for name, angle in zip(("yaw", "pitch", "roll"), mount)}
+    return result | {"heading_auto": 0.0, "heading_deg": (axis_deg + 180.0) % 360.0 - 180.0}
+
+
+@dataclass(frozen=True)
+class _World:
+    """A flight as it is, over all images of its path; course axes (forward, right, down)."""
+
+    path: motion.Path
+    to_ned: np.ndarray
+    axis_rad: float  # T's Z axis, clockwise from north
+    solid: Solid  # orientation from the course's forward
+    velocity_m_s: np.ndarray  # (2,) of the solid
+    middle_m: np.ndarray  # (K, 2) of the solid
+    place_m: np.ndarray  # (K, 3) of the camera
+    stand: Standpoint
+
+
+def _world(scenario: Scenario, number: int, rng: np.random.Generator) -> _World:
+    solid = solids.drawn(kind_of(scenario, number), scenario.size_m, rng)
+    path = motion.PATHS[scenario.flown.path](scenario.flown, solid.half_m, rng)
+    heading, velocity, time = rng.uniform(-math.pi, math.pi), _velocity(scenario, rng), path.time_s
+    crosses = scenario.moves in ("across", "diagonal")  # then it is where the path wants it halfway
+    middle = path.obstacle_m + velocity * (time - (0.5 * (time[0] + time[-1]) if crosses else time[0]))[:, None]
+    place, body = path.at(time)
+    yaw, pitch, roll = scenario.mount_deg
+    camera = Camera(k1=scenario.wrong.k1, mount_deg=(yaw + path.mount_yaw_deg, pitch, roll))
+    turned = replace(solid, orientation_rad=solid.orientation_rad + path.axis_rad)
+    eye = np.stack([place[:, 1], place[:, 0], -place[:, 2]], 1)
+    stand = Standpoint(camera, eye, body, middle[:, ::-1])
+    return _World(path, turns.about(2, heading), heading + path.axis_rad, turned, velocity, middle, place, stand)
+
+
+def _seen(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray | None]:
+    """Points (K, 6, 2) and boxes (K, 4), NaN where there is none."""
+    time, none = world.path.time_s, np.full((len(world.path.time_s), 6, 2), np.nan)
+    if scenario.features == "boxes":
+        exact = view.boxes(world.solid, world.stand)
+        given = errors.spoil_boxes(exact, time, scenario.wrong, rng)
+        return none, view.cut_at_border(given, exact, world.stand.camera)
+    exact = view.points(world.solid, world.stand, scenario.features == "corners")
+    pixel = errors.spoil_points(exact, time, scenario.wrong, rng)
+    whole = np.isfinite(exact[:, [view.LEFT, view.RIGHT]]).all((1, 2))
+    return np.where(whole[:, None, None], pixel, np.nan), None
+
+
+def _axis(world: _World, first_seen: int) -> float:
+    """T's Z axis from the course's forward: as the path says, or of the nose when something is first seen."""
+    if world.path.trimmed:
+        return world.path.axis_rad
+    nose = world.path.at(world.path.time_s[first_seen : first_seen + 1])[1][0, :, 0]
+    return math.atan2(nose[1], nose[0])
+
+
+def _truth(world: _World, part: slice, first_seen: int, axis: float) -> Truth:
+    path = world.path
+    time, place, middle = path.time_s[part], world.place_m[part], world.middle_m[part]
+    to_t = np.array([[-math.sin(axis), math.cos(axis)], [math.cos(axis), math.sin(axis)]])  # (forward, right) -> (X, Z)
+    about_middle = place - np.append(middle[0], 0.0)
+    return Truth(
+        replace(world.solid, orientation_rad=world.solid.orientation_rad - axis),
+        (middle[0] - world.place_m[first_seen, :2]) @ to_t,
+        world.axis_rad - path.axis_rad + axis, world.velocity_m_s @ world.to_ned[:2, :2].T,
+        path.velocity(time) @ world.to_ned.T, about_middle @ world.to_ned.T,
+    )  # fmt: skip
+
+
+def _one(scenario: Scenario, number: int, attempt: int) -> Told | None:
+    """None if too few images show the obstacle, or the camera comes too near."""
+    rng, noise = (np.random.default_rng([SEED, number, attempt, part]) for part in (0, 1))
+    world = _world(scenario, number, rng)
+    away = np.linalg.norm(world.place_m[:, :2] - world.middle_m, axis=1)
+    if (away < world.solid.half_m + KEPT_M).any() and not scenario.collides:
+        return None
+    pixel, box = _seen(scenario, world, noise)
+    shown = np.isfinite(pixel).any((1, 2)) if box is None else np.isfinite(box).any(1)
+    if shown.sum() < MIN_IMAGES:
+        return None
+    part = slice(int(np.argmax(shown)) if world.path.trimmed else 0, len(shown) - int(np.argmax(shown[::-1])))
+    time = world.path.time_s[part]
+    origin = np.append(rng.uniform(-ORIGIN_M, ORIGIN_M, 2), 0.0)
+    pose, jumped = errors.told_pose(
+        world.path, time, world.to_ned, origin, world.path.obstacle_m, scenario.wrong, noise
+    )
+    steps = np.diff(jumped, axis=0, prepend=jumped[:1])
+    seen = np.isfinite(pixel[part]).all(-1)
+    first_seen = int(np.argmax(shown))
+    truth = _truth(world, part, first_seen, _axis(world, first_seen))
+    return Told(
+        number, time - time[0], pose.position_m, pose.quaternion, pose.height_m,
+        np.where(seen[..., None], pixel[part], 0.0), seen, None if box is None else box[part],
+        np.cumsum(np.abs(steps).max(1) > 0), steps, truth.path_velocity_ned_m_s + pose.velocity_error_m_s,
+        _settings(world.stand.camera, scenario.wrong, math.degrees(truth.axis_rad), noise), truth,
+    )  # fmt: skip
+
+
+def fly(scenario: Scenario, number: int) -> Told:
+    """The track of a number: the same number gives the same flight; rows whose errors alone differ share flights."""
+    for attempt in range(ATTEMPTS):
+        told = _one(scenario, number, attempt)
+        if told is not None:
+            return told
+    raise ValueError(f"track {number}: no flight in {ATTEMPTS} sees its obstacle; change the scenario")

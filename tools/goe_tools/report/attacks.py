@@ -1,0 +1,146 @@
+"""Hostile flights: where the sigma holds, and where not. From the lines of the goals ``attack`` and ``hazard``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from ..attack import approach, rows
+from .goals_file import QUANTITIES, GoalRow, Goals
+from .prose.words import plural
+
+ATTACK, HAZARD = "attack", "hazard"
+TOLD_LINES = (rows.REASON, rows.LATENESS, rows.ODD, rows.VELOCITY, rows.TIME, rows.ANSWERS)
+
+
+@dataclass
+class Attack:
+    """A row of either group: its lines by what they tell."""
+
+    section: str
+    title: str
+    lines: dict[str, GoalRow] = field(default_factory=dict)
+    met: bool | None = None  # None: nothing is asked
+    missed: frozenset[tuple[str, str]] = frozenset()  # lines and names of the figures that miss
+
+    def figure(self, line: str, name: str) -> float:
+        return self.lines[line].values.get(name, math.nan) if line in self.lines else math.nan
+
+    def misses(self, line: str, name: str) -> bool:
+        return (line, name) in self.missed
+
+
+def is_hostile(row: GoalRow) -> bool:
+    return row.group.split(":")[0] in (ATTACK, HAZARD)
+
+
+def without(goals: Goals) -> Goals:
+    """The other groups' lines."""
+    return Goals(tuple(row for row in goals.rows if not is_hostile(row)), goals.quick)
+
+
+def _taken(lines: Iterable[GoalRow], sections: bool) -> list[Attack]:
+    found: dict[tuple[str, str], Attack] = {}
+    for row in lines:
+        title, _, line = row.name.partition(": ")
+        section = row.group.partition(": ")[2] if sections else ""
+        attack = found.setdefault((section, title), Attack(section, title))
+        attack.lines.setdefault(line, row)
+        if row.met is not None:
+            attack.met = bool(row.met) and attack.met is not False
+        told = line.partition(",")[0]  # a line with another range for other quantities names these
+        attack.missed |= {(told, name) for name in row.missed}
+    return list(found.values())
+
+
+def attacks(goals: Goals) -> list[Attack]:
+    """In the file's order."""
+    return _taken((row for row in goals.rows if row.group.split(":")[0] == ATTACK), sections=True)
+
+
+def warnings(goals: Goals) -> list[Attack]:
+    return _taken((row for row in goals.rows if row.group == HAZARD), sections=False)
+
+
+def _percent(value: float) -> str:
+    return "" if not math.isfinite(value) else f"{value:.0f}" if value == 0.0 or value >= 0.95 else f"{value:.1f}"
+
+
+def _cell(attack: Attack, line: str, names: Iterable[str]) -> dict[str, str]:
+    """Figures of a line with slashes between; red if one of them is missed."""
+    names = list(names)
+    texts = [_percent(attack.figure(line, name)) for name in names]
+    css = "miss" if any(attack.misses(line, name) for name in names) else ""
+    return {"text": "/".join(text or "–" for text in texts) if any(texts) else "", "css": css}
+
+
+def _told(attack: Attack) -> dict[str, str]:
+    parts, css = [], ""
+    for line in TOLD_LINES:
+        row = attack.lines.get(line)
+        if row is not None and (line != rows.ANSWERS or row.met is not None):
+            values = row.values
+            known = [f"{name} {_percent(value)} %" for name, value in values.items() if math.isfinite(value)]
+            parts += [f"{line}: {', '.join(known) or 'never'}"]
+            css = "miss" if row.missed else css
+    return {"text": "; ".join(parts), "css": css}
+
+
+def attack_table(goals: Goals) -> list[dict[str, object]]:
+    """For the page: coverage of the six, confident errors, suspicion, what else is told, goal."""
+    told, section = [], ""
+    for attack in attacks(goals):
+        cells = [_cell(attack, rows.COVER, [name]) for name in QUANTITIES]
+        wrong = _cell(attack, rows.WRONG, (rows.ANY, rows.POSITION))
+        suspect = _cell(attack, rows.SUSPECT, (rows.TRACKS, rows.IMAGES))
+        told.append({
+            "section": attack.section if attack.section != section else "", "title": attack.title,
+            "cells": [*cells, wrong, suspect], "told": _told(attack), "met": attack.met,
+        })  # fmt: skip
+        section = attack.section
+    return told
+
+
+def warning_table(goals: Goals) -> list[dict[str, object]]:
+    told = []
+    for row in warnings(goals):
+        shares = row.lines.get(approach.TRUE_SHARE)
+        levels = [f"{level}: {share:.2f}" for level, share in shares.values.items()] if shares else []
+        off = any(line == approach.OFF for line, _ in row.missed)
+        told.append({
+            "title": row.title, "met": row.met,
+            "cells": [
+                {"text": "; ".join(levels), "css": "miss" if off else ""},
+                _cell(row, approach.COVERED, ("time", "miss", "clearance")),
+                _cell(row, approach.UNWARNED, ("violators",)),
+                _cell(row, approach.FALSE, ("passes",)),
+            ],
+        })  # fmt: skip
+    return told
+
+
+def sentences(goals: Goals) -> list[str]:
+    """What is seen, from the numbers."""
+    said = []
+    for found, one in ((attacks(goals), "attack"), (warnings(goals), "row of warnings")):
+        asked = [row for row in found if row.met is not None]
+        if asked:
+            many = "rows of warnings" if one.startswith("row") else None
+            met = sum(bool(row.met) for row in asked)
+            verb = "meets" if met == 1 else "meet"
+            said.append(f"Of {plural(len(asked), one, many)} with a goal, {met} {verb} all that is asked.")
+    wrong = [(row.figure(rows.WRONG, rows.POSITION), row.title) for row in attacks(goals) if rows.WRONG in row.lines]
+    worst = sorted((figure for figure in wrong if figure[0] > 0.0), reverse=True)[:3]
+    if worst:
+        names = "; ".join(f"{title} ({_percent(share)} %)" for share, title in worst)
+        said.append(f"Positions confidently wrong, and not suspect, in most tracks: {names}.")
+    unwarned = [(row.figure(approach.UNWARNED, "violators"), row.title) for row in warnings(goals)]
+    lacking = [f"{title} ({_percent(share)} %)" for share, title in unwarned if share > 0.0]
+    if unwarned:
+        said.append(
+            f"Violators without a warning {approach.AHEAD_S:g} s ahead, by the README's rule: "
+            + ("; ".join(lacking) if lacking else "none")
+            + "."
+        )
+    return said
