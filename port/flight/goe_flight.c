@@ -75,9 +75,6 @@ static const char *init_slots(goe_flight_t *flight, const goe_settings_t *estima
     if (!bad && !(estimator->camera.height_px > 0.0f)) {
         bad = "camera.height_px";
     }
-    if (!bad && !estimator->heading_auto) {
-        bad = "heading_auto";
-    }
     return bad;
 }
 

@@ -22,9 +22,9 @@
  * Arithmetic  float only; of the C library sqrtf, memcpy and memset. Compiled with -ffp-contract=off the results have the same
  *             bits on every IEEE 754 target.
  * Safety      Every output is finite. What is not finite is refused by its exponent bits, also under -ffast-math.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 40,000 for each obstacle in it, an assessment
- *             20,500 for each obstacle with a position, goe_flight_obstacle() 610, goe_flight_sectors() 6,000, goe_flight_init()
- *             9,500 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 34,000 for each obstacle in it, an assessment
+ *             20,000 for each obstacle with a position, goe_flight_obstacle() 610, goe_flight_sectors() 6,000, goe_flight_init()
+ *             9,700 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changed nothing but counters.
  */
 #ifndef GOE_FLIGHT_H
@@ -288,7 +288,7 @@ typedef struct { /* goe_slot.c */
     uint32_t id;
     uint32_t taken_us, seen_us; /* exposure of the latest image taken, and of that with a detection */
     float jumps_ned_m[3];       /* the history's sum at the latest image taken */
-    float ground_down_m, heading_cos, heading_sin; /* of the track, fixed at its first image */
+    float ground_down_m, height_sd_m; /* of the track, fixed at its first image */
     float center_ne_m[2], covariance_ne_m2[3];
     float top_m, top_sd_m, width_m, length_m, length_heading_deg;
     float age_s; /* at taken_us */
@@ -341,7 +341,9 @@ void goe_flight_settings_default(goe_flight_settings_t *settings);
 
 /* Checks both settings, copies them, starts with nothing known.
  *   flight_size  sizeof(goe_flight_t) as the caller's compiler sees it
- *   estimator    as for goe_init; camera.width_px and height_px must be set too
+ *   estimator    as for goe_init; camera.width_px and height_px must be set too. With boxes the sigma of the height's source, a
+ *                setting of the layer, stands for navigation.height_bias_m. height_white_m is best left 0: a track's heights
+ *                are one reading and the changes of down
  *   settings     null: the defaults
  *   bad_field    where to put the name of the first bad setting; null if not wanted
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _BAD_SETTINGS; on failure *flight cannot be used. */

@@ -7,7 +7,6 @@
 #include "goe_flight_maths.h"
 #include "goe_geometry.h"
 
-#define LEVEL_NOSE_MIN 1.0e-3f
 #define AROUND 0.25f /* a box is taken as larger by this share: detectors and predictions err */
 #define OVERLAP_MIN 0.3f
 #define ALIKE 3.0f /* a box this many times as wide or high as the latest one is of another thing */
@@ -44,18 +43,8 @@ void goe_flight_slot_shift(goe_flight_slot_t *slot, const float jump_ned_m[3]) {
 
 /* ------------------------------------------------------------------------------------------------------------- image -- */
 
-/* The direction of the estimator's Z, which it takes from the nose at the track's first image. */
-static void note_heading(goe_flight_slot_t *slot, const float body_to_ned[9]) {
-    const float north = body_to_ned[0];
-    const float east = body_to_ned[3];
-    const float level = sqrtf(north * north + east * east);
-    const bool steep = level < LEVEL_NOSE_MIN;
-    slot->heading_cos = steep ? 1.0f : north / level;
-    slot->heading_sin = steep ? 0.0f : east / level;
-}
-
 static void set_pose(const goe_flight_slot_t *slot, const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
-                     float arm_down_m, goe_pose_t *pose) {
+                     float camera_down_m, goe_pose_t *pose) {
     float jump[3];
     bool jumped = false;
     for (int i = 0; i < 3; i++) {
@@ -66,7 +55,7 @@ static void set_pose(const goe_flight_slot_t *slot, const goe_flight_slot_view_t
     }
     memcpy(pose->attitude, view->pose.q, sizeof pose->attitude);
     pose->time_us = view->estimator_us;
-    pose->height_m = slot->ground_down_m - view->pose.ned_m[2] - arm_down_m;
+    pose->height_m = slot->ground_down_m - camera_down_m;
     pose->reset_count = (uint8_t)(slot->reset_count + (jumped ? 1 : 0));
     pose->reset_delta_known = true;
 }
@@ -102,21 +91,26 @@ static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, 
 
 /* ------------------------------------------------------------------------------------------------------------- place -- */
 
-/* North and east of a vector in T. */
-static void out_of_trajectory(const goe_flight_slot_t *slot, float x, float z, float ne[2]) {
-    ne[0] = slot->heading_cos * z - slot->heading_sin * x;
-    ne[1] = slot->heading_sin * z + slot->heading_cos * x;
+static void note_center(goe_flight_slot_t *slot, const goe_estimate_t *estimate) {
+    slot->center_ne_m[0] = estimate->center_north_m;
+    slot->center_ne_m[1] = estimate->center_east_m;
+    slot->covariance_ne_m2[0] = goe_flight_square(estimate->sigma.center_north_m);
+    slot->covariance_ne_m2[1] = estimate->center_ne_m2;
+    slot->covariance_ne_m2[2] = goe_flight_square(estimate->sigma.center_east_m);
 }
 
-/* Of the reference point, which is the centre but for a box or line: there its spread is taken for the centre's. */
-static void note_covariance(goe_flight_slot_t *slot) {
+/* A box or line whose length is not known has no centre: the middle of its front edge and the spread of that stand for it. */
+static void note_front(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
-    const float c = slot->heading_cos;
-    const float s = slot->heading_sin;
+    float s;
+    float c;
+    goe_flight_sincos_deg(estimate->trajectory_heading_deg, &s, &c);
     (void)goe_covariance(&slot->estimator, covariance);
     const float xx = covariance[GOE_X0][GOE_X0];
     const float xz = covariance[GOE_X0][GOE_Z0];
     const float zz = covariance[GOE_Z0][GOE_Z0];
+    slot->center_ne_m[0] = camera_ned_m[0] + c * estimate->z_m - s * estimate->x_m;
+    slot->center_ne_m[1] = camera_ned_m[1] + s * estimate->z_m + c * estimate->x_m;
     slot->covariance_ne_m2[0] = c * c * zz - 2.0f * c * s * xz + s * s * xx;
     slot->covariance_ne_m2[1] = c * s * (zz - xx) + (c * c - s * s) * xz;
     slot->covariance_ne_m2[2] = s * s * zz + 2.0f * c * s * xz + c * c * xx;
@@ -129,14 +123,13 @@ static void note_outline(goe_flight_slot_t *slot, const goe_estimate_t *estimate
     slot->top_sd_m = estimate->sigma.height_m;
     slot->length_heading_deg = 0.0f;
     if (estimate->valid & GOE_HAS_ORIENTATION) {
-        float ne[2];
-        out_of_trajectory(slot, estimate->length_axis[0], estimate->length_axis[1], ne);
+        const float *ne = estimate->length_axis_ne;
         const float heading_deg = goe_flight_positive_deg(goe_flight_atan2_deg(ne[1], ne[0]));
         slot->length_heading_deg = heading_deg < 180.0f ? heading_deg : heading_deg - 180.0f;
     }
 }
 
-static void note(goe_flight_slot_t *slot, const goe_pose_t *pose, const float arm[3], const goe_estimate_t *estimate) {
+static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
     slot->valid = (uint8_t)estimate->valid;
     slot->model = (uint8_t)estimate->model;
     slot->suspect = estimate->suspect;
@@ -147,16 +140,10 @@ static void note(goe_flight_slot_t *slot, const goe_pose_t *pose, const float ar
         return;
     }
     if (estimate->valid & GOE_HAS_CENTER) {
-        slot->center_ne_m[0] = estimate->center_north_m;
-        slot->center_ne_m[1] = estimate->center_east_m;
+        note_center(slot, estimate);
     } else {
-        float away[2];
-        out_of_trajectory(slot, estimate->x_m, estimate->z_m, away);
-        for (int i = 0; i < 2; i++) {
-            slot->center_ne_m[i] = pose->position_ned_m[i] + arm[i] + away[i];
-        }
+        note_front(slot, camera_ned_m, estimate);
     }
-    note_covariance(slot);
     note_outline(slot, estimate);
 }
 
@@ -166,22 +153,25 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t *ca
     goe_image_t image;
     goe_estimate_t estimate;
     float body_to_ned[9];
-    float arm[3];
+    float camera_ned_m[3];
     if (!slot->fresh_track && goe_flight_between_us(view->time_us, slot->taken_us) <= 0) {
         return;
     }
     goe_flight_rotation(view->pose.q, body_to_ned);
-    goe_flight_turn(body_to_ned, camera->offset_m, arm);
+    goe_flight_turn(body_to_ned, camera->offset_m, camera_ned_m);
+    for (int i = 0; i < 3; i++) {
+        camera_ned_m[i] += view->pose.ned_m[i];
+    }
     if (slot->fresh_track) {
         slot->ground_down_m = view->ground_down_m;
-        note_heading(slot, body_to_ned);
+        slot->height_sd_m = view->height_sd_m;
         (void)goe_reset(&slot->estimator);
         memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
     }
     memset(&image, 0, sizeof image);
-    set_pose(slot, view, jumps_ned_m, arm[2], &image.pose);
+    set_pose(slot, view, jumps_ned_m, camera_ned_m[2], &image.pose);
     image.noise.attitude_deg = view->attitude_sd_deg;
-    image.noise.height_m = view->height_sd_m; /* counts in a track's first image alone */
+    image.noise.height_m = slot->height_sd_m; /* counts in the first image in which something is seen */
     if (seen) {
         set_features(&image, camera, seen);
     }
@@ -193,7 +183,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t *ca
         slot->reset_count = image.pose.reset_count;
         memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
         slot->fresh_track = false;
-        note(slot, &image.pose, arm, &estimate);
+        note(slot, camera_ned_m, &estimate);
         if (seen) {
             (void)goe_flight_slot_box_of(seen, slot->box_px);
         }

@@ -95,6 +95,89 @@ static void the_mirror_image_turns_to_the_other_side(void) {
     CHECK_CLOSE(0.3, -last[0].target_ned_m[1], last[1].target_ned_m[1]);
 }
 
+static void restart(flown_t *of, const goe_settings_t *estimator) {
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&of->flight, sizeof of->flight, estimator, NULL, NULL));
+}
+
+static void check_same_place(const goe_flight_obstacle_t *a, const goe_flight_obstacle_t *b) {
+    const double trace_m2 = (double)(a->covariance_ne_m2[0] + a->covariance_ne_m2[2]);
+    for (int i = 0; i < 3; i++) {
+        CHECK_CLOSE(0.02, a->center_ned_m[i], b->center_ned_m[i]);
+        CHECK_CLOSE(0.01 * trace_m2, a->covariance_ne_m2[i], b->covariance_ne_m2[i]);
+    }
+}
+
+/* T's direction is the caller's choice, and nothing outside depends on it. */
+static void a_set_heading_changes_no_place(void) {
+    goe_flight_obstacle_t by_nose;
+    goe_flight_obstacle_t by_heading;
+    start(&flown, 3.0);
+    start(&other, 3.0);
+    flown.scene.course_deg = other.scene.course_deg = 70.0;
+    goe_settings_t estimator = scene_settings(&other.scene);
+    estimator.heading_auto = false;
+    estimator.heading_deg = 45.0f;
+    restart(&other, &estimator);
+    const goe_flight_assessment_t a = flown_fly(&flown, 4.0);
+    const goe_flight_assessment_t b = flown_fly(&other, 4.0);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &by_nose));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&other.flight, 0, &by_heading));
+    TEST_ASSERT_TRUE((by_nose.valid & GOE_HAS_POSITION) != 0u);
+    check_same_hazard(&a.hazard, &b.hazard, 0.01);
+    check_same_place(&by_nose, &by_heading);
+}
+
+/* Points as the scene gives them, in every fifth sample. */
+static void fly_points(flown_t *of, int samples) {
+    for (int k = 0; k < samples; k++) {
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t position;
+        goe_image_t image;
+        flown_samples(of, k, &attitude, &position);
+        of->sample = k + 1;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&of->flight, &attitude));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&of->flight, &position));
+        scene_image(&of->scene, k, &image, NULL);
+        goe_flight_detection_t detection = {.id = 3u, .score = 1.0f, .left = image.left, .right = image.right};
+        detection.top = image.top;
+        detection.base_left = image.base_left;
+        detection.base_near = image.base_near;
+        detection.base_right = image.base_right;
+        const goe_flight_frame_t frame = flown_frame(of, k, &detection, 1);
+        if (k % FLOWN_IMAGE_EVERY == 0) {
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&of->flight, &frame));
+        }
+    }
+}
+
+/* Of a box of which one face is seen, the front edge is all that has a place; here in a T that lies across the course. */
+static void a_front_without_a_length_lies_where_it_is(void) {
+    goe_flight_obstacle_t obstacle;
+    for (int turned = 0; turned < 2; turned++) {
+        start(&flown, 0.0);
+        flown.scene.boxes = flown.scene.upright_boxes = false;
+        flown.scene.width_m = 10.0;
+        flown.scene.alpha_deg = 0.0;
+        flown.scene.course_deg = -110.0;
+        goe_settings_t estimator = scene_settings(&flown.scene);
+        estimator.model = GOE_MODEL_LINE;
+        estimator.heading_auto = false;
+        estimator.heading_deg = turned ? -95.0f : -125.0f;
+        restart(&flown, &estimator);
+        fly_points(&flown, 200);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+        TEST_ASSERT_TRUE((obstacle.valid & GOE_HAS_POSITION) != 0u);
+        TEST_ASSERT_TRUE((obstacle.valid & GOE_HAS_LENGTH) == 0u);
+        const double along = flown.scene.course_deg * 3.14159265358979 / 180.0;
+        const double north = (double)obstacle.center_ned_m[0] - flown.scene.start_ned_m[0];
+        const double east = (double)obstacle.center_ned_m[1] - flown.scene.start_ned_m[1];
+        CHECK_CLOSE(2.0, flown.scene.z0_m, cos(along) * north + sin(along) * east);
+        CHECK_CLOSE(0.5, 0.0, cos(along) * east - sin(along) * north);
+        const float *ne = obstacle.covariance_ne_m2;
+        TEST_ASSERT_TRUE(ne[0] > 0.01f && ne[2] > 0.01f && ne[0] * ne[2] > ne[1] * ne[1]);
+    }
+}
+
 /* Points work as boxes do, but for those at the border of the image. */
 static void points_at_the_border_are_not_seen(void) {
     start(&flown, 1.0);
@@ -138,6 +221,8 @@ int main(void) {
     RUN_TEST(any_course_gives_the_same_order);
     RUN_TEST(a_shifted_origin_shifts_the_places_alone);
     RUN_TEST(the_mirror_image_turns_to_the_other_side);
+    RUN_TEST(a_set_heading_changes_no_place);
+    RUN_TEST(a_front_without_a_length_lies_where_it_is);
     RUN_TEST(points_at_the_border_are_not_seen);
     return UNITY_END();
 }

@@ -148,7 +148,6 @@ static void fly(replay_t *replay, const logged_track_t *track) {
     replay_read_settings(track, GOE_METHOD_REFINED, &estimator);
     goe_flight_settings_default(&settings);
     settings.confirm_images = 1.0f;
-    estimator.heading_auto = true;
     if (!(estimator.camera.width_px > 0.0f)) {
         estimator.camera.width_px = estimator.camera.height_px = IMAGE_PX;
     }
