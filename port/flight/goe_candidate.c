@@ -16,18 +16,17 @@ float goe_flight_candidate_overlap(const int16_t a[4], const int16_t b[4]) {
     return all > 0.0f ? both / all : 0.0f;
 }
 
-static bool is_same(const goe_flight_candidate_t *candidate, uint32_t id, uint32_t time_us, const int16_t box_px[4]) {
-    if (candidate->images == 0 || goe_flight_between_us(time_us, candidate->time_us) > APART_US ||
-        candidate->id != id) {
+static bool is_same(const goe_flight_candidate_t *candidate, const goe_flight_candidate_t *seen) {
+    if (candidate->images == 0 || goe_flight_between_us(seen->time_us, candidate->time_us) > APART_US ||
+        candidate->id != seen->id || candidate->camera != seen->camera) {
         return false;
     }
-    return id != 0u || goe_flight_candidate_overlap(candidate->box_px, box_px) >= OVERLAP_MIN;
+    return seen->id != 0u || goe_flight_candidate_overlap(candidate->box_px, seen->box_px) >= OVERLAP_MIN;
 }
 
-static goe_flight_candidate_t *find(goe_flight_candidate_t *table, uint32_t id, uint32_t time_us,
-                                    const int16_t box_px[4]) {
+static goe_flight_candidate_t *find(goe_flight_candidate_t *table, const goe_flight_candidate_t *seen) {
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        if (is_same(&table[i], id, time_us, box_px)) {
+        if (is_same(&table[i], seen)) {
             return &table[i];
         }
     }
@@ -48,19 +47,19 @@ static goe_flight_candidate_t *make_room(goe_flight_candidate_t *table, uint32_t
     return oldest;
 }
 
-bool goe_flight_candidate_seen(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], uint32_t id, uint32_t time_us,
-                               const int16_t box_px[4], int images) {
-    goe_flight_candidate_t *candidate = find(table, id, time_us, box_px);
+bool goe_flight_candidate_seen(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], const goe_flight_candidate_t *seen,
+                               int images) {
+    goe_flight_candidate_t *candidate = find(table, seen);
+    uint8_t before = 0;
     if (!candidate) {
-        candidate = make_room(table, time_us);
-        candidate->images = 0;
-    } else if (goe_flight_between_us(time_us, candidate->time_us) <= 0) {
+        candidate = make_room(table, seen->time_us);
+    } else if (goe_flight_between_us(seen->time_us, candidate->time_us) <= 0) {
         return false; /* twice in one image */
+    } else {
+        before = candidate->images;
     }
-    candidate->id = id;
-    candidate->time_us = time_us;
-    memcpy(candidate->box_px, box_px, sizeof candidate->box_px);
-    candidate->images++;
+    *candidate = *seen;
+    candidate->images = (uint8_t)(before + 1);
     if (candidate->images < images) {
         return false;
     }

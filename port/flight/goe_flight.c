@@ -69,13 +69,37 @@ static const char *init_slots(goe_flight_t *flight, const goe_settings_t *estima
             bad = "estimator";
         }
     }
-    if (!bad && !(estimator->camera.width_px > 0.0f)) {
-        bad = "camera.width_px";
-    }
-    if (!bad && !(estimator->camera.height_px > 0.0f)) {
-        bad = "camera.height_px";
-    }
     return bad;
+}
+
+static const goe_camera_t *camera_settings(const goe_settings_t *estimator, int number) {
+#if GOE_CAMERAS_MAX > 1
+    return number > 0 ? &estimator->more_cameras[number - 1] : &estimator->camera;
+#else
+    (void)number;
+    return &estimator->camera;
+#endif
+}
+
+static const char *init_cameras(goe_flight_t *flight, const goe_settings_t *estimator) {
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        const goe_camera_t *camera = camera_settings(estimator, i);
+        if (!(camera->fx_px > 0.0f)) {
+            continue;
+        }
+        if (!(camera->width_px > 0.0f)) {
+            return "camera.width_px";
+        }
+        if (!(camera->height_px > 0.0f)) {
+            return "camera.height_px";
+        }
+        goe_flight_geometry_camera(&flight->camera[i], camera);
+    }
+    return NULL;
+}
+
+static bool has_camera(const goe_flight_t *flight, int number) {
+    return number < GOE_CAMERAS_MAX && flight->camera[number].focal_px[0] > 0.0f;
 }
 
 static void forget(goe_flight_t *flight) {
@@ -85,7 +109,8 @@ static void forget(goe_flight_t *flight) {
     memset(flight->candidate, 0, sizeof flight->candidate);
     memset(flight->velocity_ned_m_s, 0, sizeof flight->velocity_ned_m_s);
     goe_flight_reaction_clear(&flight->reaction);
-    flight->had_frame = flight->origin_known = false;
+    flight->had_frame = 0;
+    flight->origin_known = false;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_begin(&flight->slot[i], 0u, 0u);
         flight->slot[i].used = false;
@@ -107,14 +132,14 @@ goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t flight_size, co
     }
     const char *bad = find_bad(&flight->settings);
     bad = bad ? bad : init_slots(flight, estimator);
+    bad = bad ? bad : init_cameras(flight, estimator);
     if (bad) {
         if (bad_field) {
             *bad_field = bad;
         }
         return GOE_FLIGHT_BAD_SETTINGS;
     }
-    goe_flight_geometry_camera(&flight->camera, &estimator->camera);
-    flight->camera.attitude_white_deg = estimator->navigation.attitude_white_deg;
+    flight->attitude_white_deg = estimator->navigation.attitude_white_deg;
     forget(flight);
     flight->tag = TAG;
     return GOE_FLIGHT_OK;
@@ -299,7 +324,7 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
 
 static float attitude_sd_deg(const goe_flight_t *flight, const goe_flight_history_pose_t *pose, uint32_t time_sd_us) {
     const float late_deg = pose->rate_deg_s * (float)time_sd_us * GOE_FLIGHT_S_PER_US;
-    const float square = goe_flight_square(flight->camera.attitude_white_deg) + goe_flight_square(pose->spread_deg) +
+    const float square = goe_flight_square(flight->attitude_white_deg) + goe_flight_square(pose->spread_deg) +
                          goe_flight_square(late_deg);
     return goe_flight_smaller(sqrtf(square), ATTITUDE_SD_MAX_DEG);
 }
@@ -345,7 +370,7 @@ goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us
         return status;
     }
     goe_flight_rotation(view.pose.q, body_to_ned);
-    goe_flight_turn(body_to_ned, flight->camera.offset_m, arm);
+    goe_flight_turn(body_to_ned, flight->camera[0].offset_m, arm);
     pose->time_us = view.estimator_us;
     memcpy(pose->position_ned_m, view.pose.ned_m, sizeof pose->position_ned_m);
     memcpy(pose->attitude, view.pose.q, sizeof pose->attitude);
@@ -366,8 +391,9 @@ goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us
     return status;
 }
 
-static goe_flight_status_t check_frame(const goe_flight_frame_t *frame) {
-    if (frame->time_base > GOE_FLIGHT_AGE || frame->count > GOE_FLIGHT_DETECTIONS) {
+static goe_flight_status_t check_frame(const goe_flight_t *flight, const goe_flight_frame_t *frame) {
+    if (frame->time_base > GOE_FLIGHT_AGE || frame->count > GOE_FLIGHT_DETECTIONS ||
+        !has_camera(flight, frame->camera)) {
         return GOE_FLIGHT_OUT_OF_RANGE;
     }
     return frame->count > 0 && !frame->detection ? GOE_FLIGHT_BAD_ARGUMENT : GOE_FLIGHT_OK;
@@ -379,6 +405,7 @@ static goe_flight_status_t find_view(goe_flight_t *flight, const goe_flight_fram
     const uint32_t capture_us = goe_flight_clock_capture(clock, frame, &flight->settings, &sd_us);
     goe_flight_status_t status = look_back(flight, capture_us, sd_us, view);
     const float delay_s = goe_flight_between_s((uint32_t)flight->base_us, capture_us);
+    view->camera = frame->camera;
     if (status == GOE_FLIGHT_OK && delay_s > flight->settings.delay_max_s) {
         status = GOE_FLIGHT_TOO_OLD;
     }
@@ -391,7 +418,7 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
     if (status != GOE_FLIGHT_OK) {
         return status;
     }
-    status = check_frame(frame);
+    status = check_frame(flight, frame);
     if (status != GOE_FLIGHT_OK) {
         return refuse(flight, status);
     }
@@ -402,8 +429,8 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
         return status;
     }
     flight->clock = clock;
-    flight->had_frame = true;
-    flight->frame_us = (uint32_t)flight->base_us;
+    flight->had_frame = (uint8_t)(flight->had_frame | 1u << frame->camera);
+    flight->frame_us[frame->camera] = (uint32_t)flight->base_us;
     goe_flight_table_take(flight, &view, frame);
     goe_flight_count(&flight->counters.taken);
     return GOE_FLIGHT_OK;
@@ -438,8 +465,17 @@ static bool pose_alive(const goe_flight_t *flight, uint32_t now_us) {
            goe_flight_between_s(now_us, position->time_us) <= POSE_ALIVE_S;
 }
 
+static bool camera_alive(const goe_flight_t *flight, int number, uint32_t now_us) {
+    return ((flight->had_frame >> number) & 1u) != 0u &&
+           goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.alive_s;
+}
+
 static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
-    return flight->had_frame && goe_flight_between_s(now_us, flight->frame_us) <= flight->settings.alive_s;
+    bool alive = true;
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        alive = alive && (camera_alive(flight, i, now_us) || !has_camera(flight, i));
+    }
+    return alive;
 }
 
 static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *result) {
@@ -576,10 +612,26 @@ static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *
                goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
 }
 
+/* What the cameras see whose detectors are alive. */
+static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
+    const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
+    const uint32_t now_us = flight->assessed_us;
+    const bool alive = pose_alive(flight, now_us);
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
+    }
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        float from_deg;
+        float width_deg;
+        if (alive && camera_alive(flight, i, now_us) &&
+            goe_flight_geometry_view(&flight->camera[i], attitude->q, &from_deg, &width_deg)) {
+            goe_flight_geometry_open_sectors(sector_cm, max_cm, from_deg, width_deg);
+        }
+    }
+}
+
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm,
                                        uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
-    float from_deg = 0.0f;
-    float width_deg = 0.0f;
     const goe_flight_status_t status = sector_cm ? check_ready(flight) : GOE_FLIGHT_BAD_ARGUMENT;
     if (status != GOE_FLIGHT_OK) {
         return status;
@@ -589,10 +641,7 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
     }
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
-    const uint32_t now_us = flight->assessed_us;
-    const bool alive = pose_alive(flight, now_us) && detector_alive(flight, now_us);
-    const bool sees = alive && goe_flight_geometry_view(&flight->camera, attitude->q, &from_deg, &width_deg);
-    goe_flight_geometry_open_sectors(sector_cm, max_cm, sees, from_deg, width_deg);
+    open_sectors(flight, max_cm, sector_cm);
     for (int i = 0; i < GOE_FLIGHT_SLOTS && own; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, slot)) {

@@ -152,7 +152,7 @@ enum {
 
 /* One obstacle in one image. A box, or points, or both, as in goe_image_t. */
 typedef struct {
-    uint32_t id;   /* of the detector's tracker; 0: it has none, and the place in the image decides */
+    uint32_t id;   /* of the detector's tracker, of each camera's own; 0: it has none, and the place in the image decides */
     float score;   /* 0 to 1 */
     float pixel_px; /* one sigma of box and points; 0: as in the settings; 0 to 100 */
     goe_box_t box; /* raw pixels; give all four sides, also at the border of the image: the estimator knows what is cut */
@@ -167,7 +167,7 @@ typedef struct {
                             exposure on */
     uint32_t time_sd_us; /* one sigma of capture_us as the sender knows it; 0: settings.delay_sd_s */
     uint8_t time_base;
-    uint8_t camera; /* 0 */
+    uint8_t camera; /* number of the camera that took it; one that is set, below GOE_CAMERAS_MAX */
     uint8_t number; /* of detections in the image. 0: nothing in view, which tells that the detector is alive */
     uint8_t count;  /* of those here, 0 to GOE_FLIGHT_DETECTIONS. Less than number: the others come in further calls with the
                        same capture time */
@@ -191,7 +191,7 @@ typedef struct {
     goe_flight_action_t action;
     bool late;             /* the action needs longer than there is: it may not suffice */
     bool suspect;          /* the worst obstacle's estimate is: margins were widened */
-    bool detector_alive;   /* a frame came within alive_s */
+    bool detector_alive;   /* a frame came within alive_s, of every camera */
     bool pose_alive;       /* samples of attitude and position came within 0.5 s */
     int8_t worst;          /* slot, for goe_flight_obstacle(); -1: no hazard is known, which is "clear" only if both are alive */
     int8_t avoided;        /* slot of the obstacle that the action is about; -1: none, or it was given up */
@@ -208,7 +208,7 @@ typedef struct {
     unsigned valid;          /* GOE_HAS_POSITION, _HEIGHT, _WIDTH, _LENGTH, _ORIENTATION */
     goe_model_t model;
     bool suspect, passed;    /* passed: on the present course its distance grows */
-    bool in_view;            /* seen in the latest image */
+    bool in_view;            /* seen in the latest image of the camera that saw it last */
     bool has_hazard;         /* hazard is known: assessed with a position */
     float age_s;             /* since it was last measured, from the latest assessment */
     float center_ned_m[3];   /* middle of the base as far as it is seen; down: of its ground */
@@ -223,7 +223,7 @@ typedef struct {
     goe_hazard_t hazard;     /* from the latest goe_flight_assess() on */
 } goe_flight_obstacle_t;
 
-#define GOE_FLIGHT_SECTOR_UNKNOWN 65535u /* outside the camera's view, or detector or pose dead */
+#define GOE_FLIGHT_SECTOR_UNKNOWN 65535u /* outside the view of every camera whose detector is alive, or the pose dead */
 
 /* Counted since goe_flight_init(); they saturate. */
 typedef struct {
@@ -279,6 +279,7 @@ typedef struct { /* goe_clock.c: sender's clock to autopilot's */
 typedef struct { /* goe_candidate.c */
     uint32_t id, time_us;
     int16_t box_px[4];
+    uint8_t camera;
     uint8_t images; /* 0: free */
 } goe_flight_candidate_t;
 
@@ -294,6 +295,7 @@ typedef struct { /* goe_slot.c */
     float age_s; /* at taken_us */
     int16_t box_px[4];
     uint8_t valid, model, reset_count;
+    uint8_t camera; /* that saw it last */
     bool used, fresh_track, suspect, in_view, assessed;
 } goe_flight_slot_t;
 
@@ -309,26 +311,27 @@ typedef struct { /* goe_reaction.c: the order that stands */
 typedef struct { /* goe_flight.c */
     float offset_m[3];        /* of the camera, body */
     float body_from_camera[9];
-    float focal_px[2], center_px[2], size_px[2], border_px;
-    float attitude_white_deg;
+    float focal_px[2], center_px[2], size_px[2], border_px; /* focal length 0: there is no camera of this number */
 } goe_flight_camera_t;
 
 typedef struct {
     uint32_t tag; /* set by goe_flight_init() */
     goe_flight_settings_t settings;
-    goe_flight_camera_t camera;
+    goe_flight_camera_t camera[GOE_CAMERAS_MAX];
+    float attitude_white_deg; /* setting of the estimator */
     goe_flight_history_t history;
     goe_flight_marks_t marks;
     goe_flight_clock_t clock;
     goe_flight_reaction_t reaction;
     goe_flight_counters_t counters; /* may be read */
     int64_t base_us;                /* the newest sample's time, never wrapping */
-    uint32_t frame_us;              /* base_us when the latest frame was taken */
+    uint32_t frame_us[GOE_CAMERAS_MAX]; /* base_us when the latest frame of each camera was taken ... */
     uint32_t assessed_us;
     float velocity_ned_m_s[3];
     float ground_down_m; /* by the best source of the newest sample ... */
     uint8_t ground_source; /* ... which is this, GOE_FLIGHT_RANGE_FINDER, ... */
-    bool had_frame, origin_known;
+    uint8_t had_frame; /* ... bit i: one was of camera i */
+    bool origin_known;
     int32_t origin_lat_e7, origin_lon_e7;
     goe_flight_candidate_t candidate[GOE_FLIGHT_CANDIDATES];
     goe_flight_slot_t slot[GOE_FLIGHT_SLOTS];
@@ -341,7 +344,7 @@ void goe_flight_settings_default(goe_flight_settings_t *settings);
 
 /* Checks both settings, copies them, starts with nothing known.
  *   flight_size  sizeof(goe_flight_t) as the caller's compiler sees it
- *   estimator    as for goe_init; camera.width_px and height_px must be set too. With boxes the sigma of the height's source, a
+ *   estimator    as for goe_init; width_px and height_px of every camera must be set too. With boxes the sigma of the height's source, a
  *                setting of the layer, stands for navigation.height_bias_m. height_white_m is best left 0: a track's heights
  *                are one reading and the changes of down
  *   settings     null: the defaults
@@ -355,8 +358,8 @@ GOE_NODISCARD goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t f
 goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_attitude_t *sample);
 goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_position_t *sample);
 
-/* The pose at a time: position linear between the two samples about it, attitude by the cubic through them and their neighbours,
- * as far as these are there; height_m by the best source that is known now. pose->time_us does not wrap and is in the same clock.
+/* The pose at a time, height_m that of camera 0: position linear between the two samples about it, attitude by the cubic through them and their neighbours,
+ * as far as these are there; the height by the best source that is known now. pose->time_us does not wrap and is in the same clock.
  *   attitude_sd_deg  what the attitude is uncertain by for a time whose one sigma is time_sd_us; null if not wanted
  * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED; all zero unless _OK. */
 goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us, goe_pose_t *pose,
@@ -369,8 +372,9 @@ goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us
 
 /* Takes an image's detections. A detection that is not finite or out of range is left out and counted; a known id goes to its
  * slot; a new one takes over the track that is not in this image and whose predicted place its box holds; any other waits until
- * it is confirmed. With the last detection of an image the other tracks are told that they were not seen.
- * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, count), _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * it is confirmed. With the last detection of an image the other tracks of its camera are told that they were not seen. What is
+ * seen by two cameras at once may have two slots until both know its place.
+ * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALISED. */
 goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_frame_t *frame);
 
 /* What is ahead from now on, at the velocity of the newest sample, and what to do about it: README.md has the rule as a table.

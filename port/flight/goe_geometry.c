@@ -123,12 +123,13 @@ bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4
     return axis[0] * axis[0] + axis[1] * axis[1] > LEVEL_MIN * LEVEL_MIN && *width_deg > 0.0f;
 }
 
-void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, bool sees,
-                                      float from_deg, float width_deg) {
+void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, float from_deg,
+                                      float width_deg) {
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         const float begin_deg = ((float)i - 0.5f) * SECTOR_DEG;
-        const bool within = goe_flight_positive_deg(begin_deg - from_deg) + SECTOR_DEG <= width_deg;
-        sector_cm[i] = (uint16_t)(sees && within ? max_cm + 1u : GOE_FLIGHT_SECTOR_UNKNOWN);
+        if (goe_flight_positive_deg(begin_deg - from_deg) + SECTOR_DEG <= width_deg) {
+            sector_cm[i] = (uint16_t)(max_cm + 1u);
+        }
     }
 }
 

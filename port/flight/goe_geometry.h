@@ -20,9 +20,9 @@ void goe_flight_geometry_lat_lon(int32_t origin_lat_e7, int32_t origin_lon_e7, c
 /* The bearings, degrees from north, between which the camera sees; false: it looks up or down too steeply to tell. */
 bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4], float *from_deg, float *width_deg);
 
-/* All sectors unknown, but those wholly within [from, from + width], which are clear. */
-void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, bool sees,
-                                      float from_deg, float width_deg);
+/* The sectors wholly within [from, from + width] are clear. */
+void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, float from_deg,
+                                      float width_deg);
 
 /* A circle at a place relative to the aircraft enters the sectors that it touches, by its nearest point. */
 void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, const float away_ne_m[2],

@@ -147,7 +147,7 @@ static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe
     note_outline(slot, estimate);
 }
 
-void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
                           const goe_flight_detection_t *seen) {
     goe_image_t image;
@@ -157,6 +157,8 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t *ca
     if (!slot->fresh_track && goe_flight_between_us(view->time_us, slot->taken_us) <= 0) {
         return;
     }
+    const uint8_t number = seen ? view->camera : slot->camera;
+    const goe_flight_camera_t *camera = &cameras[number];
     goe_flight_rotation(view->pose.q, body_to_ned);
     goe_flight_turn(body_to_ned, camera->offset_m, camera_ned_m);
     for (int i = 0; i < 3; i++) {
@@ -170,6 +172,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t *ca
     }
     memset(&image, 0, sizeof image);
     set_pose(slot, view, jumps_ned_m, camera_ned_m[2], &image.pose);
+    image.camera = number;
     image.noise.attitude_deg = view->attitude_sd_deg;
     image.noise.height_m = slot->height_sd_m; /* counts in the first image in which something is seen */
     if (seen) {
@@ -181,6 +184,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t *ca
         slot->taken_us = view->time_us;
         slot->seen_us = seen ? view->time_us : slot->seen_us;
         slot->reset_count = image.pose.reset_count;
+        slot->camera = number;
         memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
         slot->fresh_track = false;
         note(slot, camera_ned_m, &estimate);
@@ -243,14 +247,15 @@ static bool is_alike(const int16_t a[4], const int16_t b[4]) {
     return alike;
 }
 
-float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
-                             const goe_flight_history_pose_t *pose, const int16_t box_px[4]) {
+float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
+                             const goe_flight_slot_view_t *view, const int16_t box_px[4]) {
     float pixel[2];
+    const bool comparable = slot->camera == view->camera; /* boxes of two cameras are not */
     if (!(slot->valid & GOE_HAS_POSITION)) {
         const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
-        return overlap >= OVERLAP_MIN ? overlap : 0.0f;
+        return comparable && overlap >= OVERLAP_MIN ? overlap : 0.0f;
     }
-    if (!is_alike(slot->box_px, box_px) || !predict(slot, camera, pose, pixel)) {
+    if ((comparable && !is_alike(slot->box_px, box_px)) || !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
         return 0.0f;
     }
     float claim = 1.0f;

@@ -54,9 +54,10 @@ static uint32_t usable(goe_flight_t *flight, const goe_flight_frame_t *frame) {
 
 /* ------------------------------------------------------------------------------------------------------------- slots -- */
 
-static int slot_of(const goe_flight_t *flight, uint32_t id) {
+static int slot_of(const goe_flight_t *flight, uint8_t camera, uint32_t id) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        if (id != 0u && flight->slot[i].used && flight->slot[i].id == id) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (id != 0u && slot->used && slot->id == id && slot->camera == camera) {
             return i;
         }
     }
@@ -71,7 +72,7 @@ static int claimant(const goe_flight_t *flight, const goe_flight_slot_view_t *vi
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
         const bool lost = slot->used && ((taken >> i) & 1u) == 0u;
-        const float claim = lost ? goe_flight_slot_claims(slot, &flight->camera, &view->pose, box_px) : 0.0f;
+        const float claim = lost ? goe_flight_slot_claims(slot, flight->camera, view, box_px) : 0.0f;
         if (claim > most) {
             most = claim;
             best = i;
@@ -122,14 +123,14 @@ static int room(goe_flight_t *flight, uint32_t now_us) {
 
 static void give(goe_flight_t *flight, int i, const goe_flight_slot_view_t *view, const goe_flight_detection_t *seen,
                  uint32_t *taken) {
-    goe_flight_slot_take(&flight->slot[i], &flight->camera, view, flight->marks.jumps_ned_m, seen);
+    goe_flight_slot_take(&flight->slot[i], flight->camera, view, flight->marks.jumps_ned_m, seen);
     *taken |= 1u << i;
 }
 
 static void give_known(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
                        uint32_t *waiting, uint32_t *taken) {
     for (int k = 0; k < frame->count; k++) {
-        const int i = ((*waiting >> k) & 1u) != 0u ? slot_of(flight, frame->detection[k].id) : NOBODY;
+        const int i = ((*waiting >> k) & 1u) != 0u ? slot_of(flight, view->camera, frame->detection[k].id) : NOBODY;
         if (i != NOBODY) {
             *waiting &= ~(1u << k);
             if (((*taken >> i) & 1u) == 0u) {
@@ -149,7 +150,7 @@ static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *
         }
         const int i = claimant(flight, view, *taken, box_px);
         if (i != NOBODY) {
-            if (detection->id != 0u || flight->slot[i].id != 0u) {
+            if (detection->id != flight->slot[i].id) {
                 goe_flight_count(&flight->counters.renumbered);
             }
             flight->slot[i].id = detection->id;
@@ -163,10 +164,10 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
                      uint32_t waiting, uint32_t *taken) {
     for (int k = 0; k < frame->count; k++) {
         const goe_flight_detection_t *detection = &frame->detection[k];
-        int16_t box_px[4];
-        if (((waiting >> k) & 1u) == 0u || (!goe_flight_slot_box_of(detection, box_px) && detection->id == 0u) ||
-            !goe_flight_candidate_seen(flight->candidate, detection->id, view->time_us, box_px,
-                                       (int)flight->settings.confirm_images)) {
+        goe_flight_candidate_t candidate = {detection->id, view->time_us, {0, 0, 0, 0}, view->camera, 0};
+        if (((waiting >> k) & 1u) == 0u ||
+            (!goe_flight_slot_box_of(detection, candidate.box_px) && detection->id == 0u) ||
+            !goe_flight_candidate_seen(flight->candidate, &candidate, (int)flight->settings.confirm_images)) {
             continue;
         }
         const int i = room(flight, view->time_us);
@@ -177,9 +178,11 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
     }
 }
 
+/* Images of two cameras need not come in the order of their exposures: what one does not see is not to hide the other's image. */
 static void give_nothing(goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        if (flight->slot[i].used && ((taken >> i) & 1u) == 0u) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (slot->used && slot->camera == view->camera && ((taken >> i) & 1u) == 0u) {
             give(flight, i, view, NULL, &taken);
         }
     }
@@ -213,7 +216,7 @@ void goe_flight_table_follow(goe_flight_t *flight, const goe_flight_slot_view_t 
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && !slot->fresh_track && goe_flight_between_us(view->time_us, slot->taken_us) > 0) {
-            goe_flight_slot_take(slot, &flight->camera, view, flight->marks.jumps_ned_m, NULL);
+            goe_flight_slot_take(slot, flight->camera, view, flight->marks.jumps_ned_m, NULL);
         }
     }
 }

@@ -122,6 +122,12 @@ static void the_poles_and_far_places_stay_in_range(void) {
     TEST_ASSERT_TRUE(lat_e7 <= 900000000 && lon_e7 >= -1800000000 && lon_e7 <= 1800000000);
 }
 
+static void close_sectors(void) {
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
+    }
+}
+
 /* Each sector that a ray into the circle falls into has it, and none that no ray does but the two beside. */
 static void a_circle_enters_the_sectors_that_it_touches(void) {
     for (int k = 0; k < 300; k++) {
@@ -131,7 +137,7 @@ static void a_circle_enters_the_sectors_that_it_touches(void) {
         const float away[2] = {(float)(distance_m * cos(bearing / DEG_PER_RAD)),
                                (float)(distance_m * sin(bearing / DEG_PER_RAD))};
         const double half = DEG_PER_RAD * asin(radius_m / distance_m);
-        goe_flight_geometry_open_sectors(sector_cm, MAX_CM, false, 0.0f, 0.0f);
+        close_sectors();
         goe_flight_geometry_enter_circle(sector_cm, MAX_CM, away, (float)radius_m);
         for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
             const double off = fabs(remainder(5.0 * i - bearing, 360.0));
@@ -149,7 +155,8 @@ static void the_nearest_counts_and_what_is_far_does_not(void) {
     const float far_m[2] = {50.0f, 0.0f};
     const float beyond_m[2] = {-400.0f, 0.0f};
     const float inside_m[2] = {1.0f, 0.0f};
-    goe_flight_geometry_open_sectors(sector_cm, MAX_CM, true, 300.0f, 120.0f);
+    close_sectors();
+    goe_flight_geometry_open_sectors(sector_cm, MAX_CM, 300.0f, 120.0f);
     TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[0]);
     TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[61]); /* 302.5 to 307.5 degrees */
     TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[60]);

@@ -203,6 +203,7 @@ static void fuzz_frame(void) {
     }
     frame.arrival_us = one_in(100) ? check_random_bits(&any) : now_us;
     frame.time_base = (uint8_t)(one_in(60) ? below(256) : below(3));
+    frame.camera = (uint8_t)(one_in(60) ? below(256) : 0u);
     frame.sent_us = frame.arrival_us - 1000000u - below(20000u);
     frame.capture_us = frame.time_base == GOE_FLIGHT_AGE ? below(200000u) : frame.arrival_us - below(200000u);
     if (frame.time_base == GOE_FLIGHT_SENDER_CLOCK) {
