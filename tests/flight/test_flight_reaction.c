@@ -63,6 +63,17 @@ static void the_order_comes_with_the_time_that_it_needs(void) {
     TEST_ASSERT_FALSE(flight.reaction.late);
 }
 
+/* The time by two sigmas too early is time / (1 + 2 sigma / time): 10.5 s of 20 +- 9 s, 5.8 s of 11 +- 5 s. */
+static void a_range_that_is_hardly_known_orders_earlier_but_not_at_once(void) {
+    put(0, 3.0f + 20.0f * SPEED_M_S, 0.5f);
+    flight.slot[0].hazard.time_sd_s = 9.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
+    put(0, 3.0f + 11.0f * SPEED_M_S, 0.5f);
+    flight.slot[0].hazard.time_sd_s = 5.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    TEST_ASSERT_FALSE(flight.reaction.late);
+}
+
 static void the_nearer_side_is_taken(void) {
     put(0, 100.0f, 2.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
@@ -233,6 +244,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_far_obstacle_is_no_reason_yet);
     RUN_TEST(the_order_comes_with_the_time_that_it_needs);
+    RUN_TEST(a_range_that_is_hardly_known_orders_earlier_but_not_at_once);
     RUN_TEST(the_nearer_side_is_taken);
     RUN_TEST(a_side_that_is_not_clear_is_not_taken);
     RUN_TEST(no_side_and_no_climb_is_a_reason_to_hold);
