@@ -51,8 +51,9 @@
  *   6 m diameter stands at north 200, east -30. Then Z0 = 200 m, X0 = -30 m, width = 6 m.
  *   After 50 m of flight: Z = 150 m, X = -30 m, and X0, Z0 stay as they were.
  *
- *   The first image in which something is seen is the track's first image: it fixes T and its origin. What lies more than 87
- *   degrees from Z cannot be used: after a turn call goe_reset.
+ *   The track's first image fixes T and its origin, whether or not anything is seen in it. What lies more than 87 degrees from Z
+ *   cannot be used: if that is so of all that is seen when first something is, the track begins there (heading_auto). After a
+ *   later turn call goe_reset.
  *
  *   Jumps: x0, z0, x and z move by half the obstacle's size when a disc becomes a line or box. Refined: front and side keep
  *   their names until the side lies more than 52 degrees (tan b = 1.3) from Z; then width and length, their sigmas,
@@ -429,8 +430,7 @@ typedef struct {
     float length_axis[2];  /* unit vector (X, Z) along the side edge */
     float width_axis[2];   /* unit vector (X, Z) along the front edge, to the right of length_axis */
     float length_axis_ne[2], width_axis_ne[2]; /* the same in (north, east) */
-    float trajectory_heading_deg; /* of T's Z axis, clockwise from north, -180 to 180; before the track's first image: where the
-                                     nose points */
+    float trajectory_heading_deg; /* of T's Z axis, clockwise from north, -180 to 180; holds from the track's first image on */
     float center_north_m, center_east_m; /* middle of the base, NED as of the latest pose ... */
     float center_ne_m2;                  /* ... and the covariance of the two, whose variances are the sigmas squared */
     float residual;        /* window: root mean square residual of (5), in the rows' own unit m/S; refined: 0 */

@@ -80,11 +80,14 @@ static void forget_track(goe_estimator_t *estimator) {
 #endif
 }
 
+#if GOE_WITH_WINDOW
+/* Of the window, which tells by its answer alone whether it solved. */
 static void note_solved(goe_estimator_t *estimator) {
     if (estimator->estimate.fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
     }
 }
+#endif
 
 /* ------------------------------------------------------------------------------------------------------------- refined -- */
 
@@ -99,10 +102,11 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
                                    bool measured) {
     const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
                                                       &estimator->estimate);
-    if (!fresh) {
+    if (fresh) {
+        estimator->estimate_time_us = estimator->motion.time_us;
+    } else {
         grow_old(estimator);
     }
-    note_solved(estimator);
     goe_report_fit(&estimator->filter, &estimator->settings, &estimator->estimate);
     if (fresh) {
         return faults->first == GOE_OK ? GOE_OK : GOE_PARTIAL;
@@ -210,6 +214,23 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #endif
 }
 
+/* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be used: the
+ * track begins here. */
+static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
+    goe_motion_t *motion = &estimator->motion;
+    motion->sighted = true;
+    bool ahead = !estimator->settings.heading_auto;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        ahead = ahead || view->point[i].usable;
+    }
+    if (!ahead) {
+        motion->started = false;
+        faults->first = GOE_OK;
+        goe_motion_follow(motion, &estimator->settings, view);
+        goe_align_points(view->camera, view, faults);
+    }
+}
+
 static void open_view(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera,
                       goe_view_t *view, goe_faults_t *faults) {
     view->image = image;
@@ -218,7 +239,9 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     view->camera_to_body = estimator->camera_to_body[image->camera];
     goe_motion_follow(&estimator->motion, &estimator->settings, view);
     goe_align_points(camera, view, faults);
-    estimator->motion.started |= view->seen;
+    if (!estimator->motion.sighted && view->seen) {
+        sight(estimator, view, faults);
+    }
 }
 
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {

@@ -31,7 +31,8 @@ typedef struct {
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
     float height_m;                 /* camera above ground, latest image */
-    bool started; /* something was seen: T and its origin are fixed, at the image in which it was first */
+    bool started;                   /* a first image was taken; the fields above hold */
+    bool sighted;                   /* something was seen */
     uint8_t reset_count;
 } goe_motion_t;
 

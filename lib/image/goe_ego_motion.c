@@ -71,6 +71,7 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
         motion->start_time_us = pose->time_us;
         motion->heading_deg = heading_of(motion->heading_cos, motion->heading_sin);
         memcpy(motion->origin_ne_m, position, sizeof position);
+        motion->started = true;
     } else if (goe_motion_reset(motion, pose)) {
         for (int i = 0; i < 2; i++) {
             motion->origin_ne_m[i] += pose->reset_delta_ned_m[i];

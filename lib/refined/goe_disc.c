@@ -206,7 +206,7 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-static float skew_variance(const goe_filter_t *filter) {
+float goe_disc_skew_variance(const goe_filter_t *filter) {
     return goe_larger(goe_filter_variance(filter, GOE_SIDE_X), VARIANCE_MIN);
 }
 
@@ -217,7 +217,7 @@ bool goe_disc_is_skewed(const goe_filter_t *filter) {
 /* (R7): conditions the state on zero skew, which is what a disc has. */
 static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
     const float *v = filter->inverse.element;
-    const float share = filter->state[GOE_SIDE_X] / skew_variance(filter);
+    const float share = filter->state[GOE_SIDE_X] / goe_disc_skew_variance(filter);
     for (size_t i = 0; i < GOE_STATES; i++) {
         float with_skew = 0.0f;
         for (size_t j = i > GOE_SIDE_X ? i : GOE_SIDE_X; j < GOE_STATES; j++) {
@@ -227,17 +227,17 @@ static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
     }
 }
 
-float goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES]) {
+float goe_disc_condition(const goe_filter_t *filter, float skew_variance, float projected[GOE_STATES]) {
     const float *v = filter->inverse.element;
     float along = 0.0f;
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
         along += projected[j] * v[goe_inverse_column(j) + GOE_SIDE_X];
     }
-    along = along / skew_variance(filter);
+    along = along / skew_variance;
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
         projected[j] -= along * v[goe_inverse_column(j) + GOE_SIDE_X];
     }
-    const float by_chance = CHANCE_SHARE * skew_variance(filter);
+    const float by_chance = CHANCE_SHARE * skew_variance;
     const float beyond2 = goe_square(filter->state[GOE_SIDE_X]) - by_chance;
     return beyond2 > 0.0f ? along * sqrtf(beyond2) : 0.0f;
 }

@@ -20,6 +20,9 @@ void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 /* The same condition on a derivative in terms of independent unit errors (goe_srif_project). Returns by how much it moves the
  * quantity, which is in error by as much if the obstacle is no disc. */
-float goe_disc_condition(const goe_filter_t *filter, float projected[GOE_STATES]);
+float goe_disc_condition(const goe_filter_t *filter, float skew_variance, float projected[GOE_STATES]);
+
+/* Of the skew, on which the condition is. */
+float goe_disc_skew_variance(const goe_filter_t *filter);
 
 #endif

@@ -71,7 +71,7 @@ static void read_height(goe_datum_t *datum, bool started, float down_m, float he
 void goe_filter_take_height(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view) {
     goe_datum_t *datum = &filter->datum;
     const bool white = navigation->height_white_m > 0.0f;
-    if (!view->motion->started || (!white && view->image->box.seen == 0 && !filter->has_datum)) {
+    if ((!white && view->image->box.seen == 0 && !filter->has_datum)) {
         return; /* points alone take each image's height as it is */
     }
     const float down_m = camera_down_m(view);

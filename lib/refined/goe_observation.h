@@ -14,7 +14,6 @@ typedef struct {
     float camera_to_axes[9], body_to_axes[9];
     float ex, ey, ez;  /* attitude bias about the state's axes, rad */
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
-    uint8_t number;    /* of the camera */
     float height_m;    /* camera above ground, as given */
     const goe_sides_t *sides;
     float steady_height_m;   /* the same by the changes of down, see goe_datum_t */
@@ -28,6 +27,7 @@ typedef struct {
     bool two_faces;       /* box: both were seen, its length is estimated */
     bool base;            /* both outer base corners are seen */
     bool edge;            /* an edge of the base is seen */
+    uint8_t number;       /* of the camera */
 } goe_observation_t;
 
 /* The rows of an image. Until they are weighted each holds the derivatives of a predicted image coordinate by the image's own

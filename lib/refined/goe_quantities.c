@@ -76,11 +76,17 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 
 /* --------------------------------------------------------------------------------------------------------- variance -- */
 
+/* What an answer is less certain by than the filter. */
+typedef struct {
+    float scatter;       /* factor on the variance of what it found, (R34) */
+    float skew_variance; /* of a disc: its condition's */
+} widening_t;
+
 /* Derivatives become those in terms of independent unit errors: their squared norm is the variance. Returns what the condition
  * that makes a disc moved the quantity by, (R7). */
-static float project(const goe_filter_t *filter, float by[GOE_STATES]) {
+static float project(const goe_filter_t *filter, const widening_t *wider, float by[GOE_STATES]) {
     goe_srif_project(&filter->inverse, by);
-    return filter->phase == GOE_PHASE_DISC ? goe_disc_condition(filter, by) : 0.0f;
+    return filter->phase == GOE_PHASE_DISC ? goe_disc_condition(filter, wider->skew_variance, by) : 0.0f;
 }
 
 static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
@@ -92,13 +98,13 @@ static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum
 
 GOE_STATIC_ASSERT(GOE_GROUND == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
 
-/* The derivatives are used up. *moved2: what a disc's condition adds, see project(). */
-static float variance_of(const goe_filter_t *filter, float by[GOE_STATES], float *moved2) {
-    *moved2 = 0.0f;
+/* The derivatives are used up. *moved: what a disc's condition moves it by, see project(). */
+static float variance_of(const goe_filter_t *filter, const widening_t *wider, float by[GOE_STATES], float *moved) {
+    *moved = 0.0f;
     if (filter->phase != GOE_PHASE_DISC) {
         return goe_srif_variance_of_rest(&filter->inverse, by);
     }
-    *moved2 = goe_square(project(filter, by));
+    *moved = project(filter, wider, by);
     return dot(by, by, 0.0f);
 }
 
@@ -154,27 +160,27 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-/* scatter: factor on the variance of what the filter found. It widens the sigmas; what is known is decided without it, as doubt must
+/* What the scatter adds widens the sigmas; what is known is decided without it, as doubt must
  * not silence an answer. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
-                           float scatter, goe_quantities_t *q) {
+                           const widening_t *wider, goe_quantities_t *q) {
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const float unseen = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
-        float moved2;
+        float moved;
         const float found =
-            variance_of(filter, shape->quantity[i].by, &moved2) * (depends_on_corner(i) ? shape->early : 1.0f);
+            variance_of(filter, wider, shape->quantity[i].by, &moved) * (depends_on_corner(i) ? shape->early : 1.0f);
         const float told =
             drift_variance(motion, drift, shape, q->box, i) +
             goe_box_outline_variance(filter, shape, drift.camera_m, i, goe_square(q->worked_out[GOE_ORIENTATION]));
         q->value[i] = shape->quantity[i].value;
-        q->sigma[i] = sqrtf(scatter * found + told + moved2);
-        q->worked_out[i] = sqrtf(goe_larger(found - unseen, 0.0f) + told);
+        q->sigma[i] = sqrtf(wider->scatter * found + told + moved * moved);
+        q->worked_out[i] = sqrtf((q->prism ? goe_larger(found - unseen, 0.0f) : found) + told);
     }
 }
 
 /* The middle of the base, in north and east. */
 static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape, drift_t drift,
-                       float scatter, goe_quantities_t *q) {
+                       const widening_t *wider, goe_quantities_t *q) {
     const goe_xz_t place = goe_filter_into_trajectory(filter, shape->middle.at);
     /* from the state's axes to north: the heading of T and the turn */
     const float c = motion->heading_cos * filter->axes.turn_cos - motion->heading_sin * filter->axes.turn_sin;
@@ -182,24 +188,28 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
     goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m,
                      place.z * shape->scale_m + filter->axes.start_dz_m, &q->center_m[0], &q->center_m[1]);
     const float drifted = drift_variance(motion, drift, shape, q->box, GOE_Z0);
-    float variance[3]; /* along north, east, and (1, 1), which tells how the two go together */
+    float variance[3], moved[3]; /* along north, east, and (1, 1), which tells how the two go together */
     float by[3][GOE_STATES] = {{0.0f}};
-    for (int i = 0; i < 3; i++) {
-        float moved2;
+    const bool disc = filter->phase == GOE_PHASE_DISC; /* its derivatives tell by themselves */
+    for (int i = 0; i < (disc ? 2 : 3); i++) {
         goe_shape_place(&shape->middle, shape->scale_m, i == 0 ? -s : (i == 1 ? c : c - s),
                         i == 0 ? c : (i == 1 ? s : c + s), by[i]);
-        variance[i] = scatter * variance_of(filter, by[i], &moved2) + moved2;
+        variance[i] = wider->scatter * variance_of(filter, wider, by[i], &moved[i]) + moved[i] * moved[i];
     }
     q->center_sd_m[0] = sqrtf(variance[0] + drifted);
     q->center_sd_m[1] = sqrtf(variance[1] + drifted);
-    q->center_ne_m2 = 0.5f * (variance[2] - variance[0] - variance[1]);
+    q->center_ne_m2 = disc ? wider->scatter * dot(by[0], by[1], 0.0f) + moved[0] * moved[1]
+                           : 0.5f * (variance[2] - variance[0] - variance[1]);
     if (goe_within(q->center_sd_m[0], METRES_MAX) && goe_within(q->center_sd_m[1], METRES_MAX)) {
         q->known |= GOE_HAS_CENTER;
     }
 }
 
-static float scatter_of(const goe_filter_t *filter, const goe_settings_t *settings) {
-    return goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
+static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *settings) {
+    widening_t wider;
+    wider.scatter = goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
+    wider.skew_variance = filter->phase == GOE_PHASE_DISC ? goe_disc_skew_variance(filter) : 0.0f;
+    return wider;
 }
 
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
@@ -214,18 +224,18 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
         return;
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
-    const float scatter = scatter_of(filter, settings);
+    const widening_t wider = widening_of(filter, settings);
     q->early_m2 = early_variance(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
     q->prism = filter->phase == GOE_PHASE_PRISM;
     q->length_axis = shape.length_axis;
-    set_quantities(filter, motion, &shape, drift, scatter, q);
+    set_quantities(filter, motion, &shape, drift, &wider, q);
     q->now = known_now(filter, q, settings->refined.range_share);
     q->known = q->now & filter->known;
     q->value[GOE_X0] += filter->axes.start_dx_m;
     q->value[GOE_Z0] += filter->axes.start_dz_m;
     if ((q->known & GOE_HAS_POSITION) && (!q->box || (q->known & GOE_HAS_LENGTH))) {
-        set_center(filter, motion, &shape, drift, scatter, q);
+        set_center(filter, motion, &shape, drift, &wider, q);
     }
 }
 
@@ -240,12 +250,13 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         shape.quantity[GOE_HEIGHT].by[GOE_GROUND] = 0.0f;
         shape.quantity[GOE_HEIGHT].by[GOE_INVERSE_RANGE] += shape.datum_by_range;
     }
-    const float scatter = sqrtf(scatter_of(filter, settings));
+    const widening_t wider = widening_of(filter, settings);
+    const float scatter = sqrtf(wider.scatter);
     const float early = sqrtf(shape.early) * scatter;
     float moved[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
-        moved[i] = project(filter, by);
+        moved[i] = project(filter, &wider, by);
         const float factor = depends_on_corner(i) ? early : scatter;
         for (int k = 0; k < GOE_STATES; k++) {
             by[k] *= factor;

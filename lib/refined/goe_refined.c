@@ -27,12 +27,13 @@
 #define HEIGHT_GROWN 1.0e-3f   /* of the information of the heights: less waits for more */
 #define GROUND_NARROW 0.95f    /* of ground_scale: told too well */
 #define GROUND_WIDE 1.05f      /* ... not well enough */
+#define GROUND_LEAST 0.05f     /* a smaller one counts as this */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
 /* (R14). A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
-static void walk_along_z(goe_filter_t *filter, float sigma) {
+static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     float direction[GOE_STATES];
     memcpy(direction, filter->state, sizeof direction);
     if (filter->phase == GOE_PHASE_PRISM) {
@@ -72,7 +73,7 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 
 /* The ground below the altimeter rises or falls, one does not know which: after a way d the height is off by slope d more, and its
  * variance has grown by the difference of the squares. The top counts from the altimeter's zero, which moves along. */
-static void climb_ground(goe_filter_t *filter, const goe_navigation_t *navigation) {
+static GOE_NOINLINE void climb_ground(goe_filter_t *filter, const goe_navigation_t *navigation) {
     float direction[GOE_STATES] = {0.0f};
     const float grown2 = goe_square(filter->flown_m) - goe_square(filter->sloped_m);
     const float sigma = navigation->slope * filter->state[GOE_INVERSE_RANGE] * sqrtf(goe_larger(grown2, 0.0f));
@@ -112,24 +113,27 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
 }
 
 /* What is known of the height beforehand is in metres, its state in units of Z0: as the range becomes known, their ratio moves,
- * and what was told of the state at the first guess is put right. */
+ * and what was told of the state at the first guess is put right. A prism's foot tells its first range, which is near enough. */
 static void widen_ground(goe_filter_t *filter, const goe_observation_t *obs) {
-    const float scale = filter->ground_scale;
-    if (scale > GROUND_NARROW) {
+    const float scale2 = goe_square(goe_larger(filter->ground_scale, GROUND_LEAST));
+    if (filter->phase == GOE_PHASE_PRISM || filter->ground_scale > GROUND_NARROW) {
         return;
     }
-    const float share2 = 1.0f - goe_square(goe_larger(scale, 0.0f));
-    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
-    goe_filter_inflate(filter, GOE_GROUND, filter->state[GOE_INVERSE_RANGE] * sqrtf(share2 * variance));
+    const float told = goe_observation_height_variance(obs, false) * goe_square(filter->state[GOE_INVERSE_RANGE]);
+    const float variance = goe_filter_variance(filter, GOE_GROUND);
+    const float share = variance * (1.0f / scale2 - 1.0f) / told; /* of its information, which was not there */
+    const float most = 1.0f - scale2;
+    const float taken = share < most ? share : most;
+    goe_filter_inflate(filter, GOE_GROUND, sqrtf(variance * taken / (1.0f - taken)));
     filter->ground_scale = 1.0f;
 }
 
 static void narrow_ground(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     const float scale = filter->ground_scale;
-    if (!(scale >= GROUND_WIDE) || rows->count >= GOE_ROWS_MAX) {
+    if (filter->phase == GOE_PHASE_PRISM || !(scale >= GROUND_WIDE) || rows->count >= GOE_ROWS_MAX) {
         return;
     }
-    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
+    const float variance = goe_observation_height_variance(obs, false);
     const float q = filter->state[GOE_INVERSE_RANGE];
     const float weight = sqrtf((1.0f - 1.0f / goe_square(scale)) / variance) / q;
     float *row = rows->matrix->row[rows->count];

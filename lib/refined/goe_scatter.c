@@ -31,15 +31,12 @@ void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
         const size_t series = 2u * rows->feature[i] + (second ? 1u : 0u);
         const float residual = clipped(rows->matrix->row[i][GOE_RESIDUAL]);
         const float before = scatter->before[series];
-        if (!(rows->variance[i] > 0.0f)) {
-            continue;
-        }
-        if ((scatter->seen >> series & 1u) != 0) {
+        if ((scatter->seen >> series & 1u) != 0 && rows->variance[i] > 0.0f) {
             products += residual * before;
-            squares += 0.5f * (residual * residual + before * before);
+            squares += residual * residual;
         }
         scatter->before[series] = residual;
-        seen |= 1u << series;
+        seen |= rows->variance[i] > 0.0f ? 1u << series : 0u;
     }
     scatter->products = products;
     scatter->squares = squares;

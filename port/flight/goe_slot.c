@@ -174,7 +174,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     set_pose(slot, view, jumps_ned_m, camera_ned_m[2], &image.pose);
     image.camera = number;
     image.noise.attitude_deg = view->attitude_sd_deg;
-    image.noise.height_m = slot->height_sd_m; /* counts in the first image in which something is seen */
+    image.noise.height_m = slot->height_sd_m; /* counts once, in an image of the estimator's choice */
     if (seen) {
         set_features(&image, camera, seen);
     }

@@ -134,11 +134,50 @@ static void the_spread_of_the_centre_turns_with_the_course(void) {
 #endif
 }
 
+/* Images with nothing seen on one course, then the flight on another. */
+static goe_estimate_t fly_after_turn(double before_deg, double after_deg) {
+    goe_estimate_t estimate;
+    goe_image_t image;
+    scene.course_deg = before_deg;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < IMAGES; k++) {
+        scene_image(&scene, k, &image, NULL);
+        if (k == 0) {
+            image.left.seen = image.right.seen = image.top.seen = false;
+            image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+            image.box.seen = 0;
+            scene.course_deg = after_deg;
+        }
+        (void)goe_update(&estimator, &image, &estimate);
+    }
+    return estimate;
+}
+
+/* GIVEN a track that began before a turn WHEN what is first seen lies behind its Z axis THEN T is fixed there, by points and by
+ * boxes; WHEN it does not, or the heading is set, THEN T stays. */
+static void a_track_that_began_before_a_turn_sees_what_is_ahead(void) {
+    for (int boxes = 0; boxes < 2; boxes++) {
+        scene.boxes = boxes == 1;
+        const goe_estimate_t turned = fly_after_turn(20.0, 150.0);
+        TEST_ASSERT_TRUE(turned.valid & GOE_HAS_POSITION);
+        CHECK_CLOSE(1.0e-3, 150.0, turned.trajectory_heading_deg);
+        const goe_estimate_t bent = fly_after_turn(20.0, 60.0);
+        TEST_ASSERT_TRUE(bent.valid & GOE_HAS_POSITION);
+        CHECK_CLOSE(1.0e-3, 20.0, bent.trajectory_heading_deg);
+    }
+    settings.heading_auto = false;
+    settings.heading_deg = 20.0f;
+    const goe_estimate_t told = fly_after_turn(20.0, 150.0);
+    TEST_ASSERT_EQUAL_HEX(0, told.valid);
+    CHECK_CLOSE(1.0e-3, 20.0, told.trajectory_heading_deg);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_heading_is_told_from_the_first_image_on);
     RUN_TEST(a_set_heading_is_told);
     RUN_TEST(the_axes_point_north_and_east);
+    RUN_TEST(a_track_that_began_before_a_turn_sees_what_is_ahead);
     RUN_TEST(the_spread_of_the_centre_turns_with_the_course);
     return UNITY_END();
 }

@@ -106,6 +106,7 @@ static void gaps_join_nothing_and_outliers_are_clipped(void) {
     matrix.row[0][GOE_RESIDUAL] = 1.0e30f;
     goe_scatter_take(&filter.scatter, &rows);
     CHECK_CLOSE(1.0e-4, 50.0, filter.scatter.products);
+    CHECK_CLOSE(1.0e-3, 100.0, filter.scatter.squares);
     matrix.row[0][GOE_RESIDUAL] = check_from_bits(0x7FC00000u);
     goe_scatter_take(&filter.scatter, &rows);
     TEST_ASSERT_TRUE(check_is_finite(filter.scatter.products) && check_is_finite(filter.scatter.before[0]));

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from goe_tools.__main__ import main
 from goe_tools.attack import approach, errors, judging, rows, scenario, turns, view
 from goe_tools.attack.judging import BOX, DISC, PRISM, X0, Z0, Answers, Outcome
 from goe_tools.attack.scenario import Scenario, Told, Truth
@@ -16,6 +19,7 @@ from goe_tools.optimum.goals.goal import NAMES, Goal
 from goe_tools.optimum.goals.work import QUICK
 from goe_tools.optimum.library import METHODS, Track, library_path
 from goe_tools.places import ROOT
+from goe_tools.report import attack_command
 
 NAN = math.nan
 EXACT = {
@@ -500,3 +504,47 @@ def test_the_library_warns_of_collision_courses(built: None) -> None:
     goals = {goal.name.split(": ")[1]: goal for goal in hazard.goals_of("hazard", row, runs)}
     assert goals["within 2 sigma"].values["time"] > 80.0
     assert goals["flown"].values["violators"] == len(violators)
+
+
+# --------------------------------------------------------------------------------------------------- tables of the page
+
+
+def _goal(
+    group: str, name: str, values: dict[str, float], wanted: tuple[float, float] | None = None
+) -> dict[str, object]:
+    met = None if wanted is None else all(wanted[0] <= value <= wanted[1] for value in values.values())
+    asked = [] if wanted is None else list(values)
+    return {"group": group, "name": name, "unit": "%", "wanted": wanted, "asked": asked, "values": values, "met": met}
+
+
+def test_tables_of_the_page_tell_what_the_goals_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = [
+        _goal("attack: as told", f"calm: {rows.COVER}", {"X0": 97.4, "Z0": 88.6}, (90.0, 100.0)),
+        _goal("attack: as told", f"calm: {rows.WRONG}", {rows.ANY: 2.0, rows.POSITION: 1.0}),
+        _goal("attack: movers", f"away: {rows.REASON}", {rows.IN_4_S: 24.0, rows.IN_8_S: 56.0, rows.EVER: 78.0}),
+        _goal("hazard", f"corners: {approach.COVERED}", {"time": 97.0, "miss": 98.0, "clearance": 95.0}, (90.0, 100.0)),
+        _goal("hazard", f"corners: {approach.UNWARNED}", {"violators": 0.3}),
+        _goal("hazard", f"corners: {approach.FALSE}", {"passes": 4.6}),
+    ]
+    file, page = tmp_path / "goals.json", tmp_path / "README.md"
+    file.write_text(json.dumps({"quick": True, "goals": found}), encoding="utf-8")
+    page.write_text("before\n<!-- attack: begin -->\nold\n<!-- attack: end -->\nafter\n", encoding="utf-8")
+    monkeypatch.setattr(attack_command, "PAGE", page)
+    assert main(["attack_tables", str(file)]) == 0
+    told = capsys.readouterr().out
+    assert main(["attack_tables", str(file), "--write"]) == 0
+    text = page.read_text(encoding="utf-8")
+    assert text == f"before\n<!-- attack: begin -->\n{told.rstrip()}\n<!-- attack: end -->\nafter\n"
+    assert "| calm | 97/89/-/-/-/- | 2/1 | missed |" in told
+    assert "| away | 24/56/78 |  |" in told
+    assert "| corners | 97/98/95 | 0.3 | 5 | met |" in told
+    assert "1 of 2 goals are met." in told
+
+
+def test_tables_of_the_page_are_whole() -> None:
+    """Each row of an attack that is asked something stands there."""
+    text = attack_command.PAGE.read_text(encoding="utf-8")
+    for row in rows.ROWS:
+        assert f"| {row.name}" in text, row.name

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from .logs.obslog import LogError
 
 COMMANDS = {  # name: module with add_arguments and run, and what it does
+    "attack_tables": (".report.attack_command", "print or write the tables of hostile flights from a file of goals"),
     "bound": (".optimum.bound", "print the Cramer-Rao bound of a log with truth"),
     "scene": (".logs.scene_command", "write a synthetic observation log of a box or a cylinder"),
     "embed_logs": (".logs.embed_logs", "write or check the synthetic logs that the target images carry"),

@@ -18,6 +18,7 @@ MIN_IMAGES = 12  # with features, for a track
 MIXED = "mixed"  # two boxes to one cylinder
 FEATURES = ("corners", "outline", "boxes")
 ATTEMPTS = 200  # to draw a flight that sees its obstacle
+BEHIND_COS = math.cos(math.radians(87.0))  # of T's Z axis: what lies farther from it cannot be used
 KEPT_M = 3.0  # the camera stays so far off the obstacle's outline
 ORIGIN_M = 3000.0  # where the flight begins in NED: within this each way
 
@@ -54,7 +55,7 @@ class Scenario:
 
 @dataclass
 class Truth:
-    """T axes of the track's first image: the first one that shows something."""
+    """T axes."""
 
     solid: Solid
     middle_m: np.ndarray  # (2,) X, Z
@@ -159,24 +160,24 @@ def _seen(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[
     return np.where(whole[:, None, None], pixel, np.nan), None
 
 
-def _axis(world: _World, first_seen: int) -> float:
-    """T's Z axis from the course's forward: as the path says, or of the nose when something is first seen."""
-    if world.path.trimmed:
-        return world.path.axis_rad
-    nose = world.path.at(world.path.time_s[first_seen : first_seen + 1])[1][0, :, 0]
-    return math.atan2(nose[1], nose[0])
+def _is_behind(world: _World, start: int, first_seen: int) -> bool:
+    """Whether the obstacle, when it is first seen, lies behind the Z axis of a track that began before."""
+    away = world.middle_m[first_seen] - world.place_m[first_seen, :2]
+    axis = world.path.axis_rad
+    return start != first_seen and float(away @ [math.cos(axis), math.sin(axis)]) < BEHIND_COS * float(np.hypot(*away))
 
 
-def _truth(world: _World, part: slice, first_seen: int, axis: float) -> Truth:
+def _truth(world: _World, part: slice, origin: int, axis: float) -> Truth:
+    """``origin``: image that fixes T; ``axis``: T's Z axis from the course's forward."""
     path = world.path
     time, place, middle = path.time_s[part], world.place_m[part], world.middle_m[part]
     to_t = np.array([[-math.sin(axis), math.cos(axis)], [math.cos(axis), math.sin(axis)]])  # (forward, right) -> (X, Z)
     about_middle = place - np.append(middle[0], 0.0)
     return Truth(
         replace(world.solid, orientation_rad=world.solid.orientation_rad - axis),
-        (middle[0] - world.place_m[first_seen, :2]) @ to_t,
-        world.axis_rad - path.axis_rad + axis, world.velocity_m_s @ world.to_ned[:2, :2].T,
-        path.velocity(time) @ world.to_ned.T, about_middle @ world.to_ned.T,
+        (middle[0] - world.place_m[origin, :2]) @ to_t, world.axis_rad - path.axis_rad + axis,
+        world.velocity_m_s @ world.to_ned[:2, :2].T, path.velocity(time) @ world.to_ned.T,
+        about_middle @ world.to_ned.T,
     )  # fmt: skip
 
 
@@ -199,13 +200,20 @@ def _one(scenario: Scenario, number: int, attempt: int) -> Told | None:
     )
     steps = np.diff(jumped, axis=0, prepend=jumped[:1])
     seen = np.isfinite(pixel[part]).all(-1)
-    first_seen = int(np.argmax(shown))
-    truth = _truth(world, part, first_seen, _axis(world, first_seen))
+    first_seen, axis, origin_at = int(np.argmax(shown)), world.path.axis_rad, part.start
+    begins_anew = _is_behind(world, part.start, first_seen)
+    if begins_anew:  # then T is fixed there, by the nose as it is told
+        nose = pose.attitude[first_seen - part.start, :, 0]
+        axis, origin_at = math.atan2(nose[1], nose[0]) - world.axis_rad + world.path.axis_rad, first_seen
+    truth = _truth(world, part, origin_at, axis)
+    settings = _settings(world.stand.camera, scenario.wrong, math.degrees(truth.axis_rad), noise)
+    if begins_anew:
+        settings |= {"heading_auto": 1.0, "heading_deg": 0.0}
     return Told(
         number, time - time[0], pose.position_m, pose.quaternion, pose.height_m,
         np.where(seen[..., None], pixel[part], 0.0), seen, None if box is None else box[part],
         np.cumsum(np.abs(steps).max(1) > 0), steps, truth.path_velocity_ned_m_s + pose.velocity_error_m_s,
-        _settings(world.stand.camera, scenario.wrong, math.degrees(truth.axis_rad), noise), truth,
+        settings, truth,
     )  # fmt: skip
 
 

@@ -19,7 +19,9 @@ class Function:
     callees: set[int | str] = field(default_factory=set)
 
 
-CALL = re.compile(r"\t(?:bl|blx|b|b\.w|b\.n|b[a-z]{2}(?:\.[wn])?|jal|j|call|tail)\t(?:\w+,)?\s*([0-9a-f]+) <[^>+]+>")
+CALL = re.compile(
+    r"\t(?:bl|blx|bl[a-z]{2}|b|b\.w|b\.n|b[a-z]{2}(?:\.[wn])?|jal|j|call|tail)\t(?:\w+,)?\s*([0-9a-f]+) <[^>+]+>"
+)
 INDIRECT = re.compile(r"\tblx\tr\d|\tjalr\t")  # jumps through a register also return, and serve switches
 
 VARIABLE_FRAME = re.compile(r"\tsub(?:\.w|s)?\tsp,(?: ?sp,)? ?(?!sp\b)[a-z]")

@@ -67,7 +67,6 @@ NO_ALTIMETER_M = 50.0  # sigma of the height from which on the first box tells i
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
 PATH_MIN_M = 0.1
-GROUND_NARROW, GROUND_WIDE = (float(np.float32(scale)) for scale in (0.95, 1.05))
 DEPTH_SD = 0.3  # of s
 UNSEEN_SD = 3.0  # of c
 DISC_SD = 1e-3  # of both where a disc is asked for
@@ -121,9 +120,7 @@ class Scatter:
         now[side] = np.clip(residual, -SCATTER_CLIP, SCATTER_CLIP)
         both = (now != 0) & (self.before != 0)
         self.products = SCATTER_KEPT * self.products + float(now[both] @ self.before[both])
-        self.squares = SCATTER_KEPT * self.squares + 0.5 * float(
-            now[both] @ now[both] + self.before[both] @ self.before[both]
-        )
+        self.squares = SCATTER_KEPT * self.squares + float(now[both] @ now[both])
         self.before = now
 
     def take_fit(self, ratio: float) -> None:
@@ -222,7 +219,6 @@ class PrismFilter:
         self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
         self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)  # after the latest image, and since
-        self.ground_scale = 1.0  # 1/Z0 for which the sigma of G was set, over the present one
         self.walked_s = np.zeros(2)  # since the walk was added along X, and along Z
         return True
 
@@ -297,7 +293,7 @@ class PrismFilter:
             rows.own[i] += memory.variance
 
     def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
-        """Normalised square of a weighted sum of residuals, without what a walk along Z and a widened ground add."""
+        """Normalised square of a weighted sum of residuals, without what a walk along Z adds."""
         slope = weight @ rows.slope
         white = np.radians(self.told.attitude_white_deg)
         variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
@@ -332,29 +328,6 @@ class PrismFilter:
             memory.by = memory.by + gain * rows.slope[i]
             memory.variance -= gain * memory.variance
             memory.learnt = True
-
-    def _widen_ground(self) -> None:
-        """The height's sigma is in metres, that of G over Z0: put right as the range becomes known."""
-        if self.ground_scale <= GROUND_NARROW:
-            self.covariance[G, G] += (1 - self.ground_scale**2) * (self.told.height_sd_m * self.state[Q]) ** 2
-            self.ground_scale = 1.0
-
-    def _narrow_ground(self, rows: Rows) -> float:
-        """As a measurement beside the rows; its part of the innovations squared."""
-        if self.ground_scale < GROUND_WIDE:
-            return 0.0
-        weight2 = (1 - 1 / self.ground_scale**2) / (self.told.height_sd_m * self.state[Q]) ** 2
-        variance = self.covariance[G, G] + 1 / weight2
-        gain = self.covariance[:, G] / variance
-        nis, change = float(self.state[G] ** 2 / variance), -gain * self.state[G]
-        self.covariance = self.covariance - np.outer(gain, self.covariance[G])
-        self.by_c = self.by_c - gain * self.by_c[G]
-        self.state = self.state + np.append(change, 0.0)
-        rows.residual = rows.residual - rows.slope[:, :C] @ change
-        for memory in self.memory:
-            memory.value -= memory.by[:C] @ change
-        self.ground_scale = 1.0
-        return nis
 
     def _nis(self, rows: Rows, shared: np.ndarray) -> float:
         slope = rows.slope[:, :C]
@@ -391,7 +364,6 @@ class PrismFilter:
         self.time_s = in_t.time_s
         q_variance = self.full_covariance()[Q, Q]
         self._pass_time(span_s)
-        self._widen_ground()
         rows = self._rows(sight, q_variance)
         self._recall(sight, span_s, rows)
         if rows is None:
@@ -412,12 +384,9 @@ class PrismFilter:
         white = np.radians(self.told.attitude_white_deg)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
         self._learn(rows, shared)
-        before = self.state[Q]
-        nis = self._narrow_ground(rows)
-        nis += self._nis(rows, shared)
+        nis = self._nis(rows, shared)
         self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
         self._update(rows, shared)
-        self.ground_scale *= before / self.state[Q]
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)
         return True
 
