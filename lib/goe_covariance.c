@@ -5,7 +5,11 @@
 
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
+#include "maths/goe_time.h"
+#include "refined/goe_ground.h"
 #include "refined/goe_quantities.h"
+
+#define AGE_MAX_US 4000000000u
 
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
     const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
@@ -13,6 +17,15 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         covariance[i][i] = of[i] * of[i];
     }
+}
+
+/* Of an obstacle that moves, and whose place is old. */
+static void grow_old(const goe_estimate_t *estimate, float since_s, goe_covariance_t covariance) {
+    const float north = goe_square(estimate->sigma.velocity_north_m_s);
+    const float east = goe_square(estimate->sigma.velocity_east_m_s);
+    const float grown = goe_larger(north, east) * since_s * since_s;
+    covariance[GOE_X0][GOE_X0] += grown;
+    covariance[GOE_Z0][GOE_Z0] += grown;
 }
 
 #if GOE_WITH_REFINED
@@ -36,19 +49,21 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
 }
 
 /* False if the estimate is not the filter's. */
-static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
+static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
+                                 goe_covariance_t covariance) {
     const goe_estimate_t *estimate = &estimator->estimate;
     if (!is_of_filter(estimate)) {
         return false;
     }
-    goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, from_datum, covariance);
+    goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, from_datum, ahead_s,
+                              covariance);
     keep_valid(estimate->valid, covariance);
     return true;
 }
 
 static bool is_steady(const goe_estimator_t *estimator) {
     return is_of_filter(&estimator->estimate) &&
-           goe_filter_is_steady(&estimator->filter, &estimator->settings.navigation);
+           goe_ground_is_steady(&estimator->filter, &estimator->settings.navigation);
 }
 
 float goe_latest_camera_height(const goe_estimator_t *estimator) {
@@ -72,9 +87,11 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
     return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
 }
 #else
-static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
+static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
+                                 goe_covariance_t covariance) {
     (void)estimator;
     (void)from_datum;
+    (void)ahead_s;
     (void)covariance;
     return false;
 }
@@ -92,7 +109,8 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
 }
 #endif
 
-goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, goe_covariance_t covariance) {
+goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
+                                   goe_covariance_t covariance) {
     const goe_status_t status = goe_check_ready(estimator);
     memset(covariance, 0, sizeof(goe_covariance_t));
     if (status != GOE_OK) {
@@ -102,12 +120,14 @@ goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_d
     if (!(estimate->valid & GOE_HAS_POSITION)) {
         return GOE_COLLECTING;
     }
-    if (!covariance_of_filter(estimator, from_datum, covariance)) {
+    if (!covariance_of_filter(estimator, from_datum, ahead_s, covariance)) {
+        const float age_s = goe_time_between_s(estimator->estimate_time_us, estimator->motion.time_us, AGE_MAX_US);
         covariance_of_sigmas(&estimate->sigma, covariance);
+        grow_old(estimate, age_s + ahead_s, covariance);
     }
     return GOE_OK;
 }
 
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
-    return covariance ? goe_latest_covariance(estimator, false, covariance) : GOE_BAD_ARGUMENT;
+    return covariance ? goe_latest_covariance(estimator, false, 0.0f, covariance) : GOE_BAD_ARGUMENT;
 }

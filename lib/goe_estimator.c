@@ -12,6 +12,7 @@
 #include "image/goe_ego_motion.h"
 #include "image/goe_intake.h"
 #include "maths/goe_time.h"
+#include "refined/goe_ground.h"
 #include "refined/goe_refined.h"
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
@@ -24,16 +25,17 @@
 /* Every call hands out an estimate. Four words at a time are two instructions on ARM; memcpy() does not know that they are
  * aligned, and takes twice as long. */
 #if defined(__GNUC__)
+#define BLOCK_BYTES 32u
+#define ESTIMATE_BLOCKS (sizeof(goe_estimate_t) / BLOCK_BYTES)
+
 typedef struct __attribute__((may_alias)) {
-    uint32_t word[8];
+    uint32_t word[BLOCK_BYTES / 4u];
 } block_t;
 
-#define ESTIMATE_BLOCKS (sizeof(goe_estimate_t) / sizeof(block_t))
-
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) {
-    block_t *t = (block_t *)(void *)to;
-    const block_t *f = (const block_t *)(const void *)from;
-    const size_t copied = ESTIMATE_BLOCKS * sizeof(block_t);
+    block_t *t = (block_t *)to;
+    const block_t *f = (const block_t *)from;
+    const size_t copied = ESTIMATE_BLOCKS * BLOCK_BYTES;
     for (size_t i = 0; i < ESTIMATE_BLOCKS; i++) {
         t[i] = f[i];
     }
@@ -94,8 +96,17 @@ static void note_solved(goe_estimator_t *estimator) {
 #if GOE_WITH_REFINED
 /* No new answer: the last one grows old, and follows the motion. */
 static void grow_old(goe_estimator_t *estimator) {
-    estimator->estimate.fresh = false;
-    goe_motion_relate(&estimator->motion, &estimator->estimate);
+    goe_estimate_t *estimate = &estimator->estimate;
+    const goe_motion_t *motion = &estimator->motion;
+    estimate->fresh = false;
+    goe_motion_relate(motion, estimate);
+    if (estimate->valid & GOE_HAS_VELOCITY) {
+        const float s = goe_time_between_s(estimator->estimate_time_us, motion->time_us, AGE_MAX_US);
+        const float north_m = estimate->velocity_north_m_s * s;
+        const float east_m = estimate->velocity_east_m_s * s;
+        estimate->x_m += motion->heading_cos * east_m - motion->heading_sin * north_m;
+        estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
+    }
 }
 
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
@@ -173,6 +184,9 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const bool reported = goe_filter_reports(&estimator->filter, settings);
     const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
     const bool reports = goe_filter_reports(&estimator->filter, settings);
+#if GOE_BESIDE
+    goe_motion_mark(&estimator->motion, view->image->pose.attitude);
+#endif
 #if GOE_WITH_WINDOW
     if (!reported && !(reports && (estimator->estimate.valid & GOE_HAS_POSITION))) {
         const goe_status_t status = solve_window(estimator, view, faults);
@@ -209,13 +223,13 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #if GOE_WITH_REFINED
     if (goe_is_refined(estimator)) {
         move_center(&estimator->estimate, pose->reset_delta_ned_m);
-        goe_filter_move_datum(&estimator->filter, pose->reset_delta_ned_m[2]);
+        goe_ground_move(&estimator->filter, pose->reset_delta_ned_m[2]);
     }
 #endif
 }
 
-/* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be used: the
- * track begins here. */
+/* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be
+ * used: the track begins here. */
 static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
     goe_motion_t *motion = &estimator->motion;
     motion->sighted = true;

@@ -95,8 +95,8 @@ static const char *first_bad(const unsigned char *from, size_t count) {
 }
 
 #if GOE_CAMERAS_MAX > 1
-#define COUNTED(field, kind, unit, low, high, value, text) +1
-#define CAMERA_SETTINGS (0u GOE_SETTINGS_CAMERA(COUNTED))
+#define ONE_BYTE(field, kind, unit, low, high, value, text) (uint8_t)0,
+#define CAMERA_SETTINGS (sizeof((const uint8_t[]){GOE_SETTINGS_CAMERA(ONE_BYTE)}))
 
 GOE_STATIC_ASSERT(offsetof(goe_settings_t, camera) == 0, the_settings_of_the_camera_come_first);
 

@@ -20,6 +20,14 @@
 #define GOE_NOINLINE
 #endif
 
+/* What the filter knows beside its state and takes as constant: the latency of the poses, s, and the obstacle's velocity, T
+ * axes, m/s; 0 of them if that part is left out. */
+#if GOE_WITH_REFINED && GOE_WITH_MOVERS
+#define GOE_BESIDE 3
+#else
+#define GOE_BESIDE 0
+#endif
+
 /* ----------------------------------------------------------------------------------------------------------- image -- */
 
 /* image/goe_ego_motion.c: own motion over the track. */
@@ -34,6 +42,13 @@ typedef struct {
     bool started;                   /* a first image was taken; the fields above hold */
     bool sighted;                   /* something was seen */
     uint8_t reset_count;
+#if GOE_BESIDE
+    bool paced;                           /* the fields below hold */
+    float rate_rad_s[3], velocity_m_s[2]; /* T axes; since the mark ... */
+    float rate_before_rad_s[3];           /* ... and before it: free of the latest attitude's own error */
+    float mark_attitude[4], mark_m[2];    /* attitude and place, T axes, at mark_us: where they count from */
+    int64_t mark_us;
+#endif
 } goe_motion_t;
 
 /* ---------------------------------------------------------------------------------------------------------- window -- */
@@ -71,18 +86,29 @@ typedef struct { /* window/goe_window.c */
 #define GOE_STATES 10
 #define GOE_FEATURES 6
 
-typedef struct { /* upper triangular matrix of GOE_STATES, row by row */
-    float element[GOE_STATES * (GOE_STATES + 1) / 2];
+/* The state and what is beside it. */
+#define GOE_UNKNOWNS (GOE_STATES + GOE_BESIDE)
+
+typedef struct {
+    float element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) / 2]; /* upper triangular matrix, row by row */
+#if GOE_BESIDE
+    float right[GOE_BESIDE]; /* right-hand side of the last rows, those beside the state */
+    uint8_t estimated; /* so many of what is beside the state, from the first on, are; the others are taken as known */
+#endif
 } goe_triangle_t;
 
-typedef struct { /* the inverse of one, column by column */
-    float element[GOE_STATES * (GOE_STATES + 1) / 2];
+typedef struct {
+    float
+        element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) / 2]; /* the inverse of one, column by column; of what is estimated */
+#if GOE_BESIDE
+    uint8_t estimated;
+#endif
 } goe_inverse_t;
 
-/* Rows of a measurement: by the nuisances of the image (its own attitude noise about three axes), by the states, and the
- * residual. */
+/* Rows of a measurement: by the nuisances of the image (its own attitude noise about three axes), by the states, by what is
+ * beside them, and the residual. */
 #define GOE_NUISANCES 3
-#define GOE_COLUMNS (GOE_NUISANCES + GOE_STATES + 1)
+#define GOE_COLUMNS (GOE_NUISANCES + GOE_UNKNOWNS + 1)
 #define GOE_ROWS_MAX 9 /* three corners, two each; left, right, top */
 
 typedef struct {
@@ -94,6 +120,10 @@ typedef struct {
     int64_t start_time_us;
     float turn_cos, turn_sin;     /* T turned by this about the vertical, clockwise seen from above */
     float start_dx_m, start_dz_m; /* that camera in T */
+#if GOE_BESIDE
+    float start_velocity_m_s[2]; /* ... and its velocity ... */
+    bool paced;                  /* ... if this holds */
+#endif
 } goe_axes_t;
 
 /* refined/goe_box_start.c: the box that the images before saw. */
@@ -113,21 +143,22 @@ typedef struct {    /* refined/goe_box.c: what the report calls the edges of a b
     bool decided;
 } goe_naming_t;
 
-/* refined/goe_filter.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
+/* refined/goe_ground.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
  * in. */
 typedef struct {
     float ground_m; /* down of the ground, by the heights before the filter's start */
     float height_m; /* of the camera above it, latest image */
     float sd_m;     /* one sigma of the first height, as its image gave it; 0: as in the settings */
     float mean_m;   /* by how much all heights so far, freed of the changes of down, lie above that ground on average */
+    float first;    /* information of the height that the filter began with, 1/m^2 */
     float information, moment; /* of the offset, which the filter has been told: 1/m^2, and times its mean */
     uint16_t readings;         /* heights so far, saturating */
 } goe_datum_t;
 
-/* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell it. It
- * hangs on the state: value + by' (x - state), and the variance is what it is uncertain by beyond that. */
+/* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell
+ * it. It hangs on the state: value + by' (x - state), and the variance is what it is uncertain by beyond that. */
 typedef struct {
-    float by[GOE_STATES];
+    float by[GOE_UNKNOWNS];
     float value;    /* focal lengths */
     float variance; /* not positive: the side was never measured, and its error is as large as any */
 } goe_side_memory_t;
@@ -153,7 +184,20 @@ typedef struct {      /* refined/goe_health.c: how the images fit */
     uint8_t poor;                  /* images in a row in which half of the points were */
     uint8_t failed;                /* times that a box proved wrong */
     bool base_refused;             /* base corners proved to be none: they are not used */
+    bool adrift;                   /* the filter started anew twice within few images */
+    uint8_t steady;                /* images since it did, saturating */
 } goe_health_t;
+
+/* refined/goe_mover.c: what the images say of the latency and of the obstacle's velocity. */
+typedef struct {
+    float beside[3];      /* taken off: latency, s; velocity, T axes, m/s: 0 unless it is followed */
+    float nis, rows;      /* sums over the track: what no state explains, and what it would be by chance */
+    float heard_s;        /* for how long images told something, over all starts of the filter */
+    float unlike_s;       /* for how long it has been none of a static obstacle */
+    uint8_t images;       /* in a row that said so */
+    bool moves, followed; /* the obstacle moves; the filter moves with it */
+    bool late;            /* the poses are late */
+} goe_mover_t;
 
 typedef struct {
     float dx_m, dz_m;
@@ -168,7 +212,7 @@ typedef struct {
     bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
     goe_naming_t naming;
     uint8_t camera;          /* that took the latest image */
-    bool has_datum;          /* the datum is that of the track\'s first image */
+    bool has_datum;          /* the datum is that of the track's first image */
     float ground_scale;      /* 1/Z0 for which the sigma of GOE_GROUND was set, over the present one */
     float flown_m;           /* along the path since the filter's start, over ground */
     float sloped_m;          /* ... up to which the ground's slope was added */
@@ -181,6 +225,9 @@ typedef struct {
     goe_axes_t axes;
     goe_datum_t datum;
     goe_scatter_t scatter;
+#if GOE_BESIDE
+    goe_mover_t mover;
+#endif
     goe_side_memory_t side[4]; /* by goe_box_side_t */
     float state[GOE_STATES];   /* by goe_state_index_t */
     goe_triangle_t root;       /* R: R'R is the information of the state */

@@ -10,17 +10,27 @@ static const char of_images[] =
     "bad_time\0bad_attitude\0";
 static const char of_calls[] = "bad_settings\0bad_argument\0not_initialised\0";
 
-const char *goe_status_text(goe_status_t status) {
-    const int number = (int)status;
-    const bool of_image = number >= GOE_BAD_ATTITUDE && number <= GOE_NOTHING_SEEN;
-    const bool of_call = number >= GOE_NOT_INITIALISED && number <= CALLS_FROM;
-    const char *name = of_image ? of_images : of_calls;
-    if (!of_image && !of_call) {
-        return "unknown";
-    }
-    for (int k = of_image ? GOE_NOTHING_SEEN : CALLS_FROM; k > number; k--) {
+static const char of_reasons[] = "none\0convention\0moves\0base\0shape\0late\0noise\0";
+
+static const char *name_at(const char *name, int steps) {
+    for (; steps > 0; steps--) {
         while (*name++ != '\0') {
         }
     }
     return name;
+}
+
+const char *goe_reason_text(goe_reason_t reason) {
+    const int number = (int)reason;
+    return number >= GOE_REASON_NONE && number <= GOE_REASON_NOISE ? name_at(of_reasons, number) : "unknown";
+}
+
+const char *goe_status_text(goe_status_t status) {
+    const int number = (int)status;
+    const bool of_image = number >= GOE_BAD_ATTITUDE && number <= GOE_NOTHING_SEEN;
+    const bool of_call = number >= GOE_NOT_INITIALISED && number <= CALLS_FROM;
+    if (!of_image && !of_call) {
+        return "unknown";
+    }
+    return of_image ? name_at(of_images, GOE_NOTHING_SEEN - number) : name_at(of_calls, CALLS_FROM - number);
 }

@@ -323,7 +323,7 @@ int main(int argc, char **argv) {
         {"window", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &options.window, 0, "image points in the window", "N"},
         {"set", 0, POPT_ARG_ARGV, &options.set, 0, "change a setting; may be repeated", "NAME=VALUE"},
         {"residuals", 0, POPT_ARG_NONE, &options.residuals, 0,
-         "four columns more: nis, nis_rows, misfit, suspect (refined)", NULL},
+         "eleven columns more: nis, nis_rows, misfit, suspect and why, velocity, latency (refined)", NULL},
         {"out", 'o', POPT_ARG_STRING, &options.out, 0, "where to write the estimates; standard output by default",
          "FILE"},
         {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},

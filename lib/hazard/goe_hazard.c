@@ -27,6 +27,7 @@ static goe_status_t check_plan(const goe_plan_t *plan) {
 
 goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard) {
     goe_covariance_t covariance;
+    goe_plan_t relative;
     if (!hazard) {
         return GOE_BAD_ARGUMENT;
     }
@@ -36,10 +37,11 @@ goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan
         status = check_plan(plan);
     }
     if (status == GOE_OK) {
-        status = goe_latest_covariance(estimator, true, covariance);
+        relative = goe_violation_relative(estimator, plan);
+        status = goe_latest_covariance(estimator, true, goe_violation_ahead_s(estimator, &relative), covariance);
     }
     if (status == GOE_OK) {
-        goe_violation_foresee(estimator, plan, covariance, hazard);
+        goe_violation_foresee(estimator, &relative, covariance, hazard);
     }
     return status;
 }

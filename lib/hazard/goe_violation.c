@@ -7,6 +7,8 @@
 #if GOE_WITH_HAZARD
 
 #define SIGMA_MIN 1.0e-6f
+#define SPEED_MIN_M_S 0.1f
+#define AHEAD_MAX_S 60.0f /* for which an obstacle's velocity is taken to last */
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
 
@@ -66,6 +68,27 @@ static void report(const goe_outline_t *o, const goe_course_t *course, const goe
         hazard->violation =
             both(hazard->violation, goe_affine_below(&a->clearance, plan->clearance_m, covariance), correlation);
     }
+}
+
+goe_plan_t goe_violation_relative(const goe_estimator_t *estimator, const goe_plan_t *plan) {
+    goe_plan_t relative = *plan;
+    if (estimator->estimate.valid & GOE_HAS_VELOCITY) {
+        relative.velocity_ned_m_s[0] -= estimator->estimate.velocity_north_m_s;
+        relative.velocity_ned_m_s[1] -= estimator->estimate.velocity_east_m_s;
+    }
+    return relative;
+}
+
+float goe_violation_ahead_s(const goe_estimator_t *estimator, const goe_plan_t *relative) {
+    goe_course_t course;
+    const goe_estimate_t *estimate = &estimator->estimate;
+    if (!(estimate->valid & GOE_HAS_VELOCITY)) {
+        return 0.0f;
+    }
+    goe_approach_course(&estimator->motion, relative, &course);
+    const float ahead_m = estimate->x_m * course.ahead.x + estimate->z_m * course.ahead.z;
+    const float ahead_s = ahead_m / goe_larger(course.speed_m_s, SPEED_MIN_M_S);
+    return goe_larger(ahead_s < AHEAD_MAX_S ? ahead_s : AHEAD_MAX_S, relative->since_image_s);
 }
 
 /* The obstacle from where the camera is now. */

@@ -6,8 +6,14 @@
 
 #include "maths/goe_angle.h"
 #include "maths/goe_rotation.h"
+#include "maths/goe_scalar.h"
+#include "maths/goe_time.h"
 
-#define LEVEL_NOSE_MIN 1.0e-3f /* horizontal part of the nose's unit vector below which it has no heading */
+#define PACE_SPAN_S 0.09f        /* of the poses that tell rate and velocity: nearer ones tell their noise */
+#define PACE_SPAN_MIN_S 0.045f   /* ... since the latest mark */
+#define PACE_SPAN_MAX_US 600000u /* farther ones tell a mean */
+#define PACE_COSINE_MIN 0.9f     /* of half the angle between them: more is no flight, but a jump */
+#define LEVEL_NOSE_MIN 1.0e-3f   /* horizontal part of the nose's unit vector below which it has no heading */
 
 /* T's Z axis in (north, east): the set heading, or where the nose points. */
 static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9]) {
@@ -60,6 +66,66 @@ static void turn_into_trajectory(const goe_motion_t *motion, const float body_to
     }
 }
 
+#if GOE_BESIDE
+/* now = turn mark, in NED: the vector part of `turn` over its scalar part, which is half the angle. */
+static bool half_turn(const float now[4], const float mark[4], float half_ned[3]) {
+    const float scalar = now[0] * mark[0] + now[1] * mark[1] + now[2] * mark[2] + now[3] * mark[3];
+    const float north = now[1] * mark[0] - now[0] * mark[1] + now[3] * mark[2] - now[2] * mark[3];
+    const float east = now[2] * mark[0] - now[0] * mark[2] + now[1] * mark[3] - now[3] * mark[1];
+    const float down = now[3] * mark[0] - now[0] * mark[3] + now[2] * mark[1] - now[1] * mark[2];
+    if (!(goe_absolute(scalar) > PACE_COSINE_MIN)) {
+        return false;
+    }
+    half_ned[0] = north / scalar;
+    half_ned[1] = east / scalar;
+    half_ned[2] = down / scalar;
+    return true;
+}
+
+static void turn_rate(goe_motion_t *motion, const float half_ned[3], float since_s) {
+    const float c = motion->heading_cos;
+    const float s = motion->heading_sin;
+    motion->rate_rad_s[0] = 2.0f * (c * half_ned[1] - s * half_ned[0]) / since_s;
+    motion->rate_rad_s[1] = 2.0f * half_ned[2] / since_s;
+    motion->rate_rad_s[2] = 2.0f * (c * half_ned[0] + s * half_ned[1]) / since_s;
+}
+
+static void set_mark(goe_motion_t *motion, const float attitude[4]) {
+    memcpy(motion->mark_attitude, attitude, sizeof motion->mark_attitude);
+    memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
+    motion->mark_m[0] = motion->dx_m;
+    motion->mark_m[1] = motion->dz_m;
+    motion->mark_us = motion->time_us;
+}
+
+/* What of the motion the poses since the mark tell. */
+static void find_pace(goe_motion_t *motion, const float attitude[4], bool first) {
+    float half[3];
+    const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
+    if (!first && since_s < PACE_SPAN_MIN_S) {
+        return;
+    }
+    if (!first && since_s < (float)PACE_SPAN_MAX_US * GOE_S_PER_US &&
+        half_turn(attitude, motion->mark_attitude, half)) {
+        turn_rate(motion, half, since_s);
+        motion->velocity_m_s[0] = (motion->dx_m - motion->mark_m[0]) / since_s;
+        motion->velocity_m_s[1] = (motion->dz_m - motion->mark_m[1]) / since_s;
+        motion->paced = true;
+    } else {
+        memset(motion->rate_rad_s, 0, sizeof motion->rate_rad_s);
+        memset(motion->rate_before_rad_s, 0, sizeof motion->rate_before_rad_s);
+        motion->paced = false;
+    }
+}
+
+void goe_motion_mark(goe_motion_t *motion, const float attitude[4]) {
+    const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
+    if (motion->time_us == motion->start_time_us || since_s >= PACE_SPAN_S) {
+        set_mark(motion, attitude);
+    }
+}
+#endif
+
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view) {
     const goe_pose_t *pose = &view->image->pose;
     float body_to_ned[9];
@@ -85,4 +151,7 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     motion->dx_m = motion->heading_cos * east - motion->heading_sin * north;
     motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
     turn_into_trajectory(motion, body_to_ned, view);
+#if GOE_BESIDE
+    find_pace(motion, pose->attitude, motion->time_us == motion->start_time_us);
+#endif
 }

@@ -175,15 +175,14 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
 /* Derivatives by the place and the outline of a corner, from those by (X, Z); and what their linearisation may miss. */
-static void set_corner(goe_rows_t *rows, float by[restrict GOE_STATES], const goe_observation_t *obs,
+static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const goe_observation_t *obs,
                        const outline_t *o, size_t corner, const goe_gradient_t *g) {
     const goe_box_edges_t *e = &o->edges;
     const float across = across_of[corner];
     const float along = along_of[corner];
     const float by_both = (along - across * e->sign) * g->z; /* by side and front depth as their sum moves them */
     const float missed = 0.5f * by_both * o->curvature;
-    by[GOE_BEARING] = g->x;
-    by[GOE_INVERSE_RANGE] = goe_rows_by_range(obs, g->x, g->z);
+    goe_rows_place(by, obs, g->x, g->z);
     by[GOE_SIDE_X] = along * g->x + by_both * e->side.by[0];
     by[GOE_FRONT_X] = across * g->x + by_both * e->side.by[1];
     by[GOE_DEPTH_DIFFERENCE] = (along * e->side.by[2] + across * e->front.by[2]) * g->z;

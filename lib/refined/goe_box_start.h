@@ -25,8 +25,8 @@ bool goe_footprint_two_faces(const goe_observation_t *obs, goe_footprint_t *box)
  * than to 0.2 rad. */
 bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box);
 
-/* Of a disc or a chord: becomes a box when two images agree on two faces and the range is known, or three on the direction of one. Returns
- * whether it did; the image that brings it is not used for more. */
+/* Of a disc or a chord: becomes a box when two images agree on two faces and the range is known, or three on the direction
+ * of one. Returns whether it did; the image that brings it is not used for more. */
 bool goe_box_start(goe_filter_t *filter, const goe_observation_t *obs);
 
 #endif

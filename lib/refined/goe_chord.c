@@ -7,6 +7,7 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_box.h"
 #include "refined/goe_disc.h"
+#include "refined/goe_mover.h"
 
 #if GOE_WITH_REFINED
 
@@ -56,9 +57,8 @@ static goe_xz_t end_of(const goe_observation_t *obs, float side) {
     return end;
 }
 
-static void set_end(float by[GOE_STATES], const goe_observation_t *obs, float side, const goe_gradient_t *g) {
-    by[GOE_BEARING] = g->x;
-    by[GOE_INVERSE_RANGE] = goe_rows_by_range(obs, g->x, g->z);
+static void set_end(float by[GOE_UNKNOWNS], const goe_observation_t *obs, float side, const goe_gradient_t *g) {
+    goe_rows_place(by, obs, g->x, g->z);
     by[GOE_SIDE_X] = side * g->z;
     by[GOE_FRONT_X] = side * g->x;
 }
@@ -115,6 +115,9 @@ bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_filter_invert(filter);
     filter->leaving.outward = 0.0f;
     filter->leaving.turning = 0.0f;
+#if GOE_BESIDE
+    goe_mover_doubt(filter);
+#endif
     goe_filter_enter(filter, GOE_PHASE_CHORD);
     return true;
 }

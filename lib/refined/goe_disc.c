@@ -76,8 +76,7 @@ static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_fea
     const float by_z = by_azimuth * (-o->to.x - by_sine * o->sine * o->to.z) / o->distance;
     /* without base corners: half the skew deeper */
     const float by_skew = obs->base ? 0.0f : -0.5f * side * ray.x / o->center.z * g.x;
-    by[GOE_BEARING] = by_x;
-    by[GOE_INVERSE_RANGE] = goe_rows_by_range(obs, by_x, by_z);
+    goe_rows_place(by, obs, by_x, by_z);
     by[GOE_SIDE_X] = by_skew;
     by[GOE_FRONT_X] = 0.5f * by_azimuth * by_sine / o->distance;
     by[GOE_BEHIND_STATES] -= by_skew * obs->state[GOE_SIDE_X];
@@ -97,8 +96,8 @@ static void add_top(const goe_observation_t *obs, const circle_t *o, float more,
     const float radial = side * (g.x * o->center.x + g.z * o->center.z); /* by -(sine of half the angle) */
     const float by_x = g.x * share + radial * o->sine / o->distance * o->to.x;
     const float by_z = g.z * share + radial * o->sine / o->distance * o->to.z;
-    by[GOE_BEARING] = by_x;
-    by[GOE_INVERSE_RANGE] = g.y * obs->height_m - by_x * obs->camera_m.x - by_z * obs->camera_m.z;
+    goe_rows_place(by, obs, by_x, by_z);
+    by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
     by[GOE_FRONT_X] = -radial * 0.5f / o->distance;
     by[GOE_TOP] = -g.y;
 }
@@ -117,8 +116,8 @@ static void add_base(const goe_observation_t *obs, const circle_t *o, goe_featur
     float *variance = goe_rows_last_variance(rows);
     *variance = *variance * BASE_NOISE + goe_square(g.at * width);
     by[GOE_GROUND] = g.y;
-    by[GOE_BEARING] = g.x;
-    by[GOE_INVERSE_RANGE] = g.y * obs->height_m - g.x * obs->camera_m.x - g.z * obs->camera_m.z;
+    goe_rows_place(by, obs, g.x, g.z);
+    by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
 }
 
 void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
@@ -162,7 +161,7 @@ static void set_first_root(const goe_observation_t *obs, const float state[GOE_S
     const float bias = settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG;
     const float top =
         goe_absolute(state[GOE_TOP]) > state[GOE_FRONT_X] ? goe_absolute(state[GOE_TOP]) : state[GOE_FRONT_X];
-    memset(root, 0, sizeof *root);
+    goe_srif_clear(root);
     *goe_srif_at(root, GOE_BIAS_X, GOE_BIAS_X) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Y, GOE_BIAS_Y) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Z, GOE_BIAS_Z) =

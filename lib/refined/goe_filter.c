@@ -3,7 +3,12 @@
 
 #include <string.h>
 
+#include "maths/goe_time.h"
+#include "refined/goe_mover.h"
+
 #if GOE_WITH_REFINED
+
+#define TIME_MAX_US 4000000000u /* 4000 s, so that the difference fits 32 bits */
 
 GOE_STATIC_ASSERT(GOE_PHASE_BOX_OUTLINE <= UINT8_MAX, a_phase_fits_its_byte);
 GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_ORIENTATION | GOE_HAS_CENTER |
@@ -18,6 +23,9 @@ bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settin
 void goe_filter_clear(goe_filter_t *filter) {
     memset(filter, 0, sizeof *filter);
     filter->axes.turn_cos = 1.0f;
+#if GOE_BESIDE
+    goe_mover_clear(filter);
+#endif
 }
 
 void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase) {
@@ -45,46 +53,58 @@ void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sig
     goe_srif_spread(&filter->root, direction, state, state, sigma);
 }
 
-/* Down in the camera's axes is a row of camera -> T, as T is level. */
-static float camera_down_m(const goe_view_t *view) {
-    const float *down = &view->camera_to_trajectory[3];
-    float arm_m = 0.0f;
-    for (size_t i = 0; i < 3; i++) {
-        for (size_t j = 0; j < 3; j++) {
-            arm_m += down[i] * view->camera_to_body[3 * j + i] * view->camera->offset_m[j];
-        }
-    }
-    return view->image->pose.position_ned_m[2] + arm_m;
+float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motion) {
+    return goe_time_between_s(filter->axes.start_time_us, motion->time_us, TIME_MAX_US);
 }
 
-/* Before the filter starts the ground is where the mean of the heights puts it. */
-static void read_height(goe_datum_t *datum, bool started, float down_m, float height_m) {
-    const float off_m = height_m + down_m - datum->ground_m;
-    datum->readings = (uint16_t)(datum->readings < UINT16_MAX ? datum->readings + 1 : UINT16_MAX);
-    datum->mean_m += (off_m - datum->mean_m) / (float)datum->readings;
-    if (!started) {
-        datum->ground_m += datum->mean_m;
-        datum->mean_m = 0.0f;
+#if GOE_BESIDE
+goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion) {
+    const goe_axes_t *axes = &filter->axes;
+    goe_xz_t gained = {0.0f, 0.0f};
+    if (axes->paced) {
+        gained.x = motion->velocity_m_s[0] - axes->start_velocity_m_s[0];
+        gained.z = motion->velocity_m_s[1] - axes->start_velocity_m_s[1];
+    }
+    return goe_xz_into(gained, axes->turn_cos, axes->turn_sin);
+}
+
+void goe_filter_pace(goe_filter_t *filter, const goe_motion_t *motion) {
+    if (!filter->axes.paced && motion->paced) {
+        memcpy(filter->axes.start_velocity_m_s, motion->velocity_m_s, sizeof motion->velocity_m_s);
+        filter->axes.paced = true;
     }
 }
 
-void goe_filter_take_height(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view) {
-    goe_datum_t *datum = &filter->datum;
-    const bool white = navigation->height_white_m > 0.0f;
-    if ((!white && view->image->box.seen == 0 && !filter->has_datum)) {
-        return; /* points alone take each image's height as it is */
+#endif
+
+goe_xz_t goe_filter_moved(const goe_filter_t *filter, const goe_motion_t *motion) {
+    goe_xz_t moved = {0.0f, 0.0f};
+#if GOE_BESIDE
+    if (filter->mover.followed) {
+        const float s = goe_filter_elapsed_s(filter, motion);
+        moved.x = filter->mover.beside[1] * s;
+        moved.z = filter->mover.beside[2] * s;
     }
-    const float down_m = camera_down_m(view);
-    if (!filter->has_datum) {
-        datum->ground_m = view->motion->height_m + down_m;
-        datum->sd_m = view->image->noise.height_m;
-        filter->has_datum = true;
-    }
-    if (white) {
-        read_height(datum, filter->phase != GOE_PHASE_NONE, down_m, view->motion->height_m);
-    }
-    datum->height_m = datum->ground_m - down_m;
+#else
+    (void)filter;
+    (void)motion;
+#endif
+    return moved;
 }
+
+#if GOE_BESIDE
+goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion) {
+    goe_xz_t since = {motion->dx_m - filter->axes.start_dx_m, motion->dz_m - filter->axes.start_dz_m};
+    const goe_xz_t moved = goe_filter_moved(filter, motion);
+    const goe_xz_t gained = goe_filter_gained(filter, motion);
+    since.x -= moved.x;
+    since.z -= moved.z;
+    since = goe_xz_into(since, filter->axes.turn_cos, filter->axes.turn_sin);
+    since.x += filter->mover.beside[0] * gained.x;
+    since.z += filter->mover.beside[0] * gained.z;
+    return since;
+}
+#endif
 
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->axes.start_time_us = motion->time_us;
@@ -92,6 +112,10 @@ void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->axes.turn_sin = 0.0f;
     filter->axes.start_dx_m = motion->dx_m;
     filter->axes.start_dz_m = motion->dz_m;
+#if GOE_BESIDE
+    filter->axes.paced = false;
+    goe_filter_pace(filter, motion);
+#endif
 }
 
 #endif

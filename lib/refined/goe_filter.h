@@ -108,25 +108,33 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 
 /* ------------------------------------------------------------------------------------------------------------ axes -- */
 
-/* Takes an image's height, and what down has changed by. Upright boxes count by it, and heights with a white error do. */
-void goe_filter_take_height(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view);
-
-/* Whether the height moves by the changes of down. */
-static inline bool goe_filter_is_steady(const goe_filter_t *filter, const goe_navigation_t *navigation) {
-    return filter->phase == GOE_PHASE_PRISM || navigation->height_white_m > 0.0f;
-}
-
-/* The autopilot's down jumped by this. */
-static inline void goe_filter_move_datum(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
-
 /* The state's axes become T's, with their origin at the camera now. */
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);
 
-/* The camera since the filter's start, the state's axes, m. */
+/* The camera since the filter's start, the state's axes, m: as an obstacle sees it that moves, and freed of what the poses are
+ * late by. */
+#if GOE_BESIDE
+goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion);
+#else
 static inline goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion) {
     const goe_xz_t since = {motion->dx_m - filter->axes.start_dx_m, motion->dz_m - filter->axes.start_dz_m};
     return goe_xz_into(since, filter->axes.turn_cos, filter->axes.turn_sin);
 }
+#endif
+
+/* Seconds since the filter's start; at most 4000. */
+float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motion);
+
+#if GOE_BESIDE
+/* The own velocity less that at the filter's start, m/s, the state's axes. */
+goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion);
+
+/* Takes the own velocity at the filter's start, as soon as it is known. */
+void goe_filter_pace(goe_filter_t *filter, const goe_motion_t *motion);
+#endif
+
+/* What the obstacle has moved by since the filter's start, m, T axes. */
+goe_xz_t goe_filter_moved(const goe_filter_t *filter, const goe_motion_t *motion);
 
 /* A direction out of the state's axes into T's. */
 static inline goe_xz_t goe_filter_into_trajectory(const goe_filter_t *filter, goe_xz_t v) {

@@ -54,6 +54,19 @@ static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, f
     return sum;
 }
 
+#if GOE_BESIDE
+/* Of what is estimated beside the state. It moves the points of an image nearly alike, and is left out of their differences. */
+static float beside_variance(const goe_filter_t *filter, const float *row, const float weight[GOE_STATES]) {
+    float part[GOE_BESIDE];
+    float sum = 0.0f;
+    goe_srif_beside(&filter->inverse, weight, &row[GOE_BESIDE_COLUMN], part);
+    for (size_t c = 0; c < filter->inverse.estimated; c++) {
+        sum += part[c] * part[c];
+    }
+    return sum;
+}
+#endif
+
 GOE_STATIC_ASSERT(GOE_STATES % 5 == 0, a_difference_of_rows_is_taken_by_five_states_at_a_time);
 
 /* (R16): normalised square of a row's residual, or of the difference of two rows'. */
@@ -83,7 +96,12 @@ static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size
     const float turned = weight[GOE_BIAS_X] * weight[GOE_BIAS_X] + weight[GOE_BIAS_Y] * weight[GOE_BIAS_Y] +
                          weight[GOE_BIAS_Z] * weight[GOE_BIAS_Z];
     const float gained = turned * filter->drift_rad2 + weight[GOE_BEARING] * weight[GOE_BEARING] * filter->walk2;
-    const float known = goe_srif_variance(&filter->inverse, weight) + gained;
+    float known = goe_srif_variance(&filter->inverse, weight) + gained;
+#if GOE_BESIDE
+    if (row == middle && filter->inverse.estimated > 0) {
+        known += beside_variance(filter, a, weight);
+    }
+#endif
     return residual * residual / (own + white * white * attitude + known);
 }
 
@@ -124,11 +142,11 @@ static void judge(const goe_settings_t *settings, const goe_filter_t *filter, co
     }
 }
 
-GOE_STATIC_ASSERT(GOE_COLUMNS % 7 == 0, a_row_is_scaled_by_seven_columns_at_a_time);
+GOE_STATIC_ASSERT((GOE_COLUMNS - GOE_BESIDE) % 7 == 0, a_row_is_scaled_by_seven_columns_at_a_time);
 
 /* Partly written out: done for every row of every image, counting costs as much as multiplying. */
 static void scale_row(float row[GOE_COLUMNS], float weight) {
-    for (float *c = row; c < row + GOE_COLUMNS; c += 7) {
+    for (float *c = row; c < row + (GOE_COLUMNS - GOE_BESIDE); c += 7) {
         c[0] *= weight;
         c[1] *= weight;
         c[2] *= weight;
@@ -137,6 +155,11 @@ static void scale_row(float row[GOE_COLUMNS], float weight) {
         c[5] *= weight;
         c[6] *= weight;
     }
+#if GOE_BESIDE
+    for (size_t c = GOE_COLUMNS - GOE_BESIDE; c < GOE_COLUMNS; c++) {
+        row[c] *= weight;
+    }
+#endif
 }
 
 GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);

@@ -18,6 +18,7 @@
 #define EARLY_IMAGES 32 /* of the track: what does not fit in them began with an outlier */
 #define FAILURES_MAX 2  /* times that a box of base corners may prove wrong */
 #define TOP_FREEDOM 2.0f
+#define RESTART_IMAGES 24 /* two restarts within so many are one too many: 3 s at 8 Hz */
 #define STATE_MAX 1.0e6f
 #define NIS_MAX 1.0e6f
 
@@ -53,6 +54,7 @@ void goe_health_expect(goe_health_t *health) {
 }
 
 void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis) {
+    health->steady = (uint8_t)(health->steady > 0 && health->steady < UINT8_MAX ? health->steady + 1 : health->steady);
     health->nis = goe_within(nis, NIS_MAX) ? nis : NIS_MAX;
     health->nis_rows = (int16_t)verdict.rows;
     const float ratio = health->nis / (float)verdict.rows;
@@ -127,6 +129,12 @@ static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) 
     }
 }
 
+/* One restart is an outlier's, or a crossing's; two of them so soon are none of a good track. */
+static void count_restart(goe_health_t *health) {
+    health->adrift = health->adrift || (health->steady > 0 && health->steady < RESTART_IMAGES);
+    health->steady = 1;
+}
+
 bool goe_health_judge(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
     const bool captured = is_captured(filter, verdict);
@@ -137,6 +145,7 @@ bool goe_health_judge(goe_filter_t *filter, const goe_settings_t *settings, goe_
         return false;
     }
     count_failure(filter, settings);
+    count_restart(health);
     memset(health->refused, 0, sizeof health->refused);
     return true;
 }

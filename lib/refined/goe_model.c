@@ -7,6 +7,7 @@
 #include "refined/goe_box_start.h"
 #include "refined/goe_chord.h"
 #include "refined/goe_disc.h"
+#include "refined/goe_ground.h"
 #include "refined/goe_prism.h"
 
 #if GOE_WITH_REFINED
@@ -30,11 +31,7 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     }
     goe_filter_enter(filter, prism ? GOE_PHASE_PRISM : GOE_PHASE_DISC);
     memset(filter->side, 0, sizeof filter->side);
-    filter->datum.information = 1.0f / goe_observation_height_variance(obs, prism);
-    filter->datum.moment = 0.0f;
-    filter->ground_scale = 1.0f;
-    filter->flown_m = 0.0f;
-    filter->sloped_m = 0.0f;
+    goe_ground_start(filter, goe_observation_height_variance(obs, prism));
     memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->stand_in = false;
     goe_srif_invert_diagonal(&filter->root, &filter->inverse);
@@ -89,8 +86,7 @@ void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t
     }
 }
 
-float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows) {
-    float change[GOE_STATES];
+float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows, float change[GOE_UNKNOWNS]) {
     const bool prism = filter->phase == GOE_PHASE_PRISM;
     const float nis = prism ? goe_srif_update_considering(&filter->root, nuisance_root, rows->matrix, change)
                             : goe_srif_update(&filter->root, nuisance_root, rows->matrix, change);
@@ -98,7 +94,7 @@ float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *ro
     for (size_t i = 0; i < GOE_STATES; i++) {
         filter->state[i] += change[i];
     }
-    filter->ground_scale *= before / filter->state[GOE_INVERSE_RANGE];
+    goe_ground_follow(filter, before);
     if (prism) {
         goe_prism_follow(filter, change);
     }

@@ -25,8 +25,9 @@ void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_ro
 /* After the gate. */
 void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t *verdict);
 
-/* The update by whitened rows, and what follows the change of the state. Returns the normalised innovation squared. */
-float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows);
+/* The update by whitened rows, and what follows the change of the state. change: of it and of what is beside it. Returns the
+ * normalised innovation squared. */
+float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows, float change[GOE_UNKNOWNS]);
 
 /* Quantities with their derivatives. */
 void goe_model_shape(const goe_filter_t *filter, goe_shape_t *shape);

@@ -1,4 +1,5 @@
-/* The image in the state's axes, projection under a small attitude bias, noise of the points, rows. SPDX-License-Identifier: MIT */
+/* The image in the state's axes, projection under a small attitude bias, noise of the points, rows.
+ * SPDX-License-Identifier: MIT */
 #include "refined/goe_observation.h"
 
 #include <math.h>
@@ -89,6 +90,32 @@ static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const
     }
 }
 
+#if GOE_BESIDE
+static void turn_rate(const goe_filter_t *filter, const float rate[3], float turned[3]) {
+    const goe_xz_t level = {rate[0], rate[2]};
+    const goe_xz_t into = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
+    turned[0] = into.x;
+    turned[1] = rate[1];
+    turned[2] = into.z;
+}
+#endif
+
+static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const goe_motion_t *motion) {
+#if GOE_BESIDE
+    obs->turn_cos = filter->axes.turn_cos;
+    obs->turn_sin = filter->axes.turn_sin;
+    obs->elapsed_s = goe_filter_elapsed_s(filter, motion);
+    obs->gained_m_s = goe_filter_gained(filter, motion);
+    obs->latency_s = filter->mover.beside[0];
+    turn_rate(filter, motion->rate_rad_s, obs->rate_rad_s);
+    turn_rate(filter, motion->rate_before_rad_s, obs->rate_before_rad_s);
+#else
+    (void)obs;
+    (void)filter;
+    (void)motion;
+#endif
+}
+
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view) {
     obs->settings = settings;
@@ -109,6 +136,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->outline_share = settings->detector.point_share;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
+    note_pace(obs, filter, view->motion);
     return put_in_order(obs);
 }
 
@@ -118,6 +146,11 @@ void goe_observation_linearise(goe_observation_t *obs) {
     obs->ex = m[0] * b[0] + m[1] * b[1] + m[2] * b[2];
     obs->ey = m[3] * b[0] + m[4] * b[1] + m[5] * b[2];
     obs->ez = m[6] * b[0] + m[7] * b[1] + m[8] * b[2];
+#if GOE_BESIDE
+    obs->ex -= obs->latency_s * obs->rate_rad_s[0];
+    obs->ey -= obs->latency_s * obs->rate_rad_s[1];
+    obs->ez -= obs->latency_s * obs->rate_rad_s[2];
+#endif
 }
 
 /* 1/Z of the point as the given attitude shows it. */
@@ -202,14 +235,13 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, flo
     row[0] = gradient->ey;
     row[1] = gradient->ex;
     row[2] = gradient->ez;
-    for (size_t state = GOE_GROUND; state < GOE_STATES; state++) {
-        by[state] = 0.0f;
-    }
+    goe_srif_zero(by, GOE_GROUND);
     by[GOE_BEHIND_STATES] = measured - gradient->at;
     return by;
 }
 
-/* Y/Z at which the edge was measured, with the attitude bias taken off, and what its derivatives by the bias add to those of x. */
+/* Y/Z at which the edge was measured, with the attitude bias taken off, and what its derivatives by the bias add to those
+ * of x. */
 static float edge_height(const goe_observation_t *obs, const goe_point_t *p) {
     return p->y + obs->ex * (1.0f + p->y * p->y) - obs->ez * p->x - obs->ey * p->x * p->y;
 }

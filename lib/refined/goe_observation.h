@@ -28,6 +28,14 @@ typedef struct {
     bool base;            /* both outer base corners are seen */
     bool edge;            /* an edge of the base is seen */
     uint8_t number;       /* of the camera */
+#if GOE_BESIDE
+    float turn_cos, turn_sin;   /* of the state's axes from T */
+    float elapsed_s;            /* since the filter's start */
+    float rate_rad_s[3];        /* of the vehicle, the state's axes ... */
+    float rate_before_rad_s[3]; /* ... and a little before, which this image's own error has no part in */
+    goe_xz_t gained_m_s;        /* velocity since the filter's start, the state's axes */
+    float latency_s;            /* of the poses, as far as it is known */
+#endif
 } goe_observation_t;
 
 /* The rows of an image. Until they are weighted each holds the derivatives of a predicted image coordinate by the image's own
@@ -106,8 +114,8 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
 float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
                     const goe_gradient_t *gradient);
 
-/* An upright edge at the place (X, Z), seen along x at the height at which it was measured, freed of the attitude bias. Null if the feature is not
- * usable. more: variance beyond the pixel noise. */
+/* An upright edge at the place (X, Z), seen along x at the height at which it was measured, freed of the attitude bias.
+ * Null if the feature is not usable. more: variance beyond the pixel noise. */
 float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
                          float more, goe_gradient_t *of_x);
 
@@ -119,9 +127,15 @@ float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz
 
 static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->variance[rows->count - 1u]; }
 
-/* Derivative by GOE_INVERSE_RANGE of a coordinate whose point moves with the camera by by_x and by_z. */
-static inline float goe_rows_by_range(const goe_observation_t *obs, float by_x, float by_z) {
-    return -(by_x * obs->camera_m.x) - by_z * obs->camera_m.z;
+/* The derivatives of a coordinate whose point moves with the reference point, by whose X and Z it changes by by_x and by_z: by
+ * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's way tells it. */
+static inline void goe_rows_place(float *by, const goe_observation_t *obs, float by_x, float by_z) {
+    by[GOE_BEARING] = by_x;
+    by[GOE_INVERSE_RANGE] = -(by_x * obs->camera_m.x) - by_z * obs->camera_m.z;
+#if GOE_BESIDE
+    by[GOE_STATES + 1] = by_x; /* until goe_mover_columns() */
+    by[GOE_STATES + 2] = by_z;
+#endif
 }
 
 /* After the last row: the columns of the attitude bias follow from those of the image's own attitude error; unused rows become

@@ -35,6 +35,7 @@
 #define DEPTH_UNSEEN 3.0f      /* one sigma of c: a factor of 20 in depth, from a plate to a wall seen end-on */
 #define DISC_FREEDOM 1.0e-3f   /* both, where a disc is asked for */
 #define GROUND_MIN 1.0e-6f     /* one sigma of the ground's offset, units of Z0 */
+#define SIZE_MIN 1.0e-12f      /* of a box, angular: a smaller one tells no range */
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == GOE_BOX_SIDES * sizeof(goe_side_memory_t),
                   every_side_has_a_memory);
@@ -228,8 +229,8 @@ static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t si
     const float outward = g.x * t.outward.x + g.z * t.outward.z;
     const float along = o->depth * t.outward.z;
     by[GOE_GROUND] = t.foot ? g.y : 0.0f;
-    by[GOE_BEARING] = g.x;
-    by[GOE_INVERSE_RANGE] = g.y * obs->steady_height_m + goe_rows_by_range(obs, g.x, g.z);
+    goe_rows_place(by, obs, g.x, g.z);
+    by[GOE_INVERSE_RANGE] += g.y * obs->steady_height_m;
     by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
     by[GOE_PRISM_HALF] = outward * t.reach / o->half;
     by[GOE_PRISM_TOP] = t.foot ? 0.0f : -g.y;
@@ -332,7 +333,7 @@ void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows) {
     }
 }
 
-void goe_prism_follow(goe_filter_t *filter, const float change[GOE_STATES]) {
+void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]) {
     float *depth = &filter->state[GOE_PRISM_DEPTH];
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         goe_side_memory_follow(&filter->side[side], change);
@@ -391,7 +392,8 @@ static float first_range_m(const goe_observation_t *obs, float size, const goe_p
                                 goe_square(FOOT_SHARE * s->detector.box_share * size));
     const bool grounded =
         foot->usable && foot->y > GROUND_SIGMAS * foot_sd && obs->steady_height_m > GROUND_SIGMAS * height_sd_m(obs);
-    return grounded ? obs->steady_height_m / foot->y * (1.0f + NEAR_SIDE * size) : s->refined.typical_size_m / size;
+    return grounded ? obs->steady_height_m / foot->y * (1.0f + NEAR_SIDE * size)
+                    : s->refined.typical_size_m / goe_larger(size, SIZE_MIN);
 }
 
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
@@ -411,7 +413,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     sd[GOE_PRISM_HALF] = HALF_FREEDOM * width;
     sd[GOE_PRISM_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_PRISM_TOP]), width);
     sd[GOE_PRISM_UNSEEN] = disc ? DISC_FREEDOM : DEPTH_UNSEEN;
-    memset(root, 0, sizeof *root);
+    goe_srif_clear(root);
     for (size_t i = 0; i < GOE_STATES; i++) {
         root->element[goe_srif_row(i) + i] = 1.0f / sd[i];
     }

@@ -1,11 +1,11 @@
 /* Something upright, seen by its upright bounding boxes. SPDX-License-Identifier: MIT
  *
- * A side of the box is an image line, and the plane through it and the camera touches the obstacle: left and right at an upright
- * edge's foot or head, top and bottom at the rim. The footprint is an ellipse about (X0, Z0), half widths w across and
- * w e^(s + c) along the line of sight of the first image; the support function of an ellipse is smooth, has no corners to
- * mistake, and is exact for a mast, and for a wall that is seen end-on or broadside. Boxes hardly tell how deep a thing is:
- * s, with a prior of its own, is estimated, and c stands for what a pilot must still reckon with; it is considered, never
- * estimated. (R25) to (R29), (R33). */
+ * A side of the box is an image line, and the plane through it and the camera touches the obstacle: left and right at an
+ * upright edge's foot or head, top and bottom at the rim. The footprint is an ellipse about (X0, Z0), half widths w across
+ * and w e^(s + c) along the line of sight of the first image; the support function of an ellipse is smooth, has no corners
+ * to mistake, and is exact for a mast, and for a wall that is seen end-on or broadside. Boxes hardly tell how deep a thing
+ * is: s, with a prior of its own, is estimated, and c stands for what a pilot must still reckon with; it is considered,
+ * never estimated. (R25) to (R29), (R33). */
 #ifndef GOE_PRISM_H
 #define GOE_PRISM_H
 
@@ -28,11 +28,12 @@ void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows);
 /* After goe_rows_end(): takes what is known of the sides' errors out of the rows. */
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
-/* After the gate: keeps what the rows tell of these errors, and frees the rows of the image's position noise, which they share. */
+/* After the gate: keeps what the rows tell of these errors, and frees the rows of the image's position noise, which they
+ * share. */
 void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows);
 
 /* After the update. */
-void goe_prism_follow(goe_filter_t *filter, const float change[GOE_STATES]);
+void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 
 /* Quantities. */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);

@@ -11,6 +11,7 @@
 #include "refined/goe_disc.h"
 #include "refined/goe_gate.h"
 #include "refined/goe_model.h"
+#include "refined/goe_mover.h"
 #include "refined/goe_scatter.h"
 
 #if GOE_WITH_REFINED
@@ -21,6 +22,7 @@
 #define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
 #define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
 #define PATH_MIN_M 0.1f
+#define TIME_MIN_S 0.1f
 #define TIME_MAX_US 4000000000u
 #define METRES_MAX 1.0e6f
 
@@ -28,8 +30,8 @@ static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION
 
 /* ------------------------------------------------------------------------------------------------------------- drift -- */
 
-/* (R23): constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no image shows
- * that. */
+/* (R23): constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no
+ * image shows that. */
 typedef struct {
     goe_xz_t camera_m; /* since the filter's start */
     float share;       /* of lengths, and rad */
@@ -108,6 +110,74 @@ static float variance_of(const goe_filter_t *filter, const widening_t *wider, fl
     return dot(by, by, 0.0f);
 }
 
+/* ------------------------------------------------------------------------------------------------- beside the state -- */
+
+/* What the estimates beside the state add, as independent unit errors. at_s: the place counts that long after the filter's start,
+ * and (x, z), T axes, is its derivative by the place there; it matters of an obstacle that is followed. */
+#if GOE_BESIDE
+typedef struct {
+    float part[GOE_BESIDE];
+} beside_t;
+
+static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motion) {
+    return goe_filter_elapsed_s(filter, motion);
+}
+
+static void beside_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
+                      beside_t *beside) {
+    const float direct[GOE_BESIDE] = {0.0f, x * at_s, z * at_s};
+    goe_srif_beside(&filter->inverse, by, filter->mover.followed ? direct : NULL, beside->part);
+}
+
+static float beside_dot(const beside_t *a, const beside_t *b) {
+    float sum = 0.0f;
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        sum += a->part[i] * b->part[i];
+    }
+    return sum;
+}
+
+static void beside_scale(beside_t *beside, float factor) {
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        beside->part[i] *= factor;
+    }
+}
+#else
+typedef char beside_t; /* nothing is */
+
+static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motion) {
+    (void)filter;
+    (void)motion;
+    return 0.0f;
+}
+
+static void beside_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
+                      beside_t *beside) {
+    (void)filter;
+    (void)by;
+    (void)x;
+    (void)z;
+    (void)at_s;
+    *beside = 0;
+}
+
+static float beside_dot(const beside_t *a, const beside_t *b) {
+    (void)a;
+    (void)b;
+    return 0.0f;
+}
+
+static void beside_scale(const beside_t *beside, float factor) {
+    (void)beside;
+    (void)factor;
+}
+#endif
+
+static void beside_quantity(const goe_filter_t *filter, const float by[GOE_STATES], int quantity, float at_s,
+                            beside_t *beside) {
+    beside_of(filter, by, quantity == GOE_X0 ? 1.0f : 0.0f, quantity == GOE_Z0 ? 1.0f : 0.0f, at_s, beside);
+}
+
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
 
 /* Within a share of the value, and finite, by the bits. */
@@ -164,11 +234,14 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
  * not silence an answer. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            const widening_t *wider, goe_quantities_t *q) {
+    const float elapsed_s = since_start_s(filter, motion);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const float unseen = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
+        beside_t beside;
+        beside_quantity(filter, shape->quantity[i].by, i, elapsed_s, &beside);
         float moved;
-        const float found =
-            variance_of(filter, wider, shape->quantity[i].by, &moved) * (depends_on_corner(i) ? shape->early : 1.0f);
+        const float found = (variance_of(filter, wider, shape->quantity[i].by, &moved) + beside_dot(&beside, &beside)) *
+                            (depends_on_corner(i) ? shape->early : 1.0f);
         const float told =
             drift_variance(motion, drift, shape, q->box, i) +
             goe_box_outline_variance(filter, shape, drift.camera_m, i, goe_square(q->worked_out[GOE_ORIENTATION]));
@@ -182,27 +255,59 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
 static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape, drift_t drift,
                        const widening_t *wider, goe_quantities_t *q) {
     const goe_xz_t place = goe_filter_into_trajectory(filter, shape->middle.at);
+    const goe_xz_t gone = goe_filter_moved(filter, motion);
+    const float elapsed_s = since_start_s(filter, motion);
+    beside_t beside[3];
     /* from the state's axes to north: the heading of T and the turn */
     const float c = motion->heading_cos * filter->axes.turn_cos - motion->heading_sin * filter->axes.turn_sin;
     const float s = motion->heading_sin * filter->axes.turn_cos + motion->heading_cos * filter->axes.turn_sin;
-    goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m,
-                     place.z * shape->scale_m + filter->axes.start_dz_m, &q->center_m[0], &q->center_m[1]);
+    goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m + gone.x,
+                     place.z * shape->scale_m + filter->axes.start_dz_m + gone.z, &q->center_m[0], &q->center_m[1]);
     const float drifted = drift_variance(motion, drift, shape, q->box, GOE_Z0);
     float variance[3], moved[3]; /* along north, east, and (1, 1), which tells how the two go together */
     float by[3][GOE_STATES] = {{0.0f}};
     const bool disc = filter->phase == GOE_PHASE_DISC; /* its derivatives tell by themselves */
     for (int i = 0; i < (disc ? 2 : 3); i++) {
-        goe_shape_place(&shape->middle, shape->scale_m, i == 0 ? -s : (i == 1 ? c : c - s),
-                        i == 0 ? c : (i == 1 ? s : c + s), by[i]);
-        variance[i] = wider->scatter * variance_of(filter, wider, by[i], &moved[i]) + moved[i] * moved[i];
+        const goe_xz_t along = {i == 0 ? -s : (i == 1 ? c : c - s), i == 0 ? c : (i == 1 ? s : c + s)};
+        const goe_xz_t in_trajectory = goe_filter_into_trajectory(filter, along);
+        goe_shape_place(&shape->middle, shape->scale_m, along.x, along.z, by[i]);
+        beside_of(filter, by[i], in_trajectory.x, in_trajectory.z, elapsed_s, &beside[i]);
+        variance[i] =
+            wider->scatter * (variance_of(filter, wider, by[i], &moved[i]) + beside_dot(&beside[i], &beside[i])) +
+            moved[i] * moved[i];
     }
     q->center_sd_m[0] = sqrtf(variance[0] + drifted);
     q->center_sd_m[1] = sqrtf(variance[1] + drifted);
-    q->center_ne_m2 = disc ? wider->scatter * dot(by[0], by[1], 0.0f) + moved[0] * moved[1]
-                           : 0.5f * (variance[2] - variance[0] - variance[1]);
+    q->center_ne_m2 = disc
+                          ? wider->scatter * dot(by[0], by[1], beside_dot(&beside[0], &beside[1])) + moved[0] * moved[1]
+                          : 0.5f * (variance[2] - variance[0] - variance[1]);
     if (goe_within(q->center_sd_m[0], METRES_MAX) && goe_within(q->center_sd_m[1], METRES_MAX)) {
         q->known |= GOE_HAS_CENTER;
     }
+}
+
+static void set_velocity(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                         const widening_t *wider, goe_quantities_t *q) {
+    q->moves = false;
+#if GOE_BESIDE
+    const goe_navigation_t *navigation = &settings->navigation;
+    const float *beside = filter->mover.beside;
+    const float c = motion->heading_cos;
+    const float s = motion->heading_sin;
+    const goe_xz_t axis[2] = {{-s, c}, {c, s}};
+    const float elapsed_s = goe_larger(goe_filter_elapsed_s(filter, motion), TIME_MIN_S);
+    const float own = goe_square(navigation->velocity_bias_m_s) + goe_square(navigation->position_walk_m) / elapsed_s;
+    q->moves = filter->mover.followed;
+    for (size_t i = 0; i < 2; i++) {
+        q->velocity_m_s[i] = axis[i].x * beside[GOE_BESIDE_VELOCITY_X] + axis[i].z * beside[GOE_BESIDE_VELOCITY_Z];
+        q->velocity_sd_m_s[i] = sqrtf(wider->scatter * goe_mover_variance(filter, axis[i]) + own);
+    }
+#else
+    (void)filter;
+    (void)settings;
+    (void)motion;
+    (void)wider;
+#endif
 }
 
 static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *settings) {
@@ -232,8 +337,10 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     set_quantities(filter, motion, &shape, drift, &wider, q);
     q->now = known_now(filter, q, settings->refined.range_share);
     q->known = q->now & filter->known;
-    q->value[GOE_X0] += filter->axes.start_dx_m;
-    q->value[GOE_Z0] += filter->axes.start_dz_m;
+    const goe_xz_t gone = goe_filter_moved(filter, motion);
+    q->value[GOE_X0] += filter->axes.start_dx_m + gone.x;
+    q->value[GOE_Z0] += filter->axes.start_dz_m + gone.z;
+    set_velocity(filter, settings, motion, &wider, q);
     if ((q->known & GOE_HAS_POSITION) && (!q->box || (q->known & GOE_HAS_LENGTH))) {
         set_center(filter, motion, &shape, drift, &wider, q);
     }
@@ -242,7 +349,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
 /* --------------------------------------------------------------------------------------------------------- covariance -- */
 
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                               bool from_datum, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+                               bool from_datum, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
     goe_shape_t shape;
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     goe_model_shape(filter, &shape);
@@ -253,17 +360,22 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     const widening_t wider = widening_of(filter, settings);
     const float scatter = sqrtf(wider.scatter);
     const float early = sqrtf(shape.early) * scatter;
+    const float elapsed_s = since_start_s(filter, motion) + ahead_s;
     float moved[GOE_QUANTITIES];
+    beside_t beside[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
+        beside_quantity(filter, by, i, elapsed_s, &beside[i]);
         moved[i] = project(filter, &wider, by);
         const float factor = depends_on_corner(i) ? early : scatter;
         for (int k = 0; k < GOE_STATES; k++) {
             by[k] *= factor;
         }
+        beside_scale(&beside[i], factor);
         for (int j = 0; j <= i; j++) {
             const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
-            const float sum = dot(by, shape.quantity[j].by, drifted + moved[i] * moved[j]);
+            const float shared = drifted + moved[i] * moved[j] + beside_dot(&beside[i], &beside[j]);
+            const float sum = dot(by, shape.quantity[j].by, shared);
             covariance[i][j] = sum;
             covariance[j][i] = sum;
         }

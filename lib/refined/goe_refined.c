@@ -14,8 +14,10 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 #include "refined/goe_box.h"
+#include "refined/goe_ground.h"
 #include "refined/goe_health.h"
 #include "refined/goe_model.h"
+#include "refined/goe_mover.h"
 #include "refined/goe_prism.h"
 #include "refined/goe_report.h"
 #include "refined/goe_scatter.h"
@@ -24,10 +26,6 @@
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
-#define HEIGHT_GROWN 1.0e-3f   /* of the information of the heights: less waits for more */
-#define GROUND_NARROW 0.95f    /* of ground_scale: told too well */
-#define GROUND_WIDE 1.05f      /* ... not well enough */
-#define GROUND_LEAST 0.05f     /* a smaller one counts as this */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -69,26 +67,13 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->flown_m += sqrtf(dx_m * dx_m + dz_m * dz_m);
     filter->last.dx_m = motion->dx_m;
     filter->last.dz_m = motion->dz_m;
-}
-
-/* The ground below the altimeter rises or falls, one does not know which: after a way d the height is off by slope d more, and its
- * variance has grown by the difference of the squares. The top counts from the altimeter's zero, which moves along. */
-static GOE_NOINLINE void climb_ground(goe_filter_t *filter, const goe_navigation_t *navigation) {
-    float direction[GOE_STATES] = {0.0f};
-    const float grown2 = goe_square(filter->flown_m) - goe_square(filter->sloped_m);
-    const float sigma = navigation->slope * filter->state[GOE_INVERSE_RANGE] * sqrtf(goe_larger(grown2, 0.0f));
-    if (!(sigma > 0.0f) || goe_filter_is_steady(filter, navigation)) {
-        return;
-    }
-    direction[GOE_GROUND] = 1.0f;
-    direction[GOE_TOP] = -1.0f;
-    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_TOP, sigma);
-    filter->sloped_m = filter->flown_m;
+#if GOE_BESIDE
+    goe_filter_pace(filter, motion);
+#endif
 }
 
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
-static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, int64_t time_us) {
-    const float since_s = goe_time_between_s(filter->time_us, time_us, GAP_MAX_US);
+static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s, int64_t time_us) {
     const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
     filter->time_us = time_us;
     filter->drift_rad2 += drift * drift;
@@ -98,7 +83,7 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
         goe_filter_inflate(filter, GOE_BIAS_Z, drift);
     }
     walk(filter, navigation->position_walk_m, since_s);
-    climb_ground(filter, navigation);
+    goe_ground_climb(filter, navigation);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
@@ -112,66 +97,16 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
     }
 }
 
-/* What is known of the height beforehand is in metres, its state in units of Z0: as the range becomes known, their ratio moves,
- * and what was told of the state at the first guess is put right. A prism's foot tells its first range, which is near enough. */
-static void widen_ground(goe_filter_t *filter, const goe_observation_t *obs) {
-    const float scale2 = goe_square(goe_larger(filter->ground_scale, GROUND_LEAST));
-    if (filter->phase == GOE_PHASE_PRISM || filter->ground_scale > GROUND_NARROW) {
-        return;
-    }
-    const float told = goe_observation_height_variance(obs, false) * goe_square(filter->state[GOE_INVERSE_RANGE]);
-    const float variance = goe_filter_variance(filter, GOE_GROUND);
-    const float share = variance * (1.0f / scale2 - 1.0f) / told; /* of its information, which was not there */
-    const float most = 1.0f - scale2;
-    const float taken = share < most ? share : most;
-    goe_filter_inflate(filter, GOE_GROUND, sqrtf(variance * taken / (1.0f - taken)));
-    filter->ground_scale = 1.0f;
-}
-
-static void narrow_ground(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
-    const float scale = filter->ground_scale;
-    if (filter->phase == GOE_PHASE_PRISM || !(scale >= GROUND_WIDE) || rows->count >= GOE_ROWS_MAX) {
-        return;
-    }
-    const float variance = goe_observation_height_variance(obs, false);
-    const float q = filter->state[GOE_INVERSE_RANGE];
-    const float weight = sqrtf((1.0f - 1.0f / goe_square(scale)) / variance) / q;
-    float *row = rows->matrix->row[rows->count];
-    row[GOE_STATE_COLUMN + GOE_GROUND] = weight;
-    row[GOE_RESIDUAL] = -weight * filter->state[GOE_GROUND];
-    rows->count++;
-    filter->ground_scale = 1.0f;
-}
-
-/* All heights so far tell the offset of the first with the information 1/(constant error^2 + white^2/n). Of that a row adds what
- * it has grown by; the constant error is in all of them, and is not counted twice. */
-static void add_height(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
-    goe_datum_t *datum = &filter->datum;
-    const float q = filter->state[GOE_INVERSE_RANGE];
-    const float variance = goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
-    const float information = 1.0f / variance;
-    const float grown = information - datum->information;
-    const float moment = information * datum->mean_m;
-    if (rows->count >= GOE_ROWS_MAX || !(grown > HEIGHT_GROWN * information)) {
-        return; /* later */
-    }
-    const float weight = sqrtf(grown);
-    const float offset_m = filter->state[GOE_GROUND] / q;
-    float *row = rows->matrix->row[rows->count];
-    row[GOE_STATE_COLUMN + GOE_GROUND] = weight / q;
-    row[GOE_STATE_COLUMN + GOE_INVERSE_RANGE] = -weight * offset_m / q;
-    row[GOE_RESIDUAL] = weight * ((moment - datum->moment) / grown - offset_m);
-    datum->information = information;
-    datum->moment = moment;
-}
-
-static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict) {
+static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict, float change[GOE_UNKNOWNS]) {
     goe_rows_t rows;
-    widen_ground(filter, obs);
+    goe_ground_widen(filter);
     goe_rows_clear(&rows, &filter->rows);
     rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
     goe_rows_end(&rows, obs);
+#if GOE_BESIDE
+    goe_mover_columns(obs, &rows);
+#endif
     allow_for_curvature(filter, obs, &rows);
     goe_model_recall(filter, obs, &rows);
     *verdict = goe_gate_apply(obs->settings, filter, &rows);
@@ -181,11 +116,8 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
         goe_health_take_refused(&filter->health, *verdict);
         return false;
     }
-    narrow_ground(filter, obs, &rows);
-    if (obs->settings->navigation.height_white_m > 0.0f) {
-        add_height(filter, obs, &rows);
-    }
-    const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows);
+    verdict->rows += goe_ground_tell(filter, obs, &rows);
+    const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
     goe_health_take(&filter->health, *verdict, nis * goe_gate_repeated(obs->settings, filter));
@@ -203,12 +135,11 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
  * the uncertain range adds. */
-static void note_time(goe_filter_t *filter, const goe_motion_t *motion, goe_observation_t *obs) {
+static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     const float relative2 =
         goe_filter_variance(filter, GOE_INVERSE_RANGE) / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
-        const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
         const bool same = filter->camera == obs->number; /* what was alike in one camera says nothing of another */
         obs->fade = same && detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
         obs->outline_share = outline_share(detector, obs->fade);
@@ -234,14 +165,30 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
     return true;
 }
 
-GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs) {
+/* Whether the obstacle has just been found to move. */
+static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
+                           float since_s) {
+#if GOE_BESIDE
+    return goe_mover_judge(filter, obs, change, since_s);
+#else
+    (void)filter;
+    (void)obs;
+    (void)change;
+    (void)since_s;
+    return false;
+#endif
+}
+
+GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs, float since_s) {
     goe_verdict_t verdict;
+    float change[GOE_UNKNOWNS];
     (void)goe_count_image(&filter->phase_images);
-    const bool measured = measure(filter, obs, &verdict);
+    const bool measured = measure(filter, obs, &verdict, change);
     if (goe_filter_is_box(filter)) {
         goe_box_clip(filter);
     }
-    if (goe_health_judge(filter, obs->settings, verdict)) {
+    const bool moves = measured && starts_to_move(filter, obs, change, since_s);
+    if (goe_health_judge(filter, obs->settings, verdict) || moves) {
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
     }
@@ -260,15 +207,16 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_observation_t obs;
     goe_health_expect(&filter->health);
     *swapped = 0;
-    goe_filter_take_height(filter, &settings->navigation, view);
+    goe_ground_read(filter, &settings->navigation, view);
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
+    const float since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
     fly_on(filter, view->motion);
-    note_time(filter, view->motion, &obs);
-    let_time_pass(filter, &settings->navigation, view->motion->time_us);
+    note_time(filter, since_s, &obs);
+    let_time_pass(filter, &settings->navigation, since_s, view->motion->time_us);
     goe_observation_linearise(&obs);
-    return !goe_model_change(filter, &obs) && use_image(filter, &obs);
+    return !goe_model_change(filter, &obs) && use_image(filter, &obs, since_s);
 }
 
 bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,

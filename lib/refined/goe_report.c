@@ -8,6 +8,7 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 #include "refined/goe_disc.h"
+#include "refined/goe_mover.h"
 
 #if GOE_WITH_REFINED
 
@@ -64,6 +65,18 @@ static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, 
     }
 }
 
+/* Of an obstacle that is followed. As the place, it is no better known than the own motion. */
+static void report_velocity(const goe_quantities_t *q, goe_estimate_t *estimate) {
+    if (!q->moves) {
+        return;
+    }
+    estimate->valid |= GOE_HAS_VELOCITY;
+    estimate->velocity_north_m_s = q->velocity_m_s[0];
+    estimate->velocity_east_m_s = q->velocity_m_s[1];
+    estimate->sigma.velocity_north_m_s = q->velocity_sd_m_s[0];
+    estimate->sigma.velocity_east_m_s = q->velocity_sd_m_s[1];
+}
+
 bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_t *motion, goe_estimate_t *estimate) {
     const bool is_known = (quantities->known & GOE_HAS_POSITION) != 0;
     if (is_known || !(estimate->valid & GOE_HAS_POSITION)) {
@@ -72,8 +85,13 @@ bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_
     }
     if (is_known) {
         report_known(quantities, motion, estimate);
+        report_velocity(quantities, estimate);
     }
     return is_known;
+}
+
+static bool is_misfit(const goe_health_t *health, const goe_settings_t *settings) {
+    return health->images >= SUSPECT_IMAGES && health->mean_nis > settings->refined.misfit_max;
 }
 
 /* A disc was asked for, and it is none. */
@@ -81,10 +99,53 @@ static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings
     return settings->model == GOE_MODEL_DISC && filter->phase == GOE_PHASE_DISC && goe_disc_is_skewed(filter);
 }
 
+static bool moves(const goe_filter_t *filter) {
+#if GOE_BESIDE
+    return filter->mover.moves;
+#else
+    (void)filter;
+    return false;
+#endif
+}
+
+static bool is_late(const goe_filter_t *filter) {
+#if GOE_BESIDE
+    return filter->mover.late;
+#else
+    (void)filter;
+    return false;
+#endif
+}
+
+static goe_reason_t reason_of(const goe_filter_t *filter, const goe_settings_t *settings) {
+    const goe_health_t *health = &filter->health;
+    if (moves(filter)) {
+        return GOE_REASON_MOVES;
+    }
+    if (health->base_refused) {
+        return GOE_REASON_BASE;
+    }
+    if (is_forced(filter, settings)) {
+        return GOE_REASON_SHAPE;
+    }
+    if (is_late(filter)) {
+        return GOE_REASON_LATE;
+    }
+    if (!is_misfit(health, settings)) {
+        return GOE_REASON_NONE;
+    }
+    return health->adrift ? GOE_REASON_CONVENTION : GOE_REASON_NOISE;
+}
+
 void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, goe_estimate_t *estimate) {
     const goe_health_t *health = &filter->health;
-    estimate->suspect = (health->images >= SUSPECT_IMAGES && health->mean_nis > settings->refined.misfit_max) ||
-                        health->base_refused || is_forced(filter, settings);
+    estimate->reason = reason_of(filter, settings);
+    estimate->suspect =
+        is_misfit(health, settings) || (estimate->reason != GOE_REASON_NONE && estimate->reason != GOE_REASON_LATE);
+#if GOE_BESIDE
+    estimate->latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
+    estimate->sigma.latency_s = goe_mover_latency_sd(filter);
+#endif
     if (estimate->method == GOE_METHOD_REFINED) {
         estimate->points = health->images;
         estimate->nis = health->nis;

@@ -23,6 +23,7 @@ static float clipped(float residual) {
 
 /* A refused row joins nothing. */
 void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
+    const unsigned seen_before = scatter->seen;
     unsigned seen = 0;
     float products = scatter->products * KEPT;
     float squares = scatter->squares * KEPT;
@@ -31,7 +32,7 @@ void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
         const size_t series = 2u * rows->feature[i] + (second ? 1u : 0u);
         const float residual = clipped(rows->matrix->row[i][GOE_RESIDUAL]);
         const float before = scatter->before[series];
-        if ((scatter->seen >> series & 1u) != 0 && rows->variance[i] > 0.0f) {
+        if ((seen_before >> series & 1u) != 0 && rows->variance[i] > 0.0f) {
             products += residual * before;
             squares += residual * residual;
         }

@@ -13,14 +13,14 @@ void goe_side_memory_fade(goe_side_memory_t *side, float fade, float variance) {
     const float now = fade * fade * side->variance + (1.0f - fade * fade) * variance;
     side->variance = now < variance ? now : variance;
     side->value *= fade;
-    for (size_t i = 0; i < GOE_STATES; i++) {
+    for (size_t i = 0; i < GOE_UNKNOWNS; i++) {
         side->by[i] *= fade;
     }
 }
 
 void goe_side_memory_recall(const goe_side_memory_t *side, float row[GOE_COLUMNS], float *variance) {
     float *by = &row[GOE_STATE_COLUMN];
-    for (size_t i = 0; i < GOE_STATES; i++) {
+    for (size_t i = 0; i < GOE_UNKNOWNS; i++) {
         by[i] -= side->by[i];
     }
     row[GOE_RESIDUAL] -= side->value;
@@ -35,15 +35,15 @@ void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS]
     const float share = variance * weight * weight / (1.0f + common);
     const float gain = share / weight;
     const float *by = &row[GOE_STATE_COLUMN];
-    for (size_t i = 0; i < GOE_STATES; i++) {
+    for (size_t i = 0; i < GOE_UNKNOWNS; i++) {
         side->by[i] += gain * by[i];
     }
     side->value += gain * row[GOE_RESIDUAL];
     side->variance = variance - share * variance;
 }
 
-void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_STATES]) {
-    for (size_t i = 0; i < GOE_STATES; i++) {
+void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_UNKNOWNS]) {
+    for (size_t i = 0; i < GOE_UNKNOWNS; i++) {
         side->value -= side->by[i] * change[i];
     }
 }

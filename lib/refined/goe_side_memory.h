@@ -18,6 +18,6 @@ void goe_side_memory_recall(const goe_side_memory_t *side, float row[GOE_COLUMNS
 void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float common);
 
 /* After the state has changed. */
-void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_STATES]);
+void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_UNKNOWNS]);
 
 #endif

@@ -10,6 +10,9 @@
 
 #define PIVOT_MIN 1.0e-12f /* of the diagonal: a covariance this near to singular is taken as if it were this far */
 
+/* The rows of the state come first. */
+void goe_srif_clear(goe_triangle_t *root) { memset(root->element, 0, goe_srif_beside_row() * sizeof root->element[0]); }
+
 /* -------------------------------------------------------------------------------------------------------- reflections -- */
 
 /* Element k of a column lies in row k. The kernels hold one column of all rows in registers. */
@@ -99,48 +102,64 @@ static void remove_nuisances(float root, goe_matrix_t *matrix) {
     }
 }
 
-static void reflect_states(goe_triangle_t *root, goe_matrix_t *matrix, size_t states, float right[GOE_STATES]) {
+/* Of the unknowns from first to before last. */
+static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t first, size_t last, float *right) {
     reflection_t to;
-    float *r = root->element;
-    memset(right, 0, GOE_STATES * sizeof right[0]);
-    for (size_t j = 0; j < states; j++) {
+    float *r = &root->element[goe_srif_row(first) + first];
+    for (size_t j = first; j < last; j++) {
         const size_t column = GOE_STATE_COLUMN + j;
         if (reflect(matrix, column, *r, &to)) {
             *r = to.diagonal;
             apply(matrix, column, &to, column + 1, GOE_RESIDUAL, r + 1, 1);
-            apply(matrix, column, &to, GOE_RESIDUAL, GOE_COLUMNS, &right[j], 0);
+            apply(matrix, column, &to, GOE_RESIDUAL, GOE_COLUMNS, &right[j - first], 0);
         }
-        r += GOE_STATES - j;
+        r += GOE_UNKNOWNS - j;
     }
 }
 
-/* R x = right, in place. */
-static void solve_back(const goe_triangle_t *root, float right[GOE_STATES]) {
-    for (size_t i = GOE_STATES; i-- > 0;) {
+/* R x = right, in place; what is not estimated is 0. */
+static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
+    const size_t count = goe_srif_count(root);
+    for (size_t i = count; i-- > 0;) {
         const float *r = &root->element[goe_srif_row(i)];
         float g = right[i];
-        for (size_t j = i + 1; j < GOE_STATES; j++) {
+        for (size_t j = i + 1; j < count; j++) {
             g -= r[j] * right[j];
         }
         right[i] = g / r[i];
     }
 }
 
+#if GOE_BESIDE
+static void reflect_beside(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
+    reflect_unknowns(root, matrix, GOE_STATES, GOE_UNKNOWNS, root->right);
+    for (size_t j = 0; j < GOE_BESIDE; j++) {
+        const bool estimated = j < root->estimated;
+        change[GOE_STATES + j] = estimated ? root->right[j] : 0.0f;
+        root->right[j] = estimated ? 0.0f : root->right[j];
+    }
+}
+#endif
+
 GOE_NOINLINE static float update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t states,
-                                 float change[GOE_STATES]) {
+                                 float change[GOE_UNKNOWNS]) {
     remove_nuisances(nuisance_root, matrix);
-    reflect_states(root, matrix, states, change);
-    solve_back(root, change);
+    memset(change, 0, GOE_STATES * sizeof change[0]);
+    reflect_unknowns(root, matrix, 0, states, change);
     const column_t residual = load(&matrix->row[0][GOE_RESIDUAL]);
+#if GOE_BESIDE
+    reflect_beside(root, matrix, change);
+#endif
+    solve_back(root, change);
     return dot(residual, residual, 0.0f);
 }
 
-float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]) {
+float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
     return update(root, nuisance_root, matrix, GOE_STATES, change);
 }
 
 float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
-                                  float change[GOE_STATES]) {
+                                  float change[GOE_UNKNOWNS]) {
     return update(root, nuisance_root, matrix, GOE_STATES - 1, change);
 }
 
@@ -149,8 +168,8 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
 /* A disturbance d of the state, x = x' + direction d, enters as a row (1/sigma) d = 0; Givens rotations then take it out of
  * the triangle again. In terms of sigma, not 1/sigma: a tiny one must not overflow. */
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma) {
-    float row[GOE_STATES];
-    memset(row, 0, sizeof row);
+    float row[GOE_UNKNOWNS];
+    goe_srif_zero(row, 0);
     for (size_t i = last + 1; i-- > 0;) {
         float *r = &root->element[goe_srif_row(i)];
         float b = 0.0f;
@@ -161,7 +180,7 @@ void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], si
         const float c = 1.0f / sqrtf(1.0f + t * t);
         const float s = t * c;
         sigma *= c;
-        for (size_t k = i; k < GOE_STATES; k++) {
+        for (size_t k = i; k < GOE_UNKNOWNS; k++) {
             const float p = row[k];
             const float q = r[k];
             row[k] = c * p + s * q;
@@ -181,32 +200,43 @@ static float dot_run(const float *a, const float *b, size_t count) {
 }
 
 float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
+    const size_t count = goe_inverse_count(inverse);
     float sum = 0.0f;
-    for (size_t j = state; j < GOE_STATES; j++) {
+    for (size_t j = state; j < count; j++) {
         const float v = inverse->element[goe_inverse_column(j) + state];
         sum += v * v;
     }
     return sum;
 }
 
-/* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. */
-void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse) {
-    float *v = inverse->element;
-    for (size_t j = 0; j < GOE_STATES; j++) {
+/* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column beside the state the first GOE_UNWEIGHTED elements, which
+ * no quantity depends on, are left 0. */
+static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t *inverse) {
+    const size_t count = goe_srif_count(root);
+    float *v = &inverse->element[goe_inverse_column(first)];
+    for (size_t j = first; j < count; j++) {
+        const size_t top = j < GOE_STATES ? 0 : GOE_UNWEIGHTED;
+        memset(v, 0, top * sizeof v[0]);
         v[j] = 1.0f / root->element[goe_srif_row(j) + j];
-        for (size_t i = j; i-- > 0;) {
+        for (size_t i = j; i-- > top;) {
             const float *r = &root->element[goe_srif_row(i)];
             v[i] = -(dot_run(&r[i + 1], &v[i + 1], j - i) * inverse->element[goe_inverse_column(i) + i]);
         }
         v += j + 1;
     }
+#if GOE_BESIDE
+    inverse->estimated = root->estimated;
+#endif
 }
+
+void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse) { invert_from(root, 0, inverse); }
 
 void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse) {
     memset(inverse, 0, sizeof *inverse);
     for (size_t i = 0; i < GOE_STATES; i++) {
         inverse->element[goe_inverse_column(i) + i] = 1.0f / root->element[goe_srif_row(i) + i];
     }
+    invert_from(root, GOE_STATES, inverse);
 }
 
 GOE_STATIC_ASSERT(GOE_STATES == 10, the_variance_is_written_out_for_ten_states);
@@ -262,6 +292,25 @@ float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight
     return sum + p * p;
 }
 
+#if GOE_BESIDE
+/* Written out, as above. */
+void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
+                     float part[GOE_BESIDE]) {
+    for (size_t j = inverse->estimated; j < GOE_BESIDE; j++) {
+        part[j] = 0.0f;
+    }
+    for (size_t j = 0; j < inverse->estimated; j++) {
+        const float *v = &inverse->element[goe_inverse_column(GOE_STATES + j)];
+        float sum = weight[3] * v[3] + weight[4] * v[4] + weight[5] * v[5] + weight[6] * v[6] + weight[7] * v[7] +
+                    weight[8] * v[8] + weight[9] * v[9];
+        for (size_t k = 0; k <= j && direct; k++) {
+            sum += direct[k] * v[GOE_STATES + k];
+        }
+        part[j] = sum;
+    }
+}
+#endif
+
 float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
     const float last = dot_run(weight, &inverse->element[goe_inverse_column(GOE_STATES - 1)], GOE_STATES);
     return last * last;
@@ -277,7 +326,8 @@ void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]) {
 
 void goe_srif_marginal(const goe_inverse_t *inverse, float covariance[GOE_KEPT][GOE_KEPT]) {
     memset(covariance, 0, GOE_KEPT * GOE_KEPT * sizeof(float));
-    for (size_t k = 0; k < GOE_STATES; k++) {
+    const size_t count = goe_inverse_count(inverse);
+    for (size_t k = 0; k < count; k++) {
         const float *v = &inverse->element[goe_inverse_column(k)];
         const size_t last = k < GOE_KEPT ? k : GOE_KEPT - 1u;
         for (size_t i = 0; i <= last; i++) {
@@ -327,7 +377,7 @@ static void invert_kept(float u[GOE_KEPT][GOE_KEPT], goe_triangle_t *root) {
 
 void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],
                               goe_triangle_t *root, goe_inverse_t *inverse) {
-    memset(root, 0, sizeof *root);
+    goe_srif_clear(root);
     memset(inverse, 0, sizeof *inverse);
     factorise(covariance, inverse);
     invert_kept(covariance, root);
@@ -335,6 +385,7 @@ void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float 
         inverse->element[goe_inverse_column(i) + i] = sigma[i - GOE_KEPT];
         root->element[goe_srif_row(i) + i] = 1.0f / sigma[i - GOE_KEPT];
     }
+    invert_from(root, GOE_STATES, inverse);
 }
 
 /* ------------------------------------------------------------------------------------------------------ other states -- */
@@ -344,7 +395,7 @@ GOE_STATIC_ASSERT(GOE_CHANGED <= GOE_ROWS_MAX && GOE_CHANGED < GOE_STATES, the_c
 /* R times the derivative is square from the changed states on: these rows go in anew, as if they were measured. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows) {
     const size_t kept = GOE_STATES - GOE_CHANGED;
-    float change[GOE_STATES];
+    float change[GOE_UNKNOWNS];
     memset(rows, 0, sizeof *rows);
     for (size_t i = 0; i < GOE_STATES; i++) {
         float *r = &root->element[goe_srif_row(i)];
@@ -358,10 +409,13 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
             memcpy(&r[kept], row, sizeof row);
             continue;
         }
-        memset(&r[i], 0, (GOE_STATES - i) * sizeof r[0]);
         for (size_t j = 0; j < GOE_CHANGED; j++) {
             rows->row[i - kept][GOE_STATE_COLUMN + kept + j] = row[j];
         }
+        for (size_t j = GOE_STATES; j < GOE_UNKNOWNS; j++) {
+            rows->row[i - kept][GOE_STATE_COLUMN + j] = r[j];
+        }
+        memset(&r[i], 0, (GOE_UNKNOWNS - i) * sizeof r[0]);
     }
     (void)goe_srif_update(root, 1.0f, rows, change);
 }

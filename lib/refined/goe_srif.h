@@ -8,27 +8,68 @@
 
 #include "goe.h"
 
-/* Columns of a row of goe_matrix_t: the image's own nuisances, the states, the residual (measured minus predicted). */
+/* Columns of a row of goe_matrix_t: the image's own nuisances, the states, what is beside them, the residual (measured minus
+ * predicted). */
 #define GOE_STATE_COLUMN GOE_NUISANCES
+#define GOE_BESIDE_COLUMN (GOE_STATE_COLUMN + GOE_STATES)
 #define GOE_RESIDUAL (GOE_COLUMNS - 1)
 
 /* Element (i, j), i <= j, is element[goe_srif_row(i) + j]. */
-static inline size_t goe_srif_row(size_t i) { return i * (2u * GOE_STATES - 1u - i) / 2u; }
+static inline size_t goe_srif_row(size_t i) { return i * (2u * GOE_UNKNOWNS - 1u - i) / 2u; }
 
 /* Element (i, j), i <= j, of the inverse is element[goe_inverse_column(j) + i]. */
 static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
 
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
-/* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state. nuisance_root: 1/sigma of
- * the nuisances. *matrix is used up. Returns the squared norm that is left of the residuals: the normalised innovation
- * squared. */
-float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_STATES]);
+/* The state, and how many of what is beside it are estimated. */
+static inline size_t goe_srif_count(const goe_triangle_t *r) {
+#if GOE_BESIDE
+    return GOE_STATES + r->estimated;
+#else
+    (void)r;
+    return GOE_STATES;
+#endif
+}
+
+static inline size_t goe_inverse_count(const goe_inverse_t *inverse) {
+#if GOE_BESIDE
+    return GOE_STATES + inverse->estimated;
+#else
+    (void)inverse;
+    return GOE_STATES;
+#endif
+}
+
+/* Where the rows of what is beside the state begin. */
+static inline size_t goe_srif_beside_row(void) { return goe_srif_row(GOE_STATES) + GOE_STATES; }
+
+/* Clears the elements by the state from `first` on, and by what is beside it: in two steps, each too short to be worth a call of
+ * memset(). */
+static inline void goe_srif_zero(float by[GOE_UNKNOWNS], size_t first) {
+    for (size_t i = first; i < GOE_STATES; i++) {
+        by[i] = 0.0f;
+    }
+#if GOE_BESIDE
+    by[GOE_STATES] = 0.0f;
+    by[GOE_STATES + 1] = 0.0f;
+    by[GOE_STATES + 2] = 0.0f;
+#endif
+}
+
+/* Forgets the state; what is beside it stays known. */
+void goe_srif_clear(goe_triangle_t *root);
+
+/* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state and of what is estimated
+ * beside it. nuisance_root:
+ * 1/sigma of the nuisances. *matrix is used up. Returns the squared norm that is left of the residuals: the normalised
+ * innovation squared. */
+float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]);
 
 /* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if it were
  * known to be 0, and what is known of it stays as it was; the inverse then holds its part in the variances of the others. */
 float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
-                                  float change[GOE_STATES]);
+                                  float change[GOE_UNKNOWNS]);
 
 /* Adds variance sigma^2 along a direction, of which the states from first to last are read and the others are 0; sigma > 0. */
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma);
@@ -42,12 +83,18 @@ void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse
 /* Variance of one state. */
 float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
 
-/* Variance of w' x. */
+/* Variance of w' x, as if what is beside the state were known. */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
 /* The same if the first GOE_UNWEIGHTED weights are 0, for half of that. */
 #define GOE_UNWEIGHTED 3
 float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
+
+#if GOE_BESIDE
+/* What the estimates beside the state add to the variance of w' x + direct' beside, as its squares' sum. direct may be null. */
+void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
+                     float part[GOE_BESIDE]);
+#endif
 
 /* The part of it that is the last state's own. */
 float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);

@@ -19,13 +19,29 @@ int goe_batch_set(goe_settings_t *settings, const char *name, double value) {
 
 /* --------------------------------------------------------------------------------------------------------- columns -- */
 
-static const char *const label_names[GOE_BATCH_LABELS] = {"status", "method",  "model",  "valid",
-                                                          "fresh",  "suspect", "points", "nis_rows"};
+static const char *const label_names[GOE_BATCH_LABELS] = {"status",  "method", "model",    "valid", "fresh",
+                                                          "suspect", "points", "nis_rows", "reason"};
 
-static const char *const number_names[GOE_BATCH_NUMBERS] = {
-    "x0_m",    "z0_m",    "orientation_deg",    "width_m",    "length_m",    "height_m",
-    "x0_sd_m", "z0_sd_m", "orientation_sd_deg", "width_sd_m", "length_sd_m", "height_sd_m",
-    "nis",     "misfit"};
+static const char *const number_names[GOE_BATCH_NUMBERS] = {"x0_m",
+                                                            "z0_m",
+                                                            "orientation_deg",
+                                                            "width_m",
+                                                            "length_m",
+                                                            "height_m",
+                                                            "x0_sd_m",
+                                                            "z0_sd_m",
+                                                            "orientation_sd_deg",
+                                                            "width_sd_m",
+                                                            "length_sd_m",
+                                                            "height_sd_m",
+                                                            "nis",
+                                                            "misfit",
+                                                            "velocity_north_m_s",
+                                                            "velocity_east_m_s",
+                                                            "velocity_north_sd_m_s",
+                                                            "velocity_east_sd_m_s",
+                                                            "latency_s",
+                                                            "latency_sd_s"};
 
 static const char *const hazard_names[GOE_BATCH_HAZARD] = {"status",         "time_s",    "miss_m",
                                                            "clearance_m",    "time_sd_s", "miss_sd_m",
@@ -37,6 +53,10 @@ const char *goe_batch_label(int column) {
 
 const char *goe_batch_number(int column) {
     return column >= 0 && column < GOE_BATCH_NUMBERS ? number_names[column] : NULL;
+}
+
+const char *goe_batch_reason(int number) {
+    return number >= GOE_REASON_NONE && number <= GOE_REASON_NOISE ? goe_reason_text((goe_reason_t)number) : NULL;
 }
 
 const char *goe_batch_hazard(int column) {
@@ -58,14 +78,29 @@ static void take(float *to, const goe_batch_float_t *from, int count) {
 
 static void tell(const goe_estimate_t *estimate, goe_status_t status, int32_t *label, goe_batch_float_t *number) {
     const int32_t labels[GOE_BATCH_LABELS] = {
-        (int32_t)status,         (int32_t)estimate->method, (int32_t)estimate->model, (int32_t)estimate->valid,
-        estimate->fresh ? 1 : 0, estimate->suspect ? 1 : 0, estimate->points,         estimate->nis_rows};
-    const float numbers[GOE_BATCH_NUMBERS] = {
-        estimate->x0_m,          estimate->z0_m,           estimate->orientation_deg,
-        estimate->width_m,       estimate->length_m,       estimate->height_m,
-        estimate->sigma.x0_m,    estimate->sigma.z0_m,     estimate->sigma.orientation_deg,
-        estimate->sigma.width_m, estimate->sigma.length_m, estimate->sigma.height_m,
-        estimate->nis,           estimate->misfit};
+        (int32_t)status,          (int32_t)estimate->method, (int32_t)estimate->model,
+        (int32_t)estimate->valid, estimate->fresh ? 1 : 0,   estimate->suspect ? 1 : 0,
+        estimate->points,         estimate->nis_rows,        (int32_t)estimate->reason};
+    const float numbers[GOE_BATCH_NUMBERS] = {estimate->x0_m,
+                                              estimate->z0_m,
+                                              estimate->orientation_deg,
+                                              estimate->width_m,
+                                              estimate->length_m,
+                                              estimate->height_m,
+                                              estimate->sigma.x0_m,
+                                              estimate->sigma.z0_m,
+                                              estimate->sigma.orientation_deg,
+                                              estimate->sigma.width_m,
+                                              estimate->sigma.length_m,
+                                              estimate->sigma.height_m,
+                                              estimate->nis,
+                                              estimate->misfit,
+                                              estimate->velocity_north_m_s,
+                                              estimate->velocity_east_m_s,
+                                              estimate->sigma.velocity_north_m_s,
+                                              estimate->sigma.velocity_east_m_s,
+                                              estimate->latency_s,
+                                              estimate->sigma.latency_s};
     memcpy(label, labels, sizeof labels);
     put(number, numbers, GOE_BATCH_NUMBERS);
 }

@@ -12,8 +12,8 @@
 #define GOE_BATCH_PIXELS 12 /* u, v in px of left, right, top, base_left, base_near, base_right */
 #define GOE_BATCH_FEATURES 6
 #define GOE_BATCH_BOX 4      /* left, top, right, bottom in px */
-#define GOE_BATCH_LABELS 8   /* goe_batch_label() names them */
-#define GOE_BATCH_NUMBERS 14 /* goe_batch_number() names them */
+#define GOE_BATCH_LABELS 9   /* goe_batch_label() names them */
+#define GOE_BATCH_NUMBERS 20 /* goe_batch_number() names them */
 #define GOE_BATCH_HAZARD 9   /* goe_batch_hazard() names them */
 
 /* Of the arrays: float, also where double_precision.h makes doubles of the library's floats. */
@@ -25,14 +25,17 @@ typedef float goe_batch_float_t;
 size_t goe_batch_settings_size(void);
 void goe_batch_default(goe_settings_t *settings);
 
-/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "more_cameras[0].fx_px", "method", ...); whole numbers and truth
- * values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
+/* Sets a field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "more_cameras[0].fx_px", "method", ...);
+ * whole numbers and truth values as numbers too. Returns 0, or -1 if there is no such field or the value does not fit it. */
 int goe_batch_set(goe_settings_t *settings, const char *name, double value);
 
 /* Names of the columns of labels, numbers and hazards, in order; null after the last. */
 const char *goe_batch_label(int column);
 const char *goe_batch_number(int column);
 const char *goe_batch_hazard(int column);
+
+/* Names of what the label "reason" tells, from 0 on; null after the last. */
+const char *goe_batch_reason(int number);
 
 /* What goe_hazard() is asked after each image, by the README's rule: margin and clearance grow with doubt and age. */
 typedef struct {

@@ -27,11 +27,17 @@ static const quantity_t quantities[] = {
     QUANTITY("center_n_m", "center_n_sd_m", center_north_m, GOE_HAS_CENTER),
     QUANTITY("center_e_m", "center_e_sd_m", center_east_m, GOE_HAS_CENTER),
 };
+static const quantity_t velocities[] = {
+    QUANTITY("velocity_n_m_s", "velocity_n_sd_m_s", velocity_north_m_s, GOE_HAS_VELOCITY),
+    QUANTITY("velocity_e_m_s", "velocity_e_sd_m_s", velocity_east_m_s, GOE_HAS_VELOCITY),
+};
 #undef QUANTITY
 #define QUANTITIES (sizeof quantities / sizeof quantities[0])
+#define VELOCITIES (sizeof velocities / sizeof velocities[0])
 
 #define LEADING_MAX 160 /* time text, id, status, model and number of points */
-#define RESIDUALS_MAX (3 * (NUMBER_TEXT_MAX + 1) + 2)
+#define REASON_MAX 16
+#define RESIDUALS_MAX ((3 + 2 * VELOCITIES + 2) * (NUMBER_TEXT_MAX + 1) + REASON_MAX + 4)
 #define ROW_MAX (LEADING_MAX + 2 * QUANTITIES * (NUMBER_TEXT_MAX + 1) + RESIDUALS_MAX + 1)
 
 bool estimate_write_header(FILE *stream, bool residuals) {
@@ -39,7 +45,14 @@ bool estimate_write_header(FILE *stream, bool residuals) {
     for (size_t i = 0; i < QUANTITIES; i++) {
         written = fprintf(stream, ",%s,%s", quantities[i].name, quantities[i].sigma_name) >= 0 && written;
     }
-    return fputs(residuals ? ",nis,nis_rows,misfit,suspect\n" : "\n", stream) >= 0 && written;
+    if (residuals) {
+        written = fputs(",nis,nis_rows,misfit,suspect,reason", stream) >= 0 && written;
+        for (size_t i = 0; i < VELOCITIES; i++) {
+            written = fprintf(stream, ",%s,%s", velocities[i].name, velocities[i].sigma_name) >= 0 && written;
+        }
+        written = fputs(",latency_s,latency_sd_s", stream) >= 0 && written;
+    }
+    return fputs("\n", stream) >= 0 && written;
 }
 
 static const char *model_text(goe_model_t model) {
@@ -86,7 +99,14 @@ static char *append_residuals(char *out, const goe_estimate_t *estimate) {
     }
     *out++ = ',';
     *out++ = estimate->suspect ? '1' : '0';
-    return out;
+    out += snprintf(out, REASON_MAX, ",%s", goe_reason_text(estimate->reason));
+    for (size_t i = 0; i < VELOCITIES; i++) {
+        out = append_quantity(out, estimate, &velocities[i]);
+    }
+    *out++ = ',';
+    out += number_format(out, estimate->latency_s);
+    *out++ = ',';
+    return out + number_format(out, estimate->sigma.latency_s);
 }
 
 bool estimate_write_row(FILE *stream, const char *time_text, int64_t id, goe_status_t status,

@@ -77,7 +77,8 @@ static double end_z(const double state[GOE_STATES], double side) {
     return 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE] + side * state[GOE_SIDE_X];
 }
 
-/* Left, right: the end's x at the measured height, which is taken as known; top: the y of the nearer end, or of the farther one if the highest. */
+/* Left, right: the end's x at the measured height, which is taken as known; top: the y of the nearer end, or of the farther
+ * one if the highest. */
 static double see(const double state[GOE_STATES], size_t feature) {
     const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
     const double pz = 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE];

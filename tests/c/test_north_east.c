@@ -20,17 +20,29 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-/* The estimate after a flight on this course. */
-static goe_estimate_t fly(double course_deg) {
+/* The estimate after a flight on a course; blind: whose first image saw nothing, on another course. */
+static goe_estimate_t fly_after(double before_deg, bool blind, double course_deg) {
     goe_estimate_t estimate;
     goe_image_t image;
-    scene.course_deg = course_deg;
+    scene.course_deg = before_deg;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < IMAGES; k++) {
         scene_image(&scene, k, &image, NULL);
+        if (k == 0 && blind) {
+            image.left.seen = image.right.seen = image.top.seen = false;
+            image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+            image.box.seen = 0;
+        }
+        scene.course_deg = course_deg;
         (void)goe_update(&estimator, &image, &estimate);
     }
     return estimate;
+}
+
+static goe_estimate_t fly(double course_deg) { return fly_after(course_deg, false, course_deg); }
+
+static goe_estimate_t fly_after_turn(double before_deg, double after_deg) {
+    return fly_after(before_deg, true, after_deg);
 }
 
 /* Angle of b from a, folded into -180 to 180. */
@@ -132,25 +144,6 @@ static void the_spread_of_the_centre_turns_with_the_course(void) {
     settings = scene_window_settings(&scene);
     check_spread_turns();
 #endif
-}
-
-/* Images with nothing seen on one course, then the flight on another. */
-static goe_estimate_t fly_after_turn(double before_deg, double after_deg) {
-    goe_estimate_t estimate;
-    goe_image_t image;
-    scene.course_deg = before_deg;
-    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
-    for (int k = 0; k < IMAGES; k++) {
-        scene_image(&scene, k, &image, NULL);
-        if (k == 0) {
-            image.left.seen = image.right.seen = image.top.seen = false;
-            image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
-            image.box.seen = 0;
-            scene.course_deg = after_deg;
-        }
-        (void)goe_update(&estimator, &image, &estimate);
-    }
-    return estimate;
 }
 
 /* GIVEN a track that began before a turn WHEN what is first seen lies behind its Z axis THEN T is fixed there, by points and by

@@ -182,8 +182,8 @@ static bool is_within_lens(void) {
     return farthest < 0.45;
 }
 
-/* GIVEN a wide lens (k1 = -0.3) THEN a straight side of the raw image, linearised where it touches, is off by less than a tenth of a
- * pixel at 914 px in 98 of 100 sides, and by less than one in all. */
+/* GIVEN a wide lens (k1 = -0.3) THEN a straight side of the raw image, linearised where it touches, is off by less than a
+ * tenth of a pixel at 914 px in 98 of 100 sides, and by less than one in all. */
 static void a_lens_is_linearised_where_a_side_touches(void) {
     double truth[GOE_STATES];
     double worst_px = 0.0;
@@ -317,7 +317,8 @@ static void a_jump_of_the_filter_moves_the_datum(void) {
     CHECK_CLOSE(0.01 * (double)steady.sigma.height_m, steady.height_m, jumped.height_m);
 }
 
-/* GIVEN errors of an image that are none THEN the image is refused, and nothing changes; by the window method they are not read. */
+/* GIVEN errors of an image that are none THEN the image is refused, and nothing changes; by the window method they are not
+ * read. */
 static void errors_of_an_image_are_checked(void) {
     static const float bad[] = {-1.0f, 31.0f, 1.0e30f};
     scene_t scene;

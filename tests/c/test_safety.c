@@ -99,7 +99,7 @@ static void check_header(const goe_estimate_t *e) {
     const bool position = (e->valid & GOE_HAS_POSITION) != 0u;
     const int model = (int)e->model;
     const int method = (int)e->method;
-    TEST_ASSERT_EQUAL_HEX32(0u, e->valid & ~0x3Fu);
+    TEST_ASSERT_EQUAL_HEX32(0u, e->valid & ~0x7Fu);
     TEST_ASSERT_TRUE(model == GOE_MODEL_NONE || model == GOE_MODEL_DISC || model == GOE_MODEL_LINE ||
                      model == GOE_MODEL_BOX || model == GOE_MODEL_PRISM);
     TEST_ASSERT_TRUE(position == (model != GOE_MODEL_NONE));
@@ -128,6 +128,10 @@ static void check_nothing_beside_the_valid(const goe_estimate_t *e) {
     check_zero_unless(GOE_HAS_HEIGHT, &s->height_m);
     check_zero_unless(GOE_HAS_ORIENTATION, &e->orientation_deg);
     check_zero_unless(GOE_HAS_ORIENTATION, &s->orientation_deg);
+    check_zero_unless(GOE_HAS_VELOCITY, &e->velocity_north_m_s);
+    check_zero_unless(GOE_HAS_VELOCITY, &e->velocity_east_m_s);
+    check_zero_unless(GOE_HAS_VELOCITY, &s->velocity_north_m_s);
+    check_zero_unless(GOE_HAS_VELOCITY, &s->velocity_east_m_s);
     check_zero_unless(GOE_HAS_CENTER, &e->center_north_m);
     check_zero_unless(GOE_HAS_CENTER, &e->center_east_m);
     check_zero_unless(GOE_HAS_CENTER, &s->center_north_m);
@@ -280,8 +284,12 @@ static void check_filter(const goe_filter_t *filter) {
     check_finite(filter->scatter.before, GOE_SERIES + 2, "scatter");
     if (filter->phase != 0u) { /* otherwise the next image starts it anew */
         check_finite(filter->state, GOE_STATES, "state");
-        check_finite(filter->root.element, sizeof filter->root / sizeof(float), "root");
+        check_finite(filter->root.element, sizeof filter->root.element / sizeof(float), "root");
     }
+#if GOE_BESIDE
+    check_finite(filter->root.right, GOE_BESIDE, "right-hand side");
+    check_finite(filter->mover.beside, GOE_BESIDE, "latency, velocity");
+#endif
 }
 
 static void check_state(void) {

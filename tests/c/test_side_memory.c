@@ -83,7 +83,7 @@ static void filter(const series_t *of, double *x, double *variance) {
     for (int k = 0; k < IMAGES; k++) {
         float row[GOE_COLUMNS] = {0.0f};
         float own = (float)of->white[k];
-        float change[GOE_STATES] = {0.0f};
+        float change[GOE_UNKNOWNS] = {0.0f};
         const double since_s = k > 0 ? of->time_s[k] - of->time_s[k - 1] : 0.0;
         goe_side_memory_fade(&side, (float)exp(-since_s / of->tau_s), (float)of->variance);
         row[GOE_STATE_COLUMN + GOE_BEARING] = (float)of->slope[k];

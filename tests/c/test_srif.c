@@ -16,6 +16,7 @@ typedef struct {
 } dense_t;
 
 static check_random_t any;
+static const goe_triangle_t no_root;
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -113,6 +114,7 @@ static float normal(void) { return (float)check_random_normal(&any); }
 
 /* Diagonals from 1 to 1000 and of either sign, the rest of their row's size. */
 static void random_root(goe_triangle_t *root) {
+    memset(root, 0, sizeof *root);
     for (size_t i = 0; i < N; i++) {
         const double size = pow(10.0, check_random_between(&any, 0.0, 3.0));
         for (size_t j = i; j < N; j++) {
@@ -210,7 +212,7 @@ static solution_t solve(const goe_triangle_t *root, double nuisance_root, const 
 static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_t *matrix) {
     const solution_t expected = solve(root, nuisance_root, matrix);
     const dense_t covariance = inverted(expected.information, N);
-    float change[N];
+    float change[GOE_UNKNOWNS];
     const float nis = goe_srif_update(root, (float)nuisance_root, matrix, change);
     const dense_t information = information_of(root);
     check_alike(SHARE, &expected.information, &information);
@@ -225,7 +227,7 @@ static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_
 static void an_update_solves_the_normal_equations(void) {
     any = check_random_start("update");
     for (int n = 0; n < CASES; n++) {
-        goe_triangle_t root;
+        goe_triangle_t root = no_root;
         goe_matrix_t matrix;
         random_root(&root);
         random_matrix(1u + (size_t)n % ROWS, &matrix);
@@ -238,9 +240,9 @@ static void an_update_solves_the_normal_equations(void) {
 static void a_considered_state_is_held_and_depended_on(void) {
     any = check_random_start("considering");
     for (int n = 0; n < CASES; n++) {
-        goe_triangle_t root;
+        goe_triangle_t root = no_root;
         goe_matrix_t matrix;
-        float change[N];
+        float change[GOE_UNKNOWNS];
         random_root(&root);
         random_matrix(1u + (size_t)n % ROWS, &matrix);
         const double nuisance_root = pow(10.0, check_random_between(&any, 0.0, 3.0));
@@ -270,7 +272,7 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
     const int draws = 4000;
     double sum = 0.0;
     any = check_random_start("innovations");
-    goe_triangle_t root;
+    goe_triangle_t root = no_root;
     goe_inverse_t inverse;
     goe_matrix_t matrix;
     random_root(&root);
@@ -281,7 +283,7 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
         goe_triangle_t updated = root;
         goe_matrix_t drawn = matrix;
         float noise[N];
-        float change[N];
+        float change[GOE_UNKNOWNS];
         float temporaries[GOE_NUISANCES];
         for (size_t i = 0; i < N; i++) {
             noise[i] = normal();
@@ -309,9 +311,9 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
 
 static void rows_of_zeros_change_nothing(void) {
     any = check_random_start("zeros");
-    goe_triangle_t root;
+    goe_triangle_t root = no_root;
     goe_matrix_t matrix;
-    float change[N];
+    float change[GOE_UNKNOWNS];
     random_root(&root);
     const goe_triangle_t before = root;
     memset(&matrix, 0, sizeof matrix);
@@ -325,9 +327,9 @@ static void rows_of_zeros_change_nothing(void) {
 /* A residual that no column explains is left over whole. */
 static void a_row_without_derivatives_is_left_over(void) {
     any = check_random_start("no derivatives");
-    goe_triangle_t root;
+    goe_triangle_t root = no_root;
     goe_matrix_t matrix;
-    float change[N];
+    float change[GOE_UNKNOWNS];
     random_root(&root);
     memset(&matrix, 0, sizeof matrix);
     matrix.row[4][GOE_RESIDUAL] = 3.0f;
@@ -338,9 +340,9 @@ static void a_row_without_derivatives_is_left_over(void) {
 static void the_signs_of_the_rows_are_free(void) {
     any = check_random_start("signs");
     for (size_t i = 0; i < N; i++) {
-        goe_triangle_t root;
+        goe_triangle_t root = no_root;
         goe_matrix_t matrix;
-        float change[2][N];
+        float change[2][GOE_UNKNOWNS];
         float nis[2];
         random_root(&root);
         random_matrix(ROWS, &matrix);
@@ -363,7 +365,7 @@ static void the_signs_of_the_rows_are_free(void) {
 /* ------------------------------------------------------------------------------------------------------ process noise -- */
 
 static void check_spread(const float direction[GOE_STATES], size_t first, size_t last, float sigma) {
-    goe_triangle_t root;
+    goe_triangle_t root = no_root;
     random_root(&root);
     dense_t expected = covariance_of(&root);
     for (int i = 0; i < N; i++) {
@@ -400,7 +402,7 @@ static void a_tiny_sigma_changes_nothing(void) {
     static const float two[N] = {[2] = 1.0f, [6] = -0.5f};
     any = check_random_start("tiny sigma");
     for (size_t i = 0; i < sizeof tiny / sizeof tiny[0]; i++) {
-        goe_triangle_t root;
+        goe_triangle_t root = no_root;
         random_root(&root);
         const dense_t before = information_of(&root);
         goe_srif_spread(&root, one, 0, 0, tiny[i]);
@@ -431,7 +433,7 @@ static void check_inverse(const goe_triangle_t *root, const goe_inverse_t *inver
 static void the_root_times_its_inverse_is_one(void) {
     any = check_random_start("inverse");
     for (int n = 0; n < CASES; n++) {
-        goe_triangle_t root;
+        goe_triangle_t root = no_root;
         goe_inverse_t inverse;
         random_root(&root);
         memset(&inverse, 0xA5, sizeof inverse); /* is written whole */
@@ -444,7 +446,7 @@ static void the_root_times_its_inverse_is_one(void) {
 static void a_variance_is_the_covariance_seen_along_the_weights(void) {
     any = check_random_start("variance");
     for (int n = 0; n < CASES; n++) {
-        goe_triangle_t root;
+        goe_triangle_t root = no_root;
         goe_inverse_t inverse;
         float weight[N];
         float projected[N];
@@ -482,7 +484,7 @@ static void a_variance_is_the_covariance_seen_along_the_weights(void) {
 static void a_marginal_makes_a_root_again(void) {
     any = check_random_start("marginal");
     for (int n = 0; n < CASES; n++) {
-        goe_triangle_t root;
+        goe_triangle_t root = no_root;
         goe_inverse_t inverse;
         float c[GOE_KEPT][GOE_KEPT];
         float sigma[N - GOE_KEPT];
@@ -516,7 +518,7 @@ static void a_marginal_makes_a_root_again(void) {
 static void a_singular_covariance_gives_a_finite_root(void) {
     float c[GOE_KEPT][GOE_KEPT];
     const float sigma[N - GOE_KEPT] = {1.0f, 1.0f, 1.0f, 1.0f};
-    goe_triangle_t root;
+    goe_triangle_t root = no_root;
     goe_inverse_t inverse;
     for (size_t i = 0; i < GOE_KEPT; i++) {
         for (size_t j = 0; j < GOE_KEPT; j++) {
@@ -524,7 +526,7 @@ static void a_singular_covariance_gives_a_finite_root(void) {
         }
     }
     goe_srif_from_covariance(c, sigma, &root, &inverse);
-    for (size_t i = 0; i < sizeof root / sizeof(float); i++) {
+    for (size_t i = 0; i < sizeof root.element / sizeof(float); i++) {
         TEST_ASSERT_TRUE(check_is_finite(root.element[i]));
         TEST_ASSERT_TRUE(check_is_finite(inverse.element[i]));
     }

@@ -77,6 +77,16 @@ static void the_sign_is_the_grade(void) {
     TEST_ASSERT_TRUE(GOE_BEHIND_CAMERA == -1 && GOE_BAD_ATTITUDE == -(GOE_CAUSES - 1)); /* index the counters */
 }
 
+/* GIVEN any number THEN a reason has a name of its own, and what is none is unknown. */
+static void reasons_have_names(void) {
+    static const char *const names[] = {"none", "convention", "moves", "base", "shape", "late", "noise"};
+    for (int reason = GOE_REASON_NONE; reason <= GOE_REASON_NOISE; reason++) {
+        TEST_ASSERT_EQUAL_STRING(names[reason], goe_reason_text((goe_reason_t)reason));
+    }
+    TEST_ASSERT_EQUAL_STRING("unknown", goe_reason_text((goe_reason_t)(GOE_REASON_NOISE + 1)));
+    TEST_ASSERT_EQUAL_STRING("unknown", goe_reason_text((goe_reason_t)99));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_status_has_a_name_of_its_own);
@@ -84,5 +94,6 @@ int main(void) {
     RUN_TEST(the_names_are_those_of_the_manual);
     RUN_TEST(any_other_number_is_unknown);
     RUN_TEST(the_sign_is_the_grade);
+    RUN_TEST(reasons_have_names);
     return UNITY_END();
 }

@@ -39,5 +39,6 @@ refused GOE_ROWS_MAX 8 10
 refused GOE_FEATURES 5 7
 refused GOE_NUISANCES 2 4
 refused GOE_KEPT 5 7
-refused GOE_CHANGED 5 7
+refused GOE_CHANGED 6 8
+refused GOE_UNWEIGHTED 2 4
 refused GOE_CAUSES 13 15

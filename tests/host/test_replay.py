@@ -31,7 +31,10 @@ HEADER = (
     "length_m,length_sd_m,height_m,height_sd_m,orientation_deg,orientation_sd_deg,"
     "center_n_m,center_n_sd_m,center_e_m,center_e_sd_m"
 )
-RESIDUALS = ",nis,nis_rows,misfit,suspect"
+RESIDUALS = (
+    ",nis,nis_rows,misfit,suspect,reason,velocity_n_m_s,velocity_n_sd_m_s,velocity_e_m_s,velocity_e_sd_m_s"
+    ",latency_s,latency_sd_s"
+)
 PAPER = ("--method", "window")
 CORNER = ROOT / "tests" / "data" / "corner"
 POSE = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz"]
@@ -206,8 +209,8 @@ def test_numbers_are_floats_with_nine_digits(tmp_path: Path, method: str) -> Non
     numbers = 0
     for name, rows in (("chimney", chimney()), ("box", box())):
         for row in replay(write_log(tmp_path / name, table(rows)), "--method", method, "--residuals"):
-            for text in list(row.values())[5:]:
-                if text:
+            for column, text in list(row.items())[5:]:
+                if text and column != "reason":
                     nearest = struct.unpack("f", struct.pack("f", float(text)))[0]
                     assert text == f"{nearest:.9g}"
                     numbers += 1
@@ -301,9 +304,10 @@ def test_residuals_are_columns_at_the_end(method: str) -> None:
     plain = call("--method", method, CORNER).stdout.splitlines()
     wide = call("--method", method, "--residuals", CORNER).stdout.splitlines()
     assert plain[0] == HEADER and wide[0] == HEADER + RESIDUALS
-    assert [line.rsplit(",", 4)[0] for line in wide] == plain
+    assert [line.rsplit(",", RESIDUALS.count(","))[0] for line in wide] == plain
     rows = list(csv.DictReader(wide))
-    assert {row["suspect"] for row in rows} == {"0"}
+    assert {row["suspect"] for row in rows} == {"0"} and {row["reason"] for row in rows} == {"none"}
+    assert {row["velocity_n_m_s"] for row in rows} == {""}
     if method == "window":
         assert {(row["nis"], row["nis_rows"], row["misfit"]) for row in rows} == {("", "0", "")}
         return

@@ -39,43 +39,21 @@ def fitted(flight: Flight, error: float) -> PrismFit:
     return PrismFit(flight.truth.values + error, np.ones(6), np.zeros(12), 1.0, 1, 1)
 
 
-def outcome(z0_errors: list[float], suspect: list[bool] | None = None) -> boxes.BoxOutcome:
+def outcome(z0_errors: list[float]) -> boxes.BoxOutcome:
     """Of sigma 1 m, telling Z0 alone."""
     error = np.full((len(z0_errors), 6), NAN)
     error[:, Z0] = z0_errors
-    told = np.zeros(len(z0_errors), bool) if suspect is None else np.array(suspect)
-    return boxes.BoxOutcome(box_flight(MAST, BoxOptions()), error, np.where(np.isfinite(error), 1.0, NAN), told)
+    sigma, suspect = np.where(np.isfinite(error), 1.0, NAN), np.zeros(len(z0_errors), bool)
+    return boxes.BoxOutcome(box_flight(MAST, BoxOptions()), error, sigma, suspect)
 
 
 def by_name(goals: list[Goal], start: str) -> list[Goal]:
     return [goal for goal in goals if goal.name.startswith(start)]
 
 
-def test_coverage_counts_each_track_once() -> None:
-    long, short, silent = outcome([0.0] * 30 + [3.0] * 10), outcome([NAN, 2.5]), outcome([NAN, NAN])
-    share = boxes.coverage([long, short, silent])
-    assert share[Z0] == pytest.approx((75.0 + 0.0) / 2) and np.isnan(share[[X0, HEIGHT]]).all()
-    assert np.isnan(boxes.coverage([silent])).all()
-
-
 def test_the_last_answer_counts_where_the_last_image_has_none() -> None:
     errors = boxes.last_errors([outcome([9.0, -3.0, NAN]), outcome([NAN])])
     assert errors[:, Z0] == pytest.approx([3.0, NAN], nan_ok=True)
-
-
-@pytest.mark.parametrize(
-    ("errors", "suspect", "wrong"),
-    [
-        ([6.0] * 5, None, True),
-        ([-6.0] * 5, None, True),
-        ([6.0] * 4 + [4.0] + [6.0] * 4, None, False),
-        ([6.0] * 4 + [NAN] + [6.0] * 4, None, False),
-        ([6.0] * 9, [False] * 4 + [True] + [False] * 4, False),
-        ([0.0] * 3 + [6.0] * 5, [True] * 3 + [False] * 5, True),
-    ],
-)
-def test_wrong_by_five_sigma_on_end(errors: list[float], suspect: list[bool] | None, wrong: bool) -> None:
-    assert boxes.is_confidently_wrong(outcome(errors, suspect)) is wrong
 
 
 def test_images_until_an_answer() -> None:

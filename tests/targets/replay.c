@@ -38,14 +38,27 @@ static void hash_text(replay_t *replay, const char *text) {
 }
 
 static void hash_sigma(replay_t *replay, const goe_sigma_t *sigma) {
-    const float numbers[] = {sigma->x0_m,           sigma->z0_m,         sigma->x_m,      sigma->z_m,
-                             sigma->width_m,        sigma->length_m,     sigma->height_m, sigma->orientation_deg,
-                             sigma->center_north_m, sigma->center_east_m};
+    const float numbers[] = {sigma->x0_m,
+                             sigma->z0_m,
+                             sigma->x_m,
+                             sigma->z_m,
+                             sigma->width_m,
+                             sigma->length_m,
+                             sigma->height_m,
+                             sigma->orientation_deg,
+                             sigma->center_north_m,
+                             sigma->center_east_m,
+                             sigma->velocity_north_m_s,
+                             sigma->velocity_east_m_s,
+                             sigma->latency_s};
     hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
 }
 
 static void hash_estimate(replay_t *replay, const goe_estimate_t *e) {
     const float numbers[] = {e->age_s,
+                             e->velocity_north_m_s,
+                             e->velocity_east_m_s,
+                             e->latency_s,
                              e->x0_m,
                              e->z0_m,
                              e->x_m,
@@ -77,6 +90,7 @@ static void hash_estimate(replay_t *replay, const goe_estimate_t *e) {
     hash_word(replay, (uint32_t)e->valid);
     hash_word(replay, e->fresh ? 1u : 0u);
     hash_word(replay, e->suspect ? 1u : 0u);
+    hash_text(replay, goe_reason_text(e->reason));
     hash_word(replay, (uint32_t)e->nis_rows);
     hash_word(replay, (uint32_t)e->points);
     hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));

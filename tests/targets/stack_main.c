@@ -54,6 +54,12 @@ __attribute__((noinline)) static size_t depth_of_text(void) {
     return port_stack_used();
 }
 
+__attribute__((noinline)) static size_t depth_of_reason(void) {
+    port_stack_paint();
+    (void)goe_reason_text(GOE_REASON_NOISE);
+    return port_stack_used();
+}
+
 __attribute__((noinline)) static size_t depth_of_self_check(void) {
     port_stack_paint();
     (void)goe_self_check();
@@ -108,6 +114,7 @@ int main(void) {
     tell("goe_hazard", deepest.hazard);
     tell("goe_reset", deepest.reset);
     tell("goe_status_text", depth_of_text());
+    tell("goe_reason_text", depth_of_reason());
     tell("goe_self_check", depth_of_self_check());
     return 0;
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -40,6 +41,17 @@ class Answers:
     time_to_go_s: np.ndarray | None = None  # (K,) until the closest approach, NaN where not told; None: not asked for
 
 
+class Judged(Protocol):
+    """Errors and sigmas (K, 6) of a track's answers, NaN where there is none; suspect (K,)."""
+
+    @property
+    def error(self) -> np.ndarray: ...
+    @property
+    def sigma(self) -> np.ndarray: ...
+    @property
+    def suspect(self) -> np.ndarray: ...
+
+
 @dataclass
 class Outcome:
     """One track, judged: errors and sigmas (K, 6), NaN where nothing was answered or it cannot be judged."""
@@ -47,6 +59,10 @@ class Outcome:
     answers: Answers
     error: np.ndarray
     sigma: np.ndarray
+
+    @property
+    def suspect(self) -> np.ndarray:
+        return self.answers.suspect
 
 
 def folded(angle: np.ndarray) -> np.ndarray:
@@ -120,12 +136,11 @@ def longest_run(flags: np.ndarray) -> int:
     return int((ends[1::2] - ends[::2]).max(initial=0))
 
 
-def is_confidently_wrong(outcome: Outcome, quantities: Sequence[int] = range(6)) -> bool:
+def is_confidently_wrong(outcome: Judged, quantities: Sequence[int] = range(6)) -> bool:
     """Whether one of the quantities is far outside its own sigma for several images on end, and nothing warns of it."""
     with np.errstate(invalid="ignore"):
         far = np.abs(outcome.error) > CONFIDENT_SIGMA * outcome.sigma
-    quiet = ~outcome.answers.suspect
-    return longest_run(far[:, list(quantities)].any(1) & quiet) >= CONFIDENT_IMAGES
+    return longest_run(far[:, list(quantities)].any(1) & ~outcome.suspect) >= CONFIDENT_IMAGES
 
 
 def first_flag_s(answers: Answers, flags: np.ndarray) -> float:
@@ -157,7 +172,7 @@ def share(flags: Sequence[bool]) -> float:
     return 100.0 * float(np.mean(flags)) if len(flags) else math.nan
 
 
-def coverage(outcomes: Sequence[Outcome]) -> np.ndarray:
+def coverage(outcomes: Sequence[Judged]) -> np.ndarray:
     """(6,) percent of a track's answers within two sigma, mean over the tracks with an answer: a long track counts no
     more than a short one."""
     shares = np.full((len(outcomes), 6), np.nan)

@@ -22,6 +22,7 @@ PUBLIC = (
     "goe_hazard",
     "goe_reset",
     "goe_status_text",
+    "goe_reason_text",
     "goe_self_check",
 )
 METHODS = ("window", "refined")  # each track is flown by each, in this order

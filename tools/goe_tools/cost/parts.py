@@ -1,4 +1,5 @@
-"""What a firmware pays that leaves parts of the library out: GOE_WITH_WINDOW, GOE_WITH_REFINED, GOE_WITH_HAZARD.
+"""What a firmware pays that leaves parts of the library out: GOE_WITH_WINDOW, GOE_WITH_REFINED, GOE_WITH_HAZARD, and of the
+refined method GOE_WITH_MOVERS.
 
 Each combination of parts that lib/goe.h does not refuse is compiled for one target. While the header knows no such
 parts, there is nothing to tell.
@@ -70,8 +71,11 @@ def measured_parts(built: Build, folder: Path, library: Path = ROOT / "lib") -> 
     if not parts_known((library / "goe.h").read_text(encoding="utf-8")):
         return []
     sources = sorted(library.rglob("*.c"))
+    chosen = combinations()
+    if "GOE_WITH_MOVERS" in (library / "goe.h").read_text(encoding="utf-8"):
+        chosen.append(("everything but movers", ["-DGOE_WITH_MOVERS=0"]))
     return [
         Part(name, code_bytes(built, sources, definitions, folder), size_of_state(built, folder, definitions))
-        for name, definitions in combinations()
+        for name, definitions in chosen
         if not is_refused(plain_command(built), definitions)
     ]

@@ -149,6 +149,25 @@ def upright_boxes(scene: Scene, seed: int) -> list[Image]:
     return result
 
 
+def moving(scene: Scene, north_m_s: float, east_m_s: float) -> list[Image]:
+    """An obstacle that moves: the images of one that stands still, of a camera that is told to move along."""
+    result = images_of(scene)
+    for image in result:
+        s = 1.0e-6 * (image.time_us - result[0].time_us)
+        north, east, down = image.position_m
+        image.position_m = (north + north_m_s * s, east + east_m_s * s, down)
+    return result
+
+
+def late(scene: Scene) -> list[Image]:
+    """Each image with the pose of the one before."""
+    images = images_of(scene)
+    poses = [(image.position_m, image.height_m, image.attitude) for image in images]
+    for image, (position, height, attitude) in zip(images[1:], poses):
+        image.position_m, image.height_m, image.attitude = position, height, attitude
+    return images
+
+
 Change = Callable[[Image], None]
 
 
@@ -323,6 +342,9 @@ def make_book() -> Book:
     book.again("boxes_disc", model="disc", position_white_m=1)
     lens_boxes = dataclasses.replace(lens, run_s=2.5)
     book.add(Track("lens_boxes", LENS_CAMERA, upright_boxes(lens_boxes, seed=4)))
+    book.add(Track("moving", CORNER.camera, moving(CORNER, -4.0, 6.0)))
+    swaying = dataclasses.replace(CORNER, fps_hz=12.0, wobble_deg=5.0, run_s=4.0)
+    book.add(Track("late", CORNER.camera, late(swaying)))
     book.add(Track("degenerate_spoiled", CORNER.camera, spoiled()))
     book.again("degenerate_spoiled_line", model="line", window=4)
     book.add(Track("degenerate_still", CORNER.camera, still()))

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...attack.judging import CONFIDENT_IMAGES, coverage, is_confidently_wrong
 from ..flights import box_logs
 from ..flights.boxes import BUILDING, MAST, WALL, BoxOptions, Solid, box_flight
 from ..flights.flight import Flight
@@ -29,8 +30,6 @@ ROLLS_DEG = (0.0, 5.0, 10.0, 25.0)
 SMALL_ROLL_DEG = 5.0  # flown where the roll is not what is looked at
 COVERED: Range = (90.0, 100.0)
 COVERED_RECORDED: Range = (88.0, 100.0)  # also Z0 of walls, of which only the near end is seen
-CONFIDENT_SIGMA = 5.0  # an error beyond that ...
-CONFIDENT_IMAGES = 5  # ... in so many images in a row, while nothing is suspect
 CONFIDENT_MOST: Range = (0.0, 1.0)  # % of the tracks
 FIRST_MOST: Range = (0.0, 6.0)  # images until the first answer
 BOUND_ROLLS_DEG = (0.0, 2.0, 5.0, 10.0, 25.0)
@@ -114,18 +113,6 @@ def _rmse(errors: np.ndarray) -> np.ndarray:
     return np.sqrt(np.where(there.any(0), np.nansum(errors**2, 0) / np.maximum(there.sum(0), 1), math.nan))
 
 
-def coverage(outcomes: Sequence[BoxOutcome]) -> np.ndarray:
-    """(6,) percent of a track's answers within two sigma, mean over the tracks with an answer."""
-    shares = np.full((len(outcomes), 6), math.nan)
-    for i, o in enumerate(outcomes):
-        there = np.isfinite(o.error)
-        with np.errstate(invalid="ignore"):
-            hits = (np.abs(o.error) < 2 * o.sigma).sum(0)
-        shares[i] = np.where(there.any(0), 100.0 * hits / np.maximum(there.sum(0), 1), math.nan)
-    there = np.isfinite(shares)
-    return np.where(there.any(0), np.nansum(shares, 0) / np.maximum(there.sum(0), 1), math.nan)
-
-
 def last_errors(outcomes: Sequence[BoxOutcome]) -> np.ndarray:
     """(n, 6): size of the error of each track's last answer, NaN without one."""
     result = np.full((len(outcomes), 6), math.nan)
@@ -135,18 +122,6 @@ def last_errors(outcomes: Sequence[BoxOutcome]) -> np.ndarray:
             if len(known):
                 result[i, quantity] = abs(o.error[known[-1], quantity])
     return result
-
-
-def is_confidently_wrong(outcome: BoxOutcome) -> bool:
-    """Whether a quantity is far outside its own sigma for several images on end, and nothing warns of it."""
-    with np.errstate(invalid="ignore"):
-        far = np.abs(outcome.error) > CONFIDENT_SIGMA * outcome.sigma
-    run = 0
-    for wrong in far.any(1) & ~outcome.suspect:
-        run = run + 1 if wrong else 0
-        if run == CONFIDENT_IMAGES:
-            return True
-    return False
 
 
 def images_until_answer(outcome: BoxOutcome) -> float:

@@ -1,0 +1,268 @@
+/* Latency of the poses, velocity of the obstacle. SPDX-License-Identifier: MIT */
+#include "refined/goe_mover.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "maths/goe_scalar.h"
+#include "refined/goe_gate.h"
+
+#if GOE_BESIDE
+
+#define LATENCY_PRIOR_S 0.05f    /* one sigma of what poses are late by before anything is known */
+#define VELOCITY_PRIOR_M_S 20.0f /* ... of an obstacle's velocity, once it moves */
+#define LATE_MIN_S 0.02f         /* poses are told as late from here on ... */
+#define LATE_SIGMAS 2.7f         /* ... and if it is that much more than nothing */
+#define RATE_PREDICTED 0.8f      /* of a rate of turn, by the one before it: the mean over usual swaying */
+#define MOVES_CHI2 25.0f         /* of two degrees of freedom: 5e-5 by chance */
+#define REST_CHI2 9.0f           /* that a latency leaves of it, at least ... */
+#define REST_SHARE 0.15f         /* ... of which the velocity leaves this, at most */
+#define BOXES_CHI2 35.0f         /* the same of upright boxes, which drift also because they are no ellipse's */
+#define MOVES_MIN_M_S 1.0f       /* what is slower is taken for none */
+#define MOVES_S 0.4f             /* for which it says so, image after image ... */
+#define MOVES_IMAGES 3           /* ... of which there are at least so many */
+#define SETTLED_S 1.4f           /* that images told something: less says nothing of a velocity */
+#define COLUMN_MAX 1.0e3f        /* focal lengths per second, or per m/s: beyond that no flight is */
+#define BESIDE_MAX 1.0e9f /* of what is beside the state, and of its rows of the triangle: more is none of a flight */
+#define TIME_MIN_S 0.1f   /* keeps a walk over time finite */
+
+static float *beside_at(goe_triangle_t *root, size_t i, size_t j) {
+    return goe_srif_at(root, GOE_STATES + i, GOE_STATES + j);
+}
+
+static void forget_beside(goe_triangle_t *root) {
+    const size_t first = goe_srif_beside_row();
+    memset(&root->element[first], 0, sizeof root->element - first * sizeof root->element[0]);
+    memset(root->right, 0, sizeof root->right);
+}
+
+/* Of the inverse: the part that unknown i has in independent error j. */
+static float part_of(const goe_inverse_t *inverse, size_t i, size_t j) {
+    return i <= j ? inverse->element[goe_inverse_column(GOE_STATES + j) + GOE_STATES + i] : 0.0f;
+}
+
+void goe_mover_clear(goe_filter_t *filter) {
+    memset(&filter->mover, 0, sizeof filter->mover);
+    forget_beside(&filter->root);
+    *beside_at(&filter->root, GOE_BESIDE_LATENCY, GOE_BESIDE_LATENCY) = 1.0f / LATENCY_PRIOR_S;
+    filter->root.estimated = 0;
+    filter->inverse.estimated = 0;
+}
+
+void goe_mover_doubt(goe_filter_t *filter) {
+    for (size_t i = GOE_BESIDE_VELOCITY_X; i < GOE_BESIDE && !filter->mover.followed; i++) {
+        for (size_t j = i; j < GOE_BESIDE; j++) {
+            *beside_at(&filter->root, i, j) = 0.0f;
+        }
+        filter->root.right[i] = 0.0f;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ columns -- */
+
+static float sane(float column) { return goe_within(column, COLUMN_MAX) ? column : 0.0f; }
+
+/* (R35): the obstacle at velocity v has moved by v t; poses that are tau late have the attitude and the velocity of then. */
+void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
+    const float q = obs->state[GOE_INVERSE_RANGE];
+    for (size_t i = 0; i < rows->count; i++) {
+        float *row = rows->matrix->row[i];
+        float *by = &row[GOE_BESIDE_COLUMN];
+        const goe_xz_t place = {by[GOE_BESIDE_VELOCITY_X], by[GOE_BESIDE_VELOCITY_Z]};
+        const goe_xz_t moved = goe_xz_out_of(place, obs->turn_cos, obs->turn_sin);
+        const float *rate = obs->rate_before_rad_s;
+        const float turned = row[0] * rate[1] + row[1] * rate[0] + row[2] * rate[2];
+        by[GOE_BESIDE_LATENCY] = sane(-RATE_PREDICTED * turned - q * goe_xz_dot(place, obs->gained_m_s));
+        by[GOE_BESIDE_VELOCITY_X] = sane(moved.x * q * obs->elapsed_s);
+        by[GOE_BESIDE_VELOCITY_Z] = sane(moved.z * q * obs->elapsed_s);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ sigmas -- */
+
+float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along) {
+    const goe_inverse_t *inverse = &filter->inverse;
+    float sum = 0.0f;
+    for (size_t j = GOE_BESIDE_VELOCITY_X; j < inverse->estimated; j++) {
+        sum += goe_square(along.x * part_of(inverse, GOE_BESIDE_VELOCITY_X, j) +
+                          along.z * part_of(inverse, GOE_BESIDE_VELOCITY_Z, j));
+    }
+    return sum;
+}
+
+float goe_mover_latency_sd(const goe_filter_t *filter) {
+    const goe_inverse_t *inverse = &filter->inverse;
+    const float wider = goe_larger(filter->health.mean_nis, 1.0f);
+    float variance = 0.0f;
+    for (size_t j = 0; j < inverse->estimated; j++) {
+        variance += goe_square(part_of(inverse, GOE_BESIDE_LATENCY, j));
+    }
+    if (inverse->estimated == 0) {
+        variance = 1.0f / goe_square(filter->root.element[goe_srif_beside_row()]);
+    }
+    return sqrtf(wider * variance);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- judgement -- */
+
+/* (R36). What the images say of a velocity if the poses are in time, and how much of it each of the two explains: T'T and T'z of
+ * least squares, with what the latency has taken off put back. */
+typedef struct {
+    goe_xz_t velocity_m_s;
+    float spread[3];                   /* its covariance: X, both, Z */
+    float latency_s;                   /* if nothing moves */
+    float by_latency;                  /* what that explains of the sum of squares ... */
+    float rest_latency, rest_velocity; /* ... and what the one or the other leaves */
+    float wider;                       /* by what the variance of the residuals is larger than told */
+} fit_t;
+
+static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs, fit_t *fit) {
+    const goe_navigation_t *navigation = &obs->settings->navigation;
+    const float *r = &filter->root.element[goe_srif_beside_row()];
+    const float t[GOE_BESIDE][GOE_BESIDE] = {{r[0], r[1], r[2]}, {0.0f, r[3], r[4]}, {0.0f, 0.0f, r[5]}};
+    const float latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
+    const float z[GOE_BESIDE] = {filter->root.right[0] + t[0][0] * latency_s, filter->root.right[1],
+                                 filter->root.right[2]};
+    const float xx = t[0][1] * t[0][1] + t[1][1] * t[1][1];
+    const float xz = t[0][1] * t[0][2] + t[1][1] * t[1][2];
+    const float zz = t[0][2] * t[0][2] + t[1][2] * t[1][2] + t[2][2] * t[2][2];
+    const float to_x = t[0][1] * z[0] + t[1][1] * z[1];
+    const float to_z = t[0][2] * z[0] + t[1][2] * z[1] + t[2][2] * z[2];
+    const float determinant = xx * zz - xz * xz;
+    if (!(determinant > 0.0f)) {
+        return false;
+    }
+    const float own = goe_square(navigation->velocity_bias_m_s) +
+                      goe_square(navigation->position_walk_m) / goe_larger(obs->elapsed_s, TIME_MIN_S);
+    const float left = filter->mover.nis - z[0] * z[0] - z[1] * z[1] - z[2] * z[2];
+    fit->wider = goe_larger(left / filter->mover.rows, 1.0f);
+    fit->velocity_m_s.x = (zz * to_x - xz * to_z) / determinant;
+    fit->velocity_m_s.z = (xx * to_z - xz * to_x) / determinant;
+    fit->spread[0] = fit->wider * zz / determinant + own;
+    fit->spread[1] = -fit->wider * xz / determinant;
+    fit->spread[2] = fit->wider * xx / determinant + own;
+    fit->latency_s = z[0] / t[0][0];
+    fit->by_latency = z[0] * z[0];
+    fit->rest_latency = z[1] * z[1] + z[2] * z[2];
+    fit->rest_velocity =
+        goe_larger(fit->by_latency + fit->rest_latency - fit->velocity_m_s.x * to_x - fit->velocity_m_s.z * to_z, 0.0f);
+    return true;
+}
+
+/* Something in the image tells a scale that does not hang on the obstacle standing still: its foot, by the height. */
+static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
+    return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SEES_BOTTOM) : obs->base;
+}
+
+/* Whether that velocity is one that no static obstacle shows, and no latency. */
+static bool is_unlike_static(const fit_t *fit, float least) {
+    const goe_xz_t v = fit->velocity_m_s;
+    const float determinant = fit->spread[0] * fit->spread[2] - fit->spread[1] * fit->spread[1];
+    const float squared = v.x * v.x * fit->spread[2] - 2.0f * v.x * v.z * fit->spread[1] + v.z * v.z * fit->spread[0];
+    return goe_xz_dot(v, v) > MOVES_MIN_M_S * MOVES_MIN_M_S && squared > least * determinant &&
+           fit->rest_latency > REST_CHI2 * fit->wider && fit->rest_velocity < REST_SHARE * fit->rest_latency;
+}
+
+static bool is_seen_to_move(goe_filter_t *filter, const fit_t *fit, float since_s) {
+    goe_mover_t *m = &filter->mover;
+    if (!(m->heard_s > SETTLED_S) ||
+        !is_unlike_static(fit, filter->phase == GOE_PHASE_PRISM ? BOXES_CHI2 : MOVES_CHI2)) {
+        m->unlike_s = 0.0f;
+        m->images = 0;
+        return false;
+    }
+    m->unlike_s += since_s;
+    return goe_count_image(&m->images) >= MOVES_IMAGES && m->unlike_s >= MOVES_S;
+}
+
+/* (R37): beside the state nothing is known but that it moves. */
+static void follow(goe_filter_t *filter, goe_xz_t velocity_m_s) {
+    goe_mover_t *m = &filter->mover;
+    static const float prior[GOE_BESIDE] = {LATENCY_PRIOR_S, VELOCITY_PRIOR_M_S, VELOCITY_PRIOR_M_S};
+    m->moves = true;
+    m->followed = true;
+    m->beside[GOE_BESIDE_LATENCY] = 0.0f;
+    m->beside[GOE_BESIDE_VELOCITY_X] = velocity_m_s.x;
+    m->beside[GOE_BESIDE_VELOCITY_Z] = velocity_m_s.z;
+    m->late = false;
+    forget_beside(&filter->root);
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        *beside_at(&filter->root, i, i) = 1.0f / prior[i];
+        filter->root.right[i] = -m->beside[i] / prior[i];
+    }
+    filter->root.estimated = GOE_BESIDE;
+}
+
+/* From here on it is estimated with the state. */
+static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
+    const float least = LATE_SIGMAS * LATE_SIGMAS * fit->wider;
+    filter->mover.late = goe_absolute(fit->latency_s) > LATE_MIN_S && fit->by_latency > least;
+    if (filter->root.estimated == 0 && filter->mover.late && fit->rest_latency < fit->rest_velocity) {
+        filter->root.estimated = 1;
+    }
+    filter->mover.late =
+        filter->mover.late && (filter->root.estimated > 0 || fit->rest_velocity > REST_SHARE * fit->rest_latency);
+}
+
+/* Late poses in a turn look like a motion at first; followed, what moves and what is late come apart. */
+static void judge_followed(goe_filter_t *filter) {
+    goe_mover_t *m = &filter->mover;
+    const goe_xz_t v = {m->beside[GOE_BESIDE_VELOCITY_X], m->beside[GOE_BESIDE_VELOCITY_Z]};
+    const float late = goe_absolute(m->beside[GOE_BESIDE_LATENCY]);
+    const float squared = goe_xz_dot(v, v); /* of v, and its variance along itself times that */
+    const float wider = goe_larger(filter->health.mean_nis, 1.0f);
+    const float spread = wider * goe_mover_variance(filter, v);
+    m->late = late > LATE_MIN_S && late > LATE_SIGMAS * goe_mover_latency_sd(filter);
+    m->moves = !m->late || (squared > MOVES_MIN_M_S * MOVES_MIN_M_S && squared * squared > REST_CHI2 * spread);
+}
+
+/* An outline that is of another shape drifts, too, but fits. */
+static bool is_misfit(const goe_filter_t *filter, const goe_observation_t *obs) {
+    return filter->health.mean_nis > obs->settings->refined.misfit_max;
+}
+
+static bool is_sound(const goe_filter_t *filter) {
+    const float *corner = &filter->root.element[goe_srif_beside_row()];
+    uint32_t largest = 0;
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        largest = goe_larger_bits(largest, goe_magnitude(filter->mover.beside[i]));
+        largest = goe_larger_bits(largest, goe_magnitude(filter->root.right[i]));
+    }
+    for (size_t i = 0; i < GOE_BESIDE * (GOE_BESIDE + 1) / 2; i++) {
+        largest = goe_larger_bits(largest, goe_magnitude(corner[i]));
+    }
+    return largest <= goe_magnitude(BESIDE_MAX);
+}
+
+bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
+                     float since_s) {
+    goe_mover_t *m = &filter->mover;
+    fit_t fit;
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        m->beside[i] += change[GOE_STATES + i];
+    }
+    if (!is_sound(filter)) {
+        goe_mover_clear(filter);
+        return false;
+    }
+    m->heard_s += since_s;
+    m->nis += filter->health.nis / goe_gate_repeated(obs->settings, filter);
+    m->rows += (float)filter->health.nis_rows;
+    if (m->followed) {
+        judge_followed(filter);
+        return false;
+    }
+    if (!fit_beside(filter, obs, &fit)) {
+        return false;
+    }
+    judge_latency(filter, &fit);
+    const bool seen = is_seen_to_move(filter, &fit, since_s);
+    if (!seen || !has_scale(filter, obs)) {
+        m->moves = m->moves || (seen && is_misfit(filter, obs));
+        return false;
+    }
+    follow(filter, fit.velocity_m_s);
+    return true;
+}
+
+#endif

@@ -1,0 +1,37 @@
+/* What stands beside the state: how late the poses are, and how the obstacle moves. (R35) to (R38). SPDX-License-Identifier: MIT
+ *
+ * The latency is estimated with the state, from the first image on. The velocity is taken as 0, and what the images say of it is
+ * kept apart, until that can be no chance: then the filter begins anew, in axes that move along. */
+#ifndef GOE_MOVER_H
+#define GOE_MOVER_H
+
+#include "refined/goe_filter.h"
+#include "refined/goe_observation.h"
+
+#if GOE_BESIDE
+
+typedef enum { GOE_BESIDE_LATENCY, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_Z } goe_beside_t;
+
+/* A new track: the poses are in time, as far as is known, and nothing moves. */
+void goe_mover_clear(goe_filter_t *filter);
+
+/* The model proved to be another: what it said of a velocity is forgotten. */
+void goe_mover_doubt(goe_filter_t *filter);
+
+/* The columns of what is beside the state. They hold the derivatives by the place until then; after goe_rows_end(). */
+void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows);
+
+/* After an image's update: follows what it changed beside the state, and decides what is late and what moves. True if the filter
+ * is to begin anew, as the obstacle has been found to move. */
+bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
+                     float since_s);
+
+/* Variance of the velocity of an obstacle that is followed, along a unit vector in T, m2/s2; of the images alone. */
+float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along);
+
+/* One sigma of the latency, s. */
+float goe_mover_latency_sd(const goe_filter_t *filter);
+
+#endif
+
+#endif

@@ -1,0 +1,155 @@
+/* The height above the obstacle's ground: what its readings tell, and what stays told as the range becomes known, against the
+ * same worked out at once in double. SPDX-License-Identifier: MIT */
+#include "refined/goe_ground.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "refined/goe_model.h"
+
+#define READINGS 40
+#define FLIGHTS 20
+#define CONSTANT_M 2.0f /* one sigma of the error that all heights have */
+#define WHITE_M 3.0f    /* ... of that which is new in each */
+#define RANGE_M 100.0f
+#define HEIGHT_M 20.0f
+#define RANGE_KNOWN 1.0e4f /* to a share of 1e-4: heights alone do not move it */
+
+static goe_filter_t filter;
+static goe_settings_t settings;
+static goe_observation_t obs;
+static goe_motion_t motion;
+static goe_image_t image;
+static goe_view_t view;
+static goe_rows_t rows;
+static goe_matrix_t matrix;
+static check_random_t any;
+static const float level[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f}; /* the camera's y axis is down */
+
+void setUp(void) {
+    any = check_random_start("ground");
+    goe_settings_default(&settings);
+    settings.navigation.height_bias_m = CONSTANT_M;
+    memset(&image, 0, sizeof image);
+    memset(&motion, 0, sizeof motion);
+    memset(&view, 0, sizeof view);
+    memset(&obs, 0, sizeof obs);
+    goe_filter_clear(&filter);
+    view.image = &image;
+    view.motion = &motion;
+    view.camera = &settings.camera;
+    view.camera_to_body = level;
+    memcpy(view.camera_to_trajectory, level, sizeof level);
+    obs.settings = &settings;
+}
+void tearDown(void) {}
+
+/* A filter at this range that was told this of the ground, and little else. */
+static void start(float range_m, float height_sd_m) {
+    memset(&filter.root, 0, sizeof filter.root);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        *goe_srif_at(&filter.root, i, i) = 1.0f;
+    }
+    filter.phase = GOE_PHASE_DISC;
+    filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
+    *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = RANGE_KNOWN * range_m;
+    *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) = range_m / height_sd_m;
+    goe_ground_start(&filter, height_sd_m * height_sd_m);
+    goe_filter_invert(&filter);
+}
+
+/* Tells the filter what it is to hear, without any other row. Returns how many rows that were. */
+static int tell(void) {
+    float change[GOE_UNKNOWNS];
+    goe_rows_clear(&rows, &matrix);
+    memset(&matrix, 0, sizeof matrix);
+    rows.white_rad = 1.0e-3f;
+    const int told = goe_ground_tell(&filter, &obs, &rows);
+    TEST_ASSERT_EQUAL_INT(told, (int)rows.count);
+    (void)goe_model_update(&filter, 1.0f / rows.white_rad, &rows, change);
+    goe_filter_invert(&filter);
+    return told;
+}
+
+static double ground_sd_m(void) {
+    return sqrt((double)goe_filter_variance(&filter, GOE_GROUND)) / (double)filter.state[GOE_INVERSE_RANGE];
+}
+
+/* One reading, after the flight has sunk by this much. */
+static void read_height(float height_m, float sunk_m) {
+    image.pose.position_ned_m[2] = sunk_m;
+    motion.height_m = height_m;
+    goe_ground_read(&filter, &settings.navigation, &view);
+    obs.height_sd_m = sqrtf(CONSTANT_M * CONSTANT_M + WHITE_M * WHITE_M / (float)filter.datum.readings);
+}
+
+/* GIVEN heights with a constant and a white error, of a flight that sinks THEN their offset is told as the mean of all, with the
+ * constant error counted once; a mean that moves is told as it stands. */
+static void readings_tell_the_mean_and_no_more(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    for (int flight = 0; flight < FLIGHTS; flight++) {
+        double sum = 0.0;
+        double first_m = 0.0;
+        goe_filter_clear(&filter);
+        for (int k = 0; k < READINGS; k++) {
+            const double noise = (double)WHITE_M * check_random_normal(&any);
+            const double sunk = 0.3 * k;
+            read_height((float)((double)HEIGHT_M - sunk + noise), (float)sunk);
+            first_m = k == 0 ? noise : first_m;
+            sum += noise - first_m;
+            if (k == 0) {
+                start(RANGE_M, obs.height_sd_m);
+            } else {
+                (void)tell();
+            }
+        }
+        const double told_sd = sqrt((double)(CONSTANT_M * CONSTANT_M) + (double)(WHITE_M * WHITE_M) / READINGS);
+        const double offset_m = (double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE];
+        CHECK_CLOSE(0.01 * told_sd, told_sd, ground_sd_m());
+        CHECK_CLOSE(0.05 * told_sd, sum / READINGS, offset_m);
+    }
+}
+
+/* GIVEN an image whose rows are all taken THEN what the heights tell waits, and none of it is lost. */
+static void what_finds_no_room_is_told_later(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M, obs.height_sd_m);
+    for (int k = 1; k < READINGS; k++) {
+        read_height(HEIGHT_M + 1.0f, 0.0f);
+    }
+    goe_rows_clear(&rows, &matrix);
+    rows.count = GOE_ROWS_MAX;
+    TEST_ASSERT_EQUAL_INT(0, goe_ground_tell(&filter, &obs, &rows));
+    TEST_ASSERT_EQUAL_INT(1, tell());
+    TEST_ASSERT_EQUAL_INT(0, tell());
+    CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
+    CHECK_CLOSE(0.05, 1.0 - 1.0 / READINGS, filter.state[GOE_GROUND] * RANGE_M);
+}
+
+/* GIVEN a first guess of the range that proves wrong THEN the height is known as it was told, in metres: no better when the
+ * obstacle is nearer, and no worse when it is farther. */
+static void a_wrong_first_range_leaves_the_height_as_told(void) {
+    static const float factor[] = {0.2f, 0.5f, 0.9f, 1.0f, 1.2f, 2.0f, 5.0f};
+    for (size_t i = 0; i < sizeof factor / sizeof factor[0]; i++) {
+        start(RANGE_M, CONSTANT_M);
+        const float before = filter.state[GOE_INVERSE_RANGE];
+        filter.state[GOE_INVERSE_RANGE] = before / factor[i];
+        goe_ground_follow(&filter, before);
+        goe_ground_widen(&filter);
+        goe_filter_invert(&filter);
+        const int told = tell();
+        check_report("sigma of the height over the one told", ground_sd_m() / (double)CONSTANT_M);
+        TEST_ASSERT_EQUAL_INT(factor[i] > 1.0f ? 1 : 0, told);
+        CHECK_CLOSE(0.02, 1.0, ground_sd_m() / (double)CONSTANT_M);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(readings_tell_the_mean_and_no_more);
+    RUN_TEST(what_finds_no_room_is_told_later);
+    RUN_TEST(a_wrong_first_range_leaves_the_height_as_told);
+    return UNITY_END();
+}

@@ -1,0 +1,344 @@
+/* Late poses and obstacles that move: the columns against differences, the estimates against flights whose poses are late or
+ * whose obstacle moves, and none of it where nothing is late or moves. SPDX-License-Identifier: MIT */
+#include "refined/goe_mover.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "refined/goe_chord.h"
+#include "refined/goe_disc.h"
+#include "scene.h"
+#include "sighting.h"
+
+#define UNKNOWNS GOE_UNKNOWNS
+#define CASES 200
+#define FLIGHTS 10
+#define IMAGES 48
+#define NOISE_PX 0.5
+#define FINE_HZ 80.0 /* images of the scene, of which every tenth is used */
+#define STEP 10
+
+static check_random_t any;
+static goe_estimator_t estimator;
+static scene_t scene;
+
+void setUp(void) {
+    any = check_random_start("mover");
+    scene_default(&scene);
+    scene.image_rate_hz = FINE_HZ;
+    scene.wobble_deg = 3.0;
+    scene.z0_m = 160.0;
+}
+void tearDown(void) {}
+
+/* ------------------------------------------------------------------------------------------------- beside the state -- */
+
+typedef struct {
+    double information[UNKNOWNS][UNKNOWNS];
+    double right[UNKNOWNS];
+} normal_t;
+
+/* R'R and R'z of the triangle, and what rows of unit noise without nuisances add. */
+static void add_triangle(goe_triangle_t *root, normal_t *n) {
+    for (size_t k = 0; k < UNKNOWNS; k++) {
+        for (size_t i = k; i < UNKNOWNS; i++) {
+            for (size_t j = k; j < UNKNOWNS; j++) {
+                n->information[i][j] += (double)*goe_srif_at(root, k, i) * (double)*goe_srif_at(root, k, j);
+            }
+            const double z = k < GOE_STATES ? 0.0 : (double)root->right[k - GOE_STATES];
+            n->right[i] += (double)*goe_srif_at(root, k, i) * z;
+        }
+    }
+}
+
+static void add_rows(const goe_matrix_t *matrix, normal_t *n) {
+    for (size_t r = 0; r < GOE_ROWS_MAX; r++) {
+        const float *by = &matrix->row[r][GOE_STATE_COLUMN];
+        for (size_t i = 0; i < UNKNOWNS; i++) {
+            for (size_t j = 0; j < UNKNOWNS; j++) {
+                n->information[i][j] += (double)by[i] * (double)by[j];
+            }
+            n->right[i] += (double)by[i] * (double)matrix->row[r][GOE_RESIDUAL];
+        }
+    }
+}
+
+/* GIVEN any triangle, with what is beside the state, and any rows WHEN some of it is estimated THEN information and right-hand
+ * side are those of the normal equations, and what is estimated solves these with the others as they are. */
+static void what_is_beside_the_state_is_solved_with_it(void) {
+    for (unsigned c = 0; c < CASES; c++) {
+        goe_triangle_t root;
+        goe_matrix_t matrix;
+        float change[UNKNOWNS];
+        normal_t expected;
+        normal_t actual;
+        memset(&root, 0, sizeof root);
+        memset(&matrix, 0, sizeof matrix);
+        memset(&expected, 0, sizeof expected);
+        memset(&actual, 0, sizeof actual);
+        for (size_t i = 0; i < UNKNOWNS; i++) {
+            for (size_t j = i; j < UNKNOWNS; j++) {
+                *goe_srif_at(&root, i, j) = (float)(0.3 * check_random_normal(&any));
+            }
+            *goe_srif_at(&root, i, i) = 3.0f;
+        }
+        for (size_t r = 0; r < GOE_ROWS_MAX; r++) {
+            for (size_t i = GOE_STATE_COLUMN; i < GOE_COLUMNS; i++) {
+                matrix.row[r][i] = (float)check_random_normal(&any);
+            }
+        }
+        root.estimated = (uint8_t)(c % (GOE_BESIDE + 1));
+        for (size_t i = root.estimated; i < GOE_BESIDE; i++) {
+            root.right[i] = (float)check_random_normal(&any);
+        }
+        add_triangle(&root, &expected);
+        add_rows(&matrix, &expected);
+        (void)goe_srif_update(&root, 1.0f, &matrix, change);
+        add_triangle(&root, &actual);
+        for (size_t i = 0; i < UNKNOWNS; i++) {
+            double moved = 0.0;
+            for (size_t j = 0; j < UNKNOWNS; j++) {
+                CHECK_CLOSE(1.0e-4, expected.information[i][j], actual.information[i][j]);
+                moved += expected.information[i][j] * (double)change[j];
+            }
+            CHECK_CLOSE(2.0e-4, expected.right[i] - moved, actual.right[i]);
+            if (i < goe_srif_count(&root)) {
+                CHECK_CLOSE(2.0e-4, expected.right[i], moved);
+            } else {
+                CHECK_SAME(0.0f, change[i]);
+            }
+        }
+    }
+}
+
+/* GIVEN an estimate with something beside it THEN the variance of a quantity, on which the attitude's bias has
+ * no part, is that of the whole inverse. */
+static void the_variance_holds_what_is_beside_the_state(void) {
+    goe_triangle_t root;
+    goe_inverse_t inverse;
+    memset(&root, 0, sizeof root);
+    memset(&inverse, 0, sizeof inverse);
+    for (size_t i = 0; i < UNKNOWNS; i++) {
+        for (size_t j = i; j < UNKNOWNS; j++) {
+            *goe_srif_at(&root, i, j) = (float)(0.3 * check_random_normal(&any));
+        }
+        *goe_srif_at(&root, i, i) = 3.0f;
+    }
+    root.estimated = GOE_BESIDE;
+    goe_srif_invert(&root, &inverse);
+    for (int c = 0; c < CASES; c++) {
+        float weight[GOE_STATES];
+        float direct[GOE_BESIDE];
+        float part[GOE_BESIDE];
+        double v[UNKNOWNS];
+        for (size_t i = 0; i < UNKNOWNS; i++) { /* R'v = w: the variance is v'v */
+            const float w = i < GOE_UNWEIGHTED ? 0.0f : (float)check_random_normal(&any);
+            *(i < GOE_STATES ? &weight[i] : &direct[i - GOE_STATES]) = w;
+            v[i] = (double)w;
+            for (size_t k = 0; k < i; k++) {
+                v[i] -= (double)*goe_srif_at(&root, k, i) * v[k];
+            }
+            v[i] /= (double)*goe_srif_at(&root, i, i);
+        }
+        double expected = 0.0;
+        for (size_t i = 0; i < UNKNOWNS; i++) {
+            expected += v[i] * v[i];
+        }
+        goe_srif_beside(&inverse, weight, direct, part);
+        double sum = (double)goe_srif_variance(&inverse, weight);
+        for (size_t i = 0; i < GOE_BESIDE; i++) {
+            sum += (double)part[i] * (double)part[i];
+        }
+        CHECK_CLOSE(1.0e-5 * expected, expected, sum);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------------- columns -- */
+
+typedef void (*model_t)(const goe_observation_t *obs, goe_rows_t *rows);
+
+static void rows_of(model_t model, sighting_t *s) {
+    goe_rows_clear(&s->rows, &s->matrix);
+    goe_observation_linearise(&s->sight);
+    model(&s->sight, &s->rows);
+    goe_rows_end(&s->rows, &s->sight);
+}
+
+static void check_columns(model_t model) {
+    static sighting_t s;
+    static sighting_t moved;
+    sighting_start(&s, &any);
+    s.state[GOE_BEARING] = (float)check_random_between(&any, -0.1, 0.1);
+    s.state[GOE_INVERSE_RANGE] = 0.01f;
+    s.state[GOE_SIDE_X] = (check_random_bits(&any) % 2u != 0u ? 0.05f : -0.05f); /* the nearer end stays it */
+    s.state[GOE_FRONT_X] = 0.1f;
+    s.state[GOE_TOP] = 0.2f;
+    for (size_t f = 0; f <= GOE_POINT_TOP; f++) {
+        s.sight.point[f].usable = true;
+        s.sight.point[f].x = f == GOE_POINT_LEFT ? -0.1f : 0.1f;
+        s.sight.point[f].y = 0.02f;
+    }
+    s.sight.turn_cos = 0.8f;
+    s.sight.turn_sin = 0.6f;
+    s.sight.elapsed_s = 3.0f;
+    for (size_t i = 0; i < 3; i++) {
+        s.sight.rate_rad_s[i] = (float)check_random_between(&any, -0.3, 0.3);
+        s.sight.rate_before_rad_s[i] = s.sight.rate_rad_s[i] / 0.8f; /* of which the column takes that share */
+    }
+    s.sight.gained_m_s.x = 4.0f;
+    s.sight.gained_m_s.z = -7.0f;
+    rows_of(model, &s);
+    TEST_ASSERT_TRUE(s.rows.count >= 2);
+    goe_mover_columns(&s.sight, &s.rows);
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        const double step = i == GOE_BESIDE_LATENCY ? 0.02 : 0.2;
+        double residual[2][GOE_ROWS_MAX];
+        for (int way = 0; way < 2; way++) {
+            const double by = way == 0 ? -step : step;
+            moved = s;
+            moved.sight.state = moved.state;
+            moved.sight.settings = &moved.settings;
+            if (i == GOE_BESIDE_LATENCY) {
+                moved.sight.latency_s = (float)by;
+                moved.sight.camera_m.x += (float)by * s.sight.gained_m_s.x;
+                moved.sight.camera_m.z += (float)by * s.sight.gained_m_s.z;
+            } else { /* the state's axes are turned out of T by that angle */
+                const double x = i == GOE_BESIDE_VELOCITY_X ? 0.8 : -0.6;
+                const double z = i == GOE_BESIDE_VELOCITY_X ? 0.6 : 0.8;
+                moved.sight.camera_m.x -= (float)(by * 3.0 * x);
+                moved.sight.camera_m.z -= (float)(by * 3.0 * z);
+            }
+            rows_of(model, &moved);
+            for (size_t r = 0; r < s.rows.count; r++) {
+                residual[way][r] = (double)moved.matrix.row[r][GOE_RESIDUAL];
+            }
+        }
+        for (size_t r = 0; r < s.rows.count; r++) {
+            const double expected = (residual[0][r] - residual[1][r]) / (2.0 * step);
+            const double column = (double)s.matrix.row[r][GOE_BESIDE_COLUMN + i];
+            CHECK_CLOSE(0.003 + 0.03 * fabs(expected), expected, column);
+        }
+    }
+}
+
+/* GIVEN a disc and a chord anywhere THEN the columns are the derivatives by the latency and by the velocity. */
+static void the_columns_are_derivatives(void) {
+    for (int c = 0; c < CASES; c++) {
+        check_columns(goe_disc_rows);
+        check_columns(goe_chord_rows);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------------- flights -- */
+
+typedef struct {
+    goe_estimate_t estimate;
+    int moving, suspect, images; /* that said so; solved ones */
+} flight_t;
+
+/* late: images of the fine rate that the pose is behind by; velocity: of the obstacle, north and east. */
+static flight_t fly(int late, double north_m_s, double east_m_s) {
+    flight_t flight;
+    goe_settings_t settings = scene_settings(&scene);
+    memset(&flight, 0, sizeof flight);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < IMAGES; k++) {
+        goe_image_t image;
+        goe_image_t before;
+        const int fine = 20 + STEP * k;
+        const double t = fine / FINE_HZ;
+        scene_image(&scene, fine, &image, NULL);
+        scene_image(&scene, fine - late, &before, NULL);
+        before.pose.time_us = image.pose.time_us;
+        image.pose = before.pose;
+        image.pose.position_ned_m[0] += (float)(north_m_s * t); /* as it sees an obstacle that moves */
+        image.pose.position_ned_m[1] += (float)(east_m_s * t);
+        scene_add_noise(&image, &any, NOISE_PX);
+        const goe_status_t status = goe_update(&estimator, &image, &flight.estimate);
+        flight.images += status == GOE_OK ? 1 : 0;
+        flight.moving += flight.estimate.reason == GOE_REASON_MOVES ? 1 : 0;
+        flight.suspect += flight.estimate.suspect ? 1 : 0;
+    }
+    return flight;
+}
+
+/* GIVEN a static obstacle and poses in time THEN nothing moves, nothing is late, and nothing is suspect. */
+static void nothing_moves_that_does_not(void) {
+    for (int n = 0; n < FLIGHTS; n++) {
+        const flight_t flight = fly(0, 0.0, 0.0);
+        TEST_ASSERT_EQUAL_INT(0, flight.moving);
+        TEST_ASSERT_EQUAL_INT(0, flight.suspect);
+        TEST_ASSERT_EQUAL_INT(GOE_REASON_NONE, flight.estimate.reason);
+        TEST_ASSERT_EQUAL_HEX(0, flight.estimate.valid & GOE_HAS_VELOCITY);
+        CHECK_SAME(0.0f, flight.estimate.velocity_north_m_s);
+    }
+}
+
+/* GIVEN poses of a tenth of a second before, of an aircraft that sways THEN they are told as late, by about as much, and nothing
+ * moves. */
+static void late_poses_are_told_and_taken_off(void) {
+    double worst = 0.0;
+    for (int n = 0; n < FLIGHTS; n++) {
+        const flight_t flight = fly((int)(0.1 * FINE_HZ), 0.0, 0.0);
+        check_worst(&worst, (double)flight.estimate.latency_s - 0.1);
+        TEST_ASSERT_EQUAL_INT(GOE_REASON_LATE, flight.estimate.reason);
+        TEST_ASSERT_EQUAL_INT(0, flight.moving);
+    }
+    check_report("latency of 0.1 s, off by, s", worst);
+    TEST_ASSERT_TRUE(worst < 0.03);
+}
+
+/* GIVEN an obstacle that moves THEN that is told, and its velocity, within four sigma. */
+static void an_obstacle_that_moves_is_followed(void) {
+    static const double velocity[][2] = {{0.0, 5.0}, {3.0, -4.0}, {-12.0, 0.0}, {0.0, -10.0}};
+    for (size_t i = 0; i < sizeof velocity / sizeof velocity[0]; i++) {
+        const flight_t flight = fly(0, velocity[i][0], velocity[i][1]);
+        const goe_estimate_t *e = &flight.estimate;
+        const double north = ((double)e->velocity_north_m_s - velocity[i][0]) / (double)e->sigma.velocity_north_m_s;
+        const double east = ((double)e->velocity_east_m_s - velocity[i][1]) / (double)e->sigma.velocity_east_m_s;
+        check_report("velocity to the north, off by, sigmas", north);
+        check_report("... to the east", east);
+        check_report("sigma to the east, m/s", (double)e->sigma.velocity_east_m_s);
+        TEST_ASSERT_TRUE(flight.moving > 0);
+        TEST_ASSERT_EQUAL_INT(GOE_REASON_MOVES, e->reason);
+        TEST_ASSERT_TRUE(e->suspect);
+        TEST_ASSERT_TRUE(e->valid & GOE_HAS_VELOCITY);
+        TEST_ASSERT_TRUE(fabs(north) < 4.0 && fabs(east) < 4.0);
+        TEST_ASSERT_TRUE(e->sigma.velocity_east_m_s < 2.0f && e->sigma.velocity_east_m_s > 0.0f);
+    }
+}
+
+#if GOE_WITH_HAZARD
+/* GIVEN oncoming traffic WHEN it is followed THEN the time to it is that of both, not of the aircraft alone. */
+static void the_hazard_counts_with_both_velocities(void) {
+    const flight_t flight = fly(0, -12.0, 0.0);
+    goe_plan_t plan;
+    goe_hazard_t hazard;
+    memset(&plan, 0, sizeof plan);
+    plan.velocity_ned_m_s[0] =
+        (float)scene.speed_mps - 12.0f; /* as it was told: what it saw come nearer is the obstacle's part */
+    plan.margin_m = 20.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    const double apart_m = (double)flight.estimate.z_m;
+    const double closing = (double)plan.velocity_ned_m_s[0] - (double)flight.estimate.velocity_north_m_s;
+    check_report("time to go, s", (double)hazard.time_s);
+    TEST_ASSERT_TRUE(hazard.time_s > 0.0f);
+    TEST_ASSERT_TRUE((double)hazard.time_s < 1.2 * apart_m / closing &&
+                     (double)hazard.time_s > 0.5 * apart_m / closing);
+}
+#endif
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(what_is_beside_the_state_is_solved_with_it);
+    RUN_TEST(the_variance_holds_what_is_beside_the_state);
+    RUN_TEST(the_columns_are_derivatives);
+    RUN_TEST(nothing_moves_that_does_not);
+    RUN_TEST(late_poses_are_told_and_taken_off);
+    RUN_TEST(an_obstacle_that_moves_is_followed);
+#if GOE_WITH_HAZARD
+    RUN_TEST(the_hazard_counts_with_both_velocities);
+#endif
+    return UNITY_END();
+}
