@@ -102,7 +102,6 @@ RUN_BY = {
     "goe_sim --features": By("tests/sim/test_sim_boxes.py", '"--features"'),
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
     "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
-    "python -m goe_tools attack_tables": By("tests/python/test_attack.py", '"attack_tables"'),
     "python -m goe_tools attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
     "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
