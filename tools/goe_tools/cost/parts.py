@@ -1,5 +1,5 @@
-"""What a firmware pays that leaves parts of the library out: GOE_WITH_WINDOW, GOE_WITH_REFINED, GOE_WITH_HAZARD, and of the
-refined method GOE_WITH_MOVERS.
+"""What a firmware pays that leaves parts of the library out: GOE_WITH_WINDOW, GOE_WITH_REFINED, GOE_WITH_HAZARD, and of
+the refined method GOE_WITH_MOVERS.
 
 Each combination of parts that lib/goe.h does not refuse is compiled for one target. While the header knows no such
 parts, there is nothing to tell.

@@ -41,6 +41,7 @@ RECORDED = (TRIANGLE, 1, COLUMNS * ROWS)  # what record.c prints
 CASE = (TRIANGLE, TRIANGLE, STATES**2, 1, COLUMNS * ROWS)  # peer_case_t
 ANSWER = (STATES, 1, STATES**2)  # peer_answer_t
 QUICK_CASES = 4
+TEN_STATES = "-DGOE_WITH_MOVERS=0"  # without the columns beside them, which no peer has
 GROUPS = (9, 5, 3)  # by rows that are used: a box with every point seen, mostly discs, bounding boxes with nothing else
 
 
@@ -184,7 +185,7 @@ def recorded_updates(builder: Builder) -> NDArray[np.float32]:
     source = FOLDER / "record.c"
     names = sorted(set(re.findall(r"\b__wrap_(\w+)", source.read_text(encoding="utf-8"))))
     sources = [source, REPLAY / "replay.c", REPLAY / "embedded_logs.c", *library_sources()]
-    includes = [f"-I{FOLDER}", f"-I{REPLAY}", *library_includes()]
+    includes = [f"-I{FOLDER}", f"-I{REPLAY}", *library_includes(), TEN_STATES]
     program = own_program(builder, "record", sources, includes, [f"-Wl,--wrap={name}" for name in names])
     builder.make()
     rows = printed_cases(output_of([program]))
@@ -222,7 +223,7 @@ def make_groups(recorded: NDArray[np.float32], most: int) -> list[Group]:
 
 def update_peers(others: Others) -> list[Peer]:
     """Ours are first."""
-    library, include = library_sources(), library_includes()
+    library, include = library_sources(), (*library_includes(), TEN_STATES)
     peers: list[Peer] = []
     kinds = ((OURS, "Eigen HouseholderQR", "root"), (OURS_INVERSE, "Eigen HouseholderQR and inverse", "inverse"))
     defines = [(f"-DWITH_INVERSE={number}",) for number in range(len(kinds))]
