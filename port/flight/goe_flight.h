@@ -22,9 +22,9 @@
  * Arithmetic  float only; of the C library sqrtf, memcpy and memset. Compiled with -ffp-contract=off the results have the same
  *             bits on every IEEE 754 target.
  * Safety      Every output is finite. What is not finite is refused by its exponent bits, also under -ffast-math.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 33,000 for each obstacle in it, an assessment
- *             20,000 for each obstacle with a position, goe_flight_obstacle() 610, goe_flight_sectors() 6,000, goe_flight_init()
- *             9,700 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 42,400 for each obstacle in it, an assessment
+ *             21,700 for each obstacle with a position, goe_flight_obstacle() 620, goe_flight_sectors() 6,000, goe_flight_init()
+ *             11,000 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changed nothing but counters.
  */
 #ifndef GOE_FLIGHT_H
