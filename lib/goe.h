@@ -523,8 +523,8 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  * Cost: at most 8500 instructions, 800 bytes of stack. */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
-/* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over the ground it is taken as standing
- * still, also when it climbs or descends. */
+/* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over the ground, or relative to an obstacle
+ * that is followed, it is taken as standing still, also when it climbs or descends. */
 typedef struct {
     float velocity_ned_m_s[3]; /* relative to the ground, each +-1e3 */
     float margin_m;            /* the outline of the obstacle must stay farther away than this, horizontally; 0 to 1e4 */

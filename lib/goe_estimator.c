@@ -3,6 +3,7 @@
  *   image -> intake -> ego motion -> aligned points -> window -----------------> estimate
  *                                                  \-> refined -> quantities -/
  */
+#include <math.h>
 #include <string.h>
 
 #include "goe_covariance.h"
@@ -11,6 +12,7 @@
 #include "image/goe_camera.h"
 #include "image/goe_ego_motion.h"
 #include "image/goe_intake.h"
+#include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 #include "refined/goe_ground.h"
 #include "refined/goe_refined.h"
@@ -104,8 +106,11 @@ static void grow_old(goe_estimator_t *estimator) {
         const float s = goe_time_between_s(estimator->estimate_time_us, motion->time_us, AGE_MAX_US);
         const float north_m = estimate->velocity_north_m_s * s;
         const float east_m = estimate->velocity_east_m_s * s;
+        const float sd_m_s = goe_larger(estimate->sigma.velocity_north_m_s, estimate->sigma.velocity_east_m_s);
         estimate->x_m += motion->heading_cos * east_m - motion->heading_sin * north_m;
         estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
+        estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + goe_square(sd_m_s * s));
+        estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + goe_square(sd_m_s * s));
     }
 }
 
@@ -184,9 +189,6 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const bool reported = goe_filter_reports(&estimator->filter, settings);
     const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
     const bool reports = goe_filter_reports(&estimator->filter, settings);
-#if GOE_BESIDE
-    goe_motion_mark(&estimator->motion, view->image->pose.attitude);
-#endif
 #if GOE_WITH_WINDOW
     if (!reported && !(reports && (estimator->estimate.valid & GOE_HAS_POSITION))) {
         const goe_status_t status = solve_window(estimator, view, faults);
@@ -206,7 +208,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
 
 static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_status_t status = update_refined(estimator, view, faults);
-    estimator->estimate.suspect = estimator->estimate.suspect || estimator->filter.health.base_refused;
+    goe_report_doubt(&estimator->filter, &estimator->estimate);
     return status;
 }
 #endif

@@ -90,38 +90,32 @@ static void turn_rate(goe_motion_t *motion, const float half_ned[3], float since
     motion->rate_rad_s[2] = 2.0f * (c * half_ned[0] + s * half_ned[1]) / since_s;
 }
 
-static void set_mark(goe_motion_t *motion, const float attitude[4]) {
+static void set_mark(goe_motion_t *motion, const float attitude[4], const float body_m[2]) {
     memcpy(motion->mark_attitude, attitude, sizeof motion->mark_attitude);
-    memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
-    motion->mark_m[0] = motion->dx_m;
-    motion->mark_m[1] = motion->dz_m;
+    memcpy(motion->mark_m, body_m, sizeof motion->mark_m);
     motion->mark_us = motion->time_us;
 }
 
-/* What of the motion the poses since the mark tell. */
-static void find_pace(goe_motion_t *motion, const float attitude[4], bool first) {
+/* What the poses since the mark tell of the motion; body_m: of the vehicle, T axes, as the arms of two cameras differ. broken:
+ * nothing, as it is the first one, or the autopilot's filter jumped. */
+static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2], bool broken) {
     float half[3];
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
-    if (!first && since_s < PACE_SPAN_MIN_S) {
+    if (!broken && since_s < PACE_SPAN_MIN_S) {
         return;
     }
-    if (!first && since_s < (float)PACE_SPAN_MAX_US * GOE_S_PER_US &&
-        half_turn(attitude, motion->mark_attitude, half)) {
+    motion->paced =
+        !broken && since_s < (float)PACE_SPAN_MAX_US * GOE_S_PER_US && half_turn(attitude, motion->mark_attitude, half);
+    if (motion->paced) {
         turn_rate(motion, half, since_s);
-        motion->velocity_m_s[0] = (motion->dx_m - motion->mark_m[0]) / since_s;
-        motion->velocity_m_s[1] = (motion->dz_m - motion->mark_m[1]) / since_s;
-        motion->paced = true;
+        motion->velocity_m_s[0] = (body_m[0] - motion->mark_m[0]) / since_s;
+        motion->velocity_m_s[1] = (body_m[1] - motion->mark_m[1]) / since_s;
     } else {
         memset(motion->rate_rad_s, 0, sizeof motion->rate_rad_s);
         memset(motion->rate_before_rad_s, 0, sizeof motion->rate_before_rad_s);
-        motion->paced = false;
     }
-}
-
-void goe_motion_mark(goe_motion_t *motion, const float attitude[4]) {
-    const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
-    if (motion->time_us == motion->start_time_us || since_s >= PACE_SPAN_S) {
-        set_mark(motion, attitude);
+    if (!motion->paced || since_s >= PACE_SPAN_S) {
+        set_mark(motion, attitude, body_m);
     }
 }
 #endif
@@ -132,6 +126,13 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     float position[2];
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
     camera_position(view->camera, pose, body_to_ned, position);
+#if GOE_BESIDE
+    const bool broken = !motion->started || goe_motion_reset(motion, pose);
+    if (motion->mark_us ==
+        motion->time_us) { /* the image before ended a span: what it told has no part of this one's error */
+        memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
+    }
+#endif
     if (!motion->started) {
         fix_heading(motion, settings, body_to_ned);
         motion->start_time_us = pose->time_us;
@@ -152,6 +153,10 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
     turn_into_trajectory(motion, body_to_ned, view);
 #if GOE_BESIDE
-    find_pace(motion, pose->attitude, motion->time_us == motion->start_time_us);
+    const float arm_n = position[0] - pose->position_ned_m[0];
+    const float arm_e = position[1] - pose->position_ned_m[1];
+    const float body_m[2] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
+                             motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e)};
+    find_pace(motion, pose->attitude, body_m, broken);
 #endif
 }

@@ -9,11 +9,6 @@
  * view->camera_to_trajectory is set: the rotation of this image's rays into T. */
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
 
-#if GOE_BESIDE
-/* After the image was used: its pose becomes the one from which rate of turn and velocity count. */
-void goe_motion_mark(goe_motion_t *motion, const float attitude[4]);
-#endif
-
 /* Whether the autopilot's filter jumped since the image before. */
 static inline bool goe_motion_reset(const goe_motion_t *motion, const goe_pose_t *pose) {
     return motion->started && pose->reset_count != motion->reset_count;

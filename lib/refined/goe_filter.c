@@ -61,7 +61,7 @@ float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motio
 goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion) {
     const goe_axes_t *axes = &filter->axes;
     goe_xz_t gained = {0.0f, 0.0f};
-    if (axes->paced) {
+    if (axes->paced && motion->paced) {
         gained.x = motion->velocity_m_s[0] - axes->start_velocity_m_s[0];
         gained.z = motion->velocity_m_s[1] - axes->start_velocity_m_s[1];
     }

@@ -9,20 +9,22 @@
 
 #if GOE_BESIDE
 
-#define LATENCY_PRIOR_S 0.05f    /* one sigma of what poses are late by before anything is known */
-#define VELOCITY_PRIOR_M_S 20.0f /* ... of an obstacle's velocity, once it moves */
-#define LATE_MIN_S 0.02f         /* poses are told as late from here on ... */
-#define LATE_SIGMAS 2.7f         /* ... and if it is that much more than nothing */
-#define RATE_PREDICTED 0.8f      /* of a rate of turn, by the one before it: the mean over usual swaying */
-#define MOVES_CHI2 25.0f         /* of two degrees of freedom: 5e-5 by chance */
-#define REST_CHI2 9.0f           /* that a latency leaves of it, at least ... */
-#define REST_SHARE 0.15f         /* ... of which the velocity leaves this, at most */
-#define BOXES_CHI2 35.0f         /* the same of upright boxes, which drift also because they are no ellipse's */
-#define MOVES_MIN_M_S 1.0f       /* what is slower is taken for none */
-#define MOVES_S 0.4f             /* for which it says so, image after image ... */
-#define MOVES_IMAGES 3           /* ... of which there are at least so many */
-#define SETTLED_S 1.4f           /* that images told something: less says nothing of a velocity */
-#define COLUMN_MAX 1.0e3f        /* focal lengths per second, or per m/s: beyond that no flight is */
+#define LATENCY_PRIOR_S 0.05f /* one sigma of what poses are late by before anything is known */
+#define SPREAD_GROWN 4.0f     /* of a velocity's variance, when the obstacle begins to be followed */
+#define LATE_MIN_S 0.02f      /* poses are told as late from here on ... */
+#define LATE_SIGMAS 2.7f      /* ... and if it is that much more than nothing */
+#define RATE_PREDICTED 0.8f   /* of a rate of turn, by the one before it: the mean over usual swaying */
+#define MOVES_CHI2 25.0f      /* of two degrees of freedom: 5e-5 by chance */
+#define REST_CHI2 9.0f        /* that a latency leaves of it, at least ... */
+#define LATE_SHARE 0.3f       /* of what the latency leaves, that the velocity leaves at least where poses are late */
+#define REST_SHARE 0.15f      /* ... of which the velocity leaves this, at most */
+#define BOXES_CHI2 45.0f      /* the same of upright boxes, which drift also because they are no ellipse's */
+#define MOVES_MIN_M_S 1.0f    /* what is slower is taken for none */
+#define MOVES_S 0.4f          /* for which it says so, image after image ... */
+#define MOVES_IMAGES 3        /* ... of which there are at least so many */
+#define SETTLED_S 1.4f        /* that images told something: less says nothing of a velocity */
+#define SINCE_MAX_S 0.5f      /* a gap between images counts as that */
+#define COLUMN_MAX 1.0e3f     /* focal lengths per second, or per m/s: beyond that no flight is */
 #define BESIDE_MAX 1.0e9f /* of what is beside the state, and of its rows of the triangle: more is none of a flight */
 #define TIME_MIN_S 0.1f   /* keeps a walk over time finite */
 
@@ -56,6 +58,8 @@ void goe_mover_doubt(goe_filter_t *filter) {
         }
         filter->root.right[i] = 0.0f;
     }
+    filter->mover.unlike_s = 0.0f;
+    filter->mover.images = 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ columns -- */
@@ -128,7 +132,9 @@ static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs,
     const float zz = t[0][2] * t[0][2] + t[1][2] * t[1][2] + t[2][2] * t[2][2];
     const float to_x = t[0][1] * z[0] + t[1][1] * z[1];
     const float to_z = t[0][2] * z[0] + t[1][2] * z[1] + t[2][2] * z[2];
-    const float determinant = xx * zz - xz * xz;
+    /* xx zz - xz^2 as a sum of squares: no cancellation */
+    const float determinant = goe_square(t[0][1] * t[1][2] - t[0][2] * t[1][1]) + goe_square(t[0][1] * t[2][2]) +
+                              goe_square(t[1][1] * t[2][2]);
     if (!(determinant > 0.0f)) {
         return false;
     }
@@ -175,33 +181,38 @@ static bool is_seen_to_move(goe_filter_t *filter, const fit_t *fit, float since_
     return goe_count_image(&m->images) >= MOVES_IMAGES && m->unlike_s >= MOVES_S;
 }
 
-/* (R37): beside the state nothing is known but that it moves. */
-static void follow(goe_filter_t *filter, goe_xz_t velocity_m_s) {
+/* (R37): from the velocity that the images spoke of, as uncertain as it was, and more, as it was linearised at a place that was
+ * wrong; the latency is open again. */
+static void follow(goe_filter_t *filter, const fit_t *fit) {
     goe_mover_t *m = &filter->mover;
-    static const float prior[GOE_BESIDE] = {LATENCY_PRIOR_S, VELOCITY_PRIOR_M_S, VELOCITY_PRIOR_M_S};
+    goe_triangle_t *root = &filter->root;
+    const float x = SPREAD_GROWN * fit->spread[0];
+    const float both = SPREAD_GROWN * fit->spread[1];
+    const float z = SPREAD_GROWN * fit->spread[2];
+    const float determinant = x * z - both * both;
+    const float root_x = sqrtf(z / determinant); /* the triangle of the inverse of (x, both; both, z) */
     m->moves = true;
     m->followed = true;
-    m->beside[GOE_BESIDE_LATENCY] = 0.0f;
-    m->beside[GOE_BESIDE_VELOCITY_X] = velocity_m_s.x;
-    m->beside[GOE_BESIDE_VELOCITY_Z] = velocity_m_s.z;
     m->late = false;
-    forget_beside(&filter->root);
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
-        *beside_at(&filter->root, i, i) = 1.0f / prior[i];
-        filter->root.right[i] = -m->beside[i] / prior[i];
-    }
-    filter->root.estimated = GOE_BESIDE;
+    m->beside[GOE_BESIDE_LATENCY] = 0.0f;
+    m->beside[GOE_BESIDE_VELOCITY_X] = fit->velocity_m_s.x;
+    m->beside[GOE_BESIDE_VELOCITY_Z] = fit->velocity_m_s.z;
+    forget_beside(root);
+    *beside_at(root, GOE_BESIDE_LATENCY, GOE_BESIDE_LATENCY) = 1.0f / LATENCY_PRIOR_S;
+    *beside_at(root, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_X) = root_x;
+    *beside_at(root, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_Z) = -both / (determinant * root_x);
+    *beside_at(root, GOE_BESIDE_VELOCITY_Z, GOE_BESIDE_VELOCITY_Z) = 1.0f / sqrtf(z);
+    root->estimated = GOE_BESIDE;
 }
 
 /* From here on it is estimated with the state. */
 static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
     const float least = LATE_SIGMAS * LATE_SIGMAS * fit->wider;
-    filter->mover.late = goe_absolute(fit->latency_s) > LATE_MIN_S && fit->by_latency > least;
-    if (filter->root.estimated == 0 && filter->mover.late && fit->rest_latency < fit->rest_velocity) {
+    const bool late = goe_absolute(fit->latency_s) > LATE_MIN_S && fit->by_latency > least;
+    if (filter->root.estimated == 0 && late && fit->rest_velocity > LATE_SHARE * fit->rest_latency) {
         filter->root.estimated = 1;
     }
-    filter->mover.late =
-        filter->mover.late && (filter->root.estimated > 0 || fit->rest_velocity > REST_SHARE * fit->rest_latency);
+    filter->mover.late = late && filter->root.estimated > 0;
 }
 
 /* Late poses in a turn look like a motion at first; followed, what moves and what is late come apart. */
@@ -242,9 +253,13 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
         m->beside[i] += change[GOE_STATES + i];
     }
     if (!is_sound(filter)) {
+        const bool followed = m->followed; /* the axes stand still again */
+        const bool moves = m->moves;
         goe_mover_clear(filter);
-        return false;
+        m->moves = moves;
+        return followed;
     }
+    since_s = since_s < SINCE_MAX_S ? since_s : SINCE_MAX_S;
     m->heard_s += since_s;
     m->nis += filter->health.nis / goe_gate_repeated(obs->settings, filter);
     m->rows += (float)filter->health.nis_rows;
@@ -261,7 +276,7 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
         m->moves = m->moves || (seen && is_misfit(filter, obs));
         return false;
     }
-    follow(filter, fit.velocity_m_s);
+    follow(filter, &fit);
     return true;
 }
 

@@ -39,11 +39,17 @@ typedef struct {
     float turned_m2; /* a path that leads back on itself is not scaled: what of the drift is left */
 } drift_t;
 
+static float path_over_ground(const goe_filter_t *filter, const goe_motion_t *motion) {
+    const float dx_m = motion->dx_m - filter->axes.start_dx_m;
+    const float dz_m = motion->dz_m - filter->axes.start_dz_m;
+    return sqrtf(dx_m * dx_m + dz_m * dz_m);
+}
+
 static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
     drift_t drift;
     const float s = goe_time_between_s(filter->axes.start_time_us, motion->time_us, TIME_MAX_US);
     drift.camera_m = goe_filter_camera(filter, motion);
-    const float path_m = sqrtf(goe_xz_dot(drift.camera_m, drift.camera_m));
+    const float path_m = path_over_ground(filter, motion);
     drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
     drift.walk_m2 = goe_square(navigation->position_walk_m) * s;
     const float straight = filter->flown_m > path_m ? path_m / filter->flown_m : 1.0f;

@@ -417,7 +417,14 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
         }
         memset(&r[i], 0, (GOE_UNKNOWNS - i) * sizeof r[0]);
     }
+#if GOE_BESIDE
+    const uint8_t estimated = root->estimated; /* what is beside the state keeps what it is yet to move by */
+    root->estimated = 0;
     (void)goe_srif_update(root, 1.0f, rows, change);
+    root->estimated = estimated;
+#else
+    (void)goe_srif_update(root, 1.0f, rows, change);
+#endif
 }
 
 #endif

@@ -112,6 +112,28 @@ static void what_is_beside_the_state_is_solved_with_it(void) {
     }
 }
 
+/* GIVEN a latency that is about to be estimated WHEN the states change by a substitution THEN what it is to move by is kept. */
+static void a_change_of_states_keeps_what_is_beside_them(void) {
+    goe_triangle_t root;
+    goe_matrix_t rows;
+    goe_substitution_t same;
+    memset(&root, 0, sizeof root);
+    memset(&same, 0, sizeof same);
+    for (size_t i = 0; i < UNKNOWNS; i++) {
+        *goe_srif_at(&root, i, i) = 2.0f;
+    }
+    for (size_t i = 0; i < GOE_CHANGED; i++) {
+        same.by[i][i] = 1.0f;
+    }
+    *goe_srif_at(&root, GOE_TOP, GOE_STATES) = 0.5f;
+    root.estimated = 1;
+    root.right[0] = 5.0f;
+    goe_srif_substitute(&root, &same, &rows);
+    TEST_ASSERT_EQUAL_UINT8(1, root.estimated);
+    CHECK_CLOSE(1.0e-6, 5.0 * 2.0, root.right[0] * *goe_srif_at(&root, GOE_STATES, GOE_STATES));
+    CHECK_CLOSE(1.0e-6, 0.5 * 2.0, *goe_srif_at(&root, GOE_TOP, GOE_STATES) * *goe_srif_at(&root, GOE_TOP, GOE_TOP));
+}
+
 /* GIVEN an estimate with something beside it THEN the variance of a quantity, on which the attitude's bias has
  * no part, is that of the whole inverse. */
 static void the_variance_holds_what_is_beside_the_state(void) {
@@ -310,6 +332,43 @@ static void an_obstacle_that_moves_is_followed(void) {
 }
 
 #if GOE_WITH_HAZARD
+/* GIVEN traffic on the own course, oncoming or slower WHEN it has been warned of THEN no image takes the warning back, also not when
+ * it begins to be followed. */
+static void what_begins_to_be_followed_is_warned_of(void) {
+    static const double north_m_s[] = {-12.0, 8.0};
+    for (size_t i = 0; i < sizeof north_m_s / sizeof north_m_s[0]; i++) {
+        goe_settings_t of_scene = scene_settings(&scene);
+        goe_plan_t plan;
+        goe_hazard_t hazard;
+        double least = 1.0;
+        bool warned = false;
+        bool followed = false;
+        memset(&plan, 0, sizeof plan);
+        plan.velocity_ned_m_s[0] = (float)(scene.speed_mps + north_m_s[i]);
+        plan.margin_m = 25.0f;
+        plan.clearance_m = 1000.0f;
+        scene.x0_m = 0.0;
+        scene.z0_m = 200.0;
+        CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &of_scene, NULL));
+        for (int k = 0; k < IMAGES; k++) {
+            goe_image_t image;
+            goe_estimate_t estimate;
+            scene_image(&scene, 20 + STEP * k, &image, NULL);
+            image.pose.position_ned_m[0] += (float)(north_m_s[i] * (20 + STEP * k) / FINE_HZ);
+            scene_add_noise(&image, &any, NOISE_PX);
+            (void)goe_update(&estimator, &image, &estimate);
+            followed = followed || (estimate.valid & GOE_HAS_VELOCITY) != 0u;
+            if (goe_hazard(&estimator, &plan, &hazard) == GOE_OK) {
+                warned = warned || hazard.violation > 0.9f;
+                least = warned && (double)hazard.violation < least ? (double)hazard.violation : least;
+            }
+        }
+        check_report("least violation after the first warning", least);
+        TEST_ASSERT_TRUE(warned && (followed || i > 0)); /* the slower one is found later */
+        TEST_ASSERT_TRUE(least > 0.5);
+    }
+}
+
 /* GIVEN oncoming traffic WHEN it is followed THEN the time to it is that of both, not of the aircraft alone. */
 static void the_hazard_counts_with_both_velocities(void) {
     const flight_t flight = fly(0, -12.0, 0.0);
@@ -333,11 +392,13 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_is_beside_the_state_is_solved_with_it);
     RUN_TEST(the_variance_holds_what_is_beside_the_state);
+    RUN_TEST(a_change_of_states_keeps_what_is_beside_them);
     RUN_TEST(the_columns_are_derivatives);
     RUN_TEST(nothing_moves_that_does_not);
     RUN_TEST(late_poses_are_told_and_taken_off);
     RUN_TEST(an_obstacle_that_moves_is_followed);
 #if GOE_WITH_HAZARD
+    RUN_TEST(what_begins_to_be_followed_is_warned_of);
     RUN_TEST(the_hazard_counts_with_both_velocities);
 #endif
     return UNITY_END();
