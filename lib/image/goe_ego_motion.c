@@ -128,8 +128,7 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     camera_position(view->camera, pose, body_to_ned, position);
 #if GOE_BESIDE
     const bool broken = !motion->started || goe_motion_reset(motion, pose);
-    if (motion->mark_us ==
-        motion->time_us) { /* the image before ended a span: what it told has no part of this one's error */
+    if (motion->mark_us == motion->time_us) { /* a span ended before: its rate has no part of this image's own error */
         memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
     }
 #endif
@@ -153,6 +152,9 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
     turn_into_trajectory(motion, body_to_ned, view);
 #if GOE_BESIDE
+    if (settings->method != GOE_METHOD_REFINED) {
+        return;
+    }
     const float arm_n = position[0] - pose->position_ned_m[0];
     const float arm_e = position[1] - pose->position_ned_m[1];
     const float body_m[2] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
