@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Memory of one estimator and code of the library, as the tables of lib/README.md.
+# Memory of one estimator and code of the library, as the tables of lib/README.md; and of the flight layer, as those of
+# port/flight/README.md.
 #
 #   tools/sizes.sh          prints the tables
 #   tools/sizes.sh <words>  ... of the code only the rows whose name has these words, such as "Cortex-M4F gcc"
@@ -10,6 +11,9 @@ set -euo pipefail
 cd "$scratch"
 
 limit_bytes=2904
+m4f=(-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
+mapfile -t flight_sources < <(find "$root/port/flight" -name '*.c' | sort)
+sources=("${library_sources[@]}") # what code_row measures
 wanted=${1:-}
 
 # estimator_bytes [window]
@@ -31,7 +35,7 @@ code_row() {
     shift 2
     [[ $name == *"$wanted"* ]] || return 0
     if command -v "$1" >/dev/null; then
-        "$@" -std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib" -c "${library_sources[@]}"
+        "$@" -std=c99 -ffp-contract=off -fno-math-errno "${all_includes[@]}" -c "${sources[@]}"
         # .data.rel.ro holds constants that are addresses: read-only once loaded
         "$size" -A ./*.o | awk -v name="$name ($("$1" -dumpversion))" \
             '/^\.(text|rodata|data\.rel\.ro)/ { code += $2 } /^\.(data|bss)/ && !/^\.data\.rel\.ro/ { data += $2 }
@@ -71,6 +75,27 @@ for level in -O2 -Os; do
     code_row "x86-64 clang $level" size clang-19 $level
 done
 for level in -O2 -Os; do
-    code_row "Cortex-M4F gcc $level" arm-none-eabi-size arm-none-eabi-gcc $level \
-        -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
+    code_row "Cortex-M4F gcc $level" arm-none-eabi-size arm-none-eabi-gcc $level "${m4f[@]}"
+done
+echo
+echo "| flight layer, obstacles at a time | bytes of \`goe_flight_t\`, Cortex-M4F |"
+echo "|---|---|"
+if command -v arm-none-eabi-gcc >/dev/null; then
+    for slots in 1 2 4 8; do
+        printf '#include "goe_flight.h"\nextern char state[];\nchar state[sizeof(goe_flight_t)];\n' >flight.c
+        arm-none-eabi-gcc -std=c99 "${m4f[@]}" "-DGOE_FLIGHT_SLOTS=$slots" "${all_includes[@]}" -c flight.c
+        echo "| $slots | $(arm-none-eabi-nm -S -t d flight.o | awk '/ state$/ { print $2 + 0 }') |"
+    done
+fi
+rm -f ./*.o
+echo
+echo "| flight layer, code | code and constants, bytes | writable data, bytes |"
+echo "|---|---|---|"
+sources=("${flight_sources[@]}")
+for level in -O2 -Os; do
+    code_row "Cortex-M4F gcc $level" arm-none-eabi-size arm-none-eabi-gcc $level "${m4f[@]}"
+done
+for file in "${flight_sources[@]}"; do
+    sources=("$file")
+    code_row "Cortex-M4F gcc -Os: $(basename "$file")" arm-none-eabi-size arm-none-eabi-gcc -Os "${m4f[@]}"
 done

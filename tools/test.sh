@@ -206,10 +206,10 @@ configure() { cmake --preset "$1" -DGOE_BUILD_TESTS=ON ${UNITY_DIR:+-DUNITY_DIR=
 build() { configure "$1" && cmake --build --preset "$1"; }
 build_and_ctest() { build "$1" && ctest --preset "$1" -j "$jobs"; }
 
-sources() { find lib sim_host tests -name '*.[ch]' -o -name '*.cpp'; }
+sources() { find lib port/flight sim_host tests -name '*.[ch]' -o -name '*.cpp'; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
 tidy() {
-    find "$root/lib" "$root/sim_host" -name '*.c' -print0 |
+    find "$root/lib" "$root/port/flight" "$root/sim_host" -name '*.c' -print0 |
         xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet -p build-clang 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
 }
 
@@ -264,6 +264,7 @@ tells='tests passed|Total Test time' add "ctest: targets" \
     ctest --test-dir build/tests/targets --output-on-failure -j "$jobs" # every target under QEMU
 if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
     after="ctest: targets" add "cost ledger" "$python" -m goe_tools ledger --check # of the builds that ctest has made
+    after="cost ledger" add "cost of the flight layer" "$python" -m goe_tools flight_cost
 else
     skip "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
 fi

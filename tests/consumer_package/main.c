@@ -1,11 +1,20 @@
 /* Flies 40 m towards a chimney of 6 m diameter at north 200, east -30 and asks for its place. */
-#include <goe.h>
+#include <goe_flight.h>
 #include <math.h>
 #include <stdio.h>
 
 #define FOCAL_PX 800.0f
 #define CENTER_U_PX 640.0f
 #define CENTER_V_PX 360.0f
+
+/* The flight layer takes the same settings, once the image's size is among them. */
+static bool flight_layer_starts(goe_settings_t settings) {
+    static goe_flight_t flight;
+    const char *bad = NULL;
+    settings.camera.width_px = 2.0f * CENTER_U_PX;
+    settings.camera.height_px = 2.0f * CENTER_V_PX;
+    return goe_flight_init(&flight, sizeof flight, &settings, NULL, &bad) == GOE_FLIGHT_OK && bad == NULL;
+}
 
 static goe_pixel_t horizon(float u_px) {
     goe_pixel_t pixel;
@@ -27,6 +36,10 @@ int main(void) {
     const char *bad_field;
     if (goe_init(&estimator, sizeof estimator, &settings, &bad_field) != GOE_OK) {
         printf("bad setting %s\n", bad_field);
+        return 1;
+    }
+    if (!flight_layer_starts(settings)) {
+        printf("the flight layer does not start\n");
         return 1;
     }
 

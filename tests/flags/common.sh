@@ -10,6 +10,12 @@ trap 'rm -rf "$scratch"' EXIT
 # shellcheck disable=SC2034
 mapfile -t library_sources < <(find "$root/lib" -name '*.c' | sort)
 
+# The same with the flight layer, which obeys the same rules; they compile with "${all_includes[@]}".
+# shellcheck disable=SC2034
+mapfile -t all_sources < <(find "$root/lib" "$root/port/flight" -name '*.c' | sort)
+# shellcheck disable=SC2034
+all_includes=(-I"$root/lib" -I"$root/port/flight")
+
 # The host compilers that are installed.
 compilers() {
     local name

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Compiles the library as one firmware does, without a warning, and runs the safety tests on the result.
+# Compiles the library and the flight layer as one firmware does, without a warning, and runs the safety tests on the result.
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
 #
-# Every host compiler there is; C99, C11 and GNU C17; with and without NDEBUG. The safety tests (tests/c/test_safety*.c)
+# Every host compiler there is; C99, C11 and GNU C17; with and without NDEBUG. The safety tests (test_safety*.c of tests/c and
+# tests/flight)
 # are compiled plainly, so that they can tell a NaN, and are linked with the firmware's flags, which may change the
 # floating-point unit's mode. UNITY_INCLUDE and UNITY_LIBRARY say where the test framework is.
 set -euo pipefail
@@ -17,9 +18,9 @@ firmware_flags "$firmware" || {
 }
 
 shopt -s nullglob
-safety_tests=("$root"/tests/c/test_safety*.c)
+safety_tests=("$root"/tests/c/test_safety*.c "$root"/tests/flight/test_flight_safety*.c)
 support=()
-for file in "$root"/tests/c/*.c; do
+for file in "$root"/tests/c/*.c "$root"/tests/flight/*.c; do
     [[ $(basename "$file") == test_* ]] || support+=("$file")
 done
 if [ ${#safety_tests[@]} = 0 ]; then
@@ -30,8 +31,8 @@ fi
 compile() {
     local compiler=$1
     shift
-    "$compiler" "$@" -Werror -I"$root/lib" -c "${library_sources[@]}" || fail "$compiler $*"
-    compiled=$((compiled + ${#library_sources[@]}))
+    "$compiler" "$@" -Werror "${all_includes[@]}" -c "${all_sources[@]}" || fail "$compiler $*"
+    compiled=$((compiled + ${#all_sources[@]}))
 }
 
 # run_safety <compiler> <flag>...: with the library's objects in the current folder
@@ -41,8 +42,8 @@ run_safety() {
     for file in "${safety_tests[@]}"; do
         program=$scratch/$(basename "$file" .c)
         mkdir -p "$scratch/plain"
-        (cd "$scratch/plain" && rm -f ./*.o && "$compiler" -std=c99 -O1 -I"$root/lib" -I"$root/tests/c" \
-            -I"$UNITY_INCLUDE" -c "$file" "${support[@]}") || fail "$compiler: $file"
+        (cd "$scratch/plain" && rm -f ./*.o && "$compiler" -std=c99 -O1 "${all_includes[@]}" -I"$root/tests/c" \
+            -I"$root/tests/flight" -I"$UNITY_INCLUDE" -c "$file" "${support[@]}") || fail "$compiler: $file"
         "$compiler" "$@" ./*.o "$scratch"/plain/*.o "$UNITY_LIBRARY" -lm -o "$program" || fail "link: $compiler $*"
         "$program" >"$scratch/log" 2>&1 || {
             cat "$scratch/log" >&2

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compiles, links and runs a C++ program that includes goe.h, under strict warnings.
+# Compiles, links and runs a C++ program that includes goe_flight.h, and so goe.h, under strict warnings.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 
@@ -12,11 +12,11 @@ if [ ${#present[@]} = 0 ]; then
     exit 77
 fi
 cd "$scratch"
-gcc -std=c99 -I"$root/lib" -c "${library_sources[@]}"
+gcc -std=c99 "${all_includes[@]}" -c "${all_sources[@]}"
 for compiler in "${present[@]}"; do
     mapfile -t accepted < <(known "$compiler" "${warnings[@]}")
     for standard in c++11 c++17 c++20; do
-        "$compiler" "-std=$standard" "${accepted[@]}" -I"$root/lib" "$root/tests/flags/header.cpp" ./*.o -lm -o header ||
+        "$compiler" "-std=$standard" "${accepted[@]}" "${all_includes[@]}" "$root/tests/flags/header.cpp" ./*.o -lm -o header ||
             fail "$compiler -std=$standard"
         ./header || fail "the program made by $compiler -std=$standard"
     done

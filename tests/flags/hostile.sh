@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compiles the library among other people's macros, and with the poorest C library that it may meet: sqrtf, memcpy, memset
+# Compiles the library and the flight layer among other people's macros, and with the poorest C library that it may meet: sqrtf, memcpy, memset
 # and the compiler's own headers, everything undeclared an error. Public header in C++ too.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
@@ -8,15 +8,15 @@ warnings=(-Wall -Wextra -Wundef -Wshadow -Werror)
 
 cd "$scratch"
 cat >header.cpp <<'END'
-#include "goe.h"
-int main() { return goe_status_text(GOE_OK) == nullptr; }
+#include "goe_flight.h"
+int main() { return goe_flight_action_text(GOE_FLIGHT_NONE) == nullptr; }
 END
 
 compiled=0
-# compile <compiler> <flag>...: every source of the library
+# compile <compiler> <flag>...: every source of the library and of the flight layer
 compile() {
-    "$@" "${warnings[@]}" -I"$root/lib" -c "${library_sources[@]}" || fail "$*"
-    compiled=$((compiled + ${#library_sources[@]}))
+    "$@" "${warnings[@]}" "${all_includes[@]}" -c "${all_sources[@]}" || fail "$*"
+    compiled=$((compiled + ${#all_sources[@]}))
 }
 
 # poor <compiler> <flag>...: no headers but the compiler's own and the poor library's
@@ -36,7 +36,7 @@ for compiler in $(compilers gcc clang-19); do
 done
 for compiler in $(compilers g++ clang++-19); do
     for standard in c++11 c++17; do
-        "$compiler" -std=$standard "${warnings[@]}" -include "$here/hostile.h" -I"$root/lib" -fsyntax-only header.cpp ||
+        "$compiler" -std=$standard "${warnings[@]}" -include "$here/hostile.h" "${all_includes[@]}" -fsyntax-only header.cpp ||
             fail "$compiler -std=$standard: the public header"
     done
 done

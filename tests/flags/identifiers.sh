@@ -13,7 +13,7 @@ calls="$calls|sqrt|sqrtl|fabs|fabsf|fabsl|isnan|isinf|isfinite|isnormal|fpclassi
 headers='#include *<(stdio|stdlib|tgmath|complex|assert|errno|fenv)\.h>'
 
 bad=0
-mapfile -t files < <(find "$root/lib" -name '*.[ch]')
+mapfile -t files < <(find "$root/lib" "$root/port/flight" -name '*.[ch]')
 for file in "${files[@]}"; do
     stripped=$scratch/stripped
     gcc -fpreprocessed -dD -E -P -w "$file" >"$stripped"
@@ -24,10 +24,10 @@ for file in "${files[@]}"; do
         bad=1
     fi
 done
-[ $bad = 0 ] || fail "forbidden words in lib/"
+[ $bad = 0 ] || fail "forbidden words"
 
 # Every floating-point constant carries its f: a double constant would be caught by one of these.
 cd "$scratch"
 mapfile -t flags < <(known gcc -Wdouble-promotion -Wunsuffixed-float-constants -Wfloat-conversion -Wvla)
-gcc -std=c99 "${flags[@]}" -Werror -I"$root/lib" -c "${library_sources[@]}" || fail "double precision or variable-length arrays in lib/"
+gcc -std=c99 "${flags[@]}" -Werror "${all_includes[@]}" -c "${all_sources[@]}" || fail "double precision or variable-length arrays"
 echo "no forbidden word in ${#files[@]} files"

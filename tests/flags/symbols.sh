@@ -5,7 +5,7 @@
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 
-own=(-std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib")
+own=(-std=c99 -ffp-contract=off -fno-math-errno)
 allowed='memcpy|memset|sqrtf'
 
 # check <name> <nm> <allowed symbols> <compiler and flags>...
@@ -13,7 +13,7 @@ check() {
     local name=$1 nm=$2 allowed=$3 defined wanted strange writable
     shift 3
     rm -f ./*.o
-    "$@" -I"$root/lib" -c "${library_sources[@]}" || fail "$*"
+    "$@" "${all_includes[@]}" -c "${all_sources[@]}" || fail "$*"
     defined=$("$nm" -g --defined-only ./*.o | awk 'NF == 3 { print $3 }' | sort -u)
     wanted=$("$nm" -u ./*.o | awk '$1 == "U" { print $2 }' | sort -u)
     wanted=$(comm -13 <(echo "$defined") <(echo "$wanted") | xargs)

@@ -19,7 +19,7 @@ from synthetic_campaign import write_campaign
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("lib", "port", "sim_host", "tests", "tools")
-PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "cmake", "ctest")
+PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "goe_avoid", "cmake", "ctest")
 SECONDS = 300
 
 # ------------------------------------------------------------------------------------------------ what the READMEs say
@@ -87,6 +87,8 @@ RUN_BY = {
     "cmake --build --preset": By("tools/test.sh", "cmake --build --preset"),
     "ctest --preset": By("tools/test.sh", "ctest --preset"),
     "build/tests/targets/replay": By("tests/targets/host.cmake", "goe_check_hash(replay replay)"),
+    "build/tests/targets/flight_replay": By("tests/targets/host.cmake", "goe_check_flight_hash(flight_replay"),
+    "build/tests/flight/flight_recorded": By("tests/flight/CMakeLists.txt", "flight_recorded"),
     "host_builds.sh": By("tests/targets/host.cmake", "host_builds.sh"),
     "host_self_check.sh": By("tests/targets/host.cmake", "host_self_check.sh"),
     "build_target.sh": By("tests/targets/host.cmake", "build_target.sh"),
@@ -99,10 +101,12 @@ RUN_BY = {
     "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
     "goe_sim --features": By("tests/sim/test_sim_boxes.py", '"--features"'),
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
+    "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
     "python -m goe_tools attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
     "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
     "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
+    "python -m goe_tools flight_cost": By("tools/test.sh", "goe_tools flight_cost"),
     "python -m goe_tools ledger": By("tools/test.sh", "goe_tools ledger"),
     "python -m goe_tools ledger --check": By("tools/test.sh", "goe_tools ledger --check"),
     "python -m goe_tools ledger --write": By("tests/python/test_cost.py", '"ledger", "--write"'),
@@ -172,7 +176,9 @@ def test_the_example_prints_what_the_readme_says(built: Path) -> None:
 
 
 def test_sizes() -> None:
-    text = output_of("tools/sizes.sh", "x86-64 gcc -Os")
+    text, flight = output_of("tools/sizes.sh", "x86-64 gcc -Os").split("| flight layer, obstacles", 1)
+    flight_page = (ROOT / "port" / "flight" / "README.md").read_text(encoding="utf-8")
+    assert all(row in flight_page for row in re.findall(r"^\| \d+ \| \d+ \|$", flight, re.MULTILINE))
     readme = (ROOT / "lib" / "README.md").read_text(encoding="utf-8")
     states = re.findall(r"^\| \d+ \| \d+ \|$", text, re.MULTILINE)
     (code,) = re.findall(r"^\| x86.*$", text, re.MULTILINE)

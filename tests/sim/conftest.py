@@ -12,6 +12,7 @@ PLACES = {
     "goe_replay": ("GOE_REPLAY", BUILD / "sim_host"),
     "goe_sim": ("GOE_SIM", BUILD / "sim_host"),
     "goe_campaign": ("GOE_CAMPAIGN", BUILD / "sim_host"),
+    "goe_avoid": ("GOE_AVOID", BUILD / "sim_host"),
     "sim_probe": ("GOE_SIM_PROBE", BUILD / "tests" / "sim"),
     "campaign_probe": ("GOE_CAMPAIGN_PROBE", BUILD / "tests" / "sim"),
 }
@@ -32,6 +33,11 @@ def program(name: str) -> Path:
 @pytest.fixture(scope="session")
 def goe_sim() -> Path:
     return program("goe_sim")
+
+
+@pytest.fixture(scope="session")
+def goe_avoid() -> Path:
+    return program("goe_avoid")
 
 
 @pytest.fixture(scope="session")

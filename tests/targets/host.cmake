@@ -9,6 +9,11 @@ goe_compile(replay)
 target_link_libraries(replay PRIVATE goe)
 goe_check_hash(replay replay)
 
+add_executable(flight_replay flight_main.c ${replay_sources})
+goe_compile(flight_replay)
+target_link_libraries(flight_replay PRIVATE goe_flight)
+goe_check_flight_hash(flight_replay flight_replay)
+
 find_program(BASH bash)
 set(target_tests ${CMAKE_CURRENT_SOURCE_DIR})
 
@@ -18,7 +23,7 @@ function(goe_target_test name seconds script)
     set_tests_properties(${name} PROPERTIES LABELS targets SKIP_RETURN_CODE 77 TIMEOUT ${seconds})
 endfunction()
 
-goe_target_test(replay_every_host_build 900 host_builds.sh ${golden})
+goe_target_test(replay_every_host_build 900 host_builds.sh ${golden} ${flight_golden})
 goe_target_test(self_check_host 900 host_self_check.sh ${golden})
 
 # ------------------------------------------------------------------------------------------------- one test each target

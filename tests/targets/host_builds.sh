@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# The replay's hash is the golden one whatever compiler of this machine and whatever level builds it.
+# The replay's hash, and that of the replay through the flight layer, is the golden one whatever compiler of this machine and whatever level builds it.
 #
-#   host_builds.sh <golden hash>
+#   host_builds.sh <golden hash> <golden hash of the flight layer>
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../flags/common.sh"
 golden=$1
+flight_golden=$2
 
-own=(-std=c99 -ffp-contract=off -fno-math-errno -I"$root/lib" -I"$here")
-sources=("${library_sources[@]}" "$here/replay_main.c" "$here/replay.c" "$here/embedded_logs.c")
+own=(-std=c99 -ffp-contract=off -fno-math-errno "${all_includes[@]}" -I"$here")
+sources=("$here/replay.c" "$here/embedded_logs.c")
 failed=0
 ran=0
 
@@ -23,12 +24,18 @@ int main(void) { return 0; }' | "$@" -x c - -o "$scratch/probe" 2>/dev/null && r
 # try <compiler> <flag>...
 try() {
     local line
-    "$1" "${own[@]}" "${@:2}" "${sources[@]}" -lm -o "$scratch/replay"
+    "$1" "${own[@]}" "${@:2}" "${library_sources[@]}" "$here/replay_main.c" "${sources[@]}" -lm -o "$scratch/replay"
+    "$1" "${own[@]}" "${@:2}" "${all_sources[@]}" "$here/flight_main.c" "${sources[@]}" -lm -o "$scratch/flight"
     line=$("$scratch/replay")
     ran=$((ran + 1))
     echo "$line  $*"
     if [[ $line != "replay $golden "*" self_check 0x00" ]]; then
         echo "FAILED: $* (expected $golden and self_check 0x00)" >&2
+        failed=1
+    fi
+    line=$("$scratch/flight")
+    if [[ $line != "flight $flight_golden "* ]]; then
+        echo "FAILED: $* ($line, expected $flight_golden)" >&2
         failed=1
     fi
 }

@@ -38,6 +38,11 @@ foreach(board IN LISTS GOE_TARGET_BOARDS)
         PASS_REGULAR_EXPRESSION "stack goe_update [1-9][0-9]*\n")
 endforeach()
 
+# The flight layer, on the larger board alone where there are two: four obstacles do not fit into 16 KiB.
+goe_image(flight_${GOE_TARGET_BOARD} ${GOE_TARGET_BOARD} flight_main.c $<TARGET_OBJECTS:replay_parts>)
+target_link_libraries(flight_${GOE_TARGET_BOARD} PRIVATE goe_flight)
+goe_check_flight_hash(flight_${GOE_TARGET_BOARD} flight_${GOE_TARGET_BOARD})
+
 # ---------------------------------------------------------------------------------------------------------- self-check
 
 goe_library_sources(library_sources)
@@ -134,6 +139,15 @@ if(NOT GOE_TARGET_TESTS STREQUAL none)
         add_test(NAME ${name} COMMAND ${name})
         set_tests_properties(${name} PROPERTIES LABELS unit TIMEOUT 300)
     endforeach()
+
+    # The safety test of the flight layer.
+    set(flight_tests ${PROJECT_SOURCE_DIR}/tests/flight)
+    goe_image(test_flight_safety ${GOE_TARGET_BOARD} ${flight_tests}/test_flight_safety.c ${flight_tests}/flown.c)
+    target_compile_options(test_flight_safety PRIVATE -Wno-double-promotion -Wno-float-equal)
+    target_include_directories(test_flight_safety PRIVATE ${flight_tests})
+    target_link_libraries(test_flight_safety PRIVATE unit_test_support goe_flight)
+    add_test(NAME test_flight_safety COMMAND test_flight_safety)
+    set_tests_properties(test_flight_safety PROPERTIES LABELS unit TIMEOUT 300)
 
     # The safety tests, with the library under the flags of four firmwares that run on such processors.
     if(has_fpu AND CMAKE_SYSTEM_PROCESSOR STREQUAL arm AND CMAKE_C_COMPILER_ID STREQUAL GNU

@@ -17,6 +17,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
     "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),
     "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
+    "flight_cost": (".cost.flight", "measure what the calls of the flight layer take"),
     "ledger": (".cost.ledger", "measure what the library costs on each target"),
     "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
     "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),

@@ -14,4 +14,5 @@ stated        what goe.h states of each function
 guarantees    what README.md promises, and on which targets it holds
 pages         the tables that people read
 ledger        the command: python -m goe_tools ledger
+flight        the command: python -m goe_tools flight_cost, of the flight layer
 """

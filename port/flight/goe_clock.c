@@ -1,0 +1,107 @@
+/* Capture time. SPDX-License-Identifier: MIT
+ *
+ * One-way: a message cannot arrive before it was sent, so the least of (arrival - sending) is the offset of the clocks plus the
+ * least delay of the link, which nothing but settings.delay_s tells. The least is that of two buckets of 10 s: a clock that
+ * drifts by 50 ppm is off by 1 ms at most. */
+#include "goe_clock.h"
+
+#include <math.h>
+
+#include "goe_flight_maths.h"
+
+#define BUCKET_US 10000000
+#define STRANGE_US 1000000 /* an arrival that far off the least is another clock, or a stuck message */
+#define STRANGE_MAX 3
+#define SETTLED 8           /* messages after which the least is close to what there is */
+#define SPREAD_MEMORY 16.0f /* messages */
+#define DRIFT_SD_US 1000.0f
+#define SD_MAX_US 1.0e6f
+
+static uint32_t microseconds(float s) { return (uint32_t)(s * 1.0e6f + 0.5f); }
+
+static void begin(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arrival_us) {
+    clock->offset_us = offset_us;
+    clock->bucket_us = arrival_us;
+    clock->excess_us = 0.0f;
+    clock->count = 0;
+    clock->strange = 0;
+    clock->has_before = false;
+}
+
+static void learn(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arrival_us) {
+    const int32_t above_us = goe_flight_between_us(offset_us, clock->offset_us);
+    if (clock->count == 0 || above_us < -STRANGE_US) {
+        begin(clock, offset_us, arrival_us);
+    } else if (above_us > STRANGE_US) {
+        clock->strange++;
+        if (clock->strange >= STRANGE_MAX) {
+            begin(clock, offset_us, arrival_us);
+        }
+        return;
+    } else if (goe_flight_between_us(arrival_us, clock->bucket_us) > BUCKET_US) {
+        clock->before_us = clock->offset_us;
+        clock->has_before = true;
+        clock->offset_us = offset_us;
+        clock->bucket_us = arrival_us;
+    } else if (above_us < 0) {
+        clock->offset_us = offset_us;
+    }
+    clock->strange = 0;
+    clock->count = (uint8_t)(clock->count < UINT8_MAX ? clock->count + 1 : UINT8_MAX);
+}
+
+static uint32_t least(const goe_flight_clock_t *clock) {
+    const bool before = clock->has_before && goe_flight_between_us(clock->before_us, clock->offset_us) < 0;
+    return before ? clock->before_us : clock->offset_us;
+}
+
+/* How far arrivals lie above the least: while few have come, the least may be as far above the truth. */
+static void follow_spread(goe_flight_clock_t *clock, uint32_t offset_us) {
+    const float above_us = (float)goe_flight_between_us(offset_us, least(clock));
+    const float excess_us = goe_flight_clamped(above_us, 0.0f, (float)STRANGE_US);
+    const float share = 1.0f / goe_flight_smaller((float)clock->count, SPREAD_MEMORY);
+    clock->excess_us += share * (excess_us - clock->excess_us);
+}
+
+static uint32_t offset_of(goe_flight_clock_t *clock, const goe_flight_frame_t *frame,
+                          const goe_flight_settings_t *settings, float *sd_us) {
+    const uint32_t offset_us = frame->arrival_us - frame->sent_us;
+    if (clock->synced) {
+        *sd_us = clock->synced_sd_us;
+        return clock->offset_us;
+    }
+    learn(clock, offset_us, frame->arrival_us);
+    if (clock->count > 0) {
+        follow_spread(clock, offset_us);
+    }
+    const float unsettled_us = clock->count < SETTLED ? clock->excess_us : 0.0f;
+    *sd_us = sqrtf(goe_flight_square(settings->delay_sd_s * 1.0e6f) + DRIFT_SD_US * DRIFT_SD_US +
+                   unsettled_us * unsettled_us);
+    return least(clock) - microseconds(settings->delay_s);
+}
+
+static uint32_t rounded_sd(float sd_us) { return (uint32_t)(goe_flight_smaller(sd_us, SD_MAX_US) + 0.5f); }
+
+uint32_t goe_flight_clock_capture(goe_flight_clock_t *clock, const goe_flight_frame_t *frame,
+                                  const goe_flight_settings_t *settings, uint32_t *sd_us) {
+    const uint32_t delay_sd_us = microseconds(settings->delay_sd_s);
+    float clock_sd_us = 0.0f;
+    uint32_t capture_us = frame->capture_us;
+    if (frame->time_base == GOE_FLIGHT_SENDER_CLOCK) {
+        capture_us += offset_of(clock, frame, settings, &clock_sd_us);
+    } else if (frame->time_base == GOE_FLIGHT_AGE) {
+        capture_us = frame->arrival_us - microseconds(settings->delay_s) - frame->capture_us;
+        clock_sd_us = (float)delay_sd_us;
+    }
+    const bool told = frame->time_sd_us > 0u;
+    const float own_sd_us = (float)(told || clock_sd_us > 0.0f ? frame->time_sd_us : delay_sd_us);
+    *sd_us = rounded_sd(sqrtf(own_sd_us * own_sd_us + clock_sd_us * clock_sd_us));
+    return capture_us;
+}
+
+void goe_flight_clock_sync(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t sd_us) {
+    memset(clock, 0, sizeof *clock);
+    clock->synced = sd_us != UINT32_MAX;
+    clock->offset_us = offset_us;
+    clock->synced_sd_us = goe_flight_smaller((float)sd_us, SD_MAX_US);
+}

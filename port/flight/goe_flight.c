@@ -1,0 +1,672 @@
+/* The chain of the flight layer, and its settings. SPDX-License-Identifier: MIT */
+#include "goe_flight.h"
+
+#include <math.h>
+
+#include "goe_clock.h"
+#include "goe_flight_maths.h"
+#include "goe_geometry.h"
+#include "goe_history.h"
+#include "goe_lookout.h"
+#include "goe_marks.h"
+#include "goe_reaction.h"
+#include "goe_table.h"
+
+#define TAG 0x474F4546u
+#define POSITION_MAX_M 1.0e6f
+#define VELOCITY_MAX_M_S 1.0e3f
+#define HEIGHT_MAX_M 1.0e5f
+#define NORM_TOLERANCE 0.01f
+#define ATTITUDE_SD_MAX_DEG 30.0f
+#define LATITUDE_MAX_E7 890000000
+#define LONGITUDE_MAX_E7 1800000000
+#define STALE_MAX 16 /* samples in a row that are not newer: the clock was set back */
+#define POSE_ALIVE_S 0.5f
+#define SECTOR_MAX_CM 65000u
+#define NOBODY (-1)
+
+/* ---------------------------------------------------------------------------------------------------------- settings -- */
+
+typedef struct {
+    const char *name;
+    float least, most;
+} range_t;
+
+#define GOE_FLIGHT_SETTING(field, least, most, usual) {#field, least, most},
+static const range_t ranges[] = {
+#include "goe_flight_settings_list.h"
+};
+#undef GOE_FLIGHT_SETTING
+
+enum { SETTINGS = sizeof ranges / sizeof ranges[0] };
+GOE_STATIC_ASSERT(sizeof(goe_flight_settings_t) == SETTINGS * sizeof(float), flight_settings_are_listed);
+
+void goe_flight_settings_default(goe_flight_settings_t *settings) {
+    if (settings) {
+#define GOE_FLIGHT_SETTING(field, least, most, usual) settings->field = usual;
+#include "goe_flight_settings_list.h"
+#undef GOE_FLIGHT_SETTING
+    }
+}
+
+/* The name of the first setting outside its range; null: none. */
+static const char *find_bad(const goe_flight_settings_t *settings) {
+    float value[SETTINGS];
+    memcpy(value, settings, sizeof value);
+    for (int i = 0; i < SETTINGS; i++) {
+        if (!goe_flight_finite(value[i]) || value[i] < ranges[i].least || value[i] > ranges[i].most) {
+            return ranges[i].name;
+        }
+    }
+    return NULL;
+}
+
+static const char *init_slots(goe_flight_t *flight, const goe_settings_t *estimator) {
+    const char *bad = NULL;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS && !bad; i++) {
+        goe_estimator_t *one = &flight->slot[i].estimator;
+        if (goe_init(one, sizeof *one, estimator, &bad) != GOE_OK && !bad) {
+            bad = "estimator";
+        }
+    }
+    return bad;
+}
+
+static const goe_camera_t *camera_settings(const goe_settings_t *estimator, int number) {
+#if GOE_CAMERAS_MAX > 1
+    return number > 0 ? &estimator->more_cameras[number - 1] : &estimator->camera;
+#else
+    (void)number;
+    return &estimator->camera;
+#endif
+}
+
+static const char *init_cameras(goe_flight_t *flight, const goe_settings_t *estimator) {
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        const goe_camera_t *camera = camera_settings(estimator, i);
+        if (!(camera->fx_px > 0.0f)) {
+            continue;
+        }
+        if (!(camera->width_px > 0.0f)) {
+            return "camera.width_px";
+        }
+        if (!(camera->height_px > 0.0f)) {
+            return "camera.height_px";
+        }
+        goe_flight_geometry_camera(&flight->camera[i], camera);
+    }
+    return NULL;
+}
+
+static bool has_camera(const goe_flight_t *flight, int number) {
+    return number < GOE_CAMERAS_MAX && flight->camera[number].focal_px[0] > 0.0f;
+}
+
+static void forget(goe_flight_t *flight) {
+    goe_flight_history_clear(&flight->history);
+    memset(&flight->marks, 0, sizeof flight->marks);
+    memset(&flight->clock, 0, sizeof flight->clock);
+    memset(flight->candidate, 0, sizeof flight->candidate);
+    memset(flight->velocity_ned_m_s, 0, sizeof flight->velocity_ned_m_s);
+    goe_flight_reaction_clear(&flight->reaction);
+    flight->had_frame = 0;
+    flight->origin_known = false;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        goe_flight_slot_begin(&flight->slot[i], 0u, 0u);
+        flight->slot[i].used = false;
+    }
+}
+
+goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t flight_size, const goe_settings_t *estimator,
+                                    const goe_flight_settings_t *settings, const char **bad_field) {
+    if (bad_field) {
+        *bad_field = NULL;
+    }
+    if (!flight || !estimator || flight_size != sizeof *flight) {
+        return GOE_FLIGHT_BAD_ARGUMENT;
+    }
+    memset(flight, 0, sizeof *flight);
+    goe_flight_settings_default(&flight->settings);
+    if (settings) {
+        flight->settings = *settings;
+    }
+    const char *bad = find_bad(&flight->settings);
+    bad = bad ? bad : init_slots(flight, estimator);
+    bad = bad ? bad : init_cameras(flight, estimator);
+    if (bad) {
+        if (bad_field) {
+            *bad_field = bad;
+        }
+        return GOE_FLIGHT_BAD_SETTINGS;
+    }
+    flight->attitude_white_deg = estimator->navigation.attitude_white_deg;
+    forget(flight);
+    flight->tag = TAG;
+    return GOE_FLIGHT_OK;
+}
+
+static goe_flight_status_t check_ready(const goe_flight_t *flight) {
+    if (!flight) {
+        return GOE_FLIGHT_BAD_ARGUMENT;
+    }
+    return flight->tag == TAG ? GOE_FLIGHT_OK : GOE_FLIGHT_NOT_INITIALISED;
+}
+
+goe_flight_status_t goe_flight_restart(goe_flight_t *flight) {
+    const goe_flight_status_t status = check_ready(flight);
+    if (status == GOE_FLIGHT_OK) {
+        forget(flight);
+        goe_flight_count(&flight->counters.lost);
+    }
+    return status;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- samples -- */
+
+static goe_flight_status_t refuse(goe_flight_t *flight, goe_flight_status_t status) {
+    goe_flight_count(&flight->counters.refused);
+    return status;
+}
+
+/* A sample that is not newer is refused; many of them say that the clock was set back. */
+static goe_flight_status_t refuse_time(goe_flight_t *flight) {
+    flight->history.stale++;
+    if (flight->history.stale >= STALE_MAX) {
+        (void)goe_flight_restart(flight);
+    }
+    return refuse(flight, GOE_FLIGHT_BAD_TIME);
+}
+
+/* The newest time there is, and the same without wrapping. */
+static void advance(goe_flight_t *flight, uint32_t time_us) {
+    const int32_t on_us = goe_flight_between_us(time_us, (uint32_t)flight->base_us);
+    const bool first = flight->history.attitude_count + flight->history.position_count == 0;
+    if (first || on_us > 0) {
+        flight->base_us += first ? (int64_t)(time_us - (uint32_t)flight->base_us) : on_us;
+    }
+}
+
+static void lose_everything(goe_flight_t *flight) {
+    goe_flight_history_clear(&flight->history);
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        goe_flight_slot_reset(&flight->slot[i]);
+    }
+    goe_flight_count(&flight->counters.lost);
+}
+
+static bool is_unit(const float q[4]) {
+    const float square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    const float least = (1.0f - NORM_TOLERANCE) * (1.0f - NORM_TOLERANCE);
+    const float most = (1.0f + NORM_TOLERANCE) * (1.0f + NORM_TOLERANCE);
+    return square >= least && square <= most;
+}
+
+/* Whether it would be taken: newer than the newest of its kind, or the first. */
+static bool is_newer(uint8_t count, const uint32_t *newest_us, uint32_t time_us) {
+    return count == 0 || goe_flight_between_us(time_us, *newest_us) > 0;
+}
+
+goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_attitude_t *sample) {
+    const goe_flight_status_t ready = sample ? check_ready(flight) : GOE_FLIGHT_BAD_ARGUMENT;
+    if (ready != GOE_FLIGHT_OK) {
+        return ready;
+    }
+    if (!goe_flight_all_finite(sample->q, 4)) {
+        return refuse(flight, GOE_FLIGHT_NOT_FINITE);
+    }
+    if (!goe_flight_all_within(sample->q, 4, 2.0f) || !is_unit(sample->q)) {
+        return refuse(flight, GOE_FLIGHT_BAD_ATTITUDE);
+    }
+    const goe_flight_history_attitude_t *newest = goe_flight_history_newest_attitude(&flight->history);
+    if (newest && !is_newer(flight->history.attitude_count, &newest->time_us, sample->time_us)) {
+        return refuse_time(flight);
+    }
+    if (goe_flight_marks_attitude(&flight->marks, sample->reset) != GOE_FLIGHT_MARKS_SAME) {
+        lose_everything(flight);
+    }
+    const float norm = sqrtf(sample->q[0] * sample->q[0] + sample->q[1] * sample->q[1] + sample->q[2] * sample->q[2] +
+                             sample->q[3] * sample->q[3]);
+    const float q[4] = {sample->q[0] / norm, sample->q[1] / norm, sample->q[2] / norm, sample->q[3] / norm};
+    advance(flight, sample->time_us);
+    (void)goe_flight_history_add_attitude(&flight->history, sample->time_us, q);
+    flight->history.stale = 0;
+    return GOE_FLIGHT_OK;
+}
+
+static goe_flight_status_t check_position(const goe_flight_position_t *p) {
+    const bool finite = goe_flight_all_finite(p->position_ned_m, 3) && goe_flight_all_finite(p->velocity_ned_m_s, 3);
+    if (!finite) {
+        return GOE_FLIGHT_NOT_FINITE;
+    }
+    bool within = goe_flight_all_within(p->position_ned_m, 3, POSITION_MAX_M) &&
+                  goe_flight_all_within(p->velocity_ned_m_s, 3, VELOCITY_MAX_M_S);
+    for (int i = 0; i < GOE_FLIGHT_HEIGHTS; i++) {
+        if ((p->height_valid >> i) & 1u) {
+            if (!goe_flight_finite(p->height_m[i])) {
+                return GOE_FLIGHT_NOT_FINITE;
+            }
+            within = within && goe_flight_within(p->height_m[i], HEIGHT_MAX_M);
+        }
+    }
+    if (p->origin_known) {
+        within = within && p->origin_lat_e7 >= -LATITUDE_MAX_E7 && p->origin_lat_e7 <= LATITUDE_MAX_E7 &&
+                 p->origin_lon_e7 >= -LONGITUDE_MAX_E7 && p->origin_lon_e7 <= LONGITUDE_MAX_E7;
+    }
+    return within ? GOE_FLIGHT_OK : GOE_FLIGHT_OUT_OF_RANGE;
+}
+
+/* A delta counts only with a mark that changed; then it must be a number. */
+static bool has_bad_delta(const goe_flight_t *flight, const goe_flight_position_t *p) {
+    const bool changed = flight->marks.position_known && (flight->marks.horizontal != p->reset_horizontal ||
+                                                          flight->marks.vertical != p->reset_vertical);
+    return changed && p->reset_delta_known && !goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M);
+}
+
+static void follow_reset(goe_flight_t *flight, const goe_flight_position_t *sample) {
+    float jump_ned_m[3] = {0.0f, 0.0f, 0.0f};
+    const bool counters = !(flight->settings.resets > 0.5f);
+    const goe_flight_marks_change_t change = goe_flight_marks_position(&flight->marks, sample, counters, jump_ned_m);
+    if (change == GOE_FLIGHT_MARKS_UNKNOWN) {
+        lose_everything(flight);
+    } else if (change == GOE_FLIGHT_MARKS_JUMP) {
+        goe_flight_history_shift(&flight->history, jump_ned_m);
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            goe_flight_slot_shift(&flight->slot[i], jump_ned_m);
+        }
+        goe_flight_reaction_shift(&flight->reaction, jump_ned_m);
+        goe_flight_count(&flight->counters.resets);
+    }
+}
+
+/* The ground by the best source of this sample. */
+static void note_ground(goe_flight_t *flight, const goe_flight_position_t *sample) {
+    flight->ground_source = GOE_FLIGHT_HOME;
+    flight->ground_down_m = 0.0f;
+    for (int i = GOE_FLIGHT_HEIGHTS - 1; i >= 0; i--) {
+        const float height_m = sample->height_m[i];
+        const bool valid = ((sample->height_valid >> i) & 1u) != 0u;
+        if (valid && (i != GOE_FLIGHT_RANGE_FINDER || height_m <= flight->settings.range_finder_max_m)) {
+            flight->ground_source = (uint8_t)i;
+            flight->ground_down_m = sample->position_ned_m[2] + height_m;
+        }
+    }
+}
+
+goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_position_t *sample) {
+    goe_flight_status_t status = sample ? check_ready(flight) : GOE_FLIGHT_BAD_ARGUMENT;
+    if (status != GOE_FLIGHT_OK) {
+        return status;
+    }
+    status = check_position(sample);
+    if (status == GOE_FLIGHT_OK && has_bad_delta(flight, sample)) {
+        status = GOE_FLIGHT_OUT_OF_RANGE;
+    }
+    if (status != GOE_FLIGHT_OK) {
+        return refuse(flight, status);
+    }
+    const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
+    if (newest && !is_newer(flight->history.position_count, &newest->time_us, sample->time_us)) {
+        return refuse_time(flight);
+    }
+    follow_reset(flight, sample);
+    advance(flight, sample->time_us);
+    (void)goe_flight_history_add_position(&flight->history, sample->time_us, sample->position_ned_m);
+    flight->history.stale = 0;
+    memcpy(flight->velocity_ned_m_s, sample->velocity_ned_m_s, sizeof flight->velocity_ned_m_s);
+    note_ground(flight, sample);
+    flight->origin_known = sample->origin_known;
+    flight->origin_lat_e7 = sample->origin_known ? sample->origin_lat_e7 : 0;
+    flight->origin_lon_e7 = sample->origin_known ? sample->origin_lon_e7 : 0;
+    return GOE_FLIGHT_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- pose -- */
+
+static float attitude_sd_deg(const goe_flight_t *flight, const goe_flight_history_pose_t *pose, uint32_t time_sd_us) {
+    const float late_deg = pose->rate_deg_s * (float)time_sd_us * GOE_FLIGHT_S_PER_US;
+    const float square = goe_flight_square(flight->attitude_white_deg) + goe_flight_square(pose->spread_deg) +
+                         goe_flight_square(late_deg);
+    return goe_flight_smaller(sqrtf(square), ATTITUDE_SD_MAX_DEG);
+}
+
+static float height_sd_m(const goe_flight_t *flight) {
+    const goe_flight_settings_t *settings = &flight->settings;
+    const float terrain_sd_m =
+        flight->ground_source == GOE_FLIGHT_TERRAIN ? settings->terrain_sd_m : settings->home_sd_m;
+    return flight->ground_source == GOE_FLIGHT_RANGE_FINDER ? settings->range_finder_sd_m : terrain_sd_m;
+}
+
+static goe_flight_status_t look_back(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us,
+                                     goe_flight_slot_view_t *view) {
+    memset(view, 0, sizeof *view);
+    const goe_flight_status_t status = goe_flight_history_at(&flight->history, time_us, &view->pose);
+    if (status == GOE_FLIGHT_OK) {
+        view->time_us = time_us;
+        view->estimator_us = flight->base_us + goe_flight_between_us(time_us, (uint32_t)flight->base_us);
+        view->attitude_sd_deg = attitude_sd_deg(flight, &view->pose, time_sd_us);
+        view->ground_down_m = flight->ground_down_m;
+        view->height_sd_m = height_sd_m(flight);
+    }
+    return status;
+}
+
+goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us, goe_pose_t *pose,
+                                    float *sd_deg) {
+    goe_flight_slot_view_t view;
+    float body_to_ned[9];
+    float arm[3];
+    if (sd_deg) {
+        *sd_deg = 0.0f;
+    }
+    if (!pose) {
+        return GOE_FLIGHT_BAD_ARGUMENT;
+    }
+    memset(pose, 0, sizeof *pose);
+    goe_flight_status_t status = check_ready(flight);
+    if (status == GOE_FLIGHT_OK) {
+        status = look_back(flight, time_us, time_sd_us, &view);
+    }
+    if (status != GOE_FLIGHT_OK) {
+        return status;
+    }
+    goe_flight_rotation(view.pose.q, body_to_ned);
+    goe_flight_turn(body_to_ned, flight->camera[0].offset_m, arm);
+    pose->time_us = view.estimator_us;
+    memcpy(pose->position_ned_m, view.pose.ned_m, sizeof pose->position_ned_m);
+    memcpy(pose->attitude, view.pose.q, sizeof pose->attitude);
+    pose->height_m = view.ground_down_m - view.pose.ned_m[2] - arm[2];
+    if (sd_deg) {
+        *sd_deg = view.attitude_sd_deg;
+    }
+    return GOE_FLIGHT_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- frame -- */
+
+goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us, uint32_t sd_us) {
+    const goe_flight_status_t status = check_ready(flight);
+    if (status == GOE_FLIGHT_OK) {
+        goe_flight_clock_sync(&flight->clock, offset_us, sd_us);
+    }
+    return status;
+}
+
+static goe_flight_status_t check_frame(const goe_flight_t *flight, const goe_flight_frame_t *frame) {
+    if (frame->time_base > GOE_FLIGHT_AGE || frame->count > GOE_FLIGHT_DETECTIONS ||
+        !has_camera(flight, frame->camera)) {
+        return GOE_FLIGHT_OUT_OF_RANGE;
+    }
+    return frame->count > 0 && !frame->detection ? GOE_FLIGHT_BAD_ARGUMENT : GOE_FLIGHT_OK;
+}
+
+static goe_flight_status_t find_view(goe_flight_t *flight, const goe_flight_frame_t *frame, goe_flight_clock_t *clock,
+                                     goe_flight_slot_view_t *view) {
+    uint32_t sd_us;
+    const uint32_t capture_us = goe_flight_clock_capture(clock, frame, &flight->settings, &sd_us);
+    goe_flight_status_t status = look_back(flight, capture_us, sd_us, view);
+    const float delay_s = goe_flight_between_s((uint32_t)flight->base_us, capture_us);
+    view->camera = frame->camera;
+    if (status == GOE_FLIGHT_OK && delay_s > flight->settings.delay_max_s) {
+        status = GOE_FLIGHT_TOO_OLD;
+    }
+    return status;
+}
+
+goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_frame_t *frame) {
+    goe_flight_slot_view_t view;
+    goe_flight_status_t status = frame ? check_ready(flight) : GOE_FLIGHT_BAD_ARGUMENT;
+    if (status != GOE_FLIGHT_OK) {
+        return status;
+    }
+    status = check_frame(flight, frame);
+    if (status != GOE_FLIGHT_OK) {
+        return refuse(flight, status);
+    }
+    goe_flight_clock_t clock = flight->clock; /* what it learns is kept only with the frame, which may be asked again */
+    status = find_view(flight, frame, &clock, &view);
+    if (status != GOE_FLIGHT_OK) {
+        goe_flight_count(status == GOE_FLIGHT_TOO_NEW ? &flight->counters.early : &flight->counters.late);
+        return status;
+    }
+    flight->clock = clock;
+    flight->had_frame = (uint8_t)(flight->had_frame | 1u << frame->camera);
+    flight->frame_us[frame->camera] = (uint32_t)flight->base_us;
+    goe_flight_table_take(flight, &view, frame);
+    goe_flight_count(&flight->counters.taken);
+    return GOE_FLIGHT_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------------- assessment -- */
+
+/* The newest position, moved on. */
+static void find_own(const goe_flight_t *flight, uint32_t now_us, goe_flight_reaction_own_t *own) {
+    const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
+    const float on_s = goe_flight_clamped(goe_flight_between_s(now_us, newest->time_us), 0.0f, POSE_ALIVE_S);
+    own->time_us = now_us;
+    for (int i = 0; i < 3; i++) {
+        own->ned_m[i] = newest->ned_m[i] + on_s * flight->velocity_ned_m_s[i];
+    }
+}
+
+/* Images older than delay_max_s do not come any more: to there the estimates can be moved on. */
+static void catch_up(goe_flight_t *flight, uint32_t now_us) {
+    goe_flight_slot_view_t view;
+    const uint32_t delay_us = (uint32_t)(flight->settings.delay_max_s * 1.0e6f);
+    if (look_back(flight, now_us - delay_us, 0u, &view) == GOE_FLIGHT_OK) {
+        goe_flight_table_follow(flight, &view);
+    }
+    goe_flight_table_age(flight, now_us);
+}
+
+static bool pose_alive(const goe_flight_t *flight, uint32_t now_us) {
+    const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
+    const goe_flight_history_position_t *position = goe_flight_history_newest_position(&flight->history);
+    return attitude && position && goe_flight_between_s(now_us, attitude->time_us) <= POSE_ALIVE_S &&
+           goe_flight_between_s(now_us, position->time_us) <= POSE_ALIVE_S;
+}
+
+static bool camera_alive(const goe_flight_t *flight, int number, uint32_t now_us) {
+    return ((flight->had_frame >> number) & 1u) != 0u &&
+           goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.alive_s;
+}
+
+static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
+    bool alive = true;
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        alive = alive && (camera_alive(flight, i, now_us) || !has_camera(flight, i));
+    }
+    return alive;
+}
+
+static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *result) {
+    const goe_flight_reaction_t *reaction = &flight->reaction;
+    result->action = (goe_flight_action_t)reaction->action;
+    result->late = reaction->late;
+    result->avoided = reaction->slot;
+    if (reaction->action != GOE_FLIGHT_NONE) {
+        memcpy(result->target_ned_m, reaction->target_ned_m, sizeof result->target_ned_m);
+        if (flight->origin_known) {
+            goe_flight_geometry_lat_lon(flight->origin_lat_e7, flight->origin_lon_e7, reaction->target_ned_m,
+                                        &result->target_lat_e7, &result->target_lon_e7);
+        }
+    }
+}
+
+static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_flight_assessment_t *result) {
+    result->detector_alive = detector_alive(flight, now_us);
+    result->pose_alive = pose_alive(flight, now_us);
+    result->worst = (int8_t)worst;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        result->obstacles = (uint8_t)(result->obstacles + (flight->slot[i].assessed ? 1 : 0));
+    }
+    if (worst != NOBODY) {
+        result->hazard = flight->slot[worst].hazard;
+        result->suspect = flight->slot[worst].suspect;
+    }
+    report_action(flight, result);
+}
+
+goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, bool approach,
+                                      goe_flight_assessment_t *result) {
+    goe_flight_reaction_own_t own;
+    if (!result) {
+        return GOE_FLIGHT_BAD_ARGUMENT;
+    }
+    memset(result, 0, sizeof *result);
+    result->worst = result->avoided = NOBODY;
+    const goe_flight_status_t status = check_ready(flight);
+    if (status != GOE_FLIGHT_OK) {
+        return status;
+    }
+    if (!goe_flight_history_newest_attitude(&flight->history) ||
+        !goe_flight_history_newest_position(&flight->history)) {
+        return GOE_FLIGHT_NO_POSE;
+    }
+    const bool past = goe_flight_between_us(now_us, (uint32_t)flight->base_us) < 0;
+    const uint32_t now = past ? (uint32_t)flight->base_us : now_us;
+    find_own(flight, now, &own);
+    own.approach = approach;
+    catch_up(flight, now);
+    const int worst = goe_flight_lookout_assess(flight, now);
+    flight->assessed_us = now;
+    result->needed_s = goe_flight_reaction_decide(flight, worst, &own);
+    report(flight, worst, now, result);
+    return GOE_FLIGHT_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- obstacles -- */
+
+static void report_nearest(const goe_flight_t *flight, const goe_flight_slot_t *slot, goe_flight_obstacle_t *obstacle) {
+    const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
+    const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
+    float body_to_ned[9];
+    const float north = slot->center_ne_m[0] - own->ned_m[0];
+    const float east = slot->center_ne_m[1] - own->ned_m[1];
+    const float distance_m = sqrtf(north * north + east * east);
+    const float share =
+        distance_m > goe_flight_slot_radius_m(slot) ? (distance_m - goe_flight_slot_radius_m(slot)) / distance_m : 0.0f;
+    const float top_down_m = slot->ground_down_m - slot->top_m;
+    const bool over = (slot->valid & GOE_HAS_HEIGHT) != 0u && own->ned_m[2] < top_down_m;
+    const float away[3] = {share * north, share * east, over ? top_down_m - own->ned_m[2] : 0.0f};
+    for (int i = 0; i < 3; i++) {
+        obstacle->nearest_ned_m[i] = own->ned_m[i] + away[i];
+    }
+    goe_flight_rotation(attitude->q, body_to_ned);
+    goe_flight_turn_back(body_to_ned, away, obstacle->nearest_body_m);
+}
+
+static void report_place(const goe_flight_t *flight, const goe_flight_slot_t *slot, goe_flight_obstacle_t *obstacle) {
+    obstacle->center_ned_m[0] = slot->center_ne_m[0];
+    obstacle->center_ned_m[1] = slot->center_ne_m[1];
+    obstacle->center_ned_m[2] = slot->ground_down_m;
+    memcpy(obstacle->covariance_ne_m2, slot->covariance_ne_m2, sizeof obstacle->covariance_ne_m2);
+    obstacle->radius_m = goe_flight_slot_radius_m(slot);
+    obstacle->width_m = slot->width_m;
+    obstacle->length_m = slot->length_m;
+    obstacle->height_m = slot->top_m;
+    obstacle->height_sd_m = slot->top_sd_m;
+    obstacle->length_heading_deg = slot->length_heading_deg;
+    if (flight->origin_known) {
+        goe_flight_geometry_lat_lon(flight->origin_lat_e7, flight->origin_lon_e7, slot->center_ne_m, &obstacle->lat_e7,
+                                    &obstacle->lon_e7);
+    }
+    report_nearest(flight, slot, obstacle);
+}
+
+goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, goe_flight_obstacle_t *obstacle) {
+    if (!obstacle) {
+        return GOE_FLIGHT_BAD_ARGUMENT;
+    }
+    memset(obstacle, 0, sizeof *obstacle);
+    const goe_flight_status_t status = check_ready(flight);
+    if (status != GOE_FLIGHT_OK) {
+        return status;
+    }
+    if (slot < 0 || slot >= GOE_FLIGHT_SLOTS || !flight->slot[slot].used) {
+        return GOE_FLIGHT_NOTHING;
+    }
+    if (!goe_flight_history_newest_attitude(&flight->history) ||
+        !goe_flight_history_newest_position(&flight->history)) {
+        return GOE_FLIGHT_NO_POSE;
+    }
+    const goe_flight_slot_t *one = &flight->slot[slot];
+    obstacle->id = one->id;
+    obstacle->valid = one->valid & ~GOE_HAS_CENTER;
+    obstacle->model = (goe_model_t)one->model;
+    obstacle->suspect = one->suspect;
+    obstacle->in_view = one->in_view;
+    obstacle->has_hazard = one->assessed;
+    obstacle->hazard = one->hazard;
+    obstacle->passed = one->assessed && !(one->hazard.time_s > 0.0f);
+    if (one->valid & GOE_HAS_POSITION) {
+        obstacle->age_s = goe_flight_lookout_age_s(one, flight->assessed_us);
+        report_place(flight, one, obstacle);
+    }
+    return GOE_FLIGHT_OK;
+}
+
+static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
+    const goe_hazard_t *hazard = &slot->hazard;
+    return slot->assessed && hazard->has_clearance && hazard->time_s > 0.0f &&
+           hazard->clearance_m - 2.0f * hazard->clearance_sd_m >
+               goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
+}
+
+/* What the cameras see whose detectors are alive. */
+static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
+    const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
+    const uint32_t now_us = flight->assessed_us;
+    const bool alive = pose_alive(flight, now_us);
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
+    }
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        float from_deg;
+        float width_deg;
+        if (alive && camera_alive(flight, i, now_us) &&
+            goe_flight_geometry_view(&flight->camera[i], attitude->q, &from_deg, &width_deg)) {
+            goe_flight_geometry_open_sectors(sector_cm, max_cm, from_deg, width_deg);
+        }
+    }
+}
+
+goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm,
+                                       uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
+    const goe_flight_status_t status = sector_cm ? check_ready(flight) : GOE_FLIGHT_BAD_ARGUMENT;
+    if (status != GOE_FLIGHT_OK) {
+        return status;
+    }
+    if (max_cm < 1u || max_cm > SECTOR_MAX_CM) {
+        return GOE_FLIGHT_OUT_OF_RANGE;
+    }
+    const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
+    const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
+    open_sectors(flight, max_cm, sector_cm);
+    for (int i = 0; i < GOE_FLIGHT_SLOTS && own; i++) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, slot)) {
+            const float away[2] = {slot->center_ne_m[0] - own->ned_m[0], slot->center_ne_m[1] - own->ned_m[1]};
+            goe_flight_geometry_enter_circle(sector_cm, max_cm, away, goe_flight_slot_radius_m(slot));
+        }
+    }
+    return attitude && own ? GOE_FLIGHT_OK : GOE_FLIGHT_NO_POSE;
+}
+
+const char *goe_flight_action_text(goe_flight_action_t action) {
+    switch (action) {
+        case GOE_FLIGHT_NONE:
+            return "none";
+        case GOE_FLIGHT_LEFT:
+            return "left";
+        case GOE_FLIGHT_RIGHT:
+            return "right";
+        case GOE_FLIGHT_CLIMB:
+            return "climb";
+        case GOE_FLIGHT_GO_AROUND:
+            return "go_around";
+        case GOE_FLIGHT_HOLD:
+            return "hold";
+        default:
+            return "unknown";
+    }
+}

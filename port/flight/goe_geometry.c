@@ -1,0 +1,159 @@
+/* Places. SPDX-License-Identifier: MIT */
+#include "goe_geometry.h"
+
+#include <math.h>
+
+#include "goe_flight_maths.h"
+
+#define DEPTH_MIN_M 0.5f
+#define E7_PER_M 89.9322f /* 1e7 degrees of latitude on a sphere of 6371 km */
+#define E7_MAX 9.0e8f     /* 90 degrees */
+#define POLE_COSINE_MIN 0.017f
+#define TURN_E7 3600000000
+#define LEVEL_MIN 0.2f /* of the optical axis: its horizontal part */
+#define SECTOR_DEG 5.0f
+#define CM_PER_M 100.0f
+#define TOUCH_MIN 1u /* cm: 0 means something else to some readers */
+
+/* ------------------------------------------------------------------------------------------------------------ camera -- */
+
+/* As goe_camera_t tells: camera x, y, z are body y, z, x of the un-mounted camera, then yaw, pitch, roll. */
+static void mount(const goe_camera_t *settings, float r[9]) {
+    float sy;
+    float cy;
+    float sp;
+    float cp;
+    float sr;
+    float cr;
+    goe_flight_sincos_deg(settings->mount_yaw_deg, &sy, &cy);
+    goe_flight_sincos_deg(settings->mount_pitch_deg, &sp, &cp);
+    goe_flight_sincos_deg(settings->mount_roll_deg, &sr, &cr);
+    const float turned[9] = {cy * cp,
+                             cy * sp * sr - sy * cr,
+                             cy * sp * cr + sy * sr,
+                             sy * cp,
+                             sy * sp * sr + cy * cr,
+                             sy * sp * cr - cy * sr,
+                             -sp,
+                             cp * sr,
+                             cp * cr};
+    for (int i = 0; i < 3; i++) {
+        r[3 * i] = turned[3 * i + 1];
+        r[3 * i + 1] = turned[3 * i + 2];
+        r[3 * i + 2] = turned[3 * i];
+    }
+}
+
+void goe_flight_geometry_camera(goe_flight_camera_t *camera, const goe_camera_t *settings) {
+    mount(settings, camera->body_from_camera);
+    memcpy(camera->offset_m, settings->offset_m, sizeof camera->offset_m);
+    camera->focal_px[0] = settings->fx_px;
+    camera->focal_px[1] = settings->fy_px;
+    camera->center_px[0] = settings->cx_px;
+    camera->center_px[1] = settings->cy_px;
+    camera->size_px[0] = settings->width_px;
+    camera->size_px[1] = settings->height_px;
+    camera->border_px = settings->border_share * settings->width_px;
+}
+
+bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_flight_history_pose_t *pose,
+                                 const float point_ned_m[3], float pixel[2]) {
+    float body_to_ned[9];
+    float away[3];
+    float body[3];
+    float seen[3];
+    goe_flight_rotation(pose->q, body_to_ned);
+    for (int i = 0; i < 3; i++) {
+        away[i] = point_ned_m[i] - pose->ned_m[i];
+    }
+    goe_flight_turn_back(body_to_ned, away, body);
+    for (int i = 0; i < 3; i++) {
+        body[i] -= camera->offset_m[i];
+    }
+    goe_flight_turn_back(camera->body_from_camera, body, seen);
+    if (!(seen[2] > DEPTH_MIN_M)) {
+        return false;
+    }
+    bool inside = true;
+    for (int i = 0; i < 2; i++) {
+        pixel[i] = camera->center_px[i] + camera->focal_px[i] * seen[i] / seen[2];
+        inside = inside && goe_flight_within(pixel[i] - 0.5f * camera->size_px[i], camera->size_px[i]);
+    }
+    return inside;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- earth -- */
+
+static int32_t wrapped_e7(int64_t lon_e7) {
+    if (lon_e7 > TURN_E7 / 2) {
+        return (int32_t)(lon_e7 - TURN_E7);
+    }
+    return (int32_t)(lon_e7 < -TURN_E7 / 2 ? lon_e7 + TURN_E7 : lon_e7);
+}
+
+static int32_t rounded(float x) { return (int32_t)(x + (x < 0.0f ? -0.5f : 0.5f)); }
+
+void goe_flight_geometry_lat_lon(int32_t origin_lat_e7, int32_t origin_lon_e7, const float ne_m[2], int32_t *lat_e7,
+                                 int32_t *lon_e7) {
+    float sine;
+    float cosine;
+    goe_flight_sincos_deg((float)origin_lat_e7 * 1.0e-7f, &sine, &cosine);
+    const float across = E7_PER_M / goe_flight_larger(cosine, POLE_COSINE_MIN);
+    const float north = goe_flight_clamped(ne_m[0] * E7_PER_M, -E7_MAX, E7_MAX);
+    const float east = goe_flight_clamped(ne_m[1] * across, -E7_MAX, E7_MAX);
+    const int64_t lat = (int64_t)origin_lat_e7 + rounded(north);
+    const int32_t most = (int32_t)E7_MAX;
+    *lat_e7 = lat > most ? most : (lat < -most ? -most : (int32_t)lat);
+    *lon_e7 = wrapped_e7((int64_t)origin_lon_e7 + rounded(east));
+}
+
+/* ---------------------------------------------------------------------------------------------------------- bearings -- */
+
+bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4], float *from_deg, float *width_deg) {
+    float body_to_ned[9];
+    float axis[3];
+    const float *mounted = camera->body_from_camera;
+    const float axis_body[3] = {mounted[2], mounted[5], mounted[8]};
+    goe_flight_rotation(q, body_to_ned);
+    goe_flight_turn(body_to_ned, axis_body, axis);
+    const float left_deg = goe_flight_atan2_deg(camera->center_px[0], camera->focal_px[0]);
+    const float right_deg = goe_flight_atan2_deg(camera->size_px[0] - camera->center_px[0], camera->focal_px[0]);
+    *from_deg = goe_flight_positive_deg(goe_flight_atan2_deg(axis[1], axis[0]) - left_deg);
+    *width_deg = left_deg + right_deg;
+    return axis[0] * axis[0] + axis[1] * axis[1] > LEVEL_MIN * LEVEL_MIN && *width_deg > 0.0f;
+}
+
+void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, float from_deg,
+                                      float width_deg) {
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        const float begin_deg = ((float)i - 0.5f) * SECTOR_DEG;
+        if (goe_flight_positive_deg(begin_deg - from_deg) + SECTOR_DEG <= width_deg) {
+            sector_cm[i] = (uint16_t)(max_cm + 1u);
+        }
+    }
+}
+
+static void enter(uint16_t *sector_cm, uint32_t cm) {
+    if (cm < *sector_cm) {
+        *sector_cm = (uint16_t)cm;
+    }
+}
+
+void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, const float away_ne_m[2],
+                                      float radius_m) {
+    const float square = away_ne_m[0] * away_ne_m[0] + away_ne_m[1] * away_ne_m[1];
+    const float outside = square - radius_m * radius_m;
+    const float near_cm = goe_flight_larger(sqrtf(square) - radius_m, 0.0f) * CM_PER_M;
+    if (near_cm > (float)max_cm) {
+        return;
+    }
+    const uint32_t cm = near_cm >= (float)TOUCH_MIN ? (uint32_t)near_cm : TOUCH_MIN;
+    const float half_deg = outside > 0.0f ? goe_flight_atan2_deg(radius_m, sqrtf(outside)) : 180.0f;
+    const float bearing_deg = goe_flight_atan2_deg(away_ne_m[1], away_ne_m[0]);
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        const float off_deg = goe_flight_positive_deg((float)i * SECTOR_DEG - bearing_deg + 180.0f) - 180.0f;
+        if (goe_flight_within(off_deg, half_deg + 0.5f * SECTOR_DEG)) {
+            enter(&sector_cm[i], cm);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+/* The hazard of every obstacle from now on, and the worst of them. SPDX-License-Identifier: MIT */
+#ifndef GOE_FLIGHT_LOOKOUT_H
+#define GOE_FLIGHT_LOOKOUT_H
+
+#include "goe_flight.h"
+
+/* Factor on the margins that a slot's doubt asks for, and what its age adds. */
+float goe_flight_lookout_doubt(const goe_flight_t *flight, const goe_flight_slot_t *slot);
+float goe_flight_lookout_age_s(const goe_flight_slot_t *slot, uint32_t now_us);
+float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us);
+
+/* Fills every slot's hazard. Returns the worst slot, -1 if none has a position. */
+int goe_flight_lookout_assess(goe_flight_t *flight, uint32_t now_us);
+
+#endif

@@ -1,0 +1,269 @@
+/* One obstacle. SPDX-License-Identifier: MIT */
+#include "goe_slot.h"
+
+#include <math.h>
+
+#include "goe_candidate.h"
+#include "goe_flight_maths.h"
+#include "goe_geometry.h"
+
+#define AROUND 0.25f /* a box is taken as larger by this share: detectors and predictions err */
+#define OVERLAP_MIN 0.3f
+#define ALIKE 3.0f /* a box this many times as wide or high as the latest one is of another thing */
+#define PIXEL_MAX 32000.0f
+#define SIZE_MIN_PX 8.0f
+
+/* ------------------------------------------------------------------------------------------------------------- track -- */
+
+void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_us) {
+    (void)goe_reset(&slot->estimator);
+    const size_t after = offsetof(goe_flight_slot_t, hazard);
+    memset((unsigned char *)slot + after, 0, sizeof *slot - after);
+    slot->id = id;
+    slot->taken_us = slot->seen_us = time_us;
+    slot->used = slot->fresh_track = true;
+}
+
+void goe_flight_slot_reset(goe_flight_slot_t *slot) {
+    slot->fresh_track = true;
+    slot->valid = 0u;
+    slot->assessed = slot->suspect = false;
+    memset(&slot->hazard, 0, sizeof slot->hazard);
+}
+
+float goe_flight_slot_radius_m(const goe_flight_slot_t *slot) {
+    return 0.5f * sqrtf(goe_flight_square(slot->width_m) + goe_flight_square(slot->length_m));
+}
+
+void goe_flight_slot_shift(goe_flight_slot_t *slot, const float jump_ned_m[3]) {
+    slot->center_ne_m[0] += jump_ned_m[0];
+    slot->center_ne_m[1] += jump_ned_m[1];
+    slot->ground_down_m += jump_ned_m[2];
+}
+
+/* ------------------------------------------------------------------------------------------------------------- image -- */
+
+static void set_pose(const goe_flight_slot_t *slot, const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
+                     float camera_down_m, goe_pose_t *pose) {
+    float jump[3];
+    bool jumped = false;
+    for (int i = 0; i < 3; i++) {
+        jump[i] = jumps_ned_m[i] - slot->jumps_ned_m[i];
+        jumped = jumped || goe_flight_magnitude(jump[i]) > 0u;
+        pose->reset_delta_ned_m[i] = jump[i];
+        pose->position_ned_m[i] = view->pose.ned_m[i];
+    }
+    memcpy(pose->attitude, view->pose.q, sizeof pose->attitude);
+    pose->time_us = view->estimator_us;
+    pose->height_m = slot->ground_down_m - camera_down_m;
+    pose->reset_count = (uint8_t)(slot->reset_count + (jumped ? 1 : 0));
+    pose->reset_delta_known = true;
+}
+
+/* Left and right within the border are not measured, and the top may lie outside with them. */
+static void keep_inside(goe_image_t *image, const goe_flight_camera_t *camera) {
+    goe_pixel_t *side[3] = {&image->left, &image->right, &image->top};
+    bool all = true;
+    for (int i = 0; i < 3; i++) {
+        const float pixel[2] = {side[i]->u_px, side[i]->v_px};
+        bool inside = true;
+        for (int axis = 0; axis < 2 && side[i]->seen; axis++) {
+            const float half = 0.5f * camera->size_px[axis];
+            inside = inside && goe_flight_within(pixel[axis] - half, goe_flight_larger(half - camera->border_px, 0.0f));
+        }
+        side[i]->seen = side[i]->seen && inside;
+        all = all && inside;
+    }
+    image->top.seen = image->top.seen && all;
+}
+
+static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, const goe_flight_detection_t *seen) {
+    image->box = seen->box;
+    image->left = seen->left;
+    image->right = seen->right;
+    image->top = seen->top;
+    image->base_left = seen->base_left;
+    image->base_near = seen->base_near;
+    image->base_right = seen->base_right;
+    image->noise.pixel_px = seen->pixel_px;
+    keep_inside(image, camera);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- place -- */
+
+static void note_center(goe_flight_slot_t *slot, const goe_estimate_t *estimate) {
+    slot->center_ne_m[0] = estimate->center_north_m;
+    slot->center_ne_m[1] = estimate->center_east_m;
+    slot->covariance_ne_m2[0] = goe_flight_square(estimate->sigma.center_north_m);
+    slot->covariance_ne_m2[1] = estimate->center_ne_m2;
+    slot->covariance_ne_m2[2] = goe_flight_square(estimate->sigma.center_east_m);
+}
+
+/* A box or line whose length is not known has no centre: the middle of its front edge and the spread of that stand for it. */
+static void note_front(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    float s;
+    float c;
+    goe_flight_sincos_deg(estimate->trajectory_heading_deg, &s, &c);
+    (void)goe_covariance(&slot->estimator, covariance);
+    const float xx = covariance[GOE_X0][GOE_X0];
+    const float xz = covariance[GOE_X0][GOE_Z0];
+    const float zz = covariance[GOE_Z0][GOE_Z0];
+    slot->center_ne_m[0] = camera_ned_m[0] + c * estimate->z_m - s * estimate->x_m;
+    slot->center_ne_m[1] = camera_ned_m[1] + s * estimate->z_m + c * estimate->x_m;
+    slot->covariance_ne_m2[0] = c * c * zz - 2.0f * c * s * xz + s * s * xx;
+    slot->covariance_ne_m2[1] = c * s * (zz - xx) + (c * c - s * s) * xz;
+    slot->covariance_ne_m2[2] = s * s * zz + 2.0f * c * s * xz + c * c * xx;
+}
+
+static void note_outline(goe_flight_slot_t *slot, const goe_estimate_t *estimate) {
+    slot->width_m = estimate->width_m;
+    slot->length_m = estimate->length_m;
+    slot->top_m = estimate->height_m;
+    slot->top_sd_m = estimate->sigma.height_m;
+    slot->length_heading_deg = 0.0f;
+    if (estimate->valid & GOE_HAS_ORIENTATION) {
+        const float *ne = estimate->length_axis_ne;
+        const float heading_deg = goe_flight_positive_deg(goe_flight_atan2_deg(ne[1], ne[0]));
+        slot->length_heading_deg = heading_deg < 180.0f ? heading_deg : heading_deg - 180.0f;
+    }
+}
+
+static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
+    slot->valid = (uint8_t)estimate->valid;
+    slot->model = (uint8_t)estimate->model;
+    slot->suspect = estimate->suspect;
+    slot->age_s = estimate->age_s;
+    if (!(estimate->valid & GOE_HAS_POSITION)) {
+        slot->assessed = false;
+        memset(&slot->hazard, 0, sizeof slot->hazard);
+        return;
+    }
+    if (estimate->valid & GOE_HAS_CENTER) {
+        note_center(slot, estimate);
+    } else {
+        note_front(slot, camera_ned_m, estimate);
+    }
+    note_outline(slot, estimate);
+}
+
+void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
+                          const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
+                          const goe_flight_detection_t *seen) {
+    goe_image_t image;
+    goe_estimate_t estimate;
+    float body_to_ned[9];
+    float camera_ned_m[3];
+    if (!slot->fresh_track && goe_flight_between_us(view->time_us, slot->taken_us) <= 0) {
+        return;
+    }
+    const uint8_t number = seen ? view->camera : slot->camera;
+    const goe_flight_camera_t *camera = &cameras[number];
+    goe_flight_rotation(view->pose.q, body_to_ned);
+    goe_flight_turn(body_to_ned, camera->offset_m, camera_ned_m);
+    for (int i = 0; i < 3; i++) {
+        camera_ned_m[i] += view->pose.ned_m[i];
+    }
+    if (slot->fresh_track) {
+        slot->ground_down_m = view->ground_down_m;
+        slot->height_sd_m = view->height_sd_m;
+        (void)goe_reset(&slot->estimator);
+        memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
+    }
+    memset(&image, 0, sizeof image);
+    set_pose(slot, view, jumps_ned_m, camera_ned_m[2], &image.pose);
+    image.camera = number;
+    image.noise.attitude_deg = view->attitude_sd_deg;
+    image.noise.height_m = slot->height_sd_m; /* counts once, in an image of the estimator's choice */
+    if (seen) {
+        set_features(&image, camera, seen);
+    }
+    const goe_status_t status = goe_update(&slot->estimator, &image, &estimate);
+    slot->in_view = seen != NULL;
+    if (status > GOE_NOT_FINITE) {
+        slot->taken_us = view->time_us;
+        slot->seen_us = seen ? view->time_us : slot->seen_us;
+        slot->reset_count = image.pose.reset_count;
+        slot->camera = number;
+        memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
+        slot->fresh_track = false;
+        note(slot, camera_ned_m, &estimate);
+        if (seen) {
+            (void)goe_flight_slot_box_of(seen, slot->box_px);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ claims -- */
+
+static void widen(float extent[4], float u, float v, bool *any) {
+    extent[0] = *any ? goe_flight_smaller(extent[0], u) : u;
+    extent[1] = *any ? goe_flight_smaller(extent[1], v) : v;
+    extent[2] = *any ? goe_flight_larger(extent[2], u) : u;
+    extent[3] = *any ? goe_flight_larger(extent[3], v) : v;
+    *any = true;
+}
+
+bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box_px[4]) {
+    const goe_pixel_t *const points[6] = {&detection->left,      &detection->right,     &detection->top,
+                                          &detection->base_left, &detection->base_near, &detection->base_right};
+    const goe_box_t *box = &detection->box;
+    float extent[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    bool any = false;
+    if (box->seen == GOE_SEES_BOX) {
+        widen(extent, box->left_px, box->top_px, &any);
+        widen(extent, box->right_px, box->bottom_px, &any);
+    } else {
+        for (int i = 0; i < 6; i++) {
+            if (points[i]->seen) {
+                widen(extent, points[i]->u_px, points[i]->v_px, &any);
+            }
+        }
+    }
+    for (int axis = 0; axis < 2; axis++) { /* two points of one row have a height too */
+        const float lacking = 0.5f * goe_flight_larger(SIZE_MIN_PX - (extent[axis + 2] - extent[axis]), 0.0f);
+        box_px[axis] = (int16_t)goe_flight_clamped(extent[axis] - lacking, -PIXEL_MAX, PIXEL_MAX);
+        box_px[axis + 2] = (int16_t)goe_flight_clamped(extent[axis + 2] + lacking, -PIXEL_MAX, PIXEL_MAX);
+    }
+    return any;
+}
+
+/* At half the top's height, or half the own one where the top is not known. */
+static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+                    const goe_flight_history_pose_t *pose, float pixel[2]) {
+    const float own_m = slot->ground_down_m - pose->ned_m[2];
+    const float above_m = 0.5f * ((slot->valid & GOE_HAS_HEIGHT) ? slot->top_m : goe_flight_larger(own_m, 0.0f));
+    const float point[3] = {slot->center_ne_m[0], slot->center_ne_m[1], slot->ground_down_m - above_m};
+    return goe_flight_geometry_project(camera, pose, point, pixel);
+}
+
+static bool is_alike(const int16_t a[4], const int16_t b[4]) {
+    bool alike = true;
+    for (int axis = 0; axis < 2; axis++) {
+        const float one = (float)(a[axis + 2] - a[axis]);
+        const float other = (float)(b[axis + 2] - b[axis]);
+        alike = alike && one <= ALIKE * other && other <= ALIKE * one;
+    }
+    return alike;
+}
+
+float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
+                             const goe_flight_slot_view_t *view, const int16_t box_px[4]) {
+    float pixel[2];
+    const bool comparable = slot->camera == view->camera; /* boxes of two cameras are not */
+    if (!(slot->valid & GOE_HAS_POSITION)) {
+        const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
+        return comparable && overlap >= OVERLAP_MIN ? overlap : 0.0f;
+    }
+    if ((comparable && !is_alike(slot->box_px, box_px)) || !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
+        return 0.0f;
+    }
+    float claim = 1.0f;
+    for (int axis = 0; axis < 2; axis++) {
+        const float half = (0.5f + AROUND) * (float)(box_px[axis + 2] - box_px[axis]);
+        const float middle = 0.5f * (float)(box_px[axis + 2] + box_px[axis]);
+        const float off = goe_flight_absolute(pixel[axis] - middle) / goe_flight_larger(half, 1.0f);
+        claim *= goe_flight_larger(1.0f - off, 0.0f);
+    }
+    return claim;
+}

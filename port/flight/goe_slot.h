@@ -1,0 +1,43 @@
+/* One obstacle that is followed: its estimator, and what is known of its place. SPDX-License-Identifier: MIT */
+#ifndef GOE_FLIGHT_SLOT_H
+#define GOE_FLIGHT_SLOT_H
+
+#include "goe_flight.h"
+#include "goe_history.h"
+
+/* An image as the flight layer knows it, for every slot the same. */
+typedef struct {
+    uint32_t time_us;     /* of the exposure */
+    int64_t estimator_us; /* the same for the estimator: never wraps */
+    goe_flight_history_pose_t pose;
+    uint8_t camera;
+    float attitude_sd_deg;
+    float ground_down_m, height_sd_m; /* for tracks that begin */
+} goe_flight_slot_view_t;
+
+/* A new track begins with the next image. */
+void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_us);
+
+/* An unknown reset of the autopilot's filter: the place means nothing any more, and the track begins anew. */
+void goe_flight_slot_reset(goe_flight_slot_t *slot);
+
+/* Of the circle about the centre that holds the outline, as far as it is known. */
+float goe_flight_slot_radius_m(const goe_flight_slot_t *slot);
+
+/* A known one. */
+void goe_flight_slot_shift(goe_flight_slot_t *slot, const float jump_ned_m[3]);
+
+/* Gives an image to the estimator: with what is seen, or nothing (null), then as if by the camera that saw it last. An image that is
+ * not newer than the slot's latest is left out. */
+void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
+                          const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
+                          const goe_flight_detection_t *seen);
+
+/* Points of a detection's border as a box, whole pixels; false: it has none. */
+bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box_px[4]);
+
+/* Whether this box, seen in this view, is likely to be of the slot's obstacle: how near, 0 to 1; 0: not. */
+float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
+                             const goe_flight_slot_view_t *view, const int16_t box_px[4]);
+
+#endif

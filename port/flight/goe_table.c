@@ -1,0 +1,222 @@
+/* Obstacle table. SPDX-License-Identifier: MIT */
+#include "goe_table.h"
+
+#include "goe_candidate.h"
+#include "goe_flight_maths.h"
+
+#define COORDINATE_MAX_PX 1.0e5f
+#define PIXEL_SD_MAX_PX 100.0f
+#define UNSEEN_S 2.0f   /* after which what has no position, or is passed, may be given up */
+#define WORTH_KEPT 0.5f /* a slot of more worth is never given up for a new obstacle */
+#define ORDERED_S 30.0f /* the obstacle of an order is kept so long */
+#define NOBODY (-1)
+
+/* ------------------------------------------------------------------------------------------------------- detections -- */
+
+static bool is_good_pixel(const goe_pixel_t *p) {
+    return !p->seen || (goe_flight_within(p->u_px, COORDINATE_MAX_PX) && goe_flight_within(p->v_px, COORDINATE_MAX_PX));
+}
+
+static bool is_good_box(const goe_box_t *b) {
+    const float side[4] = {b->left_px, b->top_px, b->right_px, b->bottom_px};
+    const uint8_t mask[4] = {GOE_SEES_LEFT, GOE_SEES_TOP, GOE_SEES_RIGHT, GOE_SEES_BOTTOM};
+    for (int i = 0; i < 4; i++) {
+        if ((b->seen & mask[i]) != 0u && !goe_flight_within(side[i], COORDINATE_MAX_PX)) {
+            return false;
+        }
+    }
+    const bool across = (b->seen & GOE_SEES_LEFT) != 0u && (b->seen & GOE_SEES_RIGHT) != 0u;
+    const bool down = (b->seen & GOE_SEES_TOP) != 0u && (b->seen & GOE_SEES_BOTTOM) != 0u;
+    return b->seen <= GOE_SEES_BOX && (!across || b->left_px < b->right_px) && (!down || b->top_px < b->bottom_px);
+}
+
+static bool is_good(const goe_flight_detection_t *d) {
+    return goe_flight_within(d->score, 1.0f) && d->score >= 0.0f && goe_flight_within(d->pixel_px, PIXEL_SD_MAX_PX) &&
+           d->pixel_px >= 0.0f && is_good_box(&d->box) && is_good_pixel(&d->left) && is_good_pixel(&d->right) &&
+           is_good_pixel(&d->top) && is_good_pixel(&d->base_left) && is_good_pixel(&d->base_near) &&
+           is_good_pixel(&d->base_right);
+}
+
+/* What is to be looked at, as bits; the others are counted. */
+static uint32_t usable(goe_flight_t *flight, const goe_flight_frame_t *frame) {
+    uint32_t bits = 0u;
+    for (int k = 0; k < frame->count; k++) {
+        if (!is_good(&frame->detection[k])) {
+            goe_flight_count(&flight->counters.refused);
+        } else if (frame->detection[k].score < flight->settings.score_min) {
+            goe_flight_count(&flight->counters.weak);
+        } else {
+            bits |= 1u << k;
+        }
+    }
+    return bits;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- slots -- */
+
+static int slot_of(const goe_flight_t *flight, uint8_t camera, uint32_t id) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (id != 0u && slot->used && slot->id == id && slot->camera == camera) {
+            return i;
+        }
+    }
+    return NOBODY;
+}
+
+/* The slot, not in this image, whose obstacle this box shows best. */
+static int claimant(const goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken,
+                    const int16_t box_px[4]) {
+    int best = NOBODY;
+    float most = 0.0f;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        const bool lost = slot->used && ((taken >> i) & 1u) == 0u;
+        const float claim = lost ? goe_flight_slot_claims(slot, flight->camera, view, box_px) : 0.0f;
+        if (claim > most) {
+            most = claim;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* The less, the sooner it is given up. */
+static float worth(const goe_flight_t *flight, int i, uint32_t now_us) {
+    const goe_flight_slot_t *slot = &flight->slot[i];
+    const bool unseen = goe_flight_between_s(now_us, slot->seen_us) > UNSEEN_S;
+    const bool has_position = (slot->valid & GOE_HAS_POSITION) != 0u;
+    if (!slot->used) {
+        return -3.0f;
+    }
+    if (i == flight->reaction.slot) {
+        return 2.0f;
+    }
+    if (unseen && !has_position) {
+        return -2.0f;
+    }
+    if (unseen && slot->assessed && !(slot->hazard.time_s > 0.0f)) {
+        return -1.0f;
+    }
+    return slot->assessed ? slot->hazard.violation + 1.0f / (1.0f + slot->hazard.time_s) : WORTH_KEPT;
+}
+
+static int room(goe_flight_t *flight, uint32_t now_us) {
+    int least = NOBODY;
+    float least_worth = WORTH_KEPT;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const float value = worth(flight, i, now_us);
+        if (value < least_worth) {
+            least_worth = value;
+            least = i;
+        }
+    }
+    if (least == NOBODY) {
+        goe_flight_count(&flight->counters.full);
+    } else if (flight->slot[least].used) {
+        goe_flight_count(&flight->counters.evicted);
+    }
+    return least;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- frame -- */
+
+static void give(goe_flight_t *flight, int i, const goe_flight_slot_view_t *view, const goe_flight_detection_t *seen,
+                 uint32_t *taken) {
+    goe_flight_slot_take(&flight->slot[i], flight->camera, view, flight->marks.jumps_ned_m, seen);
+    *taken |= 1u << i;
+}
+
+static void give_known(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
+                       uint32_t *waiting, uint32_t *taken) {
+    for (int k = 0; k < frame->count; k++) {
+        const int i = ((*waiting >> k) & 1u) != 0u ? slot_of(flight, view->camera, frame->detection[k].id) : NOBODY;
+        if (i != NOBODY) {
+            *waiting &= ~(1u << k);
+            if (((*taken >> i) & 1u) == 0u) {
+                give(flight, i, view, &frame->detection[k], taken);
+            }
+        }
+    }
+}
+
+static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
+                            uint32_t *waiting, uint32_t *taken) {
+    for (int k = 0; k < frame->count; k++) {
+        const goe_flight_detection_t *detection = &frame->detection[k];
+        int16_t box_px[4];
+        if (((*waiting >> k) & 1u) == 0u || !goe_flight_slot_box_of(detection, box_px)) {
+            continue;
+        }
+        const int i = claimant(flight, view, *taken, box_px);
+        if (i != NOBODY) {
+            if (detection->id != flight->slot[i].id) {
+                goe_flight_count(&flight->counters.renumbered);
+            }
+            flight->slot[i].id = detection->id;
+            *waiting &= ~(1u << k);
+            give(flight, i, view, detection, taken);
+        }
+    }
+}
+
+static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
+                     uint32_t waiting, uint32_t *taken) {
+    for (int k = 0; k < frame->count; k++) {
+        const goe_flight_detection_t *detection = &frame->detection[k];
+        goe_flight_candidate_t candidate = {detection->id, view->time_us, {0, 0, 0, 0}, view->camera, 0};
+        if (((waiting >> k) & 1u) == 0u ||
+            (!goe_flight_slot_box_of(detection, candidate.box_px) && detection->id == 0u) ||
+            !goe_flight_candidate_seen(flight->candidate, &candidate, (int)flight->settings.confirm_images)) {
+            continue;
+        }
+        const int i = room(flight, view->time_us);
+        if (i != NOBODY) {
+            goe_flight_slot_begin(&flight->slot[i], detection->id, view->time_us);
+            give(flight, i, view, detection, taken);
+        }
+    }
+}
+
+/* Images of two cameras need not come in the order of their exposures: what one does not see is not to hide the other's image. */
+static void give_nothing(goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (slot->used && slot->camera == view->camera && ((taken >> i) & 1u) == 0u) {
+            give(flight, i, view, NULL, &taken);
+        }
+    }
+}
+
+void goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame) {
+    uint32_t waiting = usable(flight, frame);
+    uint32_t taken = 0u;
+    give_known(flight, view, frame, &waiting, &taken);
+    give_renumbered(flight, view, frame, &waiting, &taken);
+    give_new(flight, view, frame, waiting, &taken);
+    if (frame->count >= frame->number) {
+        give_nothing(flight, view, taken);
+    }
+}
+
+void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        goe_flight_slot_t *slot = &flight->slot[i];
+        const float unseen_s = goe_flight_between_s(now_us, slot->seen_us);
+        const float most_s = i == flight->reaction.slot ? goe_flight_larger(ORDERED_S, flight->settings.forget_s)
+                                                        : flight->settings.forget_s;
+        slot->used = slot->used && unseen_s <= most_s;
+        if (!slot->used && i == flight->reaction.slot) {
+            flight->reaction.slot = NOBODY; /* whoever gets the slot next is not what the order is about */
+        }
+    }
+}
+
+void goe_flight_table_follow(goe_flight_t *flight, const goe_flight_slot_view_t *view) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        goe_flight_slot_t *slot = &flight->slot[i];
+        if (slot->used && !slot->fresh_track && goe_flight_between_us(view->time_us, slot->taken_us) > 0) {
+            goe_flight_slot_take(slot, flight->camera, view, flight->marks.jumps_ned_m, NULL);
+        }
+    }
+}

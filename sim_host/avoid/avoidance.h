@@ -1,0 +1,48 @@
+/*
+ * The flight layer (port/flight) flown: an aircraft with its autopilot, a camera with a detector whose frames come late, and the
+ * orders of the layer carried out, or not.
+ *
+ *   mast, building   level flight below the top; an order's side, climb or loitering is flown
+ *   truck            a landing approach of 3 degrees that ends at the truck's middle; the order is to go around
+ *
+ * The aircraft meets the obstacle's middle, up to 2 m aside of it; or passes its outline at a distance that is asked for, on either
+ * side. Errors: boxes as measured on recorded feeds of detectors; attitude, position, velocity, height and lost frames as
+ * `--noise field` of goe_sim has them; light wind and turbulence; half of the aircraft roll by 10 degrees; for half of them the
+ * detector sees nothing for two seconds of every five. An order is carried out half a second after it was given.
+ *
+ * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
+ */
+#ifndef SIM_AVOIDANCE_H
+#define SIM_AVOIDANCE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "goe_flight.h"
+
+typedef enum { AVOID_MAST, AVOID_BUILDING, AVOID_TRUCK, AVOID_KINDS } avoid_kind_t;
+
+extern const char *const AVOID_NAMES[AVOID_KINDS];
+
+typedef struct {
+    avoid_kind_t kind;
+    uint64_t seed;
+    double pass_m;  /* distance of the path from the outline; negative: a collision course */
+    bool reacts;    /* orders are carried out */
+    double delay_s; /* from the exposure to the arrival of a frame */
+} avoid_case_t;
+
+typedef struct {
+    double closest_m; /* of the aircraft's middle from the obstacle's walls and top, in space; 0: inside */
+    bool collided;    /* closer than half of the span, or into the ground */
+    bool ordered, late;
+    goe_flight_action_t action; /* the first */
+    double ahead_s;             /* the first order came this long before the obstacle would be reached */
+    int suspect, assessed;      /* assessments with a position, until the first order */
+    double height_gained_m;     /* highest over the path */
+} avoid_outcome_t;
+
+/* Null and the outcome, or why the case cannot be flown. */
+const char *avoid_fly(const avoid_case_t *setup, avoid_outcome_t *outcome);
+
+#endif

@@ -1,0 +1,229 @@
+/* Two cameras with a detector each. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "flown.h"
+
+#define CAMERAS 2
+#define SEEN_DEG 30.0 /* off the axis of a camera: the image reaches 35 */
+#define Z0_M 60.0
+#define X0_M (-18.0)
+#define DEG_PER_RAD 57.29577951308232
+#define MAX_CM 20000u
+
+static flown_t flown;
+static goe_camera_t mounted[CAMERAS];
+static bool alive[CAMERAS];
+static uint32_t id[CAMERAS];
+
+/* The pictures of the second are taken later and come earlier. */
+static const int phase[CAMERAS] = {0, 2};
+static const int delay[CAMERAS] = {6, 2};
+
+void setUp(void) {
+    flown_start(&flown, NULL);
+    flown.scene.speed_mps = 8.0;
+    flown.scene.height_m = 12.0;
+    for (int c = 0; c < CAMERAS; c++) {
+        mounted[c] = flown.scene.camera;
+        alive[c] = true;
+    }
+    id[0] = 7u;
+    id[1] = 3u;
+    mounted[0].mount_yaw_deg = -25.0f;
+    mounted[1].mount_yaw_deg = -75.0f;
+    mounted[1].fx_px *= 0.8f;
+    mounted[1].fy_px *= 0.8f;
+    mounted[1].offset_m[0] = 0.6f;
+    mounted[1].offset_m[1] = -0.4f;
+    goe_settings_t estimator = scene_settings(&flown.scene);
+    estimator.camera = mounted[0];
+    estimator.more_cameras[0] = mounted[1];
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flown.flight, sizeof flown.flight, &estimator, NULL, NULL));
+}
+void tearDown(void) {}
+
+/* The scene places the obstacle from the camera that it has. */
+static void look_through(int c) {
+    flown.scene.camera = mounted[c];
+    flown.scene.z0_m = Z0_M - (double)mounted[c].offset_m[0];
+    flown.scene.x0_m = X0_M - (double)mounted[c].offset_m[1];
+}
+
+static bool sees(int c, int k) {
+    goe_image_t image;
+    scene_truth_t truth;
+    look_through(c);
+    scene_image(&flown.scene, k, &image, &truth);
+    return fabs(atan2(truth.x_m, truth.z_m) * DEG_PER_RAD - (double)mounted[c].mount_yaw_deg) < SEEN_DEG;
+}
+
+static void give_frame(int c, int k, const goe_flight_detection_t *more) {
+    goe_flight_detection_t detections[2];
+    int count = 0;
+    if (sees(c, k)) {
+        flown.id = id[c];
+        detections[count++] = flown_detection(&flown, k);
+    }
+    if (more) {
+        detections[count++] = *more;
+    }
+    goe_flight_frame_t frame = flown_frame(&flown, k, detections, count);
+    frame.camera = (uint8_t)c;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+}
+
+/* One sample on, and the frames that arrive then; `more` is what the second camera sees beside. */
+static void step(const goe_flight_detection_t *more) {
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    look_through(0);
+    flown_samples(&flown, flown.sample, &attitude, &position);
+    flown.sample++;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    for (int c = 0; c < CAMERAS; c++) {
+        const int exposed = flown.sample - 1 - delay[c];
+        if (alive[c] && exposed >= 0 && exposed % FLOWN_IMAGE_EVERY == phase[c]) {
+            give_frame(c, exposed, c == 1 ? more : NULL);
+        }
+    }
+}
+
+static int slots_used(void) {
+    int used = 0;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        used += flown.flight.slot[i].used ? 1 : 0;
+    }
+    return used;
+}
+
+/* By another id, or by the same one. */
+static void an_obstacle_flies_from_one_camera_into_the_other(void) {
+    for (int same = 0; same < 2; same++) {
+        setUp();
+        id[1] = same ? id[0] : id[1];
+        int points[CAMERAS] = {0, 0};
+        for (int k = 0; k < 350; k++) {
+            goe_flight_obstacle_t obstacle;
+            step(NULL);
+            if (goe_flight_obstacle(&flown.flight, 0, &obstacle) == GOE_FLIGHT_OK && obstacle.in_view) {
+                points[flown.flight.slot[0].camera]++;
+            }
+        }
+        goe_flight_obstacle_t obstacle;
+        goe_flight_assessment_t now;
+        goe_image_t image;
+        scene_truth_t truth;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, flown_now_us(&flown), false, &now));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+        look_through(0);
+        scene_image(&flown.scene, 0, &image, &truth);
+        TEST_ASSERT_EQUAL(1, slots_used());
+        TEST_ASSERT_EQUAL_UINT32(id[1], obstacle.id);
+        TEST_ASSERT_EQUAL(1, flown.flight.slot[0].camera);
+        TEST_ASSERT_TRUE(points[0] > 200 && points[1] > 50);
+        TEST_ASSERT_TRUE(obstacle.in_view && obstacle.age_s < 0.2f && !obstacle.suspect);
+        const double sd_m = sqrt((double)(obstacle.covariance_ne_m2[0] + obstacle.covariance_ne_m2[2]));
+        check_report("off, m", hypot((double)obstacle.center_ned_m[0] - truth.center_north_m,
+                                     (double)obstacle.center_ned_m[1] - truth.center_east_m));
+        CHECK_CLOSE(2.0 * sd_m, truth.center_north_m, obstacle.center_ned_m[0]);
+        CHECK_CLOSE(2.0 * sd_m, truth.center_east_m, obstacle.center_ned_m[1]);
+    }
+}
+
+static goe_flight_detection_t something(uint32_t number) {
+    goe_flight_detection_t detection;
+    memset(&detection, 0, sizeof detection);
+    detection.id = number;
+    detection.score = 0.9f;
+    detection.box.left_px = 200.0f;
+    detection.box.right_px = 240.0f;
+    detection.box.top_px = 600.0f;
+    detection.box.bottom_px = 700.0f;
+    detection.box.seen = GOE_SEES_BOX;
+    return detection;
+}
+
+/* Each detector counts on its own: one number of both is two obstacles. */
+static void one_id_of_two_cameras_is_two_obstacles(void) {
+    const goe_flight_detection_t aside = something(id[0]);
+    for (int k = 0; k < 50; k++) {
+        step(&aside);
+    }
+    TEST_ASSERT_EQUAL(2, slots_used());
+    TEST_ASSERT_EQUAL_UINT32(flown.flight.slot[0].id, flown.flight.slot[1].id);
+    TEST_ASSERT_TRUE(flown.flight.slot[0].camera != flown.flight.slot[1].camera);
+}
+
+/* Two images of one and two of the other are not the three that a slot takes. */
+static void each_camera_confirms_its_own(void) {
+    alive[0] = alive[1] = false;
+    for (int k = 0; k < 20; k++) {
+        step(NULL);
+        if (k % FLOWN_IMAGE_EVERY == 0) {
+            const goe_flight_detection_t seen = something(9u);
+            goe_flight_frame_t frame = flown_frame(&flown, k, &seen, 1);
+            frame.camera = (uint8_t)(k / FLOWN_IMAGE_EVERY % CAMERAS);
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+        }
+    }
+    TEST_ASSERT_EQUAL(4, flown.flight.counters.taken);
+    TEST_ASSERT_EQUAL(0, slots_used());
+}
+
+/* A sector is clear only by a camera whose detector is alive, and the whole is alive only if all are. */
+static void what_a_dead_detector_would_see_is_unknown(void) {
+    goe_flight_assessment_t now;
+    uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+    const int by_first = 3;   /* 15 degrees */
+    const int by_second = 53; /* 265 */
+    for (int round = 0; round < 2; round++) {
+        for (int k = 0; k < 100; k++) {
+            step(NULL);
+        }
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, flown_now_us(&flown), false, &now));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, MAX_CM, sector_cm));
+        TEST_ASSERT_EQUAL(round == 0, now.detector_alive);
+        TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[by_first]);
+        TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[0]);
+        TEST_ASSERT_EQUAL_UINT16(round == 0 ? MAX_CM + 1u : GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[by_second]);
+        alive[1] = false;
+    }
+}
+
+static void a_camera_that_is_not_set_is_refused(void) {
+    step(NULL);
+    goe_flight_frame_t frame = flown_frame(&flown, 0, NULL, 0);
+    frame.camera = CAMERAS;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OUT_OF_RANGE, goe_flight_frame(&flown.flight, &frame));
+    goe_settings_t estimator = scene_settings(&flown.scene);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flown.flight, sizeof flown.flight, &estimator, NULL, NULL));
+    flown.sample = 0;
+    step(NULL);
+    frame.camera = 1;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OUT_OF_RANGE, goe_flight_frame(&flown.flight, &frame));
+    frame.camera = 0;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+}
+
+static void each_camera_needs_its_size(void) {
+    const char *bad = NULL;
+    goe_settings_t estimator = scene_settings(&flown.scene);
+    estimator.more_cameras[0] = mounted[1];
+    estimator.more_cameras[0].height_px = 0.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_SETTINGS,
+                      goe_flight_init(&flown.flight, sizeof flown.flight, &estimator, NULL, &bad));
+    TEST_ASSERT_EQUAL_STRING("camera.height_px", bad);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(an_obstacle_flies_from_one_camera_into_the_other);
+    RUN_TEST(one_id_of_two_cameras_is_two_obstacles);
+    RUN_TEST(each_camera_confirms_its_own);
+    RUN_TEST(what_a_dead_detector_would_see_is_unknown);
+    RUN_TEST(a_camera_that_is_not_set_is_refused);
+    RUN_TEST(each_camera_needs_its_size);
+    return UNITY_END();
+}

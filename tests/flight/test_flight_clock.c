@@ -1,0 +1,142 @@
+/* Capture time by three clocks. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "goe_clock.h"
+
+#define OFFSET_US 123456789u /* of the autopilot's clock before the sender's */
+#define DELAY_US 20000u      /* least, from sending to arrival */
+
+static check_random_t any;
+static goe_flight_clock_t flight_clock;
+static goe_flight_settings_t settings;
+
+void setUp(void) {
+    any = check_random_start("flight clock");
+    memset(&flight_clock, 0, sizeof flight_clock);
+    goe_flight_settings_default(&settings);
+    settings.delay_s = 1e-6f * (float)DELAY_US;
+}
+void tearDown(void) {}
+
+/* A frame that was exposed at this time of the sender's clock, sent 60 ms later, and `late_us` more than the least on its way. */
+static goe_flight_frame_t message(uint32_t exposed_us, uint32_t late_us) {
+    goe_flight_frame_t frame;
+    memset(&frame, 0, sizeof frame);
+    frame.time_base = GOE_FLIGHT_SENDER_CLOCK;
+    frame.capture_us = exposed_us;
+    frame.sent_us = exposed_us + 60000u;
+    frame.arrival_us = frame.sent_us + OFFSET_US + DELAY_US + late_us;
+    return frame;
+}
+
+static int32_t off_us(uint32_t exposed_us, uint32_t late_us, uint32_t *sd_us) {
+    const goe_flight_frame_t frame = message(exposed_us, late_us);
+    const uint32_t capture_us = goe_flight_clock_capture(&flight_clock, &frame, &settings, sd_us);
+    return (int32_t)(capture_us - (exposed_us + OFFSET_US));
+}
+
+static uint32_t jitter_us(void) { return (uint32_t)(-15000.0 * log(check_random_between(&any, 1e-6, 1.0))); }
+
+static void the_autopilots_own_clock_is_taken_as_it_is(void) {
+    uint32_t sd_us;
+    goe_flight_frame_t frame = message(500u, 0u);
+    frame.time_base = GOE_FLIGHT_AUTOPILOT_CLOCK;
+    TEST_ASSERT_EQUAL_UINT32(500u, goe_flight_clock_capture(&flight_clock, &frame, &settings, &sd_us));
+    TEST_ASSERT_EQUAL_UINT32(5000u, sd_us); /* settings.delay_sd_s */
+    frame.time_sd_us = 700u;
+    (void)goe_flight_clock_capture(&flight_clock, &frame, &settings, &sd_us);
+    TEST_ASSERT_EQUAL_UINT32(700u, sd_us);
+}
+
+static void an_age_counts_back_from_the_arrival(void) {
+    uint32_t sd_us;
+    goe_flight_frame_t frame = message(0u, 0u);
+    frame.time_base = GOE_FLIGHT_AGE;
+    frame.capture_us = 60000u;
+    frame.time_sd_us = 3000u;
+    TEST_ASSERT_EQUAL_UINT32(OFFSET_US, goe_flight_clock_capture(&flight_clock, &frame, &settings, &sd_us));
+    TEST_ASSERT_UINT32_WITHIN(2u, 5831u, sd_us); /* 3 and 5 ms */
+}
+
+/* The least delay is found, also over the wrap of the sender's clock, and its uncertainty is honest. */
+static void the_least_delay_tells_the_offset(void) {
+    uint32_t sd_us = 0u;
+    int within = 0;
+    const uint32_t start_us = 0xFFFFFFFFu - 5000000u;
+    for (uint32_t k = 0; k < 300u; k++) {
+        const int32_t error_us = off_us(start_us + 100000u * k, jitter_us(), &sd_us);
+        within += abs(error_us) <= 2 * (int)sd_us ? 1 : 0;
+        if (k > 50u) {
+            TEST_ASSERT_INT32_WITHIN(2000, 0, error_us);
+            TEST_ASSERT_UINT32_WITHIN(100u, 5099u, sd_us);
+        }
+    }
+    TEST_ASSERT_TRUE(within >= 280);
+}
+
+/* A clock that runs 50 ppm too fast. */
+static void a_drift_is_followed(void) {
+    uint32_t sd_us;
+    int32_t worst_us = 0;
+    for (uint32_t k = 0; k < 6000u; k++) { /* ten minutes: 30 ms of drift */
+        const uint32_t exposed_us = 100000u * k;
+        goe_flight_frame_t frame = message(exposed_us, jitter_us());
+        frame.arrival_us += k * 5u;
+        const uint32_t capture_us = goe_flight_clock_capture(&flight_clock, &frame, &settings, &sd_us);
+        const int32_t error_us = (int32_t)(capture_us - (exposed_us + OFFSET_US + k * 5u));
+        worst_us = k > 100u && abs(error_us) > worst_us ? abs(error_us) : worst_us;
+    }
+    TEST_ASSERT_TRUE(worst_us < 3000);
+}
+
+/* The sender starts anew with another time: after a few messages that is believed. */
+static void another_clock_is_noticed(void) {
+    uint32_t sd_us;
+    for (uint32_t k = 0; k < 50u; k++) {
+        (void)off_us(100000u * k, jitter_us(), &sd_us);
+    }
+    for (int back = 0; back < 2; back++) {
+        const uint32_t restart_us = back == 0 ? 400000000u : 0u;
+        int32_t error_us = 0;
+        for (uint32_t k = 0; k < 20u; k++) {
+            goe_flight_frame_t frame = message(restart_us + 100000u * k, 0u);
+            frame.arrival_us = 900000000u + 100000u * k;
+            const uint32_t capture_us = goe_flight_clock_capture(&flight_clock, &frame, &settings, &sd_us);
+            error_us = (int32_t)(capture_us - (frame.arrival_us - 60000u - DELAY_US));
+        }
+        TEST_ASSERT_INT32_WITHIN(100, 0, error_us);
+    }
+}
+
+static void one_stuck_message_is_no_other_clock(void) {
+    uint32_t sd_us;
+    for (uint32_t k = 0; k < 50u; k++) {
+        (void)off_us(100000u * k, jitter_us(), &sd_us);
+    }
+    (void)off_us(5000000u, 3000000u, &sd_us);
+    TEST_ASSERT_INT32_WITHIN(3000, 0, off_us(5100000u, 1000u, &sd_us));
+}
+
+static void a_two_way_offset_replaces_the_estimate(void) {
+    uint32_t sd_us;
+    goe_flight_clock_sync(&flight_clock, OFFSET_US, 200u);
+    TEST_ASSERT_EQUAL_INT32(0, off_us(77u, 90000u, &sd_us));
+    TEST_ASSERT_UINT32_WITHIN(1u, 200u, sd_us);
+    goe_flight_clock_sync(&flight_clock, 0u, UINT32_MAX);
+    TEST_ASSERT_EQUAL_INT32(1000, off_us(77u, 1000u, &sd_us));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_autopilots_own_clock_is_taken_as_it_is);
+    RUN_TEST(an_age_counts_back_from_the_arrival);
+    RUN_TEST(the_least_delay_tells_the_offset);
+    RUN_TEST(a_drift_is_followed);
+    RUN_TEST(another_clock_is_noticed);
+    RUN_TEST(one_stuck_message_is_no_other_clock);
+    RUN_TEST(a_two_way_offset_replaces_the_estimate);
+    return UNITY_END();
+}

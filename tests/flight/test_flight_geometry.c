@@ -1,0 +1,212 @@
+/* Places in the image, on the earth and by bearing. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "goe_geometry.h"
+#include "scene.h"
+
+#define DEG_PER_RAD 57.295779513082321
+#define EARTH_M 6371000.0
+#define MAX_CM 30000u
+
+static check_random_t any;
+static uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+
+void setUp(void) { any = check_random_start("flight geometry"); }
+void tearDown(void) {}
+
+/* The middle of the scene's box lies between the sides of its bounding box, seen by any camera at any attitude; and the point that
+ * the scene draws as its top left corner lies on them. Mounting is that of the library: a wrong one would not hit the box. */
+static void a_point_is_seen_where_the_scene_draws_it(void) {
+    int seen = 0;
+    for (int k = 0; k < 400; k++) {
+        scene_t scene;
+        goe_image_t image;
+        scene_truth_t truth;
+        scene_default(&scene);
+        scene.width_m = scene.length_m = 0.5; /* small: its box tells its place */
+        scene.height_m = 0.5;
+        scene.x0_m = check_random_between(&any, -40.0, 40.0);
+        scene.course_deg = check_random_between(&any, -180.0, 180.0);
+        scene.roll_deg = check_random_between(&any, -40.0, 40.0);
+        scene.pitch_deg = check_random_between(&any, -15.0, 15.0);
+        scene.boxes = true;
+        scene.camera.width_px = scene.camera.height_px = 1280.0f;
+        scene.camera.mount_yaw_deg = (float)check_random_between(&any, -30.0, 30.0);
+        scene.camera.mount_pitch_deg = (float)check_random_between(&any, -20.0, 10.0);
+        scene.camera.mount_roll_deg = (float)check_random_between(&any, -20.0, 20.0);
+        scene.camera.offset_m[0] = (float)check_random_between(&any, -3.0, 3.0);
+        scene.camera.offset_m[2] = (float)check_random_between(&any, -3.0, 3.0);
+        scene_image(&scene, 0, &image, &truth);
+        if (image.box.seen != GOE_SEES_BOX) {
+            continue;
+        }
+        goe_flight_camera_t camera;
+        goe_flight_history_pose_t pose;
+        float pixel[2];
+        memset(&camera, 0, sizeof camera);
+        memset(&pose, 0, sizeof pose);
+        goe_flight_geometry_camera(&camera, &scene.camera);
+        memcpy(pose.q, image.pose.attitude, sizeof pose.q);
+        memcpy(pose.ned_m, image.pose.position_ned_m, sizeof pose.ned_m);
+        const float point[3] = {(float)truth.center_north_m, (float)truth.center_east_m,
+                                (float)(scene.ground_d_m - 0.25)};
+        const bool inside = goe_flight_geometry_project(&camera, &pose, point, pixel);
+        TEST_ASSERT_TRUE(inside || image.box.left_px < -600.0f || image.box.right_px > 1800.0f ||
+                         image.box.top_px < -600.0f || image.box.bottom_px > 1800.0f);
+        if (inside) {
+            TEST_ASSERT_TRUE(pixel[0] > image.box.left_px && pixel[0] < image.box.right_px);
+            TEST_ASSERT_TRUE(pixel[1] > image.box.top_px && pixel[1] < image.box.bottom_px);
+            seen++;
+        }
+    }
+    TEST_ASSERT_TRUE(seen > 200);
+}
+
+static void nothing_is_seen_behind_the_camera(void) {
+    goe_flight_camera_t camera;
+    goe_flight_history_pose_t pose;
+    goe_camera_t settings;
+    float pixel[2];
+    memset(&settings, 0, sizeof settings);
+    settings.fx_px = settings.fy_px = 800.0f;
+    settings.width_px = settings.height_px = 1000.0f;
+    memset(&camera, 0, sizeof camera);
+    memset(&pose, 0, sizeof pose);
+    pose.q[0] = 1.0f;
+    goe_flight_geometry_camera(&camera, &settings);
+    const float behind[3] = {-10.0f, 0.0f, 0.0f};
+    const float ahead[3] = {10.0f, 1.0f, 2.0f};
+    TEST_ASSERT_FALSE(goe_flight_geometry_project(&camera, &pose, behind, pixel));
+    TEST_ASSERT_TRUE(goe_flight_geometry_project(&camera, &pose, ahead, pixel));
+    CHECK_CLOSE(1e-3, 80.0, pixel[0]);
+    CHECK_CLOSE(1e-3, 160.0, pixel[1]);
+}
+
+/* Against the exact azimuthal projection of a sphere, as PX4 has it. */
+static void latitude_and_longitude(void) {
+    double worst_m = 0.0;
+    for (int k = 0; k < 2000; k++) {
+        const double lat = check_random_between(&any, -60.0, 60.0);
+        const double lon = check_random_between(&any, -180.0, 180.0);
+        const float ne_m[2] = {(float)check_random_between(&any, -3000.0, 3000.0),
+                               (float)check_random_between(&any, -3000.0, 3000.0)};
+        int32_t lat_e7;
+        int32_t lon_e7;
+        const int32_t origin_lat_e7 = (int32_t)lround(lat * 1e7);
+        const int32_t origin_lon_e7 = (int32_t)lround(lon * 1e7);
+        goe_flight_geometry_lat_lon(origin_lat_e7, origin_lon_e7, ne_m, &lat_e7, &lon_e7);
+        const double c = hypot((double)ne_m[0], (double)ne_m[1]) / EARTH_M;
+        const double s0 = sin(lat / DEG_PER_RAD);
+        const double c0 = cos(lat / DEG_PER_RAD);
+        const double share = sin(c) / c;
+        const double north = (double)ne_m[0] / EARTH_M;
+        const double east = (double)ne_m[1] / EARTH_M;
+        const double exact_lat = DEG_PER_RAD * asin(cos(c) * s0 + north * share * c0);
+        const double exact_lon = lon + DEG_PER_RAD * atan2(east * share, c0 * cos(c) - north * share * s0);
+        const double off_lat = (double)lat_e7 * 1e-7 - exact_lat;
+        const double off_lon = remainder((double)lon_e7 * 1e-7 - exact_lon, 360.0) * cos(exact_lat / DEG_PER_RAD);
+        check_worst(&worst_m, hypot(off_lat, off_lon) / DEG_PER_RAD * EARTH_M);
+        TEST_ASSERT_TRUE(lon_e7 >= -1800000000 && lon_e7 <= 1800000000);
+    }
+    check_report("worst within 3 km each way, m", worst_m);
+    TEST_ASSERT_TRUE(worst_m < 4.0);
+}
+
+static void the_poles_and_far_places_stay_in_range(void) {
+    const float ne_m[2] = {1.0e6f, -1.0e6f};
+    int32_t lat_e7;
+    int32_t lon_e7;
+    goe_flight_geometry_lat_lon(890000000, -1800000000, ne_m, &lat_e7, &lon_e7);
+    TEST_ASSERT_TRUE(lat_e7 <= 900000000 && lon_e7 >= -1800000000 && lon_e7 <= 1800000000);
+}
+
+static void close_sectors(void) {
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
+    }
+}
+
+/* Each sector that a ray into the circle falls into has it, and none that no ray does but the two beside. */
+static void a_circle_enters_the_sectors_that_it_touches(void) {
+    for (int k = 0; k < 300; k++) {
+        const double bearing = check_random_between(&any, 0.0, 360.0);
+        const double distance_m = check_random_between(&any, 12.0, 200.0);
+        const double radius_m = check_random_between(&any, 0.1, 11.0);
+        const float away[2] = {(float)(distance_m * cos(bearing / DEG_PER_RAD)),
+                               (float)(distance_m * sin(bearing / DEG_PER_RAD))};
+        const double half = DEG_PER_RAD * asin(radius_m / distance_m);
+        close_sectors();
+        goe_flight_geometry_enter_circle(sector_cm, MAX_CM, away, (float)radius_m);
+        for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+            const double off = fabs(remainder(5.0 * i - bearing, 360.0));
+            if (off < half + 2.4) {
+                TEST_ASSERT_UINT16_WITHIN(2u, (uint16_t)(100.0 * (distance_m - radius_m)), sector_cm[i]);
+            } else if (off > half + 2.6) {
+                TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[i]);
+            }
+        }
+    }
+}
+
+static void the_nearest_counts_and_what_is_far_does_not(void) {
+    const float near_m[2] = {20.0f, 0.0f};
+    const float far_m[2] = {50.0f, 0.0f};
+    const float beyond_m[2] = {-400.0f, 0.0f};
+    const float inside_m[2] = {1.0f, 0.0f};
+    close_sectors();
+    goe_flight_geometry_open_sectors(sector_cm, MAX_CM, 300.0f, 120.0f);
+    TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[0]);
+    TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[61]); /* 302.5 to 307.5 degrees */
+    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[60]);
+    TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[11]);
+    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[12]);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, near_m, 2.0f);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, beyond_m, 2.0f);
+    TEST_ASSERT_EQUAL_UINT16(1800u, sector_cm[0]);
+    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[36]);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, inside_m, 2.0f);
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        TEST_ASSERT_EQUAL_UINT16(1u, sector_cm[i]);
+    }
+}
+
+static void the_view_turns_with_the_aircraft(void) {
+    goe_camera_t settings;
+    goe_flight_camera_t camera;
+    float from_deg;
+    float width_deg;
+    memset(&settings, 0, sizeof settings);
+    settings.fx_px = settings.fy_px = 500.0f;
+    settings.cx_px = settings.cy_px = 500.0f;
+    settings.width_px = settings.height_px = 1000.0f;
+    settings.mount_yaw_deg = -30.0f;
+    memset(&camera, 0, sizeof camera);
+    goe_flight_geometry_camera(&camera, &settings);
+    for (int k = 0; k < 36; k++) {
+        const double half = 0.5 * 10.0 * k / DEG_PER_RAD;
+        const float q[4] = {(float)cos(half), 0.0f, 0.0f, (float)sin(half)};
+        TEST_ASSERT_TRUE(goe_flight_geometry_view(&camera, q, &from_deg, &width_deg));
+        CHECK_CLOSE(1e-3, 90.0, width_deg);
+        CHECK_CLOSE(1e-3, 0.0, remainder((double)from_deg - (10.0 * k - 30.0 - 45.0), 360.0));
+    }
+    const float up[4] = {0.70710678f, 0.0f, 0.70710678f, 0.0f};
+    settings.mount_yaw_deg = 0.0f;
+    goe_flight_geometry_camera(&camera, &settings);
+    TEST_ASSERT_FALSE(goe_flight_geometry_view(&camera, up, &from_deg, &width_deg));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_point_is_seen_where_the_scene_draws_it);
+    RUN_TEST(nothing_is_seen_behind_the_camera);
+    RUN_TEST(latitude_and_longitude);
+    RUN_TEST(the_poles_and_far_places_stay_in_range);
+    RUN_TEST(a_circle_enters_the_sectors_that_it_touches);
+    RUN_TEST(the_nearest_counts_and_what_is_far_does_not);
+    RUN_TEST(the_view_turns_with_the_aircraft);
+    return UNITY_END();
+}

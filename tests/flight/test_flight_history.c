@@ -1,0 +1,192 @@
+/* Pose history against analytic flights. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "goe_history.h"
+
+#define RAD_PER_DEG 0.017453292519943295
+
+static goe_flight_history_t history;
+static goe_flight_history_pose_t pose;
+
+void setUp(void) { goe_flight_history_clear(&history); }
+void tearDown(void) {}
+
+/* A turn about one axis at a constant rate, and a straight line. */
+static void attitude_at(double t_s, double rate_deg_s, float q[4]) {
+    const double half = 0.5 * RAD_PER_DEG * rate_deg_s * t_s;
+    q[0] = (float)cos(half);
+    q[1] = (float)(0.6 * sin(half));
+    q[2] = 0.0f;
+    q[3] = (float)(0.8 * sin(half));
+}
+
+static void position_at(double t_s, float ned_m[3]) {
+    ned_m[0] = (float)(20.0 * t_s);
+    ned_m[1] = (float)(-3.0 * t_s);
+    ned_m[2] = (float)(-50.0 + 2.0 * t_s);
+}
+
+static void feed(uint32_t start_us, uint32_t step_us, int samples, double rate_deg_s) {
+    for (int k = 0; k < samples; k++) {
+        float q[4];
+        float ned_m[3];
+        attitude_at(1e-6 * step_us * k, rate_deg_s, q);
+        position_at(1e-6 * step_us * k, ned_m);
+        if (k % 3 == 1) { /* the same attitude by the other sign */
+            for (int i = 0; i < 4; i++) {
+                q[i] = -q[i];
+            }
+        }
+        TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, start_us + step_us * (uint32_t)k, q));
+        TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, start_us + step_us * (uint32_t)k, ned_m));
+    }
+}
+
+/* By how much the attitude is off, degrees: twice the chord between the quaternions, whichever their signs. */
+static double turned_deg(const float a[4], const float b[4]) {
+    double apart = 0.0;
+    double together = 0.0;
+    for (int i = 0; i < 4; i++) {
+        apart += pow((double)a[i] - (double)b[i], 2.0);
+        together += pow((double)a[i] + (double)b[i], 2.0);
+    }
+    return 2.0 * sqrt(fmin(apart, together)) / RAD_PER_DEG;
+}
+
+static void check_flight(uint32_t start_us, uint32_t step_us, double rate_deg_s, double attitude_deg) {
+    feed(start_us, step_us, 200, rate_deg_s);
+    const double newest_s = 199e-6 * step_us;
+    for (double back_s = 0.0; back_s < 0.55; back_s += 0.0131) {
+        float q[4];
+        float ned_m[3];
+        const uint32_t at_us = start_us + (uint32_t)((newest_s - back_s) * 1e6 + 0.5);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, at_us, &pose));
+        attitude_at(newest_s - back_s, rate_deg_s, q);
+        position_at(newest_s - back_s, ned_m);
+        for (int i = 0; i < 3; i++) {
+            CHECK_CLOSE(1e-4, ned_m[i], pose.ned_m[i]);
+        }
+        TEST_ASSERT_TRUE(turned_deg(q, pose.q) < attitude_deg);
+        CHECK_CLOSE(0.01 * rate_deg_s, rate_deg_s, pose.rate_deg_s);
+    }
+}
+
+static void a_steady_flight_is_found_again(void) { check_flight(1000u, 4000u, 90.0, 2e-3); }
+static void slow_samples_too(void) { check_flight(0u, 100000u, 60.0, 2e-3); }
+static void the_clock_may_wrap(void) { check_flight(0xFFFFFFFFu - 500000u, 4000u, 90.0, 2e-3); }
+
+/* A sine of the pitch: 10 degrees, 1 Hz. Between samples 100 ms apart a straight line is off by 0.49 degrees at most; the cubic
+ * by a tenth of that, and the parabola at the newest samples by less than half. What is missed is told. */
+static void a_bent_flight_is_followed(void) {
+    double cubic_deg = 0.0;
+    double parabola_deg = 0.0;
+    double missed = 0.0;
+    double told = 0.0;
+    for (int k = 0; k < 40; k++) {
+        const double half = 0.5 * RAD_PER_DEG * 10.0 * sin(2.0 * 3.14159265358979 * 0.1 * k);
+        const float q[4] = {(float)cos(half), 0.0f, (float)sin(half), 0.0f};
+        const float ned_m[3] = {0.0f, 0.0f, 0.0f};
+        TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 100000u * (uint32_t)k, q));
+        TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, 100000u * (uint32_t)k, ned_m));
+        for (int back = 1; k > 5 && back <= 2; back++) {
+            const uint32_t at_us = 100000u * (uint32_t)k - 100000u * (uint32_t)back + 50000u;
+            const double then = 0.5 * RAD_PER_DEG * 10.0 * sin(2.0 * 3.14159265358979 * 1e-6 * at_us);
+            const float truth[4] = {(float)cos(then), 0.0f, (float)sin(then), 0.0f};
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, at_us, &pose));
+            const double off_deg = turned_deg(truth, pose.q);
+            check_worst(back == 1 ? &parabola_deg : &cubic_deg, off_deg);
+            missed += off_deg * off_deg;
+            told += pow((double)pose.spread_deg, 2.0);
+        }
+    }
+    check_report("cubic, degrees", cubic_deg);
+    check_report("parabola, degrees", parabola_deg);
+    check_report("missed over told, rms", sqrt(missed / told));
+    TEST_ASSERT_TRUE(missed < told && missed > 0.25 * told);
+    TEST_ASSERT_TRUE(cubic_deg < 0.06);
+    TEST_ASSERT_TRUE(parabola_deg < 0.25);
+}
+
+static void samples_are_thinned_to_20_ms(void) {
+    feed(0u, 1000u, 2000, 10.0);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_SAMPLES, history.attitude_count);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 1999000u, &pose));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 1999000u - 600000u, &pose));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_TOO_NEW, goe_flight_history_at(&history, 1999001u, &pose));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_TOO_OLD, goe_flight_history_at(&history, 1999000u - 700000u, &pose));
+}
+
+static void nothing_is_known_before_both(void) {
+    const float q[4] = {1.0f, 0.0f, 0.0f, 0.0f};
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NO_POSE, goe_flight_history_at(&history, 0u, &pose));
+    TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 10u, q));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NO_POSE, goe_flight_history_at(&history, 10u, &pose));
+}
+
+static void old_samples_are_refused(void) {
+    const float ned_m[3] = {1.0f, 2.0f, 3.0f};
+    feed(0u, 20000u, 10, 10.0);
+    const goe_flight_history_t before = history;
+    TEST_ASSERT_FALSE(goe_flight_history_add_position(&history, 180000u, ned_m));
+    TEST_ASSERT_FALSE(goe_flight_history_add_position(&history, 100000u, ned_m));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &history, sizeof history);
+}
+
+static void nothing_is_made_up_in_a_gap(void) {
+    float q[4];
+    float ned_m[3];
+    feed(0u, 20000u, 10, 10.0);
+    attitude_at(1.0, 10.0, q);
+    position_at(1.0, ned_m);
+    TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 1000000u, q));
+    TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, 1000000u, ned_m));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_TOO_OLD, goe_flight_history_at(&history, 600000u, &pose));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 1000000u, &pose));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 150000u, &pose));
+}
+
+static void a_jump_moves_what_was_before_it(void) {
+    const float jump_ned_m[3] = {5.0f, -7.0f, 0.5f};
+    feed(0u, 20000u, 30, 10.0);
+    goe_flight_history_shift(&history, jump_ned_m);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 300000u, &pose));
+    float ned_m[3];
+    position_at(0.3, ned_m);
+    for (int i = 0; i < 3; i++) {
+        CHECK_CLOSE(1e-4, ned_m[i] + jump_ned_m[i], pose.ned_m[i]);
+    }
+}
+
+/* Attitude and position come at rates of their own. */
+static void the_rings_are_independent(void) {
+    for (uint32_t k = 0; k < 400; k++) {
+        float q[4];
+        float ned_m[3];
+        attitude_at(0.004 * k, 30.0, q);
+        position_at(0.004 * k, ned_m);
+        TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 4000u * k, q));
+        if (k % 25u == 0u) {
+            TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, 4000u * k, ned_m));
+        }
+    }
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_TOO_NEW, goe_flight_history_at(&history, 1510000u, &pose));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 1490000u, &pose));
+    CHECK_CLOSE(1e-3, 29.8, pose.ned_m[0]);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_steady_flight_is_found_again);
+    RUN_TEST(slow_samples_too);
+    RUN_TEST(the_clock_may_wrap);
+    RUN_TEST(a_bent_flight_is_followed);
+    RUN_TEST(samples_are_thinned_to_20_ms);
+    RUN_TEST(nothing_is_known_before_both);
+    RUN_TEST(old_samples_are_refused);
+    RUN_TEST(nothing_is_made_up_in_a_gap);
+    RUN_TEST(a_jump_moves_what_was_before_it);
+    RUN_TEST(the_rings_are_independent);
+    return UNITY_END();
+}

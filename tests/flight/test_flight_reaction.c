@@ -1,0 +1,267 @@
+/* The rule of the reaction, line by line of its table in port/flight/README.md. SPDX-License-Identifier: MIT
+ *
+ * The obstacle of a slot is written straight into the table: what the rule makes of it is asked for, not how it was found. */
+#include <math.h>
+#include <string.h>
+
+#include "flown.h"
+#include "goe_reaction.h"
+
+#define SPEED_M_S 20.0f
+
+static goe_flight_t flight;
+static goe_flight_reaction_own_t own;
+
+/* A mast of 6 m diameter, 50 m high, `ahead` metres ahead and `right` metres aside of an aircraft 20 m above the ground that flies
+ * north from the origin at 20 m/s; bank 30 degrees: 71 m of radius. */
+static void put(int slot, float ahead_m, float right_m) {
+    goe_flight_slot_t *s = &flight.slot[slot];
+    s->used = s->assessed = true;
+    s->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT;
+    s->center_ne_m[0] = ahead_m;
+    s->center_ne_m[1] = right_m;
+    s->width_m = 6.0f;
+    s->top_m = 50.0f;
+    s->hazard.violation = 1.0f;
+    s->hazard.time_s = (ahead_m - 3.0f) / SPEED_M_S;
+}
+
+void setUp(void) {
+    static flown_t flown;
+    flown_start(&flown, NULL);
+    flight = flown.flight;
+    memset(&own, 0, sizeof own);
+    own.ned_m[2] = -20.0f;
+    flight.velocity_ned_m_s[0] = SPEED_M_S;
+}
+void tearDown(void) {}
+
+/* Looks for so long, ten times a second, at estimates that are renewed each time. */
+static goe_flight_action_t decide(double seconds) {
+    for (int k = 0; k <= (int)(seconds * 10.0 + 0.5); k++) {
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            flight.slot[i].taken_us = own.time_us;
+        }
+        (void)goe_flight_reaction_decide(&flight, 0, &own);
+        own.time_us += 100000u;
+    }
+    return (goe_flight_action_t)flight.reaction.action;
+}
+
+static void a_far_obstacle_is_no_reason_yet(void) {
+    put(0, 400.0f, 0.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.0));
+}
+
+/* 18 m aside and 71 m of radius: 45 m of way, 2.2 s, 1.5 s to roll in, 3 s of reserve: 6.7 s. */
+static void the_order_comes_with_the_time_that_it_needs(void) {
+    put(0, 3.0f + 6.9f * SPEED_M_S, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
+    put(0, 3.0f + 6.5f * SPEED_M_S, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.2));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.3)); /* after confirm_s */
+    TEST_ASSERT_FALSE(flight.reaction.late);
+}
+
+/* The time by two sigmas too early is time / (1 + 2 sigma / time): 10.5 s of 20 +- 9 s, 5.8 s of 11 +- 5 s. */
+static void a_range_that_is_hardly_known_orders_earlier_but_not_at_once(void) {
+    put(0, 3.0f + 20.0f * SPEED_M_S, 0.5f);
+    flight.slot[0].hazard.time_sd_s = 9.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
+    put(0, 3.0f + 11.0f * SPEED_M_S, 0.5f);
+    flight.slot[0].hazard.time_sd_s = 5.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    TEST_ASSERT_FALSE(flight.reaction.late);
+}
+
+static void the_nearer_side_is_taken(void) {
+    put(0, 100.0f, 2.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    CHECK_CLOSE(0.1, 100.0, flight.reaction.target_ned_m[0]);
+    CHECK_CLOSE(0.1, 2.0 - 3.0 - 15.0, flight.reaction.target_ned_m[1]);
+    goe_flight_reaction_clear(&flight.reaction);
+    put(0, 100.0f, -2.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
+    CHECK_CLOSE(0.1, -2.0 + 3.0 + 15.0, flight.reaction.target_ned_m[1]);
+}
+
+static void a_side_that_is_not_clear_is_not_taken(void) {
+    put(0, 100.0f, 2.0f);
+    put(1, 100.0f, -20.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
+}
+
+static void no_side_and_no_climb_is_a_reason_to_hold(void) {
+    put(0, 100.0f, 2.0f);
+    put(1, 100.0f, -20.0f);
+    put(2, 90.0f, 20.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_HOLD, decide(0.5));
+    TEST_ASSERT_TRUE(fabs((double)flight.reaction.target_ned_m[1]) > 70.0);
+}
+
+static void a_wide_obstacle_is_a_reason_to_hold(void) {
+    put(0, 110.0f, 1.0f);
+    flight.slot[0].width_m = 140.0f;
+    flight.slot[0].hazard.time_s = 5.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_HOLD, decide(0.5));
+    TEST_ASSERT_TRUE(flight.reaction.target_ned_m[1] < -70.0f); /* the side on which less of it stands */
+}
+
+/* 2 m too low: 2 s and 2/2.5 s, less than a turn. */
+static void a_low_top_is_climbed_over(void) {
+    put(0, 110.0f, 0.5f);
+    flight.slot[0].top_m = 12.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
+    CHECK_CLOSE(0.01, -22.0, flight.reaction.target_ned_m[2]);
+}
+
+static void a_top_that_is_not_known_is_not_climbed_over(void) {
+    put(0, 110.0f, 0.5f);
+    flight.slot[0].top_m = 0.0f;
+    flight.slot[0].valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
+static void an_unsure_top_is_taken_for_higher(void) {
+    put(0, 110.0f, 0.5f);
+    flight.slot[0].top_m = 12.0f;
+    flight.slot[0].top_sd_m = 5.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
+static void an_approach_is_broken_off(void) {
+    own.approach = true;
+    put(0, 110.0f, 0.5f);
+    flight.slot[0].top_m = 12.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    goe_flight_reaction_clear(&flight.reaction);
+    flight.slot[0].top_m = 80.0f; /* 28 s of climb: too high to go around over it */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
+static void a_wait_for_confirmation_is_not_afforded_when_it_is_late(void) {
+    put(0, 63.0f, 0.5f); /* 3 s */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.0));
+    TEST_ASSERT_TRUE(flight.reaction.late);
+}
+
+/* ... but a hazard that is less likely than not is then no reason: no action would change it. */
+static void an_unlikely_hazard_is_no_reason_when_it_is_late(void) {
+    put(0, 63.0f, 0.5f);
+    flight.slot[0].hazard.violation = 0.4f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
+    put(0, 110.0f, 0.5f);
+    flight.slot[0].hazard.violation = 0.4f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
+static void no_hazard_is_no_reason(void) {
+    put(0, 100.0f, 0.5f);
+    flight.slot[0].hazard.violation = 0.09f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.0));
+    put(0, -5.0f, 0.5f); /* behind */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.0));
+    flight.velocity_ned_m_s[0] = 0.5f; /* no course */
+    put(0, 50.0f, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.0));
+}
+
+static void doubt_orders_earlier_and_wider(void) {
+    put(0, 3.0f + 7.1f * SPEED_M_S, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
+    flight.slot[0].suspect = true;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    CHECK_CLOSE(0.1, 0.5 - 3.0 - 22.5, flight.reaction.target_ned_m[1]);
+}
+
+/* The order stands while the aircraft turns away from the obstacle, which ends the hazard on its present course; it ends when the
+ * line of the order leads past the obstacle again. */
+static void the_order_stands_until_the_obstacle_lies_behind(void) {
+    put(0, 100.0f, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    flight.slot[0].hazard.violation = 0.0f;
+    flight.velocity_ned_m_s[0] = 14.0f;
+    flight.velocity_ned_m_s[1] = -14.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(5.0));
+    own.ned_m[0] = 115.0f; /* abeam and a little more: to turn back now would meet it */
+    own.ned_m[1] = -20.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(1.0));
+    own.ned_m[0] = 120.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.0));
+}
+
+/* An estimate that moves away from the line ends it, once that has stood for hold_s. */
+static void an_order_that_proves_wrong_is_taken_back(void) {
+    put(0, 100.0f, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    flight.slot[0].hazard.violation = 0.0f;
+    flight.slot[0].center_ne_m[1] = 40.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(1.0));
+    flight.slot[0].center_ne_m[1] = 10.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(3.0));
+    flight.slot[0].center_ne_m[1] = 40.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.5));
+}
+
+static void an_obstacle_that_is_given_up_ends_its_order(void) {
+    put(0, 100.0f, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    flight.slot[0].used = flight.slot[0].assessed = false;
+    memset(&flight.slot[0].hazard, 0, sizeof flight.slot[0].hazard);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.5));
+}
+
+static void the_point_of_a_side_follows_the_estimate(void) {
+    put(0, 100.0f, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    flight.slot[0].center_ne_m[1] = 3.0f;
+    (void)decide(0.0);
+    CHECK_CLOSE(0.1, 3.0 - 18.0, flight.reaction.target_ned_m[1]);
+}
+
+static void another_obstacle_replaces_the_order_but_not_the_line(void) {
+    put(0, 100.0f, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    put(1, 90.0f, -17.0f);
+    own.ned_m[1] = -15.0f;
+    for (int k = 0; k < 5; k++) {
+        (void)goe_flight_reaction_decide(&flight, 1, &own);
+        own.time_us += 100000u;
+    }
+    TEST_ASSERT_EQUAL(1, flight.reaction.slot);
+    CHECK_SAME(0.0f, flight.reaction.from_ne_m[1]);
+}
+
+static void every_action_has_a_name(void) {
+    for (int action = GOE_FLIGHT_NONE; action <= GOE_FLIGHT_HOLD; action++) {
+        TEST_ASSERT_TRUE(strcmp("unknown", goe_flight_action_text((goe_flight_action_t)action)) != 0);
+    }
+    TEST_ASSERT_EQUAL_STRING("go_around", goe_flight_action_text(GOE_FLIGHT_GO_AROUND));
+    TEST_ASSERT_EQUAL_STRING("unknown", goe_flight_action_text((goe_flight_action_t)77));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_far_obstacle_is_no_reason_yet);
+    RUN_TEST(the_order_comes_with_the_time_that_it_needs);
+    RUN_TEST(a_range_that_is_hardly_known_orders_earlier_but_not_at_once);
+    RUN_TEST(the_nearer_side_is_taken);
+    RUN_TEST(a_side_that_is_not_clear_is_not_taken);
+    RUN_TEST(no_side_and_no_climb_is_a_reason_to_hold);
+    RUN_TEST(a_wide_obstacle_is_a_reason_to_hold);
+    RUN_TEST(a_low_top_is_climbed_over);
+    RUN_TEST(a_top_that_is_not_known_is_not_climbed_over);
+    RUN_TEST(an_unsure_top_is_taken_for_higher);
+    RUN_TEST(an_approach_is_broken_off);
+    RUN_TEST(a_wait_for_confirmation_is_not_afforded_when_it_is_late);
+    RUN_TEST(an_unlikely_hazard_is_no_reason_when_it_is_late);
+    RUN_TEST(no_hazard_is_no_reason);
+    RUN_TEST(doubt_orders_earlier_and_wider);
+    RUN_TEST(the_order_stands_until_the_obstacle_lies_behind);
+    RUN_TEST(an_order_that_proves_wrong_is_taken_back);
+    RUN_TEST(an_obstacle_that_is_given_up_ends_its_order);
+    RUN_TEST(the_point_of_a_side_follows_the_estimate);
+    RUN_TEST(another_obstacle_replaces_the_order_but_not_the_line);
+    RUN_TEST(every_action_has_a_name);
+    return UNITY_END();
+}

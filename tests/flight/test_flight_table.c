@@ -1,0 +1,277 @@
+/* From samples and frames to obstacles. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "flown.h"
+
+static flown_t flown;
+
+void setUp(void) { flown_start(&flown, NULL); }
+void tearDown(void) {}
+
+static int slots_used(void) {
+    int used = 0;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        used += flown.flight.slot[i].used ? 1 : 0;
+    }
+    return used;
+}
+
+/* The truck of the scene: middle of the base, NED. */
+static void truth(double center_ne_m[2]) {
+    goe_image_t image;
+    scene_truth_t exact;
+    scene_image(&flown.scene, 0, &image, &exact);
+    center_ne_m[0] = exact.center_north_m;
+    center_ne_m[1] = exact.center_east_m;
+}
+
+static void an_obstacle_is_found_where_it_is(void) {
+    double center[2];
+    goe_flight_obstacle_t obstacle;
+    flown.scene.width_m = flown.scene.length_m = 4.0;
+    flown.scene.height_m = 12.0;
+    const goe_flight_assessment_t now = flown_fly(&flown, 4.0);
+    truth(center);
+    TEST_ASSERT_EQUAL(1, now.obstacles);
+    TEST_ASSERT_TRUE(now.detector_alive && now.pose_alive);
+    TEST_ASSERT_EQUAL(0, now.worst);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+    TEST_ASSERT_EQUAL_UINT32(7u, obstacle.id);
+    TEST_ASSERT_TRUE((obstacle.valid & GOE_HAS_POSITION) != 0u && (obstacle.valid & GOE_HAS_HEIGHT) != 0u);
+    const double sd_m = sqrt((double)obstacle.covariance_ne_m2[0]);
+    check_report("north off, m", (double)obstacle.center_ned_m[0] - center[0]);
+    check_report("sigma, m", sd_m);
+    CHECK_CLOSE(2.0 * sd_m, center[0], obstacle.center_ned_m[0]);
+    CHECK_CLOSE(2.0, center[1], obstacle.center_ned_m[1]);
+    CHECK_CLOSE(1.5, 12.0, obstacle.height_m);
+    CHECK_CLOSE(1e-3, flown.scene.ground_d_m, obstacle.center_ned_m[2]);
+    TEST_ASSERT_TRUE(obstacle.in_view && !obstacle.passed && obstacle.has_hazard);
+}
+
+/* The hazard counts from now, not from the image that came 100 ms late. */
+static void the_hazard_counts_from_now(void) {
+    flown.scene.x0_m = 0.0;
+    flown.scene.altitude_m = 6.0;
+    flown.scene.height_m = 12.0;
+    (void)flown_fly(&flown, 3.0);
+    goe_flight_assessment_t first;
+    goe_flight_assessment_t later;
+    const uint32_t now_us = flown_now_us(&flown);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us, false, &first));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us + 100000u, false, &later));
+    CHECK_CLOSE(1e-4, first.hazard.time_s - 0.1f, later.hazard.time_s);
+    goe_plan_t plan = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f};
+    goe_hazard_t hazard;
+    TEST_ASSERT_EQUAL(GOE_OK, goe_hazard(&flown.flight.slot[0].estimator, &plan, &hazard));
+    /* the newest sample is number 149, the latest frame that has arrived shows number 140 */
+    CHECK_CLOSE(1e-3, (double)hazard.time_s - 0.18, first.hazard.time_s);
+}
+
+static void a_new_obstacle_waits_for_its_confirmation(void) {
+    for (int frames = 0; frames < 2;) {
+        frames += flown_step(&flown) ? 1 : 0;
+    }
+    TEST_ASSERT_EQUAL(0, slots_used());
+    while (!flown_step(&flown)) {
+    }
+    TEST_ASSERT_EQUAL(1, slots_used());
+}
+
+static void a_low_score_is_not_looked_at(void) {
+    flown.score = 0.2f;
+    const goe_flight_assessment_t now = flown_fly(&flown, 2.0);
+    TEST_ASSERT_EQUAL(0, slots_used());
+    TEST_ASSERT_TRUE(flown.flight.counters.weak > 15);
+    TEST_ASSERT_TRUE(now.detector_alive);
+    TEST_ASSERT_EQUAL(-1, now.worst);
+}
+
+/* A full table of obstacles, and false detections with a new id in each image: nobody is evicted. */
+static void false_detections_evict_nobody(void) {
+    for (int k = 0; k < 40; k++) {
+        goe_flight_detection_t detections[5];
+        if (!flown_step(&flown)) {
+            continue;
+        }
+        for (int i = 0; i < 5; i++) {
+            detections[i] = flown_detection(&flown, flown.sample - 1);
+            detections[i].id = i < 4 ? 100u + (uint32_t)i : 1000u + (uint32_t)k;
+            detections[i].box.left_px = 200.0f * (float)(i + 1);
+            detections[i].box.right_px = detections[i].box.left_px + 40.0f;
+        }
+        const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, detections, 5);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+    }
+    TEST_ASSERT_EQUAL(0, flown.flight.counters.evicted);
+}
+
+static void a_renumbered_obstacle_keeps_its_track(void) {
+    (void)flown_fly(&flown, 3.0);
+    const goe_flight_slot_t before = flown.flight.slot[0];
+    flown.id = 8u;
+    (void)flown_fly(&flown, 0.5);
+    TEST_ASSERT_EQUAL(1, slots_used());
+    TEST_ASSERT_EQUAL_UINT32(8u, flown.flight.slot[0].id);
+    TEST_ASSERT_EQUAL(1, flown.flight.counters.renumbered);
+    TEST_ASSERT_TRUE(flown.flight.slot[0].taken_us != before.taken_us);
+    TEST_ASSERT_TRUE((flown.flight.slot[0].valid & GOE_HAS_POSITION) != 0u);
+}
+
+/* While the obstacle is not seen, a box of another size over its place does not become its. */
+static void a_box_of_another_size_takes_nothing_over(void) {
+    (void)flown_fly(&flown, 3.0);
+    flown.sees = false;
+    for (int k = 0; k < 20; k++) {
+        (void)flown_step(&flown);
+        if (flown.sample % 5 == 3) {
+            goe_flight_detection_t other = flown_detection(&flown, flown.sample - 1);
+            const float wide_px = other.box.right_px - other.box.left_px;
+            other.id = 50u + (uint32_t)k;
+            other.box.left_px -= 2.0f * wide_px;
+            other.box.right_px += 2.0f * wide_px;
+            const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &other, 1);
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(7u, flown.flight.slot[0].id);
+    TEST_ASSERT_EQUAL(0, flown.flight.counters.renumbered);
+}
+
+static void a_detector_without_ids_is_followed_by_place(void) {
+    flown.id = 0u;
+    const goe_flight_assessment_t now = flown_fly(&flown, 4.0);
+    TEST_ASSERT_EQUAL(1, slots_used());
+    TEST_ASSERT_EQUAL(1, now.obstacles);
+    TEST_ASSERT_EQUAL(0, flown.flight.counters.renumbered);
+}
+
+/* Another obstacle elsewhere in the image gets a slot of its own. */
+static void another_obstacle_takes_nothing_over(void) {
+    (void)flown_fly(&flown, 3.0);
+    for (int k = 0; k < 40; k++) {
+        if (flown_step(&flown)) {
+            goe_flight_detection_t other = flown_detection(&flown, flown.sample - 1);
+            other.id = 99u;
+            other.box.left_px += 400.0f;
+            other.box.right_px += 400.0f;
+            const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &other, 1);
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+        }
+    }
+    TEST_ASSERT_EQUAL(2, slots_used());
+    TEST_ASSERT_EQUAL_UINT32(7u, flown.flight.slot[0].id);
+    TEST_ASSERT_EQUAL_UINT32(99u, flown.flight.slot[1].id);
+}
+
+static void what_is_not_seen_any_more_is_given_up(void) {
+    (void)flown_fly(&flown, 3.0);
+    flown.sees = false;
+    (void)flown_fly(&flown, 9.0);
+    TEST_ASSERT_EQUAL(1, slots_used());
+    (void)flown_fly(&flown, 2.0);
+    TEST_ASSERT_EQUAL(0, slots_used());
+}
+
+/* What comes into a slot that was given up is not what an order was about. */
+static void an_order_does_not_pass_to_the_next_in_its_slot(void) {
+    (void)flown_fly(&flown, 3.04); /* an image came with sample 150 */
+    flown.flight.reaction.action = GOE_FLIGHT_LEFT;
+    flown.flight.reaction.slot = 0;
+    flown.flight.slot[0].seen_us -= 31000000u;
+    const goe_flight_assessment_t now = flown_fly(&flown, 0.02);
+    TEST_ASSERT_EQUAL(0, slots_used());
+    TEST_ASSERT_EQUAL(-1, now.avoided);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, now.action); /* for hold_s */
+}
+
+static void a_dead_detector_is_not_a_clear_sky(void) {
+    flown.scene.width_m = flown.scene.length_m = 4.0;
+    flown.scene.height_m = 12.0;
+    goe_flight_assessment_t now = flown_fly(&flown, 3.0); /* its middle: 54 m ahead, 12 m left, so at 347 degrees */
+    TEST_ASSERT_TRUE(now.detector_alive);
+    uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 20000u, sector_cm));
+    TEST_ASSERT_EQUAL_UINT16(20001u, sector_cm[3]);                     /* 15 degrees right: in view, nothing there */
+    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[36]); /* behind */
+    TEST_ASSERT_TRUE(sector_cm[69] > 4000u && sector_cm[69] < 6500u);
+    const uint32_t later_us = flown_now_us(&flown) + 1500000u;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, later_us, false, &now));
+    TEST_ASSERT_FALSE(now.detector_alive);
+    TEST_ASSERT_FALSE(now.pose_alive);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 20000u, sector_cm));
+    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[3]);
+}
+
+static void early_frames_are_kept_by_the_caller(void) {
+    (void)flown_fly(&flown, 2.0);
+    const goe_flight_detection_t detection = flown_detection(&flown, flown.sample);
+    goe_flight_frame_t frame = flown_frame(&flown, flown.sample, &detection, 1);
+    goe_flight_t before = flown.flight;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_TOO_NEW, goe_flight_frame(&flown.flight, &frame));
+    before.counters.early++;
+    TEST_ASSERT_EQUAL_MEMORY(&before, &flown.flight, sizeof before);
+    (void)flown_step(&flown);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+    frame = flown_frame(&flown, flown.sample - 25, &detection, 1); /* half a second ago: more than delay_max_s */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_TOO_OLD, goe_flight_frame(&flown.flight, &frame));
+    TEST_ASSERT_EQUAL(1, flown.flight.counters.late);
+}
+
+/* Detections of one image in several calls. */
+static void an_image_may_come_in_parts(void) {
+    for (int k = 0; k < 60; k++) {
+        if (!flown_step(&flown)) {
+            continue;
+        }
+        const int exposed = flown.sample - 1;
+        goe_flight_detection_t pair[2] = {flown_detection(&flown, exposed), flown_detection(&flown, exposed)};
+        pair[0].id = 21u;
+        pair[1].id = 22u;
+        pair[1].box.left_px += 300.0f;
+        pair[1].box.right_px += 300.0f;
+        for (int i = 0; i < 2; i++) {
+            goe_flight_frame_t frame = flown_frame(&flown, exposed, &pair[i], 1);
+            frame.number = 2;
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+        }
+    }
+    int in_view = 0;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &flown.flight.slot[i];
+        in_view += slot->used && slot->in_view && (slot->id == 21u || slot->id == 22u || slot->id == 7u) ? 1 : 0;
+    }
+    TEST_ASSERT_TRUE(in_view >= 2);
+}
+
+static void the_autopilots_clock_may_wrap(void) {
+    static flown_t other;
+    flown_start(&other, NULL);
+    other.start_us = 0xFFFFFFFFu - 2000000u;
+    const goe_flight_assessment_t here = flown_fly(&flown, 4.0);
+    const goe_flight_assessment_t there = flown_fly(&other, 4.0);
+    CHECK_SAME(here.hazard.time_s, there.hazard.time_s);
+    CHECK_SAME(here.hazard.violation, there.hazard.violation);
+    TEST_ASSERT_EQUAL(1, there.obstacles);
+    TEST_ASSERT_EQUAL(0, other.flight.counters.late);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(an_obstacle_is_found_where_it_is);
+    RUN_TEST(the_hazard_counts_from_now);
+    RUN_TEST(a_new_obstacle_waits_for_its_confirmation);
+    RUN_TEST(a_low_score_is_not_looked_at);
+    RUN_TEST(false_detections_evict_nobody);
+    RUN_TEST(a_renumbered_obstacle_keeps_its_track);
+    RUN_TEST(a_box_of_another_size_takes_nothing_over);
+    RUN_TEST(a_detector_without_ids_is_followed_by_place);
+    RUN_TEST(another_obstacle_takes_nothing_over);
+    RUN_TEST(what_is_not_seen_any_more_is_given_up);
+    RUN_TEST(an_order_does_not_pass_to_the_next_in_its_slot);
+    RUN_TEST(a_dead_detector_is_not_a_clear_sky);
+    RUN_TEST(early_frames_are_kept_by_the_caller);
+    RUN_TEST(an_image_may_come_in_parts);
+    RUN_TEST(the_autopilots_clock_may_wrap);
+    return UNITY_END();
+}
