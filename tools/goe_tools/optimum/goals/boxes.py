@@ -211,7 +211,7 @@ def _gauss_goals(group: str, amount: Amount) -> list[Goal]:
 
 def _gauss_told(solid: Solid) -> Told:
     """Of a mast its noise; of a building nothing: that its corners are no ellipse's is an error that stays alike."""
-    return BOUND_TOLD if solid is MAST else Told()
+    return BOUND_TOLD if solid == MAST else Told()  # a worker of its own has a copy
 
 
 def _gauss_tasks(solid: Solid, roll_deg: float, amount: Amount) -> list[Simulated]:
