@@ -61,9 +61,8 @@
  *
  * ---------------------------------------------------------------------------------------------------------------------
  * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 2.9 KiB at the default window, 2.3 KiB without
- *             GOE_WITH_MOVERS), and all there
- *             is: no heap, no hidden statics, no recursion. One estimator follows one obstacle; several obstacles take
- *             several estimators, which share nothing.
+ *             GOE_WITH_MOVERS), and all there is: no heap, no hidden statics, no recursion. One estimator follows one
+ *             obstacle; several obstacles take several estimators, which share nothing.
  * Threads     Every function touches only what its arguments point at. Two threads may work on two estimators; one
  *             estimator needs the caller's lock.
  * Arithmetic  float only; of the C library sqrtf, memcpy and memset, no more. sqrtf must be correctly rounded, as IEEE 754

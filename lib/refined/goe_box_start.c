@@ -216,8 +216,8 @@ static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_foo
 
 /* --------------------------------------------------------------------------------------------------------------- start -- */
 
-/* GOE_BEARING and GOE_INVERSE_RANGE of a covariance, about axes turned by the angle of c, s: a' = (a c - s) m, q' = q m, m
- * = 1/(a s + c). */
+/* GOE_BEARING and GOE_INVERSE_RANGE of a covariance, about axes turned by the angle of c, s:
+ * a' = (a c - s) m, q' = q m, m = 1/(a s + c). */
 static void turn_covariance(const float x[GOE_STATES], float c, float s, float covariance[GOE_KEPT][GOE_KEPT]) {
     const float m = 1.0f / (x[GOE_BEARING] * s + c);
     const float shear = x[GOE_INVERSE_RANGE] * s * m;

@@ -67,8 +67,8 @@ void goe_ground_start(goe_filter_t *filter, float variance_m2) {
 }
 
 /* The ground below the altimeter rises or falls, one does not know which: after a way d the height is off by slope d more,
- * and its variance has grown by the difference of the squares. The top counts from the altimeter's zero, which moves along.
- * */
+ * and its variance has grown by the difference of the squares. The top counts from the altimeter's zero, which moves
+ * along. */
 void goe_ground_climb(goe_filter_t *filter, const goe_navigation_t *navigation) {
     float direction[GOE_STATES] = {0.0f};
     const float grown2 = goe_square(filter->flown_m) - goe_square(filter->sloped_m);

@@ -22,13 +22,14 @@ void goe_ground_start(goe_filter_t *filter, float variance_m2);
 /* The camera flew on: the slope of the ground below it. */
 void goe_ground_climb(goe_filter_t *filter, const goe_navigation_t *navigation);
 
-/* What is known of the height beforehand is in metres, its state in units of Z0: as the range becomes known, their ratio moves.
- * follow: 1/Z0 moved from what it was before. What was told too well is taken back before the rows of an image are, and
- * what was not told well enough is a row of goe_ground_tell(). A prism's foot tells its first range, which is near enough.
- * */
+/* What is known of the height beforehand is in metres, its state in units of Z0: as the range becomes known, their ratio
+ * moves. This keeps that ratio, after 1/Z0 moved from what it was before. */
 static inline void goe_ground_follow(goe_filter_t *filter, float inverse_range_before) {
     filter->ground_scale *= inverse_range_before / filter->state[GOE_INVERSE_RANGE];
 }
+
+/* Takes back what was told too well by that ratio, before the rows of an image are taken; what was not told well enough is
+ * a row of goe_ground_tell(). A prism's foot tells its first range, which is near enough: nothing is taken back there. */
 void goe_ground_widen(goe_filter_t *filter);
 
 /* Appends what the heights tell beyond what they have told, as far as there is room. Returns how many rows. */

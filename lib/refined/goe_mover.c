@@ -14,11 +14,11 @@
 #define LATE_MIN_S 0.02f      /* poses are told as late from here on ... */
 #define LATE_SIGMAS 2.7f      /* ... and if it is that much more than nothing */
 #define RATE_PREDICTED 0.8f   /* of a rate of turn, by the one before it: the mean over usual swaying */
-#define MOVES_CHI2 25.0f      /* of two degrees of freedom: 5e-5 by chance */
-#define REST_CHI2 9.0f        /* that a latency leaves of it, at least ... */
-#define LATE_SHARE 0.3f       /* of what the latency leaves, that the velocity leaves at least where poses are late */
-#define REST_SHARE 0.15f      /* ... of which the velocity leaves this, at most */
+#define MOVES_CHI2 25.0f      /* a velocity's two degrees of freedom: 4e-6 by chance, if nothing but noise is wrong */
 #define BOXES_CHI2 45.0f      /* the same of upright boxes, which drift also because they are no ellipse's */
+#define REST_CHI2 9.0f        /* something moves if a latency leaves at least this unexplained ... */
+#define REST_SHARE 0.15f      /* ... and a velocity at most this share of that */
+#define LATE_SHARE 0.3f       /* poses are late only if a velocity leaves more than this share of that */
 #define MOVES_MIN_M_S 1.0f    /* what is slower is taken for none */
 #define MOVES_S 0.4f          /* for which it says so, image after image ... */
 #define MOVES_IMAGES 3        /* ... of which there are at least so many */
