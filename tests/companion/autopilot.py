@@ -1,0 +1,295 @@
+"""A simulated autopilot: an aircraft, a clock of its own, and the part of MAVLink that the companion relies on."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import Counter
+from dataclasses import dataclass, field
+from types import ModuleType
+from typing import Any, Callable
+
+from links import Faults, UdpWire, Wire
+from loop import Loop
+
+LAT_E7, LON_E7, ALT_M = 473977420, 85455940, 488.0  # of the local frame's origin
+METRES_PER_DEGREE = 111319.49
+ARDUPILOT, PX4 = 3, 12
+MODES = {ARDUPILOT: 10, PX4: 4 << 16 | 4 << 24}  # AUTO; AUTO.MISSION
+LOITER = 4 << 16 | 3 << 24  # PX4: AUTO.LOITER
+DO_SET_MODE, DO_GO_AROUND, DO_REPOSITION, SET_MESSAGE_INTERVAL, REQUEST_MESSAGE = 176, 191, 192, 511, 512
+ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that ask for messages and move nothing
+
+
+def local_m(lat_e7: int, lon_e7: int) -> tuple[float, float]:
+    """North and east of the origin; good for some kilometres about it."""
+    north = (lat_e7 - LAT_E7) * 1e-7 * METRES_PER_DEGREE
+    east = (lon_e7 - LON_E7) * 1e-7 * METRES_PER_DEGREE * math.cos(math.radians(LAT_E7 * 1e-7))
+    return north, east
+
+
+def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
+    """Body to NED, (w, x, y, z), of angles in radians."""
+    cr, sr, cp, sp = math.cos(roll / 2), math.sin(roll / 2), math.cos(pitch / 2), math.sin(pitch / 2)
+    cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
+    return (
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Of one moment: NED, m, m/s, rad, rad/s."""
+
+    position: tuple[float, float, float]
+    velocity: tuple[float, float, float]
+    angles: tuple[float, float, float]
+    rates: tuple[float, float, float]
+
+    @property
+    def q(self) -> tuple[float, float, float, float]:
+        return quaternion(*self.angles)
+
+
+@dataclass
+class Aircraft:
+    """Flies north, or turns towards `goal` as a bank of 30 degrees allows."""
+
+    north_m: float = 0.0
+    east_m: float = 0.0
+    height_m: float = 30.0
+    speed_m_s: float = 20.0
+    course: float = 0.0
+    roll_deg: float = 3.0
+    roll_hz: float = 0.4
+    goal: tuple[float, float] | None = None
+    time_s: float = field(default_factory=time.monotonic)
+    begin_s: float = field(init=False)
+    turn: float = field(init=False, default=0.0)
+
+    def __post_init__(self) -> None:
+        self.begin_s = self.time_s
+
+    def advance(self, now_s: float) -> Pose:
+        step = max(now_s - self.time_s, 0.0)
+        self.time_s = now_s
+        wanted = 0.0
+        if self.goal:
+            wanted = math.atan2(self.goal[1] - self.east_m, self.goal[0] - self.north_m)
+        error = math.remainder(wanted - self.course, 2 * math.pi)
+        most = 9.81 * math.tan(math.radians(30.0)) / self.speed_m_s
+        self.turn = max(-most, min(most, 2.0 * error))
+        middle = self.course + 0.5 * self.turn * step
+        self.course += self.turn * step
+        self.north_m += self.speed_m_s * step * math.cos(middle)
+        self.east_m += self.speed_m_s * step * math.sin(middle)
+        return self.pose()
+
+    def pose(self) -> Pose:
+        omega = 2 * math.pi * self.roll_hz
+        phase, most = omega * (self.time_s - self.begin_s), math.radians(self.roll_deg)
+        bank = math.atan(self.speed_m_s * self.turn / 9.81)
+        roll, rate = bank + most * math.sin(phase), most * omega * math.cos(phase)
+        return Pose(
+            (self.north_m, self.east_m, -self.height_m),
+            (self.speed_m_s * math.cos(self.course), self.speed_m_s * math.sin(self.course), 0.0),
+            (roll, 0.0, self.course),
+            (rate, self.turn * math.sin(roll), self.turn * math.cos(roll)),
+        )
+
+
+class Clock:
+    """Time since boot, in seconds of the host's time.monotonic()."""
+
+    def __init__(self, boot_s: float, drift: float = 0.0) -> None:
+        self.begin_s, self.boot_s, self.drift = time.monotonic(), boot_s, drift
+
+    def at(self, time_s: float) -> float:
+        return self.boot_s + (time_s - self.begin_s) * (1.0 + self.drift)
+
+    def jump(self, by_s: float) -> None:
+        self.boot_s += by_s
+
+    def restart(self) -> None:
+        self.begin_s, self.boot_s = time.monotonic(), 0.0
+
+
+@dataclass(frozen=True)
+class Heard:
+    """A message of the companion, and where the aircraft was when it came."""
+
+    time_s: float
+    message: Any
+    north_m: float
+
+
+class Autopilot:
+    """Sends and answers over a wire; `heard` is everything that came.
+
+    `ignored` commands of any kind but ASKING are not answered: the companion has to send them again.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        dialect: ModuleType,
+        *,
+        wire: type[Wire] = UdpWire,
+        faults: Faults | None = None,
+        make: int = PX4,
+        aircraft: Aircraft | None = None,
+        boot_s: float = 1000.0,
+        drift: float = 0.0,
+        pose_hz: float = 50.0,
+        ignored: int = 0,
+    ) -> None:
+        self.loop, self.dialect, self.make = loop, dialect, make
+        self.aircraft = aircraft or Aircraft()
+        self.clock = Clock(boot_s, drift)
+        self.wire = wire(loop, self._receive, faults)
+        self.heard: list[Heard] = []
+        self.answers = Counter[int]()  # to own TIMESYNC questions, by the time that was asked with
+        self.mode, self.modes = MODES[make], [MODES[make]]
+        self.ignored, self.silent = ignored, False
+        self.shift = (0.0, 0.0, 0.0)  # of the local frame: a reset of the filter
+        self.yaw_shift = 0.0
+        self.reset_counter: int | None = None  # a number: ODOMETRY is sent as well
+        self.asked: list[int] = []
+        self._fresh()
+        loop.every(1.0 / pose_hz, self._pose)
+        loop.every(1.0, self._second)
+
+    def _fresh(self) -> None:
+        self.mavlink = self.dialect.MAVLink(None, srcSystem=1, srcComponent=1)
+        self.parser = self.dialect.MAVLink(None)
+        self.parser.robust_parsing = True
+
+    # ------------------------------------------------------------------------------------------------------ sending
+
+    def send(self, message: Any, mavlink: Any = None) -> None:
+        self.wire.send(message.pack(mavlink or self.mavlink))
+
+    def boot_s(self) -> float:
+        return self.clock.at(time.monotonic())
+
+    def _pose(self) -> None:
+        now = time.monotonic()
+        pose = self.aircraft.advance(now)
+        if self.silent:
+            return
+        ms = int(self.clock.at(now) * 1e3)
+        position = [value + shift for value, shift in zip(pose.position, self.shift)]
+        q = quaternion(pose.angles[0], pose.angles[1], pose.angles[2] + self.yaw_shift)
+        self.send(self.dialect.MAVLink_attitude_quaternion_message(ms, *q, *pose.rates))
+        self.send(self.dialect.MAVLink_local_position_ned_message(ms, *position, *pose.velocity))
+        if self.reset_counter is not None:
+            self._odometry(ms * 1000, position, q, pose)
+
+    def _odometry(self, us: int, position: list[float], q: tuple[float, ...], pose: Pose) -> None:
+        """Velocity in the body frame; level and northwards both frames are one."""
+        unknown = [math.nan] + 20 * [0.0]
+        self.send(
+            self.dialect.MAVLink_odometry_message(
+                us, 1, 12, *position, list(q), *pose.velocity, *pose.rates, unknown, unknown, self.reset_counter
+            )
+        )
+
+    def _second(self) -> None:
+        if self.silent:
+            return
+        send, us = self.send, int(self.boot_s() * 1e6)
+        send(self.dialect.MAVLink_heartbeat_message(1, self.make, 0xD1, self.mode, 4, 3))
+        send(self.dialect.MAVLink_gps_global_origin_message(LAT_E7, LON_E7, int(ALT_M * 1e3), us))
+        home = [value + shift for value, shift in zip((0.0, 0.0, 0.0), self.shift)]
+        send(
+            self.dialect.MAVLink_home_position_message(
+                LAT_E7, LON_E7, int(ALT_M * 1e3), *home, [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0, us
+            )
+        )
+        self.asked.append(us * 1000)
+        send(self.dialect.MAVLink_timesync_message(0, us * 1000))
+
+    # ---------------------------------------------------------------------------------------------------- receiving
+
+    def _receive(self, data: bytes) -> None:
+        if self.silent:
+            return
+        for message in self.parser.parse_buffer(data) or []:
+            self.heard.append(Heard(time.monotonic(), message, self.aircraft.north_m))
+            handle: Callable[[Any], None] | None = getattr(self, f"_on_{message.get_type().lower()}", None)
+            if handle:
+                handle(message)
+
+    def _on_timesync(self, message: Any) -> None:
+        if message.tc1 == 0:
+            self.send(self.dialect.MAVLink_timesync_message(int(self.boot_s() * 1e9), message.ts1))
+        else:
+            self.answers[message.ts1] += 1
+
+    def _on_command_long(self, message: Any) -> None:
+        self._command(message, (0, 0))
+
+    def _on_command_int(self, message: Any) -> None:
+        self._command(message, (message.x, message.y))
+
+    def _command(self, message: Any, where_e7: tuple[int, int]) -> None:
+        if message.command not in ASKING:
+            if self.ignored > 0:
+                self.ignored -= 1
+                return
+            self._obey(message, where_e7)
+        self.send(self.dialect.MAVLink_command_ack_message(message.command, 0))
+
+    def _obey(self, message: Any, where_e7: tuple[int, int]) -> None:
+        if message.command == DO_REPOSITION:
+            self.aircraft.goal = local_m(*where_e7)
+            if int(message.param2) & 1:
+                self._set_mode(LOITER)
+        elif message.command == DO_SET_MODE:
+            self._set_mode(int(message.param2) << 16 | int(message.param3) << 24)
+
+    def _on_set_mode(self, message: Any) -> None:
+        self._set_mode(message.custom_mode)
+
+    def _set_mode(self, mode: int) -> None:
+        if mode != LOITER:
+            self.aircraft.goal = None
+        if mode != self.mode:
+            self.mode = mode
+            self.modes.append(mode)
+
+    # ------------------------------------------------------------------------------------------------ what was heard
+
+    def of(self, name: str) -> list[Any]:
+        return [heard.message for heard in self.heard if heard.message.get_type() == name]
+
+    def heard_of(self, name: str) -> list[Heard]:
+        return [heard for heard in self.heard if heard.message.get_type() == name]
+
+    def commands(self) -> list[Any]:
+        """Everything that would move the aircraft or change its mode."""
+        moving = ("SET_MODE", "SET_POSITION_TARGET_LOCAL_NED", "SET_POSITION_TARGET_GLOBAL_INT", "MISSION_ITEM_INT")
+        told = [
+            message for message in self.of("COMMAND_LONG") + self.of("COMMAND_INT") if message.command not in ASKING
+        ]
+        return told + [message for name in moving for message in self.of(name)]
+
+    # --------------------------------------------------------------------------------------------------- misfortunes
+
+    def restart(self, silent_s: float) -> None:
+        """Off, and after a while on again: another socket, boot time 0, sequence 0."""
+        self.silent = True
+
+        def back() -> None:
+            self.wire.reopen()
+            self._fresh()
+            self.clock.restart()
+            self.silent = False
+
+        self.loop.after(silent_s, back)
+
+    def close(self) -> None:
+        self.wire.close()

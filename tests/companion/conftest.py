@@ -1,0 +1,58 @@
+"""The dialect of the companion, made as its build makes it, and fleets of flights."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from companion import ROOT
+
+pymavlink = pytest.importorskip("pymavlink", reason="pymavlink is not installed")
+
+from flights import Fleet, Plan  # noqa: E402 - needs what is skipped for
+
+MakeFleet = Callable[[Sequence[Plan]], Fleet]
+OWN = (ROOT / "port" / "companion" / "companion.xml", ROOT / "port" / "mavlink" / "goe.xml")
+COMMON = ("minimal.xml", "standard.xml", "common.xml")
+
+
+def generate(folder: Path) -> Path:
+    """A Python module from companion.xml and what it includes, which mavgen looks for beside it."""
+    from pymavlink.generator import mavgen
+
+    definitions = Path(pymavlink.__file__).parent / "dialects" / "v20"
+    for source in (*OWN, *(definitions / name for name in COMMON)):
+        (folder / source.name).write_bytes(source.read_bytes())
+    module = folder / "companion_dialect.py"
+    options = mavgen.Opts(str(module), wire_protocol="2.0", language="Python3", validate=False)
+    assert mavgen.mavgen(options, [str(folder / "companion.xml")])
+    return module
+
+
+@pytest.fixture(scope="session")
+def dialect(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    path = generate(tmp_path_factory.mktemp("dialect"))
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def make_fleet(dialect: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Iterator[MakeFleet]:
+    """Fleets whose processes end with the module, whatever happened."""
+    fleets: list[Fleet] = []
+
+    def make(plans: Sequence[Plan]) -> Fleet:
+        fleets.append(Fleet(dialect, tmp_path_factory.mktemp("fleet"), plans))
+        return fleets[-1]
+
+    yield make
+    for fleet in fleets:
+        fleet.close()
