@@ -206,10 +206,10 @@ configure() { cmake --preset "$1" -DGOE_BUILD_TESTS=ON ${UNITY_DIR:+-DUNITY_DIR=
 build() { configure "$1" && cmake --build --preset "$1"; }
 build_and_ctest() { build "$1" && ctest --preset "$1" -j "$jobs"; }
 
-sources() { find lib port/flight sim_host tests -name '*.[ch]' -o -name '*.cpp'; }
+sources() { find lib port/flight port/mavlink sim_host tests -name '*.[ch]' -o -name '*.cpp'; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
 tidy() {
-    find "$root/lib" "$root/port/flight" "$root/sim_host" -name '*.c' -print0 |
+    find "$root/lib" "$root/port/flight" "$root/port/mavlink" "$root/sim_host" -name '*.c' -print0 |
         xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet -p build-clang 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
 }
 

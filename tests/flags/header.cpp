@@ -1,5 +1,7 @@
-// The public headers in a C++ translation unit, with a call of every function.
+// The public headers in a C++ translation unit, with a call of every function; of the codec of one message.
 #include "goe_flight.h"
+#include "goe_mavlink.h"
+#include "goe_mavlink_map.h"
 
 static goe_flight_t flight;
 
@@ -28,6 +30,61 @@ static bool flight_layer_answers(const goe_settings_t &estimator) {
            goe_flight_restart(&flight) == GOE_FLIGHT_OK && goe_flight_action_text(assessment.action)[0] == 'n';
 }
 
+static bool features_arrive() {
+    goe_mavlink_features_t features = goe_mavlink_features_t();
+    goe_mavlink_sighting_t sighting;
+    uint8_t payload[GOE_MAVLINK_PAYLOAD_MAX];
+    features.number = 1u;
+    features.image_width = features.image_height = 640u;
+    features.seen = GOE_MAVLINK_SEES_BOX;
+    const size_t length = goe_mavlink_pack_features(&features, payload);
+    goe_mavlink_read_features(payload, length, &features);
+    return goe_mavlink_from_features(&features, 0u, &sighting) && sighting.frame.count == 1u;
+}
+
+static bool standard_messages_arrive() {
+    const goe_mavlink_camera_t camera = {640.0f, 640.0f, 800.0f, 800.0f, 320.0f, 320.0f, 0u, 0u, 0u};
+    const goe_mavlink_landing_target_t target = goe_mavlink_landing_target_t();
+    const goe_mavlink_tracking_t tracking = goe_mavlink_tracking_t();
+    goe_mavlink_sighting_t sighting;
+    return !goe_mavlink_from_landing_target(&target, &camera, 0u, &sighting) &&
+           !goe_mavlink_from_tracking(&tracking, &camera, 0u, &sighting);
+}
+
+/* Of an obstacle of which nothing is known. */
+static bool messages_leave() {
+    const goe_flight_obstacle_t obstacle = goe_flight_obstacle_t();
+    const goe_flight_assessment_t assessment = goe_flight_assessment_t();
+    const goe_flight_counters_t counters = goe_flight_counters_t();
+    const goe_mavlink_own_t own = goe_mavlink_own_t();
+    const uint16_t sector_cm[GOE_FLIGHT_SECTORS] = {0};
+    goe_mavlink_obstacle_t told;
+    goe_mavlink_hazard_t hazard;
+    goe_mavlink_status_t status;
+    goe_mavlink_obstacle_distance_t distance;
+    goe_mavlink_obstacle_distance_3d_t distance_3d;
+    goe_mavlink_collision_t collision;
+    goe_mavlink_target_absolute_t target;
+    goe_mavlink_adsb_vehicle_t vehicle;
+    goe_mavlink_to_obstacle(&obstacle, 0, &own, &told);
+    goe_mavlink_to_status(&counters, &assessment, 0u, &own, &status);
+    return !goe_mavlink_to_hazard(&obstacle, 0, &assessment, &own, &hazard) &&
+           goe_mavlink_to_obstacle_distance(sector_cm, 1000u, 5u, &own, &distance) &&
+           !goe_mavlink_to_obstacle_distance_3d(&obstacle, 100.0f, &own, &distance_3d) &&
+           !goe_mavlink_to_collision(&obstacle, 0, &assessment, 0.1f, &collision) &&
+           !goe_mavlink_to_target_absolute(&obstacle, 0, &own, &target) &&
+           !goe_mavlink_to_adsb_vehicle(&obstacle, 0, 0u, &own, &vehicle);
+}
+
+static bool messages_are_framed() {
+    goe_mavlink_sender_t sender = {1u, 191u, 0u};
+    const uint8_t payload[1] = {0};
+    uint8_t frame[GOE_MAVLINK_FRAME_MAX];
+    const goe_mavlink_message_t status = goe_mavlink_of_id(42703u);
+    return goe_mavlink_info(status) != nullptr &&
+           goe_mavlink_frame(&sender, status, payload, sizeof payload, frame) == 13u;
+}
+
 int main() {
     goe_settings_t settings;
     goe_settings_default(&settings);
@@ -49,5 +106,6 @@ int main() {
     const bool named = goe_status_text(GOE_OK)[0] == 'o';
     settings.camera.width_px = settings.camera.height_px = 640.0f;
     const bool flies = flight_layer_answers(settings);
-    return refused && empty && reset && named && flies && goe_self_check() <= 0x3Fu ? 0 : 1;
+    const bool tells = features_arrive() && standard_messages_arrive() && messages_leave() && messages_are_framed();
+    return refused && empty && reset && named && flies && tells && goe_self_check() <= 0x3Fu ? 0 : 1;
 }

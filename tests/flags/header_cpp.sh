@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compiles, links and runs a C++ program that includes goe_flight.h, and so goe.h, under strict warnings.
+# Compiles, links and runs a C++ program that includes the public headers under strict warnings.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 

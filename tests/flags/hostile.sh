@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compiles the library and the flight layer among other people's macros, and with the poorest C library that it may meet: sqrtf, memcpy, memset
-# and the compiler's own headers, everything undeclared an error. Public header in C++ too.
+# Compiles the library, the flight layer and its MAVLink messages among other people's macros, and with the poorest C library that
+# it may meet: sqrtf, memcpy, memset and the compiler's own headers, everything undeclared an error. Public headers in C++ too.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 here=$root/tests/flags
@@ -9,11 +9,12 @@ warnings=(-Wall -Wextra -Wundef -Wshadow -Werror)
 cd "$scratch"
 cat >header.cpp <<'END'
 #include "goe_flight.h"
+#include "goe_mavlink_map.h"
 int main() { return goe_flight_action_text(GOE_FLIGHT_NONE) == nullptr; }
 END
 
 compiled=0
-# compile <compiler> <flag>...: every source of the library and of the flight layer
+# compile <compiler> <flag>...: every source
 compile() {
     "$@" "${warnings[@]}" "${all_includes[@]}" -c "${all_sources[@]}" || fail "$*"
     compiled=$((compiled + ${#all_sources[@]}))
@@ -37,7 +38,7 @@ done
 for compiler in $(compilers g++ clang++-19); do
     for standard in c++11 c++17; do
         "$compiler" -std=$standard "${warnings[@]}" -include "$here/hostile.h" "${all_includes[@]}" -fsyntax-only header.cpp ||
-            fail "$compiler -std=$standard: the public header"
+            fail "$compiler -std=$standard: the public headers"
     done
 done
 if command -v arm-none-eabi-gcc >/dev/null; then

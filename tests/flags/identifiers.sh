@@ -13,7 +13,7 @@ calls="$calls|sqrt|sqrtl|fabs|fabsf|fabsl|isnan|isinf|isfinite|isnormal|fpclassi
 headers='#include *<(stdio|stdlib|tgmath|complex|assert|errno|fenv)\.h>'
 
 bad=0
-mapfile -t files < <(find "$root/lib" "$root/port/flight" -name '*.[ch]')
+mapfile -t files < <(find "$root/lib" "$root/port/flight" "$root/port/mavlink" -name '*.[ch]')
 for file in "${files[@]}"; do
     stripped=$scratch/stripped
     gcc -fpreprocessed -dD -E -P -w "$file" >"$stripped"

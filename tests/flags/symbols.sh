@@ -37,13 +37,14 @@ case ${1:-} in
             done
         done ;;
     arm)
-        # No double precision and no 64-bit division in hardware: only a time difference may call a conversion.
+        # No double precision and no 64-bit division in hardware: only a time difference may call a conversion, and the
+        # milliseconds of a MAVLink message a division.
         if ! command -v arm-none-eabi-gcc >/dev/null; then
             echo "skipped: no arm-none-eabi-gcc"
             exit 77
         fi
         for level in -O2 -Os; do
-            check "Cortex-M4F $level" arm-none-eabi-nm "$allowed|__aeabi_l2f" \
+            check "Cortex-M4F $level" arm-none-eabi-nm "$allowed|__aeabi_l2f|__aeabi_uldivmod" \
                 arm-none-eabi-gcc "${own[@]}" $level -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
         done ;;
     *)
