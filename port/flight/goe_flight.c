@@ -431,6 +431,7 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
     flight->clock = clock;
     flight->had_frame = (uint8_t)(flight->had_frame | 1u << frame->camera);
     flight->frame_us[frame->camera] = (uint32_t)flight->base_us;
+    flight->capture_us = view.time_us;
     goe_flight_table_take(flight, &view, frame);
     goe_flight_count(&flight->counters.taken);
     return GOE_FLIGHT_OK;

@@ -241,7 +241,7 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------------------------- state -- */
 
-/* Transparent so that it can be placed and counted; private but for counters. At each type the file that keeps it. */
+/* Transparent so that it can be placed and counted; private but for counters and capture_us. At each type the file that keeps it. */
 
 typedef struct { /* goe_history.c */
     uint32_t time_us;
@@ -327,6 +327,7 @@ typedef struct {
     int64_t base_us;                /* the newest sample's time, never wrapping */
     uint32_t frame_us[GOE_CAMERAS_MAX]; /* base_us when the latest frame of each camera was taken ... */
     uint32_t assessed_us;
+    uint32_t capture_us; /* exposure of the latest frame taken, autopilot's clock; may be read */
     float velocity_ned_m_s[3];
     float ground_down_m; /* by the best source of the newest sample ... */
     uint8_t ground_source; /* ... which is this, GOE_FLIGHT_RANGE_FINDER, ... */
