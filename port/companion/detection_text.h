@@ -1,0 +1,28 @@
+/* A line of JSON that tells an image's detections. README.md has its keys. SPDX-License-Identifier: MIT */
+#ifndef DETECTION_TEXT_H
+#define DETECTION_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "camera_image.h"
+#include "companion_config.h"
+
+#define DETECTION_LINE_MAX 65536 /* bytes of a line; a longer one is no line of a detector */
+
+/* The clocks at the line's arrival, us. */
+typedef struct {
+    int64_t unix_us, monotonic_us, autopilot_us;
+    double autopilot_sd_us; /* one sigma of the offset between autopilot's and own clock */
+} detection_now_t;
+
+typedef struct {
+    char text[160]; /* what is wrong with a line */
+} detection_fault_t;
+
+/* False, with the fault, if the line cannot be understood. A detection of a class that is not wanted is left out. The image is
+ * in the autopilot's clock. */
+bool detection_text_read(const char *line, size_t length, const companion_config_t *config, const detection_now_t *now,
+                         camera_image_t *image, detection_fault_t *fault);
+
+#endif
