@@ -1,0 +1,448 @@
+/* The autopilot as its messages show it. SPDX-License-Identifier: MIT */
+#include "autopilot.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "events.h"
+
+#define US_PER_MS 1000
+#define US_PER_S 1000000
+#define ASK_US 250000        /* between two questions for the clock */
+#define REQUEST_US 5000000   /* between two requests for rates, while they are not met */
+#define ORIGIN_US 5000000    /* between two requests for the origin */
+#define SILENT_US 3000000    /* without a sample for this long the autopilot is asked for its rates anew */
+#define CLOCK_OFF_US 1000000 /* a sample's time that far from the clock is another clock's */
+#define STRANGE_MAX 3
+#define HEIGHT_OLD_US 2000000 /* a range finder or terrain that is older counts as none */
+
+/* A step between two positions that the velocities do not explain is a reset of the autopilot's filter: beyond what an
+ * acceleration that nobody flies makes of the time between, and the noise of a filter that corrects itself. */
+#define STEP_FLOOR_M 1.0f
+#define STEP_ACCELERATION 15.0f /* m/s^2 */
+#define STEP_GAP_S 1.0f         /* after a longer gap nothing can be said: counts as none */
+
+/* The same of two attitudes: the rates of both, half again, and the noise. */
+#define TURN_FLOOR_RAD 0.1f
+#define TURN_RATES 0.75f /* share of the sum of both rates over the time between */
+
+#define DOWNWARD MAV_SENSOR_ROTATION_PITCH_270
+
+void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire) {
+    (void)memset(autopilot, 0, sizeof *autopilot);
+    autopilot->config = config;
+    autopilot->flight = flight;
+    autopilot->wire = wire;
+    autopilot->system = (uint8_t)config->link_system;
+    wire->heard = autopilot->system;
+}
+
+int64_t autopilot_clock_us(const autopilot_t *autopilot, int64_t now_us) {
+    return clock_sync_known(&autopilot->clock) ? clock_sync_autopilot_us(&autopilot->clock, now_us) : 0;
+}
+
+double autopilot_clock_sd_us(const autopilot_t *autopilot) {
+    return clock_sync_sd_us(&autopilot->clock, (double)autopilot->config->flight.delay_sd_s * US_PER_S);
+}
+
+const char *autopilot_kind_text(const autopilot_t *autopilot) {
+    switch (autopilot->kind) {
+        case MAV_AUTOPILOT_ARDUPILOTMEGA:
+            return "ArduPilot";
+        case MAV_AUTOPILOT_PX4:
+            return "PX4";
+        default:
+            return "autopilot";
+    }
+}
+
+float autopilot_heading_deg(const autopilot_t *autopilot) {
+    const mavlink_attitude_quaternion_t *q = &autopilot->attitude;
+    const float north = q->q1 * q->q1 + q->q2 * q->q2 - q->q3 * q->q3 - q->q4 * q->q4;
+    const float east = 2.0f * (q->q2 * q->q3 + q->q1 * q->q4);
+    const float heading = atan2f(east, north) * 57.29578f;
+    return isfinite(heading) ? fmodf(heading + 360.0f, 360.0f) : 0.0f;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- clock -- */
+
+/* All that was known of another clock, or of another run of the autopilot. */
+static void start_anew(autopilot_t *autopilot) {
+    clock_sync_reset(&autopilot->clock);
+    (void)goe_flight_restart(autopilot->flight);
+    autopilot->has_attitude = autopilot->has_position = false;
+    autopilot->has_range_finder = autopilot->has_terrain = false;
+    autopilot->has_origin = autopilot->has_home = false;
+    autopilot->strange_times = 0;
+    autopilot->requests = 0;
+    autopilot->requested_us = autopilot->origin_asked_us = 0;
+}
+
+/* Whether a sample's time is of the clock that is known. A few that are not mean a restart. */
+static bool is_of_the_clock(autopilot_t *autopilot, int64_t time_us, int64_t now_us) {
+    if (!clock_sync_known(&autopilot->clock)) {
+        clock_sync_one_way(&autopilot->clock, now_us, time_us);
+        return true;
+    }
+    const int64_t off_us = time_us - autopilot_clock_us(autopilot, now_us);
+    if (off_us > -CLOCK_OFF_US && off_us < CLOCK_OFF_US) {
+        autopilot->strange_times = 0;
+        clock_sync_one_way(&autopilot->clock, now_us, time_us);
+        return true;
+    }
+    autopilot->strange_times++;
+    if (autopilot->strange_times >= STRANGE_MAX) {
+        autopilot->restarts++;
+        event("the autopilot's clock jumped by %+.1f s: all tracks end", (double)off_us / US_PER_S);
+        start_anew(autopilot);
+    }
+    return false;
+}
+
+static void take_timesync(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    mavlink_timesync_t sync;
+    mavlink_message_t answer;
+    mavlink_msg_timesync_decode(message, &sync);
+    if (sync.tc1 == 0) { /* a question of the autopilot's */
+        (void)mavlink_msg_timesync_pack(autopilot->wire->system, autopilot->wire->component, &answer, now_us * 1000,
+                                        sync.ts1);
+        wire_send(autopilot->wire, &answer);
+        return;
+    }
+    const int64_t asked_us = sync.ts1 / 1000;
+    if (asked_us != autopilot->asked_us) {
+        return; /* an answer to somebody else, or a late one */
+    }
+    if (!clock_sync_answer(&autopilot->clock, asked_us, now_us, sync.tc1 / 1000)) {
+        autopilot->restarts++;
+        event("the autopilot's clock jumped: all tracks end");
+        start_anew(autopilot);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- pose -- */
+
+static void count_sample(autopilot_t *autopilot, goe_flight_status_t status, unsigned long *taken, int64_t now_us) {
+    if (status == GOE_FLIGHT_OK) {
+        (*taken)++;
+        autopilot->pose_us = now_us;
+    } else {
+        autopilot->bad_samples++;
+    }
+}
+
+static float rate_of(const mavlink_attitude_quaternion_t *a) {
+    return sqrtf(a->rollspeed * a->rollspeed + a->pitchspeed * a->pitchspeed + a->yawspeed * a->yawspeed);
+}
+
+/* Whether the attitude turned farther than the rates explain. */
+static bool has_turned(const mavlink_attitude_quaternion_t *from, const mavlink_attitude_quaternion_t *to,
+                       float span_s) {
+    const float cosine = fabsf(from->q1 * to->q1 + from->q2 * to->q2 + from->q3 * to->q3 + from->q4 * to->q4);
+    const float angle = 2.0f * acosf(fminf(cosine, 1.0f));
+    return angle > TURN_FLOOR_RAD + TURN_RATES * (rate_of(from) + rate_of(to)) * span_s;
+}
+
+static void take_attitude(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    mavlink_attitude_quaternion_t now;
+    mavlink_msg_attitude_quaternion_decode(message, &now);
+    if (!is_of_the_clock(autopilot, (int64_t)now.time_boot_ms * US_PER_MS, now_us)) {
+        return;
+    }
+    const float span_s = (float)(int32_t)(now.time_boot_ms - autopilot->attitude.time_boot_ms) * 1e-3f;
+    const bool turned = autopilot->has_attitude && span_s > 0.0f && span_s < STEP_GAP_S &&
+                        has_turned(&autopilot->attitude, &now, span_s);
+    const goe_flight_attitude_t sample = {
+        now.time_boot_ms * US_PER_MS, {now.q1, now.q2, now.q3, now.q4}, autopilot->reset_attitude + (turned ? 1u : 0u)};
+    const goe_flight_status_t status = goe_flight_attitude(autopilot->flight, &sample);
+    count_sample(autopilot, status, &autopilot->attitudes, now_us);
+    if (status != GOE_FLIGHT_OK) {
+        return;
+    }
+    if (turned) {
+        autopilot->reset_attitude++;
+        autopilot->jumps++;
+        event("the autopilot's attitude jumped: all tracks end");
+    }
+    autopilot->attitude = now;
+    autopilot->has_attitude = true;
+}
+
+/* What of the step from one position to the next the mean velocity does not explain, where that is too much. */
+static bool find_step(const mavlink_local_position_ned_t *from, const mavlink_local_position_ned_t *to, float span_s,
+                      float step_m[3]) {
+    const float allowed_m = STEP_FLOOR_M + 0.5f * STEP_ACCELERATION * span_s * span_s;
+    const float half_s = 0.5f * span_s;
+    step_m[0] = to->x - from->x - half_s * (from->vx + to->vx);
+    step_m[1] = to->y - from->y - half_s * (from->vy + to->vy);
+    step_m[2] = to->z - from->z - half_s * (from->vz + to->vz);
+    return hypotf(step_m[0], step_m[1]) > allowed_m || fabsf(step_m[2]) > allowed_m;
+}
+
+static void put_heights(const autopilot_t *autopilot, int64_t time_us, goe_flight_position_t *sample) {
+    sample->height_m[GOE_FLIGHT_RANGE_FINDER] = autopilot->range_finder_m;
+    sample->height_m[GOE_FLIGHT_TERRAIN] = autopilot->terrain_m;
+    sample->height_m[GOE_FLIGHT_HOME] = autopilot->home_down_m - sample->position_ned_m[2];
+    if (autopilot->has_range_finder && time_us - autopilot->range_finder_us < HEIGHT_OLD_US) {
+        sample->height_valid |= (uint8_t)(1u << GOE_FLIGHT_RANGE_FINDER);
+    }
+    if (autopilot->has_terrain && time_us - autopilot->terrain_us < HEIGHT_OLD_US) {
+        sample->height_valid |= (uint8_t)(1u << GOE_FLIGHT_TERRAIN);
+    }
+    if (autopilot->has_home) {
+        sample->height_valid |= (uint8_t)(1u << GOE_FLIGHT_HOME);
+    }
+}
+
+static goe_flight_position_t position_sample(const autopilot_t *autopilot, const mavlink_local_position_ned_t *now) {
+    goe_flight_position_t sample;
+    (void)memset(&sample, 0, sizeof sample);
+    sample.time_us = now->time_boot_ms * US_PER_MS;
+    sample.position_ned_m[0] = now->x;
+    sample.position_ned_m[1] = now->y;
+    sample.position_ned_m[2] = now->z;
+    sample.velocity_ned_m_s[0] = now->vx;
+    sample.velocity_ned_m_s[1] = now->vy;
+    sample.velocity_ned_m_s[2] = now->vz;
+    put_heights(autopilot, (int64_t)now->time_boot_ms * US_PER_MS, &sample);
+    sample.origin_known = autopilot->has_origin;
+    sample.origin_lat_e7 = autopilot->origin_lat_e7;
+    sample.origin_lon_e7 = autopilot->origin_lon_e7;
+    sample.reset_horizontal = autopilot->reset_horizontal;
+    sample.reset_vertical = autopilot->reset_vertical;
+    sample.reset_delta_known = autopilot->reset_delta_known;
+    (void)memcpy(sample.reset_delta_ned_m, autopilot->reset_delta_ned_m, sizeof sample.reset_delta_ned_m);
+    return sample;
+}
+
+/* The mark of a step, before the sample that has it is given. */
+static void mark_step(autopilot_t *autopilot, const float step_m[3]) {
+    (void)memcpy(autopilot->reset_delta_ned_m, step_m, sizeof autopilot->reset_delta_ned_m);
+    autopilot->reset_delta_known = true;
+    autopilot->reset_horizontal++;
+    autopilot->reset_vertical++;
+    autopilot->jumps++;
+    event("the autopilot's position jumped by %.1f, %.1f, %.1f m", (double)step_m[0], (double)step_m[1],
+          (double)step_m[2]);
+}
+
+static bool is_finite_position(const mavlink_local_position_ned_t *p) {
+    return isfinite(p->x) && isfinite(p->y) && isfinite(p->z) && isfinite(p->vx) && isfinite(p->vy) && isfinite(p->vz);
+}
+
+static void take_position(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    mavlink_local_position_ned_t now;
+    float step_m[3];
+    mavlink_msg_local_position_ned_decode(message, &now);
+    if (!is_finite_position(&now)) {
+        autopilot->bad_samples++;
+        return;
+    }
+    if (!is_of_the_clock(autopilot, (int64_t)now.time_boot_ms * US_PER_MS, now_us)) {
+        return;
+    }
+    const float span_s = (float)(int32_t)(now.time_boot_ms - autopilot->position.time_boot_ms) * 1e-3f;
+    if (autopilot->has_position && span_s > 0.0f && span_s < STEP_GAP_S &&
+        find_step(&autopilot->position, &now, span_s, step_m)) {
+        mark_step(autopilot, step_m);
+    }
+    const goe_flight_position_t sample = position_sample(autopilot, &now);
+    const goe_flight_status_t status = goe_flight_position(autopilot->flight, &sample);
+    count_sample(autopilot, status, &autopilot->positions, now_us);
+    if (status == GOE_FLIGHT_OK) {
+        autopilot->position = now;
+        autopilot->has_position = true;
+    }
+}
+
+/* Of ODOMETRY the counter of resets alone: by how much is not told. Steps of the position are found by themselves, so this is
+ * for what they are too small for. */
+static void take_odometry(autopilot_t *autopilot, const mavlink_message_t *message) {
+    const uint8_t resets = mavlink_msg_odometry_get_reset_counter(message);
+    if (autopilot->has_odometry_resets && resets != autopilot->odometry_resets) {
+        autopilot->reset_attitude++;
+        event("the autopilot tells of a reset (%u): all tracks end", resets);
+    }
+    autopilot->odometry_resets = resets;
+    autopilot->has_odometry_resets = true;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- heights -- */
+
+/* Share of a distance along body's down that is vertical. */
+static float upright(const autopilot_t *autopilot) {
+    const mavlink_attitude_quaternion_t *q = &autopilot->attitude;
+    return autopilot->has_attitude ? 1.0f - 2.0f * (q->q2 * q->q2 + q->q3 * q->q3) : 1.0f;
+}
+
+static void take_distance(autopilot_t *autopilot, const mavlink_message_t *message) {
+    mavlink_distance_sensor_t sensor;
+    mavlink_msg_distance_sensor_decode(message, &sensor);
+    if (sensor.orientation != DOWNWARD || sensor.current_distance <= sensor.min_distance ||
+        sensor.current_distance >= sensor.max_distance) {
+        return;
+    }
+    autopilot->range_finder_m = 0.01f * (float)sensor.current_distance * upright(autopilot);
+    autopilot->range_finder_us = (int64_t)sensor.time_boot_ms * US_PER_MS;
+    autopilot->has_range_finder = autopilot->range_finder_m > 0.0f;
+}
+
+static void take_terrain(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    mavlink_terrain_report_t report;
+    mavlink_msg_terrain_report_decode(message, &report);
+    autopilot->has_terrain =
+        report.spacing > 0 && isfinite(report.current_height) && fabsf(report.current_height) < 1e5f;
+    autopilot->terrain_m = report.current_height;
+    autopilot->terrain_us = autopilot_clock_us(autopilot, now_us);
+}
+
+static void take_altitude(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    const float height_m = mavlink_msg_altitude_get_bottom_clearance(message);
+    autopilot->has_terrain = isfinite(height_m) && height_m > 0.0f && height_m < 1e5f;
+    autopilot->terrain_m = height_m;
+    autopilot->terrain_us = autopilot_clock_us(autopilot, now_us);
+}
+
+static void take_home(autopilot_t *autopilot, const mavlink_message_t *message) {
+    const float down_m = mavlink_msg_home_position_get_z(message);
+    autopilot->has_home = isfinite(down_m) && fabsf(down_m) < 1e5f;
+    autopilot->home_down_m = autopilot->has_home ? down_m : 0.0f;
+}
+
+static void take_origin(autopilot_t *autopilot, const mavlink_message_t *message) {
+    mavlink_gps_global_origin_t origin;
+    mavlink_msg_gps_global_origin_decode(message, &origin);
+    if (origin.latitude < -890000000 || origin.latitude > 890000000 || origin.longitude < -1800000000 ||
+        origin.longitude > 1800000000) {
+        return;
+    }
+    autopilot->origin_lat_e7 = origin.latitude;
+    autopilot->origin_lon_e7 = origin.longitude;
+    autopilot->origin_alt_m = 1e-3f * (float)origin.altitude;
+    autopilot->has_origin = true;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- identity -- */
+
+static void take_heartbeat(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    mavlink_heartbeat_t beat;
+    mavlink_msg_heartbeat_decode(message, &beat);
+    if (message->compid != MAV_COMP_ID_AUTOPILOT1 || beat.autopilot == MAV_AUTOPILOT_INVALID ||
+        (autopilot->system != 0 && message->sysid != autopilot->system)) {
+        return;
+    }
+    if (autopilot->heartbeat_us == 0) {
+        autopilot->system = message->sysid;
+        autopilot->kind = beat.autopilot;
+        autopilot->wire->heard = message->sysid;
+        autopilot->wire->system = message->sysid;
+        event("%s found: system %u", autopilot_kind_text(autopilot), message->sysid);
+    }
+    autopilot->custom_mode = beat.custom_mode;
+    autopilot->base_mode = beat.base_mode;
+    autopilot->heartbeat_us = now_us;
+    link_answer(autopilot->wire->link);
+}
+
+void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    if (message->msgid == MAVLINK_MSG_ID_HEARTBEAT) {
+        take_heartbeat(autopilot, message, now_us);
+        return;
+    }
+    if (autopilot->heartbeat_us == 0 || message->sysid != autopilot->system ||
+        message->compid != MAV_COMP_ID_AUTOPILOT1) {
+        return;
+    }
+    switch (message->msgid) {
+        case MAVLINK_MSG_ID_ATTITUDE_QUATERNION:
+            take_attitude(autopilot, message, now_us);
+            break;
+        case MAVLINK_MSG_ID_LOCAL_POSITION_NED:
+            take_position(autopilot, message, now_us);
+            break;
+        case MAVLINK_MSG_ID_ODOMETRY:
+            take_odometry(autopilot, message);
+            break;
+        case MAVLINK_MSG_ID_TIMESYNC:
+            take_timesync(autopilot, message, now_us);
+            break;
+        case MAVLINK_MSG_ID_DISTANCE_SENSOR:
+            take_distance(autopilot, message);
+            break;
+        case MAVLINK_MSG_ID_TERRAIN_REPORT:
+            take_terrain(autopilot, message, now_us);
+            break;
+        case MAVLINK_MSG_ID_ALTITUDE:
+            take_altitude(autopilot, message, now_us);
+            break;
+        case MAVLINK_MSG_ID_HOME_POSITION:
+            take_home(autopilot, message);
+            break;
+        case MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN:
+            take_origin(autopilot, message);
+            break;
+        case MAVLINK_MSG_ID_EXTENDED_SYS_STATE:
+            autopilot->landing = mavlink_msg_extended_sys_state_get_landed_state(message) == MAV_LANDED_STATE_LANDING;
+            break;
+        default:
+            break;
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- questions -- */
+
+static void command(autopilot_t *autopilot, uint16_t number, float first, float second) {
+    mavlink_message_t message;
+    (void)mavlink_msg_command_long_pack(autopilot->wire->system, autopilot->wire->component, &message,
+                                        autopilot->system, MAV_COMP_ID_AUTOPILOT1, number, 0, first, second, 0.0f, 0.0f,
+                                        0.0f, 0.0f, 0.0f);
+    wire_send(autopilot->wire, &message);
+}
+
+static void ask_clock(autopilot_t *autopilot, int64_t now_us) {
+    mavlink_message_t message;
+    autopilot->asked_us = now_us;
+    (void)mavlink_msg_timesync_pack(autopilot->wire->system, autopilot->wire->component, &message, 0, now_us * 1000);
+    wire_send(autopilot->wire, &message);
+}
+
+static void request(autopilot_t *autopilot, uint32_t message, double hz) {
+    command(autopilot, MAV_CMD_SET_MESSAGE_INTERVAL, (float)message, (float)(US_PER_S / hz));
+}
+
+static void request_rates(autopilot_t *autopilot) {
+    const companion_config_t *config = autopilot->config;
+    request(autopilot, MAVLINK_MSG_ID_ATTITUDE_QUATERNION, config->link_attitude_hz);
+    request(autopilot, MAVLINK_MSG_ID_LOCAL_POSITION_NED, config->link_position_hz);
+    request(autopilot, MAVLINK_MSG_ID_DISTANCE_SENSOR, 10.0);
+    request(autopilot, MAVLINK_MSG_ID_EXTENDED_SYS_STATE, 2.0);
+    request(autopilot, MAVLINK_MSG_ID_HOME_POSITION, 0.5);
+    if (autopilot->kind == MAV_AUTOPILOT_PX4) {
+        request(autopilot, MAVLINK_MSG_ID_ODOMETRY, 10.0);
+        request(autopilot, MAVLINK_MSG_ID_ALTITUDE, 10.0);
+    } else {
+        request(autopilot, MAVLINK_MSG_ID_TERRAIN_REPORT, 2.0);
+    }
+}
+
+void autopilot_ask(autopilot_t *autopilot, int64_t now_us) {
+    if (autopilot->heartbeat_us == 0) {
+        return;
+    }
+    if (now_us - autopilot->asked_us >= ASK_US) {
+        ask_clock(autopilot, now_us);
+    }
+    const bool is_silent = now_us - autopilot->pose_us > SILENT_US;
+    if (autopilot->config->link_request_rates != 0 && (autopilot->requests < 2 || is_silent) &&
+        now_us - autopilot->requested_us >= REQUEST_US) {
+        autopilot->requested_us = now_us;
+        autopilot->requests++;
+        request_rates(autopilot);
+    }
+    if (autopilot->config->link_request_rates != 0 && !autopilot->has_origin &&
+        now_us - autopilot->origin_asked_us >= ORIGIN_US) {
+        autopilot->origin_asked_us = now_us;
+        command(autopilot, MAV_CMD_REQUEST_MESSAGE, (float)MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, 0.0f);
+        command(autopilot, MAV_CMD_REQUEST_MESSAGE, (float)MAVLINK_MSG_ID_HOME_POSITION, 0.0f);
+    }
+}

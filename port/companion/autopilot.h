@@ -1,0 +1,74 @@
+/* The autopilot as its messages show it: identity, clock, pose, resets, heights. SPDX-License-Identifier: MIT */
+#ifndef AUTOPILOT_H
+#define AUTOPILOT_H
+
+#include "clock_sync.h"
+#include "companion_config.h"
+#include "goe_flight.h"
+#include "wire.h"
+
+/* Samples are taken only from the one autopilot: the first one that is heard, or that of the configuration. */
+typedef struct {
+    const companion_config_t *config;
+    goe_flight_t *flight;
+    wire_t *wire;
+    clock_sync_t clock;
+
+    /* identity */
+    uint8_t system; /* 0: none heard yet */
+    uint8_t kind;   /* MAV_AUTOPILOT_... */
+    uint32_t custom_mode;
+    uint8_t base_mode;
+    bool landing;         /* EXTENDED_SYS_STATE: on approach */
+    int64_t heartbeat_us; /* own time of the latest */
+
+    /* pose */
+    mavlink_attitude_quaternion_t attitude;
+    mavlink_local_position_ned_t position;
+    bool has_attitude, has_position;
+    unsigned reset_attitude, reset_horizontal, reset_vertical; /* marks for the flight layer */
+    float reset_delta_ned_m[3];
+    bool reset_delta_known;
+    uint8_t odometry_resets;
+    bool has_odometry_resets;
+    int strange_times; /* in a row, against the clock that is known */
+    int64_t pose_us;   /* own time of the latest sample */
+
+    /* heights above the ground, with the autopilot's time of each */
+    float range_finder_m, terrain_m, home_down_m;
+    int64_t range_finder_us, terrain_us;
+    bool has_range_finder, has_terrain, has_home;
+
+    /* origin of the local frame */
+    int32_t origin_lat_e7, origin_lon_e7;
+    float origin_alt_m;
+    bool has_origin;
+
+    int64_t asked_us, requested_us, origin_asked_us; /* own times of the latest TIMESYNC and requests */
+    unsigned requests;
+
+    /* counted; summary and status line tell them */
+    unsigned long attitudes, positions, bad_samples, restarts, jumps, hostile;
+} autopilot_t;
+
+void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire);
+
+/* Any message; those that are not the autopilot's, or of no interest, are passed over. */
+void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us);
+
+/* Asks for its clock, its rates and its origin, as often as is due. */
+void autopilot_ask(autopilot_t *autopilot, int64_t now_us);
+
+/* Its clock now, us since its boot; 0 while not known. */
+int64_t autopilot_clock_us(const autopilot_t *autopilot, int64_t now_us);
+
+/* One sigma of that, us. */
+double autopilot_clock_sd_us(const autopilot_t *autopilot);
+
+/* "ArduPilot", "PX4" or "autopilot". */
+const char *autopilot_kind_text(const autopilot_t *autopilot);
+
+/* Heading of the latest attitude, degrees from north. */
+float autopilot_heading_deg(const autopilot_t *autopilot);
+
+#endif

@@ -1,0 +1,44 @@
+/* Bytes to and from somewhere: UDP, TCP, a serial line, a FIFO, standard input. SPDX-License-Identifier: MIT
+ *
+ * Nothing here blocks. What is lost (a TCP peer, a serial adapter that was pulled out) is tried again once a second. */
+#ifndef LINK_H
+#define LINK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/types.h>
+
+typedef struct link link_t;
+
+/* `where`: udpin:HOST:PORT (receives there, answers to whom link_answer() was called for last), udpout:HOST:PORT,
+ * tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH, stdin. Null on failure: fault says why. A TCP peer or device that is not there
+ * yet is no failure. */
+link_t *link_open(const char *where, char *fault, size_t fault_size);
+
+/* To be waited for; -1: nothing is open at the moment. */
+int link_descriptor(const link_t *link);
+
+/* True for links that carry whole messages: each read is one. */
+bool link_has_messages(const link_t *link);
+
+/* Up to `size` bytes; 0: nothing there now. */
+size_t link_read(link_t *link, uint8_t *bytes, size_t size);
+
+/* udpin: answers from now on go to the sender of what was read last. */
+void link_answer(link_t *link);
+
+/* False if it does not go out at once, whole. */
+bool link_write(link_t *link, const uint8_t *bytes, size_t size);
+
+/* To be called now and then: opens again what was lost. */
+void link_mend(link_t *link, int64_t now_us);
+
+/* How often it was lost. Standard input that has ended: link_ended(). */
+unsigned link_losses(const link_t *link);
+bool link_ended(const link_t *link);
+
+/* Null is ignored. */
+void link_close(link_t *link);
+
+#endif
