@@ -1,0 +1,310 @@
+/* The companion. SPDX-License-Identifier: MIT */
+#include "companion.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "events.h"
+#include "goe_mavlink_map.h"
+
+#define US_PER_S 1000000
+#define WAIT_MS 10           /* longest wait: everything that is due every so often is looked at in between */
+#define READS_MAX 64         /* of the detector's in one turn */
+#define CLOCK_STEP_US 100000 /* by which the computer's own clock may be set without a word */
+
+static int64_t clock_us(clockid_t clock) {
+    struct timespec now;
+    (void)clock_gettime(clock, &now);
+    return (int64_t)now.tv_sec * US_PER_S + now.tv_nsec / 1000;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ images -- */
+
+static void on_image_taken(void *user, const goe_flight_frame_t *frame, goe_flight_status_t status) {
+    companion_t *c = user;
+    delay_count_t *delay = &c->rates.delay;
+    if (status != GOE_FLIGHT_OK) {
+        c->counts.late += status == GOE_FLIGHT_TOO_OLD || status == GOE_FLIGHT_NO_POSE ? 1u : 0u;
+        c->counts.unread += status == GOE_FLIGHT_OUT_OF_RANGE ? 1u : 0u;
+        return;
+    }
+    const double delay_ms = (double)(int32_t)(frame->arrival_us - c->flight.capture_us) * 1e-3;
+    c->counts.images++;
+    delay->images++;
+    delay->sum_ms += delay_ms;
+    delay->most_ms = delay_ms > delay->most_ms ? delay_ms : delay->most_ms;
+    flight_record_put(&c->record, &c->flight, frame);
+}
+
+static void run_queue(companion_t *c) { image_queue_run(&c->queue, &c->flight, on_image_taken, c); }
+
+/* The flight layer's history begins with a pose: what was seen before has none. */
+static void take_image(companion_t *c) {
+    if (!clock_sync_known(&c->autopilot.clock)) {
+        c->counts.clockless++;
+        return;
+    }
+    image_queue_add(&c->queue, &c->image);
+    run_queue(c);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- lines -- */
+
+static void on_line(void *user, const char *line, size_t length) {
+    companion_t *c = user;
+    detection_fault_t fault;
+    const int64_t now_us = clock_us(CLOCK_MONOTONIC);
+    const detection_now_t now = {clock_us(CLOCK_REALTIME), now_us, autopilot_clock_us(&c->autopilot, now_us),
+                                 autopilot_clock_sd_us(&c->autopilot)};
+    if (detection_text_read(line, length, &c->config, &now, &c->image, &fault)) {
+        take_image(c);
+    } else {
+        c->counts.unread++;
+        event("detections, line %lu: %s", c->lines.line, fault.text);
+    }
+}
+
+static void read_lines(companion_t *c) {
+    uint8_t bytes[DETECTION_LINE_MAX];
+    for (int i = 0; i < READS_MAX; i++) {
+        const bool had_ended = link_ended(c->detections_link);
+        const unsigned long cut = c->lines.cut;
+        const size_t size = link_read(c->detections_link, bytes, sizeof bytes);
+        if (size > 0) {
+            line_reader_take(&c->lines, (const char *)bytes, size, on_line, c);
+        }
+        if (link_ended(c->detections_link) && !had_ended) {
+            event("the detector's input has ended");
+        }
+        if (size > 0 && link_has_messages(c->detections_link)) {
+            line_reader_end(&c->lines, on_line, c);
+        }
+        if (c->lines.cut > cut) {
+            c->counts.unread++;
+            event("detections, line %lu: longer than %d bytes", c->lines.line, DETECTION_LINE_MAX);
+        }
+        if (size == 0) {
+            return;
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ MAVLink -- */
+
+static goe_mavlink_camera_t camera_of(const companion_config_t *config) {
+    const goe_camera_t *camera = &config->estimator.camera;
+    const goe_mavlink_camera_t of = {
+        .width_px = camera->width_px,
+        .height_px = camera->height_px,
+        .fx_px = camera->fx_px,
+        .fy_px = camera->fy_px,
+        .cx_px = camera->cx_px,
+        .cy_px = camera->cy_px,
+        .number = 0,
+        .delay_us = (uint32_t)(config->detections_delay_s * US_PER_S),
+        .delay_sd_us = (uint32_t)(config->detections_delay_sd_s * US_PER_S),
+    };
+    return of;
+}
+
+static void take_sighting(companion_t *c, bool has_detection, const goe_mavlink_sighting_t *sighting) {
+    c->image.frame = sighting->frame;
+    c->image.detections = has_detection ? 1u : 0u;
+    c->image.detection[0] = sighting->detection;
+    take_image(c);
+}
+
+static void take_features(companion_t *c, const mavlink_message_t *message, uint32_t arrival_us) {
+    goe_mavlink_features_t features;
+    goe_mavlink_sighting_t sighting;
+    goe_mavlink_read_features((const uint8_t *)_MAV_PAYLOAD(message), message->len, &features);
+    const bool has = goe_mavlink_from_features(&features, arrival_us, &sighting);
+    take_sighting(c, has, &sighting);
+}
+
+static void take_landing_target(companion_t *c, const mavlink_message_t *message, uint32_t arrival_us) {
+    goe_mavlink_landing_target_t target;
+    goe_mavlink_sighting_t sighting;
+    const goe_mavlink_camera_t camera = camera_of(&c->config);
+    goe_mavlink_read_landing_target((const uint8_t *)_MAV_PAYLOAD(message), message->len, &target);
+    const bool has = goe_mavlink_from_landing_target(&target, &camera, arrival_us, &sighting);
+    take_sighting(c, has, &sighting);
+}
+
+static void take_tracking(companion_t *c, const mavlink_message_t *message, uint32_t arrival_us) {
+    goe_mavlink_tracking_t tracking;
+    goe_mavlink_sighting_t sighting;
+    const goe_mavlink_camera_t camera = camera_of(&c->config);
+    goe_mavlink_read_tracking((const uint8_t *)_MAV_PAYLOAD(message), message->len, &tracking);
+    const bool has = goe_mavlink_from_tracking(&tracking, &camera, arrival_us, &sighting);
+    take_sighting(c, has, &sighting);
+}
+
+/* Detections come from any component of the autopilot's system, and from no other. */
+static void on_message(void *user, const mavlink_message_t *message) {
+    companion_t *c = user;
+    const int64_t now_us = clock_us(CLOCK_MONOTONIC);
+    const uint32_t arrival_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
+    if (c->autopilot.heartbeat_us != 0 && message->sysid == c->autopilot.system) {
+        if (message->msgid == MAVLINK_MSG_ID_GOE_FEATURES) {
+            take_features(c, message, arrival_us);
+        } else if (message->msgid == MAVLINK_MSG_ID_LANDING_TARGET) {
+            take_landing_target(c, message, arrival_us);
+        } else if (message->msgid == MAVLINK_MSG_ID_CAMERA_TRACKING_IMAGE_STATUS) {
+            take_tracking(c, message, arrival_us);
+        }
+    }
+    orders_take(&c->orders, message, &c->autopilot);
+    autopilot_take(&c->autopilot, message, now_us);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- what is due -- */
+
+static bool is_due(int64_t *last_us, int64_t now_us, double hz) {
+    const int64_t period_us = (int64_t)(US_PER_S / hz);
+    if (now_us - *last_us < period_us) {
+        return false;
+    }
+    *last_us += period_us;
+    if (now_us - *last_us >= period_us) {
+        *last_us = now_us; /* what was missed is not made up for */
+    }
+    return true;
+}
+
+static void tell_alive(companion_t *c) {
+    const goe_flight_assessment_t *a = &c->assessment;
+    if (a->detector_alive != c->detector_alive) {
+        event(a->detector_alive ? "the detector is alive"
+                                : "the detector is silent: nothing ahead is known to be clear");
+    }
+    if (a->pose_alive != c->pose_alive) {
+        event(a->pose_alive ? "poses come" : "no poses come");
+    }
+    c->detector_alive = a->detector_alive;
+    c->pose_alive = a->pose_alive;
+}
+
+static void assess(companion_t *c, int64_t now_us) {
+    const uint32_t autopilot_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
+    const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
+    (void)goe_flight_assess(&c->flight, autopilot_us, c->autopilot.landing, &c->assessment);
+    tell_alive(c);
+    orders_follow(&c->orders, &c->wire, &c->config, &c->autopilot, &c->flight, &c->assessment, &own, now_us);
+}
+
+/* Lines by the UNIX clock are timed by what that clock shows now: a step of it makes those under way wrong, and is told. */
+static void watch_own_clock(companion_t *c, int64_t now_us) {
+    const int64_t difference_us = clock_us(CLOCK_REALTIME) - now_us;
+    const int64_t step_us = difference_us - c->clock_difference_us;
+    if (step_us > CLOCK_STEP_US || step_us < -CLOCK_STEP_US) {
+        event("this computer's clock was set by %+.1f s", (double)step_us / US_PER_S);
+    }
+    c->clock_difference_us = difference_us;
+}
+
+static void end_second(companion_t *c, int64_t now_us) {
+    companion_rates_t *rates = &c->rates;
+    const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
+    rates->attitude_hz = (double)(c->autopilot.attitudes - rates->attitudes);
+    rates->image_hz = (double)(c->counts.images - rates->images);
+    rates->attitudes = c->autopilot.attitudes;
+    rates->images = c->counts.images;
+    rates->delay_shown = rates->delay;
+    reports_send_status(&c->wire, &c->flight, &c->assessment, &own, &rates->delay, c->self_check);
+    (void)memset(&rates->delay, 0, sizeof rates->delay);
+    flight_record_flush(&c->record);
+    watch_own_clock(c, now_us);
+    link_mend(c->autopilot_link, now_us);
+    if (c->detections_link != NULL) {
+        link_mend(c->detections_link, now_us);
+    }
+}
+
+static bool do_what_is_due(companion_t *c) {
+    const int64_t now_us = clock_us(CLOCK_MONOTONIC);
+    autopilot_ask(&c->autopilot, now_us);
+    if (is_due(&c->assessed_us, now_us, c->config.reports_assess_hz)) {
+        assess(c, now_us);
+    }
+    if (is_due(&c->reported_us, now_us, c->config.reports_obstacle_hz)) {
+        const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
+        reports_send_obstacles(&c->wire, &c->config, &c->flight, &c->assessment, &own);
+    }
+    if (is_due(&c->second_us, now_us, 1.0)) {
+        end_second(c, now_us);
+        return true;
+    }
+    return false;
+}
+
+/* --------------------------------------------------------------------------------------------------------- interface -- */
+
+bool companion_turn(companion_t *c) {
+    struct pollfd waited[2] = {{link_descriptor(c->autopilot_link), POLLIN, 0}, {-1, POLLIN, 0}};
+    if (c->detections_link != NULL) {
+        waited[1].fd = link_descriptor(c->detections_link);
+    }
+    (void)poll(waited, 2, WAIT_MS);
+    if (wire_receive(&c->wire, on_message, c)) {
+        run_queue(c);
+    }
+    if (c->detections_link != NULL) {
+        read_lines(c);
+    }
+    return do_what_is_due(c);
+}
+
+static bool open_all(companion_t *c, char *fault, size_t fault_size) {
+    const char *bad = NULL;
+    c->autopilot_link = link_open(c->config.link_autopilot, fault, fault_size);
+    if (c->autopilot_link == NULL) {
+        return false;
+    }
+    if (strcmp(c->config.detections_from, "none") != 0) {
+        c->detections_link = link_open(c->config.detections_from, fault, fault_size);
+        if (c->detections_link == NULL) {
+            return false;
+        }
+    }
+    if (goe_flight_init(&c->flight, sizeof c->flight, &c->config.estimator, &c->config.flight, &bad) != GOE_FLIGHT_OK) {
+        (void)snprintf(fault, fault_size, "the library refuses the setting %s", bad != NULL ? bad : "(none)");
+        return false;
+    }
+    return flight_record_open(&c->record, &c->config, fault, fault_size);
+}
+
+companion_t *companion_new(const companion_config_t *config, char *fault, size_t fault_size) {
+    companion_t *c = calloc(1, sizeof *c);
+    if (c == NULL) {
+        (void)snprintf(fault, fault_size, "out of memory");
+        return NULL;
+    }
+    c->config = *config;
+    if (!open_all(c, fault, fault_size)) {
+        companion_free(c);
+        return NULL;
+    }
+    const int64_t now_us = clock_us(CLOCK_MONOTONIC);
+    c->wire.link = c->autopilot_link;
+    c->wire.system = 1;
+    c->wire.component = (uint8_t)config->link_component;
+    c->self_check = goe_self_check();
+    c->assessed_us = c->reported_us = c->second_us = now_us;
+    c->clock_difference_us = clock_us(CLOCK_REALTIME) - now_us;
+    autopilot_init(&c->autopilot, &c->config, &c->flight, &c->wire);
+    return c;
+}
+
+void companion_free(companion_t *c) {
+    if (c != NULL) {
+        flight_record_close(&c->record);
+        link_close(c->autopilot_link);
+        link_close(c->detections_link);
+    }
+    free(c);
+}

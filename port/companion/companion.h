@@ -1,0 +1,64 @@
+/* The companion: everything it holds, and what it does with what comes. SPDX-License-Identifier: MIT
+ *
+ *   companion_turn()   reads links > autopilot, images > flight layer > assessment > orders, reports, log, status line
+ *
+ * One thread, no locks; it waits only in poll(). */
+#ifndef COMPANION_H
+#define COMPANION_H
+
+#include "autopilot.h"
+#include "companion_config.h"
+#include "detection_text.h"
+#include "flight_record.h"
+#include "goe_flight.h"
+#include "image_queue.h"
+#include "line_reader.h"
+#include "link.h"
+#include "orders.h"
+#include "reports.h"
+#include "wire.h"
+
+typedef struct {
+    unsigned long images;    /* that were taken */
+    unsigned long late;      /* that came too late, or found no pose */
+    unsigned long unread;    /* lines or messages that could not be understood */
+    unsigned long clockless; /* that came before the autopilot's clock was known */
+} companion_counts_t;
+
+/* What the latest second had. */
+typedef struct {
+    unsigned long attitudes, images; /* counts at its start ... */
+    double attitude_hz, image_hz;    /* ... and the rates that it had */
+    delay_count_t delay, delay_shown;
+} companion_rates_t;
+
+typedef struct {
+    companion_config_t config;
+    goe_flight_t flight;
+    goe_flight_assessment_t assessment;
+    link_t *autopilot_link, *detections_link; /* the latter null: detections come over MAVLink alone */
+    wire_t wire;
+    autopilot_t autopilot;
+    line_reader_t lines;
+    image_queue_t queue;
+    camera_image_t image; /* that is being read */
+    orders_t orders;
+    flight_record_t record;
+    companion_counts_t counts;
+    companion_rates_t rates;
+    unsigned self_check;
+    bool detector_alive, pose_alive; /* as they were told last */
+    int64_t assessed_us, reported_us, second_us;
+    int64_t clock_difference_us; /* UNIX time minus monotonic time, as it was last */
+} companion_t;
+
+/* Opens links and log. Null on failure: fault says why. */
+companion_t *companion_new(const companion_config_t *config, char *fault, size_t fault_size);
+
+/* Waits for what comes, at most until something is due, and deals with it. Returns true once a second: time for a status line. */
+bool companion_turn(companion_t *companion);
+
+/* Null is ignored. */
+void companion_free(companion_t *companion);
+
+#endif

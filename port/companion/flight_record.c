@@ -1,0 +1,131 @@
+/* The log. SPDX-License-Identifier: MIT */
+#include "flight_record.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "events.h"
+
+#define PATH_MAX_LENGTH (2 * CONFIG_TEXT_MAX)
+#define BYTES_PER_MB 1.0e6
+
+static const char header[] =
+    "t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz,left_u,left_v,right_u,right_v,top_u,top_v,base_left_u,base_left_v,base_near_"
+    "u,"
+    "base_near_v,base_right_u,base_right_v,box_left_px,box_top_px,box_right_px,box_bottom_px,camera\n";
+
+static bool copy_camera(const char *from, const char *to) {
+    char bytes[4096];
+    size_t size = 0;
+    FILE *in = fopen(from, "rb");
+    FILE *out = fopen(to, "wbx");
+    bool good = in != NULL && out != NULL;
+    while (good && (size = fread(bytes, 1, sizeof bytes, in)) > 0) {
+        good = fwrite(bytes, 1, size, out) == size;
+    }
+    if (in != NULL) {
+        (void)fclose(in);
+    }
+    return out != NULL && fclose(out) == 0 && good;
+}
+
+bool flight_record_open(flight_record_t *record, const companion_config_t *config, char *fault, size_t fault_size) {
+    char camera[PATH_MAX_LENGTH], frames[PATH_MAX_LENGTH];
+    (void)memset(record, 0, sizeof *record);
+    record->size_max_mb = config->record_size_max_mb;
+    if (*config->record_folder == '\0') {
+        return true;
+    }
+    (void)snprintf(camera, sizeof camera, "%s/camera.ini", config->record_folder);
+    (void)snprintf(frames, sizeof frames, "%s/frames.csv", config->record_folder);
+    errno = 0;
+    const bool has_folder = mkdir(config->record_folder, 0777) == 0 || errno == EEXIST;
+    if (has_folder && copy_camera(config->camera_file, camera)) {
+        record->stream = fopen(frames, "wx");
+    }
+    if (record->stream == NULL || fputs(header, record->stream) < 0) {
+        (void)snprintf(fault, fault_size, "record.folder: %s: %s", config->record_folder,
+                       errno == EEXIST ? "holds a log already" : strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- rows -- */
+
+static int put(FILE *stream, float value) { return fprintf(stream, ",%.9g", (double)value); }
+
+static int put_point(FILE *stream, const goe_pixel_t *point) {
+    return point->seen ? fprintf(stream, ",%.9g,%.9g", (double)point->u_px, (double)point->v_px)
+                       : fprintf(stream, ",,");
+}
+
+static int put_side(FILE *stream, const goe_box_t *box, unsigned bit, float value) {
+    return (box->seen & bit) != 0 ? put(stream, value) : fprintf(stream, ",");
+}
+
+static int put_pose(FILE *stream, const goe_pose_t *pose) {
+    int size = 0;
+    for (int i = 0; i < 3; i++) {
+        size += put(stream, pose->position_ned_m[i]);
+    }
+    size += put(stream, pose->height_m);
+    for (int i = 0; i < 4; i++) {
+        size += put(stream, pose->attitude[i]);
+    }
+    return size;
+}
+
+static int put_features(FILE *stream, const goe_flight_detection_t *d) {
+    const goe_pixel_t *const points[] = {&d->left, &d->right, &d->top, &d->base_left, &d->base_near, &d->base_right};
+    int size = 0;
+    for (size_t i = 0; i < sizeof points / sizeof points[0]; i++) {
+        size += put_point(stream, points[i]);
+    }
+    return size + put_side(stream, &d->box, GOE_SEES_LEFT, d->box.left_px) +
+           put_side(stream, &d->box, GOE_SEES_TOP, d->box.top_px) +
+           put_side(stream, &d->box, GOE_SEES_RIGHT, d->box.right_px) +
+           put_side(stream, &d->box, GOE_SEES_BOTTOM, d->box.bottom_px);
+}
+
+static void end(flight_record_t *record, const char *why) {
+    event("the log ends after %lu rows: %s", record->rows, why);
+    (void)fclose(record->stream);
+    record->stream = NULL;
+}
+
+void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame) {
+    goe_pose_t pose;
+    if (record->stream == NULL || goe_flight_pose(flight, flight->capture_us, 0, &pose, NULL) != GOE_FLIGHT_OK) {
+        return;
+    }
+    for (unsigned i = 0; i < frame->count; i++) {
+        const goe_flight_detection_t *detection = &frame->detection[i];
+        int size = fprintf(record->stream, "%.6f,%u", (double)pose.time_us * 1e-6, (unsigned)detection->id);
+        size += put_pose(record->stream, &pose);
+        size += put_features(record->stream, detection);
+        size += fprintf(record->stream, ",%u\n", (unsigned)frame->camera);
+        record->written_mb += (double)size / BYTES_PER_MB;
+        record->rows++;
+    }
+    if (record->written_mb >= record->size_max_mb) {
+        end(record, "size_max_mb is reached");
+    }
+}
+
+void flight_record_flush(flight_record_t *record) {
+    if (record->stream != NULL && (fflush(record->stream) != 0 || ferror(record->stream) != 0)) {
+        record->failed = true;
+        end(record, strerror(errno));
+    }
+}
+
+void flight_record_close(flight_record_t *record) {
+    if (record->stream != NULL && fclose(record->stream) != 0) {
+        record->failed = true;
+        event("the log could not be written to its end: %s", strerror(errno));
+    }
+    record->stream = NULL;
+}

@@ -1,0 +1,31 @@
+/* The log: camera.ini and frames.csv, what goe_replay reads. SPDX-License-Identifier: MIT */
+#ifndef FLIGHT_RECORD_H
+#define FLIGHT_RECORD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "companion_config.h"
+#include "goe_flight.h"
+
+typedef struct {
+    FILE *stream; /* null: there is no log, or it has ended */
+    unsigned long rows;
+    double written_mb, size_max_mb;
+    bool failed; /* ended, as the disk did not take it */
+} flight_record_t;
+
+/* Makes the folder, with a copy of the camera's file. An old log there is not overwritten: that is a failure, as is a folder that
+ * cannot be written. Nothing is done without a folder's name. */
+bool flight_record_open(flight_record_t *record, const companion_config_t *config, char *fault, size_t fault_size);
+
+/* The detections of a frame that was taken, with the pose at its exposure. */
+void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame);
+
+/* To be called once a second: what was put is on the disk then. */
+void flight_record_flush(flight_record_t *record);
+
+void flight_record_close(flight_record_t *record);
+
+#endif

@@ -1,0 +1,129 @@
+/* goe_companion: obstacles for a stock autopilot, from a computer beside it. SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <popt.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "companion.h"
+#include "companion_config.h"
+#include "status_line.h"
+
+#ifndef GOE_VERSION
+#define GOE_VERSION "development"
+#endif
+
+#define PROGRAM "goe_companion"
+#define FAULT_MAX 512
+
+enum { EXIT_DONE = 0, EXIT_NOT_OPENED = 1, EXIT_BAD_INPUT = 2 };
+
+static volatile sig_atomic_t is_over;
+
+static void on_signal(int number) {
+    (void)number;
+    is_over = 1;
+}
+
+/* What the caller's shell told the program to ignore stays ignored. */
+static void catch_signals(void) {
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction action, before;
+    (void)memset(&action, 0, sizeof action);
+    action.sa_handler = on_signal;
+    (void)sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+            (void)sigaction(numbers[i], &action, NULL);
+        }
+    }
+    (void)signal(SIGPIPE, SIG_IGN);
+}
+
+typedef struct {
+    char *path; /* of the configuration */
+    int check, help, version;
+} options_t;
+
+static bool complain(const char *subject, const char *reason) {
+    (void)fprintf(stderr, PROGRAM ": %s: %s (see " PROGRAM " --help)\n", subject, reason);
+    return false;
+}
+
+static bool parse_arguments(poptContext context, options_t *options) {
+    const int result = poptGetNextOpt(context);
+    if (result < -1) {
+        return complain(poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(result));
+    }
+    if (options->help || options->version) {
+        return true;
+    }
+    const char *path = poptGetArg(context);
+    const char *surplus = poptPeekArg(context);
+    if (path == NULL) {
+        return complain("CONFIGURATION", "missing: name a file like companion.ini");
+    }
+    if (surplus != NULL) {
+        return complain(surplus, "one configuration at a time");
+    }
+    options->path = strdup(path);
+    return options->path != NULL;
+}
+
+static int run(const companion_config_t *config) {
+    char fault[FAULT_MAX] = "";
+    companion_t *companion = companion_new(config, fault, sizeof fault);
+    if (companion == NULL) {
+        (void)fprintf(stderr, PROGRAM ": %s\n", fault);
+        return EXIT_NOT_OPENED;
+    }
+    catch_signals();
+    while (!is_over) {
+        if (companion_turn(companion)) {
+            status_line_show(companion);
+        }
+    }
+    status_line_summary(companion);
+    companion_free(companion);
+    return EXIT_DONE;
+}
+
+static int start(const options_t *options) {
+    static companion_config_t config;
+    input_error_t error;
+    if (!companion_config_read(options->path, &config, &error)) {
+        (void)fprintf(stderr, PROGRAM ": %s\n", error.text);
+        return EXIT_BAD_INPUT;
+    }
+    if (options->check) {
+        companion_config_print(stdout, &config);
+        return EXIT_DONE;
+    }
+    return run(&config);
+}
+
+int main(int count, const char **arguments) {
+    options_t options = {NULL, 0, 0, 0};
+    const struct poptOption table[] = {
+        {"check", 'c', POPT_ARG_NONE, &options.check, 0, "read the configuration, print what it comes to, and end",
+         NULL},
+        {"help", 'h', POPT_ARG_NONE, &options.help, 0, "print this text", NULL},
+        {"version", 'V', POPT_ARG_NONE, &options.version, 0, "print the version", NULL},
+        POPT_TABLEEND,
+    };
+    poptContext context = poptGetContext(PROGRAM, count, arguments, table, 0);
+    poptSetOtherOptionHelp(context, "[OPTIONS] CONFIGURATION");
+    const bool good = parse_arguments(context, &options);
+    int status = good ? EXIT_DONE : EXIT_BAD_INPUT;
+    if (good && options.help) {
+        poptPrintHelp(context, stdout, 0);
+    } else if (good && options.version) {
+        (void)puts(PROGRAM " " GOE_VERSION);
+    } else if (good) {
+        status = start(&options);
+    }
+    poptFreeContext(context);
+    free(options.path);
+    return status;
+}

@@ -1,0 +1,26 @@
+/* Images that wait for a pose as new as their exposure. SPDX-License-Identifier: MIT */
+#ifndef IMAGE_QUEUE_H
+#define IMAGE_QUEUE_H
+
+#include "camera_image.h"
+
+#define IMAGE_QUEUE_MAX 32
+
+/* Called with each frame, of at most GOE_FLIGHT_DETECTIONS detections, that the flight layer took or refused. */
+typedef void (*image_taken_t)(void *user, const goe_flight_frame_t *frame, goe_flight_status_t status);
+
+typedef struct {
+    camera_image_t image[IMAGE_QUEUE_MAX]; /* in the order of their arrival */
+    int count;
+    unsigned long pushed_out; /* as no pose came for so long that the queue was full */
+} image_queue_t;
+
+void image_queue_clear(image_queue_t *queue);
+
+/* A copy goes in; the oldest makes room. */
+void image_queue_add(image_queue_t *queue, const camera_image_t *image);
+
+/* Gives all to the flight layer whose exposure it has a pose for; GOE_FLIGHT_TOO_NEW stays here. */
+void image_queue_run(image_queue_t *queue, goe_flight_t *flight, image_taken_t taken, void *user);
+
+#endif
