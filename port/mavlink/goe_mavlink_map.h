@@ -34,6 +34,8 @@ typedef struct {
     uint8_t number;         /* goe_flight_frame_t.camera */
     uint32_t delay_us;      /* from the exposure to the message's arrival, calibrated: for messages without a time */
     uint32_t delay_sd_us;   /* its one sigma */
+    bool shares_clock;      /* LANDING_TARGET.time_usec is the autopilot's, of the exposure; false: it is not looked at, which is
+                               right for a sender that tells its own time since boot, or is not known */
 } goe_mavlink_camera_t;
 
 /* Each returns false, and an empty frame of its camera, if the message marks no obstacle: nothing in view, which also tells that
@@ -45,9 +47,9 @@ typedef struct {
 bool goe_mavlink_from_features(const goe_mavlink_features_t *message, uint32_t arrival_us,
                                goe_mavlink_sighting_t *sighting);
 
-/* Box by tan of the angles, each side within 80 degrees of the axis. The message does not say whose clock its time is of. It is
- * the autopilot's if it lies in the 5 s before the arrival, modulo 2^32 us; otherwise delay_us counts back from the arrival.
- * Id: target_num + 1. Empty: never, a sender that sees nothing sends nothing. */
+/* Box by tan of the angles, each side within 80 degrees of the axis. The message does not say whose clock its time is of:
+ * delay_us counts back from the arrival, unless the camera shares the autopilot's clock and the time is one since boot, that is
+ * not 0 and below 2^32 ms. Id: target_num + 1. Never empty: a sender that sees nothing sends nothing. */
 bool goe_mavlink_from_landing_target(const goe_mavlink_landing_target_t *message, const goe_mavlink_camera_t *camera,
                                      uint32_t arrival_us, goe_mavlink_sighting_t *sighting);
 

@@ -8,11 +8,11 @@
 #define PX_PER_UNIT 0.1f
 #define SCORE_UNKNOWN 255u
 #define SCORE_MAX 100u
-#define SIDE_MAX_PX 1.0e5f     /* of goe_box_t */
-#define ANGLE_MAX_DEG 80.0f    /* from the axis to a side */
-#define ANGLE_MAX_RAD 10.0f    /* what can be one at all */
-#define CLOCK_SPAN_US 5000000u /* a time this much before the arrival is by the autopilot's clock */
-#define TRACKING_ACTIVE 0x01u  /* CAMERA_TRACKING_STATUS_FLAGS */
+#define SIDE_MAX_PX 1.0e5f                       /* of goe_box_t */
+#define ANGLE_MAX_DEG 80.0f                      /* from the axis to a side */
+#define ANGLE_MAX_RAD 10.0f                      /* what can be one at all */
+#define SINCE_BOOT_MAX_US (UINT64_C(1000) << 32) /* more is UNIX time */
+#define TRACKING_ACTIVE 0x01u                    /* CAMERA_TRACKING_STATUS_FLAGS */
 #define TRACKING_ERROR 0x02u
 #define TRACKING_COASTING 0x08u
 #define TRACKING_NONE 0u /* CAMERA_TRACKING_MODE */
@@ -163,14 +163,13 @@ static bool find_sides(const goe_mavlink_landing_target_t *message, const goe_ma
 bool goe_mavlink_from_landing_target(const goe_mavlink_landing_target_t *message, const goe_mavlink_camera_t *camera,
                                      uint32_t arrival_us, goe_mavlink_sighting_t *sighting) {
     float side_px[4];
-    const uint32_t time_us = (uint32_t)(message->time_usec & UINT32_MAX);
     begin(sighting, camera->number, arrival_us);
     if (!is_camera(camera) || !find_sides(message, camera, side_px)) {
         return not_understood(sighting);
     }
     calibrated_time(camera, arrival_us, &sighting->frame);
-    if (message->time_usec != 0u && arrival_us - time_us <= CLOCK_SPAN_US) {
-        sighting->frame.capture_us = sighting->frame.sent_us = time_us;
+    if (camera->shares_clock && message->time_usec != 0u && message->time_usec < SINCE_BOOT_MAX_US) {
+        sighting->frame.capture_us = sighting->frame.sent_us = (uint32_t)(message->time_usec & UINT32_MAX);
         sighting->frame.time_sd_us = 0u;
     }
     return give_box(side_px, (uint32_t)message->target_num + 1u, sighting);

@@ -43,7 +43,7 @@ static bool features_arrive() {
 }
 
 static bool standard_messages_arrive() {
-    const goe_mavlink_camera_t camera = {640.0f, 640.0f, 800.0f, 800.0f, 320.0f, 320.0f, 0u, 0u, 0u};
+    const goe_mavlink_camera_t camera = {640.0f, 640.0f, 800.0f, 800.0f, 320.0f, 320.0f, 0u, 0u, 0u, false};
     const goe_mavlink_landing_target_t target = goe_mavlink_landing_target_t();
     const goe_mavlink_tracking_t tracking = goe_mavlink_tracking_t();
     goe_mavlink_sighting_t sighting;
