@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Compiles the library and the flight layer as one firmware does, without a warning, and runs the safety tests on the result.
+# Compiles the library, the flight layer and its MAVLink messages as one firmware does, without a warning, and runs the safety tests
+# on the result.
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
 #
-# Every host compiler there is; C99, C11 and GNU C17; with and without NDEBUG. The safety tests (test_safety*.c of tests/c and
-# tests/flight)
-# are compiled plainly, so that they can tell a NaN, and are linked with the firmware's flags, which may change the
+# Every host compiler there is; C99, C11 and GNU C17; with and without NDEBUG. The safety tests (of tests/c, tests/flight and
+# tests/mavlink) are compiled plainly, so that they can tell a NaN, and are linked with the firmware's flags, which may change the
 # floating-point unit's mode. UNITY_INCLUDE and UNITY_LIBRARY say where the test framework is.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
@@ -18,10 +18,11 @@ firmware_flags "$firmware" || {
 }
 
 shopt -s nullglob
-safety_tests=("$root"/tests/c/test_safety*.c "$root"/tests/flight/test_flight_safety*.c)
+safety_tests=("$root"/tests/c/test_safety*.c "$root"/tests/flight/test_flight_safety*.c
+    "$root"/tests/mavlink/test_mavlink_safety*.c)
 support=()
-for file in "$root"/tests/c/*.c "$root"/tests/flight/*.c; do
-    [[ $(basename "$file") == test_* ]] || support+=("$file")
+for file in "$root"/tests/c/*.c "$root"/tests/flight/*.c "$root"/tests/mavlink/*.c; do
+    [[ $(basename "$file") == test_* || $(basename "$file") == mavlink_echo.c ]] || support+=("$file")
 done
 if [ ${#safety_tests[@]} = 0 ]; then
     fail "no safety test tests/c/test_safety*.c"
@@ -43,7 +44,7 @@ run_safety() {
         program=$scratch/$(basename "$file" .c)
         mkdir -p "$scratch/plain"
         (cd "$scratch/plain" && rm -f ./*.o && "$compiler" -std=c99 -O1 "${all_includes[@]}" -I"$root/tests/c" \
-            -I"$root/tests/flight" -I"$UNITY_INCLUDE" -c "$file" "${support[@]}") || fail "$compiler: $file"
+            -I"$root/tests/flight" -I"$root/tests/mavlink" -I"$UNITY_INCLUDE" -c "$file" "${support[@]}") || fail "$compiler: $file"
         "$compiler" "$@" ./*.o "$scratch"/plain/*.o "$UNITY_LIBRARY" -lm -o "$program" || fail "link: $compiler $*"
         "$program" >"$scratch/log" 2>&1 || {
             cat "$scratch/log" >&2
