@@ -223,9 +223,6 @@ static bool read_image(const json_t *root, const companion_config_t *config, con
     double camera = 0.0;
     const bool bare = json_is_array(root);
     const json_t *list = bare ? root : member(root, "detections", NULL);
-    if (!bare && !json_is_object(root)) {
-        return fail(fault, "neither an object nor a list");
-    }
     if (!json_is_array(list)) {
         return fail(fault, "\"detections\" is no list");
     }

@@ -1,0 +1,216 @@
+/* Samples, resets and restarts as messages show them. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "autopilot.h"
+#include "check.h"
+
+#define OTHER_SYSTEM 9
+#define SYSTEM 1
+#define SPEED_M_S 20.0f
+#define PERIOD_MS 20
+#define BOOT_MS 100000u /* of the autopilot's clock when the test begins */
+
+static companion_config_t config;
+static goe_flight_t flight;
+static wire_t wire;
+static autopilot_t autopilot;
+static int64_t own_us; /* the companion's clock: any start */
+static uint32_t boot_ms;
+static float north_m, jump_m, turn_rad;
+
+static void beat(uint8_t system) {
+    mavlink_message_t message;
+    (void)mavlink_msg_heartbeat_pack(system, MAV_COMP_ID_AUTOPILOT1, &message, MAV_TYPE_FIXED_WING, MAV_AUTOPILOT_PX4,
+                                     0, 0, MAV_STATE_ACTIVE);
+    autopilot_take(&autopilot, &message, own_us);
+}
+
+void setUp(void) {
+    char fault[256];
+    const char *bad = NULL;
+    (void)memset(&config, 0, sizeof config);
+    (void)memset(&wire, 0, sizeof wire);
+    goe_settings_default(&config.estimator);
+    goe_flight_settings_default(&config.flight);
+    config.estimator.camera.fx_px = config.estimator.camera.fy_px = 900.0f;
+    config.estimator.camera.width_px = config.estimator.camera.height_px = 1000.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, &bad));
+    wire.link = link_open("udpout:127.0.0.1:9", fault, sizeof fault);
+    TEST_ASSERT_NOT_NULL(wire.link);
+    autopilot_init(&autopilot, &config, &flight, &wire);
+    own_us = 777000000;
+    boot_ms = BOOT_MS;
+    north_m = jump_m = turn_rad = 0.0f;
+    beat(SYSTEM);
+}
+
+void tearDown(void) { link_close(wire.link); }
+
+static void send_attitude(uint8_t system, float w, float z) {
+    static const float none[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    mavlink_message_t message;
+    (void)mavlink_msg_attitude_quaternion_pack(system, MAV_COMP_ID_AUTOPILOT1, &message, boot_ms, w, 0.0f, 0.0f, z,
+                                               0.0f, 0.0f, 0.0f, none);
+    autopilot_take(&autopilot, &message, own_us);
+}
+
+static void send_position(uint8_t system, float north, float down) {
+    mavlink_message_t message;
+    (void)mavlink_msg_local_position_ned_pack(system, MAV_COMP_ID_AUTOPILOT1, &message, boot_ms, north, 0.0f, down,
+                                              SPEED_M_S, 0.0f, 0.0f);
+    autopilot_take(&autopilot, &message, own_us);
+}
+
+/* So many samples of a straight flight to the north, with what has jumped since. */
+static void fly(int samples) {
+    for (int k = 0; k < samples; k++) {
+        own_us += 1000 * PERIOD_MS;
+        boot_ms += PERIOD_MS;
+        north_m += SPEED_M_S * 1e-3f * PERIOD_MS;
+        send_attitude(SYSTEM, cosf(0.5f * turn_rad), sinf(0.5f * turn_rad));
+        send_position(SYSTEM, north_m + jump_m, -30.0f);
+    }
+}
+
+static float north_at_ms(uint32_t ms) {
+    goe_pose_t pose;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flight, ms * 1000u, 0, &pose, NULL));
+    return pose.position_ned_m[0];
+}
+
+static void samples_reach_the_flight_layer_at_their_own_time(void) {
+    fly(20);
+    TEST_ASSERT_EQUAL_UINT32(20, (uint32_t)autopilot.attitudes);
+    TEST_ASSERT_EQUAL_UINT32(20, (uint32_t)autopilot.positions);
+    CHECK_CLOSE(1e-3, north_m - 2.0f, north_at_ms(boot_ms - 100));
+    TEST_ASSERT_EQUAL_INT64((int64_t)boot_ms * 1000, autopilot_clock_us(&autopilot, own_us));
+}
+
+static void nothing_is_taken_before_a_heartbeat_or_from_another_system(void) {
+    autopilot_init(&autopilot, &config, &flight, &wire);
+    fly(5);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.positions);
+    beat(SYSTEM);
+    beat(OTHER_SYSTEM);
+    TEST_ASSERT_EQUAL_UINT8(SYSTEM, autopilot.system);
+    fly(5);
+    send_position(OTHER_SYSTEM, 1e5f, 0.0f);
+    send_attitude(OTHER_SYSTEM, 0.0f, 1.0f);
+    fly(5);
+    TEST_ASSERT_EQUAL_UINT32(10, (uint32_t)autopilot.positions);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.jumps);
+}
+
+/* The history is moved along, so that an image from before the step still has its pose in the new frame. */
+static void a_step_of_the_position_is_a_known_jump(void) {
+    fly(20);
+    jump_m = 7.0f;
+    fly(10);
+    TEST_ASSERT_EQUAL_UINT32(1, (uint32_t)autopilot.jumps);
+    TEST_ASSERT_EQUAL_UINT16(1, flight.counters.resets);
+    TEST_ASSERT_EQUAL_UINT16(0, flight.counters.lost);
+    CHECK_CLOSE(0.01, north_m + 7.0f - SPEED_M_S * 0.4f, north_at_ms(boot_ms - 400));
+}
+
+static void losses_and_turns_of_an_aircraft_are_no_steps(void) {
+    fly(20);
+    boot_ms += 600;
+    own_us += 600000;
+    north_m += SPEED_M_S * 0.6f + 1.5f; /* it has accelerated meanwhile */
+    fly(20);
+    jump_m = 0.5f; /* a filter that corrects itself */
+    fly(20);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.jumps);
+}
+
+static void a_turn_that_no_rate_explains_ends_the_tracks(void) {
+    fly(20);
+    turn_rad = 0.3f;
+    fly(5);
+    TEST_ASSERT_EQUAL_UINT32(1, (uint32_t)autopilot.jumps);
+    TEST_ASSERT_EQUAL_UINT16(1, flight.counters.lost);
+}
+
+static void a_restart_of_the_autopilot_begins_a_new_clock(void) {
+    fly(50);
+    boot_ms = 3000;
+    fly(20);
+    TEST_ASSERT_EQUAL_UINT32(1, (uint32_t)autopilot.restarts);
+    TEST_ASSERT_EQUAL_INT64((int64_t)boot_ms * 1000, autopilot_clock_us(&autopilot, own_us));
+    CHECK_CLOSE(1e-3, north_m - 2.0f, north_at_ms(boot_ms - 100));
+    boot_ms += 30000;
+    fly(20);
+    TEST_ASSERT_EQUAL_UINT32(2, (uint32_t)autopilot.restarts);
+}
+
+static void what_is_not_finite_is_refused_and_counted(void) {
+    fly(10);
+    boot_ms += PERIOD_MS;
+    own_us += 1000 * PERIOD_MS;
+    send_position(SYSTEM, NAN, 0.0f);
+    send_position(SYSTEM, INFINITY, 0.0f);
+    send_attitude(SYSTEM, NAN, 0.0f);
+    send_attitude(SYSTEM, 3.0f, 0.0f);
+    TEST_ASSERT_EQUAL_UINT32(4, (uint32_t)autopilot.bad_samples);
+    fly(10);
+    TEST_ASSERT_EQUAL_UINT32(20, (uint32_t)autopilot.positions);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.jumps);
+}
+
+static void messages_that_come_twice_or_late_change_nothing(void) {
+    fly(20);
+    send_position(SYSTEM, north_m, -30.0f);
+    boot_ms -= 5 * PERIOD_MS;
+    send_position(SYSTEM, north_m - 2.0f, -30.0f);
+    boot_ms += 5 * PERIOD_MS;
+    fly(5);
+    TEST_ASSERT_EQUAL_UINT32(25, (uint32_t)autopilot.positions);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)(autopilot.jumps + autopilot.restarts));
+}
+
+static void odometry_counts_resets_that_show_no_step(void) {
+    mavlink_message_t message;
+    mavlink_odometry_t odometry;
+    (void)memset(&odometry, 0, sizeof odometry);
+    fly(10);
+    for (uint8_t resets = 4; resets < 7; resets++) {
+        odometry.reset_counter = resets / 5;
+        (void)mavlink_msg_odometry_encode(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, &odometry);
+        autopilot_take(&autopilot, &message, own_us);
+        fly(2);
+    }
+    TEST_ASSERT_EQUAL_UINT16(1, flight.counters.lost);
+}
+
+/* A range finder in a bank of 60 degrees measures twice the height. */
+static void a_range_finder_is_taken_upright(void) {
+    mavlink_message_t message;
+    mavlink_distance_sensor_t sensor;
+    (void)memset(&sensor, 0, sizeof sensor);
+    fly(1);
+    autopilot.attitude.q1 = cosf(0.5f * 1.0471976f);
+    autopilot.attitude.q2 = sinf(0.5f * 1.0471976f);
+    sensor.time_boot_ms = boot_ms;
+    sensor.max_distance = 5000;
+    sensor.current_distance = 4000;
+    sensor.orientation = MAV_SENSOR_ROTATION_PITCH_270;
+    (void)mavlink_msg_distance_sensor_encode(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, &sensor);
+    autopilot_take(&autopilot, &message, own_us);
+    CHECK_CLOSE(1e-3, 20.0f, autopilot.range_finder_m);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(samples_reach_the_flight_layer_at_their_own_time);
+    RUN_TEST(nothing_is_taken_before_a_heartbeat_or_from_another_system);
+    RUN_TEST(a_step_of_the_position_is_a_known_jump);
+    RUN_TEST(losses_and_turns_of_an_aircraft_are_no_steps);
+    RUN_TEST(a_turn_that_no_rate_explains_ends_the_tracks);
+    RUN_TEST(a_restart_of_the_autopilot_begins_a_new_clock);
+    RUN_TEST(what_is_not_finite_is_refused_and_counted);
+    RUN_TEST(messages_that_come_twice_or_late_change_nothing);
+    RUN_TEST(odometry_counts_resets_that_show_no_step);
+    RUN_TEST(a_range_finder_is_taken_upright);
+    return UNITY_END();
+}
