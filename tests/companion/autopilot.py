@@ -21,6 +21,13 @@ DO_SET_MODE, DO_GO_AROUND, DO_REPOSITION, SET_MESSAGE_INTERVAL, REQUEST_MESSAGE 
 ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that ask for messages and move nothing
 
 
+def numbered(message: Any, mavlink: Any) -> bytes:
+    """A frame with the sender's running number."""
+    frame: bytes = message.pack(mavlink)
+    mavlink.seq = (mavlink.seq + 1) % 256
+    return frame
+
+
 def local_m(lat_e7: int, lon_e7: int) -> tuple[float, float]:
     """North and east of the origin; good for some kilometres about it."""
     north = (lat_e7 - LAT_E7) * 1e-7 * METRES_PER_DEGREE
@@ -88,6 +95,9 @@ class Aircraft:
         self.east_m += self.speed_m_s * step * math.sin(middle)
         return self.pose()
 
+    def place(self) -> tuple[float, float]:
+        return self.north_m, self.east_m
+
     def pose(self) -> Pose:
         omega = 2 * math.pi * self.roll_hz
         phase, most = omega * (self.time_s - self.begin_s), math.radians(self.roll_deg)
@@ -123,13 +133,17 @@ class Heard:
 
     time_s: float
     message: Any
-    north_m: float
+    place: tuple[float, float]
+
+    @property
+    def north_m(self) -> float:
+        return self.place[0]
 
 
 class Autopilot:
     """Sends and answers over a wire; `heard` is everything that came.
 
-    `ignored` commands of any kind but ASKING are not answered: the companion has to send them again.
+    `ignored` tells how many of a command are neither obeyed nor answered: the companion has to send them again.
     """
 
     def __init__(
@@ -144,7 +158,8 @@ class Autopilot:
         boot_s: float = 1000.0,
         drift: float = 0.0,
         pose_hz: float = 50.0,
-        ignored: int = 0,
+        ignored: dict[int, int] | None = None,
+        landing: bool = False,
     ) -> None:
         self.loop, self.dialect, self.make = loop, dialect, make
         self.aircraft = aircraft or Aircraft()
@@ -153,7 +168,9 @@ class Autopilot:
         self.heard: list[Heard] = []
         self.answers = Counter[int]()  # to own TIMESYNC questions, by the time that was asked with
         self.mode, self.modes = MODES[make], [MODES[make]]
-        self.ignored, self.silent = ignored, False
+        self.ignored, self.landing = Counter(ignored or {}), landing
+        self.silent = False  # neither sends nor hears
+        self.posing = True
         self.shift = (0.0, 0.0, 0.0)  # of the local frame: a reset of the filter
         self.yaw_shift = 0.0
         self.reset_counter: int | None = None  # a number: ODOMETRY is sent as well
@@ -170,7 +187,7 @@ class Autopilot:
     # ------------------------------------------------------------------------------------------------------ sending
 
     def send(self, message: Any, mavlink: Any = None) -> None:
-        self.wire.send(message.pack(mavlink or self.mavlink))
+        self.wire.send(numbered(message, mavlink or self.mavlink))
 
     def boot_s(self) -> float:
         return self.clock.at(time.monotonic())
@@ -178,7 +195,7 @@ class Autopilot:
     def _pose(self) -> None:
         now = time.monotonic()
         pose = self.aircraft.advance(now)
-        if self.silent:
+        if self.silent or not self.posing:
             return
         ms = int(self.clock.at(now) * 1e3)
         position = [value + shift for value, shift in zip(pose.position, self.shift)]
@@ -209,6 +226,8 @@ class Autopilot:
                 LAT_E7, LON_E7, int(ALT_M * 1e3), *home, [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0, us
             )
         )
+        if self.landing:
+            send(self.dialect.MAVLink_extended_sys_state_message(0, 4))
         self.asked.append(us * 1000)
         send(self.dialect.MAVLink_timesync_message(0, us * 1000))
 
@@ -218,7 +237,7 @@ class Autopilot:
         if self.silent:
             return
         for message in self.parser.parse_buffer(data) or []:
-            self.heard.append(Heard(time.monotonic(), message, self.aircraft.north_m))
+            self.heard.append(Heard(time.monotonic(), message, self.aircraft.place()))
             handle: Callable[[Any], None] | None = getattr(self, f"_on_{message.get_type().lower()}", None)
             if handle:
                 handle(message)
@@ -237,8 +256,8 @@ class Autopilot:
 
     def _command(self, message: Any, where_e7: tuple[int, int]) -> None:
         if message.command not in ASKING:
-            if self.ignored > 0:
-                self.ignored -= 1
+            if self.ignored[message.command] > 0:
+                self.ignored[message.command] -= 1
                 return
             self._obey(message, where_e7)
         self.send(self.dialect.MAVLink_command_ack_message(message.command, 0))
@@ -247,14 +266,14 @@ class Autopilot:
         if message.command == DO_REPOSITION:
             self.aircraft.goal = local_m(*where_e7)
             if int(message.param2) & 1:
-                self._set_mode(LOITER)
+                self.set_mode(LOITER)
         elif message.command == DO_SET_MODE:
-            self._set_mode(int(message.param2) << 16 | int(message.param3) << 24)
+            self.set_mode(int(message.param2) << 16 | int(message.param3) << 24)
 
     def _on_set_mode(self, message: Any) -> None:
-        self._set_mode(message.custom_mode)
+        self.set_mode(message.custom_mode)
 
-    def _set_mode(self, mode: int) -> None:
+    def set_mode(self, mode: int) -> None:
         if mode != LOITER:
             self.aircraft.goal = None
         if mode != self.mode:

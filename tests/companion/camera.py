@@ -161,6 +161,23 @@ def aliases(image: Image, clock: str | None) -> str:
     return json.dumps(line) + "\n"
 
 
+def without_clock(image: Image, clock: str | None) -> str:
+    """The clock is that of the configuration."""
+    line = json.loads(plain_line(image, clock))
+    del line["clock"]
+    return json.dumps(line) + "\n"
+
+
+def points(image: Image, clock: str | None) -> str:
+    """The middles of the sides in place of boxes."""
+    line = json.loads(plain_line(image, clock))
+    for told, box in zip(line["detections"], image.boxes):
+        u, v = 0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom)
+        del told["box"]
+        told.update(left=[box.left, v], right=[box.right, v], top=[u, box.top], pixel_sd=1.0)
+    return json.dumps(line) + "\n"
+
+
 Line = Callable[[Image, Optional[str]], str]
 
 
@@ -237,7 +254,8 @@ class PipeLines:
 class Detector:
     """Takes an image `hz` times a second, and gives what it sees to `tell` `delay_s` later.
 
-    `delays` holds the real delays: a busy machine is later than it should be.
+    `delays` holds the real delays, as a busy machine is late, and `poses` the truth of every exposure
+    by the autopilot's clock.
     """
 
     loop: Loop
@@ -249,20 +267,23 @@ class Detector:
     delay_s: float = 0.1
     noise_px: float = 0.2
     blind: bool = False
+    unix_error_s: float = 0.0
     delays: list[float] = field(default_factory=list)
+    poses: dict[float, Pose] = field(default_factory=dict)
     dice: random.Random = field(default_factory=lambda: random.Random(11))
 
     def __post_init__(self) -> None:
         self.loop.every(1.0 / self.hz, self._expose, first_s=0.013)
 
     def _expose(self) -> None:
-        now, unix = time.monotonic(), time.time()
+        now, unix = time.monotonic(), time.time() + self.unix_error_s
         if self.blind:
             return
         pose = self.autopilot.aircraft.advance(now)
         seen = [self.camera.see(pose, obstacle, k + 1) for k, obstacle in enumerate(self.obstacles)]
         boxes = tuple(self._noisy(box) for box in seen if box)
         image = Image(now, unix, self.autopilot.clock.at(now), boxes)
+        self.poses[image.boot_s] = pose
         self.loop.at(now + self.delay_s, lambda: self._tell(image))
 
     def _noisy(self, box: Box) -> Box:

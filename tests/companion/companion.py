@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import time
@@ -13,6 +14,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("GOE_COMPANION", str(ROOT / "build" / "port" / "companion" / "goe_companion"))
+REPLAY = os.environ.get("GOE_REPLAY", str(ROOT / "build" / "sim_host" / "goe_replay"))
 TICKS_S = os.sysconf("SC_CLK_TCK")
 Settings = Mapping[str, Mapping[str, Any]]
 
@@ -48,6 +50,12 @@ class Ended:
     @property
     def said(self) -> str:
         return self.out + self.err
+
+    def count(self, name: str) -> int:
+        """Of the summary: rows of a name, a number and what it counts."""
+        rows = re.findall(r"^(\w+) +(\d+)\b", self.out, re.MULTILINE)
+        assert name in dict(rows), self.out
+        return int(dict(rows)[name])
 
 
 class Companion:

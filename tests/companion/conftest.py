@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import ModuleType
+from xml.etree import ElementTree
 
 import pytest
 from companion import ROOT
@@ -18,6 +19,39 @@ from flights import Fleet, Plan  # noqa: E402 - needs what is skipped for
 MakeFleet = Callable[[Sequence[Plan]], Fleet]
 OWN = (ROOT / "port" / "companion" / "companion.xml", ROOT / "port" / "mavlink" / "goe.xml")
 COMMON = ("minimal.xml", "standard.xml", "common.xml")
+# What the companion sends besides: one message of a dialect that would bring many, and one that pymavlink has not yet.
+ARDUPILOT_ONE = "OBSTACLE_DISTANCE_3D"
+TARGET_ABSOLUTE = {
+    "timestamp": "uint64_t",
+    "id": "uint8_t",
+    "sensor_capabilities": "uint8_t",
+    "lat": "int32_t",
+    "lon": "int32_t",
+    "alt": "float",
+    "vel": "float[3]",
+    "acc": "float[3]",
+    "q_target": "float[4]",
+    "rates": "float[3]",
+    "position_std": "float[2]",
+    "vel_std": "float[3]",
+    "acc_std": "float[3]",
+}
+
+
+def with_more(definitions: Path) -> str:
+    """A dialect of companion.xml and these two messages, without the enumerations that they name."""
+    root = ElementTree.Element("mavlink")
+    ElementTree.SubElement(root, "include").text = "companion.xml"
+    messages = ElementTree.SubElement(root, "messages")
+    found = ElementTree.parse(definitions / "ardupilotmega.xml").find(f"messages/message[@name='{ARDUPILOT_ONE}']")
+    assert found is not None
+    for field in found.iter("field"):
+        field.attrib.pop("enum", None)
+    messages.append(found)
+    target = ElementTree.SubElement(messages, "message", id="510", name="TARGET_ABSOLUTE")
+    for name, kind in TARGET_ABSOLUTE.items():
+        ElementTree.SubElement(target, "field", type=kind, name=name).text = name
+    return ElementTree.tostring(root, encoding="unicode")
 
 
 def generate(folder: Path) -> Path:
@@ -25,11 +59,12 @@ def generate(folder: Path) -> Path:
     from pymavlink.generator import mavgen
 
     definitions = Path(pymavlink.__file__).parent / "dialects" / "v20"
+    (folder / "tests.xml").write_text(with_more(definitions), encoding="utf-8")
     for source in (*OWN, *(definitions / name for name in COMMON)):
         (folder / source.name).write_bytes(source.read_bytes())
     module = folder / "companion_dialect.py"
     options = mavgen.Opts(str(module), wire_protocol="2.0", language="Python3", validate=False)
-    assert mavgen.mavgen(options, [str(folder / "companion.xml")])
+    assert mavgen.mavgen(options, [str(folder / "tests.xml")])
     return module
 
 

@@ -32,15 +32,11 @@ class Faults:
     doubled: float = 0.0
     delay_s: float = 0.0
     dice: random.Random = field(default_factory=lambda: random.Random(7))
-    passed: int = 0
-    dropped: int = 0
 
     def copies(self) -> list[float]:
         """The delay of each copy of one datagram; empty: it is lost."""
         if self.dice.random() < self.lost:
-            self.dropped += 1
             return []
-        self.passed += 1
         number = 2 if self.dice.random() < self.doubled else 1
         return [self.dice.uniform(0.0, self.delay_s) for _ in range(number)]
 
@@ -49,22 +45,27 @@ class Wire:
     """One end of a link. `setting` is what the companion's configuration calls the other end."""
 
     setting: str
+    sent = 0
+    dropped = 0  # of those sent
 
     def __init__(self, loop: Loop, receive: Receive, faults: Faults | None = None) -> None:
         self.loop, self.receive, self.faults = loop, receive, faults
 
     def send(self, data: bytes) -> None:
-        self._spread(data, self._put)
+        self.sent += 1
+        self.dropped += self._spread(data, self._put) == 0
 
     def _got(self, data: bytes) -> None:
         self._spread(data, self.receive)
 
-    def _spread(self, data: bytes, put: Receive) -> None:
-        for delay_s in self.faults.copies() if self.faults else [0.0]:
+    def _spread(self, data: bytes, put: Receive) -> int:
+        copies = self.faults.copies() if self.faults else [0.0]
+        for delay_s in copies:
             if delay_s > 0.0:
                 self.loop.at(time.monotonic() + delay_s, lambda: put(data))
             else:
                 put(data)
+        return len(copies)
 
     def _put(self, data: bytes) -> None:
         raise NotImplementedError

@@ -1,0 +1,328 @@
+"""Undisturbed flights at a mast, one for each way that poses and detections can come: all of the same time."""
+
+from __future__ import annotations
+
+import csv
+import math
+import statistics
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from autopilot import ALT_M, ARDUPILOT, ASKING, SET_MESSAGE_INTERVAL, local_m
+from camera import AGE, AUTOPILOT, MAST, SENDER, aliases, bare_list, points, without_clock
+from companion import PROGRAM, REPLAY, ROOT, is_missing
+from conftest import MakeFleet
+from flights import Fleet, Flight, Plan
+
+pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
+
+FLIGHT_S = 12.8  # the mast is reached at 12.5
+WRAP_S = 2.0**32 * 1e-6  # where the autopilot's 32 bit microseconds begin anew
+ALL = "obstacle_distance obstacle_distance_3d collision target_absolute"
+PLANS = [
+    Plan("unix"),
+    Plan("monotonic", clock="monotonic"),
+    Plan("age", clock="age"),
+    Plan("autopilot", clock="autopilot"),
+    Plan("configured", clock="monotonic", line=without_clock, settings={"detections": {"clock": "monotonic"}}),
+    Plan("features of the autopilot's time", source=AUTOPILOT),
+    Plan("features of the sender's time", source=SENDER),
+    Plan("features with their age", source=AGE),
+    Plan("aliases", line=aliases, settings={"detections": {"classes": "car mast"}}),
+    Plan("bare list", line=bare_list, settings={"detections": {"delay_s": 0.1, "classes": "mast"}}),
+    Plan("fifo", source="fifo"),
+    Plan("stdin", source="stdin", autopilot={"make": ARDUPILOT}),
+    Plan("udpout", link="udpout"),
+    Plan("tcp", link="tcp"),
+    Plan("serial", link="serial"),
+    Plan("drift and wrap", autopilot={"boot_s": WRAP_S - 6.0, "drift": 2e-4}),
+    Plan("standard", settings={"reports": {"standard": ALL}}),
+]
+NAMES = [plan.name for plan in PLANS]
+OTHERS = [
+    Plan("points", line=points),
+    Plan("other class", line=aliases, settings={"detections": {"classes": "car tree"}}),
+]
+
+
+@pytest.fixture(scope="module", name="fleet")
+def flown(make_fleet: MakeFleet, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Fleet]:
+    log = tmp_path_factory.mktemp("log")
+    recorded = Plan("recorded", settings={"record": {"folder": log / "new"}})
+    fleet = make_fleet([*PLANS, *OTHERS, recorded])
+    fleet.start()
+    fleet.run(FLIGHT_S)
+    fleet.stop()
+    yield fleet
+
+
+@pytest.fixture(name="plain")
+def plain_flight(fleet: Fleet) -> Flight:
+    return fleet["unix"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_mast_is_found(fleet: Fleet, name: str) -> None:
+    """Whichever way poses and detections come: where it is, within what the sigmas tell."""
+    fleet[name].assert_found()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_hazard_rises(fleet: Fleet, name: str) -> None:
+    """On course at the mast: sure of it before it is reached, and its time counts down."""
+    hazards = fleet[name].of("GOE_HAZARD")
+    ahead = [hazard for hazard in hazards if hazard.time_to > 1.0]
+    assert len(ahead) >= 10
+    assert max(hazard.violation for hazard in ahead[-5:]) > 0.95
+    assert ahead[-1].violation >= ahead[0].violation
+    assert ahead[-1].time_to < 4.0 < ahead[0].time_to
+
+
+@pytest.mark.parametrize("name", [*NAMES, *(plan.name for plan in OTHERS)])
+def test_the_status_comes_once_a_second(fleet: Fleet, name: str) -> None:
+    flight = fleet[name]
+    times = [heard.time_s for heard in flight.autopilot.heard_of("GOE_STATUS")]
+    waited = 2.0 if flight.plan.link in ("udpout", "tcp") else 0.0
+    assert FLIGHT_S - 2.5 - waited <= len(times) <= FLIGHT_S + 2.0
+    steps = [after - before for before, after in zip(times, times[1:])]
+    assert steps and max(abs(step - 1.0) for step in steps) < 0.3, steps
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_status_tells_what_comes_in(fleet: Fleet, name: str) -> None:
+    statuses = fleet[name].statuses()
+    middle, last = statuses[len(statuses) // 2], statuses[-1]
+    assert middle.alive == 3 and middle.self_check == 0 and middle.obstacles == 1
+    assert last.taken > 80 and last.taken > middle.taken > 0
+    counters = ("refused", "weak", "evicted", "full", "resets", "lost")
+    assert {key: getattr(last, key) for key in counters} == dict.fromkeys(counters, 0)
+    assert last.late <= 3  # the first were taken before there was a pose
+
+
+@pytest.mark.parametrize("name", [*NAMES, *(plan.name for plan in OTHERS), "recorded"])
+def test_an_interrupt_ends_it_with_a_summary(fleet: Fleet, name: str) -> None:
+    fleet[name].assert_ended_well()
+    assert fleet[name].ended and fleet[name].ended.out.strip()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_command_is_sent_unless_allowed(fleet: Fleet, name: str) -> None:
+    """reaction.mode is off by default: with a collision ahead nothing moves the aircraft."""
+    assert fleet[name].autopilot.commands() == []
+    assert fleet[name].of("ADSB_VEHICLE") == []
+
+
+# ---------------------------------------------------------------------------------------------------------------- time
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in NAMES if name not in ("age", "bare list", "features with their age")]
+)
+def test_the_delay_is_the_real_one(fleet: Fleet, name: str) -> None:
+    """The autopilot's clock is found: exposures turned into it are as old as they are."""
+    flight = fleet[name]
+    told = [status.delay_mean for status in flight.statuses()[3:] if status.delay_mean != 65535]
+    assert len(told) >= 5
+    real_ms = 1e3 * statistics.mean(flight.detector.delays)
+    assert statistics.median(told) == pytest.approx(real_ms, abs=15.0)
+    assert statistics.median(status.delay_max for status in flight.statuses()[3:]) < real_ms + 60.0
+
+
+def test_without_a_time_the_delay_is_the_configured_one(fleet: Fleet) -> None:
+    told = [status.delay_mean for status in fleet["bare list"].statuses()[3:]]
+    assert told and statistics.median(told) == pytest.approx(100.0, abs=10.0)
+
+
+def test_it_asks_for_the_clock_four_times_a_second(plain: Flight) -> None:
+    asked = [message for message in plain.of("TIMESYNC") if message.tc1 == 0]
+    assert len(asked) == pytest.approx(4 * FLIGHT_S, abs=12)
+    assert len({message.ts1 for message in asked}) == len(asked)
+
+
+@pytest.mark.parametrize("name", ["unix", "tcp", "serial", "stdin"])
+def test_it_answers_the_autopilots_questions(fleet: Fleet, name: str) -> None:
+    """Each once, with the time that was asked with, from its own steady clock."""
+    autopilot = fleet[name].autopilot
+    assert set(autopilot.answers) <= set(autopilot.asked)
+    assert len(autopilot.answers) >= len(autopilot.asked) - 3
+    assert set(autopilot.answers.values()) == {1}
+    times = [message.tc1 for message in fleet[name].of("TIMESYNC") if message.tc1 != 0]
+    steps = [1e-9 * (after - before) for before, after in zip(times, times[1:])]
+    assert statistics.median(steps) == pytest.approx(1.0, abs=0.1)
+
+
+# -------------------------------------------------------------------------------------------------------- what is sent
+
+
+def test_who_it_is(plain: Flight) -> None:
+    """System of the autopilot, component 196, a heartbeat a second."""
+    assert {(m.get_srcSystem(), m.get_srcComponent()) for m in (heard.message for heard in plain.autopilot.heard)} == {
+        (1, 196)
+    }
+    assert len(plain.of("HEARTBEAT")) == pytest.approx(FLIGHT_S, abs=2.5)
+    assert plain.of("HEARTBEAT")[0].autopilot == 8  # MAV_AUTOPILOT_INVALID: it is none
+
+
+def test_its_frames_are_numbered(plain: Flight) -> None:
+    """So that the receiver can tell its losses."""
+    numbers = [heard.message.get_seq() for heard in plain.autopilot.heard]
+    assert all((after - before) % 256 == 1 for before, after in zip(numbers, numbers[1:]))
+
+
+def test_it_asks_for_its_rates(plain: Flight) -> None:
+    asked = {m.param1: m.param2 for m in plain.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL}
+    for message in (31, 32):  # ATTITUDE_QUATERNION, LOCAL_POSITION_NED
+        assert asked[message] == pytest.approx(20000.0)
+    assert len([m for m in plain.of("COMMAND_LONG") if m.command in ASKING]) < 60
+
+
+def test_obstacles_come_as_often_as_configured(plain: Flight) -> None:
+    """5 Hz."""
+    times = [heard.time_s for heard in plain.autopilot.heard_of("GOE_OBSTACLE")]
+    steps = [after - before for before, after in zip(times, times[1:])]
+    assert statistics.median(steps) == pytest.approx(0.2, abs=0.03)
+
+
+def test_what_an_obstacle_tells(plain: Flight) -> None:
+    """Beside the place: latitude and longitude of it, its size, and that it is in view."""
+    told = [heard.message for heard in plain.autopilot.heard_of("GOE_OBSTACLE") if 100 < 250 - heard.north_m < 180]
+    assert told
+    for message in told:
+        assert local_m(message.lat, message.lon) == pytest.approx((message.north, message.east), abs=0.5)
+        assert message.ground_down == pytest.approx(0.0, abs=1.0)
+        assert abs(message.height - MAST.height_m) < 3.0 * message.height_sd
+        assert 0.0 <= message.age < 1.0 and message.id == 1
+        assert message.flags & 4 and not message.flags & 2
+    assert len({message.slot for message in told}) == 1
+
+
+def test_times_are_of_the_autopilots_clock(fleet: Fleet) -> None:
+    """Not wrapping in 64 bits, where 32 do."""
+    for name in ("unix", "drift and wrap"):
+        flight = fleet[name]
+        clock = flight.autopilot.clock
+        for heard in flight.autopilot.heard_of("GOE_HAZARD"):
+            assert 1e-6 * heard.message.time_usec == pytest.approx(clock.at(heard.time_s), abs=0.3)
+        for heard in flight.autopilot.heard_of("GOE_STATUS")[2:]:
+            assert 1e-3 * heard.message.time_boot_ms == pytest.approx(clock.at(heard.time_s), abs=0.3)
+
+
+def test_only_wanted_classes_are_taken(fleet: Fleet) -> None:
+    """The detector is alive none the less."""
+    flight = fleet["other class"]
+    assert flight.of("GOE_OBSTACLE") == []
+    assert flight.statuses()[-2].alive == 3
+
+
+def test_points_are_taken(fleet: Fleet) -> None:
+    last = fleet["points"].statuses()[-1]
+    assert last.taken > 80 and last.refused == 0 and last.alive == 3
+
+
+# --------------------------------------------------------------------------------------------------- standard messages
+
+
+def near(flight: Flight, name: str) -> list[Any]:
+    """(message, range) while the mast is known and ahead."""
+    heard = [(heard.message, 250.0 - heard.north_m) for heard in flight.autopilot.heard_of(name)]
+    return [(message, range_m) for message, range_m in heard if 60.0 < range_m < 150.0]
+
+
+def test_standard_messages_only_where_named(plain: Flight) -> None:
+    for name in ("OBSTACLE_DISTANCE", "OBSTACLE_DISTANCE_3D", "COLLISION", "TARGET_ABSOLUTE"):
+        assert plain.of(name) == []
+
+
+def test_obstacle_distance(fleet: Fleet) -> None:
+    """Sectors of 5 degrees, the first one north: the mast in the one ahead, nothing known behind.
+
+    The body's frame turned back by the heading, which is 0: ArduPilot takes any message for one of the body's.
+    """
+    told = near(fleet["standard"], "OBSTACLE_DISTANCE")
+    assert told
+    for message, range_m in told:
+        assert message.frame == 12 and message.angle_offset == pytest.approx(0.0, abs=0.5)
+        assert 5 in (message.increment, message.increment_f)
+        assert 0.01 * message.distances[0] == pytest.approx(range_m - 4.0, rel=0.12)
+        assert message.distances[36] == 65535
+        assert message.distances[4] == message.max_distance + 1  # seen, and nothing there
+
+
+def test_obstacle_distance_3d(fleet: Fleet) -> None:
+    """Body frame: ahead."""
+    told = near(fleet["standard"], "OBSTACLE_DISTANCE_3D")
+    assert told
+    for message, range_m in told:
+        assert message.x == pytest.approx(range_m - 4.0, rel=0.12) and abs(message.y) < 0.1 * range_m
+
+
+def test_collision(fleet: Fleet) -> None:
+    told = near(fleet["standard"], "COLLISION")
+    assert told
+    for message, range_m in told:
+        assert message.threat_level == 2
+        assert message.time_to_minimum_delta == pytest.approx(range_m / 20.0, rel=0.2)
+
+
+def test_target_absolute(fleet: Fleet) -> None:
+    told = near(fleet["standard"], "TARGET_ABSOLUTE")
+    assert told
+    for message, range_m in told:
+        north, east = local_m(message.lat, message.lon)
+        assert math.hypot(north - MAST.north_m, east - MAST.east_m) < 0.12 * range_m
+        assert message.alt == pytest.approx(ALT_M, abs=3.0)
+
+
+# -------------------------------------------------------------------------------------------------------------- record
+
+
+@pytest.fixture(name="log")
+def recorded_log(fleet: Fleet) -> Path:
+    return Path(fleet["recorded"].plan.settings["record"]["folder"])
+
+
+def rows_of(log: Path) -> list[dict[str, str]]:
+    with open(log / "frames.csv", newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_log_holds_every_detection(fleet: Fleet, log: Path) -> None:
+    assert {file.name for file in log.iterdir()} == {"camera.ini", "frames.csv"}
+    rows = rows_of(log)
+    assert len(rows) > 0.9 * len(fleet["recorded"].detector.poses) - 5
+
+
+def test_the_log_has_times_and_poses_of_the_exposure(fleet: Fleet, log: Path) -> None:
+    """Against the truth: within a few ms of the exposure, by the autopilot's clock."""
+    truth = fleet["recorded"].detector.poses
+    times, places, rolls = [], [], []
+    for row in rows_of(log)[20:]:
+        boot_s = min(truth, key=lambda time_s: abs(time_s - float(row["t_s"])))
+        times.append(abs(boot_s - float(row["t_s"])))
+        places.append(abs(float(row["n_m"]) - truth[boot_s].position[0]))
+        rolls.append(abs(2.0 * math.asin(float(row["qx"])) - truth[boot_s].angles[0]))
+    assert statistics.median(times) < 0.004 and max(times) < 0.02
+    assert statistics.median(places) < 0.15 and max(places) < 0.5
+    assert statistics.median(rolls) < math.radians(0.1) and max(rolls) < math.radians(0.6)
+
+
+def test_the_log_is_replayed(fleet: Fleet, log: Path) -> None:
+    """goe_replay takes it as it is, and finds the mast."""
+    if not Path(REPLAY).exists():
+        pytest.skip(f"{REPLAY} is not built")
+    done = subprocess.run([REPLAY, str(log)], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    found = [row for row in csv.DictReader(done.stdout.splitlines()) if row["status"] == "ok"]
+    north, east = (float(found[-20][column]) for column in ("center_n_m", "center_e_m"))
+    assert math.hypot(north - MAST.north_m, east - MAST.east_m) < 10.0
+
+
+def test_the_readme_has_every_key() -> None:
+    """The example is the contract: sections of the README's table are those of the file."""
+    folder = ROOT / "port" / "companion"
+    example, readme = ((folder / name).read_text(encoding="utf-8") for name in ("companion.ini", "README.md"))
+    sections = [line.strip("[]") for line in example.splitlines() if line.startswith("[")]
+    assert sections and all(f"| `[{section}]` |" in readme for section in sections)

@@ -1,0 +1,89 @@
+"""What the companion costs: 200 Hz of poses and eight obstacles at 30 Hz."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
+from camera import Obstacle
+from companion import PROGRAM, is_missing
+from conftest import MakeFleet
+from flights import FAR_M, Flight, Plan
+
+pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
+
+WARM_S, LOAD_S = 3.0, 5.0
+SHARE = 0.10
+GROWTH_KIB = 128
+FOREST = tuple(Obstacle(380.0 + 40.0 * (k % 2), -140.0 + 40.0 * k) for k in range(8))
+
+
+@dataclass
+class Load:
+    flight: Flight
+    share: float = 0.0
+    before_kib: int = 0
+    after_kib: int = 0
+    files_before: int = 0
+    files_after: int = 0
+
+
+@pytest.fixture(scope="module", name="load")
+def flown(make_fleet: MakeFleet, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Load]:
+    folder = tmp_path_factory.mktemp("load") / "log"
+    plan = Plan(
+        "forest",
+        obstacles=FOREST,
+        autopilot={"pose_hz": 200.0},
+        detector={"hz": 30.0},
+        settings={"record": {"folder": folder}, "link": {"attitude_hz": 200, "position_hz": 200}},
+    )
+    fleet = make_fleet([plan])
+    flight, companion = fleet["forest"], fleet["forest"].companion
+    fleet.start()
+    fleet.run(WARM_S)
+    begin_s, used_s = time.monotonic(), companion.processor_s()
+    load = Load(flight, before_kib=companion.rss_kib(), files_before=companion.files())
+    fleet.run(LOAD_S)
+    load.share = (companion.processor_s() - used_s) / (time.monotonic() - begin_s)
+    load.after_kib, load.files_after = companion.rss_kib(), companion.files()
+    fleet.stop()
+    yield load
+
+
+def test_it_was_loaded(load: Load) -> None:
+    """What the figures are of: as many poses and images as they say."""
+    assert len(load.flight.detector.delays) > 0.8 * 30 * (WARM_S + LOAD_S)
+    assert load.flight.autopilot.wire.sent > 0.8 * 400 * (WARM_S + LOAD_S)
+    assert load.flight.statuses()[-1].taken > 0.8 * 30 * (WARM_S + LOAD_S) - 10
+
+
+def test_it_takes_less_than_a_tenth_of_a_core(load: Load) -> None:
+    assert load.share < SHARE
+
+
+def test_it_does_not_grow(load: Load) -> None:
+    assert 0 < load.after_kib <= load.before_kib + GROWTH_KIB
+    assert load.files_after == load.files_before
+
+
+def test_all_eight_are_followed(load: Load) -> None:
+    last = load.flight.statuses()[-1]
+    assert last.obstacles == 8 and (last.full, last.evicted) == (0, 0)
+    assert last.late <= 6  # the first were taken before there was a pose
+    assert {message.id for message in load.flight.of("GOE_OBSTACLE")} == set(range(1, 9))
+
+
+@pytest.mark.parametrize("number", range(1, 9))
+def test_each_is_where_it_is(load: Load, number: int) -> None:
+    reports = zip(load.flight.of("GOE_OBSTACLE"), load.flight.found(FOREST[number - 1]))
+    mine = [found for message, found in reports if message.id == number]
+    assert len(mine) > 10
+    assert all(found.sigmas <= FAR_M for found in mine)
+    assert mine[-1].error_m < 0.1 * mine[-1].range_m
+
+
+def test_it_ends_well(load: Load) -> None:
+    load.flight.assert_ended_well()

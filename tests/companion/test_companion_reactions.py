@@ -1,0 +1,247 @@
+"""What the companion has the autopilot do, each way of each autopilot: flights of the same time."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from autopilot import ALT_M, ARDUPILOT, DO_GO_AROUND, DO_REPOSITION, DO_SET_MODE, LOITER, MODES, PX4, Heard, local_m
+from camera import MAST, Obstacle
+from companion import PROGRAM, is_missing
+from conftest import MakeFleet
+from flights import Fleet, Flight, Plan
+
+pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
+
+FLIGHT_S = 18.0
+IGNORED = 3
+MARGIN_M = 15.0
+POSITION = 3 << 16  # PX4: POSCTL
+ICAO = 0xABC120
+LOW = Obstacle(250.0, height_m=22.0)
+ASIDE = (Obstacle(250.0, 90.0),)
+TO_PX4 = {"reaction": {"mode": "px4"}}
+TO_ARDUPLANE = {"reaction": {"mode": "arduplane"}}
+AVOIDS, STAYS, PAST = "px4", "px4 without resume", "px4, mast aside"
+OVERRULED, AT_ONCE = "px4 and its pilot", "px4 and its pilot, at once"
+LANDING, LANDING_PLANE = "px4 on approach", "arduplane on approach"
+TRAFFIC, LOW_TRAFFIC, NO_TRAFFIC = "arduplane", "arduplane, low mast", "arduplane, mast aside"
+PLANE = {"make": ARDUPILOT}
+PLANS = [
+    Plan(AVOIDS, settings=TO_PX4, autopilot={"ignored": {DO_REPOSITION: IGNORED, DO_SET_MODE: 1}}),
+    Plan(STAYS, settings={"reaction": {"mode": "px4", "resume": 0}}),
+    Plan(OVERRULED, settings=TO_PX4),
+    Plan(AT_ONCE, settings=TO_PX4),
+    Plan(PAST, settings=TO_PX4, obstacles=ASIDE),
+    Plan(LANDING, settings=TO_PX4, obstacles=(LOW,), autopilot={"landing": True}),
+    Plan(LANDING_PLANE, settings=TO_ARDUPLANE, obstacles=(LOW,), autopilot={**PLANE, "landing": True}),
+    Plan(TRAFFIC, settings={"reaction": {"mode": "arduplane", "icao": hex(ICAO)}}, autopilot=PLANE),
+    Plan(LOW_TRAFFIC, settings=TO_ARDUPLANE, obstacles=(LOW,), autopilot=PLANE),
+    Plan(NO_TRAFFIC, settings=TO_ARDUPLANE, obstacles=ASIDE, autopilot=PLANE),
+]
+
+
+class Pilot:
+    """Takes over, once, so long after the order."""
+
+    def __init__(self, flight: Flight, after_s: float) -> None:
+        self.autopilot, self.after_s, self.loop = flight.autopilot, after_s, flight.loop
+        self.seen, self.since_s = False, math.inf
+        self.loop.every(0.005, self._look)
+
+    def _look(self) -> None:
+        if self.autopilot.mode == LOITER and not self.seen:
+            self.seen = True
+            self.loop.after(self.after_s, self._take_over)
+
+    def _take_over(self) -> None:
+        self.autopilot.set_mode(POSITION)
+        self.since_s = time.monotonic()
+
+
+@pytest.fixture(scope="module", name="pilots")
+def all_pilots() -> dict[str, Pilot]:
+    return {}
+
+
+@pytest.fixture(scope="module", name="fleet")
+def flown(make_fleet: MakeFleet, pilots: dict[str, Pilot]) -> Iterator[Fleet]:
+    fleet = make_fleet(PLANS)
+    fleet.start()
+    pilots.update({name: Pilot(fleet[name], after_s) for name, after_s in ((OVERRULED, 2.0), (AT_ONCE, 0.01))})
+    fleet.run(FLIGHT_S)
+    fleet.stop()
+    yield fleet
+
+
+def orders(flight: Flight) -> list[Heard]:
+    heard = flight.autopilot.heard_of("COMMAND_INT") + flight.autopilot.heard_of("COMMAND_LONG")
+    return [h for h in heard if h.message.command == DO_REPOSITION]
+
+
+def mode_changes(flight: Flight) -> list[Any]:
+    told = [m for m in flight.of("COMMAND_LONG") if m.command == DO_SET_MODE]
+    return told + flight.of("SET_MODE")
+
+
+@pytest.mark.parametrize("name", [plan.name for plan in PLANS])
+def test_it_ends_well(fleet: Fleet, name: str) -> None:
+    fleet[name].assert_ended_well()
+
+
+# ------------------------------------------------------------------------------------------------------------------ px4
+
+
+def test_px4_is_sent_past_the_mast(fleet: Fleet) -> None:
+    """DO_REPOSITION as COMMAND_INT, with change of mode, to a place beside the mast at the aircraft's height."""
+    first = orders(fleet[AVOIDS])[0].message
+    assert first.get_type() == "COMMAND_INT" and (first.target_system, first.target_component) == (1, 1)
+    assert int(first.param2) & 1
+    north, east = local_m(first.x, first.y)
+    assert abs(east) > MAST.width_m / 2 + MARGIN_M - 3.0
+    assert 150.0 < north < 350.0
+    over_sea = {0: 0.0, 5: 0.0, 3: ALT_M, 6: ALT_M}[first.frame]
+    assert first.z + over_sea == pytest.approx(ALT_M + 30.0, abs=2.0)
+
+
+def test_the_order_comes_in_time_and_not_at_once(fleet: Fleet) -> None:
+    """At 20 m/s the mast is 12.5 s away; the rule is: once little is left of what the turn needs."""
+    range_m = MAST.north_m - orders(fleet[AVOIDS])[0].north_m
+    assert 60.0 < range_m < 240.0
+
+
+def test_the_order_is_repeated_until_it_is_acknowledged(fleet: Fleet) -> None:
+    """And no more after that, as long as its target stays."""
+    told = orders(fleet[AVOIDS])
+    assert len(told) > IGNORED
+    steps = [after.time_s - before.time_s for before, after in zip(told[: IGNORED + 1], told[1 : IGNORED + 1])]
+    assert all(0.05 < step < 2.5 for step in steps), steps
+    places = [local_m(h.message.x, h.message.y) for h in told[IGNORED:]]
+    assert all(math.dist(before, after) > 4.5 for before, after in zip(places, places[1:])), places
+
+
+def test_the_aircraft_passes_clear(fleet: Fleet) -> None:
+    """By a good part of the margin, as it flies to the target and no farther."""
+    for name in (AVOIDS, STAYS):
+        least = min(math.dist(heard.place, (250.0, 0.0)) for heard in fleet[name].autopilot.heard)
+        assert least > MAST.width_m / 2 + 0.5 * MARGIN_M
+
+
+def test_the_mode_is_restored(fleet: Fleet) -> None:
+    """Behind the mast, and again if the autopilot does not answer at once."""
+    pilot = fleet[AVOIDS].autopilot
+    assert pilot.modes == [MODES[PX4], LOITER, MODES[PX4]]
+    assert 1 < len(mode_changes(fleet[AVOIDS])) < 8
+
+
+def test_the_hazard_tells_the_action(fleet: Fleet) -> None:
+    """The same target as the order's."""
+    flight = fleet[AVOIDS]
+    acting = [m for m in flight.of("GOE_HAZARD") if m.action]
+    assert acting and all(m.action in (1, 2) and m.flags & 0x20 for m in acting)
+    first = orders(flight)[0].message
+    least = min(math.dist(local_m(m.target_lat, m.target_lon), local_m(first.x, first.y)) for m in acting)
+    assert least < 5.0
+    assert {status.action for status in flight.statuses()} >= {0, acting[0].action}
+
+
+def test_without_resume_the_mode_stays(fleet: Fleet) -> None:
+    flight = fleet[STAYS]
+    assert orders(flight) and mode_changes(flight) == []
+    assert flight.autopilot.modes == [MODES[PX4], LOITER]
+
+
+@pytest.mark.parametrize("name", [OVERRULED, AT_ONCE])
+def test_what_the_pilot_chose_is_not_ended(fleet: Fleet, name: str) -> None:
+    """The mode is restored only from where the order put it, also if no heartbeat told of that."""
+    flight = fleet[name]
+    assert flight.autopilot.modes[:3] == [MODES[PX4], LOITER, POSITION]
+    assert mode_changes(flight) == []
+
+
+@pytest.mark.parametrize("name", [OVERRULED, AT_ONCE])
+def test_what_the_pilot_chose_is_not_taken_from_him(fleet: Fleet, pilots: dict[str, Pilot], name: str) -> None:
+    """Once the companion can know of it: no order that changes the mode again."""
+    since_s = pilots[name].since_s + 1.2
+    assert [heard.time_s - since_s for heard in orders(fleet[name]) if heard.time_s > since_s] == []
+    assert fleet[name].autopilot.modes == [MODES[PX4], LOITER, POSITION]
+
+
+@pytest.mark.parametrize("name", [PAST, NO_TRAFFIC])
+def test_a_mast_aside_is_passed(fleet: Fleet, name: str) -> None:
+    flight = fleet[name]
+    assert flight.of("GOE_OBSTACLE")
+    assert flight.autopilot.commands() == [] and flight.of("ADSB_VEHICLE") == []
+
+
+@pytest.mark.parametrize("name", [LANDING, LANDING_PLANE])
+def test_on_approach_it_goes_around(fleet: Fleet, name: str) -> None:
+    """What can be climbed over is, once the autopilot says that it lands."""
+    told = fleet[name].autopilot.commands()
+    assert [m.command for m in told if m.get_type().startswith("COMMAND")][:1] == [DO_GO_AROUND]
+    assert orders(fleet[name]) == []
+
+
+# ------------------------------------------------------------------------------------------------------------ arduplane
+
+
+def ahead(flight: Flight) -> list[Heard]:
+    return [h for h in flight.autopilot.heard_of("ADSB_VEHICLE") if h.north_m < 240.0]
+
+
+@pytest.mark.parametrize("name", [TRAFFIC, LOW_TRAFFIC])
+def test_the_mast_is_traffic_that_stands(fleet: Fleet, name: str) -> None:
+    """A point obstacle without a velocity, where the mast is."""
+    told = ahead(fleet[name])
+    assert len(told) >= 4
+    for heard in told:
+        message = heard.message
+        assert message.emitter_type == 19
+        assert (message.hor_velocity, message.ver_velocity) == (0, 0)
+        north, east = local_m(message.lat, message.lon)
+        assert math.hypot(north - 250.0, east) < max(0.12 * (250.0 - heard.north_m), 4.0)
+        assert message.flags & 3 == 3  # coordinates and altitude are valid
+        assert message.tslc <= 2
+
+
+def test_traffic_is_sent_at_its_rate(fleet: Fleet) -> None:
+    """adsb_hz, by default 2."""
+    times = [heard.time_s for heard in ahead(fleet[TRAFFIC])]
+    steps = [after - before for before, after in zip(times, times[1:])]
+    assert all(0.35 < step < 0.75 for step in steps), steps
+
+
+def test_a_high_mast_lies_just_below_the_aircraft(fleet: Fleet) -> None:
+    """min(top, own - 1 m): here the own."""
+    for heard in ahead(fleet[TRAFFIC]):
+        assert 1e-3 * heard.message.altitude == pytest.approx(ALT_M + 29.0, abs=0.5)
+
+
+def test_a_low_mast_lies_at_its_top(fleet: Fleet) -> None:
+    near = [heard for heard in ahead(fleet[LOW_TRAFFIC]) if heard.north_m > 120.0]
+    assert near
+    for heard in near:
+        assert 1e-3 * heard.message.altitude == pytest.approx(ALT_M + LOW.height_m, abs=3.0)
+
+
+def test_traffic_has_the_configured_address(fleet: Fleet) -> None:
+    """The first obstacle has that of `icao`."""
+    assert {heard.message.ICAO_address for heard in ahead(fleet[TRAFFIC])} == {ICAO}
+    assert {heard.message.ICAO_address for heard in ahead(fleet[LOW_TRAFFIC])} == {0xF0E000}
+
+
+def test_traffic_ends_behind_the_mast(fleet: Fleet) -> None:
+    """It is passed at 250 m, and behind by its radius and the margin soon after."""
+    for name in (TRAFFIC, LOW_TRAFFIC):
+        flight = fleet[name]
+        assert max(h.north_m for h in flight.autopilot.heard) > 320.0
+        assert max(h.north_m for h in flight.autopilot.heard_of("ADSB_VEHICLE")) < 310.0
+
+
+@pytest.mark.parametrize("name", [TRAFFIC, LOW_TRAFFIC])
+def test_arduplane_is_given_no_order(fleet: Fleet, name: str) -> None:
+    """Its own avoidance turns away."""
+    assert fleet[name].autopilot.commands() == []
