@@ -207,6 +207,19 @@ static void watch_own_clock(companion_t *c, int64_t now_us) {
     c->clock_difference_us = difference_us;
 }
 
+static void mend_links(companion_t *c, int64_t now_us) {
+    unsigned lost = link_losses(c->autopilot_link);
+    link_mend(c->autopilot_link, now_us);
+    if (c->detections_link != NULL) {
+        lost += link_losses(c->detections_link);
+        link_mend(c->detections_link, now_us);
+    }
+    if (lost > c->links_lost) {
+        event("a link was lost: it is tried again every second");
+    }
+    c->links_lost = lost;
+}
+
 static void end_second(companion_t *c, int64_t now_us) {
     companion_rates_t *rates = &c->rates;
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
@@ -219,10 +232,7 @@ static void end_second(companion_t *c, int64_t now_us) {
     (void)memset(&rates->delay, 0, sizeof rates->delay);
     flight_record_flush(&c->record);
     watch_own_clock(c, now_us);
-    link_mend(c->autopilot_link, now_us);
-    if (c->detections_link != NULL) {
-        link_mend(c->detections_link, now_us);
-    }
+    mend_links(c, now_us);
 }
 
 static bool do_what_is_due(companion_t *c) {

@@ -47,7 +47,8 @@ typedef struct {
     companion_counts_t counts;
     companion_rates_t rates;
     unsigned self_check;
-    bool detector_alive, pose_alive; /* as they were told last */
+    bool detector_alive, pose_alive; /* as they were told last ... */
+    unsigned links_lost;             /* ... and how often the links were lost by then */
     int64_t assessed_us, reported_us, second_us;
     int64_t clock_difference_us; /* UNIX time minus monotonic time, as it was last */
 } companion_t;

@@ -349,6 +349,15 @@ static void pad_classes(char classes[CONFIG_TEXT_MAX]) {
     }
 }
 
+static bool is_given(const config_reader_t *reader, const char *flight_name) {
+    for (size_t i = 0; i < FLIGHT_KEYS; i++) {
+        if (strcmp(flight_keys[i].name, flight_name) == 0) {
+            return reader->flight_line[i] != 0;
+        }
+    }
+    return false;
+}
+
 /* What only holds of values together. */
 static void check_whole(config_reader_t *reader) {
     if (360u % reader->config->reports_distance_increment_deg != 0 ||
@@ -356,6 +365,13 @@ static void check_whole(config_reader_t *reader) {
         reader->line = 0;
         FAIL(reader, NULL, "reports.distance_increment_deg: %u is no multiple of 5 that divides 360",
              reader->config->reports_distance_increment_deg);
+    }
+    if (reader->config->reaction_mode == REACTION_PX4 && !is_given(reader, "loiter_m")) {
+        reader->line = 0;
+        FAIL(
+            reader, NULL,
+            "flight.loiter_m: reaction.mode px4 needs it: a fixed wing circles about the target that it is sent to, by "
+            "NAV_LOITER_RAD; 0 for a vehicle that stops there");
     }
     if (reader->config->flight.resets > 0.0f) {
         reader->line = 0;

@@ -7,12 +7,14 @@
 
 #define US_PER_S 1000000
 #define REPEAT_US 500000    /* without an acknowledgement */
+#define RESUMES_MAX 5       /* the mode before is asked for as often, until it is acknowledged */
 #define TARGET_MOVED_M 5.0f /* from which on it is sent anew */
 #define M_PER_E7 0.0111195f /* of 1e-7 degrees on a sphere of 6371 km */
 
 /* PX4's custom mode: main mode in the third byte, sub mode in the fourth. */
 #define PX4_MAIN(mode) ((mode) >> 16 & 0xFFu)
 #define PX4_SUB(mode) ((mode) >> 24 & 0xFFu)
+#define PX4_AUTO_LOITER (4u << 16 | 3u << 24) /* where DO_REPOSITION leads to */
 
 static bool is_place(goe_flight_action_t action) {
     return action == GOE_FLIGHT_LEFT || action == GOE_FLIGHT_RIGHT || action == GOE_FLIGHT_CLIMB ||
@@ -54,12 +56,27 @@ static bool has_moved(const orders_t *orders, const autopilot_t *autopilot, cons
     return hypotf(hypotf(north_m, east_m), up_m) > TARGET_MOVED_M;
 }
 
-static void resume(orders_t *orders, wire_t *wire, const companion_config_t *config, const autopilot_t *autopilot) {
-    mavlink_message_t message;
-    const bool is_ours = orders->mode_by_order != 0 && autopilot->custom_mode == orders->mode_by_order;
-    if (config->reaction_resume == 0 || !orders->has_mode_before || !is_ours) {
-        return; /* somebody has chosen another mode since: that stands */
+/* A pilot, or a failsafe, that chose another mode than the order led to is not fought. */
+static void watch_mode(orders_t *orders, const autopilot_t *autopilot) {
+    if (autopilot->custom_mode == PX4_AUTO_LOITER) {
+        orders->has_led = true;
+    } else if ((orders->has_led || autopilot->custom_mode != orders->mode_before) && !orders->overruled) {
+        orders->overruled = true;
+        event("another mode was chosen: the order is left to whoever did");
     }
+}
+
+/* Back into the mode before. */
+static bool may_resume(const orders_t *orders, const companion_config_t *config, const autopilot_t *autopilot) {
+    return config->reaction_resume != 0 && orders->has_led && !orders->overruled &&
+           autopilot->custom_mode == PX4_AUTO_LOITER && orders->mode_before != PX4_AUTO_LOITER;
+}
+
+static void resume(orders_t *orders, wire_t *wire, const autopilot_t *autopilot, int64_t now_us) {
+    mavlink_message_t message;
+    orders->command = MAV_CMD_DO_SET_MODE;
+    orders->sent_us = now_us;
+    orders->resumes_left--;
     (void)mavlink_msg_command_long_pack(wire->system, wire->component, &message, autopilot->system,
                                         MAV_COMP_ID_AUTOPILOT1, MAV_CMD_DO_SET_MODE, 0,
                                         (float)MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, (float)PX4_MAIN(orders->mode_before),
@@ -67,11 +84,20 @@ static void resume(orders_t *orders, wire_t *wire, const companion_config_t *con
     wire_send(wire, &message);
 }
 
+static void go_on_resuming(orders_t *orders, wire_t *wire, const companion_config_t *config,
+                           const autopilot_t *autopilot, int64_t now_us) {
+    if (orders->resumes_left > 0 && orders->command == MAV_CMD_DO_SET_MODE && now_us - orders->sent_us >= REPEAT_US &&
+        may_resume(orders, config, autopilot)) {
+        resume(orders, wire, autopilot, now_us);
+    }
+}
+
 static void follow_px4(orders_t *orders, wire_t *wire, const autopilot_t *autopilot,
                        const goe_flight_assessment_t *assessment, bool is_new, int64_t now_us) {
     const bool unanswered = orders->command != 0 && now_us - orders->sent_us >= REPEAT_US;
-    if (orders->has_mode_before && orders->command == 0 && autopilot->custom_mode != orders->mode_before) {
-        orders->mode_by_order = orders->mode_by_order != 0 ? orders->mode_by_order : autopilot->custom_mode;
+    watch_mode(orders, autopilot);
+    if (orders->overruled) {
+        return;
     }
     if (assessment->action == GOE_FLIGHT_GO_AROUND) {
         if (is_new || unanswered) {
@@ -106,13 +132,11 @@ static void send_traffic(orders_t *orders, wire_t *wire, const companion_config_
 static void begin(orders_t *orders, const autopilot_t *autopilot, const goe_flight_assessment_t *assessment) {
     if (orders->action == GOE_FLIGHT_NONE) {
         orders->mode_before = autopilot->custom_mode;
-        orders->mode_by_order = 0;
-        orders->has_mode_before = true;
+        orders->has_led = orders->overruled = false;
     }
     orders->orders++;
-    event("order: %s, %.0f m %s, %.1f s ahead%s", goe_flight_action_text(assessment->action),
-          (double)assessment->hazard.miss_m, "beside it on this course", (double)assessment->hazard.time_s,
-          assessment->late ? ", late" : "");
+    event("order: %s; on this course %.0f m beside it in %.1f s%s", goe_flight_action_text(assessment->action),
+          (double)assessment->hazard.miss_m, (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
 }
 
 void orders_follow(orders_t *orders, wire_t *wire, const companion_config_t *config, const autopilot_t *autopilot,
@@ -124,16 +148,17 @@ void orders_follow(orders_t *orders, wire_t *wire, const companion_config_t *con
     }
     if (is_new && assessment->action == GOE_FLIGHT_NONE) {
         event("the order is taken back");
-        if (config->reaction_mode == REACTION_PX4) {
-            resume(orders, wire, config, autopilot);
-        }
         orders->command = 0;
-        orders->has_mode_before = false;
+        orders->resumes_left = RESUMES_MAX;
+        if (config->reaction_mode == REACTION_PX4 && may_resume(orders, config, autopilot)) {
+            resume(orders, wire, autopilot, now_us);
+        }
     } else if (is_new) {
         begin(orders, autopilot, assessment);
     }
     orders->action = assessment->action;
     if (assessment->action == GOE_FLIGHT_NONE) {
+        go_on_resuming(orders, wire, config, autopilot, now_us);
         return;
     }
     if (config->reaction_mode == REACTION_PX4) {

@@ -13,9 +13,11 @@ typedef struct {
     int32_t target_lat_e7, target_lon_e7; /* as it was sent last ... */
     float target_alt_m;
     int64_t sent_us;
-    uint16_t command;                    /* whose acknowledgement is awaited; 0: none */
-    bool has_mode_before;                /* px4: the mode in which the order was given ... */
-    uint32_t mode_before, mode_by_order; /* ... and the one that it led to; 0: not seen yet */
+    uint16_t command;     /* whose acknowledgement is awaited; 0: none */
+    int resumes_left;     /* px4: times that the mode before may still be asked for */
+    uint32_t mode_before; /* px4: in which the order was given ... */
+    bool has_led;         /* ... whether it has led to the mode that it leads to ... */
+    bool overruled;       /* ... and whether somebody has chosen another one since: then no command follows any more */
     unsigned long orders, refused;
 } orders_t;
 

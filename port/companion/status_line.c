@@ -118,6 +118,7 @@ void status_line_summary(const companion_t *c) {
     row("messages_garbage", wire->garbage, "frames with a wrong checksum");
     row("bytes_stray", wire->stray, "between frames");
     row("messages_unsent", wire->unsent, "that the link did not take");
+    row("links_lost", c->links_lost, "TCP peers and devices that went away");
     row("attitudes", c->autopilot.attitudes, "samples taken");
     row("positions", c->autopilot.positions, "samples taken");
     row("samples_bad", c->autopilot.bad_samples, "out of order, not finite or out of range");
