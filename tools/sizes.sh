@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Memory of one estimator and code of the library, as the tables of lib/README.md; and of the flight layer, as those of
-# port/flight/README.md.
+# Memory of one estimator and code of the library, as the tables of lib/README.md; of the flight layer, as those of
+# port/flight/README.md; and of its MAVLink messages, as that of port/mavlink/README.md.
 #
 #   tools/sizes.sh          prints the tables
 #   tools/sizes.sh <words>  ... of the code only the rows whose name has these words, such as "Cortex-M4F gcc"
@@ -13,6 +13,7 @@ cd "$scratch"
 limit_bytes=2904
 m4f=(-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
 mapfile -t flight_sources < <(find "$root/port/flight" -name '*.c' | sort)
+mapfile -t mavlink_sources < <(find "$root/port/mavlink" -name '*.c' | sort)
 sources=("${library_sources[@]}") # what code_row measures
 wanted=${1:-}
 
@@ -96,6 +97,17 @@ for level in -O2 -Os; do
     code_row "Cortex-M4F gcc $level" arm-none-eabi-size arm-none-eabi-gcc $level "${m4f[@]}"
 done
 for file in "${flight_sources[@]}"; do
+    sources=("$file")
+    code_row "Cortex-M4F gcc -Os: $(basename "$file")" arm-none-eabi-size arm-none-eabi-gcc -Os "${m4f[@]}"
+done
+echo
+echo "| MAVLink messages, code | code and constants, bytes | writable data, bytes |"
+echo "|---|---|---|"
+sources=("${mavlink_sources[@]}")
+for level in -O2 -Os; do
+    code_row "Cortex-M4F gcc $level" arm-none-eabi-size arm-none-eabi-gcc $level "${m4f[@]}"
+done
+for file in "${mavlink_sources[@]}"; do
     sources=("$file")
     code_row "Cortex-M4F gcc -Os: $(basename "$file")" arm-none-eabi-size arm-none-eabi-gcc -Os "${m4f[@]}"
 done
