@@ -85,7 +85,7 @@ static void features_are_read_field_by_field(void) {
     goe_mavlink_features_t features;
     memset(&features, GUARD, sizeof features);
     goe_mavlink_read_features(features_frame + 10, sizeof features_frame - 12u, &features);
-    TEST_ASSERT_EQUAL_UINT64(expected.time_usec, features.time_usec);
+    TEST_ASSERT_TRUE(expected.time_usec == features.time_usec); /* Unity on targets has no 64 bits */
     TEST_ASSERT_EQUAL_UINT32(expected.age_usec, features.age_usec);
     TEST_ASSERT_EQUAL_UINT32(expected.obstacle_id, features.obstacle_id);
     TEST_ASSERT_EQUAL_INT16_ARRAY(expected.box, features.box, GOE_MAVLINK_SIDES);

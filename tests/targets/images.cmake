@@ -148,6 +148,16 @@ if(NOT GOE_TARGET_TESTS STREQUAL none)
     target_link_libraries(test_flight_safety PRIVATE unit_test_support goe_flight)
     add_test(NAME test_flight_safety COMMAND test_flight_safety)
     set_tests_properties(test_flight_safety PROPERTIES LABELS unit TIMEOUT 300)
+    # Those of the MAVLink messages: other alignment, other pointers.
+    set(mavlink_tests ${PROJECT_SOURCE_DIR}/tests/mavlink)
+    foreach(name IN ITEMS test_mavlink_safety test_mavlink_codec)
+        goe_image(${name} ${GOE_TARGET_BOARD} ${mavlink_tests}/${name}.c ${mavlink_tests}/any_message.c)
+        target_compile_options(${name} PRIVATE -Wno-double-promotion -Wno-float-equal)
+        target_include_directories(${name} PRIVATE ${mavlink_tests})
+        target_link_libraries(${name} PRIVATE unit_test_support goe_mavlink)
+        add_test(NAME ${name} COMMAND ${name})
+        set_tests_properties(${name} PROPERTIES LABELS unit TIMEOUT 300)
+    endforeach()
 
     # The safety tests, with the library under the flags of four firmwares that run on such processors.
     if(has_fpu AND CMAKE_SYSTEM_PROCESSOR STREQUAL arm AND CMAKE_C_COMPILER_ID STREQUAL GNU
