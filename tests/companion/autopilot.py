@@ -18,6 +18,7 @@ ARDUPILOT, PX4 = 3, 12
 MODES = {ARDUPILOT: 10, PX4: 4 << 16 | 4 << 24}  # AUTO; AUTO.MISSION
 LOITER = 4 << 16 | 3 << 24  # PX4: AUTO.LOITER
 DO_SET_MODE, DO_GO_AROUND, DO_REPOSITION, SET_MESSAGE_INTERVAL, REQUEST_MESSAGE = 176, 191, 192, 511, 512
+BANK, BANK_RATE = math.radians(30.0), math.radians(60.0)  # of a turn, and of rolling into it
 ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that ask for messages and move nothing
 
 
@@ -75,25 +76,36 @@ class Aircraft:
     goal: tuple[float, float] | None = None
     time_s: float = field(default_factory=time.monotonic)
     begin_s: float = field(init=False)
-    turn: float = field(init=False, default=0.0)
+    bank: float = field(init=False, default=0.0)
+    bank_rate: float = field(init=False, default=0.0)
 
     def __post_init__(self) -> None:
         self.begin_s = self.time_s
 
-    def advance(self, now_s: float) -> Pose:
-        step = max(now_s - self.time_s, 0.0)
-        self.time_s = now_s
-        wanted = 0.0
-        if self.goal:
-            wanted = math.atan2(self.goal[1] - self.east_m, self.goal[0] - self.north_m)
+    def _wanted_bank(self) -> float:
+        wanted = math.atan2(self.goal[1] - self.east_m, self.goal[0] - self.north_m) if self.goal else 0.0
         error = math.remainder(wanted - self.course, 2 * math.pi)
-        most = 9.81 * math.tan(math.radians(30.0)) / self.speed_m_s
-        self.turn = max(-most, min(most, 2.0 * error))
-        middle = self.course + 0.5 * self.turn * step
-        self.course += self.turn * step
-        self.north_m += self.speed_m_s * step * math.cos(middle)
-        self.east_m += self.speed_m_s * step * math.sin(middle)
+        return max(-BANK, min(BANK, 2.0 * error))
+
+    def advance(self, now_s: float) -> Pose:
+        while self.time_s < now_s:
+            self._step(min(0.02, now_s - self.time_s))
+            self.time_s = min(self.time_s + 0.02, now_s)
         return self.pose()
+
+    def _step(self, step_s: float) -> None:
+        error = self._wanted_bank() - self.bank
+        self.bank_rate = max(-BANK_RATE, min(BANK_RATE, 4.0 * error))
+        middle = self.course + 0.5 * self.turn * step_s
+        self.bank += self.bank_rate * step_s
+        self.course += self.turn * step_s
+        self.north_m += self.speed_m_s * step_s * math.cos(middle)
+        self.east_m += self.speed_m_s * step_s * math.sin(middle)
+
+    @property
+    def turn(self) -> float:
+        """Of the course, rad/s."""
+        return 9.81 * math.tan(self.bank) / self.speed_m_s
 
     def place(self) -> tuple[float, float]:
         return self.north_m, self.east_m
@@ -101,8 +113,7 @@ class Aircraft:
     def pose(self) -> Pose:
         omega = 2 * math.pi * self.roll_hz
         phase, most = omega * (self.time_s - self.begin_s), math.radians(self.roll_deg)
-        bank = math.atan(self.speed_m_s * self.turn / 9.81)
-        roll, rate = bank + most * math.sin(phase), most * omega * math.cos(phase)
+        roll, rate = self.bank + most * math.sin(phase), self.bank_rate + most * omega * math.cos(phase)
         return Pose(
             (self.north_m, self.east_m, -self.height_m),
             (self.speed_m_s * math.cos(self.course), self.speed_m_s * math.sin(self.course), 0.0),

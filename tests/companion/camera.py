@@ -85,7 +85,7 @@ class Camera:
     height: int = 720
     focal: float = 800.0
 
-    def ini(self) -> str:
+    def ini(self, name: str = "camera") -> str:
         keys = {
             "width": self.width,
             "height": self.height,
@@ -94,7 +94,7 @@ class Camera:
             "cx": self.width / 2,
             "cy": self.height / 2,
         }
-        return "".join(f"camera.{key} = {value}\n" for key, value in keys.items())
+        return "".join(f"{name}.{key} = {value}\n" for key, value in keys.items())
 
     def project(self, pose: Pose, points_ned: np.ndarray) -> np.ndarray | None:
         """Pixels, right and down; none if a point is not ahead."""
@@ -150,8 +150,13 @@ def ultralytics(box: Box) -> dict[str, Any]:
 
 
 def bare_list(image: Image, clock: str | None = None) -> str:
-    """As result.tojson() prints it: over several lines it would not be one line, so here on one."""
+    """Without a newline: the datagram's end is the line's."""
     return json.dumps([ultralytics(box) for box in image.boxes])
+
+
+def as_printed(image: Image, clock: str | None = None) -> str:
+    """What print(result.tojson()) writes: ultralytics dumps with an indent of 2, over several lines."""
+    return json.dumps([ultralytics(box) for box in image.boxes], indent=2) + "\n"
 
 
 def aliases(image: Image, clock: str | None) -> str:
@@ -166,6 +171,21 @@ def without_clock(image: Image, clock: str | None) -> str:
     line = json.loads(plain_line(image, clock))
     del line["clock"]
     return json.dumps(line) + "\n"
+
+
+def without_ids(image: Image, clock: str | None) -> str:
+    """Of a detector that has no tracker."""
+    line = json.loads(plain_line(image, clock))
+    for told in line["detections"]:
+        del told["id"]
+    return json.dumps(line) + "\n"
+
+
+def of_second_camera(image: Image, clock: str | None) -> str:
+    """Two lines at a time: the first camera sees nothing."""
+    line = json.loads(plain_line(image, clock))
+    lines = {**line, "detections": []}, {**line, "camera": 1}
+    return "".join(json.dumps(line) + "\n" for line in lines)
 
 
 def points(image: Image, clock: str | None) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import signal
@@ -11,6 +12,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("GOE_COMPANION", str(ROOT / "build" / "port" / "companion" / "goe_companion"))
@@ -37,6 +40,15 @@ def call(*arguments: str | Path, stdin: int = subprocess.DEVNULL) -> subprocess.
     return subprocess.run(
         [PROGRAM, *map(str, arguments)], stdin=stdin, capture_output=True, text=True, timeout=20, check=False
     )
+
+
+def replay(log: Path) -> list[dict[str, str]]:
+    """A log as goe_replay reads it; skipped where that is not built."""
+    if "GOE_REPLAY" not in os.environ and not Path(REPLAY).exists():
+        pytest.skip(f"{REPLAY} is not built")
+    done = subprocess.run([REPLAY, str(log)], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    return list(csv.DictReader(done.stdout.splitlines()))
 
 
 @dataclass(frozen=True)

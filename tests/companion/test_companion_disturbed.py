@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from autopilot import ARDUPILOT
-from companion import PROGRAM, is_missing
+from companion import PROGRAM, is_missing, replay
 from conftest import MakeFleet
 from flights import Fleet, Flight, Plan
 from hostile import STRANGER_ID, bad_lines, crowd, frame_faults, in_turn, odd_lines, poison, stranger
@@ -39,7 +39,9 @@ FOUND = [*LINKS, *HOSTILE]
 
 
 def plans() -> list[Plan]:
-    bad_links = [Plan(name, faults=Faults(**told), detector_faults=Faults(**told)) for name, told in LINKS.items()]
+    bad_links = [
+        Plan(name, faults=Faults(**told), detector_faults=Faults(**told), recorded=True) for name, told in LINKS.items()
+    ]
     return [
         *bad_links,
         Plan(FRAMES),
@@ -49,7 +51,7 @@ def plans() -> list[Plan]:
         Plan(LINES),
         Plan(PIPED, source="stdin"),
         Plan(HUGE, source="stdin"),
-        Plan(CROWD),
+        Plan(CROWD, recorded=True, settings={"record": {"size_max_mb": 1}}),
         Plan(UNDISTURBED),
     ]
 
@@ -232,3 +234,17 @@ def test_weak_detections_in_a_crowd_are_counted(fleet: Fleet) -> None:
 @pytest.mark.parametrize("name", [LOSSY, BAD])
 def test_lost_images_lose_nothing_else(fleet: Fleet, name: str) -> None:
     assert fleet[name].statuses()[-1].lost == 0
+
+
+@pytest.mark.parametrize("name", LINKS)
+def test_the_log_of_a_bad_link_is_replayed(fleet: Fleet, name: str) -> None:
+    """Images that came twice or in another order are no bad input."""
+    assert any(row["status"] == "ok" for row in replay(fleet[name].log))
+
+
+def test_a_log_ends_at_its_largest_size(fleet: Fleet) -> None:
+    """With a word, and whole: its last line is one."""
+    flight = fleet[CROWD]
+    text = (flight.log / "frames.csv").read_text(encoding="utf-8")
+    assert 0.9e6 < len(text) < 1.1e6 and text.endswith("\n")
+    assert flight.ended and re.search(r"\blog\b", flight.ended.err)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import pytest
 from camera import Obstacle
-from companion import PROGRAM, is_missing
+from companion import PROGRAM, is_missing, replay
 from conftest import MakeFleet
 from flights import FAR_M, Flight, Plan
 
@@ -31,14 +31,14 @@ class Load:
 
 
 @pytest.fixture(scope="module", name="load")
-def flown(make_fleet: MakeFleet, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Load]:
-    folder = tmp_path_factory.mktemp("load") / "log"
+def flown(make_fleet: MakeFleet) -> Iterator[Load]:
     plan = Plan(
         "forest",
         obstacles=FOREST,
         autopilot={"pose_hz": 200.0},
         detector={"hz": 30.0},
-        settings={"record": {"folder": folder}, "link": {"attitude_hz": 200, "position_hz": 200}},
+        settings={"link": {"attitude_hz": 200, "position_hz": 200}},
+        recorded=True,
     )
     fleet = make_fleet([plan])
     flight, companion = fleet["forest"], fleet["forest"].companion
@@ -76,13 +76,16 @@ def test_all_eight_are_followed(load: Load) -> None:
     assert {message.id for message in load.flight.of("GOE_OBSTACLE")} == set(range(1, 9))
 
 
-@pytest.mark.parametrize("number", range(1, 9))
+@pytest.mark.parametrize("number", range(8))
 def test_each_is_where_it_is(load: Load, number: int) -> None:
-    reports = zip(load.flight.of("GOE_OBSTACLE"), load.flight.found(FOREST[number - 1]))
-    mine = [found for message, found in reports if message.id == number]
+    mine = load.flight.found(FOREST[number])
     assert len(mine) > 10
     assert all(found.sigmas <= FAR_M for found in mine)
     assert mine[-1].error_m < 0.1 * mine[-1].range_m
+
+
+def test_the_log_of_eight_is_replayed(load: Load) -> None:
+    assert {row["id"] for row in replay(load.flight.log) if row["status"] == "ok"} == {str(k) for k in range(1, 9)}
 
 
 def test_it_ends_well(load: Load) -> None:

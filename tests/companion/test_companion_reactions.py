@@ -23,7 +23,8 @@ POSITION = 3 << 16  # PX4: POSCTL
 ICAO = 0xABC120
 LOW = Obstacle(250.0, height_m=22.0)
 ASIDE = (Obstacle(250.0, 90.0),)
-TO_PX4 = {"reaction": {"mode": "px4"}}
+STOPS = {"loiter_m": 0}  # the simulated vehicle is asked for nothing more
+TO_PX4 = {"reaction": {"mode": "px4"}, "flight": STOPS}
 TO_ARDUPLANE = {"reaction": {"mode": "arduplane"}}
 AVOIDS, STAYS, PAST = "px4", "px4 without resume", "px4, mast aside"
 OVERRULED, AT_ONCE = "px4 and its pilot", "px4 and its pilot, at once"
@@ -32,7 +33,7 @@ TRAFFIC, LOW_TRAFFIC, NO_TRAFFIC = "arduplane", "arduplane, low mast", "arduplan
 PLANE = {"make": ARDUPILOT}
 PLANS = [
     Plan(AVOIDS, settings=TO_PX4, autopilot={"ignored": {DO_REPOSITION: IGNORED, DO_SET_MODE: 1}}),
-    Plan(STAYS, settings={"reaction": {"mode": "px4", "resume": 0}}),
+    Plan(STAYS, settings={"reaction": {"mode": "px4", "resume": 0}, "flight": STOPS}),
     Plan(OVERRULED, settings=TO_PX4),
     Plan(AT_ONCE, settings=TO_PX4),
     Plan(PAST, settings=TO_PX4, obstacles=ASIDE),

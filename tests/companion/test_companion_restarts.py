@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from autopilot import ARDUPILOT
 from camera import Obstacle
-from companion import PROGRAM, is_missing
+from companion import PROGRAM, is_missing, replay
 from conftest import MakeFleet
 from flights import Fleet, Flight, Plan
 
@@ -31,7 +31,7 @@ RESTARTED = [BACK, FORWARD, REBOOT]
 ALL = [*RESTARTED, INTERRUPTED, KILLED, BLIND, UNIX, NO_POSE, TCP, FIFO, STEP, TOLD, TURN]
 
 PLANS = [
-    Plan(BACK, obstacles=FAR),
+    Plan(BACK, obstacles=FAR, recorded=True),
     Plan(FORWARD, obstacles=FAR),
     Plan(REBOOT, obstacles=FAR, autopilot={"make": ARDUPILOT}),
     Plan(INTERRUPTED, obstacles=FAR),
@@ -41,7 +41,7 @@ PLANS = [
     Plan(NO_POSE, obstacles=FAR),
     Plan(TCP, link="tcp", obstacles=FAR),
     Plan(FIFO, source="fifo", obstacles=FAR),
-    Plan(STEP, obstacles=FAR),
+    Plan(STEP, obstacles=FAR, recorded=True),
     Plan(TOLD, obstacles=FAR),
     Plan(TURN, obstacles=FAR),
 ]
@@ -230,3 +230,9 @@ def test_a_step_is_a_known_jump(fleet: Fleet, events: Events) -> None:
 def test_what_is_not_known_of_a_reset_ends_the_tracks(fleet: Fleet, name: str) -> None:
     """A turn that the rates do not explain, and a counter of ODOMETRY without a step."""
     assert fleet[name].statuses()[-1].lost == 1
+
+
+@pytest.mark.parametrize("name", [BACK, STEP])
+def test_the_log_is_replayed(fleet: Fleet, name: str) -> None:
+    """Also that of a clock that begins anew."""
+    assert any(row["status"] == "ok" for row in replay(fleet[name].log)[-30:])

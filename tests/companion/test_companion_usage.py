@@ -189,6 +189,7 @@ def test_bad_configurations_name_file_line_and_key(folder: Path, name: str) -> N
 
 BAD_WHOLE = {
     "increment": ("[reports]\ndistance_increment_deg = 7\n", "distance_increment_deg"),
+    "px4 without its circle": ("[reaction]\nmode = px4\n", "loiter_m"),
     "link": ("[link]\nautopilot = carrier-pigeon:coop:7\n", "autopilot"),
     "port": ("[link]\nautopilot = udpin:127.0.0.1:70000\n", "autopilot"),
     "baud": ("[link]\nautopilot = serial:/dev/ttyS0:12345\n", "autopilot"),
