@@ -127,7 +127,7 @@ static bool read_pair(const json_t *value, const char *name, double pair[2], det
 }
 
 static bool read_point(const json_t *object, const char *name, goe_pixel_t *point, detection_fault_t *fault) {
-    double pair[2];
+    double pair[2] = {0.0, 0.0};
     const json_t *found = member(object, name, NULL);
     if (found == NULL) {
         return true;

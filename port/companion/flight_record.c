@@ -16,23 +16,43 @@ static const char header[] =
     "u,"
     "base_near_v,base_right_u,base_right_v,box_left_px,box_top_px,box_right_px,box_bottom_px,camera\n";
 
-static bool copy_camera(const char *from, const char *to) {
+static bool copy_bytes(FILE *in, FILE *out) {
     char bytes[4096];
-    size_t size = 0;
-    FILE *in = fopen(from, "rb");
-    FILE *out = fopen(to, "wbx");
-    bool good = in != NULL && out != NULL;
-    while (good && (size = fread(bytes, 1, sizeof bytes, in)) > 0) {
-        good = fwrite(bytes, 1, size, out) == size;
+    while (feof(in) == 0) {
+        const size_t size = fread(bytes, 1, sizeof bytes, in);
+        if (ferror(in) != 0 || fwrite(bytes, 1, size, out) != size) {
+            return false;
+        }
     }
+    return true;
+}
+
+/* A new file; null: *why says why not. */
+static FILE *make_file(const char *path, const char **why) {
+    FILE *file = fopen(path, "wbx");
+    if (file == NULL) {
+        *why = errno == EEXIST ? "holds a log already" : strerror(errno);
+    }
+    return file;
+}
+
+static bool copy_camera(const char *from, const char *to, const char **why) {
+    FILE *out = make_file(to, why);
+    if (out == NULL) {
+        return false;
+    }
+    FILE *in = fopen(from, "rb");
+    const bool copied = in != NULL && copy_bytes(in, out);
     if (in != NULL) {
         (void)fclose(in);
     }
-    return out != NULL && fclose(out) == 0 && good;
+    *why = "the camera's file cannot be copied";
+    return fclose(out) == 0 && copied;
 }
 
 bool flight_record_open(flight_record_t *record, const companion_config_t *config, char *fault, size_t fault_size) {
     char camera[PATH_MAX_LENGTH], frames[PATH_MAX_LENGTH];
+    const char *why = "";
     (void)memset(record, 0, sizeof *record);
     record->size_max_mb = config->record_size_max_mb;
     if (*config->record_folder == '\0') {
@@ -40,14 +60,12 @@ bool flight_record_open(flight_record_t *record, const companion_config_t *confi
     }
     (void)snprintf(camera, sizeof camera, "%s/camera.ini", config->record_folder);
     (void)snprintf(frames, sizeof frames, "%s/frames.csv", config->record_folder);
-    errno = 0;
-    const bool has_folder = mkdir(config->record_folder, 0777) == 0 || errno == EEXIST;
-    if (has_folder && copy_camera(config->camera_file, camera)) {
-        record->stream = fopen(frames, "wx");
+    (void)mkdir(config->record_folder, 0777); /* what hinders it hinders the files, too */
+    if (copy_camera(config->camera_file, camera, &why)) {
+        record->stream = make_file(frames, &why);
     }
     if (record->stream == NULL || fputs(header, record->stream) < 0) {
-        (void)snprintf(fault, fault_size, "record.folder: %s: %s", config->record_folder,
-                       errno == EEXIST ? "holds a log already" : strerror(errno));
+        (void)snprintf(fault, fault_size, "record.folder: %s: %s", config->record_folder, why);
         return false;
     }
     return true;

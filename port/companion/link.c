@@ -140,10 +140,19 @@ static bool find_rate(const char *text, speed_t *speed) {
     return false;
 }
 
-static int open_serial(const link_t *link) {
+/* -1: *why says why not. */
+static int open_path(const char *path, int flags, const char **why) {
+    const int descriptor = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC | flags);
+    if (descriptor < 0) {
+        *why = strerror(errno);
+    }
+    return descriptor;
+}
+
+static int open_serial(const link_t *link, const char **why) {
     struct termios settings;
     speed_t speed = B0;
-    const int descriptor = open(link->host, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    const int descriptor = open_path(link->host, O_NOCTTY, why);
     if (descriptor < 0) {
         return -1;
     }
@@ -158,25 +167,24 @@ static int open_serial(const link_t *link) {
 }
 
 /* Opened for writing too: so it has no end when its last writer leaves. */
-static int open_fifo(const link_t *link) {
-    const int descriptor = open(link->host, O_RDWR | O_NONBLOCK | O_CLOEXEC);
+static int open_fifo(const link_t *link, const char **why) {
+    const int descriptor = open_path(link->host, 0, why);
     struct stat about;
     if (descriptor >= 0 && (fstat(descriptor, &about) != 0 || !S_ISFIFO(about.st_mode))) {
         (void)close(descriptor);
-        errno = ENOTSUP;
+        *why = "is no FIFO; make it by mkfifo";
         return -1;
     }
     return descriptor;
 }
 
 static bool open_now(link_t *link, const char **why) {
-    errno = 0;
     switch (link->kind) {
         case LINK_SERIAL:
-            link->descriptor = open_serial(link);
+            link->descriptor = open_serial(link, why);
             break;
         case LINK_FIFO:
-            link->descriptor = open_fifo(link);
+            link->descriptor = open_fifo(link, why);
             break;
         case LINK_STDIN:
             link->descriptor = STDIN_FILENO; /* left blocking: a terminal would give standard output the same flag */
@@ -186,9 +194,8 @@ static bool open_now(link_t *link, const char **why) {
         case LINK_TCP:
         default:
             link->descriptor = open_socket(link, why);
-            return link->descriptor >= 0;
+            break;
     }
-    *why = errno == ENOTSUP ? "is no FIFO; make it by mkfifo" : strerror(errno);
     return link->descriptor >= 0;
 }
 
