@@ -55,6 +55,7 @@ find_missing() {
     want needed libpopt-dev has_header popt.h
     want needed libcsv-dev has_header csv.h
     want needed libinih-dev has_header ini.h
+    want needed libjansson-dev has_header jansson.h
     want needed python3-venv python3 -c 'import ensurepip, venv'
     if ! $demo; then
         want needed curl has curl

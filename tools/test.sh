@@ -206,10 +206,10 @@ configure() { cmake --preset "$1" -DGOE_BUILD_TESTS=ON ${UNITY_DIR:+-DUNITY_DIR=
 build() { configure "$1" && cmake --build --preset "$1"; }
 build_and_ctest() { build "$1" && ctest --preset "$1" -j "$jobs"; }
 
-sources() { find lib port/flight port/mavlink sim_host tests -name '*.[ch]' -o -name '*.cpp'; }
+sources() { find lib port/flight port/mavlink port/companion sim_host tests -name '*.[ch]' -o -name '*.cpp'; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
 tidy() {
-    find "$root/lib" "$root/port/flight" "$root/port/mavlink" "$root/sim_host" -name '*.c' -print0 |
+    find "$root"/{lib,port/flight,port/mavlink,port/companion,sim_host} -name '*.c' -print0 |
         xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet -p build-clang 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
 }
 
@@ -222,6 +222,9 @@ replay_sanitized() {
 }
 
 test_replay_sanitized() { GOE_REPLAY=$root/build-asan/sim_host/goe_replay run_pytest tests/host; }
+test_companion_sanitized() {
+    GOE_COMPANION=$root/build-asan/port/companion/goe_companion run_pytest tests/companion/test_companion_disturbed.py
+}
 run_pytest() { "$python" -m pytest -q -rs -p no:cacheprovider -c tools/pyproject.toml "$@"; }
 
 # ---------------------------------------------------------------------------------------------------------------- run
@@ -273,6 +276,7 @@ tells='tests passed|Total Test time' add "ctest: all but targets" ctest --preset
 tells='tests passed' add "sanitizers" build_and_ctest asan
 after="sanitizers" add "sanitizers: goe_replay on logs" replay_sanitized
 tells=passed after="sanitizers" add "sanitizers: goe_replay on bad input" test_replay_sanitized
+tells=passed after="sanitizers" add "sanitizers: goe_companion and hostile senders" test_companion_sanitized
 if has clang-19; then
     tells='tests passed' add "clang" build_and_ctest clang
 else

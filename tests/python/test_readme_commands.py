@@ -19,7 +19,7 @@ from synthetic_campaign import write_campaign
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("lib", "port", "sim_host", "tests", "tools")
-PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "goe_avoid", "cmake", "ctest")
+PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "goe_avoid", "goe_companion", "cmake", "ctest")
 SECONDS = 300
 
 # ------------------------------------------------------------------------------------------------ what the READMEs say
@@ -101,6 +101,10 @@ RUN_BY = {
     "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
     "goe_sim --features": By("tests/sim/test_sim_boxes.py", '"--features"'),
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
+    "goe_companion": By("tests/companion/companion.py", "goe_companion"),
+    "build/port/companion/goe_companion port/companion/companion.ini": By(
+        "tests/companion/test_companion_usage.py", "companion.ini"
+    ),
     "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
     "python -m goe_tools attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
