@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import random
@@ -155,6 +156,9 @@ def bad_lines() -> list[bytes]:
         b'{"detections": [\x00]}',
         b'{"detections": [], "note": "\xff\xfe\xc0\x80"}',
         b"\xef\xbb\xbf{",
+        b"\x1b[2J\x1b]0;title\x07",
+        b'{"clock": "\x1b[31m", "time": 1, "detections": []}',
+        b'{"clock": "\\u001b[31m", "time": 1, "detections": [{"\\u001b[2J": 1}]}',
         bytes(range(1, 10)) + bytes(range(11, 256)),
     ]
 
@@ -200,11 +204,10 @@ def crowd(dice: random.Random, number: int, score: float) -> bytes:
 
 def in_turn(autopilot: Autopilot, make: Callable[[int], list[Any]], mavlink: Any) -> Callable[[], None]:
     """One after the other of a list that is made anew with the autopilot's time, over the autopilot's wire."""
-    waiting: list[Any] = []
+    number = itertools.count()
 
     def send() -> None:
-        if not waiting:
-            waiting.extend(make(int(autopilot.boot_s() * 1e3)))
-        autopilot.send(waiting.pop(), mavlink)
+        messages = make(int(autopilot.boot_s() * 1e3))
+        autopilot.send(messages[next(number) % len(messages)], mavlink)
 
     return send

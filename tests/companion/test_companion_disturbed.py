@@ -181,6 +181,15 @@ def test_bad_lines_are_told_with_their_number(fleet: Fleet, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [LINES, PIPED])
+def test_bad_lines_are_quoted_harmlessly(fleet: Fleet, name: str) -> None:
+    """What a stranger sends does not steer the operator's terminal."""
+    ended = fleet[name].ended
+    assert ended
+    strange = {character for character in ended.said if not character.isprintable() and character != "\n"}
+    assert strange == set()
+
+
+@pytest.mark.parametrize("name", [LINES, PIPED])
 def test_bad_lines_are_counted(fleet: Fleet, name: str) -> None:
     """All of those that are bad beyond doubt."""
     rounds = int((FLIGHT_S - BEGIN_S) / 0.02 / (len(bad_lines()) + len(odd_lines()) + 1))
@@ -205,10 +214,11 @@ def test_what_it_says_has_an_end(fleet: Fleet, name: str) -> None:
 
 
 def test_poison_is_counted(fleet: Fleet) -> None:
-    """And it ends no track."""
+    """And it ends no track, and moves none."""
     last = fleet[POISON].statuses()[-1]
     assert last.refused > 20
-    assert last.lost == 0
+    assert (last.lost, last.resets) == (0, 0)
+    assert counted(fleet[POISON], "samples_bad") > 50 and counted(fleet[POISON], "jumps") == 0
 
 
 def test_a_stranger_changes_nothing(fleet: Fleet) -> None:

@@ -35,6 +35,7 @@ pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 FLIGHT_S = 12.8  # the mast is reached at 12.5
 WRAP_S = 2.0**32 * 1e-6  # where the autopilot's 32 bit microseconds begin anew
 ALL = "obstacle_distance obstacle_distance_3d collision target_absolute"
+TWO = (MAST, Obstacle(280.0, 70.0, 10.0, 35.0))
 PLANS = [
     Plan("unix"),
     Plan("monotonic", clock="monotonic"),
@@ -43,7 +44,7 @@ PLANS = [
     Plan("configured", clock="monotonic", line=without_clock, settings={"detections": {"clock": "monotonic"}}),
     Plan("features of the autopilot's time", source=AUTOPILOT),
     Plan("features of the sender's time", source=SENDER),
-    Plan("features with their age", source=AGE),
+    Plan("features with their age", source=AGE, obstacles=TWO),
     Plan("aliases", line=aliases, settings={"detections": {"classes": "car mast"}}),
     Plan("bare list", line=bare_list, settings={"detections": {"delay_s": 0.1, "classes": "mast"}}),
     Plan("as printed", source="stdin", line=as_printed, settings={"detections": {"delay_s": 0.1}}),
@@ -55,7 +56,6 @@ PLANS = [
     Plan("drift and wrap", autopilot={"boot_s": WRAP_S - 6.0, "drift": 2e-4}, recorded=True),
     Plan("standard", settings={"reports": {"standard": ALL}}),
 ]
-TWO = (MAST, Obstacle(280.0, 70.0, 10.0, 35.0))
 PLANS += [
     Plan("no ids", line=without_ids, obstacles=TWO, recorded=True),
     Plan("second camera", line=of_second_camera, cameras=2),
@@ -334,12 +334,21 @@ def test_the_log_is_replayed(fleet: Fleet, name: str) -> None:
     assert min(math.dist(place, (MAST.north_m, MAST.east_m)) for place in places[-40:]) < 10.0
 
 
+def status_line(flight: Flight) -> str:
+    assert flight.ended
+    (line,) = [line for line in flight.ended.said.splitlines() if "| obstacles" in line]
+    return line
+
+
+def test_images_are_counted_and_not_their_messages(fleet: Fleet) -> None:
+    """Two obstacles are two GOE_FEATURES of one image: 10 Hz."""
+    assert re.search(r"images (9|10|11) Hz", status_line(fleet["features with their age"]))
+
+
 def test_the_status_line(fleet: Fleet) -> None:
     """Every ten seconds where there is no terminal."""
     for name in ("unix", "stdin"):
-        ended = fleet[name].ended
-        assert ended
-        (line,) = [line for line in ended.said.splitlines() if "| obstacles" in line]
+        line = status_line(fleet[name])
         for told in (
             ("PX4" if name == "unix" else "ArduP"),
             r"pose 5\d Hz|pose 4\d Hz",
