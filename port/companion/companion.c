@@ -107,6 +107,7 @@ static goe_mavlink_camera_t camera_of(const companion_config_t *config) {
         .number = 0,
         .delay_us = (uint32_t)(config->detections_delay_s * US_PER_S),
         .delay_sd_us = (uint32_t)(config->detections_delay_sd_s * US_PER_S),
+        .shares_clock = config->detections_shares_clock != 0,
     };
     return of;
 }

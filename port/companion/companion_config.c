@@ -40,6 +40,7 @@ static const config_key_t keys[] = {
     {"detections.clock", AT(detections_clock), KEY_CHOICE, 0, 0, LINE_CLOCK_UNIX, "unix monotonic age autopilot"},
     {"detections.delay_s", AT(detections_delay_s), KEY_NUMBER, 0, 0.5, 0.1, NULL},
     {"detections.delay_sd_s", AT(detections_delay_sd_s), KEY_NUMBER, 0.0001, 0.5, 0.02, NULL},
+    {"detections.shares_clock", AT(detections_shares_clock), KEY_WHOLE, 0, 1, 0, NULL},
     {"detections.classes", AT(detections_classes), KEY_TEXT, 0, 0, 0, ""},
     {"camera.file", AT(camera_file), KEY_TEXT, 0, 0, 0, "camera.ini"},
     {"reaction.mode", AT(reaction_mode), KEY_CHOICE, 0, 0, REACTION_OFF, "off px4 arduplane"},

@@ -30,6 +30,7 @@ typedef struct {
     char detections_from[CONFIG_TEXT_MAX];
     line_clock_t detections_clock;
     double detections_delay_s, detections_delay_sd_s;
+    uint32_t detections_shares_clock;
     char detections_classes[CONFIG_TEXT_MAX]; /* names with single blanks around each; empty: all */
     char camera_file[CONFIG_TEXT_MAX];        /* path, no longer relative to the configuration */
     goe_settings_t estimator;                 /* camera included */

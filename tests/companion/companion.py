@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("GOE_COMPANION", str(ROOT / "build" / "port" / "companion" / "goe_companion"))
 REPLAY = os.environ.get("GOE_REPLAY", str(ROOT / "build" / "sim_host" / "goe_replay"))
 TICKS_S = os.sysconf("SC_CLK_TCK")
+SANITIZED_KIB = 12000  # resident; without a sanitizer it is a third of this
 Settings = Mapping[str, Mapping[str, Any]]
 
 

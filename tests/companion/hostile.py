@@ -156,10 +156,16 @@ def bad_lines() -> list[bytes]:
         b'{"detections": [\x00]}',
         b'{"detections": [], "note": "\xff\xfe\xc0\x80"}',
         b"\xef\xbb\xbf{",
+        bytes(range(1, 10)) + bytes(range(11, 256)),
+    ]
+
+
+def escapes() -> list[bytes]:
+    """Lines that would steer a terminal, if it were sent what is wrong with them as it stands."""
+    return [
         b"\x1b[2J\x1b]0;title\x07",
         b'{"clock": "\x1b[31m", "time": 1, "detections": []}',
         b'{"clock": "\\u001b[31m", "time": 1, "detections": [{"\\u001b[2J": 1}]}',
-        bytes(range(1, 10)) + bytes(range(11, 256)),
     ]
 
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 from autopilot import ARDUPILOT
-from companion import PROGRAM, is_missing, replay
+from companion import PROGRAM, SANITIZED_KIB, is_missing, replay
 from conftest import MakeFleet
 from flights import Fleet, Flight, Plan
-from hostile import STRANGER_ID, bad_lines, crowd, frame_faults, in_turn, odd_lines, poison, stranger
+from hostile import STRANGER_ID, bad_lines, crowd, escapes, frame_faults, in_turn, odd_lines, poison, stranger
 from links import HOST, Faults
 
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
@@ -33,8 +33,9 @@ LINKS = {
 }
 FRAMES, SERIAL_FRAMES, STRANGER, POISON = "frames", "frames on a serial line", "stranger", "poison"
 LINES, PIPED, CROWD, HUGE = "lines", "piped lines", "crowd", "line without end"
+ESCAPES = "escapes"
 UNDISTURBED = "undisturbed"
-HOSTILE = [FRAMES, SERIAL_FRAMES, STRANGER, POISON, LINES, PIPED, HUGE]
+HOSTILE = [FRAMES, SERIAL_FRAMES, STRANGER, POISON, LINES, PIPED, HUGE, ESCAPES]
 FOUND = [*LINKS, *HOSTILE]
 
 
@@ -51,6 +52,7 @@ def plans() -> list[Plan]:
         Plan(LINES),
         Plan(PIPED, source="stdin"),
         Plan(HUGE, source="stdin"),
+        Plan(ESCAPES),
         Plan(CROWD, recorded=True, settings={"record": {"size_max_mb": 1}}),
         Plan(UNDISTURBED),
     ]
@@ -87,6 +89,8 @@ class Attack:
             lines = itertools.cycle([*bad_lines(), *odd_lines(), crowd(dice, 500, 0.1)])
             loop.every(0.02, lambda name=name, end=end, lines=lines: self.fleet[name].put(next(lines) + end))
         loop.every(0.1, lambda: self.fleet[CROWD].put(crowd(dice, 300, 0.9)))
+        steering = itertools.cycle(escapes())
+        loop.every(1.1, lambda: self.fleet[ESCAPES].put(next(steering)))
         for at_s in (0.5, 4.0):
             loop.after(at_s, lambda: self.fleet[HUGE].put(b"[" + b"1, " * 3_300_000 + b"\n"))
 
@@ -137,6 +141,8 @@ def test_it_goes_on_until_it_is_interrupted(fleet: Fleet, name: str) -> None:
 @pytest.mark.parametrize("name", [*FOUND, CROWD])
 def test_it_does_not_grow(fleet: Fleet, sizes: dict[str, tuple[int, int]], name: str) -> None:
     before, after = sizes[name]
+    if before > SANITIZED_KIB:
+        pytest.skip("a sanitizer keeps what was freed")
     assert before > 0, "it has ended"
     assert 0 < after <= before + GROWTH_KIB
 
@@ -180,11 +186,10 @@ def test_bad_lines_are_told_with_their_number(fleet: Fleet, name: str) -> None:
     assert ended and re.search(r"line \d+", ended.said), ended
 
 
-@pytest.mark.parametrize("name", [LINES, PIPED])
-def test_bad_lines_are_quoted_harmlessly(fleet: Fleet, name: str) -> None:
+def test_bad_lines_are_quoted_harmlessly(fleet: Fleet) -> None:
     """What a stranger sends does not steer the operator's terminal."""
-    ended = fleet[name].ended
-    assert ended
+    ended = fleet[ESCAPES].ended
+    assert ended and re.search(r"line \d+", ended.said)
     strange = {character for character in ended.said if not character.isprintable() and character != "\n"}
     assert strange == set()
 
