@@ -270,6 +270,14 @@ class PipeLines:
 # ----------------------------------------------------------------------------------------------------------- detectors
 
 
+def both_clocks() -> tuple[float, float]:
+    """Monotonic and UNIX time of one moment: read anew if the process lost the processor in between."""
+    while True:
+        begin, unix, end = time.monotonic(), time.time(), time.monotonic()
+        if end - begin < 5e-4:
+            return begin, unix
+
+
 @dataclass
 class Detector:
     """Takes an image `hz` times a second, and gives what it sees to `tell` `delay_s` later.
@@ -296,13 +304,13 @@ class Detector:
         self.loop.every(1.0 / self.hz, self._expose, first_s=0.013)
 
     def _expose(self) -> None:
-        now, unix = time.monotonic(), time.time() + self.unix_error_s
+        now, unix = both_clocks()
         if self.blind:
             return
         pose = self.autopilot.aircraft.advance(now)
         seen = [self.camera.see(pose, obstacle, k + 1) for k, obstacle in enumerate(self.obstacles)]
         boxes = tuple(self._noisy(box) for box in seen if box)
-        image = Image(now, unix, self.autopilot.clock.at(now), boxes)
+        image = Image(now, unix + self.unix_error_s, self.autopilot.clock.at(now), boxes)
         self.poses[image.boot_s] = pose
         self.loop.at(now + self.delay_s, lambda: self._tell(image))
 

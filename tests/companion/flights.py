@@ -167,11 +167,11 @@ class Flight:
         ahead = [found for found in self.found(obstacle, since_s) if found.range_m > 20.0]
         assert len(ahead) >= least, f"{len(ahead)} reports; {self.ended}"
         wrong = [found for found in ahead if not found.sigmas <= FAR_M]
-        assert not wrong, wrong[:3]
+        assert not wrong, (wrong[:3], self.ended)
         near = [found for found in ahead if found.range_m < 100.0]
         assert near, "nothing is told within 100 m"
         wrong = [found for found in near if not found.error_m <= max(0.1 * found.range_m, 4.0)]
-        assert not wrong, wrong[:3]
+        assert not wrong, (wrong[:3], self.ended)
 
     def assert_ended_well(self) -> None:
         assert self.ended and self.ended.status == 0, self.ended

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -209,10 +210,10 @@ def test_the_mast_is_traffic_that_stands(fleet: Fleet, name: str) -> None:
 
 
 def test_traffic_is_sent_at_its_rate(fleet: Fleet) -> None:
-    """adsb_hz, by default 2."""
+    """adsb_hz, by default 2, looked at when the hazard is."""
     times = [heard.time_s for heard in ahead(fleet[TRAFFIC])]
     steps = [after - before for before, after in zip(times, times[1:])]
-    assert all(0.35 < step < 0.75 for step in steps), steps
+    assert 0.4 < statistics.median(steps) < 0.7 and min(steps) > 0.35, steps
 
 
 def test_a_high_mast_lies_just_below_the_aircraft(fleet: Fleet) -> None:
