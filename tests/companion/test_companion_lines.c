@@ -179,6 +179,28 @@ static void lines_come_out_whole_however_they_are_cut(void) {
     }
 }
 
+static void check_texts(const char *bytes, const char *expected) {
+    static line_reader_t reader;
+    (void)memset(&reader, 0, sizeof reader);
+    seen[0] = '\0';
+    line_reader_take(&reader, bytes, strlen(bytes), keep, NULL);
+    TEST_ASSERT_EQUAL_STRING(expected, seen);
+}
+
+/* As json.dumps(..., indent=2) prints: complete with its last bracket, so that no image waits for the next one. */
+static void an_indented_text_goes_over_several_lines(void) {
+    check_texts("[\n  {\n    \"a\": \"]}\\\"\"\n  }\n]\n", "[\n  {\n    \"a\": \"]}\\\"\"\n  }\n]|");
+    check_texts("[\n]\n[\n]\n", "[\n]|[\n]|");
+    check_texts("[\n\n  1]\n", "[\n\n  1]|");
+}
+
+/* What is broken costs itself alone. */
+static void a_text_that_is_left_open_ends_where_another_one_begins(void) {
+    check_texts("[{\n{}\n", "[{\n|{}|");
+    check_texts("[\"open\n{}\n", "[\"open\n|{}|");
+    check_texts("]]\n{}\n", "]]|{}|");
+}
+
 static void a_line_without_end_is_passed_over_and_the_next_one_is_read(void) {
     static line_reader_t reader;
     static char flood[4096];
@@ -203,6 +225,8 @@ int main(void) {
     RUN_TEST(more_detections_than_a_frame_can_count_are_cut);
     RUN_TEST(changed_lines_never_break_anything);
     RUN_TEST(lines_come_out_whole_however_they_are_cut);
+    RUN_TEST(an_indented_text_goes_over_several_lines);
+    RUN_TEST(a_text_that_is_left_open_ends_where_another_one_begins);
     RUN_TEST(a_line_without_end_is_passed_over_and_the_next_one_is_read);
     return UNITY_END();
 }
