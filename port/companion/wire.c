@@ -6,18 +6,25 @@
 #define READ_MAX 4096
 #define READS_MAX 64 /* in one go: a flood must not keep the companion from its other work */
 
-/* Frames of the autopilot that never came: what its running number left out. One that came late or twice is none. */
+#define LATE_MIN 128 /* a running number that far ahead is one that lies behind */
+
+/* Frames of the autopilot that never came: what its running number left out, less what comes late. */
 static void count_lost(wire_t *wire, const mavlink_message_t *message) {
-    const uint8_t step = (uint8_t)(message->seq - wire->sequence);
     if (wire->heard == 0 || message->sysid != wire->heard || message->compid != MAV_COMP_ID_AUTOPILOT1) {
         return;
     }
-    if (wire->has_sequence && step > 0 && step < 128) {
-        wire->counts.lost += step - 1u;
+    const uint8_t step = wire->has_sequence ? (uint8_t)(message->seq - wire->sequence) : 1u;
+    if (step >= LATE_MIN || step == 0) { /* late, or twice */
+        wire->counts.lost -= wire->missing[message->seq] ? 1u : 0u;
+        wire->missing[message->seq] = false;
+        return;
     }
-    if (!wire->has_sequence || step < 128) {
-        wire->sequence = message->seq;
+    for (uint8_t skipped = 1; skipped < step; skipped++) {
+        wire->missing[(uint8_t)(message->seq - skipped)] = true;
+        wire->counts.lost++;
     }
+    wire->missing[message->seq] = false;
+    wire->sequence = message->seq;
     wire->has_sequence = true;
 }
 
@@ -66,17 +73,23 @@ static void send_bytes(wire_t *wire, const uint8_t *bytes, size_t size) {
     }
 }
 
+/* mavgen's functions number what they pack by a status of each source file's own: it is numbered anew here. */
 void wire_send(wire_t *wire, mavlink_message_t *message) {
     uint8_t bytes[MAVLINK_MAX_PACKET_LEN];
-    send_bytes(wire, bytes, mavlink_msg_to_send_buffer(bytes, message));
+    const mavlink_msg_entry_t *entry = mavlink_get_msg_entry(message->msgid);
+    if (entry != NULL) {
+        char *payload = _MAV_PAYLOAD_NON_CONST(message); /* behind it lies the checksum, where zeros were cut off */
+        (void)memset(payload + message->len, 0, MAVLINK_MAX_PAYLOAD_LEN - (size_t)message->len);
+        (void)mavlink_finalize_message_buffer(message, wire->system, wire->component, &wire->sender, entry->min_msg_len,
+                                              entry->max_msg_len, entry->crc_extra);
+        send_bytes(wire, bytes, mavlink_msg_to_send_buffer(bytes, message));
+    }
 }
 
-/* mavgen's functions keep the running number of the first channel; both kinds of messages share it. */
 void wire_send_payload(wire_t *wire, goe_mavlink_message_t message, const uint8_t *payload, size_t length) {
-    mavlink_status_t *channel = mavlink_get_channel_status(MAVLINK_COMM_0);
-    goe_mavlink_sender_t sender = {wire->system, wire->component, channel->current_tx_seq};
+    goe_mavlink_sender_t sender = {wire->system, wire->component, wire->sender.current_tx_seq};
     uint8_t bytes[GOE_MAVLINK_FRAME_MAX];
     const size_t size = goe_mavlink_frame(&sender, message, payload, length, bytes);
-    channel->current_tx_seq = sender.sequence;
+    wire->sender.current_tx_seq = sender.sequence;
     send_bytes(wire, bytes, size);
 }

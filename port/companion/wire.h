@@ -27,7 +27,9 @@ typedef struct {
     uint8_t heard;             /* the autopilot's system, whose losses count; 0: not known yet */
     mavlink_message_t buffer;
     mavlink_status_t parser;
-    uint8_t sequence; /* latest of the autopilot's */
+    mavlink_status_t sender; /* keeps the running number of what goes out */
+    uint8_t sequence;        /* latest of the autopilot's */
+    bool missing[256];       /* by running number: counted as lost */
     bool has_sequence;
     wire_counts_t counts;
 } wire_t;
