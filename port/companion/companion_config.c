@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "camera_file.h"
+#include "link.h"
 #include "number_text.h"
 #include "settings_text.h"
 
@@ -159,6 +160,10 @@ static char *read_line(char *line, int size, void *user) {
         return NULL;
     }
     reader->line++;
+    if (strlen(reader->text) != (size_t)read) {
+        FAIL(reader, NULL, "the line holds a NUL byte");
+        return NULL;
+    }
     const char *begin = reader->text;
     reader->text[strcspn(reader->text, "#")] = '\0';
     while (isspace((unsigned char)*begin)) {
@@ -170,6 +175,10 @@ static char *read_line(char *line, int size, void *user) {
     }
     if (length > LINE_MAX_LENGTH) {
         FAIL(reader, NULL, "the line is longer than %d characters", LINE_MAX_LENGTH);
+        return NULL;
+    }
+    if (*begin == '[' && begin[length - 1u] != ']') {
+        FAIL(reader, NULL, "no ']' closes the name of the section");
         return NULL;
     }
     (void)snprintf(line, (size_t)size, "%.*s\n", (int)length, begin);
@@ -359,8 +368,23 @@ static bool is_given(const config_reader_t *reader, const char *flight_name) {
     return false;
 }
 
+static void check_link(config_reader_t *reader, size_t offset, const char *none) {
+    char fault[2 * CONFIG_TEXT_MAX];
+    size_t i = 0;
+    while (keys[i].offset != offset) {
+        i++;
+    }
+    const char *where = (const char *)value_of(reader->config, &keys[i]);
+    if ((none == NULL || strcmp(where, none) != 0) && !link_check(where, fault, sizeof fault)) {
+        reader->line = reader->key_line[i];
+        FAIL(reader, keys[i].name, "%s", fault);
+    }
+}
+
 /* What only holds of values together. */
 static void check_whole(config_reader_t *reader) {
+    check_link(reader, offsetof(companion_config_t, link_autopilot), NULL);
+    check_link(reader, offsetof(companion_config_t, detections_from), "none");
     if (360u % reader->config->reports_distance_increment_deg != 0 ||
         reader->config->reports_distance_increment_deg % 5u != 0) {
         reader->line = 0;

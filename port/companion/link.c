@@ -202,18 +202,43 @@ static bool open_now(link_t *link, const char **why) {
 /* What may come later is waited for; what is wrong for good is a failure. */
 static bool may_come(const link_t *link) { return link->kind == LINK_TCP || link->kind == LINK_SERIAL; }
 
+static bool is_port(const char *text) {
+    char *end = NULL;
+    const long port = strtol(text, &end, 10);
+    return *text >= '0' && *text <= '9' && *end == '\0' && port > 0 && port <= 65535;
+}
+
+/* Null: all is well. */
+static const char *wrong_form(link_t *link, const char *where) {
+    speed_t speed = B0;
+    if (!parse_where(link, where)) {
+        return "not of the form udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH or "
+               "stdin";
+    }
+    if (link->kind == LINK_SERIAL) {
+        return find_rate(link->service, &speed) ? NULL : "no usual baud rate";
+    }
+    const bool has_port = link->kind == LINK_TCP || link->kind == LINK_UDP_IN || link->kind == LINK_UDP_OUT;
+    return has_port && !is_port(link->service) ? "a port is 1 to 65535" : NULL;
+}
+
+bool link_check(const char *where, char *fault, size_t fault_size) {
+    link_t link;
+    (void)memset(&link, 0, sizeof link);
+    const char *why = wrong_form(&link, where);
+    if (why != NULL) {
+        (void)snprintf(fault, fault_size, "%s: %s", where, why);
+    }
+    return why == NULL;
+}
+
 link_t *link_open(const char *where, char *fault, size_t fault_size) {
     link_t *link = calloc(1, sizeof *link);
     const char *why = "out of memory";
-    speed_t speed = B0;
     if (link != NULL) {
         link->descriptor = -1;
-        if (!parse_where(link, where)) {
-            why = "not of the form udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH or "
-                  "stdin";
-        } else if (link->kind == LINK_SERIAL && !find_rate(link->service, &speed)) {
-            why = "no usual baud rate";
-        } else if (open_now(link, &why) || may_come(link)) {
+        why = wrong_form(link, where);
+        if (why == NULL && (open_now(link, &why) || may_come(link))) {
             return link;
         }
     }

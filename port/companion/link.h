@@ -11,6 +11,9 @@
 
 typedef struct link link_t;
 
+/* Whether `where` is of one of the forms; nothing is opened. False: fault says why. */
+bool link_check(const char *where, char *fault, size_t fault_size);
+
 /* `where`: udpin:HOST:PORT (receives there, answers to whom link_answer() was called for last), udpout:HOST:PORT,
  * tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH, stdin. Null on failure: fault says why. A TCP peer or device that is not there
  * yet is no failure. */
