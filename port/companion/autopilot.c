@@ -26,6 +26,9 @@
 #define TURN_FLOOR_RAD 0.1f
 #define TURN_RATES 0.75f /* share of the sum of both rates over the time between */
 
+#define POSITION_MAX_M 1.0e6f
+#define SPEED_MAX_M_S 1.0e3f
+#define HEIGHT_MAX_M 1.0e5f
 #define DOWNWARD MAV_SENSOR_ROTATION_PITCH_270
 
 void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire) {
@@ -66,10 +69,17 @@ float autopilot_heading_deg(const autopilot_t *autopilot) {
 
 /* ------------------------------------------------------------------------------------------------------------- clock -- */
 
-/* All that was known of another clock, or of another run of the autopilot. */
+static void count_reset(autopilot_t *autopilot, bool known) {
+    autopilot->resets++;
+    autopilot->last_reset_known = known;
+}
+
+/* All that was known of another run of the autopilot. A clock that merely slips against the own one (a simulator that is starved
+ * of its processor, a computer that was suspended) ends nothing: poses and tracks are of the autopilot's clock alone. */
 static void start_anew(autopilot_t *autopilot) {
     clock_sync_reset(&autopilot->clock);
     (void)goe_flight_restart(autopilot->flight);
+    count_reset(autopilot, false);
     autopilot->has_attitude = autopilot->has_position = false;
     autopilot->has_range_finder = autopilot->has_terrain = false;
     autopilot->has_origin = autopilot->has_home = false;
@@ -113,10 +123,12 @@ static void take_timesync(autopilot_t *autopilot, const mavlink_message_t *messa
     if (asked_us != autopilot->asked_us) {
         return; /* an answer to somebody else, or a late one */
     }
+    const int64_t before_us = autopilot_clock_us(autopilot, now_us);
     if (!clock_sync_answer(&autopilot->clock, asked_us, now_us, sync.tc1 / 1000)) {
-        autopilot->restarts++;
-        event("the autopilot's clock jumped: all tracks end");
-        start_anew(autopilot);
+        (void)clock_sync_answer(&autopilot->clock, asked_us, now_us, sync.tc1 / 1000);
+        autopilot->slips++;
+        event("the autopilot's clock slipped by %+.0f ms against this one",
+              (double)(autopilot_clock_us(autopilot, now_us) - before_us) / US_PER_MS);
     }
 }
 
@@ -162,6 +174,7 @@ static void take_attitude(autopilot_t *autopilot, const mavlink_message_t *messa
     if (turned) {
         autopilot->reset_attitude++;
         autopilot->jumps++;
+        count_reset(autopilot, false);
         event("the autopilot's attitude jumped: all tracks end");
     }
     autopilot->attitude = now;
@@ -222,19 +235,22 @@ static void mark_step(autopilot_t *autopilot, const float step_m[3]) {
     autopilot->reset_horizontal++;
     autopilot->reset_vertical++;
     autopilot->jumps++;
+    count_reset(autopilot, true);
     event("the autopilot's position jumped by %.1f, %.1f, %.1f m", (double)step_m[0], (double)step_m[1],
           (double)step_m[2]);
 }
 
-static bool is_finite_position(const mavlink_local_position_ned_t *p) {
-    return isfinite(p->x) && isfinite(p->y) && isfinite(p->z) && isfinite(p->vx) && isfinite(p->vy) && isfinite(p->vz);
+/* As the flight layer asks it: here already, so that no step is made of it. NaN is in no range. */
+static bool is_in_range(const mavlink_local_position_ned_t *p) {
+    return fabsf(p->x) <= POSITION_MAX_M && fabsf(p->y) <= POSITION_MAX_M && fabsf(p->z) <= POSITION_MAX_M &&
+           fabsf(p->vx) <= SPEED_MAX_M_S && fabsf(p->vy) <= SPEED_MAX_M_S && fabsf(p->vz) <= SPEED_MAX_M_S;
 }
 
 static void take_position(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     mavlink_local_position_ned_t now;
     float step_m[3];
     mavlink_msg_local_position_ned_decode(message, &now);
-    if (!is_finite_position(&now)) {
+    if (!is_in_range(&now)) {
         autopilot->bad_samples++;
         return;
     }
@@ -261,6 +277,7 @@ static void take_odometry(autopilot_t *autopilot, const mavlink_message_t *messa
     const uint8_t resets = mavlink_msg_odometry_get_reset_counter(message);
     if (autopilot->has_odometry_resets && resets != autopilot->odometry_resets) {
         autopilot->reset_attitude++;
+        count_reset(autopilot, false);
         event("the autopilot tells of a reset (%u): all tracks end", resets);
     }
     autopilot->odometry_resets = resets;
@@ -287,26 +304,35 @@ static void take_distance(autopilot_t *autopilot, const mavlink_message_t *messa
     autopilot->has_range_finder = autopilot->range_finder_m > 0.0f;
 }
 
+static void put_terrain(autopilot_t *autopilot, float height_m, int64_t now_us) {
+    if (fabsf(height_m) <= HEIGHT_MAX_M) {
+        autopilot->terrain_m = height_m;
+        autopilot->terrain_us = autopilot_clock_us(autopilot, now_us);
+        autopilot->has_terrain = true;
+    }
+}
+
 static void take_terrain(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     mavlink_terrain_report_t report;
     mavlink_msg_terrain_report_decode(message, &report);
-    autopilot->has_terrain =
-        report.spacing > 0 && isfinite(report.current_height) && fabsf(report.current_height) < 1e5f;
-    autopilot->terrain_m = report.current_height;
-    autopilot->terrain_us = autopilot_clock_us(autopilot, now_us);
+    if (report.spacing > 0) { /* 0: no terrain is known there */
+        put_terrain(autopilot, report.current_height, now_us);
+    }
 }
 
 static void take_altitude(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     const float height_m = mavlink_msg_altitude_get_bottom_clearance(message);
-    autopilot->has_terrain = isfinite(height_m) && height_m > 0.0f && height_m < 1e5f;
-    autopilot->terrain_m = height_m;
-    autopilot->terrain_us = autopilot_clock_us(autopilot, now_us);
+    if (height_m > 0.0f) {
+        put_terrain(autopilot, height_m, now_us);
+    }
 }
 
 static void take_home(autopilot_t *autopilot, const mavlink_message_t *message) {
     const float down_m = mavlink_msg_home_position_get_z(message);
-    autopilot->has_home = isfinite(down_m) && fabsf(down_m) < 1e5f;
-    autopilot->home_down_m = autopilot->has_home ? down_m : 0.0f;
+    if (fabsf(down_m) <= HEIGHT_MAX_M) {
+        autopilot->home_down_m = down_m;
+        autopilot->has_home = true;
+    }
 }
 
 static void take_origin(autopilot_t *autopilot, const mavlink_message_t *message) {

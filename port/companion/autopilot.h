@@ -29,6 +29,8 @@ typedef struct {
     unsigned reset_attitude, reset_horizontal, reset_vertical; /* marks for the flight layer */
     float reset_delta_ned_m[3];
     bool reset_delta_known;
+    unsigned resets;       /* of all kinds, restarts included, for the log ... */
+    bool last_reset_known; /* ... and whether the latest was a step by reset_delta_ned_m */
     uint8_t odometry_resets;
     bool has_odometry_resets;
     int strange_times; /* in a row, against the clock that is known */
@@ -48,7 +50,7 @@ typedef struct {
     unsigned requests;
 
     /* counted; summary and status line tell them */
-    unsigned long attitudes, positions, bad_samples, restarts, jumps, hostile;
+    unsigned long attitudes, positions, bad_samples, restarts, slips, jumps;
 } autopilot_t;
 
 void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire);

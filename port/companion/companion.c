@@ -14,6 +14,7 @@
 #define US_PER_S 1000000
 #define WAIT_MS 10           /* longest wait: everything that is due every so often is looked at in between */
 #define READS_MAX 64         /* of the detector's in one turn */
+#define SAME_IMAGE_US 5000u  /* images are farther apart */
 #define CLOCK_STEP_US 100000 /* by which the computer's own clock may be set without a word */
 
 static int64_t clock_us(clockid_t clock) {
@@ -24,6 +25,14 @@ static int64_t clock_us(clockid_t clock) {
 
 /* ------------------------------------------------------------------------------------------------------------ images -- */
 
+/* An image of several messages is one. Of ages each message makes a time of its own, a little apart. */
+static bool is_new_image(companion_rates_t *rates, const goe_flight_frame_t *frame, uint32_t capture_us) {
+    const uint32_t since_us = capture_us - rates->capture_us[frame->camera];
+    const bool is_same = frame->number > 1 && (since_us < SAME_IMAGE_US || since_us > UINT32_MAX - SAME_IMAGE_US);
+    rates->capture_us[frame->camera] = capture_us;
+    return !is_same;
+}
+
 static void on_image_taken(void *user, const goe_flight_frame_t *frame, goe_flight_status_t status) {
     companion_t *c = user;
     delay_count_t *delay = &c->rates.delay;
@@ -33,14 +42,19 @@ static void on_image_taken(void *user, const goe_flight_frame_t *frame, goe_flig
         return;
     }
     const double delay_ms = (double)(int32_t)(frame->arrival_us - c->flight.capture_us) * 1e-3;
-    c->counts.images++;
-    delay->images++;
-    delay->sum_ms += delay_ms;
-    delay->most_ms = delay_ms > delay->most_ms ? delay_ms : delay->most_ms;
-    flight_record_put(&c->record, &c->flight, frame);
+    if (is_new_image(&c->rates, frame, c->flight.capture_us)) {
+        c->counts.images++;
+        delay->images++;
+        delay->sum_ms += delay_ms;
+        delay->most_ms = delay_ms > delay->most_ms ? delay_ms : delay->most_ms;
+    }
+    flight_record_put(&c->record, &c->flight, frame, &c->autopilot);
 }
 
-static void run_queue(companion_t *c) { image_queue_run(&c->queue, &c->flight, on_image_taken, c); }
+static void run_queue(companion_t *c) {
+    const int64_t autopilot_us = autopilot_clock_us(&c->autopilot, clock_us(CLOCK_MONOTONIC));
+    image_queue_run(&c->queue, &c->flight, (uint32_t)autopilot_us, on_image_taken, c);
+}
 
 /* The flight layer's history begins with a pose: what was seen before has none. */
 static void take_image(companion_t *c) {

@@ -30,6 +30,7 @@ typedef struct {
     unsigned long attitudes, images; /* counts at its start ... */
     double attitude_hz, image_hz;    /* ... and the rates that it had */
     delay_count_t delay, delay_shown;
+    uint32_t capture_us[GOE_CAMERAS_MAX]; /* of the latest image */
 } companion_rates_t;
 
 typedef struct {

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #define KINDS 32
+#define TEXT_MAX 256
 
 static int line_stands;
 
@@ -37,7 +38,17 @@ static int is_due(const char *format, unsigned long *left_out) {
     return 1;
 }
 
+/* Texts quote what others sent: no escape sequence of theirs reaches the terminal. */
+static void make_printable(char *text) {
+    for (; *text != '\0'; text++) {
+        if (*text < ' ' || *text > '~') {
+            *text = '?';
+        }
+    }
+}
+
 void event(const char *format, ...) {
+    char text[TEXT_MAX];
     unsigned long left_out = 0;
     va_list arguments;
     if (!is_due(format, &left_out)) {
@@ -48,8 +59,10 @@ void event(const char *format, ...) {
     }
     (void)fputs("goe_companion: ", stderr);
     va_start(arguments, format);
-    (void)vfprintf(stderr, format, arguments);
+    (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    make_printable(text);
+    (void)fputs(text, stderr);
     if (left_out > 0) {
         (void)fprintf(stderr, " (and %lu more)", left_out);
     }

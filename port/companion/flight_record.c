@@ -10,11 +10,13 @@
 
 #define PATH_MAX_LENGTH (2 * CONFIG_TEXT_MAX)
 #define BYTES_PER_MB 1.0e6
+#define US_PER_S 1000000
 
 static const char header[] =
     "t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz,left_u,left_v,right_u,right_v,top_u,top_v,base_left_u,base_left_v,base_near_"
     "u,"
-    "base_near_v,base_right_u,base_right_v,box_left_px,box_top_px,box_right_px,box_bottom_px,camera\n";
+    "base_near_v,base_right_u,base_right_v,box_left_px,box_top_px,box_right_px,box_bottom_px,camera,"
+    "reset_count,reset_n_m,reset_e_m,reset_d_m\n";
 
 static bool copy_bytes(FILE *in, FILE *out) {
     char bytes[4096];
@@ -114,17 +116,38 @@ static void end(flight_record_t *record, const char *why) {
     record->stream = NULL;
 }
 
-void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame) {
+static int put_reset(FILE *stream, const autopilot_t *autopilot) {
+    const float *delta = autopilot->reset_delta_ned_m;
+    int size = fprintf(stream, ",%u", autopilot->resets);
+    for (int i = 0; i < 3; i++) {
+        size += autopilot->last_reset_known ? put(stream, delta[i]) : fprintf(stream, ",");
+    }
+    return size;
+}
+
+/* Times of a log go on: those of an autopilot that started anew follow the latest by a second. */
+static double time_s(flight_record_t *record, int64_t time_us) {
+    if (record->rows > 0 && time_us + record->shift_us < record->latest_us - US_PER_S) {
+        record->shift_us = record->latest_us + US_PER_S - time_us;
+    }
+    record->latest_us = time_us + record->shift_us;
+    return (double)record->latest_us * 1e-6;
+}
+
+void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame,
+                       const autopilot_t *autopilot) {
     goe_pose_t pose;
     if (record->stream == NULL || goe_flight_pose(flight, flight->capture_us, 0, &pose, NULL) != GOE_FLIGHT_OK) {
         return;
     }
+    const double at_s = time_s(record, pose.time_us);
     for (unsigned i = 0; i < frame->count; i++) {
         const goe_flight_detection_t *detection = &frame->detection[i];
-        int size = fprintf(record->stream, "%.6f,%u", (double)pose.time_us * 1e-6, (unsigned)detection->id);
+        int size = fprintf(record->stream, "%.6f,%u", at_s, (unsigned)detection->id);
         size += put_pose(record->stream, &pose);
         size += put_features(record->stream, detection);
-        size += fprintf(record->stream, ",%u\n", (unsigned)frame->camera);
+        size += fprintf(record->stream, ",%u", (unsigned)frame->camera);
+        size += put_reset(record->stream, autopilot) + fprintf(record->stream, "\n");
         record->written_mb += (double)size / BYTES_PER_MB;
         record->rows++;
     }

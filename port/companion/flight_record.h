@@ -6,12 +6,15 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "autopilot.h"
 #include "companion_config.h"
 #include "goe_flight.h"
 
 typedef struct {
     FILE *stream; /* null: there is no log, or it has ended */
     unsigned long rows;
+    int64_t latest_us,
+        shift_us; /* time of the latest row; what is added so that times go on when the autopilot starts anew */
     double written_mb, size_max_mb;
     bool failed; /* ended, as the disk did not take it */
 } flight_record_t;
@@ -21,7 +24,8 @@ typedef struct {
 bool flight_record_open(flight_record_t *record, const companion_config_t *config, char *fault, size_t fault_size);
 
 /* The detections of a frame that was taken, with the pose at its exposure. */
-void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame);
+void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame,
+                       const autopilot_t *autopilot);
 
 /* To be called once a second: what was put is on the disk then. */
 void flight_record_flush(flight_record_t *record);

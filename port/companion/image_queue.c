@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#define WAIT_MAX_US 500000u /* longer than the pose of any link is behind; its time is a wrong one then */
+
 void image_queue_clear(image_queue_t *queue) { queue->count = 0; }
 
 static void drop(image_queue_t *queue, int i) {
@@ -13,7 +15,7 @@ static void drop(image_queue_t *queue, int i) {
 void image_queue_add(image_queue_t *queue, const camera_image_t *image) {
     if (queue->count == IMAGE_QUEUE_MAX) {
         drop(queue, 0);
-        queue->pushed_out++;
+        queue->given_up++;
     }
     queue->image[queue->count] = *image;
     queue->count++;
@@ -37,10 +39,14 @@ static bool give(camera_image_t *image, goe_flight_t *flight, image_taken_t take
     return true;
 }
 
-void image_queue_run(image_queue_t *queue, goe_flight_t *flight, image_taken_t taken, void *user) {
+void image_queue_run(image_queue_t *queue, goe_flight_t *flight, uint32_t now_us, image_taken_t taken, void *user) {
     int i = 0;
     while (i < queue->count) {
+        const bool waits_long = now_us - queue->image[i].frame.arrival_us > WAIT_MAX_US;
         if (give(&queue->image[i], flight, taken, user)) {
+            drop(queue, i);
+        } else if (waits_long) {
+            queue->given_up++;
             drop(queue, i);
         } else {
             i++;

@@ -12,7 +12,7 @@ typedef void (*image_taken_t)(void *user, const goe_flight_frame_t *frame, goe_f
 typedef struct {
     camera_image_t image[IMAGE_QUEUE_MAX]; /* in the order of their arrival */
     int count;
-    unsigned long pushed_out; /* as no pose came for so long that the queue was full */
+    unsigned long given_up; /* no pose came for them */
 } image_queue_t;
 
 void image_queue_clear(image_queue_t *queue);
@@ -20,7 +20,8 @@ void image_queue_clear(image_queue_t *queue);
 /* A copy goes in; the oldest makes room. */
 void image_queue_add(image_queue_t *queue, const camera_image_t *image);
 
-/* Gives all to the flight layer whose exposure it has a pose for; GOE_FLIGHT_TOO_NEW stays here. */
-void image_queue_run(image_queue_t *queue, goe_flight_t *flight, image_taken_t taken, void *user);
+/* Gives all to the flight layer whose exposure it has a pose for. GOE_FLIGHT_TOO_NEW stays here, for half a second after its
+ * arrival; now_us: autopilot's clock. */
+void image_queue_run(image_queue_t *queue, goe_flight_t *flight, uint32_t now_us, image_taken_t taken, void *user);
 
 #endif

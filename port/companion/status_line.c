@@ -74,7 +74,7 @@ static void add_obstacle(text_line_t *line, const companion_t *c) {
 }
 
 static unsigned long lost_of(const companion_t *c) {
-    return c->wire.counts.lost + c->wire.counts.garbage + c->counts.late + c->counts.unread + c->queue.pushed_out;
+    return c->wire.counts.lost + c->wire.counts.garbage + c->counts.late + c->counts.unread + c->queue.given_up;
 }
 
 static int width_of_terminal(void) {
@@ -123,12 +123,13 @@ void status_line_summary(const companion_t *c) {
     row("positions", c->autopilot.positions, "samples taken");
     row("samples_bad", c->autopilot.bad_samples, "out of order, not finite or out of range");
     row("jumps", c->autopilot.jumps, "of the autopilot's position or attitude");
-    row("restarts", c->autopilot.restarts, "of the autopilot, or jumps of its clock");
+    row("restarts", c->autopilot.restarts, "of the autopilot, or jumps of its clock by a second and more");
+    row("clock_slips", c->autopilot.slips, "of the autopilot's clock against this computer's");
     row("images", c->counts.images, "taken");
     row("images_late", c->counts.late, "too late for the history of poses");
     row("images_unread", c->counts.unread, "lines or messages that could not be understood");
     row("images_without_clock", c->counts.clockless, "before the autopilot's clock was known");
-    row("images_without_pose", c->queue.pushed_out, "that waited in vain");
+    row("images_without_pose", c->queue.given_up, "that waited in vain");
     row("detections_refused", c->flight.counters.refused, "not finite or out of range, samples of the pose included");
     row("tracks_evicted", c->flight.counters.evicted, "for a worse obstacle");
     row("orders", c->orders.orders, "begun or changed");

@@ -144,6 +144,34 @@ static void a_restart_of_the_autopilot_begins_a_new_clock(void) {
     TEST_ASSERT_EQUAL_UINT32(2, (uint32_t)autopilot.restarts);
 }
 
+/* An answer to the latest question, asked just now, by a clock that has slipped against the companion's. */
+static void answer(int32_t slipped_ms) {
+    mavlink_message_t message;
+    autopilot.asked_us = own_us;
+    (void)mavlink_msg_timesync_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message,
+                                    ((int64_t)boot_ms + slipped_ms) * 1000000 + 1000, own_us * 1000);
+    autopilot_take(&autopilot, &message, own_us);
+}
+
+/* Poses and tracks are of the autopilot's clock alone: what slips is where this computer's images lie in it. */
+static void a_clock_that_slips_ends_nothing(void) {
+    fly(50);
+    for (int k = 0; k < 8; k++) {
+        answer(0);
+        fly(12);
+    }
+    own_us += 300000; /* the autopilot was asleep */
+    for (int k = 0; k < 8; k++) {
+        answer(0);
+        fly(12);
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, (uint32_t)autopilot.slips);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.restarts);
+    TEST_ASSERT_EQUAL_UINT16(0, flight.counters.lost);
+    TEST_ASSERT_INT64_WITHIN(2000, (int64_t)boot_ms * 1000, autopilot_clock_us(&autopilot, own_us));
+    CHECK_CLOSE(1e-3, north_m - 2.0f, north_at_ms(boot_ms - 100));
+}
+
 static void what_is_not_finite_is_refused_and_counted(void) {
     fly(10);
     boot_ms += PERIOD_MS;
@@ -208,6 +236,7 @@ int main(void) {
     RUN_TEST(losses_and_turns_of_an_aircraft_are_no_steps);
     RUN_TEST(a_turn_that_no_rate_explains_ends_the_tracks);
     RUN_TEST(a_restart_of_the_autopilot_begins_a_new_clock);
+    RUN_TEST(a_clock_that_slips_ends_nothing);
     RUN_TEST(what_is_not_finite_is_refused_and_counted);
     RUN_TEST(messages_that_come_twice_or_late_change_nothing);
     RUN_TEST(odometry_counts_resets_that_show_no_step);
