@@ -1,6 +1,7 @@
 """The campaign's report: the paper's results and ours side by side, as one HTML page and as a table for the terminal.
 
 data        what goe_campaign wrote
+columns     a CSV file by columns
 goals_file  what the goals command wrote
 statistics  ranges, verdicts, comparisons of studies
 refined     the same of the refined method

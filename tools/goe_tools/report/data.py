@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..logs.obslog import LogError
+from .columns import read_columns
 from .goals_file import Goals, read_goals
 
 LABELS = ("study", "obstacle", "path", "speed_profile", "wind", "noise", "method", "model")
@@ -80,39 +80,9 @@ class Campaign:
         path = self.folder / "series" / f"{case}_{model}.csv"
         if not path.is_file():
             return None
-        columns = _read_columns(path, text=("status", "model"))
+        columns = read_columns(path, text=("status", "model"))
         columns["case"] = np.full(len(columns["t_s"]), float(case))
         return Cases(columns)
-
-
-def _read_columns(path: Path, text: Iterable[str]) -> dict[str, np.ndarray]:
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or "cannot be read") from None
-    if len(rows) < 2:
-        raise LogError(path, 0, "", "no rows")
-    header = rows[0]
-    for number, row in enumerate(rows[1:], start=2):
-        if len(row) != len(header):
-            raise LogError(path, number, "", f"{len(row)} fields, the header has {len(header)}")
-    columns: dict[str, np.ndarray] = {}
-    for name, fields in zip(header, zip(*rows[1:])):
-        columns[name] = np.array(fields) if name in text else _numbers(path, name, fields)
-    return columns
-
-
-def _numbers(path: Path, name: str, fields: Sequence[str]) -> np.ndarray:
-    try:
-        return np.array([field or "nan" for field in fields], dtype=float)
-    except ValueError:
-        for number, field in enumerate(fields, start=2):
-            try:
-                float(field or "nan")
-            except ValueError:
-                raise LogError(path, number, name, f"{field!r} is not a number") from None
-        raise
 
 
 def read_campaign(folder: Path, method: str = "window", goals: Path | None = None) -> Campaign:
@@ -120,7 +90,7 @@ def read_campaign(folder: Path, method: str = "window", goals: Path | None = Non
     if not folder.is_dir():
         raise LogError(folder, 0, "", "no such folder")
     path = folder / "cases.csv"
-    columns = _read_columns(path, LABELS)
+    columns = read_columns(path, LABELS)
     for name in _required():
         if name not in columns:
             raise LogError(path, 1, name, "this column is missing")
