@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..logs.obslog import LogError
+from .avoid_file import Avoid, read_avoid
 from .columns import read_columns
 from .goals_file import Goals, read_goals
 
@@ -74,6 +75,7 @@ class Campaign:
     facts: dict[str, Any]  # campaign.json
     refined: Cases | None = None  # the refined method's rows, if the campaign has any
     goals: Goals | None = None
+    avoid: Avoid | None = None  # what goe_avoid wrote
 
     def series(self, case: int, model: str) -> Cases | None:
         """The time series of a case of the paper's study (first seed), or None if it was not written."""
@@ -85,8 +87,11 @@ class Campaign:
         return Cases(columns)
 
 
-def read_campaign(folder: Path, method: str = "window", goals: Path | None = None) -> Campaign:
-    """Reads cases.csv and campaign.json, and the goals' file if there is one. ``cases`` are the rows of one method."""
+def read_campaign(
+    folder: Path, method: str = "window", goals: Path | None = None, avoid: Path | None = None
+) -> Campaign:
+    """Reads cases.csv and campaign.json, the goals' file and that of goe_avoid if there are any. ``cases`` are the rows
+    of one method."""
     if not folder.is_dir():
         raise LogError(folder, 0, "", "no such folder")
     path = folder / "cases.csv"
@@ -105,7 +110,7 @@ def read_campaign(folder: Path, method: str = "window", goals: Path | None = Non
     refined = rows.select(method="refined")
     return Campaign(
         folder, rows.select(method=method), _read_facts(folder / "campaign.json"), refined if len(refined) else None,
-        read_goals(goals) if goals else None,
+        read_goals(goals) if goals else None, read_avoid(avoid) if avoid else None,
     )  # fmt: skip
 
 
