@@ -162,7 +162,8 @@ def test_demo(built: Path, set_up: None) -> None:
     assert "refined, the default method: better than the paper in" in text
     (page,) = re.findall(r"^The report: +(.*)$", text, re.MULTILINE)
     assert Path(page) == built / "report.html"
-    assert Path(page).read_text(encoding="utf-8").rstrip().endswith("</html>")
+    written = Path(page).read_text(encoding="utf-8")
+    assert written.rstrip().endswith("</html>") and "of 60 collision courses" in written
 
 
 def test_the_example_prints_what_the_readme_says(built: Path) -> None:
