@@ -1,11 +1,13 @@
 /*
  * goe_avoid - flies the flight layer over collision courses and passes, with and without its orders carried out, and prints what
- * came of it.
+ * came of it; --csv writes every run.
  *
- * Exit status: 0 done; 2 bad usage.
+ * Exit status: 0 done; 2 bad usage, or a run could not be flown or written: the file is as it was.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
+#include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <popt.h>
 #include <stdio.h>
@@ -13,9 +15,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "avoidance.h"
+#include "avoid_text.h"
+#include "output_file.h"
 
-#define EXIT_BAD_USAGE 2
+#define PROGRAM "goe_avoid"
+#define EXIT_FAILED 2
 #define RUNS_MAX 100000
 #define TWICE_THE_MARGIN 2.0
 
@@ -23,6 +27,7 @@ static int runs = 334;
 static int seed = 1;
 static double delay_s = 0.1;
 static int list;
+static char *csv;
 
 static struct poptOption options[] = {
     {"runs", 'n', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &runs, 0, "of each kind of obstacle and question", "N"},
@@ -30,15 +35,23 @@ static struct poptOption options[] = {
     {"delay", 'd', POPT_ARG_DOUBLE | POPT_ARGFLAG_SHOW_DEFAULT, &delay_s, 0, "of a frame, s", "S"},
     {"list", 'l', POPT_ARG_NONE, &list, 0, "a line for every run that collided although it reacted, or reacted falsely",
      NULL},
+    {"csv", 'c', POPT_ARG_STRING, &csv, 0, "a row for every run goes here", "FILE"},
     {"version", 'V', POPT_ARG_NONE, NULL, 'V', "the version", NULL},
     POPT_AUTOHELP POPT_TABLEEND};
 
 /* Of one kind of obstacle and one question. */
 typedef struct {
-    int runs, collided, ordered, late, collided_late, by_action[GOE_FLIGHT_HOLD + 1];
+    int runs, collided_without, collided, ordered, late, collided_late, by_action[GOE_FLIGHT_HOLD + 1];
     double *closest_m, *ahead_s;
     long suspect, assessed;
 } tally_t;
+
+static bool give_up(const char *subject, const char *reason) {
+    (void)fprintf(stderr, PROGRAM ": %s: %s\n", subject, reason);
+    return false;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ tally -- */
 
 static int compare(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -49,8 +62,10 @@ static double quantile(double *sorted, int count, double share) {
     return count > 0 ? sorted[(int)(share * (count - 1) + 0.5)] : (double)NAN;
 }
 
-static void count(tally_t *tally, const avoid_outcome_t *outcome) {
+static void count(tally_t *tally, const avoid_run_t *run) {
+    const avoid_outcome_t *outcome = avoid_run_ordered(run);
     tally->closest_m[tally->runs++] = outcome->closest_m;
+    tally->collided_without += run->without.collided ? 1 : 0;
     tally->collided += outcome->collided ? 1 : 0;
     tally->collided_late += outcome->collided && outcome->late ? 1 : 0;
     tally->suspect += outcome->suspect;
@@ -62,38 +77,11 @@ static void count(tally_t *tally, const avoid_outcome_t *outcome) {
     }
 }
 
-static void show_progress(const char *what, int done) {
-    if (isatty(STDERR_FILENO) && (done % 16 == 0 || done == runs)) {
-        fprintf(stderr, "\r%-40s %d of %d%s", what, done, runs, done == runs ? "\n" : "");
-    }
-}
-
-static tally_t fly(avoid_kind_t kind, double pass_m, bool reacts) {
-    tally_t tally;
-    memset(&tally, 0, sizeof tally);
-    tally.closest_m = calloc((size_t)runs, sizeof *tally.closest_m);
-    tally.ahead_s = calloc((size_t)runs, sizeof *tally.ahead_s);
-    if (tally.closest_m == NULL || tally.ahead_s == NULL) {
-        fputs("goe_avoid: out of memory\n", stderr);
-        exit(EXIT_BAD_USAGE);
-    }
-    for (int k = 0; k < runs; k++) {
-        const avoid_case_t setup = {kind, (uint64_t)seed + (uint64_t)k, pass_m, reacts, delay_s};
-        avoid_outcome_t outcome;
-        if (avoid_fly(&setup, &outcome) == NULL) {
-            count(&tally, &outcome);
-        }
-        const bool worth_a_line = pass_m < 0.0 ? reacts && outcome.collided : outcome.ordered;
-        if (list && worth_a_line) {
-            printf("%s seed %d: %s%s, %.1f s ahead, closest %.1f m, suspect %d of %d\n", AVOID_NAMES[kind], seed + k,
-                   goe_flight_action_text(outcome.action), outcome.late ? " (late)" : "", outcome.ahead_s,
-                   outcome.closest_m, outcome.suspect, outcome.assessed);
-        }
-        show_progress(AVOID_NAMES[kind], k + 1);
-    }
-    qsort(tally.closest_m, (size_t)tally.runs, sizeof *tally.closest_m, compare);
-    qsort(tally.ahead_s, (size_t)tally.ordered, sizeof *tally.ahead_s, compare);
-    return tally;
+static bool begin(tally_t *tally) {
+    memset(tally, 0, sizeof *tally);
+    tally->closest_m = calloc((size_t)runs, sizeof *tally->closest_m);
+    tally->ahead_s = calloc((size_t)runs, sizeof *tally->ahead_s);
+    return (tally->closest_m != NULL && tally->ahead_s != NULL) || give_up("runs", "out of memory");
 }
 
 static void drop(tally_t *tally) {
@@ -101,60 +89,148 @@ static void drop(tally_t *tally) {
     free(tally->ahead_s);
 }
 
-static void print_courses(avoid_kind_t kind) {
-    tally_t without = fly(kind, -1.0, false);
-    tally_t with = fly(kind, -1.0, true);
-    printf("| %s | %d | %d | %d (%d late) | %.1f / %.1f / %.1f | %.1f / %.1f | ", AVOID_NAMES[kind], with.runs,
-           without.collided, with.collided, with.collided_late, quantile(with.closest_m, with.runs, 0.0),
-           quantile(with.closest_m, with.runs, 0.05), quantile(with.closest_m, with.runs, 0.5),
-           quantile(with.ahead_s, with.ordered, 0.0), quantile(with.ahead_s, with.ordered, 0.5));
+/* ------------------------------------------------------------------------------------------------------------- runs -- */
+
+static void show_progress(const char *what, int done) {
+    if (isatty(STDERR_FILENO) && (done % 16 == 0 || done == runs)) {
+        fprintf(stderr, "\r%-40s %d of %d%s", what, done, runs, done == runs ? "\n" : "");
+    }
+}
+
+static void print_line(const avoid_run_t *run) {
+    const avoid_outcome_t *outcome = avoid_run_ordered(run);
+    if (avoid_is_pass(&run->setup) ? outcome->ordered : outcome->collided) {
+        printf("%s seed %" PRIu64 ": %s%s, %.1f s ahead, closest %.1f m, suspect %d of %d\n",
+               AVOID_NAMES[run->setup.kind], run->setup.seed, goe_flight_action_text(outcome->action),
+               outcome->late ? " (late)" : "", outcome->ahead_s, outcome->closest_m, outcome->suspect,
+               outcome->assessed);
+    }
+}
+
+/* A collision course twice, a pass once. */
+static bool fly_run(avoid_run_t *run) {
+    avoid_case_t reacting = run->setup;
+    reacting.reacts = true;
+    const char *fault = avoid_fly(&run->setup, &run->without);
+    if (fault == NULL && !avoid_is_pass(&run->setup)) {
+        fault = avoid_fly(&reacting, &run->with);
+    }
+    if (fault != NULL) {
+        (void)fprintf(stderr, PROGRAM ": %s, seed %" PRIu64 ": %s\n", AVOID_NAMES[run->setup.kind], run->setup.seed,
+                      fault);
+    }
+    return fault == NULL;
+}
+
+/* rows: null, or where a row of every run goes. */
+static bool fly(avoid_kind_t kind, double pass_m, FILE *rows, tally_t *tally) {
+    goe_flight_settings_t settings;
+    goe_flight_settings_default(&settings);
+    for (int k = 0; k < runs; k++) {
+        avoid_run_t run;
+        memset(&run, 0, sizeof run);
+        run.setup = (avoid_case_t){kind, (uint64_t)seed + (uint64_t)k, pass_m, false, delay_s};
+        if (!fly_run(&run)) {
+            return false;
+        }
+        count(tally, &run);
+        if (rows != NULL) {
+            avoid_text_row(rows, &run, (double)settings.margin_m);
+        }
+        if (list) {
+            print_line(&run);
+        }
+        show_progress(AVOID_NAMES[kind], k + 1);
+    }
+    qsort(tally->closest_m, (size_t)tally->runs, sizeof *tally->closest_m, compare);
+    qsort(tally->ahead_s, (size_t)tally->ordered, sizeof *tally->ahead_s, compare);
+    return true;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- tables -- */
+
+static void print_courses(avoid_kind_t kind, const tally_t *with) {
+    printf("| %s | %d | %d | %d (%d late) | %.1f / %.1f / %.1f | %.1f / %.1f | ", AVOID_NAMES[kind], with->runs,
+           with->collided_without, with->collided, with->collided_late, quantile(with->closest_m, with->runs, 0.0),
+           quantile(with->closest_m, with->runs, 0.05), quantile(with->closest_m, with->runs, 0.5),
+           quantile(with->ahead_s, with->ordered, 0.0), quantile(with->ahead_s, with->ordered, 0.5));
     for (int action = GOE_FLIGHT_NONE; action <= GOE_FLIGHT_HOLD; action++) {
-        if (with.by_action[action] > 0) {
-            printf("%s %d ", goe_flight_action_text((goe_flight_action_t)action), with.by_action[action]);
+        if (with->by_action[action] > 0) {
+            printf("%s %d ", goe_flight_action_text((goe_flight_action_t)action), with->by_action[action]);
         }
     }
-    printf("| %d | %.1f %% |\n", with.runs - with.ordered,
-           100.0 * (double)with.suspect / fmax((double)with.assessed, 1.0));
-    drop(&without);
-    drop(&with);
+    printf("| %d | %.1f %% |\n", with->runs - with->ordered,
+           100.0 * (double)with->suspect / fmax((double)with->assessed, 1.0));
 }
 
-static void print_passes(avoid_kind_t kind, double pass_m) {
-    tally_t passes = fly(kind, pass_m, false);
-    printf("| %s | %d | %d (%.1f %%) |\n", AVOID_NAMES[kind], passes.runs, passes.ordered,
-           100.0 * passes.ordered / fmax(passes.runs, 1.0));
-    drop(&passes);
+static void print_passes(avoid_kind_t kind, const tally_t *passes) {
+    printf("| %s | %d | %d (%.1f %%) |\n", AVOID_NAMES[kind], passes->runs, passes->ordered,
+           100.0 * passes->ordered / fmax(passes->runs, 1.0));
 }
 
-int main(int argc, const char **argv) {
-    poptContext context = poptGetContext("goe_avoid", argc, argv, options, 0);
-    const int said = poptGetNextOpt(context);
-    if (said == 'V') {
-        puts("goe_avoid " GOE_VERSION);
-    } else if (said < -1 || poptPeekArg(context) != NULL || runs < 1 || runs > RUNS_MAX || seed < 0 ||
-               !(delay_s >= 0.0 && delay_s <= 2.0)) {
-        fprintf(stderr, "goe_avoid: %s\n",
-                said < -1 ? poptStrerror(said) : "runs: 1 to 100000; seed: 0 or more; delay: 0 to 2 s");
-        poptFreeContext(context);
-        return EXIT_BAD_USAGE;
+/* A row for every kind. */
+static bool print_all(double pass_m, FILE *rows, void (*print)(avoid_kind_t kind, const tally_t *tally)) {
+    bool done = true;
+    for (int kind = 0; kind < AVOID_KINDS && done; kind++) {
+        tally_t tally;
+        done = begin(&tally) && fly((avoid_kind_t)kind, pass_m, rows, &tally);
+        if (done) {
+            print((avoid_kind_t)kind, &tally);
+        }
+        drop(&tally);
     }
-    poptFreeContext(context);
-    if (said == 'V') {
-        return 0;
-    }
+    return done;
+}
+
+static bool print_tables(FILE *rows) {
     goe_flight_settings_t settings;
     goe_flight_settings_default(&settings);
     puts("| collision courses | runs | collisions without | with | closest, m: least / 5 % / median | order ahead, s: "
          "least / median | orders | no order | suspect |");
     puts("|---|---|---|---|---|---|---|---|---|");
-    for (int kind = 0; kind < AVOID_KINDS; kind++) {
-        print_courses((avoid_kind_t)kind);
+    if (!print_all(-1.0, rows, print_courses)) {
+        return false;
     }
     puts("");
     puts("| passes at twice the margin | runs | false orders |");
     puts("|---|---|---|");
-    for (int kind = 0; kind < AVOID_KINDS; kind++) {
-        print_passes((avoid_kind_t)kind, TWICE_THE_MARGIN * (double)settings.margin_m);
+    return print_all(TWICE_THE_MARGIN * (double)settings.margin_m, rows, print_passes);
+}
+
+static bool print_and_write(void) {
+    output_file_t output;
+    if (!output_file_open(&output, csv)) {
+        return give_up(csv, strerror(errno));
     }
-    return 0;
+    avoid_text_header(output.stream);
+    if (!print_tables(output.stream)) {
+        output_file_discard(&output);
+        return false;
+    }
+    return output_file_commit(&output) || give_up(csv, strerror(errno));
+}
+
+/* ------------------------------------------------------------------------------------------------------------- main -- */
+
+static bool run_options(poptContext context) {
+    const int said = poptGetNextOpt(context);
+    if (said == 'V') {
+        puts(PROGRAM " " GOE_VERSION);
+        return true;
+    }
+    if (said < -1 || poptPeekArg(context) != NULL || runs < 1 || runs > RUNS_MAX || seed < 0 ||
+        !(delay_s >= 0.0 && delay_s <= 2.0)) {
+        (void)fprintf(stderr, PROGRAM ": %s\n",
+                      said < -1 ? poptStrerror(said) : "runs: 1 to 100000; seed: 0 or more; delay: 0 to 2 s");
+        return false;
+    }
+    return csv != NULL ? print_and_write() : print_tables(NULL);
+}
+
+int main(int argc, const char **argv) {
+    poptContext context = poptGetContext(PROGRAM, argc, argv, options, 0);
+    const bool done = run_options(context);
+    poptFreeContext(context);
+    free(csv);
+    return done ? 0 : EXIT_FAILED;
 }

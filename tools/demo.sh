@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Shows the estimator at work: sets up, builds, replays a small recorded flight past the corner of a building, flies the
-# paper's campaign and more in simulation, prints Table 3 (the paper's numbers, the window method's, the refined
-# method's) and writes the report.
+# paper's campaign and more in simulation, flies the flight layer's orders towards obstacles, prints Table 3 (the paper's
+# numbers, the window method's, the refined method's) and writes the report.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
@@ -11,7 +11,7 @@ log=.cache/demo-build.log
 if [ ! -e build/CMakeCache.txt ]; then
     cmake --preset default -DGOE_BUILD_TESTS=OFF >$log 2>&1 || { cat $log >&2; exit 1; }
 fi
-cmake --build build --target goe_replay goe_campaign goe_batch >$log 2>&1 || { cat $log >&2; exit 1; }
+cmake --build build --target goe_replay goe_campaign goe_avoid goe_batch >$log 2>&1 || { cat $log >&2; exit 1; }
 
 echo "A recorded approach, replayed (simulated flight, whole pixels):"
 echo
@@ -23,9 +23,16 @@ echo "The paper's campaign and what goes beyond it, flown in simulation:"
 echo
 campaign=build/campaign
 build/sim_host/goe_campaign --seeds 1 --out $campaign
-.venv/bin/python -m goe_tools report $campaign --table --out build/report.html
+echo
+echo "Collision courses with the orders carried out and without, and passes, flown in simulation:"
+echo
+orders=build/avoid.csv
+build/sim_host/goe_avoid --runs 20 --csv $orders
+echo
+.venv/bin/python -m goe_tools report $campaign --table --out build/report.html --avoid $orders
 echo
 echo "Every image's estimate of the replay: $root/$out"
 echo "The campaign's statistics:            $root/$campaign/cases.csv"
+echo "Every run of the orders:              $root/$orders"
 echo "The report:                           $root/build/report.html"
 echo "Every promised figure, in minutes:    .venv/bin/python -m goe_tools goals --quick"

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "aircraft.h"
 #include "camera_model.h"
 #include "image_box.h"
 #include "obstacle.h"
@@ -24,11 +23,12 @@
 #define ROLL_DEG 10.0
 #define LOST_FRAMES 0.05
 #define QUEUE 64
-#define HALF_SPAN_M (0.5 * AIRCRAFT_SPAN_M)
 #define GO_AROUND_M 40.0
 #define GROUND_M 0.3 /* lower than this the aircraft has landed */
 
 const char *const AVOID_NAMES[AVOID_KINDS] = {"mast", "building", "truck"};
+
+bool avoid_is_pass(const avoid_case_t *setup) { return setup->pass_m >= 0.0; }
 
 typedef struct {
     goe_flight_frame_t frame;
@@ -94,8 +94,9 @@ static void place(run_t *run, random_t *random) {
     run->obstacle.heading_rad = between(random, -SIM_PI, SIM_PI);
     const double side = random_uniform(random) < 0.5 ? -1.0 : 1.0;
     const double off_m = between(random, -2.0, 2.0);
-    const double aside =
-        run->setup->pass_m < 0.0 ? off_m : side * (run->setup->pass_m + half_across_m(&run->obstacle, run->course_rad));
+    const double aside = avoid_is_pass(run->setup)
+                             ? side * (run->setup->pass_m + half_across_m(&run->obstacle, run->course_rad))
+                             : off_m;
     obstacle_place(&run->obstacle, c * run->reach_m - s * aside, s * run->reach_m + c * aside, 0.0,
                    run->obstacle.heading_rad);
 }
@@ -332,7 +333,7 @@ static void note_place(const run_t *run, avoid_outcome_t *outcome) {
     on_path(run, at.x, at.y, &along_m, &right_m);
     outcome->closest_m = fmin(outcome->closest_m, distance_m(&run->obstacle, at));
     outcome->height_gained_m = fmax(outcome->height_gained_m, -at.z - height_on_path(run, along_m));
-    outcome->collided = outcome->closest_m < HALF_SPAN_M || (outcome->ordered && at.z > -GROUND_M);
+    outcome->collided = outcome->closest_m < AVOID_COLLISION_M || (outcome->ordered && at.z > -GROUND_M);
 }
 
 const char *avoid_fly(const avoid_case_t *setup, avoid_outcome_t *outcome) {

@@ -18,7 +18,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "aircraft.h"
 #include "goe_flight.h"
+
+#define AVOID_COLLISION_M (0.5 * AIRCRAFT_SPAN_M) /* the aircraft's middle nearer than this: a collision */
 
 typedef enum { AVOID_MAST, AVOID_BUILDING, AVOID_TRUCK, AVOID_KINDS } avoid_kind_t;
 
@@ -34,13 +37,16 @@ typedef struct {
 
 typedef struct {
     double closest_m; /* of the aircraft's middle from the obstacle's walls and top, in space; 0: inside */
-    bool collided;    /* closer than half of the span, or into the ground */
+    bool collided;    /* closer than AVOID_COLLISION_M, or into the ground */
     bool ordered, late;
     goe_flight_action_t action; /* the first */
     double ahead_s;             /* the first order came this long before the obstacle would be reached */
     int suspect, assessed;      /* assessments with a position, until the first order */
     double height_gained_m;     /* highest over the path */
 } avoid_outcome_t;
+
+/* Not a collision course. */
+bool avoid_is_pass(const avoid_case_t *setup);
 
 /* Null and the outcome, or why the case cannot be flown. */
 const char *avoid_fly(const avoid_case_t *setup, avoid_outcome_t *outcome);

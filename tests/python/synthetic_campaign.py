@@ -222,6 +222,37 @@ def hostile_goals() -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
+AVOID_KINDS = {"mast": (18.0, 7.7, "left"), "building": (19.0, 9.2, "right"), "truck": (35.0, 8.4, "go_around")}
+
+
+def avoid_rows(runs: int = 20) -> list[dict[str, Any]]:
+    """As goe_avoid writes them. The first collision course of a kind has no collision without orders, a truck's last
+    one has a collision with a late order; the second pass of a building gets a false order."""
+    rng = np.random.default_rng(20260104)
+    found = []
+    for course, (kind, (away, ahead, action)), k in product(("collision", "pass"), AVOID_KINDS.items(), range(runs)):
+        row: dict[str, Any] = {
+            "kind": kind, "course": course, "seed": 1 + k, "delay_s": 0.1, "margin_m": 15.0, "collision_m": 0.95,
+            "pass_m": None, "action": action, "ahead_s": ahead + rng.normal(), "late": 0, "false_order": None,
+            "closest_without_m": 3.0 if k == 0 else 0.9, "collided_without": int(k > 0),
+            "closest_with_m": away + 1.5 * rng.uniform(-1.0, 1.0), "collided_with": 0, "suspect": 0, "assessed": 90,
+        }  # fmt: skip
+        if course == "pass":
+            false = kind == "building" and k == 1
+            row |= {"pass_m": 30.0, "false_order": int(false), "closest_without_m": 30.0, "collided_without": 0,
+                    "closest_with_m": None, "collided_with": None}  # fmt: skip
+            row |= {} if false else {"action": "none", "ahead_s": None}
+        elif kind == "truck" and k == runs - 1:
+            row |= {"ahead_s": 1.0, "late": 1, "closest_with_m": 0.8, "collided_with": 1}
+        found.append(row)
+    return found
+
+
+def write_avoid(path: Path, rows_told: list[dict[str, Any]] | None = None) -> Path:
+    _write_csv(path, avoid_rows() if rows_told is None else rows_told)
+    return path
+
+
 def write_goals(path: Path, hostile: bool = False) -> Path:
     told = {"quick": True, "goals": goals() + (hostile_goals() if hostile else [])}
     path.write_text(json.dumps(told), encoding="utf-8")

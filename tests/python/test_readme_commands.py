@@ -166,7 +166,8 @@ def test_demo(built: Path, set_up: None) -> None:
     assert "refined, the default method: better than the paper in" in text
     (page,) = re.findall(r"^The report: +(.*)$", text, re.MULTILINE)
     assert Path(page) == built / "report.html"
-    assert Path(page).read_text(encoding="utf-8").rstrip().endswith("</html>")
+    written = Path(page).read_text(encoding="utf-8")
+    assert written.rstrip().endswith("</html>") and "of 60 collision courses" in written
 
 
 def test_the_example_prints_what_the_readme_says(built: Path) -> None:
@@ -236,6 +237,14 @@ def test_quick_goals_and_their_report(tmp_path: Path, few_flights: None, built: 
     assert "goals are met" in page.read_text(encoding="utf-8")
 
 
+def test_orders_and_their_report(tmp_path: Path, built: Path) -> None:
+    file, page = tmp_path / "avoid.csv", tmp_path / "page.html"
+    text = output_of(built / "sim_host" / "goe_avoid", "--runs", "2", "--csv", file)
+    assert text.count("| mast | 2 |") == 2
+    assert main(["report", str(write_campaign(tmp_path / "campaign")), "--avoid", str(file), "--out", str(page)]) == 0
+    assert "of 6 collision courses" in page.read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("group", ["gauss1", "boxes", "attack,hazard", "float32"])
 def test_goals(group: str, few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["goals", "--only", group]) == 0
@@ -266,6 +275,8 @@ RUN_HERE: dict[str, Callable[..., None]] = {
     "python -m goe_tools goals --quick": test_quick_goals_and_their_report,
     "python -m goe_tools goals --json": test_quick_goals_and_their_report,
     "python -m goe_tools report --goals --out": test_quick_goals_and_their_report,
+    "python -m goe_tools report --avoid --out": test_orders_and_their_report,
+    "goe_avoid --csv": test_orders_and_their_report,
 }
 
 # ------------------------------------------------------------------------------------------------------ the two agree

@@ -26,7 +26,7 @@ from goe_tools.report.prose import misses, table3
 from goe_tools.report.prose import refined as refined_prose
 from goe_tools.report.style import number
 from rich.console import Console
-from synthetic_campaign import write_campaign, write_goals
+from synthetic_campaign import write_avoid, write_campaign, write_goals
 
 MOST_BYTES = 6_000_000
 
@@ -34,7 +34,8 @@ MOST_BYTES = 6_000_000
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     folder = tmp_path_factory.mktemp("campaign")
-    return read_campaign(write_campaign(folder / "c"), goals=write_goals(folder / "goals.json"))
+    goals, avoid = write_goals(folder / "goals.json"), write_avoid(folder / "avoid.csv")
+    return read_campaign(write_campaign(folder / "c"), goals=goals, avoid=avoid)
 
 
 @pytest.fixture(scope="module")
@@ -426,7 +427,7 @@ def test_page_of_the_papers_study_alone(tmp_path: Path) -> None:
     text = page.render_page(campaign, [])
     assert "Not flown in this campaign" in text
     lacking = [spec.key for spec in FIGURES if spec.section != "figures" and spec.draw(campaign, False) is None]
-    assert lacking == ["early", "bound", "coverage", "flags", "studies", "conditioning"]
+    assert lacking == ["early", "bound", "coverage", "flags", "avoid_distance", "studies", "conditioning"]
 
 
 def test_bad_files_are_named(tmp_path: Path) -> None:

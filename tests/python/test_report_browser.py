@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from goe_tools.report import data, page
 from goe_tools.report.figures import FIGURES
-from synthetic_campaign import write_campaign, write_goals
+from synthetic_campaign import write_avoid, write_campaign, write_goals
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 CHROMEDRIVER = shutil.which("chromedriver")
@@ -29,14 +29,16 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page to look at: of the campaign that GOE_CAMPAIGN_DIR names, otherwise of an invented one; of the goals'
-    file that GOE_GOALS names, otherwise of invented goals."""
+    """The page to look at: of the campaign that GOE_CAMPAIGN_DIR names, of the goals' file that
+    GOE_GOALS names, and of goe_avoid's runs that GOE_AVOID_RUNS names; what is not named is invented."""
     folder = tmp_path_factory.mktemp("report")
     given = os.environ.get("GOE_CAMPAIGN_DIR")
     campaign = Path(given) if given else write_campaign(folder / "campaign")
     told = os.environ.get("GOE_GOALS")
     goals = Path(told) if told else write_goals(folder / "goals.json")
-    page.write_page(data.read_campaign(campaign, goals=goals), folder / "report.html")
+    flown = os.environ.get("GOE_AVOID_RUNS")
+    avoid = Path(flown) if flown else write_avoid(folder / "avoid.csv")
+    page.write_page(data.read_campaign(campaign, goals=goals, avoid=avoid), folder / "report.html")
     return folder / "report.html"
 
 

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import csv
+import os
 import re
+import signal
 import subprocess
+import time
 from pathlib import Path
+
+import pytest
 
 RUNS = 60
 FALSE_SHARE_MAX = 0.02
@@ -34,7 +40,72 @@ def test_the_same_seed_flies_the_same_runs(goe_avoid: Path) -> None:
 
 
 def test_bad_usage_is_told(goe_avoid: Path) -> None:
-    for wrong in (["--runs", "0"], ["--delay", "-1"], ["--nonsense"], ["word"]):
+    for wrong in (["--runs", "0"], ["--delay", "-1"], ["--csv"], ["--nonsense"], ["word"]):
         done = subprocess.run([str(goe_avoid), *wrong], capture_output=True, text=True)
         assert done.returncode == 2
         assert done.stderr.startswith("goe_avoid: ")
+
+
+def rows_of(goe_avoid: Path, folder: Path, *arguments: str) -> tuple[str, list[dict[str, str]]]:
+    file = folder / "runs.csv"
+    text = avoid(goe_avoid, "--csv", str(file), *arguments)
+    assert list(folder.iterdir()) == [file]
+    with file.open(newline="", encoding="utf-8") as stream:
+        return text, list(csv.DictReader(stream))
+
+
+def test_every_run_is_a_row_and_the_table_follows_from_them(goe_avoid: Path, tmp_path: Path) -> None:
+    text, rows = rows_of(goe_avoid, tmp_path, "-n", "12", "-s", "100", "--delay", "0.2")
+    assert text == avoid(goe_avoid, "-n", "12", "-s", "100", "--delay", "0.2")
+    assert [(row["course"], row["kind"], int(row["seed"])) for row in rows] == [
+        (course, kind, seed)
+        for course in ("collision", "pass") for kind in ("mast", "building", "truck") for seed in range(100, 112)
+    ]  # fmt: skip
+    assert {(row["delay_s"], row["margin_m"], row["collision_m"]) for row in rows} == {("0.2", "15", "0.95")}
+    for kind in ("mast", "building", "truck"):
+        runs = [row for row in rows if (row["course"], row["kind"]) == ("collision", kind)]
+        without, collided = (sum(int(row[f"collided_{w}"]) for row in runs) for w in ("without", "with"))
+        closest = sorted(float(row["closest_with_m"]) for row in runs)
+        ahead = sorted(float(row["ahead_s"]) for row in runs if row["action"] != "none")
+        assert (
+            f"| {kind} | 12 | {without} | {collided} (0 late) | {closest[0]:.1f} / {closest[1]:.1f} / {closest[6]:.1f} "
+            f"| {ahead[0]:.1f} / {ahead[len(ahead) // 2]:.1f} |"
+        ) in text
+        passes = [row for row in rows if (row["course"], row["kind"]) == ("pass", kind)]
+        assert f"| {kind} | 12 | {sum(int(row['false_order']) for row in passes)} (" in text
+
+
+def test_a_row_has_no_value_where_nothing_was_flown(goe_avoid: Path, tmp_path: Path) -> None:
+    _, rows = rows_of(goe_avoid, tmp_path, "-n", "4")
+    for row in rows:
+        is_pass = row["course"] == "pass"
+        assert [row[name] == "" for name in ("closest_with_m", "collided_with")] == [is_pass] * 2
+        assert [row[name] == "" for name in ("pass_m", "false_order")] == [not is_pass] * 2
+        assert (row["ahead_s"] == "") == (row["action"] == "none")
+        for flight in ("without",) if is_pass else ("without", "with"):
+            assert row[f"collided_{flight}"] == "1" or float(row[f"closest_{flight}_m"]) >= float(row["collision_m"])
+        assert int(row["suspect"]) <= int(row["assessed"])
+
+
+def test_the_file_appears_whole_or_not_at_all(goe_avoid: Path, tmp_path: Path) -> None:
+    file = tmp_path / "runs.csv"
+    file.write_text("as it was")
+    flying = subprocess.Popen([str(goe_avoid), "-n", "100000", "--csv", str(file)], stdout=subprocess.DEVNULL)
+    for _ in range(500):
+        if len(os.listdir(tmp_path)) == 2:  # the part of it that is written
+            break
+        time.sleep(0.01)
+    assert len(os.listdir(tmp_path)) == 2
+    flying.terminate()
+    assert flying.wait() == -signal.SIGTERM
+    assert file.read_text() == "as it was" and list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize("place", ["none/runs.csv", "."])
+def test_a_place_that_cannot_be_written_is_told_before_anything_is_flown(
+    goe_avoid: Path, tmp_path: Path, place: str
+) -> None:
+    wrong = ["-n", "100000", "--csv", str(tmp_path / place)]
+    done = subprocess.run([str(goe_avoid), *wrong], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"goe_avoid: {tmp_path / place}: ")

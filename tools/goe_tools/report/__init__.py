@@ -1,10 +1,13 @@
 """The campaign's report: the paper's results and ours side by side, as one HTML page and as a table for the terminal.
 
 data        what goe_campaign wrote
+columns     a CSV file by columns
 goals_file  what the goals command wrote
+avoid_file  what goe_avoid wrote
 statistics  ranges, verdicts, comparisons of studies
 refined     the same of the refined method
 attacks     hostile flights of the goals: where the sigma holds, and where not
+avoid       the flight layer's orders, flown: collisions with and without
 style       colours, sizes, names
 prose       sentences that follow from the numbers
 figures     the paper's figures 5 to 14 and our own

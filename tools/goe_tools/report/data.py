@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..logs.obslog import LogError
+from .avoid_file import Avoid, read_avoid
+from .columns import read_columns
 from .goals_file import Goals, read_goals
 
 LABELS = ("study", "obstacle", "path", "speed_profile", "wind", "noise", "method", "model")
@@ -74,53 +75,27 @@ class Campaign:
     facts: dict[str, Any]  # campaign.json
     refined: Cases | None = None  # the refined method's rows, if the campaign has any
     goals: Goals | None = None
+    avoid: Avoid | None = None  # what goe_avoid wrote
 
     def series(self, case: int, model: str) -> Cases | None:
         """The time series of a case of the paper's study (first seed), or None if it was not written."""
         path = self.folder / "series" / f"{case}_{model}.csv"
         if not path.is_file():
             return None
-        columns = _read_columns(path, text=("status", "model"))
+        columns = read_columns(path, text=("status", "model"))
         columns["case"] = np.full(len(columns["t_s"]), float(case))
         return Cases(columns)
 
 
-def _read_columns(path: Path, text: Iterable[str]) -> dict[str, np.ndarray]:
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or "cannot be read") from None
-    if len(rows) < 2:
-        raise LogError(path, 0, "", "no rows")
-    header = rows[0]
-    for number, row in enumerate(rows[1:], start=2):
-        if len(row) != len(header):
-            raise LogError(path, number, "", f"{len(row)} fields, the header has {len(header)}")
-    columns: dict[str, np.ndarray] = {}
-    for name, fields in zip(header, zip(*rows[1:])):
-        columns[name] = np.array(fields) if name in text else _numbers(path, name, fields)
-    return columns
-
-
-def _numbers(path: Path, name: str, fields: Sequence[str]) -> np.ndarray:
-    try:
-        return np.array([field or "nan" for field in fields], dtype=float)
-    except ValueError:
-        for number, field in enumerate(fields, start=2):
-            try:
-                float(field or "nan")
-            except ValueError:
-                raise LogError(path, number, name, f"{field!r} is not a number") from None
-        raise
-
-
-def read_campaign(folder: Path, method: str = "window", goals: Path | None = None) -> Campaign:
-    """Reads cases.csv and campaign.json, and the goals' file if there is one. ``cases`` are the rows of one method."""
+def read_campaign(
+    folder: Path, method: str = "window", goals: Path | None = None, avoid: Path | None = None
+) -> Campaign:
+    """Reads cases.csv and campaign.json, the goals' file and that of goe_avoid if there are any. ``cases`` are the rows
+    of one method."""
     if not folder.is_dir():
         raise LogError(folder, 0, "", "no such folder")
     path = folder / "cases.csv"
-    columns = _read_columns(path, LABELS)
+    columns = read_columns(path, LABELS)
     for name in _required():
         if name not in columns:
             raise LogError(path, 1, name, "this column is missing")
@@ -135,7 +110,7 @@ def read_campaign(folder: Path, method: str = "window", goals: Path | None = Non
     refined = rows.select(method="refined")
     return Campaign(
         folder, rows.select(method=method), _read_facts(folder / "campaign.json"), refined if len(refined) else None,
-        read_goals(goals) if goals else None,
+        read_goals(goals) if goals else None, read_avoid(avoid) if avoid else None,
     )  # fmt: skip
 
 

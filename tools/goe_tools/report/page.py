@@ -16,7 +16,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
 from ..optimum import paper_table3 as t3
-from . import attacks, boxes
+from . import attacks, avoid, boxes
 from . import refined as rf
 from . import statistics as st
 from .data import COVERED, Campaign
@@ -330,6 +330,16 @@ def _attacks(campaign: Campaign) -> dict[str, Any] | None:
     }  # fmt: skip
 
 
+def _avoid(campaign: Campaign) -> dict[str, Any] | None:
+    """The section on the flight layer's orders; None without goe_avoid's runs."""
+    if campaign.avoid is None:
+        return None
+    return {
+        "sentence": avoid.sentence(campaign.avoid), "heads": avoid.heads(campaign.avoid),
+        "rows": avoid.table(campaign.avoid), **avoid.setup(campaign.avoid),
+    }  # fmt: skip
+
+
 def _version(campaign: Campaign) -> str:
     version = str(campaign.facts.get("version", ""))
     return version if version[:1].isdigit() else ""
@@ -366,6 +376,7 @@ def render_page(campaign: Campaign, figures: list[PageFigure]) -> str:
         refined=_refined(campaign),
         boxes=_boxes(campaign),
         attacks=_attacks(campaign),
+        avoid=_avoid(campaign),
         real=rp.real_data(campaign),
         goal_symbols=[GOAL_SYMBOLS[name] for name in QUANTITIES],
         figures=figures,

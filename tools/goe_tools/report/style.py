@@ -9,6 +9,7 @@ from typing import Any
 INK, SOFT, FAINT, BAND = "#1c2430", "#5b6673", "#c9d0d8", "#eef2f6"
 PAPER_COLOUR = "#8a94a0"
 WINDOW_COLOUR, REFINED_COLOUR, REFINED_PALE, MISSED = "#8a94a0", "#0072B2", "#8cc0e0", "#a33400"
+MISSED_PALE = "#f2cdbd"
 
 OBSTACLES = ("cylinder", "building", "truck", "long-truck")
 NAMES = {"cylinder": "Cylinder", "building": "Building", "truck": "Truck", "long-truck": "Long truck"}

@@ -7,6 +7,7 @@ function that draws, one that describes, and an entry in ``FIGURES``.
 from __future__ import annotations
 
 from ..style import QUANTITY_NAMES
+from .avoid import AVOID_FIGURE
 from .conditioning import (
     describe_condition_scatter,
     describe_conditioning,
@@ -38,6 +39,7 @@ def _error_figure(number_in_paper: int, quantity: str, model: str) -> FigureSpec
 
 FIGURES: tuple[FigureSpec, ...] = (
     *REFINED_FIGURES,
+    AVOID_FIGURE,
     FigureSpec("fig05_orientation", "Figure 5. Orientation of a building", "figures", draw_orientation,
                describe_orientation),
     *(_error_figure(*entry) for entry in _ERRORS),
