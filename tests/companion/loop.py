@@ -13,9 +13,13 @@ Action = Callable[[], None]
 
 
 class Loop:
-    """Calls what is due, and what has something to read, until a time. Times are time.monotonic()."""
+    """Calls what is due, and what has something to read, until a time. Times are time.monotonic().
+
+    `late_s` is by how much it was behind at most: a machine that is too busy for real time.
+    """
 
     def __init__(self) -> None:
+        self.late_s = 0.0
         self._due: list[tuple[float, int, Action]] = []
         self._number = itertools.count()
         self._selector = selectors.DefaultSelector()
@@ -32,8 +36,9 @@ class Loop:
 
         def again(due_s: float) -> None:
             action()
-            late = time.monotonic() - due_s
-            following = due_s + period_s * max(1, int(late / period_s))
+            now = time.monotonic()
+            following = due_s + period_s * (int((now - due_s) / period_s) + 1)
+            following += period_s if following - now < 0.3 * period_s else 0.0
             self.at(following, lambda: again(following))
 
         self.at(begin, lambda: again(begin))
@@ -45,13 +50,16 @@ class Loop:
         self._selector.unregister(file)
 
     def run(self, seconds: float) -> None:
-        end = time.monotonic() + seconds
+        begin = time.monotonic()
+        end = begin + seconds
         while (now := time.monotonic()) < end:
             due = min(self._due[0][0] if self._due else end, end)
             for key, _ in self._selector.select(max(due - now, 0.0)):
                 key.data()
-            while self._due and self._due[0][0] <= min(time.monotonic(), end):
-                heapq.heappop(self._due)[2]()
+            while self._due and self._due[0][0] <= min(now := time.monotonic(), end):
+                due, _, action = heapq.heappop(self._due)
+                self.late_s = max(self.late_s, now - max(due, begin))
+                action()
 
     def close(self) -> None:
         self._selector.close()

@@ -211,6 +211,7 @@ def test_the_mast_is_traffic_that_stands(fleet: Fleet, name: str) -> None:
 
 def test_traffic_is_sent_at_its_rate(fleet: Fleet) -> None:
     """adsb_hz, by default 2, looked at when the hazard is."""
+    fleet.need_calm()
     times = [heard.time_s for heard in ahead(fleet[TRAFFIC])]
     steps = [after - before for before, after in zip(times, times[1:])]
     assert 0.4 < statistics.median(steps) < 0.7 and min(steps) > 0.35, steps

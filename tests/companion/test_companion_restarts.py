@@ -150,16 +150,18 @@ def test_a_clock_that_jumps_ends_all_tracks(fleet: Fleet, name: str) -> None:
 
 @pytest.mark.parametrize("name", RESTARTED)
 def test_times_are_of_the_new_clock(fleet: Fleet, events: Events, name: str) -> None:
+    fleet.need_calm()
     flight = fleet[name]
     heard = [h for h in flight.autopilot.heard_of("GOE_STATUS") if h.time_s > events.begin_s + 4.0]
     assert heard
     for status in heard:
         told = 1e-3 * status.message.time_boot_ms
-        assert told == pytest.approx(flight.autopilot.clock.at(status.time_s), abs=0.3)
+        assert told == pytest.approx(flight.autopilot.clock.at(status.time_s), abs=1.0)
     assert heard[-1].message.alive == 3
 
 
 def test_delays_are_right_again_after_a_restart(fleet: Fleet) -> None:
+    fleet.need_calm()
     for name in RESTARTED:
         told = [status.delay_mean for status in fleet[name].statuses()[-4:]]
         assert all(60 <= delay <= 160 for delay in told), (name, told)
@@ -194,6 +196,7 @@ def alive_between(flight: Flight, bit: int, begin_s: float, end_s: float) -> lis
 @pytest.mark.parametrize(("name", "bit"), [(BLIND, 1), (FIFO, 1), (UNIX, 1), (NO_POSE, 2)])
 def test_what_dies_is_told_and_comes_back(fleet: Fleet, events: Events, name: str, bit: int) -> None:
     """A detector is dead after a second, a pose after half of one; an hour's error of its clock is as good as none."""
+    fleet.need_calm()
     flight = fleet[name]
     assert all(alive_between(flight, bit, events.begin_s - 2.0, events.begin_s))
     dead = alive_between(flight, bit, events.begin_s + 1.3, events.end_s)
