@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -190,6 +191,9 @@ class Fleet:
         return self.flights[name]
 
     def start(self) -> None:
+        """Until the end no garbage is collected: that would stop everything for a good part of a second."""
+        gc.collect()
+        gc.disable()
         for flight in self.flights.values():
             flight.start()
         wait_until_ready([flight.companion for flight in self.flights.values()])
@@ -205,10 +209,12 @@ class Fleet:
             pytest.skip(f"the machine was {self.loop.late_s:.1f} s behind")
 
     def stop(self) -> None:
+        gc.enable()
         for flight in self.flights.values():
             flight.stop()
 
     def close(self) -> None:
+        gc.enable()
         for flight in self.flights.values():
             flight.close()
         self.loop.close()

@@ -56,10 +56,13 @@ class Loop:
             due = min(self._due[0][0] if self._due else end, end)
             for key, _ in self._selector.select(max(due - now, 0.0)):
                 key.data()
-            while self._due and self._due[0][0] <= min(now := time.monotonic(), end):
-                due, _, action = heapq.heappop(self._due)
-                self.late_s = max(self.late_s, now - max(due, begin))
-                action()
+            self._call_what_is_due(begin, end)
+
+    def _call_what_is_due(self, begin_s: float, end_s: float) -> None:
+        while self._due and self._due[0][0] <= min(now := time.monotonic(), end_s):
+            due, _, action = heapq.heappop(self._due)
+            self.late_s = max(self.late_s, now - max(due, begin_s))
+            action()
 
     def close(self) -> None:
         self._selector.close()
