@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from camera import Camera
-from companion import PROGRAM, ROOT, Companion, Settings, call, ini, is_missing
+from companion import PROGRAM, ROOT, Companion, Settings, call, is_missing
 from links import HOST, free_port
 
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
@@ -274,7 +274,7 @@ def test_a_port_in_use_is_told(make: Make) -> None:
         taken.bind((HOST, 0))
         companion = make({"link": {"autopilot": f"udpin:{HOST}:{taken.getsockname()[1]}"}})
         done = call(companion.configuration)
-    assert done.returncode not in (0, -11) and str(taken.fileno()) and "udpin:" in done.stderr
+    assert done.returncode > 0 and "udpin:" in done.stderr
 
 
 @pytest.mark.parametrize("source", ["fifo:/nowhere/fifo", "fifo:camera.ini"])
@@ -304,7 +304,6 @@ def test_an_old_log_is_not_overwritten(make: Make, tmp_path: Path) -> None:
 
 def test_on_a_terminal_one_line_is_renewed(make: Make) -> None:
     companion = make(usual())
-    (companion.folder / "companion.ini").write_text(ini(usual()), encoding="utf-8")
     child, master = pty.fork()
     if child == 0:
         os.execv(PROGRAM, [PROGRAM, str(companion.configuration)])
