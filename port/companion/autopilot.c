@@ -26,6 +26,8 @@
 #define TURN_FLOOR_RAD 0.1f
 #define TURN_RATES 0.75f /* share of the sum of both rates over the time between */
 
+#define RESET_WAIT_US 300000   /* a jump may show in the samples this long after ODOMETRY's counter has risen ... */
+#define RESET_BEFORE_US 500000 /* ... or before it */
 #define POSITION_MAX_M 1.0e6f
 #define SPEED_MAX_M_S 1.0e3f
 #define HEIGHT_MAX_M 1.0e5f
@@ -172,6 +174,7 @@ static void take_attitude(autopilot_t *autopilot, const mavlink_message_t *messa
         return;
     }
     if (turned) {
+        autopilot->jump_us = now_us;
         autopilot->reset_attitude++;
         autopilot->jumps++;
         count_reset(autopilot, false);
@@ -229,7 +232,8 @@ static goe_flight_position_t position_sample(const autopilot_t *autopilot, const
 }
 
 /* The mark of a step, before the sample that has it is given. */
-static void mark_step(autopilot_t *autopilot, const float step_m[3]) {
+static void mark_step(autopilot_t *autopilot, const float step_m[3], int64_t now_us) {
+    autopilot->jump_us = now_us;
     (void)memcpy(autopilot->reset_delta_ned_m, step_m, sizeof autopilot->reset_delta_ned_m);
     autopilot->reset_delta_known = true;
     autopilot->reset_horizontal++;
@@ -260,7 +264,7 @@ static void take_position(autopilot_t *autopilot, const mavlink_message_t *messa
     const float span_s = (float)(int32_t)(now.time_boot_ms - autopilot->position.time_boot_ms) * 1e-3f;
     if (autopilot->has_position && span_s > 0.0f && span_s < STEP_GAP_S &&
         find_step(&autopilot->position, &now, span_s, step_m)) {
-        mark_step(autopilot, step_m);
+        mark_step(autopilot, step_m, now_us);
     }
     const goe_flight_position_t sample = position_sample(autopilot, &now);
     const goe_flight_status_t status = goe_flight_position(autopilot->flight, &sample);
@@ -271,17 +275,27 @@ static void take_position(autopilot_t *autopilot, const mavlink_message_t *messa
     }
 }
 
-/* Of ODOMETRY the counter of resets alone: by how much is not told. Steps of the position are found by themselves, so this is
- * for what they are too small for. */
-static void take_odometry(autopilot_t *autopilot, const mavlink_message_t *message) {
+/* Of ODOMETRY the counter of resets alone, which does not tell by how much. What is large enough is found in the samples, a
+ * moment before or after: then the counter tells nothing new. */
+static void take_odometry(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     const uint8_t resets = mavlink_msg_odometry_get_reset_counter(message);
     if (autopilot->has_odometry_resets && resets != autopilot->odometry_resets) {
-        autopilot->reset_attitude++;
-        count_reset(autopilot, false);
-        event("the autopilot tells of a reset (%u): all tracks end", resets);
+        autopilot->told_us = now_us;
     }
     autopilot->odometry_resets = resets;
     autopilot->has_odometry_resets = true;
+}
+
+static void judge_told_reset(autopilot_t *autopilot, int64_t now_us) {
+    if (autopilot->told_us == 0 || now_us - autopilot->told_us < RESET_WAIT_US) {
+        return;
+    }
+    if (autopilot->jump_us == 0 || autopilot->told_us - autopilot->jump_us > RESET_BEFORE_US) {
+        autopilot->reset_attitude++;
+        count_reset(autopilot, false);
+        event("the autopilot tells of a reset, and not by how much: all tracks end");
+    }
+    autopilot->told_us = 0;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- heights -- */
@@ -387,7 +401,7 @@ void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, in
             take_position(autopilot, message, now_us);
             break;
         case MAVLINK_MSG_ID_ODOMETRY:
-            take_odometry(autopilot, message);
+            take_odometry(autopilot, message, now_us);
             break;
         case MAVLINK_MSG_ID_TIMESYNC:
             take_timesync(autopilot, message, now_us);
@@ -452,6 +466,7 @@ static void request_rates(autopilot_t *autopilot) {
 }
 
 void autopilot_ask(autopilot_t *autopilot, int64_t now_us) {
+    judge_told_reset(autopilot, now_us);
     if (autopilot->heartbeat_us == 0) {
         return;
     }

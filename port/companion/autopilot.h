@@ -31,6 +31,8 @@ typedef struct {
     bool reset_delta_known;
     unsigned resets;       /* of all kinds, restarts included, for the log ... */
     bool last_reset_known; /* ... and whether the latest was a step by reset_delta_ned_m */
+    int64_t jump_us;       /* own time of the latest jump that was found */
+    int64_t told_us;       /* ... and of a reset that ODOMETRY tells, and no jump has explained yet; 0: none */
     uint8_t odometry_resets;
     bool has_odometry_resets;
     int strange_times; /* in a row, against the clock that is known */

@@ -242,6 +242,7 @@ static void end_second(companion_t *c, int64_t now_us) {
     rates->image_hz = (double)(c->counts.images - rates->images);
     rates->attitudes = c->autopilot.attitudes;
     rates->images = c->counts.images;
+    rates->delay.all_images = c->counts.images;
     rates->delay_shown = rates->delay;
     reports_send_status(&c->wire, &c->flight, &c->assessment, &own, &rates->delay, c->self_check);
     (void)memset(&rates->delay, 0, sizeof rates->delay);

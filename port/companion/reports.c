@@ -102,6 +102,7 @@ void reports_send_status(wire_t *wire, const goe_flight_t *flight, const goe_fli
                                      MAV_AUTOPILOT_INVALID, 0, 0, MAV_STATE_ACTIVE);
     wire_send(wire, &heartbeat);
     goe_mavlink_to_status(&flight->counters, assessment, self_check, own, &status);
+    status.taken = (uint16_t)(delay->all_images < UINT16_MAX ? delay->all_images : UINT16_MAX);
     if (delay->images > 0) {
         status.delay_mean = whole_ms(delay->sum_ms / delay->images);
         status.delay_max = whole_ms(delay->most_ms);

@@ -12,6 +12,7 @@
 typedef struct {
     double sum_ms, most_ms;
     unsigned images;
+    unsigned long all_images; /* since the start */
 } delay_count_t;
 
 /* Own place and time for the messages. */

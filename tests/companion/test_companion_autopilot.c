@@ -197,18 +197,47 @@ static void messages_that_come_twice_or_late_change_nothing(void) {
     TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)(autopilot.jumps + autopilot.restarts));
 }
 
-static void odometry_counts_resets_that_show_no_step(void) {
+static void tell_resets(uint8_t resets) {
     mavlink_message_t message;
     mavlink_odometry_t odometry;
     (void)memset(&odometry, 0, sizeof odometry);
-    fly(10);
-    for (uint8_t resets = 4; resets < 7; resets++) {
-        odometry.reset_counter = resets / 5;
-        (void)mavlink_msg_odometry_encode(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, &odometry);
-        autopilot_take(&autopilot, &message, own_us);
-        fly(2);
+    odometry.reset_counter = resets;
+    (void)mavlink_msg_odometry_encode(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, &odometry);
+    autopilot_take(&autopilot, &message, own_us);
+}
+
+/* So many samples, with what the companion does between them. */
+static void go_on(int samples) {
+    for (int k = 0; k < samples; k++) {
+        fly(1);
+        autopilot_ask(&autopilot, own_us);
     }
+}
+
+static void odometry_counts_resets_that_show_no_step(void) {
+    go_on(10);
+    tell_resets(4);
+    go_on(30);
+    TEST_ASSERT_EQUAL_UINT16(0, flight.counters.lost);
+    tell_resets(5);
+    go_on(30);
     TEST_ASSERT_EQUAL_UINT16(1, flight.counters.lost);
+}
+
+/* Before the step or behind it: it is one reset, and its size is known. */
+static void a_counter_that_rises_with_a_step_tells_nothing_new(void) {
+    go_on(10);
+    tell_resets(4);
+    jump_m = 7.0f;
+    go_on(5);
+    tell_resets(5);
+    go_on(40);
+    tell_resets(6);
+    go_on(5);
+    jump_m = 3.0f;
+    go_on(40);
+    TEST_ASSERT_EQUAL_UINT16(2, flight.counters.resets);
+    TEST_ASSERT_EQUAL_UINT16(0, flight.counters.lost);
 }
 
 /* A range finder in a bank of 60 degrees measures twice the height. */
@@ -240,6 +269,7 @@ int main(void) {
     RUN_TEST(what_is_not_finite_is_refused_and_counted);
     RUN_TEST(messages_that_come_twice_or_late_change_nothing);
     RUN_TEST(odometry_counts_resets_that_show_no_step);
+    RUN_TEST(a_counter_that_rises_with_a_step_tells_nothing_new);
     RUN_TEST(a_range_finder_is_taken_upright);
     return UNITY_END();
 }
