@@ -14,6 +14,7 @@
 #define SILENT_US 3000000    /* without a sample for this long the autopilot is asked for its rates anew */
 #define CLOCK_OFF_US 1000000 /* a sample's time that far from the clock is another clock's */
 #define STRANGE_MAX 3
+#define UNANSWERED 40u        /* questions, after which it is told: ten seconds */
 #define HEIGHT_OLD_US 2000000 /* a range finder or terrain that is older counts as none */
 
 /* A step between two positions that the velocities do not explain is a reset of the autopilot's filter: beyond what an
@@ -84,20 +85,24 @@ static void start_anew(autopilot_t *autopilot) {
     count_reset(autopilot, false);
     autopilot->has_attitude = autopilot->has_position = false;
     autopilot->has_range_finder = autopilot->has_terrain = false;
-    autopilot->has_origin = autopilot->has_home = false;
+    autopilot->has_origin = autopilot->origin_given = autopilot->has_home = autopilot->has_home_alt = false;
+    autopilot->has_odometry_resets = autopilot->landing = autopilot->answered = false;
+    autopilot->told_us = autopilot->jump_us = 0;
     autopilot->strange_times = 0;
     autopilot->requests = 0;
     autopilot->requested_us = autopilot->origin_asked_us = 0;
 }
 
-/* Whether a sample's time is of the clock that is known. A few that are not mean a restart. */
-static bool is_of_the_clock(autopilot_t *autopilot, int64_t time_us, int64_t now_us) {
+/* Whether a sample's time goes on from the latest. A few that do not, or that lie ahead of the clock, mean a restart. One that
+ * lies behind the clock but goes on is merely late: a link or this computer was held up. */
+static bool is_of_the_clock(autopilot_t *autopilot, int64_t time_us, int64_t latest_us, int64_t now_us) {
     if (!clock_sync_known(&autopilot->clock)) {
         clock_sync_one_way(&autopilot->clock, now_us, time_us);
         return true;
     }
     const int64_t off_us = time_us - autopilot_clock_us(autopilot, now_us);
-    if (off_us > -CLOCK_OFF_US && off_us < CLOCK_OFF_US) {
+    const bool goes_on = time_us > latest_us - CLOCK_OFF_US;
+    if (off_us < CLOCK_OFF_US && goes_on) {
         autopilot->strange_times = 0;
         clock_sync_one_way(&autopilot->clock, now_us, time_us);
         return true;
@@ -107,6 +112,15 @@ static bool is_of_the_clock(autopilot_t *autopilot, int64_t time_us, int64_t now
         autopilot->restarts++;
         event("the autopilot's clock jumped by %+.1f s: all tracks end", (double)off_us / US_PER_S);
         start_anew(autopilot);
+    }
+    return false;
+}
+
+static bool was_asked(const autopilot_t *autopilot, int64_t asked_us) {
+    for (unsigned i = 0; i < AUTOPILOT_QUESTIONS; i++) {
+        if (autopilot->asked_us[i] == asked_us && asked_us != 0) {
+            return true;
+        }
     }
     return false;
 }
@@ -122,9 +136,10 @@ static void take_timesync(autopilot_t *autopilot, const mavlink_message_t *messa
         return;
     }
     const int64_t asked_us = sync.ts1 / 1000;
-    if (asked_us != autopilot->asked_us) {
-        return; /* an answer to somebody else, or a late one */
+    if (!was_asked(autopilot, asked_us)) {
+        return; /* an answer to somebody else */
     }
+    autopilot->answered = true;
     const int64_t before_us = autopilot_clock_us(autopilot, now_us);
     if (!clock_sync_answer(&autopilot->clock, asked_us, now_us, sync.tc1 / 1000)) {
         (void)clock_sync_answer(&autopilot->clock, asked_us, now_us, sync.tc1 / 1000);
@@ -136,10 +151,11 @@ static void take_timesync(autopilot_t *autopilot, const mavlink_message_t *messa
 
 /* -------------------------------------------------------------------------------------------------------------- pose -- */
 
-static void count_sample(autopilot_t *autopilot, goe_flight_status_t status, unsigned long *taken, int64_t now_us) {
+static void count_sample(autopilot_t *autopilot, goe_flight_status_t status, unsigned long *taken, int64_t *taken_us,
+                         int64_t now_us) {
     if (status == GOE_FLIGHT_OK) {
         (*taken)++;
-        autopilot->pose_us = now_us;
+        *taken_us = now_us;
     } else {
         autopilot->bad_samples++;
     }
@@ -160,7 +176,9 @@ static bool has_turned(const mavlink_attitude_quaternion_t *from, const mavlink_
 static void take_attitude(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     mavlink_attitude_quaternion_t now;
     mavlink_msg_attitude_quaternion_decode(message, &now);
-    if (!is_of_the_clock(autopilot, (int64_t)now.time_boot_ms * US_PER_MS, now_us)) {
+    const int64_t latest_us =
+        autopilot->has_attitude ? (int64_t)autopilot->attitude.time_boot_ms * US_PER_MS : INT64_MIN / 2;
+    if (!is_of_the_clock(autopilot, (int64_t)now.time_boot_ms * US_PER_MS, latest_us, now_us)) {
         return;
     }
     const float span_s = (float)(int32_t)(now.time_boot_ms - autopilot->attitude.time_boot_ms) * 1e-3f;
@@ -169,7 +187,7 @@ static void take_attitude(autopilot_t *autopilot, const mavlink_message_t *messa
     const goe_flight_attitude_t sample = {
         now.time_boot_ms * US_PER_MS, {now.q1, now.q2, now.q3, now.q4}, autopilot->reset_attitude + (turned ? 1u : 0u)};
     const goe_flight_status_t status = goe_flight_attitude(autopilot->flight, &sample);
-    count_sample(autopilot, status, &autopilot->attitudes, now_us);
+    count_sample(autopilot, status, &autopilot->attitudes, &autopilot->attitude_us, now_us);
     if (status != GOE_FLIGHT_OK) {
         return;
     }
@@ -195,10 +213,12 @@ static bool find_step(const mavlink_local_position_ned_t *from, const mavlink_lo
     return hypotf(step_m[0], step_m[1]) > allowed_m || fabsf(step_m[2]) > allowed_m;
 }
 
+/* Heights come more rarely than positions: what is kept is where the ground is. */
 static void put_heights(const autopilot_t *autopilot, int64_t time_us, goe_flight_position_t *sample) {
-    sample->height_m[GOE_FLIGHT_RANGE_FINDER] = autopilot->range_finder_m;
-    sample->height_m[GOE_FLIGHT_TERRAIN] = autopilot->terrain_m;
-    sample->height_m[GOE_FLIGHT_HOME] = autopilot->home_down_m - sample->position_ned_m[2];
+    const float down_m = sample->position_ned_m[2];
+    sample->height_m[GOE_FLIGHT_RANGE_FINDER] = autopilot->range_finder_down_m - down_m;
+    sample->height_m[GOE_FLIGHT_TERRAIN] = autopilot->terrain_down_m - down_m;
+    sample->height_m[GOE_FLIGHT_HOME] = autopilot->home_down_m - down_m;
     if (autopilot->has_range_finder && time_us - autopilot->range_finder_us < HEIGHT_OLD_US) {
         sample->height_valid |= (uint8_t)(1u << GOE_FLIGHT_RANGE_FINDER);
     }
@@ -258,7 +278,9 @@ static void take_position(autopilot_t *autopilot, const mavlink_message_t *messa
         autopilot->bad_samples++;
         return;
     }
-    if (!is_of_the_clock(autopilot, (int64_t)now.time_boot_ms * US_PER_MS, now_us)) {
+    const int64_t latest_us =
+        autopilot->has_position ? (int64_t)autopilot->position.time_boot_ms * US_PER_MS : INT64_MIN / 2;
+    if (!is_of_the_clock(autopilot, (int64_t)now.time_boot_ms * US_PER_MS, latest_us, now_us)) {
         return;
     }
     const float span_s = (float)(int32_t)(now.time_boot_ms - autopilot->position.time_boot_ms) * 1e-3f;
@@ -268,10 +290,11 @@ static void take_position(autopilot_t *autopilot, const mavlink_message_t *messa
     }
     const goe_flight_position_t sample = position_sample(autopilot, &now);
     const goe_flight_status_t status = goe_flight_position(autopilot->flight, &sample);
-    count_sample(autopilot, status, &autopilot->positions, now_us);
+    count_sample(autopilot, status, &autopilot->positions, &autopilot->position_us, now_us);
     if (status == GOE_FLIGHT_OK) {
         autopilot->position = now;
         autopilot->has_position = true;
+        autopilot->origin_given = autopilot->has_origin;
     }
 }
 
@@ -309,18 +332,19 @@ static float upright(const autopilot_t *autopilot) {
 static void take_distance(autopilot_t *autopilot, const mavlink_message_t *message) {
     mavlink_distance_sensor_t sensor;
     mavlink_msg_distance_sensor_decode(message, &sensor);
+    const float height_m = 0.01f * (float)sensor.current_distance * upright(autopilot);
     if (sensor.orientation != DOWNWARD || sensor.current_distance <= sensor.min_distance ||
-        sensor.current_distance >= sensor.max_distance) {
+        sensor.current_distance >= sensor.max_distance || !(height_m > 0.0f) || !autopilot->has_position) {
         return;
     }
-    autopilot->range_finder_m = 0.01f * (float)sensor.current_distance * upright(autopilot);
+    autopilot->range_finder_down_m = autopilot->position.z + height_m;
     autopilot->range_finder_us = (int64_t)sensor.time_boot_ms * US_PER_MS;
-    autopilot->has_range_finder = autopilot->range_finder_m > 0.0f;
+    autopilot->has_range_finder = true;
 }
 
 static void put_terrain(autopilot_t *autopilot, float height_m, int64_t now_us) {
-    if (fabsf(height_m) <= HEIGHT_MAX_M) {
-        autopilot->terrain_m = height_m;
+    if (fabsf(height_m) <= HEIGHT_MAX_M && autopilot->has_position) {
+        autopilot->terrain_down_m = autopilot->position.z + height_m;
         autopilot->terrain_us = autopilot_clock_us(autopilot, now_us);
         autopilot->has_terrain = true;
     }
@@ -341,12 +365,23 @@ static void take_altitude(autopilot_t *autopilot, const mavlink_message_t *messa
     }
 }
 
+/* ArduPilot tells home in its own frame as the origin whatever its height: there the altitudes of both count. */
+static void place_home(autopilot_t *autopilot) {
+    if (autopilot->kind == MAV_AUTOPILOT_ARDUPILOTMEGA && autopilot->has_home_alt && autopilot->has_origin) {
+        autopilot->home_down_m = autopilot->origin_alt_m - autopilot->home_alt_m;
+        autopilot->has_home = fabsf(autopilot->home_down_m) <= HEIGHT_MAX_M;
+    }
+}
+
 static void take_home(autopilot_t *autopilot, const mavlink_message_t *message) {
     const float down_m = mavlink_msg_home_position_get_z(message);
-    if (fabsf(down_m) <= HEIGHT_MAX_M) {
+    autopilot->home_alt_m = 1e-3f * (float)mavlink_msg_home_position_get_altitude(message);
+    autopilot->has_home_alt = true;
+    if (autopilot->kind != MAV_AUTOPILOT_ARDUPILOTMEGA && fabsf(down_m) <= HEIGHT_MAX_M) {
         autopilot->home_down_m = down_m;
         autopilot->has_home = true;
     }
+    place_home(autopilot);
 }
 
 static void take_origin(autopilot_t *autopilot, const mavlink_message_t *message) {
@@ -360,6 +395,7 @@ static void take_origin(autopilot_t *autopilot, const mavlink_message_t *message
     autopilot->origin_lon_e7 = origin.longitude;
     autopilot->origin_alt_m = 1e-3f * (float)origin.altitude;
     autopilot->has_origin = true;
+    place_home(autopilot);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- identity -- */
@@ -371,6 +407,9 @@ static void take_heartbeat(autopilot_t *autopilot, const mavlink_message_t *mess
         (autopilot->system != 0 && message->sysid != autopilot->system)) {
         return;
     }
+    if (autopilot->heartbeat_us != 0 && !link_is_answered(autopilot->wire->link)) {
+        event("the autopilot is heard at another address now");
+    }
     if (autopilot->heartbeat_us == 0) {
         autopilot->system = message->sysid;
         autopilot->kind = beat.autopilot;
@@ -381,10 +420,21 @@ static void take_heartbeat(autopilot_t *autopilot, const mavlink_message_t *mess
     autopilot->custom_mode = beat.custom_mode;
     autopilot->base_mode = beat.base_mode;
     autopilot->heartbeat_us = now_us;
+    autopilot->heartbeats++;
     link_answer(autopilot->wire->link);
 }
 
+/* One address is believed, until nothing came from there for a while. */
+static bool is_from_elsewhere(const autopilot_t *autopilot, int64_t now_us) {
+    return autopilot->heartbeat_us != 0 && now_us - autopilot->heartbeat_us < SILENT_US &&
+           !link_is_answered(autopilot->wire->link);
+}
+
 void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    if (is_from_elsewhere(autopilot, now_us)) {
+        autopilot->strangers++;
+        return;
+    }
     if (message->msgid == MAVLINK_MSG_ID_HEARTBEAT) {
         take_heartbeat(autopilot, message, now_us);
         return;
@@ -439,9 +489,17 @@ static void command(autopilot_t *autopilot, uint16_t number, float first, float 
     wire_send(autopilot->wire, &message);
 }
 
+static int64_t latest_question_us(const autopilot_t *autopilot) {
+    return autopilot->asked == 0 ? 0 : autopilot->asked_us[(autopilot->asked - 1u) % AUTOPILOT_QUESTIONS];
+}
+
 static void ask_clock(autopilot_t *autopilot, int64_t now_us) {
     mavlink_message_t message;
-    autopilot->asked_us = now_us;
+    autopilot->asked_us[autopilot->asked % AUTOPILOT_QUESTIONS] = now_us;
+    autopilot->asked++;
+    if (!autopilot->answered && autopilot->asked % UNANSWERED == 0) {
+        event("the autopilot does not answer TIMESYNC: the link's delay is taken as flight.delay_sd_s");
+    }
     (void)mavlink_msg_timesync_pack(autopilot->wire->system, autopilot->wire->component, &message, 0, now_us * 1000);
     wire_send(autopilot->wire, &message);
 }
@@ -470,12 +528,16 @@ void autopilot_ask(autopilot_t *autopilot, int64_t now_us) {
     if (autopilot->heartbeat_us == 0) {
         return;
     }
-    if (now_us - autopilot->asked_us >= ASK_US) {
+    if (now_us - latest_question_us(autopilot) >= ASK_US) {
         ask_clock(autopilot, now_us);
     }
-    const bool is_silent = now_us - autopilot->pose_us > SILENT_US;
-    if (autopilot->config->link_request_rates != 0 && (autopilot->requests < 2 || is_silent) &&
+    const bool no_attitude = now_us - autopilot->attitude_us > SILENT_US;
+    const bool no_position = now_us - autopilot->position_us > SILENT_US;
+    if (autopilot->config->link_request_rates != 0 && (autopilot->requests < 2 || no_attitude || no_position) &&
         now_us - autopilot->requested_us >= REQUEST_US) {
+        if (autopilot->requests >= 2) {
+            event("no %s: asked for again", no_attitude ? "ATTITUDE_QUATERNION comes" : "LOCAL_POSITION_NED comes");
+        }
         autopilot->requested_us = now_us;
         autopilot->requests++;
         request_rates(autopilot);

@@ -7,6 +7,8 @@
 #include "goe_flight.h"
 #include "wire.h"
 
+#define AUTOPILOT_QUESTIONS 8 /* that are under way at most: a round trip of two seconds */
+
 /* Samples are taken only from the one autopilot: the first one that is heard, or that of the configuration. */
 typedef struct {
     const companion_config_t *config;
@@ -21,6 +23,7 @@ typedef struct {
     uint8_t base_mode;
     bool landing;         /* EXTENDED_SYS_STATE: on approach */
     int64_t heartbeat_us; /* own time of the latest */
+    unsigned heartbeats;  /* counted */
 
     /* pose */
     mavlink_attitude_quaternion_t attitude;
@@ -35,11 +38,11 @@ typedef struct {
     int64_t told_us;       /* ... and of a reset that ODOMETRY tells, and no jump has explained yet; 0: none */
     uint8_t odometry_resets;
     bool has_odometry_resets;
-    int strange_times; /* in a row, against the clock that is known */
-    int64_t pose_us;   /* own time of the latest sample */
+    int strange_times;                /* in a row, against the clock that is known */
+    int64_t attitude_us, position_us; /* own times of the latest samples */
 
-    /* heights above the ground, with the autopilot's time of each */
-    float range_finder_m, terrain_m, home_down_m;
+    /* down of the ground in the local frame by each source, with the autopilot's time of each */
+    float range_finder_down_m, terrain_down_m, home_down_m;
     int64_t range_finder_us, terrain_us;
     bool has_range_finder, has_terrain, has_home;
 
@@ -47,12 +50,18 @@ typedef struct {
     int32_t origin_lat_e7, origin_lon_e7;
     float origin_alt_m;
     bool has_origin;
+    bool origin_given; /* ... to the flight layer */
+    float home_alt_m;  /* over the sea */
+    bool has_home_alt;
 
-    int64_t asked_us, requested_us, origin_asked_us; /* own times of the latest TIMESYNC and requests */
+    int64_t asked_us[AUTOPILOT_QUESTIONS]; /* own times of the latest questions for its clock, a ring ... */
+    unsigned asked;                        /* ... with so many of them ever */
+    bool answered;                         /* one was */
+    int64_t requested_us, origin_asked_us; /* own times of the latest requests */
     unsigned requests;
 
     /* counted; summary and status line tell them */
-    unsigned long attitudes, positions, bad_samples, restarts, slips, jumps;
+    unsigned long attitudes, positions, bad_samples, restarts, slips, jumps, strangers;
 } autopilot_t;
 
 void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire);

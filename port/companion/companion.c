@@ -2,6 +2,7 @@
 #include "companion.h"
 
 #include <errno.h>
+#include <math.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,6 +73,10 @@ static void on_line(void *user, const char *line, size_t length) {
     companion_t *c = user;
     detection_fault_t fault;
     const int64_t now_us = clock_us(CLOCK_MONOTONIC);
+    if (!clock_sync_known(&c->autopilot.clock)) {
+        c->counts.clockless++;
+        return;
+    }
     const detection_now_t now = {clock_us(CLOCK_REALTIME), now_us, autopilot_clock_us(&c->autopilot, now_us),
                                  autopilot_clock_sd_us(&c->autopilot)};
     if (detection_text_read(line, length, &c->config, &now, &c->image, &fault)) {
@@ -133,10 +138,24 @@ static void take_sighting(companion_t *c, bool has_detection, const goe_mavlink_
     take_image(c);
 }
 
+/* Boxes of a smaller copy of the image would be silently wrong. */
+static bool is_of_this_size(const companion_config_t *config, const goe_mavlink_features_t *features) {
+    const goe_camera_t *camera =
+        features->camera_id == 1 ? &config->estimator.more_cameras[0] : &config->estimator.camera;
+    return features->number == 0 || (fabsf((float)features->image_width - camera->width_px) < 1.0f &&
+                                     fabsf((float)features->image_height - camera->height_px) < 1.0f);
+}
+
 static void take_features(companion_t *c, const mavlink_message_t *message, uint32_t arrival_us) {
     goe_mavlink_features_t features;
     goe_mavlink_sighting_t sighting;
     goe_mavlink_read_features((const uint8_t *)_MAV_PAYLOAD(message), message->len, &features);
+    if (!is_of_this_size(&c->config, &features)) {
+        c->counts.unread++;
+        event("GOE_FEATURES of an image of %u x %u px: camera.ini has another size", features.image_width,
+              features.image_height);
+        return;
+    }
     const bool has = goe_mavlink_from_features(&features, arrival_us, &sighting);
     take_sighting(c, has, &sighting);
 }
@@ -159,22 +178,34 @@ static void take_tracking(companion_t *c, const mavlink_message_t *message, uint
     take_sighting(c, has, &sighting);
 }
 
-/* Detections come from any component of the autopilot's system, and from no other. */
+/* Detections come from any component of the autopilot's system, and from no other; a gimbal that follows a person is one of them:
+ * so the configuration names the messages. */
+static void take_detections(companion_t *c, const mavlink_message_t *message, uint32_t arrival_us) {
+    const unsigned taken = c->config.detections_mavlink;
+    if (message->msgid == MAVLINK_MSG_ID_GOE_FEATURES && (taken & DETECTIONS_GOE_FEATURES) != 0) {
+        take_features(c, message, arrival_us);
+    } else if (message->msgid == MAVLINK_MSG_ID_LANDING_TARGET && (taken & DETECTIONS_LANDING_TARGET) != 0) {
+        take_landing_target(c, message, arrival_us);
+    } else if (message->msgid == MAVLINK_MSG_ID_CAMERA_TRACKING_IMAGE_STATUS && (taken & DETECTIONS_TRACKING) != 0) {
+        take_tracking(c, message, arrival_us);
+    }
+}
+
 static void on_message(void *user, const mavlink_message_t *message) {
     companion_t *c = user;
     const int64_t now_us = clock_us(CLOCK_MONOTONIC);
     const uint32_t arrival_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
     if (c->autopilot.heartbeat_us != 0 && message->sysid == c->autopilot.system) {
-        if (message->msgid == MAVLINK_MSG_ID_GOE_FEATURES) {
-            take_features(c, message, arrival_us);
-        } else if (message->msgid == MAVLINK_MSG_ID_LANDING_TARGET) {
-            take_landing_target(c, message, arrival_us);
-        } else if (message->msgid == MAVLINK_MSG_ID_CAMERA_TRACKING_IMAGE_STATUS) {
-            take_tracking(c, message, arrival_us);
-        }
+        take_detections(c, message, arrival_us);
     }
-    orders_take(&c->orders, message, &c->autopilot);
+    if (link_is_answered(c->autopilot_link)) {
+        orders_take(&c->orders, message);
+    }
     autopilot_take(&c->autopilot, message, now_us);
+    if (c->autopilot.restarts != c->restarts) {
+        c->restarts = c->autopilot.restarts;
+        image_queue_clear(&c->queue);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------------------- what is due -- */
@@ -207,9 +238,12 @@ static void tell_alive(companion_t *c) {
 static void assess(companion_t *c, int64_t now_us) {
     const uint32_t autopilot_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
-    (void)goe_flight_assess(&c->flight, autopilot_us, c->autopilot.landing, &c->assessment);
+    const goe_flight_status_t status =
+        goe_flight_assess(&c->flight, autopilot_us, c->autopilot.landing, &c->assessment);
     tell_alive(c);
-    orders_follow(&c->orders, &c->wire, &c->config, &c->autopilot, &c->flight, &c->assessment, &own, now_us);
+    if (status == GOE_FLIGHT_OK) { /* without a pose nothing is known, and what stands stands */
+        orders_follow(&c->orders, &c->assessment, &own, now_us);
+    }
 }
 
 /* Lines by the UNIX clock are timed by what that clock shows now: a step of it makes those under way wrong, and is told. */
@@ -238,9 +272,11 @@ static void mend_links(companion_t *c, int64_t now_us) {
 static void end_second(companion_t *c, int64_t now_us) {
     companion_rates_t *rates = &c->rates;
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
-    rates->attitude_hz = (double)(c->autopilot.attitudes - rates->attitudes);
+    rates->pose_hz =
+        fmin((double)(c->autopilot.attitudes - rates->attitudes), (double)(c->autopilot.positions - rates->positions));
     rates->image_hz = (double)(c->counts.images - rates->images);
     rates->attitudes = c->autopilot.attitudes;
+    rates->positions = c->autopilot.positions;
     rates->images = c->counts.images;
     rates->delay.all_images = c->counts.images;
     rates->delay_shown = rates->delay;
@@ -301,7 +337,10 @@ static bool open_all(companion_t *c, char *fault, size_t fault_size) {
         (void)snprintf(fault, fault_size, "the library refuses the setting %s", bad != NULL ? bad : "(none)");
         return false;
     }
-    return flight_record_open(&c->record, &c->config, fault, fault_size);
+    if (!flight_record_open(&c->record, &c->config, fault, fault_size)) {
+        event("no log: %s", fault); /* the aircraft is worth more than its log */
+    }
+    return true;
 }
 
 companion_t *companion_new(const companion_config_t *config, char *fault, size_t fault_size) {
@@ -323,6 +362,11 @@ companion_t *companion_new(const companion_config_t *config, char *fault, size_t
     c->assessed_us = c->reported_us = c->second_us = now_us;
     c->clock_difference_us = clock_us(CLOCK_REALTIME) - now_us;
     autopilot_init(&c->autopilot, &c->config, &c->flight, &c->wire);
+    orders_init(&c->orders, &c->wire, &c->config, &c->autopilot, &c->flight);
+    if (c->self_check != 0) {
+        event("the arithmetic of this computer is not right (self-check 0x%02x): no orders are sent", c->self_check);
+        c->config.reaction_mode = REACTION_OFF;
+    }
     return c;
 }
 

@@ -27,8 +27,8 @@ typedef struct {
 
 /* What the latest second had. */
 typedef struct {
-    unsigned long attitudes, images; /* counts at its start ... */
-    double attitude_hz, image_hz;    /* ... and the rates that it had */
+    unsigned long attitudes, positions, images; /* counts at its start ... */
+    double pose_hz, image_hz;                   /* ... and the rates that it had; of attitude and position the lesser */
     delay_count_t delay, delay_shown;
     uint32_t capture_us[GOE_CAMERAS_MAX]; /* of the latest image */
 } companion_rates_t;
@@ -50,6 +50,7 @@ typedef struct {
     unsigned self_check;
     bool detector_alive, pose_alive; /* as they were told last ... */
     unsigned links_lost;             /* ... and how often the links were lost by then */
+    unsigned long restarts;          /* of the autopilot, that were seen here */
     int64_t assessed_us, reported_us, second_us;
     int64_t clock_difference_us; /* UNIX time minus monotonic time, as it was last */
 } companion_t;

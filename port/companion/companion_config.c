@@ -38,6 +38,8 @@ static const config_key_t keys[] = {
     {"link.attitude_hz", AT(link_attitude_hz), KEY_NUMBER, 1, 400, 50, NULL},
     {"link.position_hz", AT(link_position_hz), KEY_NUMBER, 1, 400, 50, NULL},
     {"detections.from", AT(detections_from), KEY_TEXT, 0, 0, 0, "udp:127.0.0.1:14600"},
+    {"detections.mavlink", AT(detections_mavlink), KEY_LIST, 0, 0, DETECTIONS_GOE_FEATURES,
+     "goe_features landing_target tracking"},
     {"detections.clock", AT(detections_clock), KEY_CHOICE, 0, 0, LINE_CLOCK_UNIX, "unix monotonic age autopilot"},
     {"detections.delay_s", AT(detections_delay_s), KEY_NUMBER, 0, 0.5, 0.1, NULL},
     {"detections.delay_sd_s", AT(detections_delay_sd_s), KEY_NUMBER, 0.0001, 0.5, 0.02, NULL},
@@ -45,6 +47,8 @@ static const config_key_t keys[] = {
     {"detections.classes", AT(detections_classes), KEY_TEXT, 0, 0, 0, ""},
     {"camera.file", AT(camera_file), KEY_TEXT, 0, 0, 0, "camera.ini"},
     {"reaction.mode", AT(reaction_mode), KEY_CHOICE, 0, 0, REACTION_OFF, "off px4 arduplane"},
+    {"reaction.modes", AT(reaction_modes), KEY_LIST, 0, 0, 3,
+     "mission hold offboard position altitude rtl land takeoff"},
     {"reaction.resume", AT(reaction_resume), KEY_WHOLE, 0, 1, 1, NULL},
     {"reaction.adsb_hz", AT(reaction_adsb_hz), KEY_NUMBER, 0.5, 20, 2, NULL},
     {"reaction.icao", AT(reaction_icao), KEY_WHOLE, 1, 0xFFFFF0, 0xF0E000, NULL},
@@ -419,8 +423,9 @@ bool companion_config_read(const char *path, companion_config_t *config, input_e
     if (reader.failed) {
         return false;
     }
-    if (!resolve(config->camera_file, path)) {
-        input_error_set(error, path, 0, NULL, "the path of camera.file is too long");
+    if (!resolve(config->camera_file, path) ||
+        (*config->record_folder != '\0' && !resolve(config->record_folder, path))) {
+        input_error_set(error, path, 0, NULL, "the path of camera.file or record.folder is too long");
         return false;
     }
     pad_classes(config->detections_classes);

@@ -16,6 +16,11 @@ typedef enum { LINE_CLOCK_UNIX, LINE_CLOCK_MONOTONIC, LINE_CLOCK_AGE, LINE_CLOCK
 
 typedef enum { REACTION_OFF, REACTION_PX4, REACTION_ARDUPLANE } reaction_mode_t;
 
+/* Bits of detections_mavlink. */
+#define DETECTIONS_GOE_FEATURES 0x01u
+#define DETECTIONS_LANDING_TARGET 0x02u
+#define DETECTIONS_TRACKING 0x04u
+
 /* Bits of reports_standard. */
 #define REPORT_OBSTACLE_DISTANCE 0x01u
 #define REPORT_OBSTACLE_DISTANCE_3D 0x02u
@@ -29,6 +34,7 @@ typedef struct {
     double link_attitude_hz, link_position_hz;
     char detections_from[CONFIG_TEXT_MAX];
     line_clock_t detections_clock;
+    unsigned detections_mavlink; /* DETECTIONS_... */
     double detections_delay_s, detections_delay_sd_s;
     uint32_t detections_shares_clock;
     char detections_classes[CONFIG_TEXT_MAX]; /* names with single blanks around each; empty: all */
@@ -36,6 +42,7 @@ typedef struct {
     goe_settings_t estimator;                 /* camera included */
     goe_flight_settings_t flight;
     reaction_mode_t reaction_mode;
+    unsigned reaction_modes; /* px4: bits of mission, hold, offboard, position, altitude, rtl, land, takeoff */
     uint32_t reaction_resume, reaction_icao;
     double reaction_adsb_hz;
     double reports_assess_hz, reports_obstacle_hz;

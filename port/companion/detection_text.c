@@ -100,7 +100,7 @@ static bool read_time(const json_t *object, const companion_config_t *config, co
         sd_s = sd_s > 0.0 ? sd_s : config->detections_delay_sd_s;
     }
     if (old_s < -AHEAD_MAX_S || old_s > AGE_MAX_S) {
-        return fail(fault, "\"time\" is %g s %s", fabs(old_s), old_s < 0.0 ? "ahead of now" : "old");
+        return fail(fault, "\"time\" is %.1f s %s", fabs(old_s), old_s < 0.0 ? "ahead of now" : "old");
     }
     sd_s = sd_s > 0.0 ? sd_s : (double)config->flight.delay_sd_s;
     const bool by_offset = !has_time || clock != LINE_CLOCK_AUTOPILOT;
@@ -190,6 +190,9 @@ static bool read_detection(const json_t *object, goe_flight_detection_t *detecti
         !read_number(object, "pixel_sd", NULL, 0.0, 100.0, &pixel_px, fault) ||
         !read_box(object, &detection->box, fault) || !read_points(object, detection, fault)) {
         return false;
+    }
+    if (id - floor(id) > 0.0) {
+        return fail(fault, "\"id\" is no whole number");
     }
     detection->id = (uint32_t)id;
     detection->score = (float)score;

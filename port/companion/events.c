@@ -1,14 +1,17 @@
 /* What happened, a line each. SPDX-License-Identifier: MIT */
 #include "events.h"
 
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #define KINDS 32
 #define TEXT_MAX 256
 
-static int line_stands;
+static int line_stands; /* a status line, on the terminal: it is cleared before the next event */
 
 /* Kinds of events are told apart by their format, each a constant of its own. */
 static struct {
@@ -17,7 +20,21 @@ static struct {
     unsigned long left_out;
 } kinds[KINDS];
 
-void events_line_stands(int stands) { line_stands = stands; }
+/* At once, or not at all: at most PIPE_BUF bytes, which a pipe takes whole. */
+static void put(const char *text) {
+    struct pollfd asked = {.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+    if (poll(&asked, 1, 0) > 0 && (asked.revents & POLLOUT) != 0) {
+        const ssize_t written = write(STDERR_FILENO, text, strlen(text));
+        (void)written; /* there is nobody to tell */
+    }
+}
+
+void events_show_line(const char *line, int on_terminal) {
+    char text[TEXT_MAX + 16];
+    (void)snprintf(text, sizeof text, "%s%s%s", on_terminal ? "\r\033[K" : "", line, on_terminal ? "" : "\n");
+    put(text);
+    line_stands = on_terminal;
+}
 
 /* Whether an event of this kind is due; *left_out: how many were not told since. */
 static int is_due(const char *format, unsigned long *left_out) {
@@ -48,23 +65,20 @@ static void make_printable(char *text) {
 }
 
 void event(const char *format, ...) {
-    char text[TEXT_MAX];
+    char text[TEXT_MAX], line[2 * TEXT_MAX], more[48] = "";
     unsigned long left_out = 0;
     va_list arguments;
     if (!is_due(format, &left_out)) {
         return;
     }
-    if (line_stands) {
-        (void)fputs("\r\033[K", stderr);
-    }
-    (void)fputs("goe_companion: ", stderr);
     va_start(arguments, format);
     (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     make_printable(text);
-    (void)fputs(text, stderr);
     if (left_out > 0) {
-        (void)fprintf(stderr, " (and %lu more)", left_out);
+        (void)snprintf(more, sizeof more, " (and %lu more)", left_out);
     }
-    (void)fputc('\n', stderr);
+    (void)snprintf(line, sizeof line, "%sgoe_companion: %s%s\n", line_stands ? "\r\033[K" : "", text, more);
+    put(line);
+    line_stands = 0;
 }

@@ -5,10 +5,12 @@
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "events.h"
 
 #define PATH_MAX_LENGTH (2 * CONFIG_TEXT_MAX)
+#define LOGS_MAX 10000
 #define BYTES_PER_MB 1.0e6
 #define US_PER_S 1000000
 
@@ -52,22 +54,42 @@ static bool copy_camera(const char *from, const char *to, const char **why) {
     return fclose(out) == 0 && copied;
 }
 
+/* folder, folder-2, folder-3, ... */
+static void name_folder(char name[PATH_MAX_LENGTH], const char *folder, int number) {
+    if (number == 1) {
+        (void)snprintf(name, PATH_MAX_LENGTH, "%s", folder);
+    } else {
+        (void)snprintf(name, PATH_MAX_LENGTH, "%s-%d", folder, number);
+    }
+}
+
+static bool has_log(const char *folder) {
+    char path[PATH_MAX_LENGTH + 16];
+    (void)snprintf(path, sizeof path, "%s/camera.ini", folder);
+    return access(path, F_OK) == 0;
+}
+
 bool flight_record_open(flight_record_t *record, const companion_config_t *config, char *fault, size_t fault_size) {
-    char camera[PATH_MAX_LENGTH], frames[PATH_MAX_LENGTH];
+    char folder[PATH_MAX_LENGTH], camera[PATH_MAX_LENGTH + 16], frames[PATH_MAX_LENGTH + 16];
     const char *why = "";
     (void)memset(record, 0, sizeof *record);
     record->size_max_mb = config->record_size_max_mb;
     if (*config->record_folder == '\0') {
         return true;
     }
-    (void)snprintf(camera, sizeof camera, "%s/camera.ini", config->record_folder);
-    (void)snprintf(frames, sizeof frames, "%s/frames.csv", config->record_folder);
-    (void)mkdir(config->record_folder, 0777); /* what hinders it hinders the files, too */
+    int number = 0;
+    do {
+        number++;
+        name_folder(folder, config->record_folder, number);
+    } while (number < LOGS_MAX && has_log(folder));
+    (void)snprintf(camera, sizeof camera, "%s/camera.ini", folder);
+    (void)snprintf(frames, sizeof frames, "%s/frames.csv", folder);
+    (void)mkdir(folder, 0777); /* what hinders it hinders the files, too */
     if (copy_camera(config->camera_file, camera, &why)) {
         record->stream = make_file(frames, &why);
     }
     if (record->stream == NULL || fputs(header, record->stream) < 0) {
-        (void)snprintf(fault, fault_size, "record.folder: %s: %s", config->record_folder, why);
+        (void)snprintf(fault, fault_size, "record.folder: %s: %s", folder, why);
         return false;
     }
     return true;

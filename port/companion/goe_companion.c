@@ -84,6 +84,7 @@ static int run(const companion_config_t *config) {
             status_line_show(companion);
         }
     }
+    (void)signal(SIGINT, SIG_DFL); /* a second one ends it even where nobody reads the summary */
     status_line_summary(companion);
     companion_free(companion);
     return EXIT_DONE;

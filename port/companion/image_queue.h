@@ -4,7 +4,7 @@
 
 #include "camera_image.h"
 
-#define IMAGE_QUEUE_MAX 32
+#define IMAGE_QUEUE_MAX 128 /* half a second of eight messages an image at 30 Hz */
 
 /* Called with each frame, of at most GOE_FLIGHT_DETECTIONS detections, that the flight layer took or refused. */
 typedef void (*image_taken_t)(void *user, const goe_flight_frame_t *frame, goe_flight_status_t status);

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <netdb.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +16,8 @@
 
 #define WHERE_MAX 512
 #define MEND_US 1000000
+#define REST_MAX 512
+#define DEAD_AFTER_MS 3000     /* a TCP peer that acknowledges nothing for so long is lost */
 #define RECEIVE_BUFFER 1048576 /* bytes of a UDP socket: a second of everything */
 
 typedef enum { LINK_UDP_IN, LINK_UDP_OUT, LINK_TCP, LINK_SERIAL, LINK_FIFO, LINK_STDIN } link_kind_t;
@@ -26,8 +29,11 @@ struct link {
     bool connecting, ended;
     unsigned losses;
     int64_t tried_us;
+    struct addrinfo *addresses, *next;  /* of the host, resolved once; the one to be tried next */
     struct sockaddr_storage from, peer; /* sender of the latest datagram; to whom answers go */
     socklen_t from_size, peer_size;     /* 0: none */
+    uint8_t rest[REST_MAX];             /* of a stream: what of the latest write did not go out yet */
+    size_t rest_size;
 };
 
 /* ---------------------------------------------------------------------------------------------------------- where -- */
@@ -78,6 +84,17 @@ static void set_nonblocking(int descriptor) {
     (void)fcntl(descriptor, F_SETFD, FD_CLOEXEC);
 }
 
+/* Frames are small and must not wait for each other; a peer that was cut off is told by no other sign. */
+static void set_tcp(int descriptor) {
+    const int on = 1, dead_after_ms = DEAD_AFTER_MS;
+    (void)setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+#ifdef TCP_USER_TIMEOUT
+    (void)setsockopt(descriptor, IPPROTO_TCP, TCP_USER_TIMEOUT, &dead_after_ms, sizeof dead_after_ms);
+#else
+    (void)dead_after_ms;
+#endif
+}
+
 /* A socket on or towards an address. -1: errno, or the resolver's text in *why. */
 static int open_address(link_t *link, const struct addrinfo *address) {
     const int descriptor = socket(address->ai_family, address->ai_socktype, address->ai_protocol);
@@ -87,6 +104,9 @@ static int open_address(link_t *link, const struct addrinfo *address) {
     }
     set_nonblocking(descriptor);
     (void)setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
+    if (link->kind == LINK_TCP) {
+        set_tcp(descriptor);
+    }
     if (link->kind == LINK_UDP_IN) {
         if (bind(descriptor, address->ai_addr, address->ai_addrlen) == 0) {
             return descriptor;
@@ -105,19 +125,30 @@ static int open_address(link_t *link, const struct addrinfo *address) {
     return -1;
 }
 
-static int open_socket(link_t *link, const char **why) {
-    struct addrinfo hints, *found = NULL;
+static bool resolve(link_t *link, const char **why) {
+    struct addrinfo hints;
     (void)memset(&hints, 0, sizeof hints);
     hints.ai_socktype = link->kind == LINK_TCP ? SOCK_STREAM : SOCK_DGRAM;
     hints.ai_flags = link->kind == LINK_UDP_IN ? AI_PASSIVE : 0;
-    const int result = getaddrinfo(link->host, link->service, &hints, &found);
+    const int result = getaddrinfo(link->host, link->service, &hints, &link->addresses);
     if (result != 0) {
+        link->addresses = NULL;
         *why = gai_strerror(result);
+    }
+    return result == 0;
+}
+
+/* The next of the host's addresses, in turn. */
+static int open_socket(link_t *link, const char **why) {
+    if (link->addresses == NULL && !resolve(link, why)) {
         return -1;
     }
-    const int descriptor = open_address(link, found);
-    *why = strerror(errno);
-    freeaddrinfo(found);
+    const struct addrinfo *address = link->next != NULL ? link->next : link->addresses;
+    const int descriptor = open_address(link, address);
+    if (descriptor < 0) {
+        *why = strerror(errno);
+    }
+    link->next = address->ai_next;
     return descriptor;
 }
 
@@ -159,6 +190,7 @@ static int open_serial(const link_t *link, const char **why) {
     if (tcgetattr(descriptor, &settings) == 0 && find_rate(link->service, &speed)) {
         cfmakeraw(&settings);
         settings.c_cflag |= (tcflag_t)(CLOCAL | CREAD);
+        settings.c_cflag &= ~(tcflag_t)(CRTSCTS | CSTOPB);
         (void)cfsetispeed(&settings, speed);
         (void)cfsetospeed(&settings, speed);
         (void)tcsetattr(descriptor, TCSANOW, &settings);
@@ -261,6 +293,7 @@ static void lose(link_t *link) {
         (void)close(link->descriptor);
         link->losses++;
     }
+    link->rest_size = 0;
     link->descriptor = -1;
 }
 
@@ -296,20 +329,50 @@ void link_answer(link_t *link) {
     }
 }
 
-bool link_write(link_t *link, const uint8_t *bytes, size_t size) {
-    if (link->descriptor < 0) {
-        return false;
-    }
-    if (link_has_messages(link)) {
-        return link->peer_size > 0 && sendto(link->descriptor, bytes, size, MSG_NOSIGNAL,
-                                             (struct sockaddr *)&link->peer, link->peer_size) == (ssize_t)size;
-    }
+bool link_is_answered(const link_t *link) {
+    return link->kind != LINK_UDP_IN || link->peer_size == 0 ||
+           (link->from_size == link->peer_size && memcmp(&link->from, &link->peer, link->peer_size) == 0);
+}
+
+/* How much of it goes out now. */
+static size_t write_some(link_t *link, const uint8_t *bytes, size_t size) {
     const ssize_t sent = link->kind == LINK_TCP ? send(link->descriptor, bytes, size, MSG_NOSIGNAL)
                                                 : write(link->descriptor, bytes, size);
     if (sent < 0 && !is_for_later(errno) && errno != ENOTCONN) {
         lose(link);
     }
-    return sent == (ssize_t)size;
+    return sent > 0 ? (size_t)sent : 0;
+}
+
+/* A frame that went out in part is finished before the next one: half of it would take that along. */
+static bool write_stream(link_t *link, const uint8_t *bytes, size_t size) {
+    if (link->rest_size > 0) {
+        const size_t sent = write_some(link, link->rest, link->rest_size);
+        link->rest_size -= sent <= link->rest_size ? sent : link->rest_size;
+        (void)memmove(link->rest, link->rest + sent, link->rest_size);
+        if (link->rest_size > 0 || link->descriptor < 0) {
+            return false;
+        }
+    }
+    const size_t sent = write_some(link, bytes, size);
+    if (sent > 0 && sent < size && size - sent <= sizeof link->rest) {
+        link->rest_size = size - sent;
+        (void)memcpy(link->rest, bytes + sent, link->rest_size);
+        return true;
+    }
+    return sent == size;
+}
+
+bool link_write(link_t *link, const uint8_t *bytes, size_t size) {
+    if (link->descriptor < 0) {
+        return false;
+    }
+    if (!link_has_messages(link)) {
+        return write_stream(link, bytes, size);
+    }
+    const struct sockaddr *peer = (const struct sockaddr *)&link->peer;
+    return link->peer_size > 0 &&
+           sendto(link->descriptor, bytes, size, MSG_NOSIGNAL, peer, link->peer_size) == (ssize_t)size;
 }
 
 void link_mend(link_t *link, int64_t now_us) {
@@ -323,6 +386,9 @@ void link_mend(link_t *link, int64_t now_us) {
 void link_close(link_t *link) {
     if (link != NULL && link->descriptor >= 0 && link->kind != LINK_STDIN) {
         (void)close(link->descriptor);
+    }
+    if (link != NULL && link->addresses != NULL) {
+        freeaddrinfo(link->addresses);
     }
     free(link);
 }

@@ -31,7 +31,10 @@ size_t link_read(link_t *link, uint8_t *bytes, size_t size);
 /* udpin: answers from now on go to the sender of what was read last. */
 void link_answer(link_t *link);
 
-/* False if it does not go out at once, whole. */
+/* Whether what was read last came from there; true for every other kind of link, and before the first link_answer(). */
+bool link_is_answered(const link_t *link);
+
+/* False if it does not go out at once. Of a stream the rest of what was begun goes out before anything else. */
 bool link_write(link_t *link, const uint8_t *bytes, size_t size);
 
 /* To be called now and then: opens again what was lost. */

@@ -1,4 +1,9 @@
-/* The flight layer's decision as commands that a stock autopilot follows. SPDX-License-Identifier: MIT */
+/* The flight layer's decision as commands that a stock autopilot follows. SPDX-License-Identifier: MIT
+ *
+ * px4, an order:  given in a mode that reaction.modes names > DO_REPOSITION until it is acknowledged, again as its target moves >
+ *                 the obstacle is passed: back into the mode before; not known to be passed: it stays where it loiters
+ *                 another mode was chosen meanwhile: nothing more is sent until the next order
+ * arduplane:      ADSB_VEHICLE for as long as the order stands; what comes of it is the autopilot's affair */
 #ifndef ORDERS_H
 #define ORDERS_H
 
@@ -9,24 +14,35 @@
 #include "wire.h"
 
 typedef struct {
-    goe_flight_action_t action;           /* that stands */
+    wire_t *wire;
+    const companion_config_t *config;
+    const autopilot_t *autopilot;
+    const goe_flight_t *flight;
+
+    goe_flight_action_t action; /* that stands */
+    int slot;                   /* what it is about, as last known; -1: none */
+    bool silenced;              /* nothing is sent for this order: the autopilot's mode, kind or answer forbids it */
     int32_t target_lat_e7, target_lon_e7; /* as it was sent last ... */
     float target_alt_m;
     int64_t sent_us;
     uint16_t command;     /* whose acknowledgement is awaited; 0: none */
-    int resumes_left;     /* px4: times that the mode before may still be asked for */
-    uint32_t mode_before; /* px4: in which the order was given ... */
-    bool has_led;         /* ... whether it has led to the mode that it leads to ... */
-    bool overruled;       /* ... and whether somebody has chosen another one since: then no command follows any more */
-    unsigned long orders, refused;
+    unsigned answered_at; /* count of heartbeats when it came */
+    unsigned judged_at;   /* count of heartbeats by which the mode was looked at last */
+    uint32_t mode_before; /* in which the order was given */
+    int resumes_left;     /* times that it may still be asked for */
+    unsigned resumed_at;  /* count of heartbeats when it was asked for last */
+    unsigned long restarts_seen;
+    unsigned long orders, refused; /* counted */
 } orders_t;
 
-/* After every assessment. Sends nothing unless the configuration allows it. */
-void orders_follow(orders_t *orders, wire_t *wire, const companion_config_t *config, const autopilot_t *autopilot,
-                   const goe_flight_t *flight, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
+void orders_init(orders_t *orders, wire_t *wire, const companion_config_t *config, const autopilot_t *autopilot,
+                 const goe_flight_t *flight);
+
+/* After every assessment that succeeded. Sends nothing unless the configuration allows it. */
+void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
                    int64_t now_us);
 
 /* COMMAND_ACK of the autopilot. */
-void orders_take(orders_t *orders, const mavlink_message_t *message, const autopilot_t *autopilot);
+void orders_take(orders_t *orders, const mavlink_message_t *message);
 
 #endif

@@ -12,7 +12,7 @@ goe_mavlink_own_t reports_own(const autopilot_t *autopilot, int64_t now_us, int6
         .time_usec = (uint64_t)(clock_us > 0 ? clock_us : 0),
         .unix_usec = (uint64_t)(unix_us > 0 ? unix_us : 0),
         .position_ned_m = {autopilot->position.x, autopilot->position.y, autopilot->position.z},
-        .origin_known = autopilot->has_origin,
+        .origin_known = autopilot->origin_given,
         .origin_alt_m = autopilot->origin_alt_m,
         .heading_deg = autopilot_heading_deg(autopilot),
     };

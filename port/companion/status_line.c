@@ -34,7 +34,7 @@ static void add_autopilot(text_line_t *line, const companion_t *c) {
         add(line, "no autopilot");
         return;
     }
-    add(line, "%s %u  pose %.0f Hz", autopilot_kind_text(a), a->system, c->rates.attitude_hz);
+    add(line, "%s %u  pose %.0f Hz", autopilot_kind_text(a), a->system, c->rates.pose_hz);
     if (clock_sync_known(&a->clock)) {
         add(line, "  clock %.1f ms%s", autopilot_clock_sd_us(a) * 1e-3, a->clock.two_way ? "" : " one-way");
     } else {
@@ -50,6 +50,8 @@ static void add_images(text_line_t *line, const companion_t *c) {
         add(line, " | no images");
     }
 }
+
+static bool is_sent(const companion_t *c) { return c->config.reaction_mode != REACTION_OFF && !c->orders.silenced; }
 
 /* The one that the order is about, or the worst. */
 static void add_obstacle(text_line_t *line, const companion_t *c) {
@@ -69,7 +71,7 @@ static void add_obstacle(text_line_t *line, const companion_t *c) {
     add(line, "  id %u: %.0f +- %.0f m, %.1f s, %.0f %%%s", (unsigned)o.id, range_m, sqrt(fmax(variance, 0.0)),
         (double)o.hazard.time_s, 100.0 * (double)o.hazard.violation, o.suspect ? ", suspect" : "");
     if (a->action != GOE_FLIGHT_NONE) {
-        add(line, ", %s%s", goe_flight_action_text(a->action), c->config.reaction_mode == REACTION_OFF ? " (off)" : "");
+        add(line, ", %s%s", goe_flight_action_text(a->action), is_sent(c) ? "" : " (not sent)");
     }
 }
 
@@ -94,13 +96,10 @@ void status_line_show(const companion_t *c) {
     add_images(&line, c);
     add_obstacle(&line, c);
     add(&line, " | lost %lu", lost_of(c));
-    if (on_terminal) {
-        (void)fprintf(stderr, "\r\033[K%.*s", width_of_terminal() - 1, line.text);
-        (void)fflush(stderr);
-    } else {
-        (void)fprintf(stderr, "%s\n", line.text);
+    if (on_terminal && (size_t)width_of_terminal() <= line.length) {
+        line.text[width_of_terminal() - 1] = '\0';
     }
-    events_line_stands(on_terminal);
+    events_show_line(line.text, on_terminal);
 }
 
 static void row(const char *name, unsigned long count, const char *what) {
@@ -132,6 +131,7 @@ void status_line_summary(const companion_t *c) {
     row("images_without_pose", c->queue.given_up, "that waited in vain");
     row("detections_refused", c->flight.counters.refused, "not finite or out of range, samples of the pose included");
     row("tracks_evicted", c->flight.counters.evicted, "for a worse obstacle");
+    row("strangers", c->autopilot.strangers, "messages in the autopilot's name from another address");
     row("orders", c->orders.orders, "begun or changed");
     row("orders_refused", c->orders.refused, "by the autopilot");
     row("log_rows", c->record.rows, c->record.failed ? "the log could not be written to its end" : "written");

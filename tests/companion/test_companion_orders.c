@@ -1,0 +1,301 @@
+/* Orders: when a command goes out, when none does, and when the mode before comes back. SPDX-License-Identifier: MIT */
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "check.h"
+#include "orders.h"
+
+#define SYSTEM 1
+#define MISSION (4u << 16 | 4u << 24)
+#define LOITER (4u << 16 | 3u << 24)
+#define POSITION (3u << 16)
+#define STEP_US 100000 /* between assessments */
+
+static companion_config_t config;
+static goe_flight_t flight;
+static wire_t wire;
+static autopilot_t autopilot;
+static orders_t orders;
+static goe_flight_assessment_t assessment;
+static goe_mavlink_own_t own;
+static int64_t now_us;
+static int receiver;             /* where the companion's messages arrive */
+static mavlink_message_t latest; /* command that arrived */
+
+static void open_wire(void) {
+    struct sockaddr_in address;
+    socklen_t size = sizeof address;
+    char where[64], fault[128];
+    (void)memset(&address, 0, sizeof address);
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    receiver = socket(AF_INET, SOCK_DGRAM, 0);
+    TEST_ASSERT_EQUAL_INT(0, bind(receiver, (struct sockaddr *)&address, sizeof address));
+    TEST_ASSERT_EQUAL_INT(0, getsockname(receiver, (struct sockaddr *)&address, &size));
+    (void)snprintf(where, sizeof where, "udpout:127.0.0.1:%d", ntohs(address.sin_port));
+    wire.link = link_open(where, fault, sizeof fault);
+    TEST_ASSERT_NOT_NULL_MESSAGE(wire.link, fault);
+}
+
+void setUp(void) {
+    const char *bad = NULL;
+    (void)memset(&config, 0, sizeof config);
+    (void)memset(&wire, 0, sizeof wire);
+    (void)memset(&autopilot, 0, sizeof autopilot);
+    (void)memset(&assessment, 0, sizeof assessment);
+    (void)memset(&own, 0, sizeof own);
+    goe_settings_default(&config.estimator);
+    goe_flight_settings_default(&config.flight);
+    config.estimator.camera.fx_px = config.estimator.camera.fy_px = 900.0f;
+    config.estimator.camera.width_px = config.estimator.camera.height_px = 1000.0f;
+    config.reaction_mode = REACTION_PX4;
+    config.reaction_modes = 3;
+    config.reaction_resume = 1;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, &bad));
+    open_wire();
+    wire.system = SYSTEM;
+    wire.component = 196;
+    autopilot.system = SYSTEM;
+    autopilot.kind = MAV_AUTOPILOT_PX4;
+    autopilot.base_mode = MAV_MODE_FLAG_SAFETY_ARMED;
+    autopilot.custom_mode = MISSION;
+    autopilot.origin_given = true;
+    autopilot.heartbeats = 10;
+    assessment.worst = assessment.avoided = -1;
+    now_us = 1000000;
+    orders_init(&orders, &wire, &config, &autopilot, &flight);
+}
+
+void tearDown(void) {
+    link_close(wire.link);
+    (void)close(receiver);
+}
+
+/* How many commands of this number have come since the last call, the latest of them in `latest`. */
+static int count_commands(uint16_t number) {
+    uint8_t bytes[512];
+    int count = 0;
+    for (;;) {
+        const ssize_t size = recv(receiver, bytes, sizeof bytes, MSG_DONTWAIT);
+        mavlink_message_t message;
+        mavlink_status_t status;
+        if (size <= 0) {
+            return count;
+        }
+        for (ssize_t i = 0; i < size; i++) {
+            if (mavlink_parse_char(MAVLINK_COMM_1, bytes[i], &message, &status) == 0) {
+                continue;
+            }
+            const bool is_int = message.msgid == MAVLINK_MSG_ID_COMMAND_INT;
+            const uint16_t command =
+                is_int ? mavlink_msg_command_int_get_command(&message) : mavlink_msg_command_long_get_command(&message);
+            latest = command == number ? message : latest;
+            count += command == number ? 1 : 0;
+        }
+    }
+}
+
+/* The flight layer's order, about the obstacle in slot 0. */
+static void decide(goe_flight_action_t action) {
+    assessment.action = action;
+    assessment.avoided = action == GOE_FLIGHT_NONE ? -1 : 0;
+    assessment.target_lat_e7 = 474000000;
+    assessment.target_lon_e7 = 85000000;
+    assessment.target_ned_m[2] = -30.0f;
+}
+
+/* So many assessments, with a heartbeat of this mode each second. */
+static void go_on(int assessments, uint32_t mode) {
+    for (int k = 0; k < assessments; k++) {
+        now_us += STEP_US;
+        if (now_us % 1000000 == 0) {
+            autopilot.custom_mode = mode;
+            autopilot.heartbeats++;
+        }
+        orders_follow(&orders, &assessment, &own, now_us);
+    }
+}
+
+static void answer(uint16_t command, uint8_t result) {
+    mavlink_message_t message;
+    (void)mavlink_msg_command_ack_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, command, result, 0, 0, 0, 0);
+    orders_take(&orders, &message);
+}
+
+/* An obstacle as the flight layer knows it, or one that it has given up. */
+static void know_obstacle(bool known) {
+    goe_flight_attitude_t attitude = {5000000, {1.0f, 0.0f, 0.0f, 0.0f}, 0};
+    goe_flight_position_t position;
+    (void)memset(&position, 0, sizeof position);
+    position.time_us = 5000000;
+    (void)goe_flight_attitude(&flight, &attitude);
+    (void)goe_flight_position(&flight, &position);
+    flight.slot[0].used = known;
+}
+
+static void ordered(void) {
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    go_on(40, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+static void an_order_is_repeated_until_it_is_acknowledged(void) {
+    decide(GOE_FLIGHT_LEFT);
+    go_on(21, MISSION);
+    TEST_ASSERT_EQUAL_INT(5, count_commands(MAV_CMD_DO_REPOSITION)); /* at once and each half second */
+    TEST_ASSERT_EQUAL_INT32(474000000, mavlink_msg_command_int_get_x(&latest));
+    TEST_ASSERT_EQUAL_UINT8(MAV_FRAME_GLOBAL_INT, mavlink_msg_command_int_get_frame(&latest));
+    answer(MAV_CMD_DO_SET_MODE, MAV_RESULT_ACCEPTED); /* somebody else's */
+    go_on(6, MISSION);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    go_on(20, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+static void a_target_that_moves_is_sent_once_a_second_at_most(void) {
+    ordered();
+    for (int k = 0; k < 30; k++) {
+        assessment.target_lat_e7 += 1000; /* 11 m */
+        go_on(1, LOITER);
+        answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    }
+    const int sent = count_commands(MAV_CMD_DO_REPOSITION);
+    TEST_ASSERT_TRUE(sent >= 2 && sent <= 4);
+}
+
+static void what_is_denied_is_not_asked_for_again(void) {
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_DENIED);
+    (void)count_commands(0);
+    go_on(30, MISSION);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+static void nothing_goes_out_to_whom_it_is_not_for(void) {
+    const struct {
+        uint8_t kind, base_mode;
+        uint32_t mode;
+        bool origin;
+    } cases[] = {{MAV_AUTOPILOT_PX4, 0, MISSION, true},
+                 {MAV_AUTOPILOT_PX4, MAV_MODE_FLAG_SAFETY_ARMED, POSITION, true},
+                 {MAV_AUTOPILOT_PX4, MAV_MODE_FLAG_SAFETY_ARMED, MISSION, false},
+                 {MAV_AUTOPILOT_ARDUPILOTMEGA, MAV_MODE_FLAG_SAFETY_ARMED, MISSION, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        orders_init(&orders, &wire, &config, &autopilot, &flight);
+        autopilot.kind = cases[i].kind;
+        autopilot.base_mode = cases[i].base_mode;
+        autopilot.custom_mode = cases[i].mode;
+        autopilot.origin_given = cases[i].origin;
+        decide(GOE_FLIGHT_LEFT);
+        go_on(30, cases[i].mode);
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+        TEST_ASSERT_TRUE(orders.silenced);
+    }
+}
+
+/* Also where the target moves, and for the mode afterwards. */
+static void a_pilot_is_not_fought(void) {
+    know_obstacle(true);
+    ordered();
+    go_on(20, POSITION);
+    assessment.target_lat_e7 += 10000;
+    go_on(30, POSITION);
+    decide(GOE_FLIGHT_NONE);
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+static void the_mode_before_comes_back_once_the_obstacle_is_passed(void) {
+    know_obstacle(true);
+    ordered();
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+    CHECK_SAME(4.0f, mavlink_msg_command_long_get_param2(&latest));
+    CHECK_SAME(4.0f, mavlink_msg_command_long_get_param3(&latest));
+    go_on(100, LOITER);
+    TEST_ASSERT_EQUAL_INT(4, count_commands(MAV_CMD_DO_SET_MODE)); /* five times in all */
+}
+
+/* Out of sight, or turned away from: it may lie ahead on the way back. */
+static void the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed(void) {
+    know_obstacle(true);
+    ordered();
+    know_obstacle(false);
+    decide(GOE_FLIGHT_NONE);
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    know_obstacle(true);
+    decide(GOE_FLIGHT_HOLD);
+    autopilot.custom_mode = MISSION;
+    go_on(30, LOITER);
+    decide(GOE_FLIGHT_NONE);
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+/* A heartbeat a second tells the mode late: the loiter of the order before is not the mode that this one began in, and the mission
+ * that comes back is no pilot's choice. */
+static void a_second_order_within_a_heartbeat_of_the_first(void) {
+    know_obstacle(true);
+    ordered();
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, LOITER);
+    answer(MAV_CMD_DO_SET_MODE, MAV_RESULT_ACCEPTED);
+    decide(GOE_FLIGHT_RIGHT);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
+    go_on(12, MISSION);
+    TEST_ASSERT_FALSE(orders.silenced);
+    TEST_ASSERT_TRUE(count_commands(MAV_CMD_DO_REPOSITION) >= 2);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    go_on(30, LOITER);
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+    CHECK_SAME(4.0f, mavlink_msg_command_long_get_param3(&latest));
+}
+
+static void an_autopilot_that_starts_anew_knows_of_no_order(void) {
+    know_obstacle(true);
+    ordered();
+    autopilot.restarts++;
+    decide(GOE_FLIGHT_NONE);
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+static void nothing_at_all_goes_out_while_reactions_are_off(void) {
+    config.reaction_mode = REACTION_OFF;
+    decide(GOE_FLIGHT_GO_AROUND);
+    go_on(30, MISSION);
+    decide(GOE_FLIGHT_LEFT);
+    go_on(30, MISSION);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(an_order_is_repeated_until_it_is_acknowledged);
+    RUN_TEST(a_target_that_moves_is_sent_once_a_second_at_most);
+    RUN_TEST(what_is_denied_is_not_asked_for_again);
+    RUN_TEST(nothing_goes_out_to_whom_it_is_not_for);
+    RUN_TEST(a_pilot_is_not_fought);
+    RUN_TEST(the_mode_before_comes_back_once_the_obstacle_is_passed);
+    RUN_TEST(the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed);
+    RUN_TEST(a_second_order_within_a_heartbeat_of_the_first);
+    RUN_TEST(an_autopilot_that_starts_anew_knows_of_no_order);
+    RUN_TEST(nothing_at_all_goes_out_while_reactions_are_off);
+    return UNITY_END();
+}
