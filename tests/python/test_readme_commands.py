@@ -103,7 +103,7 @@ RUN_BY = {
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
     "goe_companion": By("tests/companion/companion.py", "goe_companion"),
     "build/port/companion/goe_companion port/companion/companion.ini": By(
-        "tests/companion/test_companion_usage.py", "companion.ini"
+        "tests/companion/companion.py", '"companion" / "goe_companion"'
     ),
     "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
     "python -m goe_tools attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
