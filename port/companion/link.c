@@ -144,6 +144,10 @@ static int open_socket(link_t *link, const char **why) {
         return -1;
     }
     const struct addrinfo *address = link->next != NULL ? link->next : link->addresses;
+    if (address == NULL) {
+        *why = "no address";
+        return -1;
+    }
     const int descriptor = open_address(link, address);
     if (descriptor < 0) {
         *why = strerror(errno);
