@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import ModuleType
 from xml.etree import ElementTree
@@ -14,9 +14,8 @@ from companion import ROOT
 
 pymavlink = pytest.importorskip("pymavlink", reason="pymavlink is not installed")
 
-from flights import Fleet, Plan  # noqa: E402 - needs what is skipped for
+from flights import Fleet, MakeFleet, Plan  # noqa: E402 - needs what is skipped for
 
-MakeFleet = Callable[[Sequence[Plan]], Fleet]
 OWN = (ROOT / "port" / "companion" / "companion.xml", ROOT / "port" / "mavlink" / "goe.xml")
 COMMON = ("minimal.xml", "standard.xml", "common.xml")
 # What the companion sends besides: one message of a dialect that would bring many, and one that pymavlink has not yet.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -218,3 +218,6 @@ class Fleet:
         for flight in self.flights.values():
             flight.close()
         self.loop.close()
+
+
+MakeFleet = Callable[[Sequence[Plan]], Fleet]

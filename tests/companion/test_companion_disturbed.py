@@ -13,8 +13,7 @@ from typing import Any
 import pytest
 from autopilot import ARDUPILOT
 from companion import PROGRAM, SANITIZED_KIB, is_missing, replay
-from conftest import MakeFleet
-from flights import Fleet, Flight, Plan
+from flights import Fleet, Flight, MakeFleet, Plan
 from hostile import STRANGER_ID, bad_lines, crowd, escapes, frame_faults, in_turn, odd_lines, poison, stranger
 from links import HOST, Faults
 

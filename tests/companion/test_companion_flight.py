@@ -27,8 +27,7 @@ from camera import (
     without_ids,
 )
 from companion import PROGRAM, ROOT, is_missing, replay
-from conftest import MakeFleet
-from flights import Fleet, Flight, Plan
+from flights import Fleet, Flight, MakeFleet, Plan
 
 NEAR = 0.35  # three sigmas of the range, about 12 % at 100 m
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")

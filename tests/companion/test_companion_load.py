@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import pytest
 from camera import Obstacle
 from companion import PROGRAM, SANITIZED_KIB, is_missing, replay
-from conftest import MakeFleet
-from flights import FAR_M, Fleet, Flight, Plan
+from flights import FAR_M, Fleet, Flight, MakeFleet, Plan
 
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 

@@ -12,8 +12,7 @@ import pytest
 from autopilot import ALT_M, ARDUPILOT, DO_GO_AROUND, DO_REPOSITION, DO_SET_MODE, LOITER, MODES, PX4, Heard, local_m
 from camera import MAST, Obstacle
 from companion import PROGRAM, is_missing
-from conftest import MakeFleet
-from flights import Fleet, Flight, Plan
+from flights import Fleet, Flight, MakeFleet, Plan
 
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 

@@ -12,8 +12,7 @@ import pytest
 from autopilot import ARDUPILOT
 from camera import Obstacle
 from companion import PROGRAM, is_missing, replay
-from conftest import MakeFleet
-from flights import Fleet, Flight, Plan
+from flights import Fleet, Flight, MakeFleet, Plan
 
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 
