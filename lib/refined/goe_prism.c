@@ -35,7 +35,7 @@
 #define DEPTH_UNSEEN 3.0f      /* one sigma of c: a factor of 20 in depth, from a plate to a wall seen end-on */
 #define DISC_FREEDOM 1.0e-3f   /* both, where a disc is asked for */
 #define GROUND_MIN 1.0e-6f     /* one sigma of the ground's offset, units of Z0 */
-#define SIZE_MIN 1.0e-12f      /* of a box, angular: a smaller one tells no range */
+#define BOX_SIZE_MIN 1.0e-12f  /* of a box, angular: a smaller one tells no range */
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == GOE_BOX_SIDES * sizeof(goe_side_memory_t),
                   every_side_has_a_memory);
@@ -393,7 +393,7 @@ static float first_range_m(const goe_observation_t *obs, float size, const goe_p
     const bool grounded =
         foot->usable && foot->y > GROUND_SIGMAS * foot_sd && obs->steady_height_m > GROUND_SIGMAS * height_sd_m(obs);
     return grounded ? obs->steady_height_m / foot->y * (1.0f + NEAR_SIDE * size)
-                    : s->refined.typical_size_m / goe_larger(size, SIZE_MIN);
+                    : s->refined.typical_size_m / goe_larger(size, BOX_SIZE_MIN);
 }
 
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {

@@ -59,6 +59,20 @@
 #undef FALSE
 #define FALSE (a macro of somebody else
 
+/* NuttX's limits.h, which its stdint.h reads */
+#undef SIZE_MIN
+#define SIZE_MIN (a macro of somebody else
+#undef SSIZE_MIN
+#define SSIZE_MIN (a macro of somebody else
+#undef SSIZE_MAX
+#define SSIZE_MAX (a macro of somebody else
+#undef PTR_MIN
+#define PTR_MIN (a macro of somebody else
+#undef PTR_MAX
+#define PTR_MAX (a macro of somebody else
+#undef RSIZE_MAX
+#define RSIZE_MAX (a macro of somebody else
+
 /* PX4 and its drivers */
 #undef PX4_OK
 #define PX4_OK (a macro of somebody else
