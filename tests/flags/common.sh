@@ -10,11 +10,11 @@ trap 'rm -rf "$scratch"' EXIT
 # shellcheck disable=SC2034
 mapfile -t library_sources < <(find "$root/lib" -name '*.c' | sort)
 
-# The same with the flight layer and its MAVLink messages, which obey the same rules; they compile with "${all_includes[@]}".
+# The same with the flight layer, its MAVLink messages and the square root of the ports, which obey the same rules; they compile with "${all_includes[@]}".
 # shellcheck disable=SC2034
-mapfile -t all_sources < <(find "$root/lib" "$root/port/flight" "$root/port/mavlink" -name '*.c' | sort)
+mapfile -t all_sources < <(find "$root/lib" "$root/port/flight" "$root/port/mavlink" "$root/port/sqrtf" -name '*.c' | sort)
 # shellcheck disable=SC2034
-all_includes=(-I"$root/lib" -I"$root/port/flight" -I"$root/port/mavlink")
+all_includes=(-I"$root/lib" -I"$root/port/flight" -I"$root/port/mavlink" -I"$root/port/sqrtf")
 
 # The host compilers that are installed.
 compilers() {
