@@ -1,0 +1,18 @@
+# Stands in for apps/Application.mk of NuttX: see Make.defs. Each program of PROGNAME is linked from the MAINSRC of the same place and
+# all of CSRCS; flags of a file are those of <path as make found it>_CFLAGS.
+
+VPATH += :.
+OBJS = $(CSRCS:.c=.o)
+compile = $(CC) -c $(CFLAGS) $($(strip $<)_CFLAGS) $< -o $@
+
+all: $(PROGNAME)
+	@test -n "$(PRIORITY)" && test -n "$(STACKSIZE)"
+
+%.o: %.c
+	$(compile)
+
+define program
+$(word $(1),$(PROGNAME)): $(patsubst %.c,%.o,$(word $(1),$(MAINSRC))) $(OBJS)
+	$(CC) $(STAND_IN_CFLAGS) $$^ -o $$@ -lm -lpthread
+endef
+$(foreach number,$(shell seq $(words $(PROGNAME))),$(eval $(call program,$(number))))
