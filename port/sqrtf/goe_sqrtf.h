@@ -6,8 +6,8 @@
 #define GOE_SQRTF_H
 
 /* As IEEE 754 asks, in round to nearest: NaN of NaN and of numbers below 0, -0 of -0, infinity of infinity. By the processor's
- * instruction where the compiler says that there is one (compile with -fno-math-errno), otherwise in integers, at most 420
- * instructions of a Cortex-M. */
+ * instruction where the compiler says that there is one (compile with -fno-math-errno), otherwise in integers, bit
+ * by bit: 172 bytes of code on a Cortex-M3 (gcc 12.2.1, -Os). */
 float goe_sqrtf(float square);
 
 #endif

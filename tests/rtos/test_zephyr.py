@@ -83,7 +83,7 @@ def said_by(page: Path) -> list[str]:
 
 
 def assert_said(page: Path, text: str) -> None:
-    lines = iter(text.splitlines())
+    lines = iter(line.strip() for line in text.splitlines())  # as twister does
     for pattern in said_by(page):
         assert any(re.search(pattern, line) for line in lines), f"{pattern} is missing, or in another order, in\n{text}"
 
