@@ -1,0 +1,147 @@
+//! The estimator of one obstacle.
+
+use core::ffi::c_char;
+use core::mem::{size_of, MaybeUninit};
+use core::{fmt, ptr};
+
+use crate::ffi;
+use crate::settings::bad_setting;
+#[cfg(not(feature = "hazard"))]
+use crate::Error;
+#[cfg(feature = "hazard")]
+use crate::{Error, Hazard, Plan};
+use crate::{Estimate, Fault, Image, Settings};
+
+/// Follows one obstacle. It is all the memory there is (at most 2,904 bytes), may lie anywhere and be moved or copied.
+#[derive(Clone)]
+#[repr(transparent)]
+pub struct Estimator {
+    c: ffi::goe_estimator_t,
+}
+
+/// Quantities of [`Estimator::covariance`], in this order: X0, Z0 in m, orientation in degrees, width, length, height in m.
+pub const QUANTITIES: usize = ffi::GOE_QUANTITIES;
+
+impl Estimator {
+    /// Checks the settings, copies them and starts with an empty track and zeroed counters.
+    ///
+    /// # Errors
+    /// [`Error::BadSetting`] with the name of the first setting that is outside its range, or asks for a method that was left out.
+    pub fn new(settings: &Settings) -> Result<Self, Error> {
+        let mut place = MaybeUninit::uninit();
+        Self::start(&mut place, settings)?;
+        // SAFETY: it has been started.
+        Ok(unsafe { place.assume_init() })
+    }
+
+    /// The same in memory that is there already, without a copy on the stack.
+    ///
+    /// ```
+    /// use core::mem::MaybeUninit;
+    /// let settings = goe::Settings::for_camera(914.0, 914.0, 640.0, 640.0);
+    /// let mut place = MaybeUninit::uninit();
+    /// let tower: &mut goe::Estimator = goe::Estimator::new_in(&mut place, &settings)?;
+    /// # tower.reset();
+    /// # Ok::<(), goe::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`Estimator::new`].
+    pub fn new_in<'a>(place: &'a mut MaybeUninit<Self>, settings: &Settings) -> Result<&'a mut Self, Error> {
+        Self::start(place, settings)?;
+        // SAFETY: it has been started.
+        Ok(unsafe { place.assume_init_mut() })
+    }
+
+    fn start(place: &mut MaybeUninit<Self>, settings: &Settings) -> Result<(), Error> {
+        let settings = settings.to_c();
+        let mut bad: *const c_char = ptr::null();
+        // SAFETY: the pointers are to places of the right types, and the size is that of the first.
+        let status = unsafe {
+            ffi::goe_init(
+                place.as_mut_ptr().cast(),
+                size_of::<ffi::goe_estimator_t>(),
+                &settings,
+                &mut bad,
+            )
+        };
+        if status == ffi::GOE_OK {
+            Ok(())
+        } else {
+            Err(bad_setting(bad))
+        }
+    }
+
+    /// Takes one image, also one in which nothing is seen, and tells what is known after it.
+    ///
+    /// # Errors
+    /// [`Fault`]: the image gave no new solution; it carries the last good estimate, and [`Status`](crate::Status) tells why.
+    pub fn update(&mut self, image: &Image) -> Result<Estimate, Fault> {
+        let image = image.to_c();
+        let mut answer = MaybeUninit::<ffi::goe_estimate_t>::zeroed();
+        // SAFETY: zeros are a goe_estimate_t, which the call writes whole; the estimator is a started one.
+        let (status, answer) = unsafe {
+            let status = ffi::goe_update(&mut self.c, &image, answer.as_mut_ptr());
+            (status, answer.assume_init())
+        };
+        let estimate = Estimate::of(status, &answer);
+        if status < 0 {
+            Err(Fault { estimate })
+        } else {
+            Ok(estimate)
+        }
+    }
+
+    /// Covariance of the latest estimate, by [`QUANTITIES`]; `None`: there is no position. Rows and columns of what is not valid are
+    /// 0.
+    #[must_use]
+    pub fn covariance(&self) -> Option<[[f32; QUANTITIES]; QUANTITIES]> {
+        let mut covariance = [[0.0; QUANTITIES]; QUANTITIES];
+        // SAFETY: the place is of the right size, the estimator a started one.
+        let status = unsafe { ffi::goe_covariance(&self.c, &mut covariance) };
+        (status == ffi::GOE_OK).then_some(covariance)
+    }
+
+    /// Closest approach to the obstacle of the latest estimate, stale or not, suspect or not.
+    ///
+    /// # Errors
+    /// [`Error::NoPosition`], which does not mean that it is safe; [`Error::NotFinite`] and [`Error::OutOfRange`] of the plan.
+    #[cfg(feature = "hazard")]
+    pub fn hazard(&self, plan: &Plan) -> Result<Hazard, Error> {
+        let plan = plan.to_c();
+        let mut hazard = MaybeUninit::<ffi::goe_hazard_t>::zeroed();
+        // SAFETY: zeros are a goe_hazard_t, which the call writes whole; the estimator is a started one.
+        let (status, hazard) = unsafe {
+            let status = ffi::goe_hazard(&self.c, &plan, hazard.as_mut_ptr());
+            (status, hazard.assume_init())
+        };
+        match status {
+            ffi::GOE_OK => Ok(Hazard::of(&hazard)),
+            ffi::GOE_NOT_FINITE => Err(Error::NotFinite),
+            ffi::GOE_OUT_OF_RANGE => Err(Error::OutOfRange),
+            _ => Err(Error::NoPosition),
+        }
+    }
+
+    /// Forgets the track; keeps settings and counters. For another obstacle, or a new view of the same one.
+    pub fn reset(&mut self) {
+        // SAFETY: the estimator is a started one, so that the call cannot fail.
+        unsafe { ffi::goe_reset(&mut self.c) };
+    }
+
+    /// Faults so far, for the flight log: `[-code]` of each [`Status`](crate::Status) from -1 to -13, `[0]` the tracks that a filter
+    /// reset of unknown size ended. They saturate.
+    #[must_use]
+    pub fn causes(&self) -> [u32; ffi::GOE_CAUSES] {
+        // SAFETY: the call returns the address of a field of the estimator.
+        unsafe { *ffi::goe_rust_causes(&self.c) }
+    }
+}
+
+impl fmt::Debug for Estimator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Estimator")
+            .field("causes", &self.causes())
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,818 @@
+//! The layer between a detector, an autopilot and the estimators: poses of the exposures, clocks, resets, a table of obstacles,
+//! hazards from now on, what to do. `port/flight/goe_flight.h` is its manual.
+
+use core::ffi::{c_char, c_int};
+use core::mem::{size_of, MaybeUninit};
+use core::num::NonZeroU32;
+use core::{fmt, ptr};
+
+use crate::ffi;
+use crate::image::pixel_to_c;
+use crate::settings::bad_setting;
+use crate::{BoundingBox, Error, Hazard, Length, Model, Pixel, Pose, Settings};
+
+/// Obstacles that are followed at a time.
+pub const SLOTS: usize = ffi::GOE_FLIGHT_SLOTS;
+/// Sectors of [`Flight::sectors`], 5 degrees each, the first centred on north.
+pub const SECTORS: usize = ffi::GOE_FLIGHT_SECTORS;
+/// Most detections that [`Flight::frame`] takes at once.
+pub const DETECTIONS: usize = ffi::GOE_FLIGHT_DETECTIONS;
+
+/// Settings of the layer, beside those of the estimators.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlightSettings {
+    /// A detection of less is not looked at; 0 to 1; default 0.3.
+    pub score_min: f32,
+    /// Images that a new obstacle must be seen in before it is followed; 1 to 20; default 3.
+    pub confirm_images: f32,
+    /// Without a frame for this long the detector counts as dead, s; 0.05 to 60; default 1.
+    pub alive_s: f32,
+    /// An obstacle that was not seen for this long is given up, s; 1 to 600; default 10.
+    pub forget_s: f32,
+    /// Least time from sending to arrival, s; 0 to 0.5; default 0.005.
+    pub delay_s: f32,
+    /// Its one sigma, and that of any capture time whose sender tells none, s; 0 to 0.5; default 0.005.
+    pub delay_sd_s: f32,
+    /// A frame that comes later after its exposure is refused, s; 0.02 to 0.5; default 0.4.
+    pub delay_max_s: f32,
+    /// How the autopilot tells resets: 0 by counters (PX4), 1 by times (ArduPilot); default 0.
+    pub resets: f32,
+    /// One sigma of the range finder, m; 0.001 to 100; default 0.3.
+    pub range_finder_sd_m: f32,
+    /// The highest that it is believed at, m; 0 to 1000; default 40.
+    pub range_finder_max_m: f32,
+    /// One sigma of the terrain's height, m; 0.001 to 1000; default 3.
+    pub terrain_sd_m: f32,
+    /// One sigma of the height over home, m; 0.001 to 1000; default 5.
+    pub home_sd_m: f32,
+    /// Wanted to the outline, horizontally, m; 0 to 1000; default 15.
+    pub margin_m: f32,
+    /// Wanted over the top, m; 0 to 1000; default 10.
+    pub clearance_m: f32,
+    /// Probability of violating both from which on there is a reaction; 0.001 to 1; default 0.1.
+    pub violation_max: f32,
+    /// Factor on margin and clearance while the estimate is suspect; 1 to 10; default 1.5.
+    pub doubt: f32,
+    /// By which both grow while the estimate is not renewed, m/s; 0 to 100; default 1.
+    pub drift_m_s: f32,
+    /// Bank of an avoiding turn, degrees; 5 to 70; default 30.
+    pub bank_deg: f32,
+    /// From the order to that turn, s; 0 to 20; default 1.5.
+    pub roll_in_s: f32,
+    /// Rate of an avoiding climb, m/s; 0.1 to 50; default 2.5.
+    pub climb_m_s: f32,
+    /// From the order to that climb, s; 0 to 20; default 2.
+    pub climb_in_s: f32,
+    /// Radius of the circle that the autopilot flies about a point, m; 0: it flies through; up to 1e4; default 0.
+    pub loiter_m: f32,
+    /// An order comes this much before its last moment, s; 0 to 60; default 3.
+    pub reserve_s: f32,
+    /// The hazard must stay for this long before an order, s; 0 to 10; default 0.3.
+    pub confirm_s: f32,
+    /// ... and its end before the order is taken back, s; 0 to 60; default 2.
+    pub hold_s: f32,
+}
+
+impl Default for FlightSettings {
+    fn default() -> Self {
+        let mut settings = MaybeUninit::<Self>::zeroed();
+        // SAFETY: the call writes every field, and they are all numbers.
+        unsafe {
+            ffi::goe_flight_settings_default(settings.as_mut_ptr());
+            settings.assume_init()
+        }
+    }
+}
+
+/// A sample of the attitude.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attitude {
+    /// Of the sample itself, not of its arrival; the autopilot's clock, microseconds; it may wrap.
+    pub time_us: u32,
+    /// Quaternion w, x, y, z; its norm is 1 within 1 %.
+    pub q: [f32; 4],
+    /// Changes with every reset of attitude or heading, which ends all tracks.
+    pub reset: u32,
+}
+
+/// A place on the earth, degrees times 1e7.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LatLon {
+    /// Latitude.
+    pub lat_e7: i32,
+    /// Longitude.
+    pub lon_e7: i32,
+}
+
+/// Heights of the vehicle's reference point above the ground, m; each ±1e5. The first one that is known and believed counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Heights {
+    /// By a range finder.
+    pub range_finder_m: Option<f32>,
+    /// By a map of the terrain.
+    pub terrain_m: Option<f32>,
+    /// Over home.
+    pub home_m: Option<f32>,
+}
+
+/// A sample of the position.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PositionSample {
+    /// Of the sample itself; the autopilot's clock, microseconds; it may wrap.
+    pub time_us: u32,
+    /// The vehicle's reference point in north, east, down, m; each ±1e6.
+    pub position_ned_m: [f32; 3],
+    /// Over the ground, m/s; each ±1e3.
+    pub velocity_ned_m_s: [f32; 3],
+    /// Heights above the ground.
+    pub heights: Heights,
+    /// The origin of north, east, down, if it is known.
+    pub origin: Option<LatLon>,
+    /// Changes with every reset of north and east.
+    pub reset_horizontal: u32,
+    /// Changes with every reset of down.
+    pub reset_vertical: u32,
+    /// New minus old of the latest reset of each, m. `None`: any reset ends all tracks.
+    pub reset_delta_ned_m: Option<[f32; 3]>,
+}
+
+impl PositionSample {
+    fn to_c(self) -> ffi::goe_flight_position_t {
+        let heights = [self.heights.range_finder_m, self.heights.terrain_m, self.heights.home_m];
+        let origin = self.origin.unwrap_or(LatLon { lat_e7: 0, lon_e7: 0 });
+        ffi::goe_flight_position_t {
+            time_us: self.time_us,
+            position_ned_m: self.position_ned_m,
+            velocity_ned_m_s: self.velocity_ned_m_s,
+            height_m: heights.map(Option::unwrap_or_default),
+            height_valid: (0..3).fold(0, |bits, i| bits | u8::from(heights[i].is_some()) << i),
+            origin_known: self.origin.is_some(),
+            origin_lat_e7: origin.lat_e7,
+            origin_lon_e7: origin.lon_e7,
+            reset_horizontal: self.reset_horizontal,
+            reset_vertical: self.reset_vertical,
+            reset_delta_known: self.reset_delta_ned_m.is_some(),
+            reset_delta_ned_m: self.reset_delta_ned_m.unwrap_or_default(),
+        }
+    }
+}
+
+/// One obstacle in one image.
+///
+/// ```
+/// use goe::flight::Detection;
+/// use goe::BoundingBox;
+/// let tower = Detection::new(0.9).with_id(7).with_box(BoundingBox::new(600.0, 400.0, 640.0, 700.0));
+/// # let _ = tower;
+/// ```
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Detection {
+    c: ffi::goe_flight_detection_t,
+}
+
+/// A point of a [`Detection`], as of [`Image`](crate::Image).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Point {
+    /// Leftmost point of the silhouette.
+    Left,
+    /// Rightmost point of the silhouette.
+    Right,
+    /// Top of the silhouette.
+    Top,
+    /// Left corner of the base.
+    BaseLeft,
+    /// Corner of the base between two visible faces.
+    BaseNear,
+    /// Right corner of the base.
+    BaseRight,
+}
+
+impl Detection {
+    /// A detection of this score, 0 to 1, without id, box or points.
+    #[must_use]
+    pub fn new(score: f32) -> Self {
+        let unseen = pixel_to_c(None);
+        Self {
+            c: ffi::goe_flight_detection_t {
+                id: 0,
+                score,
+                pixel_px: 0.0,
+                box_: BoundingBox::default().to_c(),
+                left: unseen,
+                right: unseen,
+                top: unseen,
+                base_left: unseen,
+                base_near: unseen,
+                base_right: unseen,
+            },
+        }
+    }
+
+    /// The id that the detector's tracker has for it; 0: none, and the place in the image decides.
+    #[must_use]
+    pub fn with_id(mut self, id: u32) -> Self {
+        self.c.id = id;
+        self
+    }
+
+    /// One sigma of box and points, px, instead of the settings'; up to 100.
+    #[must_use]
+    pub fn with_pixel_px(mut self, sd_px: f32) -> Self {
+        self.c.pixel_px = sd_px;
+        self
+    }
+
+    /// Its box in raw pixels: all four sides, also at the image's border.
+    #[must_use]
+    pub fn with_box(mut self, bounding_box: BoundingBox) -> Self {
+        self.c.box_ = bounding_box.to_c();
+        self
+    }
+
+    /// One of its points in raw pixels.
+    #[must_use]
+    pub fn with_point(mut self, point: Point, at: Pixel) -> Self {
+        let place = match point {
+            Point::Left => &mut self.c.left,
+            Point::Right => &mut self.c.right,
+            Point::Top => &mut self.c.top,
+            Point::BaseLeft => &mut self.c.base_left,
+            Point::BaseNear => &mut self.c.base_near,
+            Point::BaseRight => &mut self.c.base_right,
+        };
+        *place = pixel_to_c(Some(at));
+        self
+    }
+}
+
+/// When an image was taken, the middle of its exposure, microseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Capture {
+    /// By the autopilot's clock.
+    Autopilot {
+        /// The exposure.
+        capture_us: u32,
+    },
+    /// By the sender's clock, which the layer compares with the arrivals, or [`Flight::timesync`] knows.
+    Sender {
+        /// The exposure.
+        capture_us: u32,
+        /// When it was sent; `capture_us` if that is not known.
+        sent_us: u32,
+    },
+    /// By the age of the image when it was sent.
+    Age {
+        /// The age.
+        age_us: u32,
+    },
+}
+
+/// The detections of one image.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Autopilot's clock, microseconds.
+    pub arrival_us: u32,
+    /// When it was taken.
+    pub capture: Capture,
+    /// One sigma of that, microseconds; `None`: [`FlightSettings::delay_sd_s`].
+    pub time_sd_us: Option<NonZeroU32>,
+    /// Of detections in the whole image: of all calls with the same capture, if one has not room for them. 0: nothing in view, which
+    /// tells that the detector is alive.
+    pub number: u8,
+    /// Those of this call; at most [`DETECTIONS`].
+    pub detections: &'a [Detection],
+}
+
+impl<'a> Frame<'a> {
+    /// All the detections of an image; more than 255 cannot be told.
+    #[must_use]
+    pub fn new(arrival_us: u32, capture: Capture, detections: &'a [Detection]) -> Self {
+        Self {
+            arrival_us,
+            capture,
+            time_sd_us: None,
+            number: u8::try_from(detections.len()).unwrap_or(u8::MAX),
+            detections,
+        }
+    }
+
+    fn to_c(self) -> ffi::goe_flight_frame_t {
+        let (time_base, capture_us, sent_us) = match self.capture {
+            Capture::Autopilot { capture_us } => (ffi::GOE_FLIGHT_AUTOPILOT_CLOCK, capture_us, 0),
+            Capture::Sender { capture_us, sent_us } => (ffi::GOE_FLIGHT_SENDER_CLOCK, capture_us, sent_us),
+            Capture::Age { age_us } => (ffi::GOE_FLIGHT_AGE, age_us, 0),
+        };
+        ffi::goe_flight_frame_t {
+            arrival_us: self.arrival_us,
+            capture_us,
+            sent_us,
+            time_sd_us: self.time_sd_us.map_or(0, NonZeroU32::get),
+            time_base,
+            camera: 0,
+            number: self.number,
+            count: u8::try_from(self.detections.len()).unwrap_or(u8::MAX), // more than 32 are refused
+            detection: self.detections.as_ptr().cast(),
+        }
+    }
+}
+
+/// Why a call of the layer took nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum FlightError {
+    /// No pose so new yet: keep the frame and ask again after the next sample.
+    TooNew,
+    /// Older than the history or `delay_max_s`, or in a gap of the samples: drop the frame.
+    TooOld,
+    /// No sample of attitude or position since the start or the latest unknown reset.
+    NoPose,
+    /// A sample that is not newer than the one before it.
+    BadTime,
+    /// A number is a NaN or an infinity.
+    NotFinite,
+    /// A number is outside its range.
+    OutOfRange,
+    /// The quaternion's norm is off 1 by more than 1 %.
+    BadAttitude,
+    /// No obstacle in this slot.
+    Nothing,
+}
+
+impl FlightError {
+    fn of(status: ffi::goe_flight_status_t) -> Self {
+        match status {
+            ffi::GOE_FLIGHT_TOO_NEW => Self::TooNew,
+            ffi::GOE_FLIGHT_TOO_OLD => Self::TooOld,
+            ffi::GOE_FLIGHT_NO_POSE => Self::NoPose,
+            ffi::GOE_FLIGHT_BAD_TIME => Self::BadTime,
+            ffi::GOE_FLIGHT_NOT_FINITE => Self::NotFinite,
+            ffi::GOE_FLIGHT_BAD_ATTITUDE => Self::BadAttitude,
+            ffi::GOE_FLIGHT_NOTHING => Self::Nothing,
+            _ => Self::OutOfRange,
+        }
+    }
+
+    /// The number that C has for it.
+    #[must_use]
+    pub fn code(self) -> i32 {
+        match self {
+            Self::TooNew => ffi::GOE_FLIGHT_TOO_NEW,
+            Self::TooOld => ffi::GOE_FLIGHT_TOO_OLD,
+            Self::NoPose => ffi::GOE_FLIGHT_NO_POSE,
+            Self::BadTime => ffi::GOE_FLIGHT_BAD_TIME,
+            Self::NotFinite => ffi::GOE_FLIGHT_NOT_FINITE,
+            Self::OutOfRange => ffi::GOE_FLIGHT_OUT_OF_RANGE,
+            Self::BadAttitude => ffi::GOE_FLIGHT_BAD_ATTITUDE,
+            Self::Nothing => ffi::GOE_FLIGHT_NOTHING,
+        }
+    }
+}
+
+impl fmt::Display for FlightError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TooNew => "no pose so new yet",
+            Self::TooOld => "too old",
+            Self::NoPose => "no pose yet",
+            Self::BadTime => "not newer than the sample before",
+            Self::NotFinite => "a number is not finite",
+            Self::OutOfRange => "a number is out of range",
+            Self::BadAttitude => "the quaternion's norm is not 1",
+            Self::Nothing => "no such obstacle",
+        })
+    }
+}
+
+impl core::error::Error for FlightError {}
+
+/// What to do about the worst obstacle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Action {
+    /// Fly on.
+    None,
+    /// Fly to the target, which lies left of the obstacle as seen on the course.
+    Left,
+    /// ... right of it.
+    Right,
+    /// Straight on, up to the target.
+    Climb,
+    /// Break off the approach.
+    GoAround,
+    /// Turn away, to the target before the obstacle, and loiter.
+    Hold,
+}
+
+impl Action {
+    fn of(action: ffi::goe_flight_action_t) -> Self {
+        match action {
+            ffi::GOE_FLIGHT_LEFT => Self::Left,
+            ffi::GOE_FLIGHT_RIGHT => Self::Right,
+            ffi::GOE_FLIGHT_CLIMB => Self::Climb,
+            ffi::GOE_FLIGHT_GO_AROUND => Self::GoAround,
+            ffi::GOE_FLIGHT_HOLD => Self::Hold,
+            _ => Self::None,
+        }
+    }
+
+    fn code(self) -> ffi::goe_flight_action_t {
+        match self {
+            Self::None => ffi::GOE_FLIGHT_NONE,
+            Self::Left => ffi::GOE_FLIGHT_LEFT,
+            Self::Right => ffi::GOE_FLIGHT_RIGHT,
+            Self::Climb => ffi::GOE_FLIGHT_CLIMB,
+            Self::GoAround => ffi::GOE_FLIGHT_GO_AROUND,
+            Self::Hold => ffi::GOE_FLIGHT_HOLD,
+        }
+    }
+}
+
+impl fmt::Display for Action {
+    /// The library's short name: `left`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // SAFETY: the library returns a string constant of its own, never null.
+        let name = unsafe { core::ffi::CStr::from_ptr(ffi::goe_flight_action_text(self.code())) };
+        f.write_str(name.to_str().unwrap_or("unknown"))
+    }
+}
+
+/// What [`Flight::assess`] finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assessment {
+    /// What to do.
+    pub action: Action,
+    /// The action needs longer than there is: it may not suffice.
+    pub late: bool,
+    /// The worst obstacle's estimate is suspect: margins were widened.
+    pub suspect: bool,
+    /// A frame came in time.
+    pub detector_alive: bool,
+    /// Samples of attitude and position came within 0.5 s.
+    pub pose_alive: bool,
+    /// Slot of the worst obstacle, for [`Flight::obstacle`]. `None` is "clear" only if detector and pose are alive.
+    pub worst: Option<usize>,
+    /// Slot of the obstacle that the action is about, unless it was given up.
+    pub avoided: Option<usize>,
+    /// Obstacles with a position.
+    pub obstacles: u8,
+    /// Time that the action needs, or the best one would, s.
+    pub needed_s: f32,
+    /// Where to, north, east, down, m; `None` without an action.
+    pub target_ned_m: Option<[f32; 3]>,
+    /// The same on the earth, if the origin is known.
+    pub target: Option<LatLon>,
+    /// Of the worst obstacle, from now.
+    pub hazard: Option<Hazard>,
+}
+
+fn slot(number: i8) -> Option<usize> {
+    usize::try_from(number).ok()
+}
+
+fn place(lat_e7: i32, lon_e7: i32) -> Option<LatLon> {
+    (lat_e7 != 0 || lon_e7 != 0).then_some(LatLon { lat_e7, lon_e7 })
+}
+
+impl Assessment {
+    fn of(c: &ffi::goe_flight_assessment_t) -> Self {
+        let action = Action::of(c.action);
+        let worst = slot(c.worst);
+        Self {
+            action,
+            late: c.late,
+            suspect: c.suspect,
+            detector_alive: c.detector_alive,
+            pose_alive: c.pose_alive,
+            worst,
+            avoided: slot(c.avoided),
+            obstacles: c.obstacles,
+            needed_s: c.needed_s,
+            target_ned_m: (action != Action::None).then_some(c.target_ned_m),
+            target: place(c.target_lat_e7, c.target_lon_e7),
+            hazard: worst.map(|_| Hazard::of(&c.hazard)),
+        }
+    }
+}
+
+/// Where an obstacle is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Middle of the base as far as it is seen; down: of its ground; m.
+    pub center_ned_m: [f32; 3],
+    /// Covariance of that: north north, north east, east east, m².
+    pub covariance_ne_m2: [f32; 3],
+    /// Of the circle about the centre that holds the outline, m.
+    pub radius_m: f32,
+    /// Of the circle, what is nearest to the aircraft, m.
+    pub nearest_ned_m: [f32; 3],
+    /// The same relative to the aircraft: forward, right, down, m.
+    pub nearest_body_m: [f32; 3],
+    /// The centre on the earth, if the origin is known.
+    pub center: Option<LatLon>,
+}
+
+/// One obstacle of the table. What is not known is `None`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Obstacle {
+    /// The detector's id; 0: it has none.
+    pub id: u32,
+    /// The shape.
+    pub model: Option<Model>,
+    /// Its sigmas may be too small.
+    pub suspect: bool,
+    /// On the present course its distance grows.
+    pub passed: bool,
+    /// Seen in the latest image.
+    pub in_view: bool,
+    /// It moves, and is followed.
+    pub moves: bool,
+    /// Since it was last measured, from the latest assessment, s.
+    pub age_s: f32,
+    /// Where it is.
+    pub place: Option<Place>,
+    /// Of its top above the ground.
+    pub height: Option<Length>,
+    /// Disc: diameter; box: the front edge; m.
+    pub width_m: Option<f32>,
+    /// The side edge, m.
+    pub length_m: Option<f32>,
+    /// Of the length axis, clockwise from north, degrees, 0 to 180.
+    pub length_heading_deg: Option<f32>,
+    /// From the latest assessment on.
+    pub hazard: Option<Hazard>,
+}
+
+impl Obstacle {
+    fn of(c: &ffi::goe_flight_obstacle_t) -> Self {
+        let has = |bit| c.valid & bit != 0;
+        Self {
+            id: c.id,
+            model: Model::of(c.model),
+            suspect: c.suspect,
+            passed: c.passed,
+            in_view: c.in_view,
+            moves: has(ffi::GOE_HAS_VELOCITY),
+            age_s: c.age_s,
+            place: has(ffi::GOE_HAS_POSITION).then(|| Place {
+                center_ned_m: c.center_ned_m,
+                covariance_ne_m2: c.covariance_ne_m2,
+                radius_m: c.radius_m,
+                nearest_ned_m: c.nearest_ned_m,
+                nearest_body_m: c.nearest_body_m,
+                center: place(c.lat_e7, c.lon_e7),
+            }),
+            height: has(ffi::GOE_HAS_HEIGHT).then_some(Length {
+                m: c.height_m,
+                sd_m: c.height_sd_m,
+            }),
+            width_m: has(ffi::GOE_HAS_WIDTH).then_some(c.width_m),
+            length_m: has(ffi::GOE_HAS_LENGTH).then_some(c.length_m),
+            length_heading_deg: has(ffi::GOE_HAS_ORIENTATION).then_some(c.length_heading_deg),
+            hazard: c.has_hazard.then(|| Hazard::of(&c.hazard)),
+        }
+    }
+}
+
+/// What one sector holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Sector {
+    /// Outside the view of a detector that is alive, or the pose is dead. Not the same as clear.
+    Unknown,
+    /// Nothing there as far as the camera sees.
+    Clear,
+    /// The nearest obstacle, cm.
+    Nearest {
+        /// Its distance, cm.
+        cm: u16,
+    },
+}
+
+/// Counted since [`Flight::new`]; they saturate.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Frames.
+    pub taken: u16,
+    /// Frames that came too late for the history.
+    pub late: u16,
+    /// Calls that were answered by [`FlightError::TooNew`].
+    pub early: u16,
+    /// Samples, frames or detections that were not finite or out of range.
+    pub refused: u16,
+    /// Detections below `score_min`.
+    pub weak: u16,
+    /// Tracks that took over a new id.
+    pub renumbered: u16,
+    /// Tracks given up for a new obstacle.
+    pub evicted: u16,
+    /// Confirmed detections that found no slot.
+    pub full: u16,
+    /// Known jumps.
+    pub resets: u16,
+    /// Unknown resets and restarts: all tracks ended.
+    pub lost: u16,
+}
+
+/// The pose at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseAt {
+    /// The pose.
+    pub pose: Pose,
+    /// One sigma of its attitude, degrees.
+    pub attitude_sd_deg: f32,
+}
+
+/// The flight layer. It is all the memory there is (13,760 bytes with all parts), may lie anywhere and be moved or copied.
+#[derive(Clone)]
+#[repr(transparent)]
+pub struct Flight {
+    c: ffi::goe_flight_t,
+}
+
+fn taken(status: ffi::goe_flight_status_t) -> Result<(), FlightError> {
+    if status == ffi::GOE_FLIGHT_OK {
+        Ok(())
+    } else {
+        Err(FlightError::of(status))
+    }
+}
+
+impl Flight {
+    /// Checks both settings, copies them, starts with nothing known. The camera's `width_px` and `height_px` must be set.
+    ///
+    /// # Errors
+    /// [`Error::BadSetting`] with the name of the first setting that is outside its range.
+    pub fn new(estimator: &Settings, settings: &FlightSettings) -> Result<Self, Error> {
+        let mut place = MaybeUninit::uninit();
+        Self::start(&mut place, estimator, settings)?;
+        // SAFETY: it has been started.
+        Ok(unsafe { place.assume_init() })
+    }
+
+    /// The same in memory that is there already, without a copy on the stack.
+    ///
+    /// # Errors
+    /// As of [`Flight::new`].
+    pub fn new_in<'a>(
+        place: &'a mut MaybeUninit<Self>,
+        estimator: &Settings,
+        settings: &FlightSettings,
+    ) -> Result<&'a mut Self, Error> {
+        Self::start(place, estimator, settings)?;
+        // SAFETY: it has been started.
+        Ok(unsafe { place.assume_init_mut() })
+    }
+
+    fn start(place: &mut MaybeUninit<Self>, estimator: &Settings, settings: &FlightSettings) -> Result<(), Error> {
+        let estimator = estimator.to_c();
+        let mut bad: *const c_char = ptr::null();
+        // SAFETY: the pointers are to places of the right types, and the size is that of the first.
+        let status = unsafe {
+            ffi::goe_flight_init(
+                place.as_mut_ptr().cast(),
+                size_of::<ffi::goe_flight_t>(),
+                &estimator,
+                settings,
+                &mut bad,
+            )
+        };
+        if status == ffi::GOE_FLIGHT_OK {
+            Ok(())
+        } else {
+            Err(bad_setting(bad))
+        }
+    }
+
+    /// Takes a sample of the attitude. Samples closer than 20 ms are thinned.
+    ///
+    /// # Errors
+    /// [`FlightError::BadTime`], `NotFinite`, `BadAttitude`.
+    pub fn attitude(&mut self, sample: &Attitude) -> Result<(), FlightError> {
+        // SAFETY: the layer is a started one.
+        taken(unsafe { ffi::goe_flight_attitude(&mut self.c, sample) })
+    }
+
+    /// Takes a sample of the position. Samples closer than 20 ms are thinned.
+    ///
+    /// # Errors
+    /// [`FlightError::BadTime`], `NotFinite`, `OutOfRange`.
+    pub fn position(&mut self, sample: &PositionSample) -> Result<(), FlightError> {
+        let sample = sample.to_c();
+        // SAFETY: the layer is a started one.
+        taken(unsafe { ffi::goe_flight_position(&mut self.c, &sample) })
+    }
+
+    /// The pose at a time of the autopilot's clock, whose one sigma is `time_sd_us`, microseconds.
+    ///
+    /// # Errors
+    /// [`FlightError::TooNew`], `TooOld`, `NoPose`.
+    pub fn pose(&self, time_us: u32, time_sd_us: u32) -> Result<PoseAt, FlightError> {
+        let mut pose = MaybeUninit::<ffi::goe_pose_t>::zeroed();
+        let mut attitude_sd_deg = 0.0;
+        // SAFETY: zeros are a goe_pose_t, which the call writes whole; the layer is a started one.
+        let (status, pose) = unsafe {
+            let status = ffi::goe_flight_pose(&self.c, time_us, time_sd_us, pose.as_mut_ptr(), &mut attitude_sd_deg);
+            (status, pose.assume_init())
+        };
+        taken(status)?;
+        Ok(PoseAt {
+            pose: Pose {
+                time_us: pose.time_us,
+                position_ned_m: pose.position_ned_m,
+                height_m: pose.height_m,
+                attitude: pose.attitude,
+                reset_count: pose.reset_count,
+                reset_delta_ned_m: pose.reset_delta_known.then_some(pose.reset_delta_ned_m),
+            },
+            attitude_sd_deg,
+        })
+    }
+
+    /// The sender's clock from a two-way exchange: autopilot's minus sender's, modulo 2^32, and its one sigma, microseconds; `None`:
+    /// not known any more.
+    pub fn timesync(&mut self, offset: Option<(u32, u32)>) {
+        let (offset_us, sd_us) = offset.unwrap_or((0, u32::MAX));
+        // SAFETY: the layer is a started one, so that the call cannot fail.
+        unsafe { ffi::goe_flight_timesync(&mut self.c, offset_us, sd_us) };
+    }
+
+    /// Takes an image's detections, also of an image in which nothing is seen.
+    ///
+    /// # Errors
+    /// [`FlightError::TooNew`] (keep the frame, ask again after the next sample), `TooOld`, `NoPose`, `OutOfRange`.
+    pub fn frame(&mut self, frame: &Frame<'_>) -> Result<(), FlightError> {
+        let frame = frame.to_c();
+        // SAFETY: the layer is a started one; the frame's pointer is to as many detections as it says, for this call.
+        taken(unsafe { ffi::goe_flight_frame(&mut self.c, &frame) })
+    }
+
+    /// What is ahead from now on, at the velocity of the newest sample, and what to do about it.
+    ///
+    /// `now_us`: the autopilot's clock; `approach`: the aircraft is landing.
+    ///
+    /// # Errors
+    /// [`FlightError::NoPose`]; that is not "clear".
+    pub fn assess(&mut self, now_us: u32, approach: bool) -> Result<Assessment, FlightError> {
+        let mut result = MaybeUninit::<ffi::goe_flight_assessment_t>::zeroed();
+        // SAFETY: zeros are an assessment, which the call writes whole; the layer is a started one.
+        let (status, result) = unsafe {
+            let status = ffi::goe_flight_assess(&mut self.c, now_us, approach, result.as_mut_ptr());
+            (status, result.assume_init())
+        };
+        taken(status).map(|()| Assessment::of(&result))
+    }
+
+    /// One obstacle as of the latest image, with the hazard of the latest assessment. Slots are 0 to [`SLOTS`] - 1.
+    ///
+    /// # Errors
+    /// [`FlightError::Nothing`]: there is none in this slot; `NoPose`: nothing is known of where it is now.
+    pub fn obstacle(&self, slot: usize) -> Result<Obstacle, FlightError> {
+        let slot = c_int::try_from(slot).map_err(|_| FlightError::Nothing)?;
+        let mut obstacle = MaybeUninit::<ffi::goe_flight_obstacle_t>::zeroed();
+        // SAFETY: zeros are an obstacle, which the call writes whole; the layer is a started one.
+        let (status, obstacle) = unsafe {
+            let status = ffi::goe_flight_obstacle(&self.c, slot, obstacle.as_mut_ptr());
+            (status, obstacle.assume_init())
+        };
+        taken(status).map(|()| Obstacle::of(&obstacle))
+    }
+
+    /// Nearest obstacle by bearing: sector i is centred on 5 i degrees from north. `max_cm`: what counts as far away, 1 to 65000.
+    ///
+    /// # Errors
+    /// [`FlightError::NoPose`] (nothing is known), `OutOfRange`.
+    pub fn sectors(&self, max_cm: u16) -> Result<[Sector; SECTORS], FlightError> {
+        let mut sector_cm = [ffi::GOE_FLIGHT_SECTOR_UNKNOWN; SECTORS];
+        // SAFETY: the place is of the right size; the layer is a started one.
+        taken(unsafe { ffi::goe_flight_sectors(&self.c, u32::from(max_cm), &mut sector_cm) })?;
+        Ok(sector_cm.map(|cm| match cm {
+            ffi::GOE_FLIGHT_SECTOR_UNKNOWN => Sector::Unknown,
+            cm if cm > max_cm => Sector::Clear,
+            cm => Sector::Nearest { cm },
+        }))
+    }
+
+    /// Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. After a restart of the autopilot.
+    pub fn restart(&mut self) {
+        // SAFETY: the layer is a started one, so that the call cannot fail.
+        unsafe { ffi::goe_flight_restart(&mut self.c) };
+    }
+
+    /// What was counted so far.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        // SAFETY: the call returns the address of a field of the layer.
+        unsafe { *ffi::goe_rust_counters(&self.c) }
+    }
+}
+
+impl fmt::Debug for Flight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Flight")
+            .field("counters", &self.counters())
+            .finish_non_exhaustive()
+    }
+}

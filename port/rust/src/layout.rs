@@ -1,0 +1,321 @@
+//! Sizes and offsets of what passes between Rust and C, bytes. Here Rust is held against them, in `build.rs` the C compiler, which reads
+//! this file line by line: on every target for which the crate is built.
+
+use core::mem::{offset_of, size_of};
+
+use crate::ffi;
+
+macro_rules! layout {
+    ($($name:ident: $size:literal { $($field:ident: $offset:literal,)+ })+) => {
+        $(
+            const _: () = assert!(size_of::<ffi::$name>() == $size, stringify!($name));
+            $(const _: () = assert!(offset_of!(ffi::$name, $field) == $offset, stringify!($name.$field));)+
+        )+
+    };
+}
+#[cfg(feature = "flight")]
+macro_rules! layout_flight {
+    ($($list:tt)+) => { layout! { $($list)+ } };
+}
+#[cfg(not(feature = "flight"))]
+macro_rules! layout_flight {
+    ($($list:tt)+) => {};
+}
+
+layout! {
+    goe_box_t: 20 {
+        left_px: 0,
+        top_px: 4,
+        right_px: 8,
+        bottom_px: 12,
+        seen: 16,
+    }
+    goe_camera_t: 76 {
+        fx_px: 0,
+        fy_px: 4,
+        cx_px: 8,
+        cy_px: 12,
+        k1: 16,
+        k2: 20,
+        p1: 24,
+        p2: 28,
+        k3: 32,
+        mount_yaw_deg: 36,
+        mount_pitch_deg: 40,
+        mount_roll_deg: 44,
+        offset_m: 48,
+        width_px: 60,
+        height_px: 64,
+        border_share: 68,
+        cut_share: 72,
+    }
+    goe_detector_t: 32 {
+        point_px: 0,
+        point_share: 4,
+        point_correlation: 8,
+        shape_share: 12,
+        box_px: 16,
+        box_share: 20,
+        correlation_s: 24,
+        cut_noise: 28,
+    }
+    goe_estimate_t: 200 {
+        method: 0,
+        model: 4,
+        valid: 8,
+        fresh: 12,
+        suspect: 13,
+        reason: 16,
+        points: 20,
+        age_s: 24,
+        x0_m: 28,
+        z0_m: 32,
+        x_m: 36,
+        z_m: 40,
+        width_m: 44,
+        length_m: 48,
+        height_m: 52,
+        orientation_deg: 56,
+        orientation_raw_deg: 60,
+        other_side_deg: 64,
+        length_axis: 68,
+        width_axis: 76,
+        length_axis_ne: 84,
+        width_axis_ne: 92,
+        trajectory_heading_deg: 100,
+        center_north_m: 104,
+        center_east_m: 108,
+        center_ne_m2: 112,
+        velocity_north_m_s: 116,
+        velocity_east_m_s: 120,
+        latency_s: 124,
+        residual: 128,
+        baseline_m: 132,
+        nis: 136,
+        nis_rows: 140,
+        misfit: 144,
+        sigma: 148,
+    }
+    goe_hazard_t: 32 {
+        time_s: 0,
+        miss_m: 4,
+        clearance_m: 8,
+        time_sd_s: 12,
+        miss_sd_m: 16,
+        clearance_sd_m: 20,
+        violation: 24,
+        has_clearance: 28,
+    }
+    goe_image_noise_t: 12 {
+        attitude_deg: 0,
+        height_m: 4,
+        pixel_px: 8,
+    }
+    goe_image_t: 168 {
+        pose: 0,
+        left: 56,
+        right: 68,
+        top: 80,
+        base_left: 92,
+        base_near: 104,
+        base_right: 116,
+        box_: 128,
+        noise: 148,
+        camera: 160,
+    }
+    goe_navigation_t: 40 {
+        attitude_bias_deg: 0,
+        attitude_white_deg: 4,
+        attitude_drift_deg: 8,
+        height_bias_m: 12,
+        velocity_bias_m_s: 16,
+        position_walk_m: 20,
+        position_white_m: 24,
+        height_white_m: 28,
+        slope: 32,
+        ground_m: 36,
+    }
+    goe_pixel_t: 12 {
+        u_px: 0,
+        v_px: 4,
+        seen: 8,
+    }
+    goe_plan_t: 24 {
+        velocity_ned_m_s: 0,
+        margin_m: 12,
+        clearance_m: 16,
+        since_image_s: 20,
+    }
+    goe_pose_t: 56 {
+        time_us: 0,
+        position_ned_m: 8,
+        height_m: 20,
+        attitude: 24,
+        reset_count: 40,
+        reset_delta_known: 41,
+        reset_delta_ned_m: 44,
+    }
+    goe_refined_settings_t: 24 {
+        typical_size_m: 0,
+        gate_sigma: 4,
+        huber_sigma: 8,
+        misfit_max: 12,
+        range_share: 16,
+        top_is_highest: 20,
+    }
+    goe_settings_t: 216 {
+        camera: 0,
+        method: 76,
+        model: 80,
+        heading_auto: 84,
+        heading_deg: 88,
+        navigation: 92,
+        detector: 132,
+        window: 164,
+        refined: 192,
+    }
+    goe_sigma_t: 52 {
+        x0_m: 0,
+        z0_m: 4,
+        x_m: 8,
+        z_m: 12,
+        width_m: 16,
+        length_m: 20,
+        height_m: 24,
+        orientation_deg: 28,
+        center_north_m: 32,
+        center_east_m: 36,
+        velocity_north_m_s: 40,
+        velocity_east_m_s: 44,
+        latency_s: 48,
+    }
+    goe_window_settings_t: 28 {
+        points: 0,
+        line_points: 4,
+        edge_min_px: 8,
+        orientation_min_px: 12,
+        side_min_px: 16,
+        orientation_memory: 20,
+        min_baseline_m: 24,
+    }
+}
+
+layout_flight! {
+    goe_flight_assessment_t: 68 {
+        action: 0,
+        late: 4,
+        suspect: 5,
+        detector_alive: 6,
+        pose_alive: 7,
+        worst: 8,
+        avoided: 9,
+        obstacles: 10,
+        needed_s: 12,
+        target_ned_m: 16,
+        target_lat_e7: 28,
+        target_lon_e7: 32,
+        hazard: 36,
+    }
+    goe_flight_attitude_t: 24 {
+        time_us: 0,
+        q: 4,
+        reset: 20,
+    }
+    goe_flight_counters_t: 20 {
+        taken: 0,
+        late: 2,
+        early: 4,
+        refused: 6,
+        weak: 8,
+        renumbered: 10,
+        evicted: 12,
+        full: 14,
+        resets: 16,
+        lost: 18,
+    }
+    goe_flight_detection_t: 104 {
+        id: 0,
+        score: 4,
+        pixel_px: 8,
+        box_: 12,
+        left: 32,
+        right: 44,
+        top: 56,
+        base_left: 68,
+        base_near: 80,
+        base_right: 92,
+    }
+    goe_flight_obstacle_t: 132 {
+        id: 0,
+        valid: 4,
+        model: 8,
+        suspect: 12,
+        passed: 13,
+        in_view: 14,
+        has_hazard: 15,
+        age_s: 16,
+        center_ned_m: 20,
+        covariance_ne_m2: 32,
+        radius_m: 44,
+        height_m: 48,
+        height_sd_m: 52,
+        width_m: 56,
+        length_m: 60,
+        length_heading_deg: 64,
+        nearest_ned_m: 68,
+        nearest_body_m: 80,
+        lat_e7: 92,
+        lon_e7: 96,
+        hazard: 100,
+    }
+    goe_flight_position_t: 76 {
+        time_us: 0,
+        position_ned_m: 4,
+        velocity_ned_m_s: 16,
+        height_m: 28,
+        height_valid: 40,
+        origin_known: 41,
+        origin_lat_e7: 44,
+        origin_lon_e7: 48,
+        reset_horizontal: 52,
+        reset_vertical: 56,
+        reset_delta_known: 60,
+        reset_delta_ned_m: 64,
+    }
+    goe_flight_settings_t: 100 {
+        score_min: 0,
+        confirm_images: 4,
+        alive_s: 8,
+        forget_s: 12,
+        delay_s: 16,
+        delay_sd_s: 20,
+        delay_max_s: 24,
+        resets: 28,
+        range_finder_sd_m: 32,
+        range_finder_max_m: 36,
+        terrain_sd_m: 40,
+        home_sd_m: 44,
+        margin_m: 48,
+        clearance_m: 52,
+        violation_max: 56,
+        doubt: 60,
+        drift_m_s: 64,
+        bank_deg: 68,
+        roll_in_s: 72,
+        climb_m_s: 76,
+        climb_in_s: 80,
+        loiter_m: 84,
+        reserve_s: 88,
+        confirm_s: 92,
+        hold_s: 96,
+    }
+}
+
+// With an address in it: shim.c has the same for C.
+#[cfg(feature = "flight")]
+const _: () = {
+    let address = size_of::<usize>();
+    assert!(offset_of!(ffi::goe_flight_frame_t, count) == 19);
+    assert!(offset_of!(ffi::goe_flight_frame_t, detection) == (19 + address) / address * address);
+    assert!(size_of::<ffi::goe_flight_frame_t>() == (19 + address) / address * address + address);
+};

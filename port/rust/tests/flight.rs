@@ -1,0 +1,135 @@
+//! The flight layer: from detections to an order.
+#![cfg(feature = "flight")]
+
+use goe::flight::{
+    Action, Attitude, Capture, Detection, Flight, FlightError, FlightSettings, Frame, Heights, LatLon, PositionSample,
+    Sector, SLOTS,
+};
+use goe::{BoundingBox, Error, Settings};
+
+const SPEED_M_S: f32 = 16.0;
+
+fn settings() -> Settings {
+    let mut settings = Settings::for_camera(914.0, 914.0, 640.0, 640.0);
+    settings.camera.width_px = 1280.0;
+    settings.camera.height_px = 1280.0;
+    settings
+}
+
+fn samples(flight: &mut Flight, time_us: u32, north_m: f32) -> Result<(), FlightError> {
+    flight.attitude(&Attitude {
+        time_us,
+        q: [1.0, 0.0, 0.0, 0.0],
+        reset: 0,
+    })?;
+    flight.position(&PositionSample {
+        time_us,
+        position_ned_m: [north_m, 0.0, -15.0],
+        velocity_ned_m_s: [SPEED_M_S, 0.0, 0.0],
+        heights: Heights {
+            home_m: Some(15.0),
+            ..Heights::default()
+        },
+        origin: Some(LatLon {
+            lat_e7: 474_000_000,
+            lon_e7: 85_000_000,
+        }),
+        ..PositionSample::default()
+    })
+}
+
+fn mast(ahead_m: f32) -> Detection {
+    let px = |across_m: f32| 640.0 + 914.0 * across_m / ahead_m;
+    Detection::new(0.9)
+        .with_id(7)
+        .with_box(BoundingBox::new(px(-3.0), px(-15.0), px(3.0), px(15.0)))
+}
+
+#[test]
+fn an_order_comes_in_time() {
+    let mut flight = Flight::new(&settings(), &FlightSettings::default()).expect("good settings");
+    assert_eq!(flight.assess(0, false), Err(FlightError::NoPose));
+    let start_us = u32::MAX - 2_000_000; // the clock wraps on the way
+    let mut ordered_m = None;
+    for k in 0..400_u16 {
+        let time_us = start_us.wrapping_add(50_000 * u32::from(k));
+        let north_m = SPEED_M_S * 0.05 * f32::from(k);
+        samples(&mut flight, time_us, north_m).expect("good samples");
+        let detections = [mast(300.0 - north_m)];
+        let frame = Frame::new(time_us, Capture::Autopilot { capture_us: time_us }, &detections);
+        if k > 0 && k % 2 == 0 {
+            flight.frame(&frame).expect("a good frame");
+        }
+        let seen = flight.assess(time_us, false).expect("a pose");
+        assert_eq!(seen.target_ned_m.is_some(), seen.action != Action::None);
+        if seen.action != Action::None {
+            assert!(seen.detector_alive && seen.pose_alive && seen.target.is_some());
+            assert!(
+                matches!(seen.action, Action::Left | Action::Right | Action::Climb),
+                "{}",
+                seen.action
+            );
+            let obstacle = flight
+                .obstacle(seen.avoided.expect("what it is about"))
+                .expect("an obstacle");
+            assert_eq!(obstacle.id, 7);
+            let place = obstacle.place.expect("a place");
+            assert!((place.center_ned_m[0] - 300.0).abs() < 60.0 && place.center.is_some());
+            assert!(matches!(
+                flight.sectors(60_000).expect("a pose")[0],
+                Sector::Nearest { .. }
+            ));
+            ordered_m = Some(300.0 - north_m);
+            break;
+        }
+    }
+    let ordered_m = ordered_m.expect("an order");
+    assert!((60.0..250.0).contains(&ordered_m), "{ordered_m}");
+    assert!(flight.counters().taken > 10);
+}
+
+#[test]
+fn what_is_refused_is_told_and_counted() {
+    let mut flight = Flight::new(&settings(), &FlightSettings::default()).expect("good settings");
+    let empty = |capture_us| Frame::new(1_000_000, Capture::Autopilot { capture_us }, &[]);
+    assert_eq!(flight.frame(&empty(1_000_000)), Err(FlightError::NoPose));
+    for k in 1..=50 {
+        samples(&mut flight, 20_000 * k, 0.0).expect("good samples");
+    }
+    assert_eq!(flight.frame(&empty(1_100_000)), Err(FlightError::TooNew));
+    assert_eq!(flight.frame(&empty(1_000)), Err(FlightError::TooOld));
+    assert_eq!(flight.frame(&empty(990_000)), Ok(()));
+    assert_eq!(samples(&mut flight, 900_000, 0.0), Err(FlightError::BadTime));
+    assert_eq!(samples(&mut flight, 1_020_000, f32::NAN), Err(FlightError::NotFinite));
+    assert_eq!(samples(&mut flight, 1_040_000, 1e7), Err(FlightError::OutOfRange));
+    let counters = flight.counters();
+    assert_eq!((counters.taken, counters.late, counters.early), (1, 2, 1)); // without a pose counts as late
+    let many = [mast(100.0); 33];
+    let frame = Frame::new(1_000_000, Capture::Autopilot { capture_us: 1_000_000 }, &many);
+    assert_eq!(flight.frame(&frame), Err(FlightError::OutOfRange));
+    for slot in [0, SLOTS, usize::MAX] {
+        assert_eq!(flight.obstacle(slot), Err(FlightError::Nothing));
+    }
+    let at = flight.pose(980_000, 0).expect("a pose");
+    assert_eq!((at.pose.position_ned_m, at.pose.height_m), ([0.0, 0.0, -15.0], 15.0));
+    flight.timesync(Some((5, 1000)));
+    flight.restart();
+    assert_eq!(flight.pose(980_000, 0), Err(FlightError::NoPose));
+    assert!(format!("{flight:?}").contains("lost: 1"));
+}
+
+#[test]
+fn bad_settings_are_named() {
+    let mut unsized_image = settings();
+    unsized_image.camera.width_px = 0.0;
+    let error = Flight::new(&unsized_image, &FlightSettings::default()).err();
+    assert_eq!(error, Some(Error::BadSetting("camera.width_px")));
+    let settings_of_layer = FlightSettings {
+        bank_deg: 89.0,
+        ..FlightSettings::default()
+    };
+    assert_eq!(
+        Flight::new(&settings(), &settings_of_layer).err(),
+        Some(Error::BadSetting("bank_deg"))
+    );
+}

@@ -1,0 +1,121 @@
+"""The Rust crate: its tests and parts, and the logs through its safe types, on the host and on a Cortex-M4F."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+CRATE = ROOT / "port" / "rust"
+BAREMETAL = ROOT / "port" / "baremetal"
+TARGET = "thumbv7em-none-eabihf"
+CORTEX_M4F = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
+MEMORY = ("ROM_ORIGIN=0", "ROM_LENGTH=0x400000", "RAM_ORIGIN=0x20000000", "RAM_LENGTH=0x400000", "STACK_LENGTH=0x8000")
+SECONDS = 600
+
+
+def run(*words: str | Path, folder: Path = CRATE, target: Path | None = None) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "CARGO_TERM_COLOR": "never"}
+    if target:
+        environment["CARGO_TARGET_DIR"] = str(target)
+    return subprocess.run(
+        [str(word) for word in words], cwd=folder, env=environment, capture_output=True, text=True, timeout=SECONDS
+    )
+
+
+def passed(*words: str | Path, folder: Path = CRATE, target: Path | None = None) -> str:
+    done = run(*words, folder=folder, target=target)
+    assert done.returncode == 0, f"{words}: {done.stdout}{done.stderr}"
+    return done.stdout + done.stderr  # QEMU writes what an image says to the latter
+
+
+@pytest.fixture(scope="module")
+def target() -> Path:
+    """Where cargo builds, or why it cannot."""
+    if not shutil.which("cargo") or not shutil.which("rustc"):
+        pytest.skip("no cargo: the Rust crate is not tested")
+    version = tuple(int(n) for n in re.findall(r"\d+", passed("rustc", "--version"))[:2])
+    if version < (1, 81):
+        pytest.skip(f"rustc {version[0]}.{version[1]} is older than 1.81: the Rust crate is not tested")
+    if run("cargo", "fetch", "--locked").returncode:
+        pytest.skip("cargo cannot get the crate cc: the Rust crate is not tested")
+    return ROOT / "build" / "rust"
+
+
+def test_the_crates_own_tests_and_the_bits_of_c(target: Path) -> None:
+    text = passed("cargo", "test", "--locked", "--offline", "--workspace", target=target)
+    counts = [int(n) for n in re.findall(r"test result: ok\. (\d+) passed", text)]
+    assert sum(count > 0 for count in counts) == 5, text  # of src, its two files, the golden file, the documentation
+    assert "estimates_have_the_bits_of_c ... ok" in text and "the_flight_layer_has_the_bits_of_c ... ok" in text
+
+
+def test_the_example_goes_around(target: Path) -> None:
+    text = passed("cargo", "run", "--quiet", "--locked", "--offline", "--example", "approach", target=target)
+    assert re.search(r"m ahead, +[\d.]+ s to go", text) and "go around" in text.splitlines()[-1]
+
+
+def test_parts(target: Path) -> None:
+    words = ("--no-default-features", "--features", "refined,hazard", "--test", "estimator")
+    assert "test result: ok" in passed("cargo", "test", "--locked", "--offline", *words, target=target)
+
+
+def test_no_method_is_refused(target: Path) -> None:
+    done = run("cargo", "check", "--locked", "--offline", "--no-default-features", target=target)
+    assert done.returncode != 0 and "one of the features `window` and `refined` is needed" in done.stderr
+
+
+def test_another_layout_does_not_compile(target: Path, tmp_path: Path) -> None:
+    """C alone, and both: a field that C has moved, and one that both believe elsewhere."""
+    text = (CRATE / "src" / "layout.rs").read_text(encoding="utf-8")
+    assert "        misfit: 144," in text
+    header = (ROOT / "lib" / "goe.h").read_text(encoding="utf-8")
+    for name in ("lib", "port/rust", "port/flight"):
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("target"))
+    other = re.sub(r"^    float nis; ", "    float nis, another; ", header, flags=re.MULTILINE)
+    assert other != header
+    (tmp_path / "lib" / "goe.h").write_text(other, encoding="utf-8")
+    done = run("cargo", "check", "--locked", "--offline", folder=tmp_path / "port" / "rust", target=target)
+    assert done.returncode != 0 and "goe_estimate_t_misfit" in done.stderr
+    (tmp_path / "lib" / "goe.h").write_text(header, encoding="utf-8")
+    (tmp_path / "port" / "rust" / "src" / "layout.rs").write_text(text.replace("misfit: 144", "misfit: 148"))
+    done = run("cargo", "check", "--locked", "--offline", folder=tmp_path / "port" / "rust", target=target)
+    assert done.returncode != 0 and "goe_estimate_t_misfit" in done.stderr
+
+
+def test_style(target: Path) -> None:
+    if run("cargo", "clippy", "--version").returncode or run("cargo", "fmt", "--version").returncode:
+        pytest.skip("cargo has no clippy or no rustfmt")
+    passed("cargo", "fmt", "--all", "--check")
+    words = ("--workspace", "--locked", "--offline", "--all-targets", "--", "-D", "warnings")
+    passed("cargo", "clippy", *words, target=target)
+
+
+def test_on_a_cortex_m4f(target: Path, tmp_path: Path) -> None:
+    """The same logs, the same hashes, with port/baremetal's start-up, under QEMU."""
+    for program in ("arm-none-eabi-gcc", "qemu-system-arm"):
+        if not shutil.which(program):
+            pytest.skip(f"no {program}")
+    if not list(Path(run("rustc", "--print", "sysroot").stdout.strip()).glob(f"lib/rustlib/{TARGET}/lib/libcore*")):
+        pytest.skip(f"no Rust for {TARGET} (rustup target add {TARGET})")
+    words = ("--locked", "--offline", "--release", "--target", TARGET)
+    passed("cargo", "build", *words, "--package", "goe-golden", target=target)
+    image = tmp_path / "golden.elf"
+    passed(
+        "arm-none-eabi-gcc", "-std=gnu11", "-DGOE_BARE_METAL", "-Os", *CORTEX_M4F, "-nostartfiles",
+        f"-T{BAREMETAL / 'image.ld'}", "-Wl,-e,port_start,--gc-sections,--no-warn-rwx-segments,-z,noexecstack",
+        "-Wl,--no-enum-size-warning", *(f"-Wl,--defsym,{place}" for place in MEMORY),
+        *(BAREMETAL / name for name in ("semihosting.c", "start_arm.c", "c_library.c")),
+        target / TARGET / "release" / "libgoe_golden.a", "-lm", "-o", image,
+    )  # fmt: skip
+    text = passed(
+        "qemu-system-arm", "-M", "mps2-an386", "-nographic", "-monitor", "none", "-serial", "none",
+        "-semihosting-config", "enable=on,target=native", "-kernel", image,
+    )  # fmt: skip
+    for name, file in (("replay", "golden_hash.txt"), ("flight", "flight_hash.txt")):
+        golden = (ROOT / "tests" / "targets" / file).read_text(encoding="utf-8").split()[0]
+        assert re.search(rf"^{name} {golden} \d+$", text, re.MULTILINE), text
