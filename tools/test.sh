@@ -206,7 +206,7 @@ configure() { cmake --preset "$1" -DGOE_BUILD_TESTS=ON ${UNITY_DIR:+-DUNITY_DIR=
 build() { configure "$1" && cmake --build --preset "$1"; }
 build_and_ctest() { build "$1" && ctest --preset "$1" -j "$jobs"; }
 
-sources() { find lib port/flight port/mavlink port/companion port/sqrtf port/example port/zephyr port/nuttx sim_host tests -name '*.[ch]' -o -name '*.cpp'; }
+sources() { find lib port sim_host tests -name target -prune -o \( -name '*.[ch]' -o -name '*.[ch]pp' \) -print; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
 tidy() {
     find "$root"/{lib,port/flight,port/mavlink,port/companion,sim_host} -name '*.c' -print0 |

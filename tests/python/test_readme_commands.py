@@ -83,6 +83,9 @@ class By:
 RUN_BY = {
     "tools/test.sh": By(".ci/run", "tools/test.sh"),
     "cmake --install": By("tests/CMakeLists.txt", "--install"),
+    "python -m goe_tools packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
+    "python -m goe_tools packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
+    "python -m goe_tools packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
     "cmake --preset": By("tools/test.sh", "cmake --preset"),
     "cmake --build --preset": By("tools/test.sh", "cmake --build --preset"),
     "ctest --preset": By("tools/test.sh", "ctest --preset"),

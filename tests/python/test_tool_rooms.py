@@ -17,7 +17,7 @@ FLOORS = (
     ("__init__", "places"),
     ("logs",),
     ("attack",),
-    ("reference", "optimum", "cost"),
+    ("reference", "optimum", "cost", "packages"),
     ("report",),
     ("__main__",),
 )

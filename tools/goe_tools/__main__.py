@@ -22,6 +22,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
     "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
     "offline": (".optimum.offline", "fit all images of a log with truth at once"),
+    "packages": (".packages.command", "stage packages for other package managers, or check their manifests"),
     "peers": (".cost.peers.command", "hold the window fit and the filter update against other solvers"),
     "report": (".report.command", "write the campaign's report and print Table 3"),
     "settings": (".reference.settings_table", "print, write or check the manual's table of the library's settings"),

@@ -1,0 +1,226 @@
+"""Packages for other people's package managers: every manifest says what the library says, and no file is missing."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+from goe_tools.__main__ import main
+from goe_tools.packages.command import differences
+from goe_tools.packages.facts import Facts
+from goe_tools.packages.staging import Words
+from goe_tools.packages.targets import COMMITTED, CONFIG, TARGETS, committed_text
+
+ROOT = Path(__file__).resolve().parents[2]
+FACTS = Facts()
+WORDS = Words("Jo Doe <jo@goe.invalid>", "https://goe.invalid/")
+
+# Of Arduino's library specification.
+ARDUINO_CATEGORIES = (
+    "Communication", "Data Processing", "Data Storage", "Device Control", "Display", "Other", "Sensors",
+    "Signal Input/Output", "Timing", "Uncategorized",
+)  # fmt: skip
+ARDUINO_FIELDS = (
+    "name", "version", "author", "maintainer", "sentence", "paragraph", "category", "url", "architectures",
+)  # fmt: skip
+ARDUINO_OPTIONAL = ("depends", "dot_a_linkage", "includes", "precompiled", "ldflags", "license")
+
+
+@pytest.fixture(scope="module")
+def staged(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All targets, with words of a publisher."""
+    folder = tmp_path_factory.mktemp("packages") / "out"
+    words = ("--maintainer", WORDS.maintainer, "--url", WORDS.url)
+    assert main(["packages", "--out", str(folder), *words]) == 0
+    return folder
+
+
+def below(folder: Path, ending: str) -> set[str]:
+    return {path.relative_to(folder).as_posix() for path in folder.rglob(f"*{ending}")}
+
+
+# ------------------------------------------------------------------------------------------------------------ the facts
+
+
+def test_the_facts_are_those_of_the_sources() -> None:
+    cmake = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    options = set(re.findall(r"^option\((GOE_WITH_\w+) ", cmake, re.MULTILINE))
+    assert {part.define for part in FACTS.parts} == options
+    assert [part.name for part in FACTS.parts] == ["window", "refined", "hazard", "movers"]
+    assert set(FACTS.sources) == below(ROOT / "lib", ".c") and len(FACTS.sources) > 40
+    limits = {limit.define: (limit.low, limit.high, limit.default) for limit in FACTS.limits}
+    assert limits == {"GOE_WINDOW_MAX": (3, 64, 8), "GOE_CAMERAS_MAX": (1, 8, 1), "GOE_FLIGHT_SLOTS": (1, 16, 4)}
+
+
+def test_manifests_in_the_tree_are_renewed() -> None:
+    assert differences(FACTS) == []
+    assert main(["packages", "--check"]) == 0
+
+
+def test_write_renews_what_check_refuses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in (*COMMITTED, "tools/pyproject.toml", "lib/goe.h", "port/rust/Cargo.toml.j2"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(ROOT / name, tmp_path / name)
+    (tmp_path / "port" / "rust" / "Cargo.toml").write_text("something else")
+    monkeypatch.setattr(Facts, "__init__", lambda self: object.__setattr__(self, "root", tmp_path))
+    assert main(["packages", "--check"]) == 1
+    assert main(["packages", "--write"]) == 0
+    assert main(["packages", "--check"]) == 0
+
+
+def test_another_version_is_noticed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A tree whose goe.h went on and whose manifests did not."""
+    for name in (*COMMITTED, "tools/pyproject.toml", "lib/goe.h", "port/rust/Cargo.toml.j2"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(ROOT / name, tmp_path / name)
+    header = tmp_path / "lib" / "goe.h"
+    header.write_text(header.read_text().replace("#define GOE_VERSION_PATCH 0", "#define GOE_VERSION_PATCH 7"))
+    facts = dataclasses.replace(FACTS, root=tmp_path)
+    patched = f"{FACTS.version.rpartition('.')[0]}.7"
+    assert facts.version == patched
+    found = differences(facts)
+    assert [line.split(":")[0] for line in found] == ["port/rust/Cargo.toml", "tools/pyproject.toml"]
+    assert f'version = "{patched}"' in committed_text(facts, "port/rust/Cargo.toml")
+
+
+def test_a_header_without_parts_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "goe.h").write_text("#define GOE_VERSION_MAJOR 1\n")
+    facts = dataclasses.replace(FACTS, root=tmp_path)
+    for what in ("version", "parts"):
+        with pytest.raises(ValueError, match=r"lib/goe\.h"):
+            getattr(facts, what)
+
+
+def test_nothing_is_written_over(staged: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["packages", "--target", "conan", "--out", str(staged)]) == 2
+    assert "is there already" in capsys.readouterr().err
+
+
+# ------------------------------------------------------------------------------------------------------- what is staged
+
+
+def test_the_read_me_commands_stage_one_target(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for target in ("arduino", "conan", "esp-idf", "platformio", "rust"):
+        assert main(["packages", "--target", target, "--out", str(tmp_path)]) == 0
+    assert {path.name for path in tmp_path.iterdir()} == set(TARGETS)
+    assert str(tmp_path / "esp-idf" / "goe") in capsys.readouterr().out.splitlines()
+
+
+PLACES = {  # of the library's and of the flight layer's sources
+    "arduino": ("goe/src", "goe_flight/src"),
+    "platformio": ("goe/src", "goe_flight/src"),
+    "esp-idf": ("goe/lib", "goe/flight"),
+    "conan": ("goe/lib", "goe/port/flight"),
+    "rust": ("goe/csrc/lib", "goe/csrc/flight"),
+}
+
+
+@pytest.mark.parametrize("target", sorted(TARGETS))
+def test_no_source_is_missing_or_changed(staged: Path, target: str) -> None:
+    for source, place in zip(("lib", "port/flight"), PLACES[target]):
+        for ending in (".c", ".h"):
+            names = below(staged / target / place, ending) - {"goe_config.h"}
+            assert names == below(ROOT / source, ending)
+            for name in names:
+                text = (staged / target / place / name).read_text(encoding="utf-8")
+                if target == "arduino" and name == "goe.h":
+                    text = text.replace(CONFIG, "")
+                assert text == (ROOT / source / name).read_text(encoding="utf-8"), name
+
+
+@pytest.mark.parametrize("target", sorted(TARGETS))
+def test_page_licence_and_words(staged: Path, target: str) -> None:
+    for folder in {place.split("/")[0] for place in PLACES[target]}:
+        stage = staged / target / folder
+        assert (stage / "LICENSE").read_text().startswith("MIT License")
+        page = (stage / "README.md").read_text(encoding="utf-8")
+        for link in re.findall(r"\]\(([^)#]+)\)", page):
+            assert (stage / link).exists(), f"{target}: {link} leads nowhere"
+    texts = [path.read_text() for path in (staged / target).rglob("*") if path.is_file() and path.suffix != ".zip"]
+    assert not any("{{ facts" in text or "{%" in text for text in texts)
+    assert sum(WORDS.url in text for text in texts) >= 1
+
+
+def test_arduino_properties(staged: Path) -> None:
+    """The rules of the library specification that a manifest can break."""
+    for name in ("goe", "goe_flight"):
+        lines = (staged / "arduino" / name / "library.properties").read_text(encoding="ascii").splitlines()
+        fields = dict(line.split("=", 1) for line in lines)
+        assert len(fields) == len(lines)
+        assert set(ARDUINO_FIELDS) <= set(fields) <= {*ARDUINO_FIELDS, *ARDUINO_OPTIONAL}
+        assert all(value == value.strip() and value for value in fields.values())
+        assert fields["name"] == name and re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.\- ]{0,62}", name)
+        assert "arduino" not in name.lower() and not re.search(r"\b(library|lib)\b", name.lower())
+        assert fields["version"] == FACTS.version and re.fullmatch(r"\d+\.\d+\.\d+", FACTS.version)
+        assert fields["maintainer"] == WORDS.maintainer and fields["url"] == WORDS.url
+        assert fields["category"] in ARDUINO_CATEGORIES and fields["license"] == "MIT"
+        assert not fields["paragraph"].startswith(fields["sentence"])
+        assert re.fullmatch(r"[\w-]+(,[\w-]+)*", fields["architectures"]) and "avr" not in fields["architectures"]
+        headers = [staged / "arduino" / name / "src" / header for header in fields["includes"].split(",")]
+        assert all(header.is_file() for header in headers)
+        assert fields.get("depends") == ({"goe": None, "goe_flight": f"goe (={FACTS.version})"}[name])
+    example = staged / "arduino" / "goe" / "examples" / "Approach" / "Approach.ino"  # folder and sketch: one name
+    assert example.is_file()
+
+
+def test_arduino_archive(staged: Path, tmp_path: Path) -> None:
+    archive = staged / "arduino" / f"goe-{FACTS.version}.zip"
+    with zipfile.ZipFile(archive) as packed:
+        names = set(packed.namelist())
+        assert all(name.startswith("goe/") for name in names) and packed.testzip() is None
+    assert {"goe/library.properties", "goe/src/goe.h", "goe/src/image/goe_align.c"} <= names
+    again = TARGETS["arduino"](FACTS, WORDS, tmp_path / "arduino")
+    assert (again[0].parent / archive.name).read_bytes() == archive.read_bytes()
+
+
+def test_arduino_config(staged: Path) -> None:
+    text = (staged / "arduino" / "goe" / "src" / "goe_config.h").read_text(encoding="utf-8")
+    defined = dict(re.findall(r"^#define (GOE_\w+) (\d+) ", text, re.MULTILINE))
+    assert defined == {
+        **{part.define: "1" for part in FACTS.parts},
+        **{limit.define: str(limit.default) for limit in FACTS.limits},
+    }
+
+
+def test_platformio_manifest(staged: Path) -> None:
+    for name in ("goe", "goe_flight"):
+        manifest = json.loads((staged / "platformio" / name / "library.json").read_text(encoding="utf-8"))
+        assert (manifest["name"], manifest["version"], manifest["license"]) == (name, FACTS.version, "MIT")
+        assert (staged / "platformio" / name / "src" / manifest["headers"]).is_file()
+        assert manifest.get("dependencies") == (None if name == "goe" else {"goe": FACTS.version})
+        assert "-ffp-contract=off" in manifest["build"]["flags"] and manifest["homepage"] == WORDS.url
+        assert len(manifest["description"]) <= 255 and all(word.islower() for word in manifest["keywords"])
+
+
+def test_esp_idf_manifest_and_files(staged: Path) -> None:
+    folder = staged / "esp-idf" / "goe"
+    manifest = (folder / "idf_component.yml").read_text(encoding="utf-8")
+    assert f'version: "{FACTS.version}"\n' in manifest and "license: MIT\n" in manifest
+    cmake = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
+    listed = set(re.findall(r"^ +((?:lib|flight)/\S+\.c)$", cmake, re.MULTILINE))
+    assert listed == below(folder, ".c") - {"examples/approach/main/approach.c"}
+    kconfig = (folder / "Kconfig").read_text(encoding="utf-8")
+    assert all(f"\nconfig {part.define}\n" in kconfig for part in FACTS.parts)
+
+
+def test_conan_recipe(staged: Path) -> None:
+    text = (staged / "conan" / "goe" / "conanfile.py").read_text(encoding="utf-8")
+    compile(text, "conanfile.py", "exec")
+    assert f'    version = "{FACTS.version}"\n' in text and '    license = "MIT"\n' in text
+    assert all(f'"with_{part.name}": [True, False]' in text for part in FACTS.parts)
+
+
+def test_cargo_manifest(staged: Path) -> None:
+    text = (staged / "rust" / "goe" / "Cargo.toml").read_text(encoding="utf-8")
+    assert f'version = "{FACTS.version}"\n' in text and "[workspace]" not in text
+    features = dict(re.findall(r"^(\w+) = \[(.*)\]$", text.split("[features]")[1], re.MULTILINE))
+    assert set(features) == {"default", "flight", *(part.name for part in FACTS.parts)}
+    assert sorted(re.findall(r'"(\w+)"', features["default"])) == sorted(set(features) - {"default"})
+    lock = (ROOT / "port" / "rust" / "Cargo.lock").read_text(encoding="utf-8")
+    assert f'name = "goe"\nversion = "{FACTS.version}"\n' in lock

@@ -1,0 +1,77 @@
+"""How a folder is filled that a package manager then packs."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import jinja2
+
+from .facts import Facts
+
+LINK = re.compile(r"\[([^\[\]]*)\]\((?!https?:|#)([^)#]+)(#[^)]*)?\)")
+
+
+@dataclass(frozen=True)
+class Words:
+    """What the publisher says, as the project does not know it."""
+
+    maintainer: str = Facts.owner
+    url: str = ""
+
+
+def render(facts: Facts, template: str, **more: object) -> str:
+    """A template of port/, with the facts in it."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(facts.root / "port"), undefined=jinja2.StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True, keep_trailing_newline=True, autoescape=False,
+    )  # fmt: skip
+    return environment.get_template(template).render(facts=facts, **more)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One package's folder. It must not be there before."""
+
+    facts: Facts
+    words: Words
+    folder: Path
+
+    def write(self, name: str, text: str) -> None:
+        place = self.folder / name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(text, encoding="utf-8", newline="\n")
+
+    def render(self, name: str, template: str, **more: object) -> None:
+        self.write(name, render(self.facts, template, words=self.words, **more))
+
+    def copy(self, source: str, name: str) -> None:
+        place = self.folder / name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(self.facts.root / source, place)
+
+    def copy_files(self, source: str, names: tuple[str, ...], folder: str) -> None:
+        for name in names:
+            self.copy(f"{source}/{name}", f"{folder}/{name}")
+
+    def copy_library(self, folder: str) -> None:
+        self.copy_files("lib", self.facts.sources + self.facts.headers, folder)
+
+    def copy_flight(self, folder: str) -> None:
+        self.copy_files("port/flight", self.facts.flight_sources + self.facts.flight_headers, folder)
+
+    def copy_tree(self, source: str, folder: str, leave_out: tuple[str, ...] = ()) -> None:
+        ignore = shutil.ignore_patterns(*leave_out)
+        shutil.copytree(self.facts.root / source, self.folder / folder, ignore=ignore, dirs_exist_ok=True)
+
+    def copy_page(self, host: str) -> None:
+        """The host's README, and the licence. Links into the project's tree would lead nowhere: their words stay."""
+        page = (self.facts.root / "port" / host / "README.md").read_text(encoding="utf-8")
+
+        def link(match: re.Match[str]) -> str:
+            return match[0] if (self.folder / match[2]).exists() else match[1]
+
+        self.write("README.md", LINK.sub(link, page))
+        self.copy("LICENSE", "LICENSE")
