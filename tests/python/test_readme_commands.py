@@ -83,6 +83,13 @@ class By:
 RUN_BY = {
     "tools/test.sh": By(".ci/run", "tools/test.sh"),
     "cmake --install": By("tests/CMakeLists.txt", "--install"),
+    "cmake -S . -B build-deb -DCMAKE_INSTALL_PREFIX=/usr -DGOE_BUILD_HOST=OFF -DGOE_BUILD_TESTS=OFF": By(
+        "tests/python/test_packages_hosts.py", "(cmake .*)"
+    ),
+    "cmake --build build-deb": By("tests/python/test_packages_hosts.py", "(cmake .*)"),
+    "cmake --build build-deb --target package": By(
+        "tests/python/test_packages_hosts.py", '"cmake", "--build", build, "--target", "package"'
+    ),
     "python -m goe_tools packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
     "python -m goe_tools packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
     "python -m goe_tools packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
