@@ -69,6 +69,7 @@ find_missing() {
         want extra chromium has chromium
         want extra chromium-driver has chromedriver
         want extra poppler-utils has pdftoppm
+        want extra pkgconf has pkg-config
         want extra gcc-arm-none-eabi has arm-none-eabi-gcc
         want extra libnewlib-arm-none-eabi has_arm_header math.h
         want extra qemu-system-arm has qemu-system-arm
