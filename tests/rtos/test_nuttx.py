@@ -34,7 +34,7 @@ def config(folder: Path, *assignments: str) -> None:
 
 def checkout(folder: Path) -> Path:
     """apps/ with a checkout linked into it. make leaves its objects in port/nuttx, so that is a copy."""
-    for part in ("lib", "port/flight", "port/mavlink", "port/sqrtf", "port/example", "tests/targets"):
+    for part in ("lib", "port/flight", "port/mavlink", "port/sqrtf", "port/examples/scripted_flight", "tests/targets"):
         (folder / "goe" / part).parent.mkdir(parents=True, exist_ok=True)
         (folder / "goe" / part).symlink_to(ROOT / part)
     shutil.copytree(NUTTX, folder / "goe" / "port" / "nuttx", ignore=shutil.ignore_patterns("*.o", ".*", "Make.dep"))
@@ -72,7 +72,7 @@ def test_golden_bits(programs: Path) -> None:
 
 
 def test_every_source_is_compiled(programs: Path) -> None:
-    folders = ("lib", "port/flight", "port/mavlink", "port/sqrtf", "port/example")
+    folders = ("lib", "port/flight", "port/mavlink", "port/sqrtf", "port/examples/scripted_flight")
     wanted = {file.stem for folder in folders for file in (ROOT / folder).rglob("*.c")}
     assert wanted <= {file.stem for file in programs.glob("*.o")}
 
@@ -104,7 +104,7 @@ def test_cmake_agrees_with_make(programs: Path, tmp_path: Path) -> None:
     assert set(commands) == {file.stem for file in programs.glob("*.o")}
     for stem, command in commands.items():
         assert "-ffp-contract=off" in command and "-DGOE_FLIGHT_SLOTS=4" in command and "-DGOE_WITH_HAZARD=1" in command
-        in_library = not ((ROOT / "port" / "example" / f"{stem}.c").exists() or "main" in stem or "replay" in stem
+        in_library = not ((ROOT / "port" / "examples" / "scripted_flight" / f"{stem}.c").exists() or "main" in stem or "replay" in stem
                           or stem == "embedded_logs")  # fmt: skip
         assert ("-Dsqrtf=goe_sqrtf" in command) == in_library, stem
     run("cmake", "--build", tree, "-j", "2", "--target", "goe_sensor_loop")
