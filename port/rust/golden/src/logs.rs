@@ -1,6 +1,7 @@
 //! `tests/targets/embedded_logs.h` in Rust.
 
 use core::ffi::{c_char, c_int};
+use core::ptr::addr_of;
 
 use goe::{BoundingBox, Image, Method, Pixel, Pose, Settings, Shape};
 
@@ -29,15 +30,16 @@ pub struct LoggedTrack {
 }
 
 extern "C" {
-    static logged_images: [LoggedImage; 1000]; // as many as there are: only those that the tracks name are read
-    static logged_tracks: [LoggedTrack; 100];
+    // Where the arrays begin; how long they are C alone knows.
+    static logged_images: [LoggedImage; 0];
+    static logged_tracks: [LoggedTrack; 0];
     static logged_track_count: c_int;
 }
 
 pub fn tracks() -> impl Iterator<Item = &'static LoggedTrack> {
     // SAFETY: the array has as many elements, and nobody writes it.
     (0..unsafe { logged_track_count } as usize)
-        .map(|i| unsafe { &*(&raw const logged_tracks).cast::<LoggedTrack>().add(i) })
+        .map(|i| unsafe { &*addr_of!(logged_tracks).cast::<LoggedTrack>().add(i) })
 }
 
 fn numbers<const N: usize>(bits: &[u32]) -> [f32; N] {
@@ -48,9 +50,7 @@ impl LoggedTrack {
     pub fn images(&self) -> &'static [LoggedImage] {
         // SAFETY: the track's images lie within the array, which nobody writes.
         unsafe {
-            let first = (&raw const logged_images)
-                .cast::<LoggedImage>()
-                .add(self.first as usize);
+            let first = addr_of!(logged_images).cast::<LoggedImage>().add(self.first as usize);
             core::slice::from_raw_parts(first, self.count as usize)
         }
     }
