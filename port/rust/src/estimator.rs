@@ -12,7 +12,8 @@ use crate::Error;
 use crate::{Error, Hazard, Plan};
 use crate::{Estimate, Fault, Image, Settings};
 
-/// Follows one obstacle. It is all the memory there is (at most 2,904 bytes), may lie anywhere and be moved or copied.
+/// Follows one obstacle. It is all the memory there is (at most 2,904 bytes), may lie anywhere and be moved, copied or handed to
+/// another thread.
 #[derive(Clone)]
 #[repr(transparent)]
 pub struct Estimator {
@@ -145,3 +146,8 @@ impl fmt::Debug for Estimator {
             .finish_non_exhaustive()
     }
 }
+
+const _: () = {
+    const fn goes_to_other_threads<T: Send + Sync>() {}
+    goes_to_other_threads::<Estimator>()
+};

@@ -409,12 +409,13 @@ pub enum Action {
 impl Action {
     fn of(action: ffi::goe_flight_action_t) -> Self {
         match action {
+            ffi::GOE_FLIGHT_NONE => Self::None,
             ffi::GOE_FLIGHT_LEFT => Self::Left,
             ffi::GOE_FLIGHT_RIGHT => Self::Right,
             ffi::GOE_FLIGHT_CLIMB => Self::Climb,
             ffi::GOE_FLIGHT_GO_AROUND => Self::GoAround,
-            ffi::GOE_FLIGHT_HOLD => Self::Hold,
-            _ => Self::None,
+            // The crate compiles its own C: no other number comes. A later one would not be leave to fly on.
+            _ => Self::Hold,
         }
     }
 
@@ -625,7 +626,8 @@ pub struct PoseAt {
     pub attitude_sd_deg: f32,
 }
 
-/// The flight layer. It is all the memory there is (13,760 bytes with all parts), may lie anywhere and be moved or copied.
+/// The flight layer. It is all the memory there is (13,760 bytes with all parts), may lie anywhere and be moved, copied or handed to
+/// another thread.
 #[derive(Clone)]
 #[repr(transparent)]
 pub struct Flight {
@@ -814,5 +816,24 @@ impl fmt::Debug for Flight {
         f.debug_struct("Flight")
             .field("counters", &self.counters())
             .finish_non_exhaustive()
+    }
+}
+
+const _: () = {
+    const fn goes_to_other_threads<T: Send + Sync>() {}
+    goes_to_other_threads::<Flight>()
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_action_is_no_leave_to_fly_on() {
+        for code in 0..=5 {
+            assert_eq!(Action::of(code).code(), code);
+        }
+        assert_eq!(Action::of(6), Action::Hold);
+        assert_eq!(Action::of(u32::MAX), Action::Hold);
     }
 }
