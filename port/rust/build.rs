@@ -1,10 +1,16 @@
-//! Compiles the C library, and has the C compiler hold `src/layout.rs` against its own sizes and offsets.
+//! Compiles the C library, and has the C compiler hold `src/layout.rs` and the constants of `src/ffi.rs` against its own.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 const PARTS: [&str; 4] = ["window", "refined", "hazard", "movers"];
+const FLIGHT_OWN: usize = 1632; // bytes of the flight layer beside its obstacles
+const SLOTS: usize = 4; // obstacles of the flight layer
+const SLOT: usize = 128; // bytes of an obstacle beside its estimator
+
+// The same bits everywhere; sqrtf as an instruction; enumerations are int, as in ffi.rs.
+const FLAGS: [&str; 3] = ["-ffp-contract=off", "-fno-math-errno", "-fno-short-enums"];
 
 fn has(feature: &str) -> bool {
     env::var_os(format!("CARGO_FEATURE_{}", feature.to_uppercase())).is_some()
@@ -34,45 +40,84 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
+const CHECKED: &str = "#include \"goe.h\"\n#ifdef GOE_RUST_FLIGHT\n#include \"goe_flight.h\"\n#endif\n";
+
+/// Where a list of `src/layout.rs` holds, as C's preprocessor asks.
+fn condition(line: &str) -> Option<&'static str> {
+    match line {
+        "layout! {" => Some("1"),
+        "layout_flight! {" => Some("defined GOE_RUST_FLIGHT"),
+        "layout_flight_32! {" => Some("defined GOE_RUST_FLIGHT && UINTPTR_MAX == 0xFFFFFFFF"),
+        "layout_flight_64! {" => Some("defined GOE_RUST_FLIGHT && UINTPTR_MAX > 0xFFFFFFFF"),
+        _ => None,
+    }
+}
+
 /// C that does not compile where a size or offset is not the one of `src/layout.rs`.
-fn assertions(layout: &str) -> String {
-    let mut c = String::from("#include \"goe.h\"\n#ifdef GOE_RUST_FLIGHT\n#include \"goe_flight.h\"\n#endif\n");
+fn layout_assertions(layout: &str) -> String {
+    let mut c = String::new();
     let mut name = String::new();
     let mut inside = false;
     for line in layout.lines().map(str::trim) {
-        match line {
-            "layout! {" | "layout_flight! {" => {
-                inside = true;
-                c += if line.contains("flight") {
-                    "#ifdef GOE_RUST_FLIGHT\n"
-                } else {
-                    "#if 1\n"
-                };
+        if let Some(condition) = condition(line) {
+            inside = true;
+            let _ = writeln!(c, "#if {condition}");
+        } else if line == "}" && inside && name.is_empty() {
+            inside = false;
+            c += "#endif\n";
+        } else if line == "}" {
+            name.clear();
+        } else if inside && !line.is_empty() && !line.starts_with("//") {
+            let (field, number) = line
+                .trim_end_matches(['{', ',', ' '])
+                .split_once(": ")
+                .expect("name: number");
+            if line.ends_with('{') {
+                name = field.to_string();
+                let _ = writeln!(c, "GOE_STATIC_ASSERT(sizeof({name}) == {number}, size_of_{name});");
+            } else {
+                let c_field = field.trim_end_matches('_');
+                let _ = writeln!(
+                    c,
+                    "GOE_STATIC_ASSERT(offsetof({name}, {c_field}) == {number}, {name}_{field});"
+                );
             }
-            "}" if inside && name.is_empty() => {
-                inside = false;
-                c += "#endif\n";
-            }
-            "}" => name.clear(),
-            _ if inside && !line.is_empty() && !line.starts_with("//") => {
-                let (field, number) = line
-                    .trim_end_matches(['{', ',', ' '])
-                    .split_once(": ")
-                    .expect("name: number");
-                if line.ends_with('{') {
-                    name = field.to_string();
-                    let _ = writeln!(c, "GOE_STATIC_ASSERT(sizeof({name}) == {number}, size_of_{name});");
-                } else {
-                    let c_field = field.trim_end_matches('_');
-                    let _ = writeln!(
-                        c,
-                        "GOE_STATIC_ASSERT(offsetof({name}, {c_field}) == {number}, {name}_{field});"
-                    );
-                }
-            }
-            _ => {}
         }
     }
+    c
+}
+
+/// C that does not compile where a constant is not the one of `src/ffi.rs`.
+fn constant_assertions(ffi: &str) -> String {
+    let mut c = String::new();
+    let mut count = 0;
+    for list in ffi
+        .split("\n")
+        .map(str::trim)
+        .collect::<Vec<_>>()
+        .split(|&line| line == "}")
+    {
+        let Some(start) = list.iter().position(|&line| line == "constants! {") else {
+            continue;
+        };
+        for constant in list[start + 1..].join(" ").split([',', ';']) {
+            let Some((name, value)) = constant.split_once(" = ") else {
+                continue;
+            };
+            let name = name.rsplit(' ').next().expect("a name");
+            let part = if name.starts_with("GOE_FLIGHT_") {
+                "defined GOE_RUST_FLIGHT"
+            } else {
+                "1"
+            };
+            let _ = writeln!(
+                c,
+                "#if {part}\nGOE_STATIC_ASSERT({name} == {value}, constant_{name});\n#endif"
+            );
+            count += 1;
+        }
+    }
+    assert!(count > 50, "src/ffi.rs: its constants are not found");
     c
 }
 
@@ -97,36 +142,47 @@ fn main() {
         println!("cargo:rerun-if-changed={}", path.display());
     }
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
-    let layout = fs::read_to_string("src/layout.rs").expect("src/layout.rs");
-    let mut c = assertions(&layout);
-    let bytes = estimator_bytes();
-    let constant =
-        format!("/// Bytes of an estimator, which depend on the parts.\npub const ESTIMATOR_BYTES: usize = {bytes};\n");
-    fs::write(out.join("bytes.rs"), constant).expect("OUT_DIR can be written");
+    let read = |name: &str| fs::read_to_string(name).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let estimator = estimator_bytes();
+    let mut bytes = format!(
+        "/// Bytes of an estimator, which depend on the parts.\npub const ESTIMATOR_BYTES: usize = {estimator};\n"
+    );
+    let mut c = CHECKED.to_string() + &layout_assertions(&read("src/layout.rs"));
+    c += &constant_assertions(&read("src/ffi.rs"));
     let _ = writeln!(
         c,
-        "GOE_STATIC_ASSERT(sizeof(goe_estimator_t) == {bytes}, size_of_goe_estimator_t);"
+        "GOE_STATIC_ASSERT(sizeof(goe_estimator_t) == {estimator}, size_of_goe_estimator_t);"
     );
     if has("flight") {
-        let bytes = 1632 + 4 * (bytes + 128);
+        let flight = FLIGHT_OWN + SLOTS * (estimator + SLOT);
+        let _ = writeln!(
+            bytes,
+            "/// Bytes of the flight layer's memory.\npub const FLIGHT_BYTES: usize = {flight};"
+        );
         let _ = writeln!(
             c,
-            "GOE_STATIC_ASSERT(sizeof(goe_flight_t) == {bytes}, size_of_goe_flight_t);"
+            "GOE_STATIC_ASSERT(sizeof(goe_flight_t) == {flight}, size_of_goe_flight_t);"
         );
     }
+    fs::write(out.join("bytes.rs"), bytes).expect("OUT_DIR can be written");
     let check = out.join("layout.c");
     fs::write(&check, c).expect("OUT_DIR can be written");
 
     let mut build = cc::Build::new();
     build
         .std("c99")
-        .flag_if_supported("-ffp-contract=off") // the same bits everywhere
-        .flag_if_supported("-fno-math-errno")
-        .flag_if_supported("-fno-short-enums") // enumerations are int, as in ffi.rs
         .include(&lib)
         .file(check) // first: a wrong layout stops at once
         .file("src/shim.c")
         .files(sources(&lib));
+    let compiler = build.get_compiler();
+    for flag in FLAGS {
+        if compiler.is_like_gnu() || compiler.is_like_clang() {
+            build.flag(flag); // refused loudly, not left out
+        } else {
+            build.flag_if_supported(flag);
+        }
+    }
     for part in PARTS {
         let value = if has(part) { "1" } else { "0" };
         build.define(&format!("GOE_WITH_{}", part.to_uppercase()), value);

@@ -2,7 +2,7 @@
 //!
 //! Enumerations of C are integers here, so that no number that C may return is undefined behaviour. They have C's `int`: the
 //! library is compiled with `-fno-short-enums`, also where the processor's ABI would make them shorter. `layout.rs` lists sizes and
-//! offsets; both compilers compare them whenever the crate is built.
+//! offsets; both compilers compare them whenever the crate is built, and that of C the constants below.
 
 #![allow(non_camel_case_types)]
 
@@ -300,9 +300,6 @@ mod flight {
     }
 
     pub use crate::flight::Counters as goe_flight_counters_t;
-
-    /// Bytes of the flight layer's memory: its own, and for each obstacle an estimator and 128 more.
-    pub const FLIGHT_BYTES: usize = 1632 + GOE_FLIGHT_SLOTS * (ESTIMATOR_BYTES + 128);
 
     /// The flight layer: memory of the caller's, private to C. It holds no addresses.
     #[repr(C, align(8))]

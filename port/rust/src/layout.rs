@@ -21,6 +21,23 @@ macro_rules! layout_flight {
 macro_rules! layout_flight {
     ($($list:tt)+) => {};
 }
+// With addresses in them.
+#[cfg(target_pointer_width = "32")]
+macro_rules! layout_flight_32 {
+    ($($list:tt)+) => { layout_flight! { $($list)+ } };
+}
+#[cfg(not(target_pointer_width = "32"))]
+macro_rules! layout_flight_32 {
+    ($($list:tt)+) => {};
+}
+#[cfg(target_pointer_width = "64")]
+macro_rules! layout_flight_64 {
+    ($($list:tt)+) => { layout_flight! { $($list)+ } };
+}
+#[cfg(not(target_pointer_width = "64"))]
+macro_rules! layout_flight_64 {
+    ($($list:tt)+) => {};
+}
 
 layout! {
     goe_box_t: 20 {
@@ -311,11 +328,30 @@ layout_flight! {
     }
 }
 
-// With an address in it: shim.c has the same for C.
-#[cfg(feature = "flight")]
-const _: () = {
-    let address = size_of::<usize>();
-    assert!(offset_of!(ffi::goe_flight_frame_t, count) == 19);
-    assert!(offset_of!(ffi::goe_flight_frame_t, detection) == (19 + address) / address * address);
-    assert!(size_of::<ffi::goe_flight_frame_t>() == (19 + address) / address * address + address);
-};
+layout_flight_32! {
+    goe_flight_frame_t: 24 {
+        arrival_us: 0,
+        capture_us: 4,
+        sent_us: 8,
+        time_sd_us: 12,
+        time_base: 16,
+        camera: 17,
+        number: 18,
+        count: 19,
+        detection: 20,
+    }
+}
+
+layout_flight_64! {
+    goe_flight_frame_t: 32 {
+        arrival_us: 0,
+        capture_us: 4,
+        sent_us: 8,
+        time_sd_us: 12,
+        time_base: 16,
+        camera: 17,
+        number: 18,
+        count: 19,
+        detection: 24,
+    }
+}
