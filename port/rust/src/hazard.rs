@@ -32,7 +32,6 @@ pub struct Hazard {
 }
 
 impl Plan {
-    #[cfg(feature = "hazard")]
     pub(crate) fn to_c(self) -> ffi::goe_plan_t {
         ffi::goe_plan_t {
             velocity_ned_m_s: self.velocity_ned_m_s,

@@ -39,7 +39,6 @@
 #![warn(clippy::undocumented_unsafe_blocks)]
 // A fault carries the last good estimate, on purpose.
 #![allow(clippy::result_large_err)]
-#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(test)]
 #[macro_use]
@@ -57,7 +56,7 @@ mod layout;
 mod settings;
 mod status;
 
-pub use estimate::{Center, Estimate, Length, Model, Orientation, Position, Reason, Sigma, Velocity};
+pub use estimate::{Center, Estimate, Length, Model, Orientation, Position, Reason, Velocity};
 pub use estimator::{Estimator, QUANTITIES};
 #[cfg(feature = "hazard")]
 pub use hazard::{Hazard, Plan};
