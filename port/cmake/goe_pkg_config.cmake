@@ -1,14 +1,25 @@
 # goe_pkg_config(<name> <target> <description> [REQUIRES <name>...]): installs <name>.pc for a static library. Its paths are
-# relative to the file, so that a staged or moved tree still tells where it is. The definitions that a target tells whoever links
-# it are in the flags: the estimator's size depends on them.
+# relative to the file, so that a staged or moved tree still tells where it is; but where a folder is given as an absolute path.
+# The definitions that a target tells whoever links it are in the flags: the estimator's size depends on them.
 function(goe_pkg_config name target description)
     cmake_parse_arguments(PARSE_ARGV 3 arg "" "" "REQUIRES")
     set(pc_name ${name})
     set(pc_description ${description})
     set(pc_library ${target})
     string(JOIN " " pc_requires ${arg_REQUIRES})
-    file(RELATIVE_PATH pc_prefix /x/${CMAKE_INSTALL_LIBDIR}/pkgconfig /x)
-    string(REGEX REPLACE "/$" "" pc_prefix ${pc_prefix})
+    if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+        set(pc_prefix ${CMAKE_INSTALL_PREFIX})
+    else()
+        file(RELATIVE_PATH up /x/${CMAKE_INSTALL_LIBDIR}/pkgconfig /x)
+        string(REGEX REPLACE "/$" "" pc_prefix "\${pcfiledir}/${up}")
+    endif()
+    foreach(folder IN ITEMS includedir libdir)
+        string(TOUPPER ${folder} variable)
+        set(pc_${folder} ${CMAKE_INSTALL_${variable}})
+        if(NOT IS_ABSOLUTE "${pc_${folder}}")
+            set(pc_${folder} "\${prefix}/${pc_${folder}}")
+        endif()
+    endforeach()
     set(pc_flags "")
     get_target_property(definitions ${target} INTERFACE_COMPILE_DEFINITIONS)
     foreach(definition IN LISTS definitions)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 from pathlib import Path
@@ -92,7 +93,7 @@ def test_arduino_libraries_and_sketch(staged: Path, tmp_path: Path) -> None:
         compile_all(staged / "arduino" / name, tmp_path / name, compiler, "-fsyntax-only")
     sketch = staged / "arduino" / "goe" / "examples" / "Approach" / "Approach.ino"
     (tmp_path / "Arduino.h").write_text(ARDUINO_H)
-    (tmp_path / "sketch.cpp").write_text(f'#include <Arduino.h>\n{sketch.read_text()}\n#include <goe_flight.h>\n')
+    (tmp_path / "sketch.cpp").write_text(f"#include <Arduino.h>\n{sketch.read_text()}\n#include <goe_flight.h>\n")
     includes = [f"-I{path}" for path in (tmp_path, *sorted((staged / "arduino").glob("*/src")))]
     need("g++")
     for standard in ("gnu++11", "gnu++17"):
@@ -202,9 +203,7 @@ def test_esp_idf_kconfig(staged: Path, tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module", params=["whole", "parts"])
-def built(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, staged: Path
-) -> tuple[str, Path]:
+def built(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, staged: Path) -> tuple[str, Path]:
     """Built as port/debian/README.md says: the tree; and what Conan gets, which is whole then, without two parts."""
     need("cmake", "cc")
     build = tmp_path_factory.mktemp(request.param) / "build-deb"
@@ -221,14 +220,18 @@ def built(
     return request.param, build
 
 
-def consume(prefix: Path, out: Path, source: Path, package: str) -> str:
+def flags_of(place: Path, package: str, **environment: str) -> list[str]:
+    return shlex.split(passed(
+        "pkg-config", "--cflags", "--libs", package, PKG_CONFIG_PATH=str(place), PKG_CONFIG_ALLOW_SYSTEM_CFLAGS="1",
+        PKG_CONFIG_ALLOW_SYSTEM_LIBS="1", **environment,
+    ))  # fmt: skip
+
+
+def consume(prefix: Path, out: Path, source: Path, package: str, **environment: str) -> str:
     """Builds and runs a consumer by the flags that pkg-config tells of what lies below a folder."""
     need("pkg-config")
     (place,) = {path.parent for path in prefix.rglob("goe*.pc")}
-    flags = passed(
-        "pkg-config", "--cflags", "--libs", package, PKG_CONFIG_PATH=str(place), PKG_CONFIG_ALLOW_SYSTEM_CFLAGS="1",
-        PKG_CONFIG_ALLOW_SYSTEM_LIBS="1",
-    ).split()  # fmt: skip
+    flags = flags_of(place, package, **environment)
     assert passed("pkg-config", "--modversion", package, PKG_CONFIG_PATH=str(place)).strip() == FACTS.version
     passed("cc", source, *flags, "-o", out)
     return passed(out)
@@ -240,9 +243,35 @@ def test_pkg_config(built: tuple[str, Path], tmp_path: Path) -> None:
     bytes_of_estimator = {"whole": 2904, "parts": 1976}[name]
     text = consume(tmp_path / "stage", tmp_path / "starts", STARTS, "goe")
     assert text.startswith(f"goe {FACTS.version}: ok, {bytes_of_estimator} bytes, self check 0x00")
-    (tmp_path / "stage").rename(tmp_path / "moved")
     if name == "whole":
-        assert consume(tmp_path / "moved", tmp_path / "consumer", CONSUMER, "goe-flight")
+        moved = tmp_path / "moved to here"
+        (tmp_path / "stage").rename(moved)
+        need_pkgconf()
+        assert consume(moved, tmp_path / "consumer", CONSUMER, "goe-flight")
+        moved.rename(tmp_path / "root")
+        sysroot = {"PKG_CONFIG_SYSROOT_DIR": str(tmp_path / "root")}
+        assert consume(tmp_path / "root", tmp_path / "consumer", CONSUMER, "goe-flight", **sysroot)
+
+
+def need_pkgconf() -> None:
+    """The older pkg-config has its own way with spaces and sysroots."""
+    if "pkgconf" not in passed("pkg-config", "--about"):
+        pytest.skip("pkg-config is not pkgconf")
+
+
+def test_pkg_config_of_absolute_folders(tmp_path: Path) -> None:
+    """Configured only: what stands in the file."""
+    need("cmake", "cc", "pkg-config")
+    (tmp_path / "inc").mkdir()
+    places = [f"-DCMAKE_INSTALL_{name}={tmp_path / folder}" for name, folder in (("LIBDIR", "lib"), ("PREFIX", "pre"))]
+    options = ("-DGOE_BUILD_HOST=OFF", "-DGOE_BUILD_TESTS=OFF")
+    passed("cmake", "-S", ROOT, "-B", tmp_path / "build", *places, *options)
+    flags = flags_of(tmp_path / "build" / "lib", "goe")
+    assert f"-I{tmp_path}/pre/include" in flags and f"-L{tmp_path}/lib" in flags
+    relative = "-DCMAKE_INSTALL_LIBDIR=lib"
+    passed("cmake", "-S", ROOT, "-B", tmp_path / "build", relative, f"-DCMAKE_INSTALL_INCLUDEDIR={tmp_path / 'inc'}")
+    flags = flags_of(tmp_path / "build" / "lib", "goe")
+    assert f"-I{tmp_path}/inc" in flags and f"-L{tmp_path}/build/lib/../../lib" in flags
 
 
 def test_debian_package(built: tuple[str, Path], tmp_path: Path) -> None:

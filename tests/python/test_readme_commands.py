@@ -90,6 +90,9 @@ RUN_BY = {
     "cmake --build build-deb --target package": By(
         "tests/python/test_packages_hosts.py", '"cmake", "--build", build, "--target", "package"'
     ),
+    "cc main.c $(pkg-config --cflags --libs goe-flight) -o main": By(
+        "tests/python/test_packages_hosts.py", 'passed("cc", source, *flags'
+    ),
     "python -m goe_tools packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
     "python -m goe_tools packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
     "python -m goe_tools packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
