@@ -1,10 +1,11 @@
-# The Debian package libgoe-dev: what is installed, and what Debian's policy asks beside it. Included last, by the project.
-set(GOE_DEBIAN_MAINTAINER "the goe authors <authors@goe.invalid>" CACHE STRING "Who answers for the Debian package: Name <address>")
+# The Debian package libgoe-dev: what is installed, and what Debian's policy asks beside it. Included last, by the project. Nothing is
+# written here: documents.cmake makes the documents when they are packed.
+set(GOE_DEBIAN_MAINTAINER "" CACHE STRING "Who answers for the Debian package, which is not made without: Name <address>")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME goe)
 set(CPACK_PACKAGE_VENDOR "the goe authors")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "estimator of ground obstacles for flight controllers (development files)")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION} (development files)")
 set(CPACK_STRIP_FILES OFF)
 set(CPACK_DEBIAN_PACKAGE_NAME libgoe-dev)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -12,6 +13,9 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${GOE_DEBIAN_MAINTAINER})
+if(CMAKE_LIBRARY_ARCHITECTURE AND CMAKE_INSTALL_LIBDIR MATCHES "/${CMAKE_LIBRARY_ARCHITECTURE}$")
+    set(CPACK_DEBIAN_PACKAGE_MULTIARCH same) # CMake 3.31 and newer write it
+endif()
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "A small C99 library that turns a detector's bounding boxes of a building, a
 truck or a chimney, plus the aircraft's own motion, into where the obstacle
@@ -23,27 +27,14 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
-# Policy asks for both of these in every package.
-set(documents ${CMAKE_BINARY_DIR}/debian)
-file(READ ${PROJECT_SOURCE_DIR}/LICENSE licence)
-string(STRIP "${licence}" licence)
-string(REGEX REPLACE "\n\n" "\n.\n" licence "${licence}")
-string(REGEX REPLACE "\n" "\n " licence "${licence}")
-file(WRITE ${documents}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\n\nFiles: *\n"
-    "Copyright: 2026 the goe authors\nLicense: MIT\n ${licence}\n")
-string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC) # SOURCE_DATE_EPOCH, if it is set
-file(WRITE ${documents}/changelog "goe (${PROJECT_VERSION}-1) unstable; urgency=medium\n\n  * Version ${PROJECT_VERSION}.\n\n"
-    " -- ${GOE_DEBIAN_MAINTAINER}  ${now}\n")
-find_program(GZIP gzip)
-if(GZIP)
-    execute_process(COMMAND ${GZIP} -9 -n -c ${documents}/changelog OUTPUT_FILE ${documents}/changelog.Debian.gz
-        COMMAND_ERROR_IS_FATAL ANY)
-    install(FILES ${documents}/copyright ${documents}/changelog.Debian.gz DESTINATION share/doc/libgoe-dev
-        COMPONENT debian EXCLUDE_FROM_ALL)
-endif()
+install(CODE "
+    set(goe_maintainer [==[${GOE_DEBIAN_MAINTAINER}]==])
+    set(goe_version ${PROJECT_VERSION})
+    set(goe_licence [==[${PROJECT_SOURCE_DIR}/LICENSE]==])
+    set(goe_documents [==[${PROJECT_BINARY_DIR}/debian]==])
+    include([==[${CMAKE_CURRENT_LIST_DIR}/documents.cmake]==])" COMPONENT debian EXCLUDE_FROM_ALL)
 set(CPACK_COMPONENTS_ALL Unspecified debian)
 set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_DEBIAN_DEBIAN_PACKAGE_NAME libgoe-dev)
 
 include(CPack)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import os
 import re
 import shlex
@@ -19,6 +20,7 @@ CONSUMER = ROOT / "tests" / "consumer_package" / "main.c"
 STARTS = ROOT / "port" / "conan" / "test_package" / "main.c"  # exits with 0 if header and library agree
 ARM = ("arm-none-eabi-gcc", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
 SECONDS = 300
+MAINTAINER = "NAME <maintainer@goe.invalid>"
 
 # What Arduino.h brings into a sketch that may collide with a library's names: the project's own words for them.
 ARDUINO_H = """
@@ -53,11 +55,15 @@ static inline void delay(unsigned long) {}
 """
 
 
-def passed(*words: str | Path, folder: Path = ROOT, **environment: str) -> str:
-    done = subprocess.run(
+def run(*words: str | Path, folder: Path = ROOT, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
         [str(word) for word in words], cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
         timeout=SECONDS,
     )  # fmt: skip
+
+
+def passed(*words: str | Path, folder: Path = ROOT, **environment: str) -> str:
+    done = run(*words, folder=folder, **environment)
     assert done.returncode == 0, f"{words}: exit status {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout
 
@@ -209,13 +215,15 @@ def built(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     build = tmp_path_factory.mktemp(request.param) / "build-deb"
     page = (ROOT / "port" / "debian" / "README.md").read_text(encoding="utf-8")
     configure, make, package = re.findall(r"^(cmake .*)$", page, re.MULTILINE)
-    assert package == f"{make} --target package"
+    assert package == f"{make} --target package" and '"NAME <ADDRESS>"' in configure
+    configure = configure.replace("NAME <ADDRESS>", MAINTAINER)
     more = ["-DCMAKE_BUILD_TYPE=Debug"]
     folder = ROOT
     if request.param == "parts":
         more += ["-DGOE_WITH_MOVERS=OFF", "-DGOE_WITH_WINDOW=OFF"]
         folder = staged / "conan" / "goe"
-    passed(*configure.replace("build-deb", str(build)).split(), *more, folder=folder, SOURCE_DATE_EPOCH="1700000000")
+    passed(*shlex.split(configure.replace("build-deb", str(build))), *more, folder=folder)
+    assert not (build / "debian").exists()  # made when it is packed, and only then
     passed(*make.replace("build-deb", str(build)).split(), "-j2")
     return request.param, build
 
@@ -274,28 +282,58 @@ def test_pkg_config_of_absolute_folders(tmp_path: Path) -> None:
     assert f"-I{tmp_path}/inc" in flags and f"-L{tmp_path}/build/lib/../../lib" in flags
 
 
+# Words of CMake that came after the version that the project asks for.
+NEWER = {
+    "COMMAND_ERROR_IS_FATAL": (3, 19), "cmake_path(": (3, 20), "file(COPY_FILE": (3, 21), "ARCHIVE_CREATE": (3, 18),
+    "string(JSON": (3, 19), "file(REAL_PATH": (3, 19), "cmake_language(": (3, 18),
+}  # fmt: skip
+
+
+def test_no_words_of_a_newer_cmake() -> None:
+    (version,) = re.findall(r"^cmake_minimum_required\(VERSION (\d+)\.(\d+)\)", (ROOT / "CMakeLists.txt").read_text())
+    for folder in ("lib", "port", "tests", "sim_host"):
+        for path in sorted([*(ROOT / folder).rglob("CMakeLists.txt"), *(ROOT / folder).rglob("*.cmake")]):
+            lines = path.read_text(encoding="utf-8")
+            found = [word for word, since in NEWER.items() if word in lines and since > tuple(map(int, version))]
+            assert not found, f"{path}: {found}"
+
+
 def test_debian_package(built: tuple[str, Path], tmp_path: Path) -> None:
     name, build = built
     need("cpack", "dpkg-deb")
-    passed("cmake", "--build", build, "--target", "package")
+    passed("cmake", "--build", build, "--target", "package", SOURCE_DATE_EPOCH="1700000000")
     (package,) = build.glob("*.deb")
     architecture = passed("dpkg", "--print-architecture").strip()
     assert package.name == f"libgoe-dev_{FACTS.version}-1_{architecture}.deb"
     fields = passed("dpkg-deb", "-f", package)
     assert "\nPackage: libgoe-dev\n" in f"\n{fields}" and f"\nVersion: {FACTS.version}-1\n" in fields
-    assert "\nSection: libdevel\n" in fields and "\n .\n" in fields
+    assert "\nSection: libdevel\n" in fields and "\n .\n" in fields and f"\nMaintainer: {MAINTAINER}\n" in fields
+    cmake = tuple(map(int, re.findall(r"\d+", passed("cmake", "--version"))[:2]))
+    assert ("\nMulti-Arch: same\n" in fields) == (cmake >= (3, 31))
     listed = [line.split(maxsplit=5) for line in passed("dpkg-deb", "-c", package).splitlines()]
     assert all(entry[1] == "root/root" for entry in listed)
     names = {entry[5] for entry in listed}
-    documents = {f"./usr/share/doc/libgoe-dev/{file}" for file in ("copyright", "changelog.Debian.gz")}
-    assert {"./usr/include/goe.h", "./usr/include/goe_flight.h", *documents} <= names
-    assert {file.rpartition("/")[2] for file in names if file.endswith(".a")} == {
-        "libgoe.a", "libgoe_flight.a", "libgoe_mavlink.a",
-    }  # fmt: skip
+    papers = {f"./usr/share/doc/libgoe-dev/{file}" for file in ("copyright", "changelog.Debian.gz")}
+    assert {"./usr/include/goe.h", "./usr/include/goe_flight.h", *papers} <= names
+    triplet = passed("dpkg-architecture", "-qDEB_HOST_MULTIARCH").strip() if shutil.which("dpkg-architecture") else "*"
+    libraries = sorted(file for file in names if file.endswith(".a"))
+    assert [Path(file).name for file in libraries] == ["libgoe.a", "libgoe_flight.a", "libgoe_mavlink.a"]
+    assert all(Path(file).match(f"usr/lib/{triplet}/lib*.a") for file in libraries), libraries
     if name == "whole":
         passed("dpkg-deb", "-x", package, tmp_path / "root")
         assert consume(tmp_path / "root", tmp_path / "consumer", CONSUMER, "goe-flight")
-        assert "License: MIT" in (tmp_path / "root/usr/share/doc/libgoe-dev/copyright").read_text()
+        documents = tmp_path / "root" / "usr" / "share" / "doc" / "libgoe-dev"
+        assert "License: MIT" in (documents / "copyright").read_text()
+        changelog = gzip.decompress((documents / "changelog.Debian.gz").read_bytes()).decode()
+        assert changelog.endswith(f"\n -- {MAINTAINER}  Tue, 14 Nov 2023 22:13:20 +0000\n")
+
+
+def test_debian_package_without_a_maintainer(tmp_path: Path) -> None:
+    need("cmake", "cc")
+    options = ("-DGOE_BUILD_HOST=OFF", "-DGOE_BUILD_TESTS=OFF")
+    passed("cmake", "-S", ROOT, "-B", tmp_path / "build", *options)
+    done = run("cmake", "--install", tmp_path / "build", "--component", "debian", "--prefix", tmp_path / "stage")
+    assert done.returncode != 0 and "who answers for the Debian package?" in done.stderr
 
 
 # ---------------------------------------------------------------------------------- where their own tools are installed
