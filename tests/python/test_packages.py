@@ -14,11 +14,11 @@ from goe_tools.__main__ import main
 from goe_tools.packages.command import differences
 from goe_tools.packages.facts import Facts
 from goe_tools.packages.staging import Words
-from goe_tools.packages.targets import COMMITTED, CONFIG, TARGETS, committed_text
+from goe_tools.packages.targets import COMMITTED, CONFIG, TARGETS
 
 ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
-WORDS = Words("Jo Doe <jo@goe.invalid>", "https://goe.invalid/")
+WORDS = Words('NAME "N" <maintainer@goe.invalid>', "https://goe.invalid/?a=1&b=2")
 
 # Of Arduino's library specification.
 ARDUINO_CATEGORIES = (
@@ -62,30 +62,43 @@ def test_manifests_in_the_tree_are_renewed() -> None:
     assert main(["packages", "--check"]) == 0
 
 
-def test_write_renews_what_check_refuses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in (*COMMITTED, "tools/pyproject.toml", "lib/goe.h", "port/rust/Cargo.toml.j2"):
+@pytest.fixture
+def small_tree(tmp_path: Path) -> Path:
+    """What --check and --write read."""
+    for name in (*COMMITTED, "lib/goe.h", "port/rust/Cargo.toml.j2"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / name, tmp_path / name)
-    (tmp_path / "port" / "rust" / "Cargo.toml").write_text("something else")
-    monkeypatch.setattr(Facts, "__init__", lambda self: object.__setattr__(self, "root", tmp_path))
+    return tmp_path
+
+
+def test_write_renews_what_check_refuses(small_tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    crate, tools = small_tree / "port" / "rust" / "Cargo.toml", small_tree / "tools" / "pyproject.toml"
+    crate.write_text("something else")
+    tools.write_text(re.sub(r'^version = ".*"$', 'version = "9.9.9"', tools.read_text(), flags=re.MULTILINE))
+    monkeypatch.setattr(Facts, "__init__", lambda self: object.__setattr__(self, "root", small_tree))
     assert main(["packages", "--check"]) == 1
     assert main(["packages", "--write"]) == 0
     assert main(["packages", "--check"]) == 0
+    for name in COMMITTED:
+        assert (small_tree / name).read_bytes() == (ROOT / name).read_bytes(), name
 
 
-def test_another_version_is_noticed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_another_version_is_noticed(small_tree: Path) -> None:
     """A tree whose goe.h went on and whose manifests did not."""
-    for name in (*COMMITTED, "tools/pyproject.toml", "lib/goe.h", "port/rust/Cargo.toml.j2"):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(ROOT / name, tmp_path / name)
-    header = tmp_path / "lib" / "goe.h"
+    header = small_tree / "lib" / "goe.h"
     header.write_text(header.read_text().replace("#define GOE_VERSION_PATCH 0", "#define GOE_VERSION_PATCH 7"))
-    facts = dataclasses.replace(FACTS, root=tmp_path)
+    facts = dataclasses.replace(FACTS, root=small_tree)
     patched = f"{FACTS.version.rpartition('.')[0]}.7"
     assert facts.version == patched
-    found = differences(facts)
-    assert [line.split(":")[0] for line in found] == ["port/rust/Cargo.toml", "tools/pyproject.toml"]
-    assert f'version = "{patched}"' in committed_text(facts, "port/rust/Cargo.toml")
+    assert [line.split(":")[0] for line in differences(facts)] == ["port/rust/Cargo.toml", "tools/pyproject.toml"]
+    assert all(f'version = "{patched}"' in text(facts) for text in COMMITTED.values())
+
+
+@pytest.mark.parametrize("words", [("--target", "rust"), ("--url", "https://goe.invalid/"), ("--maintainer", "NAME")])
+def test_words_for_staging_alone(words: tuple[str, str], capsys: pytest.CaptureFixture[str]) -> None:
+    for what in ("--check", "--write"):
+        assert main(["packages", what, *words]) == 2
+        assert "go with --out" in capsys.readouterr().err
 
 
 def test_a_header_without_parts_is_an_error(tmp_path: Path) -> None:
@@ -102,6 +115,17 @@ def test_nothing_is_written_over(staged: Path, capsys: pytest.CaptureFixture[str
     assert "is there already" in capsys.readouterr().err
 
 
+def test_all_or_none_is_staged(tmp_path: Path) -> None:
+    (tmp_path / "rust").mkdir()
+    assert main(["packages", "--out", str(tmp_path)]) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["rust"]
+
+
+def test_words_that_would_break_a_manifest(tmp_path: Path) -> None:
+    assert main(["packages", "--out", str(tmp_path / "out"), "--maintainer", "NAME\nurl=x"]) == 2
+    assert not (tmp_path / "out").exists()
+
+
 # ------------------------------------------------------------------------------------------------------- what is staged
 
 
@@ -110,6 +134,23 @@ def test_the_read_me_commands_stage_one_target(tmp_path: Path, capsys: pytest.Ca
         assert main(["packages", "--target", target, "--out", str(tmp_path)]) == 0
     assert {path.name for path in tmp_path.iterdir()} == set(TARGETS)
     assert str(tmp_path / "esp-idf" / "goe") in capsys.readouterr().out.splitlines()
+
+
+def test_only_sources_are_staged(staged: Path, tmp_path: Path) -> None:
+    """Whatever else lies in the tree: built, cached, left by an editor."""
+    root = tmp_path / "root"
+    for name in ("lib", "port"):
+        shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("target", "__pycache__"))
+    for name in ("LICENSE", "CMakeLists.txt"):
+        shutil.copyfile(ROOT / name, root / name)
+    for folder in ("lib", "port/flight", "port/rust/src", "port/conan/test_package", "port/cmake"):
+        for name in ("build/x.c", "build-deb/x.h", "__pycache__/x.py", ".cache/x.c", "x.c.orig", "x.o", "target/x.rs"):
+            (root / folder / name).parent.mkdir(exist_ok=True)
+            (root / folder / name).write_text("junk")
+    facts = dataclasses.replace(FACTS, root=root)
+    for target, stage in TARGETS.items():
+        stage(facts, WORDS, tmp_path / target)
+        assert below(tmp_path / target, "") == below(staged / target, ""), target
 
 
 PLACES = {  # of the library's and of the flight layer's sources
@@ -195,6 +236,8 @@ def test_platformio_manifest(staged: Path) -> None:
         assert (staged / "platformio" / name / "src" / manifest["headers"]).is_file()
         assert manifest.get("dependencies") == (None if name == "goe" else {"goe": FACTS.version})
         assert "-ffp-contract=off" in manifest["build"]["flags"] and manifest["homepage"] == WORDS.url
+        assert manifest["platforms"] == sorted(set(manifest["platforms"]))
+        assert not {"*", "atmelavr", "atmelmegaavr", "ststm8", "intel_mcs51", "timsp430"} & set(manifest["platforms"])
         assert len(manifest["description"]) <= 255 and all(word.islower() for word in manifest["keywords"])
 
 
@@ -202,6 +245,7 @@ def test_esp_idf_manifest_and_files(staged: Path) -> None:
     folder = staged / "esp-idf" / "goe"
     manifest = (folder / "idf_component.yml").read_text(encoding="utf-8")
     assert f'version: "{FACTS.version}"\n' in manifest and "license: MIT\n" in manifest
+    assert f"\n  - {json.dumps(WORDS.maintainer)}\n" in manifest and f"\nurl: {json.dumps(WORDS.url)}\n" in manifest
     cmake = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
     listed = set(re.findall(r"^ +((?:lib|flight)/\S+\.c)$", cmake, re.MULTILINE))
     assert listed == below(folder, ".c") - {"examples/approach/main/approach.c"}
@@ -222,6 +266,7 @@ def test_cargo_manifest(staged: Path) -> None:
     features = dict(re.findall(r"^(\w+) = \[(.*)\]$", text.split("[features]")[1], re.MULTILINE))
     assert set(features) == {"default", "flight", *(part.name for part in FACTS.parts)}
     assert sorted(re.findall(r'"(\w+)"', features["default"])) == sorted(set(features) - {"default"})
+    assert f"homepage = {json.dumps(WORDS.url)}\n" in text
     # What is tested is pinned where no dependent sees it.
     assert re.findall(r'^cc = "(.*)"$', text, re.MULTILINE) == ["1.1"]
     golden = (ROOT / "port" / "rust" / "golden" / "Cargo.toml").read_text(encoding="utf-8")

@@ -8,12 +8,11 @@
 from __future__ import annotations
 
 import argparse
-import re
 from pathlib import Path
 
 from .facts import Facts
 from .staging import Words
-from .targets import COMMITTED, TARGETS, committed_text
+from .targets import COMMITTED, TARGETS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,38 +21,41 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument("--check", action="store_true", help="fail if a manifest in the tree says something else")
     what.add_argument("--write", action="store_true", help="write the manifests in the tree")
     parser.add_argument("--target", action="append", choices=sorted(TARGETS), help="only this one; may be repeated")
-    parser.add_argument("--maintainer", default=Words.maintainer, help="who answers for the packages")
-    parser.add_argument("--url", default=Words.url, help="home page of the project; Arduino's index asks for one")
+    parser.add_argument("--maintainer", help="who answers for the packages; default: the goe authors")
+    parser.add_argument("--url", help="home page of the project; Arduino's index asks for one")
 
 
 def differences(facts: Facts) -> list[str]:
     """What manifests in the tree say that the library does not."""
-    found = []
-    for name in COMMITTED:
-        if (facts.root / name).read_text(encoding="utf-8") != committed_text(facts, name):
-            found.append(f"{name}: not what its template gives; python -m goe_tools packages --write")
-    manifest = "tools/pyproject.toml"
-    text = (facts.root / manifest).read_text(encoding="utf-8")
-    if re.findall(r'^version = "(.*)"$', text, re.MULTILINE) != [facts.version]:
-        found.append(f"{manifest}: the version is not lib/goe.h's, {facts.version}")
-    return found
+    return [
+        f"{name}: not what version {facts.version} gives; python -m goe_tools packages --write"
+        for name, text in COMMITTED.items()
+        if (facts.root / name).read_text(encoding="utf-8") != text(facts)
+    ]
+
+
+def stage(facts: Facts, words: Words, out: Path, names: list[str]) -> None:
+    folders = {name: out / name for name in names}
+    for folder in folders.values():
+        if folder.exists():
+            raise ValueError(f"{folder} is there already")
+    for name, folder in folders.items():
+        for staged in TARGETS[name](facts, words, folder):
+            print(staged)
 
 
 def run(arguments: argparse.Namespace) -> int:
     facts = Facts()
+    if not arguments.out and (arguments.target or arguments.maintainer or arguments.url):
+        raise ValueError("--target, --maintainer and --url go with --out")
     if arguments.check:
         found = differences(facts)
         print("\n".join(found) or f"manifests are those of version {facts.version}")
         return 1 if found else 0
     if arguments.write:
-        for name in COMMITTED:
-            (facts.root / name).write_text(committed_text(facts, name), encoding="utf-8")
+        for name, text in COMMITTED.items():
+            (facts.root / name).write_text(text(facts), encoding="utf-8")
         return 0
-    words = Words(arguments.maintainer, arguments.url)
-    for name in arguments.target or sorted(TARGETS):
-        folder = arguments.out / name
-        if folder.exists():
-            raise ValueError(f"{folder} is there already")
-        for staged in TARGETS[name](facts, words, folder):
-            print(staged)
+    words = Words(arguments.maintainer or Words.maintainer, arguments.url or Words.url)
+    stage(facts, words, arguments.out, sorted(set(arguments.target or TARGETS)))
     return 0

@@ -9,7 +9,15 @@ from pathlib import Path
 
 from ..places import ROOT
 
-NEEDS = {"movers": ("refined",), "flight": ("hazard",)}  # parts that make no sense without others
+NEEDS = {"movers": ("refined",)}  # parts that make no sense without others
+
+# What a package may hold of a folder. Whatever else lies there was built, or is somebody's own.
+SUFFIXES = (".c", ".cmake", ".h", ".in", ".ino", ".py", ".rs", ".txt", ".xml", ".yml")
+NO_SOURCES = ("build", "target", "__pycache__", "dist")  # folders that tools fill
+
+
+def is_no_source(folder: str) -> bool:
+    return folder in NO_SOURCES or folder.startswith((".", "build-"))
 
 
 @dataclass(frozen=True)
@@ -37,6 +45,10 @@ class Limit:
     high: int
     default: int
     text: str
+
+    @property
+    def option(self) -> str:
+        return self.define.partition("_")[2].lower()  # window_max
 
 
 @dataclass(frozen=True)
@@ -97,26 +109,31 @@ class Facts:
             limits.append(Limit(define, int(bounds[1]), int(bounds[2]), int(default[1]), text))
         return tuple(limits)
 
-    def files(self, folder: str, ending: str) -> tuple[str, ...]:
-        """Below a folder of the project, relative to it."""
+    def limit(self, define: str) -> Limit:
+        (limit,) = (limit for limit in self.limits if limit.define == define)
+        return limit
+
+    def files(self, folder: str, suffixes: tuple[str, ...] = SUFFIXES) -> tuple[str, ...]:
+        """Sources below a folder of the project, relative to it."""
         base = self.root / folder
-        found = tuple(sorted(path.relative_to(base).as_posix() for path in base.rglob(f"*{ending}")))
+        below = (path.relative_to(base) for path in base.rglob("*") if path.suffix in suffixes)
+        found = tuple(sorted(path.as_posix() for path in below if not any(map(is_no_source, path.parts[:-1]))))
         if not found:
-            raise ValueError(f"{base}: there is no {ending} file")
+            raise ValueError(f"{base}: there is no {' or '.join(suffixes)} file")
         return found
 
     @cached_property
     def sources(self) -> tuple[str, ...]:
-        return self.files("lib", ".c")
+        return self.files("lib", (".c",))
 
     @cached_property
     def headers(self) -> tuple[str, ...]:
-        return self.files("lib", ".h")
+        return self.files("lib", (".h",))
 
     @cached_property
     def flight_sources(self) -> tuple[str, ...]:
-        return self.files("port/flight", ".c")
+        return self.files("port/flight", (".c",))
 
     @cached_property
     def flight_headers(self) -> tuple[str, ...]:
-        return self.files("port/flight", ".h")
+        return self.files("port/flight", (".h",))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from dataclasses import dataclass
@@ -21,6 +22,16 @@ class Words:
     maintainer: str = Facts.owner
     url: str = ""
 
+    def __post_init__(self) -> None:
+        for word in (self.maintainer, self.url):
+            if not word.isprintable():
+                raise ValueError(f"{word!r}: manifests have no room for such characters")
+
+
+def quoted(text: str) -> str:
+    """As JSON, Python, TOML and YAML read it alike. (Jinja's own tojson writes an address's < and > as numbers.)"""
+    return json.dumps(text, ensure_ascii=False)
+
 
 def render(facts: Facts, template: str, **more: object) -> str:
     """A template of port/, with the facts in it."""
@@ -28,6 +39,7 @@ def render(facts: Facts, template: str, **more: object) -> str:
         loader=jinja2.FileSystemLoader(facts.root / "port"), undefined=jinja2.StrictUndefined, trim_blocks=True,
         lstrip_blocks=True, keep_trailing_newline=True, autoescape=False,
     )  # fmt: skip
+    environment.filters["quoted"] = quoted
     return environment.get_template(template).render(facts=facts, **more)
 
 
@@ -62,12 +74,11 @@ class Stage:
     def copy_flight(self, folder: str) -> None:
         self.copy_files("port/flight", self.facts.flight_sources + self.facts.flight_headers, folder)
 
-    def copy_tree(self, source: str, folder: str, leave_out: tuple[str, ...] = ()) -> None:
-        ignore = shutil.ignore_patterns(*leave_out)
-        shutil.copytree(self.facts.root / source, self.folder / folder, ignore=ignore, dirs_exist_ok=True)
+    def copy_tree(self, source: str, folder: str) -> None:
+        self.copy_files(source, self.facts.files(source), folder)
 
     def copy_page(self, host: str) -> None:
-        """The host's README, and the licence. Links into the project's tree would lead nowhere: their words stay."""
+        """The host's README and the licence. Links into the project's tree would lead nowhere: their words stay."""
         page = (self.facts.root / "port" / host / "README.md").read_text(encoding="utf-8")
 
         def link(match: re.Match[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -11,13 +12,36 @@ from .staging import Stage, Words, render
 
 CONFIG = '#ifndef GOE_CONFIG_HEADER\n#define GOE_CONFIG_HEADER "goe_config.h"\n#endif\n'
 CONFIG_PLACE = "#ifdef GOE_CONFIG_HEADER\n#include GOE_CONFIG_HEADER\n#endif\n"
+# What has 32 bits or more: on AVR int has 16, and the memory does not reach.
+ARDUINO_CORES = (
+    "esp32", "esp8266", "mbed", "mbed_giga", "mbed_nano", "mbed_nicla", "mbed_opta", "mbed_portenta", "mbed_rp2040",
+    "nrf52", "renesas", "renesas_portenta", "renesas_uno", "rp2040", "sam", "samd", "stm32", "teensy", "zephyr",
+)  # fmt: skip
+PLATFORMIO_PLATFORMS = (
+    "atmelsam", "espressif32", "espressif8266", "freescalekinetis", "gd32v", "maxim32", "native", "nordicnrf51",
+    "nordicnrf52", "nxpimxrt", "nxplpc", "raspberrypi", "renesas-ra", "sifive", "siliconlabsefm32", "ststm32", "teensy",
+    "titiva",
+)  # fmt: skip
+CONAN_LIMITS = ("GOE_WINDOW_MAX", "GOE_CAMERAS_MAX")  # the project's build has no option for the flight layer's slots
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # the same bytes whenever it is made
 
-COMMITTED = {"port/rust/Cargo.toml": "rust/Cargo.toml.j2"}  # manifests that lie in the tree, and their templates
+
+def cargo_manifest(facts: Facts) -> str:
+    return render(facts, "rust/Cargo.toml.j2", packed=False)
 
 
-def committed_text(facts: Facts, name: str) -> str:
-    return render(facts, COMMITTED[name], packed=False)
+def tools_manifest(facts: Facts) -> str:
+    """The tools' own manifest, which is written by hand but for the version."""
+    text = (facts.root / TOOLS).read_text(encoding="utf-8")
+    text, count = re.subn(r'^version = ".*"$', f'version = "{facts.version}"', text, flags=re.MULTILINE)
+    if count != 1:
+        raise ValueError(f"{TOOLS}: one line with the version is wanted")
+    return text
+
+
+TOOLS = "tools/pyproject.toml"
+# Manifests that lie in the tree, and what they must say.
+COMMITTED: dict[str, Callable[[Facts], str]] = {"port/rust/Cargo.toml": cargo_manifest, TOOLS: tools_manifest}
 
 
 def rust(facts: Facts, words: Words, folder: Path) -> list[Path]:
@@ -56,11 +80,11 @@ def arduino(facts: Facts, words: Words, folder: Path) -> list[Path]:
     goe.write("src/goe.h", facts.header.replace(CONFIG_PLACE, CONFIG + CONFIG_PLACE))
     goe.render("src/goe_config.h", "arduino/goe_config.h.j2")
     goe.copy_tree("port/arduino/examples", "examples")
-    goe.render("library.properties", "arduino/library.properties.j2", flight=False)
+    goe.render("library.properties", "arduino/library.properties.j2", flight=False, architectures=ARDUINO_CORES)
     goe.copy_page("arduino")
     flight = Stage(facts, words, folder / "goe_flight")
     flight.copy_flight("src")
-    flight.render("library.properties", "arduino/library.properties.j2", flight=True)
+    flight.render("library.properties", "arduino/library.properties.j2", flight=True, architectures=ARDUINO_CORES)
     flight.copy_page("arduino")
     for stage in (goe, flight):
         zip_folder(stage.folder, facts.version)
@@ -71,11 +95,11 @@ def platformio(facts: Facts, words: Words, folder: Path) -> list[Path]:
     """Two libraries, as its dependency finder compiles all of what it finds."""
     goe = Stage(facts, words, folder / "goe")
     goe.copy_library("src")
-    goe.render("library.json", "platformio/library.json.j2", flight=False)
+    goe.render("library.json", "platformio/library.json.j2", flight=False, platforms=PLATFORMIO_PLATFORMS)
     goe.copy_page("platformio")
     flight = Stage(facts, words, folder / "goe_flight")
     flight.copy_flight("src")
-    flight.render("library.json", "platformio/library.json.j2", flight=True)
+    flight.render("library.json", "platformio/library.json.j2", flight=True, platforms=PLATFORMIO_PLATFORMS)
     flight.copy_page("platformio")
     return [goe.folder, flight.folder]
 
@@ -93,12 +117,13 @@ def esp_idf(facts: Facts, words: Words, folder: Path) -> list[Path]:
 
 def conan(facts: Facts, words: Words, folder: Path) -> list[Path]:
     stage = Stage(facts, words, folder / "goe")
-    stage.copy_tree("lib", "lib", ("*.md",))
+    stage.copy_tree("lib", "lib")
     for name in ("cmake", "flight", "mavlink", "pkgconfig", "debian"):
-        stage.copy_tree(f"port/{name}", f"port/{name}", ("*.md",))
+        stage.copy_tree(f"port/{name}", f"port/{name}")
     stage.copy("CMakeLists.txt", "CMakeLists.txt")
     stage.copy_tree("port/conan/test_package", "test_package")
-    stage.render("conanfile.py", "conan/conanfile.py.j2")
+    limits = [facts.limit(define) for define in CONAN_LIMITS]
+    stage.render("conanfile.py", "conan/conanfile.py.j2", limits=limits)
     stage.copy_page("conan")
     return [stage.folder]
 
