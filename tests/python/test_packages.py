@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import json
 import re
@@ -255,7 +256,18 @@ def test_esp_idf_manifest_and_files(staged: Path) -> None:
 
 def test_conan_recipe(staged: Path) -> None:
     text = (staged / "conan" / "goe" / "conanfile.py").read_text(encoding="utf-8")
-    compile(text, "conanfile.py", "exec")
+    recipe = {
+        target.id: ast.literal_eval(node.value)
+        for top in ast.parse(text).body
+        for node in (top.body if isinstance(top, ast.ClassDef) else [top])
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+    assert (recipe["author"], recipe["url"], recipe["topics"]) == (WORDS.maintainer, WORDS.url, FACTS.keywords)
+    assert recipe["LIMITS"] == {"window_max": ("GOE_WINDOW_MAX", 3, 64), "cameras_max": ("GOE_CAMERAS_MAX", 1, 8)}
+    assert recipe["required_conan_version"] == ">=2.4"
+    assert 'rm_safe("with_movers")' in text and '"cmake_target_name", "goe::all"' in text
     assert f'    version = "{FACTS.version}"\n' in text and '    license = "MIT"\n' in text
     assert all(f'"with_{part.name}": [True, False]' in text for part in FACTS.parts)
 

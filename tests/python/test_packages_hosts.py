@@ -343,9 +343,12 @@ def test_conan_create(staged: Path, tmp_path: Path) -> None:
     need("conan")
     home = str(tmp_path / "home")
     passed("conan", "profile", "detect", CONAN_HOME=home)
-    create = "conan create . -o '&:with_movers=False' 2>&1"
-    text = passed("sh", "-c", create, folder=staged / "conan" / "goe", CONAN_HOME=home)
-    assert f"goe {FACTS.version}: ok, 2328 bytes, self check 0x00" in text
+    for create, size in (("conan create .", 2904), ("conan create . -o '&:with_movers=False'", 2328)):
+        text = passed("sh", "-c", f"{create} 2>&1", folder=staged / "conan" / "goe", CONAN_HOME=home)
+        assert f"goe {FACTS.version}: ok, {size} bytes, self check 0x00, GOE_STATUS" in text
+    for wrong in ("window_max=65", "cameras_max=two"):
+        done = run("conan", "create", ".", "-o", f"&:{wrong}", folder=staged / "conan" / "goe", CONAN_HOME=home)
+        assert done.returncode != 0 and f"Invalid: {wrong.split('=')[0]} is " in done.stderr
 
 
 def test_compote_pack(staged: Path, tmp_path: Path) -> None:

@@ -91,6 +91,10 @@ RUN_BY = {
     "cc main.c $(pkg-config --cflags --libs goe-flight) -o main": By(
         "tests/python/test_packages_hosts.py", 'passed("cc", source, *flags'
     ),
+    "conan create .": By("tests/python/test_packages_hosts.py", "conan create ."),
+    'conan create . -o "&:with_movers=False"': By(
+        "tests/python/test_packages_hosts.py", "conan create . -o '&:with_movers=False'"
+    ),
     "python -m goe_tools packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
     "python -m goe_tools packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
     "python -m goe_tools packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
