@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import dataclasses
 import json
+import math
 import re
 import shutil
 import zipfile
@@ -14,12 +15,14 @@ import pytest
 from goe_tools.__main__ import main
 from goe_tools.packages.command import differences
 from goe_tools.packages.facts import Facts
-from goe_tools.packages.staging import Words
+from goe_tools.packages.staging import OF_THE_TREE, Words
 from goe_tools.packages.targets import COMMITTED, CONFIG, TARGETS
 
 ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
 WORDS = Words('NAME "N" <maintainer@goe.invalid>', "https://goe.invalid/?a=1&b=2")
+HEADINGS = ["From this tree", "Into a project", "Parts", "How it is checked", "What is missing"]
+PAGES = ("arduino", "conan", "debian", "esp-idf", "pkgconfig", "platformio", "rust")
 
 # Of Arduino's library specification.
 ARDUINO_CATEGORIES = (
@@ -184,9 +187,37 @@ def test_page_licence_and_words(staged: Path, target: str) -> None:
         page = (stage / "README.md").read_text(encoding="utf-8")
         for link in re.findall(r"\]\(([^)#]+)\)", page):
             assert (stage / link).exists(), f"{target}: {link} leads nowhere"
+        assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Into a project", "Parts", "What is missing"]
+        assert "<version>" not in page and "goe_tools" not in page
     texts = [path.read_text() for path in (staged / target).rglob("*") if path.is_file() and path.suffix != ".zip"]
     assert not any("{{ facts" in text or "{%" in text for text in texts)
     assert sum(WORDS.url in text for text in texts) >= 1
+
+
+@pytest.mark.parametrize("host", PAGES)
+def test_page_of_the_tree(host: str) -> None:
+    """The same headings in the same order, which copy_page() goes by."""
+    page = (ROOT / "port" / host / "README.md").read_text(encoding="utf-8")
+    assert re.findall(r"^## (.*)$", page, re.MULTILINE) == HEADINGS
+    assert set(OF_THE_TREE) <= set(HEADINGS)
+    assert "```console" not in page and not re.search(r"\d (Jan|Nov|Dec)\w* 20\d\d", page)
+
+
+def test_figures_of_pages_and_manifests() -> None:
+    """The pages' and manifests' own numbers are those of the library's pages."""
+    sizes = re.findall(r"^\| 8 \| (\d{4}) \|$", (ROOT / "lib" / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
+    (size,) = map(int, sizes)
+    assert f"at most {math.ceil(size / 102.4) / 10} KiB" in FACTS.paragraph
+    ledger = (ROOT / "README.md").read_text(encoding="utf-8").split("<!-- ledger: begin -->")[1]
+    stacks = [int(n) for n in re.findall(r"^\| Cortex[^|]*\|[^|]*\| \d+ \| (\d+) \(\d+\) \|", ledger, re.MULTILINE)]
+    stack = f"{min(stacks) / 1000:.1f} to {max(stacks) / 1000:.1f} KB"
+    (layer,) = re.findall(r"some (\d+) bytes beyond", (ROOT / "port/flight/README.md").read_text(encoding="utf-8"))
+    for host in ("arduino", "esp-idf"):
+        page = (ROOT / "port" / host / "README.md").read_text(encoding="utf-8")
+        assert f"`goe_update()` takes {stack}\n" in page and f"at most {size:,} bytes each" in page
+        assert f"`goe_flight_frame()` {int(layer) / 1000:.1f} KB more" in page
+    meson = re.findall(r"version: '>=(.*)'", (ROOT / "port" / "pkgconfig" / "README.md").read_text(encoding="utf-8"))
+    assert meson == [FACTS.version.rpartition(".")[0]]
 
 
 def test_arduino_properties(staged: Path) -> None:

@@ -13,6 +13,8 @@ import jinja2
 from .facts import Facts
 
 LINK = re.compile(r"\[([^\[\]]*)\]\((?!https?:|#)([^)#]+)(#[^)]*)?\)")
+SECTION = re.compile(r"^## ", re.MULTILINE)
+OF_THE_TREE = ("From this tree", "How it is checked")  # sections of a page that say nothing to whoever has the package
 
 
 @dataclass(frozen=True)
@@ -80,9 +82,12 @@ class Stage:
     def copy_page(self, host: str) -> None:
         """The host's README and the licence. Links into the project's tree would lead nowhere: their words stay."""
         page = (self.facts.root / "port" / host / "README.md").read_text(encoding="utf-8")
+        first, *sections = SECTION.split(page)
+        kept = [f"## {section}" for section in sections if section.partition("\n")[0] not in OF_THE_TREE]
 
         def link(match: re.Match[str]) -> str:
             return match[0] if (self.folder / match[2]).exists() else match[1]
 
-        self.write("README.md", LINK.sub(link, page))
+        page = LINK.sub(link, first + "".join(kept)).replace("<version>", self.facts.version)
+        self.write("README.md", page)
         self.copy("LICENSE", "LICENSE")
