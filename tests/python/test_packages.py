@@ -186,7 +186,8 @@ def test_page_licence_and_words(staged: Path, target: str) -> None:
         assert (stage / "LICENSE").read_text().startswith("MIT License")
         page = (stage / "README.md").read_text(encoding="utf-8")
         for link in re.findall(r"\]\(([^)#]+)\)", page):
-            assert (stage / link).exists(), f"{target}: {link} leads nowhere"
+            place = (stage / link).resolve()
+            assert place.exists() and place.is_relative_to(stage), f"{target}: {link} leads nowhere"
         assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Into a project", "Parts", "What is missing"]
         assert "<version>" not in page and "goe_tools" not in page
     texts = [path.read_text() for path in (staged / target).rglob("*") if path.is_file() and path.suffix != ".zip"]
@@ -201,6 +202,15 @@ def test_page_of_the_tree(host: str) -> None:
     assert re.findall(r"^## (.*)$", page, re.MULTILINE) == HEADINGS
     assert set(OF_THE_TREE) <= set(HEADINGS)
     assert "```console" not in page and not re.search(r"\d (Jan|Nov|Dec)\w* 20\d\d", page)
+
+
+def test_links_out_of_a_package_go(tmp_path: Path) -> None:
+    """Also where by chance something lies at their end."""
+    (tmp_path / "flight").mkdir()
+    (tmp_path / "flight" / "README.md").write_text("another page")
+    (folder, _) = TARGETS["arduino"](FACTS, WORDS, tmp_path)
+    assert (folder / "../flight/README.md").exists()
+    assert "../flight" not in (folder / "README.md").read_text(encoding="utf-8")
 
 
 def test_figures_of_pages_and_manifests() -> None:

@@ -86,7 +86,8 @@ class Stage:
         kept = [f"## {section}" for section in sections if section.partition("\n")[0] not in OF_THE_TREE]
 
         def link(match: re.Match[str]) -> str:
-            return match[0] if (self.folder / match[2]).exists() else match[1]
+            place, folder = (self.folder / match[2]).resolve(), self.folder.resolve()
+            return match[0] if place.is_relative_to(folder) and place.exists() else match[1]
 
         page = LINK.sub(link, first + "".join(kept)).replace("<version>", self.facts.version)
         self.write("README.md", page)
