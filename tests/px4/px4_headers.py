@@ -1,5 +1,5 @@
-"""Makes the headers that PX4 would make of port/px4's messages and parameters, for the stand-in: the topics' structures, and a table
-of the parameters with their ranges."""
+"""Makes the headers that PX4 would make of port/px4's messages and parameters, for the stand-in: the topics' structures, and
+a table of the parameters with their ranges."""
 
 from __future__ import annotations
 
@@ -89,7 +89,8 @@ def table_of(parameters: list[Parameter]) -> str:
     )
     return (
         f"{HEAD}#include <cstdint>\n\nnamespace px4\n{{\n\nenum class params : uint16_t {{\n{ids}}};\n\n"
-        "struct standin_parameter_t {\n    const char *name;\n    bool is_int;\n    double least, most, standard;\n};\n\n"
+        "struct standin_parameter_t {\n    const char *name;\n    bool is_int;\n"
+        "    double least, most, standard;\n};\n\n"
         f"constexpr int standin_parameters = {len(parameters)};\n"
         f"static const standin_parameter_t standin_parameter[] = {{\n{rows}}};\n\n}} // namespace px4\n"
     )
