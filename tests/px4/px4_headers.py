@@ -1,5 +1,5 @@
-"""Makes the headers that PX4 would make of port/px4's messages and parameters, for the stand-in: the topics' structures, and
-a table of the parameters with their ranges."""
+"""Makes the headers that PX4 would make of port/px4's messages and parameters, for the stand-in: the topics'
+structures, and a table of the parameters with their ranges."""
 
 from __future__ import annotations
 

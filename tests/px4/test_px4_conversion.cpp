@@ -132,6 +132,18 @@ static void a_tunnel_holds_three_boxes() {
     TEST_ASSERT_FALSE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
 }
 
+static void a_tunnel_that_is_cut_holds_one_less() {
+    mavlink_tunnel_s tunnel{};
+    goe_mavlink_sighting_t sighting;
+    unsigned offset = 0;
+    tunnel.payload_type = FEATURES;
+    append(tunnel, features(1));
+    append(tunnel, features(2));
+    tunnel.payload_length--;
+    TEST_ASSERT_TRUE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
+    TEST_ASSERT_FALSE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
+}
+
 static void others_tunnels_are_theirs() {
     mavlink_tunnel_s tunnel{};
     goe_mavlink_sighting_t sighting;
@@ -291,6 +303,34 @@ static void the_defaults_are_the_layers_but_for_px4s_own() {
     TEST_ASSERT_EQUAL(0, parameters.resume);
 }
 
+/* Each parameter changes four bytes of the settings, and no two the same. */
+static void each_parameter_has_a_place_of_its_own() {
+    GoeParameters before;
+    GoeParameters after;
+    bool taken[sizeof(GoeParameters) / sizeof(float)] = {};
+    goe_parameters_read(before);
+    for (const auto &parameter : px4::standin_parameter) {
+        unsigned changed = 0;
+        standin::begin(1000000u);
+        if (parameter.is_int) {
+            standin::set(parameter.name, static_cast<int32_t>(parameter.standard) + 1);
+        } else {
+            standin::set(parameter.name, static_cast<float>(parameter.standard) + 0.5f);
+        }
+        goe_parameters_read(after);
+        for (size_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
+            const char *const word[] = {reinterpret_cast<const char *>(&before),
+                                        reinterpret_cast<const char *>(&after)};
+            if (memcmp(word[0] + i * sizeof(float), word[1] + i * sizeof(float), sizeof(float)) != 0) {
+                TEST_ASSERT_FALSE_MESSAGE(taken[i], parameter.name);
+                taken[i] = true;
+                changed++;
+            }
+        }
+        TEST_ASSERT_EQUAL_MESSAGE(1, changed, parameter.name);
+    }
+}
+
 /* Both ends of every range that module.yaml tells are taken by the layer. */
 static void every_range_lies_within_the_layers() {
     static goe_flight_t flight;
@@ -336,6 +376,7 @@ int main() {
     RUN_TEST(each_height_is_marked_by_its_source);
     RUN_TEST(each_clock_has_its_own_times);
     RUN_TEST(a_tunnel_holds_three_boxes);
+    RUN_TEST(a_tunnel_that_is_cut_holds_one_less);
     RUN_TEST(others_tunnels_are_theirs);
     RUN_TEST(any_bytes_in_a_tunnel_are_borne);
     RUN_TEST(a_flight_by_tunnel_is_that_by_topic);
@@ -345,6 +386,7 @@ int main() {
     RUN_TEST(conflicts_are_told_where_px4_has_the_topic);
 #endif
     RUN_TEST(the_defaults_are_the_layers_but_for_px4s_own);
+    RUN_TEST(each_parameter_has_a_place_of_its_own);
     RUN_TEST(every_range_lies_within_the_layers);
     return UNITY_END();
 }

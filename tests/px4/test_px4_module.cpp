@@ -165,6 +165,46 @@ static void a_full_table_is_told() {
     TEST_ASSERT_EQUAL(0, flight.status().overdue);
 }
 
+static void two_obstacles_of_one_image_are_one_image() {
+    flight.follows = flight.tells_images = false;
+    for (int k = 0; k < 150; k++) {
+        flight.step();
+        const int exposed = flight.flown.sample - 1 - FLOWN_DELAY;
+        for (uint32_t id = 1; k % 5 == 0 && exposed >= 0 && id <= 2; id++) {
+            goe_features_s topic = flight.features_of(exposed);
+            topic.number = 2;
+            topic.id = id;
+            standin::publish(ORB_ID(goe_features), &topic);
+        }
+        standin::settle();
+    }
+    CHECK_CLOSE(0.5, 10.0, flight.status().image_rate);
+    TEST_ASSERT_GREATER_THAN(50, flight.status().taken); /* messages */
+}
+
+/* With a distance sensor the ground is where it says, not where dist_bottom says. */
+static void a_distance_sensor_tells_the_ground() {
+    goe_obstacle_s by_terrain;
+    goe_obstacle_s by_range;
+    flight.fly(4.0);
+    TEST_ASSERT_TRUE(flight.obstacle(by_terrain));
+    flight.end();
+    flight.begin();
+    flight.follows = false;
+    for (int k = 0; k < 200; k++) {
+        distance_sensor_s sensor{};
+        sensor.timestamp = standin::now_us();
+        sensor.max_distance = 40.f;
+        sensor.current_distance = 18.f; /* 20 m, by dist_bottom */
+        sensor.signal_quality = 100;
+        sensor.orientation = distance_sensor_s::ROTATION_DOWNWARD_FACING;
+        standin::publish(ORB_ID(distance_sensor), &sensor, 1);
+        flight.step();
+    }
+    TEST_ASSERT_TRUE(flight.obstacle(by_range));
+    CHECK_CLOSE(0.1, -2.0, by_range.ground_down - by_terrain.ground_down);
+}
+
 static unsigned known_sectors() {
     obstacle_distance_s topic{};
     unsigned count = 0;
@@ -331,6 +371,8 @@ int main() {
     RUN_TEST(a_reset_of_the_heading_ends_the_track);
     RUN_TEST(an_invalid_position_is_no_sample);
     RUN_TEST(a_full_table_is_told);
+    RUN_TEST(two_obstacles_of_one_image_are_one_image);
+    RUN_TEST(a_distance_sensor_tells_the_ground);
     RUN_TEST(a_dead_detector_is_not_clear);
     RUN_TEST(without_an_attitude_the_status_still_comes);
     RUN_TEST(a_clock_that_jumps_ends_nothing_for_long);

@@ -179,6 +179,18 @@ static void a_resume_that_is_answered_is_not_repeated() {
     }
 }
 
+/* What is sent in Hold, as the target moves, does not make Hold the mode to go back to. */
+static void the_mission_is_resumed_after_a_target_that_moved() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    assessment.target_ned_m[0] += 20.f;
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+}
+
 static void an_order_in_hold_resumes_nothing() {
     vehicle.nav_state = HOLD;
     TEST_ASSERT_TRUE(follow());
@@ -285,6 +297,7 @@ int main() {
     RUN_TEST(an_order_that_stood_while_a_pilot_flew_is_given_in_the_mission);
     RUN_TEST(the_mission_is_resumed_if_that_is_wanted);
     RUN_TEST(a_resume_that_is_answered_is_not_repeated);
+    RUN_TEST(the_mission_is_resumed_after_a_target_that_moved);
     RUN_TEST(an_order_in_hold_resumes_nothing);
     RUN_TEST(a_go_around_is_given_in_landing);
     RUN_TEST(no_command_is_ever_given_by_default);
