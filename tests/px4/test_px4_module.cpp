@@ -60,6 +60,20 @@ static void an_image_that_is_too_new_waits_for_its_pose() {
     TEST_ASSERT_EQUAL(0, flight.status().overdue);
 }
 
+/* A companion's clock, converted, may be some milliseconds ahead. */
+static void an_image_that_was_sent_in_the_future_waits_too() {
+    flight.fly(1.0);
+    const uint16_t taken = flight.status().taken;
+    flight.follows = flight.tells_images = false;
+    goe_features_s topic = flight.features_of(flight.flown.sample);
+    topic.timestamp_sample = flight.time_of(flight.flown.sample) + 30000u;
+    topic.timestamp = topic.timestamp_sample + 20000u;
+    standin::publish(ORB_ID(goe_features), &topic);
+    flight.fly(0.3);
+    TEST_ASSERT_EQUAL(taken + 1, flight.status().taken);
+    TEST_ASSERT_EQUAL(0, flight.status().overdue);
+}
+
 static void an_image_that_no_pose_comes_for_is_given_up() {
     flight.fly(1.0);
     const uint16_t taken = flight.status().taken;
@@ -363,6 +377,7 @@ int main() {
     RUN_TEST(the_clocks_32_bits_may_wrap_in_flight);
     RUN_TEST(statuses_come_ten_times_a_second);
     RUN_TEST(an_image_that_is_too_new_waits_for_its_pose);
+    RUN_TEST(an_image_that_was_sent_in_the_future_waits_too);
     RUN_TEST(an_image_that_no_pose_comes_for_is_given_up);
     RUN_TEST(more_images_than_can_wait_cost_the_oldest);
     RUN_TEST(an_image_that_comes_too_late_is_counted);

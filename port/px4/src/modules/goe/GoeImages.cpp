@@ -19,7 +19,8 @@ void GoeImages::give_up() {
     note_lost(1u);
 }
 
-void GoeImages::keep() {
+void GoeImages::keep(uint32_t now_us) {
+    _kept_us[(_first + _count) % PLACES] = now_us;
     _count++;
     if (_count > ROOM) {
         give_up();
@@ -35,7 +36,7 @@ void GoeImages::note_delay(uint32_t delay_us) {
 void GoeImages::take(goe_flight_t &flight, uint32_t now_us) {
     while (_count > 0) {
         const goe_flight_frame_t &frame = oldest().frame;
-        const uint32_t waited_us = now_us - frame.arrival_us;
+        const uint32_t waited_us = now_us - _kept_us[_first];
         const goe_flight_status_t status = goe_flight_frame(&flight, &frame);
         if (status == GOE_FLIGHT_TOO_NEW && waited_us < WAIT_MAX_US) {
             return;

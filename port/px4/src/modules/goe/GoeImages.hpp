@@ -12,7 +12,7 @@ class GoeImages {
 
     /* Room for one more, to be filled and then kept. If too many wait the oldest one goes then, and is counted. */
     goe_mavlink_sighting_t &room() { return _image[(_first + _count) % PLACES]; }
-    void keep();
+    void keep(uint32_t now_us);
     void note_lost(unsigned images); /* that never came here: counted as overdue */
 
     /* Gives the layer what it can take by now. */
@@ -38,6 +38,7 @@ class GoeImages {
     void note_delay(uint32_t delay_us);
 
     goe_mavlink_sighting_t _image[PLACES]{};
+    uint32_t _kept_us[PLACES]{}; /* when each came here: its own times may be of a clock that is off */
     unsigned _first{0}, _count{0};
     uint16_t _overdue{0};
     Delays _delays{};
