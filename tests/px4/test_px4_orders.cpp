@@ -20,7 +20,7 @@ static vehicle_command_s command;
 
 extern "C" void setUp(void) {
     orders = GoeOrders();
-    vehicle = GoeOrders::Vehicle{true, MISSION, true, true, 489.f, 1000000u};
+    vehicle = GoeOrders::Vehicle{true, MISSION, true, true, true, 489.f, 1000000u};
     memset(&assessment, 0, sizeof assessment);
     assessment.action = GOE_FLIGHT_LEFT;
     assessment.target_ned_m[0] = 100.f;
@@ -191,6 +191,35 @@ static void the_mission_is_resumed_after_a_target_that_moved() {
     TEST_ASSERT_TRUE(follow(ALL, true));
 }
 
+/* Given up, or only turned away from: it may lie ahead in the mission. */
+static void the_mission_is_not_resumed_before_the_obstacle_is_passed() {
+    for (const bool holds : {false, true}) {
+        setUp();
+        assessment.action = holds ? GOE_FLIGHT_HOLD : GOE_FLIGHT_RIGHT;
+        TEST_ASSERT_TRUE(follow(ALL, true));
+        accept(HOLD);
+        TEST_ASSERT_FALSE(follow(ALL, true));
+        vehicle.obstacle_known = holds;
+        assessment.action = GOE_FLIGHT_NONE;
+        for (int i = 0; i < 20; i++) {
+            TEST_ASSERT_FALSE(follow(ALL, true));
+        }
+    }
+}
+
+static void the_slot_is_that_of_the_latest_order() {
+    TEST_ASSERT_EQUAL(-1, orders.slot());
+    assessment.avoided = 2;
+    (void)follow();
+    assessment.action = GOE_FLIGHT_NONE;
+    assessment.avoided = -1;
+    (void)follow();
+    TEST_ASSERT_EQUAL(2, orders.slot());
+    assessment.action = GOE_FLIGHT_LEFT; /* that has given its obstacle up */
+    (void)follow();
+    TEST_ASSERT_EQUAL(-1, orders.slot());
+}
+
 static void an_order_in_hold_resumes_nothing() {
     vehicle.nav_state = HOLD;
     TEST_ASSERT_TRUE(follow());
@@ -216,10 +245,12 @@ static void a_go_around_is_given_in_landing() {
 /* ------------------------------------------------------------------------------------------------------ the whole, flown */
 
 static Px4Flight flight;
+static vehicle_command_s last;
 
-/* Towards a mast, or in landing a truck; PX4 accepts what it is given. Returns how many commands there were; the first one is kept. */
-static unsigned fly_towards_one(uint8_t mode, bool lands, double seconds, int32_t react) {
-    unsigned commands = 0;
+static constexpr uint8_t SYSTEM = 1, GROUND_STATION = 255;
+
+/* Towards a mast, or in landing a truck. */
+static void start_towards_one(uint8_t mode, bool lands, int32_t react) {
     flight.begin();
     standin::set("GOE_REACT", react);
     if (lands) {
@@ -240,20 +271,40 @@ static unsigned fly_towards_one(uint8_t mode, bool lands, double seconds, int32_
         lands ? position_setpoint_s::SETPOINT_TYPE_LAND : position_setpoint_s::SETPOINT_TYPE_POSITION;
     standin::publish(ORB_ID(position_setpoint_triplet), &setpoint);
     flight.set_mode(true, mode);
+}
+
+/* PX4 accepts what it is given, and tells `asker` so. */
+static void obey(const vehicle_command_s &one, uint8_t asker) {
+    vehicle_command_ack_s ack{};
+    ack.command = one.command;
+    ack.target_system = asker;
+    standin::publish(ORB_ID(vehicle_command_ack), &ack);
+    if (one.command == vehicle_command_s::VEHICLE_CMD_DO_REPOSITION) {
+        flight.set_mode(true, HOLD);
+    } else if (one.command == vehicle_command_s::VEHICLE_CMD_DO_SET_MODE) {
+        flight.set_mode(true, MISSION);
+    }
+}
+
+/* Returns how many commands there were; the first and the last one are kept. */
+static unsigned fly_on(double seconds, uint8_t asker = SYSTEM) {
+    unsigned commands = 0;
     for (int i = 0; i < static_cast<int>(seconds * FLOWN_POSE_HZ); i++) {
-        vehicle_command_s one;
+        const unsigned before = standin::published(ORB_ID(vehicle_command));
         flight.step();
-        if (standin::published(ORB_ID(vehicle_command)) > commands) {
-            TEST_ASSERT_TRUE(standin::latest(ORB_ID(vehicle_command), 0, &one));
-            command = commands == 0 ? one : command;
-            vehicle_command_ack_s ack{};
-            ack.command = one.command;
-            standin::publish(ORB_ID(vehicle_command_ack), &ack);
+        if (standin::published(ORB_ID(vehicle_command)) > before) {
+            TEST_ASSERT_TRUE(standin::latest(ORB_ID(vehicle_command), 0, &last));
+            command = commands == 0 ? last : command;
+            obey(last, asker);
             commands++;
-            flight.set_mode(true, lands ? mode : HOLD);
         }
     }
     return commands;
+}
+
+static unsigned fly_towards_one(uint8_t mode, bool lands, double seconds, int32_t react) {
+    start_towards_one(mode, lands, react);
+    return fly_on(seconds);
 }
 
 static void no_command_is_ever_given_by_default() {
@@ -278,6 +329,48 @@ static void a_mast_on_the_course_is_passed_aside() {
     flight.end();
 }
 
+static void it_flies_on_in_its_mission_past_the_mast() {
+    start_towards_one(MISSION, false, ALL);
+    standin::set("GOE_RESUME", 1);
+    TEST_ASSERT_GREATER_THAN(1, fly_on(20.0));
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, last.command);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("goe: the order ends") != std::string::npos);
+    flight.end();
+}
+
+static void the_answer_to_a_ground_station_is_none_to_the_module() {
+    start_towards_one(MISSION, false, ALL);
+    const unsigned answered = fly_on(13.0);
+    flight.end();
+    start_towards_one(MISSION, false, ALL);
+    TEST_ASSERT_GREATER_THAN(answered + 2, fly_on(13.0, GROUND_STATION));
+    flight.end();
+}
+
+/* A reset of the heading ends the track; the order stands for GOE_HOLD after that, and so long settings wait. Where the obstacle is
+ * is not known then: no way back into the mission. */
+static void an_order_outlives_its_track() {
+    start_towards_one(MISSION, false, ALL);
+    standin::set("GOE_RESUME", 1);
+    TEST_ASSERT_GREATER_THAN(0, fly_on(10.0));
+    flight.flown.sees = false;
+    flight.quat_reset_counter++;
+    (void)fly_on(0.2);
+    TEST_ASSERT_EQUAL(0, flight.status().obstacles);
+    TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+    standin::set("GOE_MARGIN", 40.f);
+    (void)fly_on(1.2);
+    TEST_ASSERT_TRUE(flight.status().settings_waiting);
+    TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+    flight.follows = false;
+    (void)fly_on(2.0);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+    TEST_ASSERT_FALSE(flight.status().settings_waiting);
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, last.command);
+    flight.end();
+}
+
 static void an_approach_is_broken_off() {
     TEST_ASSERT_GREATER_THAN(0, fly_towards_one(LAND, true, 14.0, ALL));
     TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
@@ -298,10 +391,15 @@ int main() {
     RUN_TEST(the_mission_is_resumed_if_that_is_wanted);
     RUN_TEST(a_resume_that_is_answered_is_not_repeated);
     RUN_TEST(the_mission_is_resumed_after_a_target_that_moved);
+    RUN_TEST(the_mission_is_not_resumed_before_the_obstacle_is_passed);
+    RUN_TEST(the_slot_is_that_of_the_latest_order);
     RUN_TEST(an_order_in_hold_resumes_nothing);
     RUN_TEST(a_go_around_is_given_in_landing);
     RUN_TEST(no_command_is_ever_given_by_default);
     RUN_TEST(a_mast_on_the_course_is_passed_aside);
+    RUN_TEST(it_flies_on_in_its_mission_past_the_mast);
+    RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
+    RUN_TEST(an_order_outlives_its_track);
     RUN_TEST(an_approach_is_broken_off);
     return UNITY_END();
 }

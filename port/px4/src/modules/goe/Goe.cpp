@@ -67,7 +67,8 @@ void Goe::use_parameters() {
     }
 }
 
-/* What ends tracks waits for their end while armed: an obstacle that is followed is not forgotten for a parameter. */
+/* What ends tracks waits for their end while armed: neither an obstacle that is followed nor an order that stands is forgotten for a
+ * parameter. */
 void Goe::follow_parameters() {
     parameter_update_s update;
     if (_parameter_update_sub.update(&update)) {
@@ -78,8 +79,9 @@ void Goe::follow_parameters() {
             _bad_field = _waiting ? _bad_field : nullptr;
         }
     }
-    const bool armed = _vehicle_status.arming_state == vehicle_status_s::ARMING_STATE_ARMED;
-    if (_waiting && (!armed || !_in_use || _overview.status.obstacles == 0)) {
+    const goe_status_s &status = _overview.status;
+    const bool idle = status.obstacles == 0 && status.action == goe_status_s::ACTION_NONE;
+    if (_waiting && (!is_armed() || !_in_use || idle)) {
         use_parameters();
     }
 }
@@ -123,44 +125,45 @@ void Goe::take_position() {
 
 /* ---------------------------------------------------------------------------------------------------------- images -- */
 
-void Goe::take_features() {
+void Goe::take_features(uint32_t now_us) {
     goe_features_s topic;
     unsigned before = _features_sub.get_last_generation();
     while (_features_sub.update(&topic)) {
-        const unsigned now = _features_sub.get_last_generation();
-        if (before != 0 && now != before) {
-            _images.note_lost(now - before - 1u); /* the topic's queue was full */
+        const unsigned latest = _features_sub.get_last_generation();
+        if (before != 0 && latest != before) {
+            _images.note_lost(latest - before - 1u); /* the topic's queue was full */
         }
-        before = now;
+        before = latest;
         goe_px4::sighting(topic, _images.room());
-        _images.keep();
+        _images.keep(now_us);
     }
 }
 
-void Goe::take_tunnel() {
+void Goe::take_tunnel(uint32_t now_us) {
     mavlink_tunnel_s topic;
     unsigned offset = 0;
     if (_tunnel_sub.update(&topic) && (_parameters.inputs & GOE_IN_TUNNEL) != 0) {
         while (goe_px4::next_of_tunnel(topic, offset, _images.room())) {
-            _images.keep();
+            _images.keep(now_us);
         }
     }
 }
 
-void Goe::take_landing_target() {
+void Goe::take_landing_target(uint32_t now_us) {
     irlock_report_s topic;
     if (_landing_target_sub.update(&topic) && (_parameters.inputs & GOE_IN_LANDING_TARGET) != 0 &&
         goe_px4::sighting(topic, _used.estimator, whole_us(_parameters.target_delay_s),
                           whole_us(_parameters.target_delay_sd_s), _images.room())) {
-        _images.keep();
+        _images.keep(now_us);
     }
 }
 
 void Goe::take_images() {
-    take_features();
-    take_tunnel();
-    take_landing_target();
-    _images.take(_flight, goe_px4::time_us(hrt_absolute_time()));
+    const uint32_t now_us = goe_px4::time_us(hrt_absolute_time());
+    take_features(now_us);
+    take_tunnel(now_us);
+    take_landing_target(now_us);
+    _images.take(_flight, now_us);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- answers -- */
@@ -173,7 +176,9 @@ void Goe::take_vehicle() {
         _approach = setpoint.current.valid && setpoint.current.type == position_setpoint_s::SETPOINT_TYPE_LAND;
     }
     while (_command_ack_sub.update(&answer)) {
-        _orders.take(answer);
+        if (answer.target_system == _vehicle_status.system_id) { /* not of a ground station's command */
+            _orders.take(answer);
+        }
     }
 }
 
@@ -229,12 +234,20 @@ void Goe::publish_status(const goe_flight_assessment_t &assessment, uint64_t now
     _overview.approach = _approach;
 }
 
+bool Goe::is_armed() const { return _vehicle_status.arming_state == vehicle_status_s::ARMING_STATE_ARMED; }
+
+bool Goe::is_followed(int slot) const {
+    goe_flight_obstacle_t obstacle;
+    return goe_flight_obstacle(&_flight, slot, &obstacle) == GOE_FLIGHT_OK && (obstacle.valid & GOE_HAS_POSITION) != 0u;
+}
+
 void Goe::follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_us) {
     vehicle_command_s command;
     GoeOrders::Vehicle vehicle{};
-    vehicle.armed = _vehicle_status.arming_state == vehicle_status_s::ARMING_STATE_ARMED;
+    vehicle.armed = is_armed();
     vehicle.nav_state = _vehicle_status.nav_state;
     vehicle.origin_known = _flight.origin_known;
+    vehicle.obstacle_known = is_followed(_orders.slot());
     vehicle.altitude_known = _position.z_global;
     vehicle.origin_alt_m = _position.ref_alt;
     vehicle.now_us = now_us;
@@ -253,7 +266,7 @@ void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
     }
     _told_action = static_cast<uint8_t>(assessment.action);
     if (assessment.action == GOE_FLIGHT_NONE) {
-        mavlink_log_info(&_mavlink_log_pub, "goe: clear");
+        mavlink_log_info(&_mavlink_log_pub, "goe: the order ends");
     } else {
         mavlink_log_critical(&_mavlink_log_pub, "goe: obstacle in %.0f s, %s%s",
                              static_cast<double>(assessment.hazard.time_s), goe_flight_action_text(assessment.action),

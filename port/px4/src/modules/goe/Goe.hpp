@@ -58,15 +58,17 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     void Run() override;
     void leave();
 
+    bool is_armed() const;
+    bool is_followed(int slot) const;
     void follow_parameters();
     void use_parameters();
     void take_attitude();
     void take_heights();
     void take_position();
     void take_images();
-    void take_features();
-    void take_tunnel();
-    void take_landing_target();
+    void take_features(uint32_t now_us);
+    void take_tunnel(uint32_t now_us);
+    void take_landing_target(uint32_t now_us);
     void take_vehicle();
     void assess(uint64_t now_us);
     void publish_obstacles(const goe_flight_assessment_t &assessment, uint64_t now_us);

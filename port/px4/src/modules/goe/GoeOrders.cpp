@@ -119,9 +119,13 @@ bool GoeOrders::may_resume(const Vehicle &vehicle) const {
            vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER;
 }
 
+/* The layer ends an order when the obstacle lies behind, or the course back is clear of it, and then still knows its place; or when
+ * its track has ended. What is only lost from sight may lie ahead in the mission. */
+bool GoeOrders::is_past(const Vehicle &vehicle) const { return vehicle.obstacle_known && _action != GOE_FLIGHT_HOLD; }
+
 bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &command) {
-    _wants_mission =
-        resume && _has_led && !_overruled && _mode_before == vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
+    _wants_mission = resume && _has_led && !_overruled && is_past(vehicle) &&
+                     _mode_before == vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
     _resumes_left = RESUMES_MAX;
     _action = GOE_FLIGHT_NONE;
     _awaited = 0;
@@ -163,6 +167,7 @@ bool GoeOrders::follow(const goe_flight_assessment_t &assessment, const Vehicle 
         return _action == GOE_FLIGHT_NONE ? repeat_resume(vehicle, command) : end(vehicle, resume, command);
     }
     const bool is_new = assessment.action != _action;
+    _slot = assessment.avoided;
     if (is_new) {
         begin(assessment.action);
     }

@@ -8,7 +8,7 @@ struct vehicle_command_ack_s {
                              VEHICLE_CMD_RESULT_IN_PROGRESS = 5;
     uint64_t timestamp;
     uint32_t command;
-    uint8_t result;
+    uint8_t result, target_system;
 };
 
 STANDIN_TOPIC(vehicle_command_ack, 4)
