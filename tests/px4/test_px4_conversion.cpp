@@ -257,7 +257,110 @@ static void landing_targets_are_taken_only_if_asked_for() {
 
 /* ----------------------------------------------------------------------------------------------------------------- out -- */
 
+/* An order about slot 2, the worst one is slot 1. */
+static goe_flight_assessment_t an_order() {
+    goe_flight_assessment_t assessment{};
+    assessment.action = GOE_FLIGHT_RIGHT;
+    assessment.late = true;
+    assessment.worst = 1;
+    assessment.avoided = 2;
+    assessment.needed_s = 3.5f;
+    assessment.target_ned_m[0] = 10.f;
+    assessment.target_ned_m[1] = 20.f;
+    assessment.target_ned_m[2] = -30.f;
+    return assessment;
+}
+
+static void an_obstacle_is_told_in_px4s_units() {
+    static goe_flight_t flight;
+    goe_flight_obstacle_t from{};
+    memset(&flight, 0, sizeof flight);
+    flight.origin_known = true;
+    flight.capture_us = 0xFFFFFF00u; /* the clock's 32 bits have wrapped since */
+    from.valid = GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION;
+    from.length_m = 8.f;
+    from.length_heading_deg = 90.f;
+    from.lat_e7 = 474000000;
+    from.lon_e7 = -85000000;
+    for (int slot = 0; slot < 4; slot++) {
+        const goe_obstacle_s topic = goe_px4::obstacle(flight, from, slot, an_order(), 0x200000100u);
+        TEST_ASSERT_EQUAL(slot == 1, topic.worst);
+        TEST_ASSERT_EQUAL(slot == 2, topic.avoided);
+        TEST_ASSERT_TRUE(topic.timestamp_sample == 0x1FFFFFF00u && topic.timestamp == 0x200000100u);
+        TEST_ASSERT_TRUE(std::fabs(topic.lat - 47.4) < 1e-9 && std::fabs(topic.lon + 8.5) < 1e-9);
+        CHECK_CLOSE(1e-6, 1.5707963, topic.length_heading);
+        TEST_ASSERT_TRUE(__builtin_isnan(topic.miss) && __builtin_isnan(topic.height) && __builtin_isnan(topic.width));
+    }
+    flight.origin_known = false;
+    TEST_ASSERT_TRUE(__builtin_isnan(goe_px4::obstacle(flight, from, 0, an_order(), 1000u).lat));
+}
+
+static void an_order_is_told_whole() {
+    static goe_flight_t flight;
+    goe_flight_assessment_t assessment = an_order();
+    goe_status_s topic{};
+    memset(&flight, 0, sizeof flight);
+    goe_px4::status(flight, assessment, topic);
+    TEST_ASSERT_EQUAL(goe_status_s::ACTION_RIGHT, topic.action);
+    TEST_ASSERT_TRUE(topic.late);
+    TEST_ASSERT_EQUAL(2, topic.avoided);
+    CHECK_CLOSE(0, 3.5, topic.needed);
+    CHECK_CLOSE(0, -30, topic.target[2]);
+    assessment.action = GOE_FLIGHT_NONE;
+    goe_px4::status(flight, assessment, topic);
+    TEST_ASSERT_TRUE(__builtin_isnan(topic.needed) && __builtin_isnan(topic.target[0]));
+}
+
+static void the_origin_is_rounded_and_no_pole() {
+    vehicle_local_position_s topic{};
+    goe_flight_position_t sample;
+    topic.xy_valid = topic.z_valid = topic.v_xy_valid = topic.v_z_valid = topic.xy_global = true;
+    topic.ref_lat = 47.12345678;
+    topic.ref_lon = -8.12345678;
+    TEST_ASSERT_TRUE(goe_px4::position(topic, goe_px4::Heights(), sample));
+    TEST_ASSERT_EQUAL(471234568, sample.origin_lat_e7);
+    TEST_ASSERT_EQUAL(-81234568, sample.origin_lon_e7);
+    topic.ref_lat = 89.5;
+    TEST_ASSERT_TRUE(goe_px4::position(topic, goe_px4::Heights(), sample));
+    TEST_ASSERT_FALSE(sample.origin_known);
+}
+
+static void a_home_needs_both_to_be_valid() {
+    home_position_s home{};
+    float down_m = 0.f;
+    home.z = 3.f;
+    for (int i = 0; i < 4; i++) {
+        home.valid_lpos = (i & 1) != 0;
+        home.valid_alt = (i & 2) != 0;
+        TEST_ASSERT_EQUAL(i == 3, goe_px4::home_down(home, down_m));
+    }
+    CHECK_CLOSE(0, 3, down_m);
+}
+
 #ifdef GOE_HAS_DETECT_AND_AVOID
+static void a_conflicts_level_follows_the_order() {
+    const float own_ned_m[3] = {0.f, 0.f, -30.f};
+    goe_flight_obstacle_t from{};
+    goe_flight_assessment_t assessment = an_order();
+    from.nearest_ned_m[0] = 40.f;
+    from.nearest_ned_m[1] = 30.f;
+    from.nearest_ned_m[2] = -40.f;
+    from.has_hazard = true;
+    from.hazard.violation = 0.3f;
+    const auto level = [&](int slot) {
+        return goe_px4::detect_and_avoid(from, slot, assessment, own_ned_m, 0.2f, 1000u).conflict_level;
+    };
+    TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_CRITICAL, level(2));
+    assessment.late = false;
+    TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_HIGH, level(2));
+    TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_LOW, level(0));
+    from.passed = true;
+    TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_NONE, level(0));
+    const detect_and_avoid_s topic = goe_px4::detect_and_avoid(from, 0, assessment, own_ned_m, 0.2f, 1000u);
+    CHECK_CLOSE(1e-4, 50, topic.aircraft_dist_hor);
+    CHECK_CLOSE(1e-4, 10, topic.aircraft_dist_vert);
+}
+
 static void conflicts_are_told_where_px4_has_the_topic() {
     static Px4Flight flight;
     flight.begin();
@@ -382,7 +485,12 @@ int main() {
     RUN_TEST(a_flight_by_tunnel_is_that_by_topic);
     RUN_TEST(a_landing_target_is_a_box_of_a_calibrated_age);
     RUN_TEST(landing_targets_are_taken_only_if_asked_for);
+    RUN_TEST(an_obstacle_is_told_in_px4s_units);
+    RUN_TEST(an_order_is_told_whole);
+    RUN_TEST(the_origin_is_rounded_and_no_pole);
+    RUN_TEST(a_home_needs_both_to_be_valid);
 #ifdef GOE_HAS_DETECT_AND_AVOID
+    RUN_TEST(a_conflicts_level_follows_the_order);
     RUN_TEST(conflicts_are_told_where_px4_has_the_topic);
 #endif
     RUN_TEST(the_defaults_are_the_layers_but_for_px4s_own);

@@ -196,6 +196,16 @@ static void two_obstacles_of_one_image_are_one_image() {
     TEST_ASSERT_GREATER_THAN(50, flight.status().taken); /* messages */
 }
 
+static void publish_range() {
+    distance_sensor_s sensor{};
+    sensor.timestamp = standin::now_us();
+    sensor.max_distance = 40.f;
+    sensor.current_distance = 18.f; /* 20 m, by dist_bottom */
+    sensor.signal_quality = 100;
+    sensor.orientation = distance_sensor_s::ROTATION_DOWNWARD_FACING;
+    standin::publish(ORB_ID(distance_sensor), &sensor, 1);
+}
+
 /* With a distance sensor the ground is where it says, not where dist_bottom says. */
 static void a_distance_sensor_tells_the_ground() {
     goe_obstacle_s by_terrain;
@@ -206,17 +216,29 @@ static void a_distance_sensor_tells_the_ground() {
     flight.begin();
     flight.follows = false;
     for (int k = 0; k < 200; k++) {
-        distance_sensor_s sensor{};
-        sensor.timestamp = standin::now_us();
-        sensor.max_distance = 40.f;
-        sensor.current_distance = 18.f; /* 20 m, by dist_bottom */
-        sensor.signal_quality = 100;
-        sensor.orientation = distance_sensor_s::ROTATION_DOWNWARD_FACING;
-        standin::publish(ORB_ID(distance_sensor), &sensor, 1);
+        publish_range();
         flight.step();
     }
     TEST_ASSERT_TRUE(flight.obstacle(by_range));
     CHECK_CLOSE(0.1, -2.0, by_range.ground_down - by_terrain.ground_down);
+}
+
+static void a_distance_sensor_that_has_fallen_silent_tells_nothing() {
+    goe_obstacle_s obstacle;
+    flight.fly(4.0);
+    TEST_ASSERT_TRUE(flight.obstacle(obstacle));
+    const float by_terrain_m = obstacle.ground_down;
+    flight.end();
+    flight.begin();
+    flight.flown.sees = false;
+    flight.fly(1.0);
+    flight.follows = false;
+    publish_range();
+    flight.fly(0.5);
+    flight.flown.sees = true;
+    flight.fly(3.0);
+    TEST_ASSERT_TRUE(flight.obstacle(obstacle));
+    CHECK_CLOSE(0.1, by_terrain_m, obstacle.ground_down);
 }
 
 static unsigned known_sectors() {
@@ -388,6 +410,7 @@ int main() {
     RUN_TEST(a_full_table_is_told);
     RUN_TEST(two_obstacles_of_one_image_are_one_image);
     RUN_TEST(a_distance_sensor_tells_the_ground);
+    RUN_TEST(a_distance_sensor_that_has_fallen_silent_tells_nothing);
     RUN_TEST(a_dead_detector_is_not_clear);
     RUN_TEST(without_an_attitude_the_status_still_comes);
     RUN_TEST(a_clock_that_jumps_ends_nothing_for_long);

@@ -320,6 +320,8 @@ static void a_mast_on_the_course_is_passed_aside() {
     TEST_ASSERT_TRUE(flight.status().flown);
     TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
     TEST_ASSERT_EQUAL(1, command.target_system);
+    CHECK_CLOSE(2.0, 489.f - flight.position.z, command.param7); /* its own height, in level flight */
+    TEST_ASSERT_EQUAL(1, command.target_component);
     TEST_ASSERT_EQUAL(1, command.source_component);
     TEST_ASSERT_FALSE(command.from_external);
     const double east_m = (command.param6 - 8.5) * 111194.9 * std::cos(47.4 * 0.0174532925);
