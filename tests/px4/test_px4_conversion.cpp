@@ -251,6 +251,12 @@ static void landing_targets_are_taken_only_if_asked_for() {
         standin::publish(ORB_ID(irlock_report), &report);
         flight.fly(0.3);
         TEST_ASSERT_EQUAL(inputs == 2 ? 1 : 0, flight.status().taken - before);
+        bool has_delay = false; /* of the last whole second */
+        for (int i = 0; i < 12; i++) {
+            flight.fly(0.1);
+            has_delay = has_delay || flight.status().delay_mean > 80.f; /* GOE_LT_DELAY; else NaN */
+        }
+        TEST_ASSERT_EQUAL(inputs == 2, has_delay);
     }
     flight.end();
 }

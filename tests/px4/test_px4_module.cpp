@@ -2,6 +2,8 @@
  * becomes of it when topics are late, early, missing or jump. SPDX-License-Identifier: MIT */
 #include "px4_flight.hpp"
 
+#include "GoeText.hpp"
+
 static Px4Flight flight;
 
 extern "C" void setUp(void) { flight.begin(); }
@@ -289,6 +291,15 @@ static void a_clock_that_jumps_ends_nothing_for_long() {
     TEST_ASSERT_EQUAL(1, flight.status().obstacles);
 }
 
+static void statuses_go_on_while_the_clock_is_set_back() {
+    flight.fly(2.0);
+    flight.follows = flight.in_step = false;
+    const unsigned before = standin::published(ORB_ID(goe_status));
+    standin::set_clock(standin::now_us() - 1500000u);
+    flight.fly(0.5);
+    TEST_ASSERT_GREATER_THAN(before + 3u, standin::published(ORB_ID(goe_status)));
+}
+
 /* The samples' own time goes back, as when the estimator starts anew: after 16 of them the layer begins anew, too. */
 static void samples_that_go_back_in_time_begin_a_new_history() {
     flight.fly(2.0);
@@ -339,6 +350,17 @@ static void what_costs_no_track_takes_effect_at_once() {
     TEST_ASSERT_FALSE(flight.status().settings_waiting);
 }
 
+static void the_range_of_the_sectors_is_a_parameter() {
+    obstacle_distance_s topic{};
+    flight.follows = false;
+    for (const float range_m : {50.f, 650.f}) {
+        standin::set("GOE_DIST_MAX", range_m);
+        flight.fly(1.5);
+        TEST_ASSERT_TRUE(standin::latest(ORB_ID(obstacle_distance), 0, &topic));
+        TEST_ASSERT_EQUAL(static_cast<int>(100.f * range_m), topic.max_distance);
+    }
+}
+
 static void a_bad_parameter_leaves_the_old_ones() {
     flight.fly(1.0);
     flight.follows = false;
@@ -385,6 +407,36 @@ static void the_status_is_told_in_words() {
     printf("%s", text.c_str());
 }
 
+static std::string line_of(const GoeOverview &overview, unsigned number) {
+    char line[GOE_TEXT_LINE];
+    return goe_text_status(overview, number, line) ? line : "none";
+}
+
+/* 50 m west of an obstacle, 5 m below its top, with a late order. */
+static void the_words_are_those_of_the_numbers() {
+    GoeOverview overview{};
+    goe_obstacle_s &obstacle = overview.obstacle[0];
+    overview.obstacles = overview.status.obstacles = 1;
+    overview.east_m = 100.f;
+    overview.react = 1;
+    obstacle.east = 40.f;
+    obstacle.nearest[1] = 50.f;
+    obstacle.width = obstacle.height = NAN;
+    obstacle.miss = 3.f;
+    obstacle.clearance = -5.f;
+    overview.status.action = goe_status_s::ACTION_LEFT;
+    overview.status.late = true;
+    TEST_ASSERT_EQUAL_STRING("order      left, told only, LATE, needs 0.0 s", line_of(overview, 5).c_str());
+    TEST_ASSERT_TRUE(says(line_of(overview, 7), "50 m at 270 deg"));
+    TEST_ASSERT_TRUE(says(line_of(overview, 8), "5 m below its top"));
+    TEST_ASSERT_EQUAL_STRING("none", line_of(overview, 9).c_str());
+    overview.status.obstacles = 0;
+    overview.status.detector_alive = true; /* but no pose */
+    TEST_ASSERT_TRUE(says(line_of(overview, 6), "NOT KNOWN"));
+    overview.status.pose_alive = true;
+    TEST_ASSERT_FALSE(says(line_of(overview, 6), "NOT KNOWN"));
+}
+
 static void it_starts_once_and_explains_itself() {
     TEST_ASSERT_NOT_EQUAL(0, goe_command("start"));
     TEST_ASSERT_EQUAL(0, goe_command(""));
@@ -414,14 +466,17 @@ int main() {
     RUN_TEST(a_dead_detector_is_not_clear);
     RUN_TEST(without_an_attitude_the_status_still_comes);
     RUN_TEST(a_clock_that_jumps_ends_nothing_for_long);
+    RUN_TEST(statuses_go_on_while_the_clock_is_set_back);
     RUN_TEST(samples_that_go_back_in_time_begin_a_new_history);
     RUN_TEST(a_change_in_flight_waits_for_the_end_of_the_tracks);
     RUN_TEST(one_that_is_taken_back_waits_for_nothing);
     RUN_TEST(what_costs_no_track_takes_effect_at_once);
+    RUN_TEST(the_range_of_the_sectors_is_a_parameter);
     RUN_TEST(a_bad_parameter_leaves_the_old_ones);
     RUN_TEST(without_a_camera_nothing_is_done_and_said_so);
     RUN_TEST(all_parameters_are_marked_as_used);
     RUN_TEST(the_status_is_told_in_words);
+    RUN_TEST(the_words_are_those_of_the_numbers);
     RUN_TEST(it_starts_once_and_explains_itself);
     return UNITY_END();
 }

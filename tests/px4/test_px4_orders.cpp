@@ -113,6 +113,12 @@ static void a_target_that_moves_is_sent_anew() {
     assessment.target_ned_m[1] -= 2.f;
     TEST_ASSERT_TRUE(follow());
     TEST_ASSERT_FALSE(follow());
+    assessment.target_ned_m[2] -= 6.f; /* upwards, too */
+    TEST_ASSERT_TRUE(follow());
+    answer(vehicle_command_ack_s::VEHICLE_CMD_RESULT_IN_PROGRESS);
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
 }
 
 static void another_action_is_sent_at_once() {
@@ -136,6 +142,33 @@ static void a_pilot_is_not_fought() {
     TEST_ASSERT_FALSE(follow(ALL, true));
     TEST_ASSERT_FALSE(orders.overruled());
     assessment.action = GOE_FLIGHT_RIGHT; /* the next order is another one */
+    TEST_ASSERT_TRUE(follow());
+}
+
+static void a_pilot_who_goes_on_with_the_mission_is_not_fought() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    vehicle.nav_state = MISSION;
+    assessment.target_ned_m[0] += 100.f;
+    TEST_ASSERT_FALSE(follow());
+    TEST_ASSERT_TRUE(orders.overruled());
+}
+
+/* What the order before has led to is not what this one has. */
+static void the_next_order_begins_anew() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(MISSION);
+    assessment.action = GOE_FLIGHT_LEFT;
+    TEST_ASSERT_TRUE(follow());
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+    TEST_ASSERT_FALSE(orders.overruled());
     TEST_ASSERT_TRUE(follow());
 }
 
@@ -373,6 +406,26 @@ static void an_order_outlives_its_track() {
     flight.end();
 }
 
+static void the_status_tells_of_a_pilot_and_of_refusals() {
+    start_towards_one(MISSION, false, ALL);
+    TEST_ASSERT_GREATER_THAN(0, fly_on(10.0));
+    TEST_ASSERT_FALSE(flight.status().overruled);
+    vehicle_command_ack_s ack{};
+    ack.command = vehicle_command_s::VEHICLE_CMD_DO_REPOSITION;
+    ack.target_system = SYSTEM;
+    ack.result = vehicle_command_ack_s::VEHICLE_CMD_RESULT_DENIED;
+    for (int i = 0; i < 40 && flight.status().commands_refused == 0; i++) { /* as soon as the target moves again */
+        standin::publish(ORB_ID(vehicle_command_ack), &ack);
+        flight.step();
+    }
+    flight.set_mode(true, POSITION);
+    (void)fly_on(0.3);
+    TEST_ASSERT_TRUE(flight.status().overruled);
+    TEST_ASSERT_EQUAL(0, goe_command("status"));
+    TEST_ASSERT_TRUE(standin::console().find(", overruled, needs") != std::string::npos);
+    flight.end();
+}
+
 static void an_approach_is_broken_off() {
     TEST_ASSERT_GREATER_THAN(0, fly_towards_one(LAND, true, 14.0, ALL));
     TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
@@ -389,6 +442,8 @@ int main() {
     RUN_TEST(a_target_that_moves_is_sent_anew);
     RUN_TEST(another_action_is_sent_at_once);
     RUN_TEST(a_pilot_is_not_fought);
+    RUN_TEST(a_pilot_who_goes_on_with_the_mission_is_not_fought);
+    RUN_TEST(the_next_order_begins_anew);
     RUN_TEST(an_order_that_stood_while_a_pilot_flew_is_given_in_the_mission);
     RUN_TEST(the_mission_is_resumed_if_that_is_wanted);
     RUN_TEST(a_resume_that_is_answered_is_not_repeated);
@@ -402,6 +457,7 @@ int main() {
     RUN_TEST(it_flies_on_in_its_mission_past_the_mast);
     RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
     RUN_TEST(an_order_outlives_its_track);
+    RUN_TEST(the_status_tells_of_a_pilot_and_of_refusals);
     RUN_TEST(an_approach_is_broken_off);
     return UNITY_END();
 }
