@@ -418,6 +418,7 @@ static void the_words_are_those_of_the_numbers() {
     goe_obstacle_s &obstacle = overview.obstacle[0];
     overview.obstacles = overview.status.obstacles = 1;
     overview.east_m = 100.f;
+    overview.north_m = obstacle.north = obstacle.nearest[0] = 30.f;
     overview.react = 1;
     obstacle.east = 40.f;
     obstacle.nearest[1] = 50.f;
