@@ -273,9 +273,11 @@ static void a_go_around_is_given_in_landing() {
     for (int i = 0; i < 20; i++) {
         TEST_ASSERT_FALSE(follow());
     }
-    vehicle.nav_state = HOLD; /* where it leads to is PX4's affair */
-    TEST_ASSERT_FALSE(follow());
-    TEST_ASSERT_FALSE(orders.overruled());
+    for (const uint8_t mode : {HOLD, LAND}) { /* where it leads to is PX4's affair */
+        vehicle.nav_state = mode;
+        TEST_ASSERT_FALSE(follow());
+        TEST_ASSERT_FALSE(orders.overruled());
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------ the whole, flown */
