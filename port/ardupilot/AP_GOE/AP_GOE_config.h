@@ -1,0 +1,8 @@
+/* Feature switch of AP_GOE. SPDX-License-Identifier: MIT */
+#pragma once
+
+#include <AP_HAL/AP_HAL_Boards.h>
+
+#ifndef AP_GOE_ENABLED
+#define AP_GOE_ENABLED (HAL_PROGRAM_SIZE_LIMIT_KB > 1024)
+#endif
