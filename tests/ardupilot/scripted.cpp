@@ -11,7 +11,7 @@
 
 #include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
+#include <memory>
 #include <sstream>
 
 Scripted scripted;
@@ -63,13 +63,13 @@ uint64_t AP_HAL::micros64() { return scripted.now_us; }
 uint32_t AP_HAL::millis() { return uint32_t(scripted.now_us / 1000); }
 
 void *operator new(size_t size, const ScriptedHeap &) noexcept {
-    static std::vector<void *> taken; // the firmware never gives it back
+    static std::vector<std::unique_ptr<char[]>> taken; // the firmware never gives it back
     scripted.allocations++;
     if (!scripted.has_memory) {
         return nullptr;
     }
-    taken.push_back(malloc(size));
-    return taken.back();
+    taken.emplace_back(new char[size]);
+    return taken.back().get();
 }
 
 void AP_Param::setup_object_defaults(void *object, const GroupInfo *info) {
