@@ -4,6 +4,8 @@
 
 #include <AP_HAL/AP_HAL.h>
 
+#include <fenv.h>
+
 #include <cstring>
 #include <set>
 #include <string>
@@ -511,6 +513,9 @@ static void test_the_log(void) {
 }
 
 int main(void) {
+#ifdef __GLIBC__
+    feenableexcept(FE_OVERFLOW | FE_DIVBYZERO | FE_INVALID); // as ArduPilot's simulator does
+#endif
     UNITY_BEGIN();
     RUN_TEST(test_it_knows_what_the_layer_knows);
     RUN_TEST(test_an_early_image_waits_for_its_pose);
