@@ -2,11 +2,11 @@
 goe_plane.lua: ArduPlane flies past what goe_companion has found. SPDX-License-Identifier: MIT
 
 The companion (reaction mode "off", reports on) sends GOE_HAZARD for each obstacle and GOE_STATUS once a second. An obstacle with
-an order makes this script fly to the order's target in GUIDED, and back into the mode before when the order is over. Only from AUTO
-and CRUISE; GO_AROUND only while landing in AUTO. Whoever chooses another mode meanwhile is not fought.
+an order makes this script fly to the order's target in GUIDED, and back into the mode before when the obstacle is passed. Only
+from AUTO and CRUISE; GO_AROUND only while landing in AUTO. Whoever chooses another mode meanwhile is not fought.
 
-If the companion falls silent while an order stands the aircraft stays at the target, circling, and the pilot is told: where the
-obstacle is nobody knows any more.
+Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
+companion falls silent, the aircraft stays at the target, circling, and the pilot is told: what is not seen may lie ahead.
 
 The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know. A link's
 signatures are then not checked; only messages of the own system id are taken.
@@ -15,7 +15,7 @@ signatures are then not checked; only messages of the own system id are taken.
 local HAZARD = { id = 42702, crc_extra = 114, length = 67 }
 local STATUS = { id = 42703, crc_extra = 89, length = 32 }
 local ORDER_FLAG = 0x20
-local GO_AROUND = 4
+local LEFT, RIGHT, CLIMB, GO_AROUND = 1, 2, 3, 4
 local AUTO, CRUISE, GUIDED = 10, 7, 15
 local DO_GO_AROUND = 191
 local NOTHING_KNOWN = 2147483647 -- of latitudes and longitudes
@@ -34,7 +34,8 @@ local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 
 local mode_before -- while this script has changed the mode
 local overruled = false
-local standing -- the order: action, lat, lon, down
+local standing -- the order: whose, action, lat, lon, down; is_past: that one is reported without an order; over_ms: since then
+-- the companion gives none
 local heard_ms = uint32_t(0)
 local sent_ms = uint32_t(0)
 local silence_told = false
@@ -72,18 +73,26 @@ end
 local function take_hazard(payload)
     local lat, lon, _, _, down = string.unpack("<i4i4fff", payload, 13)
     local action, flags = string.unpack("<BB", payload, 66)
+    local whose = payload:sub(9, 12) .. payload:sub(65, 65) -- number and place in the table
     if flags & ORDER_FLAG == 0 or action == 0 then
+        if standing and standing.whose == whose then
+            standing.is_past = true
+        end
         return
     end
     if action ~= GO_AROUND and (lat == NOTHING_KNOWN or lon == NOTHING_KNOWN or down ~= down) then
         return
     end
-    standing = { action = action, lat = lat, lon = lon, down = down }
+    standing = { whose = whose, action = action, lat = lat, lon = lon, down = down }
 end
 
 local function take_status(payload)
-    if string.unpack("<B", payload, 30) == 0 then
-        standing = nil
+    if not standing then
+        return
+    elseif string.unpack("<B", payload, 30) ~= 0 then
+        standing.over_ms = nil
+    elseif not standing.over_ms then
+        standing.over_ms = millis()
     end
 end
 
@@ -156,13 +165,27 @@ local function follow_order()
     end
 end
 
+local function is_passed()
+    local action = standing.action
+    return standing.is_past and (action == LEFT or action == RIGHT or action == CLIMB)
+end
+
 local function end_order()
     if mode_before and vehicle:get_mode() == GUIDED then
-        say(TEXT_INFO, "past it")
-        vehicle:set_mode(mode_before)
+        if is_passed() then
+            say(TEXT_INFO, "past it")
+            vehicle:set_mode(mode_before)
+        else
+            say(TEXT_WARNING, "not surely past, circling: pilot to decide")
+        end
     end
-    mode_before = nil
-    overruled = false
+    standing, mode_before, overruled = nil, nil, false
+end
+
+-- Its report without an order may come after the word that there is none.
+local function is_over()
+    return standing.over_ms and
+        (standing.is_past or not mode_before or millis() - standing.over_ms > SILENCE_MS)
 end
 
 -- An order stands on, at its target, while nothing is heard.
@@ -180,13 +203,14 @@ local function update()
     if enable:get() < 1 or not arming:is_armed() then
         standing, mode_before, overruled = nil, nil, false
     elseif standing then
-        if not watch_silence() or mode_before then
-            follow_order()
-        else
+        local silent = watch_silence()
+        if is_over() then
+            end_order()
+        elseif silent and not mode_before then
             standing = nil
+        elseif not standing.over_ms then
+            follow_order()
         end
-    else
-        end_order()
     end
     return update, PERIOD_MS
 end

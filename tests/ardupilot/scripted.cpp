@@ -178,15 +178,6 @@ bool AP_Arming::is_armed() const { return scripted.armed; }
 bool AP_Vehicle::is_landing() const { return scripted.landing; }
 bool AP_OADatabase::healthy() const { return true; }
 
-bool AP_Arming::get_aux_auth_id(uint8_t &id) {
-    id = uint8_t(scripted.auths.size());
-    scripted.auths.push_back(ScriptedAuth{false, "no answer yet"});
-    return true;
-}
-
-void AP_Arming::set_aux_auth_passed(uint8_t id) { scripted.auths.at(id) = ScriptedAuth{true, ""}; }
-void AP_Arming::set_aux_auth_failed(uint8_t id, const char *why) { scripted.auths.at(id) = ScriptedAuth{false, why}; }
-
 void AP_OADatabase::queue_push(const Vector3f &pos, uint32_t timestamp_ms, float distance, float radius,
                                OA_DbItem::Source source, uint32_t id) {
     scripted.pushes.push_back(ScriptedPush{pos, timestamp_ms, id, distance, radius, source});

@@ -30,11 +30,6 @@ struct ScriptedRecord { // of the log
     std::map<std::string, double> value;
 };
 
-struct ScriptedAuth {
-    bool passed;
-    std::string why;
-};
-
 struct Scripted {
     // clocks
     uint64_t now_us;
@@ -68,7 +63,6 @@ struct Scripted {
     std::vector<ScriptedPush> pushes;
     std::vector<ScriptedSent> sent;
     std::map<std::string, std::vector<ScriptedRecord>> log;
-    std::vector<ScriptedAuth> auths; // each asked id's latest answer
     unsigned allocations;
 
     Scripted();

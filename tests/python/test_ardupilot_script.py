@@ -20,7 +20,7 @@ mavgen = pytest.importorskip("pymavlink.generator.mavgen", reason="pymavlink is 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "port" / "ardupilot" / "goe_plane.lua"
 AUTO, CRUISE, LOITER, GUIDED = 10, 7, 12, 15
-LEFT, GO_AROUND, HOLD = 1, 4, 5
+LEFT, CLIMB, GO_AROUND, HOLD = 1, 3, 4, 5
 ORDER = 0x20
 DO_GO_AROUND = 191
 NOWHERE = 2**31 - 1
@@ -132,14 +132,20 @@ class Plane:
         self.waiting.append(bytes(whole))
 
     def hazard(self, action: int = LEFT, flags: int = ORDER, down: float = -35.5, **rest: Any) -> Any:
-        values: dict[str, Any] = {"lat": 474000000, "lon": 85460000} | rest
+        values: dict[str, Any] = {"id": 7, "lat": 474000000, "lon": 85460000} | rest
         return self.goe.MAVLink_goe_hazard_message(
-            5000000, 7, values["lat"], values["lon"], [1.0, 2.0, down], 8.0, 1.0, 2.0, 1.0,
+            5000000, values["id"], values["lat"], values["lon"], [1.0, 2.0, down], 8.0, 1.0, 2.0, 1.0,
             math.nan, math.nan, 0.6, 5.0, 0, action, flags,
         )  # fmt: skip
 
     def status(self, action: int) -> Any:
         return self.goe.MAVLink_goe_status_message(5000, *[0] * 10, 65535, 65535, 1, action, 3, 0)
+
+    def pass_by(self) -> None:
+        """The order ends: the obstacle is reported without one, a moment after the status says so."""
+        self.run(0.5, status=0)
+        self.send(self.hazard(action=0, flags=0))
+        self.run(0.1)
 
     def run(self, seconds: float, status: int | None = None) -> None:
         for step in range(round(10 * seconds)):
@@ -172,7 +178,7 @@ def test_it_flies_to_the_target_and_back_into_the_mode_before(plane: Plane, mode
     plane.send(plane.hazard(lat=474000500))
     plane.run(1.5, status=LEFT)
     assert plane.places[-1][0] == 474000500
-    plane.run(0.5, status=0)
+    plane.pass_by()
     assert plane.modes == [GUIDED, mode]
     plane.run(5.0, status=0)
     assert plane.modes == [GUIDED, mode]
@@ -218,7 +224,7 @@ def test_a_pilot_who_chooses_a_mode_is_not_fought(plane: Plane) -> None:
     plane.run(5.0, status=LEFT)
     assert plane.modes == [GUIDED] and plane.mode == LOITER
     assert any("whoever" in text for text in plane.texts)
-    plane.run(1.0, status=0)
+    plane.pass_by()
     assert plane.mode == LOITER
     plane.mode = AUTO
     plane.send(plane.hazard())
@@ -232,8 +238,29 @@ def test_silence_does_not_send_it_back_towards_the_obstacle(plane: Plane) -> Non
     plane.run(20.0)
     assert plane.mode == GUIDED
     assert sum("silent" in text for text in plane.texts) == 1
-    plane.run(1.0, status=0)
+    plane.pass_by()
     assert plane.mode == AUTO
+
+
+@pytest.mark.parametrize("action", [LEFT, CLIMB])
+def test_an_obstacle_that_was_given_up_is_not_flown_back_to(plane: Plane, action: int) -> None:
+    plane.send(plane.hazard(action=action))
+    plane.run(2.0, status=action)
+    plane.send(plane.hazard(id=8, action=0, flags=0))  # of another one
+    plane.run(2.0, status=0)
+    assert plane.mode == GUIDED and not any("circling" in text for text in plane.texts)
+    plane.run(5.0, status=0)
+    assert plane.modes == [GUIDED]
+    assert sum("circling" in text for text in plane.texts) == 1
+
+
+def test_an_order_that_comes_back_goes_on(plane: Plane) -> None:
+    plane.send(plane.hazard())
+    plane.run(1.0, status=LEFT)
+    plane.run(1.0, status=0)
+    plane.send(plane.hazard())
+    plane.run(6.0, status=LEFT)
+    assert plane.modes == [GUIDED] and len(plane.places) >= 5
 
 
 def test_going_around_is_for_landings_and_commanded_once(plane: Plane) -> None:
@@ -253,3 +280,6 @@ def test_holding_is_flown_like_the_others(plane: Plane) -> None:
     plane.send(plane.hazard(action=HOLD))
     plane.run(0.2, status=HOLD)
     assert plane.mode == GUIDED and len(plane.places) == 1
+    plane.pass_by()
+    assert plane.mode == GUIDED  # it turned away: the obstacle may lie on the way back
+    assert any("circling" in text for text in plane.texts)

@@ -186,7 +186,6 @@ void AP_GOE::tell_changes()
 void AP_GOE::once_a_second()
 {
     follow_params();
-    update_arming();
     send_status();
 }
 
@@ -194,7 +193,7 @@ void AP_GOE::once_a_second()
 
 bool AP_GOE::healthy() const
 {
-    return _state != nullptr && _bad_field == nullptr && _state->assessment.detector_alive &&
+    return enabled() && _state != nullptr && _bad_field == nullptr && _state->assessment.detector_alive &&
            _state->assessment.pose_alive;
 }
 
@@ -220,25 +219,6 @@ bool AP_GOE::pre_arm_check(char *failure_msg, uint8_t failure_msg_len) const
         hal.util->snprintf(failure_msg, failure_msg_len, "GOE: %s", why);
     }
     return why == nullptr;
-}
-
-/* By the tree's auxiliary authorisation, so that the arming checks themselves need no change. */
-void AP_GOE::update_arming()
-{
-#if AP_ARMING_AUX_AUTH_ENABLED
-    if (!_has_auth_id) {
-        _has_auth_id = AP::arming().get_aux_auth_id(_auth_id);
-    }
-    char why[42]{};
-    if (!_has_auth_id) {
-        return;
-    }
-    if (pre_arm_check(why, sizeof(why))) {
-        AP::arming().set_aux_auth_passed(_auth_id);
-    } else {
-        AP::arming().set_aux_auth_failed(_auth_id, why);
-    }
-#endif
 }
 
 namespace AP

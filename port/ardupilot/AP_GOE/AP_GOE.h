@@ -46,7 +46,7 @@ class AP_GOE
     // alive: images come, and the pose. Whether an obstacle is there has nothing to do with it
     bool healthy() const;
 
-    // false with a reason if arming must wait. What OPTIONS does not ask for is not looked at
+    // for the arming checks: false with a reason if arming must wait. What OPTIONS does not ask for is not looked at
     bool pre_arm_check(char *failure_msg, uint8_t failure_msg_len) const;
 
     // null while not started
@@ -92,7 +92,6 @@ class AP_GOE
     void assess();
     void tell_changes();
     void once_a_second();
-    void update_arming();
 
     // AP_GOE_Input.cpp
     void read_pose();
@@ -141,8 +140,6 @@ class AP_GOE
     bool _told_alive, _told_waiting;
     uint16_t _told_lost;
     bool _push_is_odd;
-    bool _has_auth_id;
-    uint8_t _auth_id;
 
     AP_Int8 _enable;
     AP_Int16 _width, _height;
