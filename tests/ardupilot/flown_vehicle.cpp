@@ -122,6 +122,7 @@ void FlownVehicle::restart_layer() {
     goe_flight_settings_t settings;
     goe_settings_default(&estimator);
     goe_flight_settings_default(&settings);
+    estimator.navigation.attitude_drift_deg = get_parameter(*goe, "ATT_DRIFT");
     estimator.camera.fx_px = estimator.camera.fy_px = flown.scene.camera.fx_px;
     estimator.camera.cx_px = estimator.camera.cy_px = 0.5f * SIZE_PX;
     estimator.camera.width_px = estimator.camera.height_px = SIZE_PX;

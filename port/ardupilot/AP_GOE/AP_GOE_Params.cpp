@@ -1,5 +1,5 @@
-/* Parameters of AP_GOE. Ranges and defaults are those of goe_settings_list.h and goe_flight_settings_list.h, unless said
- * otherwise. SPDX-License-Identifier: MIT */
+/* Parameters of AP_GOE. Ranges and defaults are those of goe_settings_list.h and goe_flight_settings_list.h, but for
+ * ATT_DRIFT. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED
@@ -316,10 +316,10 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: ATT_DRIFT
     // @DisplayName: Drift of the attitude
-    // @Description: Random walk of the attitude's error, degrees per square root of a second
+    // @Description: Random walk of the attitude's error, degrees per square root of a second. The heading of EKF3 wanders by a degree or two after take-off; taken for constant, that makes obstacles narrow
     // @Range: 0 30
     // @User: Advanced
-    AP_GROUPINFO("ATT_DRIFT", 41, AP_GOE, _att_drift, 0.0f),
+    AP_GROUPINFO("ATT_DRIFT", 41, AP_GOE, _att_drift, 0.3f),
 
     // @Param: VEL_BIAS
     // @DisplayName: Constant error of the velocity
