@@ -527,8 +527,8 @@ static void test_the_log(void) {
 }
 
 int main(void) {
-#ifdef __GLIBC__
-    feenableexcept(FE_OVERFLOW | FE_DIVBYZERO | FE_INVALID); // as ArduPilot's simulator does
+#if defined(__GLIBC__) && defined(TRAPS_FLOAT_EXCEPTIONS) // as ArduPilot's simulator does
+    feenableexcept(FE_OVERFLOW | FE_DIVBYZERO | FE_INVALID);
 #endif
     UNITY_BEGIN();
     RUN_TEST(test_it_knows_what_the_layer_knows);
