@@ -7,6 +7,7 @@
 
 #include "goe_settings_list.h"
 #include "input_error.h"
+#include "nearest_name.h"
 #include "number_text.h"
 
 #define WHOLE_MAX 1.0e6
@@ -115,6 +116,15 @@ static void append(setting_fault_t *fault, const char *text) {
 
 static bool tell_names(const char *name, size_t length, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(name, length);
+    nearest_name_t nearest = nearest_name_of(name, length);
+    for (size_t i = 0; i < count_tuned(); i++) {
+        nearest_name_try(&nearest, settings_by_name[i].name);
+    }
+    if (nearest.name != NULL) {
+        (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting; did you mean %s?", excerpt.text,
+                       nearest.name);
+        return false;
+    }
     (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting; there are ", excerpt.text);
     for (size_t i = 0; i < count_tuned(); i++) {
         append(fault, settings_by_name[i].name);
@@ -208,6 +218,17 @@ bool settings_print(FILE *stream, const goe_settings_t *settings) {
         column = (fresh_line ? strlen(INDENT) : column + 1u) + strlen(entry);
     }
     return fputc('\n', stream) != EOF;
+}
+
+bool setting_range(size_t offset, double *low, double *high) {
+    for (size_t i = 0; i < SETTINGS; i++) {
+        if (settings_by_name[i].offset == offset) {
+            *low = settings_by_name[i].low;
+            *high = settings_by_name[i].high;
+            return true;
+        }
+    }
+    return false;
 }
 
 bool settings_list(FILE *stream) {

@@ -24,6 +24,9 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
 /* Whether goe_init() takes the settings, the camera aside. Otherwise *fault names the first bad one and its range. */
 bool settings_in_range(const goe_settings_t *settings, setting_fault_t *fault);
 
+/* The range of the setting at an offset in goe_settings_t. False: there is none. */
+bool setting_range(size_t offset, double *low, double *high);
+
 /* The names of the settings to be tuned with their values, in lines. False if they could not be written. */
 bool settings_print(FILE *stream, const goe_settings_t *settings);
 

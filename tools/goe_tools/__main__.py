@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import importlib
+import re
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from .logs.obslog import LogError
 
@@ -32,10 +35,29 @@ EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C
 
 
+class Parser(argparse.ArgumentParser):
+    """Tells the name that a mistyped command or option was probably meant to be."""
+
+    def words(self) -> list[str]:
+        """Its options, its commands, and their options: a command hands back what it does not know."""
+        found = [word for action in self._actions for word in action.option_strings]
+        for action in self._actions:
+            for name, parser in (action.choices or {}).items() if isinstance(action.choices, dict) else ():
+                found += [name, *parser.words()]
+        return found
+
+    def error(self, message: str) -> NoReturn:
+        known = self.words()
+        mistyped = re.search(r"invalid choice: '([^']*)'|unrecognized arguments: (\S+)", message)
+        word = (mistyped[1] or mistyped[2]).split("=")[0] if mistyped else ""
+        near = difflib.get_close_matches(word, [name for name in known if (name[0] == "-") == word.startswith("-")], 1)
+        super().error(f"{message}; did you mean {near[0]}?" if near else message)
+
+
 def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
     """The parser of a command line. Only the module of the command that is asked for is imported: plots, tables and
     solvers take their time to start."""
-    parser = argparse.ArgumentParser(prog="goe_tools", description="Tools of the ground obstacle estimator.")
+    parser = Parser(prog="goe_tools", description="Tools of the ground obstacle estimator.")
     commands = parser.add_subparsers(dest="command", required=True)
     asked = next((word for word in words if not word.startswith("-")), None)
     for name, (module_name, text) in COMMANDS.items():
