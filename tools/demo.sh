@@ -11,7 +11,7 @@ log=.cache/demo-build.log
 if [ ! -e build/CMakeCache.txt ]; then
     cmake --preset default -DGOE_BUILD_TESTS=OFF >$log 2>&1 || { cat $log >&2; exit 1; }
 fi
-cmake --build build --target goe_replay goe_campaign goe_avoid goe_batch >$log 2>&1 || { cat $log >&2; exit 1; }
+cmake --build build --target goe_replay goe_sim goe_campaign goe_avoid goe_batch >$log 2>&1 || { cat $log >&2; exit 1; }
 
 echo "A recorded approach, replayed (simulated flight, whole pixels):"
 echo
@@ -35,4 +35,5 @@ echo "Every image's estimate of the replay: $root/$out"
 echo "The campaign's statistics:            $root/$campaign/cases.csv"
 echo "Every run of the orders:              $root/$orders"
 echo "The report:                           $root/build/report.html"
+echo "More tools:                           . .venv/bin/activate, then python -m goe_tools --help"
 echo "Every promised figure, in minutes:    .venv/bin/python -m goe_tools goals --quick"

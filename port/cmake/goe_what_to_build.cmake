@@ -1,0 +1,33 @@
+# GOE_BUILD_HOST and GOE_BUILD_TESTS that are AUTO become ON or OFF for this run: ON if the project is not part of another one and
+# what they need is found. What is left out is said, with what would bring it in.
+
+# goe_left_out(<variable> <what> <missing>)
+function(goe_left_out variable what missing)
+    message(STATUS "${what} left out: no ${missing}. tools/setup.sh installs what is missing; -D${variable}=ON insists")
+endfunction()
+
+if(GOE_BUILD_HOST STREQUAL AUTO)
+    set(GOE_BUILD_HOST ${goe_is_top_level})
+    foreach(header popt.h csv.h ini.h)
+        if(GOE_BUILD_HOST)
+            string(MAKE_C_IDENTIFIER GOE_HEADER_${header} found)
+            find_path(${found} ${header})
+            mark_as_advanced(${found})
+            if(NOT ${found})
+                set(GOE_BUILD_HOST OFF)
+                goe_left_out(GOE_BUILD_HOST "The programs for the host are" ${header})
+            endif()
+        endif()
+    endforeach()
+endif()
+
+if(GOE_BUILD_TESTS STREQUAL AUTO)
+    set(GOE_BUILD_TESTS ${goe_is_top_level})
+    if(GOE_BUILD_TESTS AND NOT CMAKE_CROSSCOMPILING)
+        include(${PROJECT_SOURCE_DIR}/port/cmake/unity.cmake)
+        if(NOT TARGET unity::framework)
+            set(GOE_BUILD_TESTS OFF)
+            goe_left_out(GOE_BUILD_TESTS "The tests are" "Unity test framework")
+        endif()
+    endif()
+endif()
