@@ -27,6 +27,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "offline": (".optimum.offline", "fit all images of a log with truth at once"),
     "packages": (".packages.command", "stage packages for other package managers, or check their manifests"),
     "peers": (".cost.peers.command", "hold the window fit and the filter update against other solvers"),
+    "rare": (".report.rare_command", "fly the flight layer's orders many times and keep what rarely happens"),
     "report": (".report.command", "write the campaign's report and print Table 3"),
     "settings": (".reference.settings_table", "print, write or check the manual's table of the library's settings"),
     "table": (".logs.table", "print estimates as a table that a pilot can read"),
