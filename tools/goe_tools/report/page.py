@@ -16,7 +16,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
 from ..optimum import paper_table3 as t3
-from . import attacks, avoid, boxes
+from . import attacks, avoid, boxes, rare
 from . import refined as rf
 from . import statistics as st
 from .data import COVERED, Campaign
@@ -340,6 +340,13 @@ def _avoid(campaign: Campaign) -> dict[str, Any] | None:
     }  # fmt: skip
 
 
+def _rare(campaign: Campaign) -> dict[str, Any] | None:
+    """The record of rare events; None without one."""
+    if campaign.rare is None:
+        return None
+    return {"sentence": rare.sentence(campaign.rare), "heads": rare.HEADS, "rows": rare.table(campaign.rare)}
+
+
 def _version(campaign: Campaign) -> str:
     version = str(campaign.facts.get("version", ""))
     return version if version[:1].isdigit() else ""
@@ -377,6 +384,7 @@ def render_page(campaign: Campaign, figures: list[PageFigure]) -> str:
         boxes=_boxes(campaign),
         attacks=_attacks(campaign),
         avoid=_avoid(campaign),
+        rare=_rare(campaign),
         real=rp.real_data(campaign),
         goal_symbols=[GOAL_SYMBOLS[name] for name in QUANTITIES],
         figures=figures,
