@@ -63,6 +63,8 @@ find_missing() {
         want needed xz-utils has xz
         # Without these parts of tools/test.sh are skipped.
         want extra clang-19 has clang-19
+        want extra lld-19 has wasm-ld-19
+        want extra binaryen has wasm-opt
         want extra clang-format-19 has clang-format-19
         want extra clang-tidy-19 has clang-tidy-19
         want extra shellcheck has shellcheck
