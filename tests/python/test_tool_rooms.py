@@ -18,7 +18,7 @@ FLOORS = (
     ("logs",),
     ("attack",),
     ("reference", "optimum", "cost", "packages"),
-    ("report",),
+    ("report", "live"),
     ("__main__",),
 )
 

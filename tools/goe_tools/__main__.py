@@ -22,6 +22,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
     "flight_cost": (".cost.flight", "measure what the calls of the flight layer take"),
     "ledger": (".cost.ledger", "measure what the library costs on each target"),
+    "live": (".live.command", "write a page in which the library runs, compiled to WebAssembly"),
     "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
     "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
     "offline": (".optimum.offline", "fit all images of a log with truth at once"),
