@@ -129,6 +129,7 @@ RUN_BY = {
     "python -m goe_tools ledger": By("tools/test.sh", "goe_tools ledger"),
     "python -m goe_tools ledger --check": By("tools/test.sh", "goe_tools ledger --check"),
     "python -m goe_tools ledger --write": By("tests/python/test_cost.py", '"ledger", "--write"'),
+    "python -m goe_tools live --out live.html": By("tests/python/test_live_page.py", '"live", "--out"'),
     "python -m goe_tools offline": By("tests/python/test_optimum.py", '"offline"'),
     "python -m goe_tools peers": By("tests/python/test_peers.py", "peers"),
     "python -m goe_tools peers --quick": By("tests/python/test_peers.py", '"peers", "--quick"'),
