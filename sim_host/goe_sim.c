@@ -24,6 +24,8 @@
 #define EXIT_BAD_USAGE 2
 #define FAULT_SIZE 4608
 
+#define SEED_SHIFT 48
+
 #define NOT_SAID (-DBL_MAX)
 
 /* Options that take a word; their numbers are what popt returns for them. */
@@ -144,7 +146,7 @@ static struct poptOption program_options[] = {
     {NULL, '\0', POPT_ARG_INCLUDE_TABLE, camera_options, 0, "Camera:", NULL},
     {NULL, '\0', POPT_ARG_INCLUDE_TABLE, noise_options, 0, "Sensors:", NULL},
     WORD("scenario", WORD_SCENARIO, "FILE",
-         "flight and obstacles from a file, [flight] and [obstacle N]; options given here go before it"),
+         "flight and obstacles from a file, [flight] and [obstacle N]; options given here override it"),
     {"case", '\0', POPT_ARG_INT, &given.paper_case, 0, "start from this case of the paper's campaign", "N"},
     {"list-cases", '\0', POPT_ARG_NONE, &given.list_cases, 0, "list the paper's campaign and stop", NULL},
     WORD("out", WORD_OUT, "DIR", "folder of the log; replaced if it holds one"),
@@ -352,8 +354,9 @@ static const char *fly_past_all(const flight_case_t *setup, flight_log_t *log, s
     const char *reason = flight_case_fly(setup, log);
     *count = reason == NULL ? 1 : 0;
     for (int i = 0; i < scenario_file.neighbours && reason == NULL; i++) {
-        reason = flight_log_of_neighbour(setup, log, &scenario_file.neighbour[i], setup->seed + (uint64_t)i + 1u,
-                                         &log[*count]);
+        /* no other flight's seed: small numbers are what people give */
+        const uint64_t seed = setup->seed ^ ((uint64_t)(i + 1) << SEED_SHIFT);
+        reason = flight_log_of_neighbour(setup, log, &scenario_file.neighbour[i], seed, &log[*count]);
         *count += reason == NULL ? 1u : 0u;
     }
     for (size_t i = 1; i < *count; i++) {
@@ -453,9 +456,7 @@ static bool take_option(const char *name, const char *value, char reason[SCENARI
     poptContext context = poptGetContext("goe_sim", 2, argv, program_options, 0);
     const int error = read_options(context);
     if (error < -1) {
-        char fault[OPTION_FAULT_MAX];
-        option_fault(fault, program_options, option, error);
-        (void)snprintf(reason, SCENARIO_REASON_MAX, "%s", fault);
+        option_fault_bare(reason, SCENARIO_REASON_MAX, program_options, name, error);
     }
     (void)poptFreeContext(context);
     return error >= -1;

@@ -8,9 +8,7 @@ cd "$root"
 
 tools/setup.sh --demo
 log=.cache/demo-build.log
-if [ ! -e build/CMakeCache.txt ]; then
-    cmake --preset default -DGOE_BUILD_TESTS=OFF >$log 2>&1 || { cat $log >&2; exit 1; }
-fi
+cmake --preset default -DGOE_BUILD_HOST=ON >$log 2>&1 || { cat $log >&2; exit 1; }
 cmake --build build --target goe_replay goe_sim goe_campaign goe_avoid goe_batch >$log 2>&1 || { cat $log >&2; exit 1; }
 
 echo "A recorded approach, replayed (simulated flight, whole pixels):"

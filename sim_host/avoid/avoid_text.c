@@ -49,5 +49,6 @@ void avoid_text_row(FILE *stream, const avoid_run_t *run, double margin_m) {
     } else {
         put_distance(stream, &run->with);
     }
-    (void)fprintf(stream, ",%d,%d,%d\n", orders->suspect, orders->assessed, orders->confident ? 1 : 0);
+    (void)fprintf(stream, ",%d,%d,%d\n", orders->suspect, orders->assessed,
+                  run->with.confident || run->without.confident ? 1 : 0);
 }

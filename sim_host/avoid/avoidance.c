@@ -51,7 +51,7 @@ typedef struct {
     double course_rad, speed_mps, height_m, glide_rad, reach_m, t_s;
     goe_flight_assessment_t order, obeyed; /* the latest, and the one that is carried out */
     double order_s;
-    int wrong_times; /* assessments on end */
+    int wrong_times[GOE_FLIGHT_SLOTS]; /* assessments in a row */
 } run_t;
 
 /* ------------------------------------------------------------------------------------------------------------- scene -- */
@@ -300,17 +300,15 @@ static double off_sigmas_squared(const goe_flight_obstacle_t *found, const obsta
 }
 
 static void judge_places(run_t *run, avoid_outcome_t *outcome) {
-    bool wrong = false;
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         goe_flight_obstacle_t found;
-        if (goe_flight_obstacle(&run->flight, slot, &found) == GOE_FLIGHT_OK &&
-            (found.valid & GOE_HAS_POSITION) != 0u && !found.suspect &&
-            off_sigmas_squared(&found, &run->obstacle) > AVOID_WRONG_SIGMAS * AVOID_WRONG_SIGMAS) {
-            wrong = true;
-        }
+        const bool known =
+            goe_flight_obstacle(&run->flight, slot, &found) == GOE_FLIGHT_OK && (found.valid & GOE_HAS_POSITION) != 0u;
+        const bool wrong = known && !found.suspect &&
+                           off_sigmas_squared(&found, &run->obstacle) > AVOID_WRONG_SIGMAS * AVOID_WRONG_SIGMAS;
+        run->wrong_times[slot] = wrong ? run->wrong_times[slot] + 1 : 0;
+        outcome->confident = outcome->confident || run->wrong_times[slot] >= AVOID_WRONG_TIMES;
     }
-    run->wrong_times = wrong ? run->wrong_times + 1 : 0;
-    outcome->confident = outcome->confident || run->wrong_times >= AVOID_WRONG_TIMES;
 }
 
 static void assess(run_t *run, avoid_outcome_t *outcome) {

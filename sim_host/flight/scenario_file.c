@@ -15,6 +15,10 @@
 #define SECTION_FLIGHT "flight"
 #define SECTION_OBSTACLE "obstacle "
 
+/* Keys of an obstacle. */
+enum { KEY_WHAT, KEY_X0, KEY_Z0, KEY_ALPHA, OBSTACLE_KEYS };
+static const char *const KEY_NAMES[OBSTACLE_KEYS] = {"what", "x0", "z0", "alpha"};
+
 typedef struct {
     FILE *stream;
     const char *path;
@@ -23,8 +27,8 @@ typedef struct {
     unsigned long line;
     scenario_option_t option;
     scenario_file_t *scenario;
-    bool has_shape[SCENARIO_NEIGHBOURS_MAX];
-    unsigned long begin[SCENARIO_NEIGHBOURS_MAX]; /* line of its first key */
+    unsigned long line_of[SCENARIO_NEIGHBOURS_MAX + 1]
+                         [OBSTACLE_KEYS]; /* where each obstacle's key was given; 0: nowhere */
     bool failed;
     char *fault;
     size_t fault_size;
@@ -56,6 +60,10 @@ static char *read_line(char *line, int size, void *user) {
         return NULL;
     }
     reader->line++;
+    if (strlen(reader->text) != (size_t)read) {
+        fail(reader, NULL, "the line holds a NUL byte");
+        return NULL;
+    }
     char *begin = reader->text;
     begin[strcspn(begin, "#;\n\r")] = '\0';
     while (isspace((unsigned char)*begin)) {
@@ -63,7 +71,7 @@ static char *read_line(char *line, int size, void *user) {
     }
     if (strlen(reader->text) + 2u > (size_t)size) {
         fail(reader, NULL, "the line is longer than %d characters", size - 2);
-    } else if (*begin != '\0' && *begin != '[' && strchr(begin, '=') == NULL) {
+    } else if (*begin == '[' ? strchr(begin, ']') == NULL : *begin != '\0' && strchr(begin, '=') == NULL) {
         fail(reader, NULL, "a line is [section] or key = value");
     }
     if (reader->failed) {
@@ -82,53 +90,68 @@ static int obstacle_number(const char *section) {
     return number >= 1.0 && floor(number) >= number ? (int)number : 0;
 }
 
+/* Where an obstacle, from 0, was first given a key; 0: nowhere. */
+static unsigned long first_line(const scenario_reader_t *reader, int obstacle) {
+    unsigned long first = 0;
+    for (int key = 0; key < OBSTACLE_KEYS; key++) {
+        const unsigned long line = reader->line_of[obstacle][key];
+        first = line != 0 && (first == 0 || line < first) ? line : first;
+    }
+    return first;
+}
+
 static void take_option(scenario_reader_t *reader, const char *key, const char *name, const char *value) {
     char reason[SCENARIO_REASON_MAX];
-    if (!reader->option(name, value, reason)) {
+    if (*value == '\0') {
+        fail(reader, key, "no value");
+    } else if (!reader->option(name, value, reason)) {
         fail(reader, key, "%s", reason);
     }
 }
 
-static void take_first(scenario_reader_t *reader, const char *key, const char *value) {
-    if (strcmp(key, "what") == 0) {
-        take_option(reader, key, "obstacle", value);
-    } else if (strcmp(key, "x0") == 0 || strcmp(key, "z0") == 0 || strcmp(key, "alpha") == 0) {
-        take_option(reader, key, key, value);
+/* The first obstacle is the command line's. */
+static void take_first(scenario_reader_t *reader, int key, const char *value) {
+    obstacle_t shape;
+    if (key == KEY_WHAT && !obstacle_parse(value, &shape)) {
+        fail(reader, KEY_NAMES[key], "'%s' is not %s", value, OBSTACLE_FORMS);
     } else {
-        fail(reader, key, "an obstacle has what, x0, z0 and alpha");
+        take_option(reader, KEY_NAMES[key], key == KEY_WHAT ? "obstacle" : KEY_NAMES[key], value);
     }
 }
 
-static void take_number(scenario_reader_t *reader, const char *key, const char *value, double *number) {
-    if (!text_numbers(value, "", number, 1)) {
-        fail(reader, key, "'%s' is not a number", value);
-    }
-}
-
-static void take_neighbour(scenario_reader_t *reader, int i, const char *key, const char *value) {
+static void take_neighbour(scenario_reader_t *reader, int i, int key, const char *value) {
     neighbour_t *neighbour = &reader->scenario->neighbour[i];
+    double *const numbers[OBSTACLE_KEYS] = {NULL, &neighbour->x0_m, &neighbour->z0_m, &neighbour->alpha_deg};
     if (i >= reader->scenario->neighbours) {
-        if (i > reader->scenario->neighbours) {
-            fail(reader, key, "obstacle %d comes before obstacle %d", i + 2, reader->scenario->neighbours + 2);
-            return;
-        }
         reader->scenario->neighbours = i + 1;
-        reader->begin[i] = reader->line;
         neighbour->z0_m = (double)NAN;
     }
-    if (strcmp(key, "what") == 0) {
-        reader->has_shape[i] = obstacle_parse(value, &neighbour->obstacle);
-        if (!reader->has_shape[i]) {
-            fail(reader, key, "'%s' is not %s", value, OBSTACLE_FORMS);
-        }
-    } else if (strcmp(key, "x0") == 0) {
-        take_number(reader, key, value, &neighbour->x0_m);
-    } else if (strcmp(key, "z0") == 0) {
-        take_number(reader, key, value, &neighbour->z0_m);
-    } else if (strcmp(key, "alpha") == 0) {
-        take_number(reader, key, value, &neighbour->alpha_deg);
+    if (key == KEY_WHAT && !obstacle_parse(value, &neighbour->obstacle)) {
+        fail(reader, KEY_NAMES[key], "'%s' is not %s", value, OBSTACLE_FORMS);
+    } else if (key != KEY_WHAT && !text_numbers(value, "", numbers[key], 1)) {
+        fail(reader, KEY_NAMES[key], "'%s' is not a number", value);
+    }
+}
+
+static void take_obstacle(scenario_reader_t *reader, int number, const char *name, const char *value) {
+    int key = 0;
+    while (key < OBSTACLE_KEYS && strcmp(KEY_NAMES[key], name) != 0) {
+        key++;
+    }
+    unsigned long *lines = reader->line_of[number - 1];
+    if (key == OBSTACLE_KEYS) {
+        fail(reader, name, "an obstacle has what, x0, z0 and alpha");
+    } else if (lines[key] != 0) {
+        fail(reader, name, "[obstacle %d] has it twice, first in line %lu", number, lines[key]);
+    } else if (number > reader->scenario->neighbours + 2 || (number == 2 && first_line(reader, 0) == 0)) {
+        fail(reader, name, "obstacle %d comes before obstacle %d", number, number - 1);
+    } else if (number == 1) {
+        take_first(reader, key, value);
     } else {
-        fail(reader, key, "an obstacle has what, x0, z0 and alpha");
+        take_neighbour(reader, number - 2, key, value);
+    }
+    if (key < OBSTACLE_KEYS) {
+        lines[key] = reader->line;
     }
 }
 
@@ -138,10 +161,8 @@ static int on_key(void *user, const char *section, const char *key, const char *
     const int number = obstacle_number(section);
     if (strcmp(section, SECTION_FLIGHT) == 0) {
         take_option(reader, key, key, value);
-    } else if (number == 1) {
-        take_first(reader, key, value);
-    } else if (number > 1) {
-        take_neighbour(reader, number - 2, key, value);
+    } else if (number > 0) {
+        take_obstacle(reader, number, key, value);
     } else {
         fail(reader, key, "[%s] is neither [flight] nor [obstacle 1] to [obstacle %d]", section,
              SCENARIO_NEIGHBOURS_MAX + 1);
@@ -150,15 +171,16 @@ static int on_key(void *user, const char *section, const char *key, const char *
 }
 
 static void check_neighbours(scenario_reader_t *reader) {
-    for (int i = 0; i < reader->scenario->neighbours; i++) {
+    for (int i = 0; i < reader->scenario->neighbours && !reader->failed; i++) {
+        const unsigned long *lines = reader->line_of[i + 1];
         const char *reason = neighbour_fault(&reader->scenario->neighbour[i]);
-        if (!reader->has_shape[i]) {
+        if (lines[KEY_WHAT] == 0) {
             reason = "what it is, is missing";
-        } else if (isnan(reader->scenario->neighbour[i].z0_m)) {
+        } else if (lines[KEY_Z0] == 0) {
             reason = "z0 is missing";
         }
         if (reason != NULL) {
-            reader->line = reader->failed ? reader->line : reader->begin[i];
+            reader->line = first_line(reader, i + 1);
             fail(reader, NULL, "[obstacle %d]: %s", i + 2, reason);
         }
     }
@@ -180,11 +202,12 @@ bool scenario_file_read(const char *path, scenario_option_t option, scenario_fil
         return false;
     }
     errno = 0;
-    if (ini_parse_stream(read_line, &reader, on_key, &reader) != 0 && !reader.failed) {
-        fail(&reader, NULL, "cannot be understood");
-    }
-    if (ferror(reader.stream) != 0 && !reader.failed) {
+    const int parser_line = ini_parse_stream(read_line, &reader, on_key, &reader);
+    if (ferror(reader.stream) != 0) {
         fail(&reader, NULL, "cannot be read: %s", strerror(errno));
+    } else if (parser_line > 0) {
+        reader.line = reader.failed ? reader.line : (unsigned long)parser_line;
+        fail(&reader, NULL, "cannot be understood");
     }
     (void)fclose(reader.stream);
     free(reader.text);

@@ -5,11 +5,13 @@
  *   [flight]          any option of goe_sim about flight, camera and sensors, without its dashes
  *   speed = 18
  *   noise = field
- *   [obstacle 1]      counted from 1; of the first each key may be left out, as on the command line
+ *   [obstacle 1]      counted from 1; of the first one each key may be left out, as on the command line, but not all
  *   what = building   as --obstacle
  *   x0 = 30
  *   z0 = 300          needed from the second one on
  *   alpha = 20
+ *
+ * Obstacles do not hide one another.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */

@@ -171,7 +171,9 @@ static key_name_t nearest_key(const char *name) {
     nearest_name_t nearest = nearest_name_of(name, strlen(name));
     for (size_t i = 0; i < CAMERAS * KEYS; i++) {
         names[i] = key_name(i / KEYS, &keys[i % KEYS]);
-        nearest_name_try(&nearest, names[i].text);
+        if (i < KEYS || keys[i % KEYS].kind != KIND_HEADING) {
+            nearest_name_try(&nearest, names[i].text);
+        }
     }
     if (nearest.name == NULL) {
         return none;

@@ -30,11 +30,8 @@ const char *option_blamed(poptContext context, int argc, const char *const *argv
     return bad;
 }
 
-void option_fault(char text[OPTION_FAULT_MAX], const struct poptOption *table, const char *bad, int error) {
-    const char *word = bad;
-    while (*word == '-') {
-        word++;
-    }
+static void tell(char *text, size_t room, const struct poptOption *table, const char *word, int error,
+                 const char *dashes) {
     nearest_name_t nearest = nearest_name_of(word, strcspn(word, "="));
     try_table(&nearest, table);
     for (const struct poptOption *option = table; !is_end(option); option++) {
@@ -43,6 +40,14 @@ void option_fault(char text[OPTION_FAULT_MAX], const struct poptOption *table, c
         }
     }
     const bool guess = error == POPT_ERROR_BADOPT && nearest.name != NULL;
-    (void)snprintf(text, OPTION_FAULT_MAX, "%s%s%s%s", poptStrerror(error), guess ? "; did you mean --" : "",
+    (void)snprintf(text, room, "%s%s%s%s%s", poptStrerror(error), guess ? "; did you mean " : "", guess ? dashes : "",
                    guess ? nearest.name : "", guess ? "?" : "");
+}
+
+void option_fault_bare(char *text, size_t room, const struct poptOption *table, const char *name, int error) {
+    tell(text, room, table, name, error, "");
+}
+
+void option_fault(char text[OPTION_FAULT_MAX], const struct poptOption *table, const char *bad, int error) {
+    tell(text, OPTION_FAULT_MAX, table, bad + strspn(bad, "-"), error, "--");
 }

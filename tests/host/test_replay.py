@@ -815,6 +815,7 @@ BAD_CAMERA = [
     ],
     ("one key of the second", CAMERA + "camera2.mount_yaw_deg = 30\n", 8, "camera2.width: missing key"),
     ("a second camera alone", CAMERA.replace("camera.", "camera2."), 7, "camera.width: missing key"),
+    ("no heading of a second camera", CAMERA + "camera2.heading_deg = 3\n", 8, "camera2.heading_deg: unknown key"),
     ("a third camera", CAMERA + CAMERA.replace("camera.", "camera3."), 9, "camera3.width: unknown key"),
     (
         "second twice",

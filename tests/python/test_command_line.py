@@ -12,6 +12,8 @@ from goe_tools.__main__ import main
         (["tabel"], "did you mean table?"),
         (["table", "estimates.csv", "--thruth", "truth.csv"], "did you mean --truth?"),
         (["table", "estimates.csv", "--colour"], ""),
+        (["goals", "--quik"], "did you mean --quick?"),
+        (["goals", "--half", "setle"], ""),
     ],
 )
 def test_a_mistyped_word(words: list[str], guess: str, capsys) -> None:

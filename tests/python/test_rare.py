@@ -9,7 +9,7 @@ from goe_tools.__main__ import main
 from goe_tools.report.avoid_file import KINDS, read_avoid
 from goe_tools.report.rare import sentence, table
 from goe_tools.report.rare_command import CHUNK_RUNS, HASH, PROGRAM, fly
-from goe_tools.report.rare_record import added, events_of, flights, interval, read_record
+from goe_tools.report.rare_record import FIRST_SEED, added, events_of, flights, interval, read_record
 from scipy.stats import binom
 from synthetic_campaign import avoid_rows, write_avoid
 
@@ -28,11 +28,11 @@ def test_events_are_counted(tmp_path: Path) -> None:
             row |= {"action": "none", "ahead_s": None}  # 1 would not have collided
     counts = events_of(read_avoid(write_avoid(tmp_path / "avoid.csv", rows)))
     assert counts["collision"] == {
-        "mast": {"runs": 20, "unwarned": 0, "collided": 0, "confident": 2},
-        "building": {"runs": 20, "unwarned": 1, "collided": 0, "confident": 0},
-        "truck": {"runs": 20, "unwarned": 1, "collided": 1, "confident": 0},
+        "mast": {"runs": 20, "doomed": 19, "unwarned": 0, "collided": 0, "confident": 2},
+        "building": {"runs": 20, "doomed": 19, "unwarned": 1, "collided": 0, "confident": 0},
+        "truck": {"runs": 20, "doomed": 19, "unwarned": 1, "collided": 1, "confident": 0},
     }
-    assert counts["pass"]["building"] == {"runs": 20, "false_order": 1, "confident": 0}
+    assert counts["pass"]["building"] == {"runs": 20, "doomed": 0, "false_order": 1, "confident": 0}
     assert flights(counts) == 20 * 3 * 3
     twice = added(counts, counts)
     assert twice["collision"]["mast"]["confident"] == 4 and twice["pass"]["truck"]["runs"] == 40
@@ -60,7 +60,7 @@ def test_a_record_is_gone_on_with(tmp_path: Path, capsys) -> None:
     assert main([*command, str(flights(first.counts) + 1)]) == 0
     both = read_record(file)
     assert both.runs == 2 * CHUNK_RUNS and both.first == first.first
-    assert both.counts == added(first.counts, fly(PROGRAM, 1 + CHUNK_RUNS))
+    assert both.counts == added(first.counts, fly(PROGRAM, FIRST_SEED + CHUNK_RUNS))
     before = file.read_bytes()
     assert main([*command, "1"]) == 0 and file.read_bytes() == before
     told = capsys.readouterr().out
@@ -73,14 +73,18 @@ def test_a_record_is_gone_on_with(tmp_path: Path, capsys) -> None:
     [
         ("{", "not a record of rare events"),
         ('{"version": "0", "flight_hash": "0"}', "not a record of rare events"),
-        (None, "name another file"),
+        ("hash", "name another file"),
+        ("first", "its first flights come out otherwise now"),
     ],
 )
-def test_a_bad_record(tmp_path: Path, text: str | None, reason: str, capsys) -> None:
+def test_a_bad_record(tmp_path: Path, text: str, reason: str, capsys) -> None:
     file = tmp_path / "record.json"
-    if text is None:
+    if text in ("hash", "first"):
         record = read_record(RECORD)
-        record.flight_hash = "0123456789abcdef"
+        if text == "hash":
+            record.flight_hash = "0123456789abcdef"
+        else:
+            record.first["pass"]["mast"]["false_order"] += 1
         record.write(file)
     else:
         file.write_text(text)
@@ -93,7 +97,7 @@ def test_a_bad_record(tmp_path: Path, text: str | None, reason: str, capsys) -> 
 def test_the_record_s_first_flights_are_these() -> None:
     record = read_record(RECORD)
     assert record.flight_hash == HASH.read_text().split()[0], "the layer's bits have changed: make a new record"
-    assert record.first == fly(PROGRAM, 1)
+    assert record.first == fly(PROGRAM, FIRST_SEED)
 
 
 def test_the_record_is_told() -> None:

@@ -16,7 +16,7 @@ import pytest
 from goe_tools.__main__ import main
 from goe_tools.optimum.flights.noise import NOISES
 from goe_tools.optimum.flights.simulated import random_scenes
-from goe_tools.optimum.goals.outcome import Task, perform
+from goe_tools.optimum.goals.outcome import Outcome, Task, perform
 from goe_tools.optimum.library import library_path
 from goe_tools.spread import Workers, each, spread
 
@@ -40,14 +40,20 @@ def cube(mark: Path | None, number: int) -> int:
     return number**3
 
 
-def test_flights_are_those_of_one_process(built: None) -> None:
-    tasks = [Task(scene, NOISES["field"], (1, number)) for number, scene in enumerate(random_scenes(12))]
-    alone, two = (each(perform, tasks, Workers(jobs), "flights") for jobs in (1, 2))
-    assert len(alone) == 12
-    for one, other in zip(alone, two):
+def flights(count: int) -> list[Task]:
+    return [Task(scene, NOISES["field"], (1, number)) for number, scene in enumerate(random_scenes(count))]
+
+
+def assert_same(some: list[Outcome], others: list[Outcome]) -> None:
+    assert len(some) == len(others) > 0
+    for one, other in zip(some, others):
         assert one.name == other.name and one.nis == other.nis and one.misfit == other.misfit
         assert np.array_equal(one.covariance, other.covariance, equal_nan=True)
         assert np.array_equal(one.refined.error, other.refined.error, equal_nan=True)
+
+
+def test_flights_are_those_of_one_process(built: None) -> None:
+    assert_same(*(each(perform, flights(12), Workers(jobs), "flights") for jobs in (1, 2)))
 
 
 def test_the_order_is_that_of_the_tasks() -> None:
@@ -64,8 +70,9 @@ def test_a_killed_process_is_told() -> None:
         list(spread(die, range(20), Workers(2)))
 
 
-def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
-    """Two workers; one of them dies in the middle, and the other one does its work again."""
+def test_a_cluster_that_loses_a_worker(built: None, tmp_path: Path) -> None:
+    """Two workers; one of them dies in the middle, and the other one does its work again. Flights come back as they are
+    here."""
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
@@ -75,6 +82,8 @@ def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
         worker = next(iter(cluster.workers.values()))
         os.kill(worker.process.pid, signal.SIGKILL)
         assert [first, *results] == [number**3 for number in range(40)]
+        flown = each(perform, flights(4), Workers(scheduler=cluster.scheduler_address), "flights")
+        assert_same(flown, each(perform, flights(4), Workers(), "flights"))
     assert len({path.name.split("-")[1] for path in tmp_path.iterdir()}) >= 2
 
 

@@ -100,7 +100,7 @@ def test_the_flight_ends_at_any_of_them(goe_sim: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "fault"),
     [
-        ("speed = 18", "sped = 18", "3: sped: unknown option; did you mean --speed?"),
+        ("speed = 18", "sped = 18", "3: sped: unknown option; did you mean speed?"),
         ("speed = 18", "speed = fast", "3: speed: invalid numeric value"),
         ("speed = 18", "speed", "3: a line is [section] or key = value"),
         ("speed = 18", "out = elsewhere", "3: out: belongs on the command line"),
@@ -109,8 +109,16 @@ def test_the_flight_ends_at_any_of_them(goe_sim: Path, tmp_path: Path) -> None:
         ("what = building", "what = castle", "14: what: 'castle' is not cylinder, building"),
         ("z0 = 320", "z0 = far", "16: z0: 'far' is not a number"),
         ("z0 = 320", "z0 = 1e9", "14: [obstacle 2]: x0 and z0: must lie within"),
-        ("[obstacle 2]", "[obstacle 4]", "14: what: obstacle 4 comes before obstacle 2"),
+        ("[obstacle 2]", "[obstacle 4]", "14: what: obstacle 4 comes before obstacle 3"),
         ("[obstacle 2]", "[obstacle two]", "14: what: [obstacle two] is neither [flight] nor"),
+        ("speed = 18", "speed =", "3: speed: no value"),
+        ("x0 = -8", "x0 =", "12: x0: no value"),
+        ("what = disc:4,50", "what = castle", "11: what: 'castle' is not cylinder"),
+        ("[obstacle 2]", "[obstacle 2", "13: a line is [section] or key = value"),
+        ("alpha = 20", "z0 = 310", "17: z0: [obstacle 2] has it twice, first in line 16"),
+        ("[obstacle 3]", "[obstacle 2]", "19: what: [obstacle 2] has it twice, first in line 14"),
+        (MAST, "", "11: what: obstacle 2 comes before obstacle 1"),
+        ("alpha = 20", f"alpha = {'1' * 300}", "17: the line is longer than"),
         ("alpha = 20", "colour = 20", "17: colour: an obstacle has what, x0, z0 and alpha"),
     ],
 )
@@ -126,3 +134,5 @@ def test_a_bad_file(goe_sim: Path, tmp_path: Path, old: str, new: str, fault: st
 def test_no_file(goe_sim: Path, tmp_path: Path) -> None:
     done = run(goe_sim, "--scenario", tmp_path / "none.ini", "--out", tmp_path / "log", expect=2)
     assert done.stderr == f"goe_sim: {tmp_path / 'none.ini'}: cannot be opened: No such file or directory\n"
+    done = run(goe_sim, "--scenario", tmp_path, "--out", tmp_path / "log", expect=2)
+    assert done.stderr == f"goe_sim: {tmp_path}:0: cannot be read: Is a directory\n"

@@ -44,13 +44,14 @@ class Parser(argparse.ArgumentParser):
         """Its options, its commands, and their options: a command hands back what it does not know."""
         found = [word for action in self._actions for word in action.option_strings]
         for action in self._actions:
-            for name, parser in (action.choices or {}).items() if isinstance(action.choices, dict) else ():
-                found += [name, *parser.words()]
+            if isinstance(action, argparse._SubParsersAction):
+                for name, parser in action.choices.items():
+                    found += [name, *parser.words()]
         return found
 
     def error(self, message: str) -> NoReturn:
         known = self.words()
-        mistyped = re.search(r"invalid choice: '([^']*)'|unrecognized arguments: (\S+)", message)
+        mistyped = re.search(r"argument command: invalid choice: '([^']*)'|unrecognized arguments: (\S+)", message)
         word = (mistyped[1] or mistyped[2]).split("=")[0] if mistyped else ""
         near = difflib.get_close_matches(word, [name for name in known if (name[0] == "-") == word.startswith("-")], 1)
         super().error(f"{message}; did you mean {near[0]}?" if near else message)

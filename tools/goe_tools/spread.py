@@ -84,18 +84,26 @@ def _deaf_children() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
+def _begun(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers) -> Iterator[Result]:
+    """The back end is chosen for what starts here, not for what the caller does between the results."""
+    with _cluster(workers.scheduler) if workers.scheduler else parallel_config("loky", n_jobs=workers.jobs):
+        with _deaf_children():
+            return Parallel(return_as="generator")(delayed(work)(task) for task in tasks)
+
+
 def spread(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers) -> Iterator[Result]:
     """Results in the order of the tasks, as they come. ``work`` and tasks are pickled."""
     if workers.jobs == 1 and not workers.scheduler:
         yield from map(work, tasks)
         return
-    with _cluster(workers.scheduler) if workers.scheduler else parallel_config("loky", n_jobs=workers.jobs):
-        try:
-            with _deaf_children():
-                results = Parallel(return_as="generator")(delayed(work)(task) for task in tasks)
-            yield from results
-        except TerminatedWorkerError:
-            raise ValueError("a process of --jobs was killed (by a lack of memory?); its flights are lost") from None
+    try:
+        yield from _begun(work, tasks, workers)
+    except TerminatedWorkerError:
+        raise ValueError("a process of --jobs was killed (by a lack of memory?); its flights are lost") from None
+    except (ConnectionError, OSError, TimeoutError) as error:
+        if not workers.scheduler:
+            raise
+        raise ValueError(f"--scheduler {workers.scheduler}: {error or 'no workers'}") from None
 
 
 def each(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers, title: str) -> list[Result]:

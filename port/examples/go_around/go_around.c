@@ -8,12 +8,12 @@
 #define HEIGHT_PX 960.0f
 #define SPEED_M_S 20.0f
 #define SINK_M_S 1.0f
-#define START_HEIGHT_M 25.0f
+#define START_HEIGHT_M 30.0f
 #define IMAGES_PER_S 8.0f
 #define IMAGE_US 125000
-#define IMAGES 160
+#define IMAGES 180
 
-#define BUILDING_NORTH_M 330.0f /* its near wall */
+#define BUILDING_NORTH_M 430.0f /* its near wall */
 #define BUILDING_LEFT_M (-4.0f) /* its ends, east of the path */
 #define BUILDING_RIGHT_M 10.0f
 #define BUILDING_TOP_M 12.0f
@@ -21,8 +21,9 @@
 #define MARGIN_M 15.0f     /* aside */
 #define CLEARANCE_M 10.0f  /* over the top */
 #define VIOLATION_MAX 0.1f /* probability that both are violated */
-#define CLIMB_S 8.0f       /* what a climb over the obstacle takes, and some seconds to decide */
+#define CLIMB_S 12.0f      /* what a climb over the obstacle takes, and some seconds to decide */
 #define DOUBT 2.0f         /* factor on both while the estimate is suspect */
+#define LATENCY_S 0.1f     /* from the exposure to this decision */
 #define DRIFT_M_S 2.0f     /* by which an answer that is not renewed goes wrong */
 
 static goe_estimator_t building;
@@ -47,7 +48,10 @@ static void take_image(int k, goe_image_t *image) {
 static bool must_go_around(const goe_estimate_t *now, goe_hazard_t *hazard) {
     const float doubt = now->suspect ? DOUBT : 1.0f;
     const float old_m = DRIFT_M_S * now->age_s;
-    const goe_plan_t plan = {{SPEED_M_S, 0.0f, SINK_M_S}, doubt * MARGIN_M + old_m, doubt * CLEARANCE_M + old_m, 0.0f};
+    const goe_plan_t plan = {.velocity_ned_m_s = {SPEED_M_S, 0.0f, SINK_M_S},
+                             .margin_m = doubt * MARGIN_M + old_m,
+                             .clearance_m = doubt * CLEARANCE_M + old_m,
+                             .since_image_s = LATENCY_S};
     if (goe_hazard(&building, &plan, hazard) != GOE_OK) {
         return false; /* nothing is known yet, which does not make it safe */
     }

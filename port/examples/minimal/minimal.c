@@ -56,6 +56,9 @@ int main(void) {
         if (now.valid & GOE_HAS_HEIGHT) {
             printf(", %.0f +- %.0f m high", (double)now.height_m, (double)now.sigma.height_m);
         }
+        if (now.suspect) {
+            printf(", suspect: %s", goe_reason_text(now.reason)); /* the sigmas may be too small: widen your margins */
+        }
         printf("\n");
     }
     return 0;

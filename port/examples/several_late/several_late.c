@@ -1,5 +1,6 @@
 /* Three obstacles at once, through the flight layer: detections come 120 ms after the exposure, with the camera computer's own
- * clock, before or after the pose they belong to. SPDX-License-Identifier: MIT */
+ * clock, and poses come late, too: each image waits for the pose that it belongs to. SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,8 +15,11 @@
 #define SPEED_M_S 18.0f
 #define STEP_US 20000u     /* of poses */
 #define STEPS_PER_IMAGE 5u /* 10 Hz */
-#define LATE_STEPS 6u      /* exposure to arrival: 120 ms */
-#define STEPS 500u
+#define LATE_STEPS 6u      /* an image's exposure to its arrival: 120 ms */
+#define POSE_LATE_STEPS 8u /* a pose's: 160 ms */
+#define ASSESS_STEPS 5u    /* 10 Hz */
+#define STEPS 501u
+#define PRINT_STEPS 125u        /* of the table: each 2.5 s */
 #define CAMERA_CLOCK 987654321u /* what the camera's computer reads when the autopilot reads 0, us */
 
 typedef struct {
@@ -66,43 +70,66 @@ static void take_pose(uint32_t step) {
     (void)goe_flight_position(&flight, &position);
 }
 
-/* A message of the camera's computer. False: its pose has not come yet; keep the message. */
-static bool take_message(uint32_t exposed, uint32_t now) {
+/* What came from the camera's computer, until its pose is there. */
+typedef struct {
+    goe_flight_frame_t frame;
     goe_flight_detection_t detection[THINGS];
-    goe_flight_frame_t frame = {0};
+    bool waits;
+} message_t;
+
+static void receive(uint32_t exposed, uint32_t now, message_t *message) {
+    memset(message, 0, sizeof *message);
+    goe_flight_frame_t *frame = &message->frame;
     for (size_t i = 0; i < THINGS; i++) {
-        if (see(&things[i], exposed, &detection[frame.count])) {
-            frame.count++;
+        if (see(&things[i], exposed, &message->detection[frame->count])) {
+            frame->count++;
         }
     }
-    frame.number = frame.count; /* also 0: nothing in view, but the detector is alive */
-    frame.detection = detection;
-    frame.time_base = GOE_FLIGHT_SENDER_CLOCK;
-    frame.capture_us = CAMERA_CLOCK + exposed * STEP_US;
-    frame.sent_us = CAMERA_CLOCK + (exposed + LATE_STEPS) * STEP_US; /* the link is fast: the detector takes the time */
-    frame.arrival_us = now * STEP_US;
-    return goe_flight_frame(&flight, &frame) != GOE_FLIGHT_TOO_NEW;
+    frame->number = frame->count; /* also 0: nothing in view, but the detector is alive */
+    frame->time_base = GOE_FLIGHT_SENDER_CLOCK;
+    frame->capture_us = CAMERA_CLOCK + exposed * STEP_US;
+    frame->sent_us =
+        CAMERA_CLOCK + (exposed + LATE_STEPS) * STEP_US; /* the link is fast: the detector takes the time */
+    frame->arrival_us = now * STEP_US;                   /* once, however often it is offered */
+    message->waits = true;
 }
 
-static void print(uint32_t step) {
-    goe_flight_assessment_t assessment;
-    if (goe_flight_assess(&flight, step * STEP_US, false, &assessment) != GOE_FLIGHT_OK) {
-        return;
+static void offer(message_t *message) {
+    message->frame.detection = message->detection;
+    if (message->waits) {
+        message->waits = goe_flight_frame(&flight, &message->frame) == GOE_FLIGHT_TOO_NEW;
     }
-    printf("%.1f s: %u obstacles, detector %s, action %s\n", (double)(1e-6f * (float)STEP_US * (float)step),
-           (unsigned)assessment.obstacles, assessment.detector_alive ? "alive" : "dead",
-           goe_flight_action_text(assessment.action));
+}
+
+static void print_obstacles(const goe_flight_assessment_t *assessment) {
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         goe_flight_obstacle_t found;
         if (goe_flight_obstacle(&flight, slot, &found) != GOE_FLIGHT_OK || (found.valid & GOE_HAS_POSITION) == 0u) {
             continue;
         }
         const thing_t *truth = &things[found.id - 1u]; /* the tracker's numbers, here */
-        printf("  %-5s %3.0f m north, %3.0f m east (stands at %3.0f, %3.0f), %2.0f m high (%2.0f); in %4.1f s %2.0f m "
-               "aside%s\n",
-               truth->name, (double)found.center_ned_m[0], (double)found.center_ned_m[1], (double)truth->north_m,
-               (double)truth->east_m, (double)found.height_m, (double)truth->top_m, (double)found.hazard.time_s,
-               (double)found.hazard.miss_m, slot == assessment.worst ? ", worst" : "");
+        printf("  %-5s %3.0f +- %2.0f m north, %3.0f m east (stands at %3.0f, %3.0f), %2.0f m high (%2.0f); in %4.1f s "
+               "%2.0f m aside%s%s\n",
+               truth->name, (double)found.center_ned_m[0], (double)sqrtf(found.covariance_ne_m2[0]),
+               (double)found.center_ned_m[1], (double)truth->north_m, (double)truth->east_m, (double)found.height_m,
+               (double)truth->top_m, (double)found.hazard.time_s, (double)found.hazard.miss_m,
+               found.suspect ? ", suspect" : "", slot == assessment->worst ? ", worst" : "");
+    }
+}
+
+/* Ten times a second, whether images come or not: what is told late is not told. */
+static void assess(uint32_t step, goe_flight_action_t *ordered) {
+    goe_flight_assessment_t now;
+    const bool known = goe_flight_assess(&flight, step * STEP_US, false, &now) == GOE_FLIGHT_OK;
+    const double time_s = (double)(1e-6f * (float)STEP_US * (float)step);
+    if (known && now.action != *ordered) {
+        *ordered = now.action;
+        printf("%.1f s: ORDER %s%s\n", time_s, goe_flight_action_text(now.action), now.late ? ", late" : "");
+    }
+    if (step % PRINT_STEPS == 0u) {
+        printf("%.1f s: %u obstacles, detector %s, pose %s\n", time_s, (unsigned)now.obstacles,
+               now.detector_alive ? "alive" : "dead", now.pose_alive ? "alive" : "dead");
+        print_obstacles(&now);
     }
 }
 
@@ -121,20 +148,19 @@ int main(void) {
     if (goe_flight_init(&flight, sizeof flight, &settings, &layer, NULL) != GOE_FLIGHT_OK) {
         return 1;
     }
-    bool waiting = false;
-    uint32_t exposed = 0u;
-    for (uint32_t step = 0u; step < STEPS; step++) {
-        if (step >= LATE_STEPS && (step - LATE_STEPS) % STEPS_PER_IMAGE == 0u) {
-            exposed = step - LATE_STEPS;
-            waiting = true;
+    message_t message = {.waits = false};
+    goe_flight_action_t ordered = GOE_FLIGHT_NONE;
+    for (uint32_t step = POSE_LATE_STEPS; step < STEPS; step++) {
+        if ((step - LATE_STEPS) % STEPS_PER_IMAGE == 0u) {
+            receive(step - LATE_STEPS, step, &message);
         }
-        if (waiting) {
-            waiting = !take_message(exposed, step);
-        }
-        take_pose(step);
-        if (step % 100u == 99u) {
-            print(step);
+        take_pose(step - POSE_LATE_STEPS);
+        offer(&message); /* after every pose, until it is taken */
+        if (step % ASSESS_STEPS == 0u) {
+            assess(step, &ordered);
         }
     }
+    printf("%u images taken, offered %u times too early, %u too late\n", (unsigned)flight.counters.taken,
+           (unsigned)flight.counters.early, (unsigned)flight.counters.late);
     return 0;
 }

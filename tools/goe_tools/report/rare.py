@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from .avoid import KIND_NAMES
 from .avoid_file import COLLISION
-from .rare_record import EVENTS, WARNED_S, Record, flights, interval
+from .rare_record import EVENTS, WARNED_S, Record, flights, interval, out_of
 
-HEADS = ("runs", "times", "95 % interval")
+HEADS = ("of", "times", "95 % interval")
 COURSE_NAMES = {"collision": "collision course", "pass": "pass at twice the margin"}
 EVENT_NAMES = {
     "unwarned": f"no order {WARNED_S:g} s ahead of a collision",
     "collided": "a collision, the orders carried out",
     "false_order": "an order that nothing asked for",
-    "confident": "five sigmas off, five times on end, not suspect",
+    "confident": "five sigmas off, five times in a row, not suspect",
 }
 
 
@@ -29,24 +29,25 @@ def table(record: Record) -> list[dict[str, object]]:
     for course, names in EVENTS.items():
         for name in names:
             for kind, of in record.counts[course].items():
-                low, high = interval(of[name], of["runs"])
+                low, high = interval(of[name], out_of(of, name))
                 rows.append({
                     "title": f"{KIND_NAMES[kind]}, {COURSE_NAMES[course]}", "event": EVENT_NAMES[name],
-                    "cells": [f"{of['runs']:,}", f"{of[name]:,}", f"{share(low)} to {share(high)}"],
+                    "cells": [f"{out_of(of, name):,}", f"{of[name]:,}", f"{share(low)} to {share(high)}"],
                     "css": "miss" if of[name] else "",
                 })  # fmt: skip
     return rows
 
 
 def sentence(record: Record) -> str:
-    courses = record.counts[COLLISION].values()
-    runs = sum(of["runs"] for of in courses)
-    collided, unwarned = (sum(of[name] for of in courses) for name in ("collided", "unwarned"))
+    """Bounds are given for each kind by itself: the same seeds draw the same air and sensors for all kinds."""
+    courses = record.counts[COLLISION]
+    collided, unwarned = (sum(of[name] for of in courses.values()) for name in ("collided", "unwarned"))
     confident = sum(of["confident"] for kinds in record.counts.values() for of in kinds.values())
-    most = interval(collided, runs)[1]
+    most = max(interval(of["collided"], of["runs"])[1] for of in courses.values())
     return (
-        f"In {flights(record.counts):,} simulated flights ({record.date}, version {record.version}) the orders were "
-        f"carried out on {runs:,} collision courses: {collided:,} ended in a collision all the same, which is less "
-        f"than {share(most)} with 97.5\u00a0% confidence; {unwarned:,} had no order {WARNED_S:g}\u00a0s ahead. In "
-        f"{confident:,} flights an estimate was confidently wrong."
+        f"In {flights(record.counts):,} simulated flights ({record.date}, version {record.version}) "
+        f"{sum(of['doomed'] for of in courses.values()):,} collision courses would have ended in a collision; with the "
+        f"orders carried out {collided:,} did, which leaves each kind of obstacle less than {share(most)} (97.5\u00a0% "
+        f"confidence); {unwarned:,} had no order {WARNED_S:g}\u00a0s ahead. In {confident:,} runs an estimate was "
+        "confidently wrong."
     )

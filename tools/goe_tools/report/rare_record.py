@@ -12,6 +12,7 @@ import numpy as np
 from ..logs.obslog import LogError
 from .avoid_file import COLLISION, KINDS, PASS, Avoid
 
+FIRST_SEED = 1_000_001  # far from those that tests, demo and README fly
 WARNED_S = 3.0  # a first order later than this before the obstacle warns nobody
 EVENTS = {  # by course: what is counted, of how many flights each run has of it
     COLLISION: ("unwarned", "collided", "confident"),
@@ -26,6 +27,7 @@ Counts = dict[str, dict[str, dict[str, int]]]  # course, kind, event or "runs"
 def events_of(avoid: Avoid) -> Counts:
     """Per course and kind: the runs, and in how many of them each event happened.
 
+    doomed       it would have collided without orders
     unwarned     it would have collided, and the first order came less than WARNED_S ahead or never
     collided     it did, with the orders carried out
     false_order  an order on a pass at twice the margin
@@ -43,7 +45,11 @@ def events_of(avoid: Avoid) -> Counts:
                 "false_order": flown["false_order"] == 1.0,
                 "confident": flown["confident"] == 1.0,
             }
-            counts[course][kind] = {"runs": len(flown), **{name: int(happened[name].sum()) for name in names}}
+            counts[course][kind] = {
+                "runs": len(flown),
+                "doomed": int((flown["collided_without"] == 1.0).sum()),
+                **{name: int(happened[name].sum()) for name in names},
+            }
     return counts
 
 
@@ -52,6 +58,11 @@ def added(one: Counts, other: Counts) -> Counts:
         course: {kind: {name: n + other[course][kind][name] for name, n in of.items()} for kind, of in kinds.items()}
         for course, kinds in one.items()
     }
+
+
+def out_of(of: dict[str, int], event: str) -> int:
+    """The runs in which the event could have happened."""
+    return of["doomed"] if event == "unwarned" else of["runs"]
 
 
 def flights(counts: Counts) -> int:
@@ -69,14 +80,14 @@ def interval(times: int, runs: int) -> tuple[float, float]:
 
 @dataclass
 class Record:
-    """Runs with the seeds 1 on, by one version of library and flight layer."""
+    """Runs with the seeds FIRST_SEED on, by one version of library and flight layer."""
 
     version: str
     flight_hash: str  # of the layer's bits
     date: str = ""
     runs: int = 0  # of each kind and course
     counts: Counts = field(default_factory=dict)
-    first: Counts = field(default_factory=dict)  # of the first FIRST_RUNS alone, for a test to fly again
+    first: Counts = field(default_factory=dict)  # of the first runs alone, to be flown again
 
     def write(self, path: Path) -> None:
         part = path.with_name(path.name + ".part")
