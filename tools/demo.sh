@@ -9,7 +9,7 @@ cd "$root"
 tools/setup.sh --demo
 log=.cache/demo-build.log
 cmake --preset default -DGOE_BUILD_HOST=ON >$log 2>&1 || { cat $log >&2; exit 1; }
-cmake --build build --target goe_replay goe_sim goe_campaign goe_avoid goe_batch >$log 2>&1 || { cat $log >&2; exit 1; }
+cmake --build build --target goe_replay goe_sim goe_campaign goe_avoid >$log 2>&1 || { cat $log >&2; exit 1; }
 
 echo "A recorded approach, replayed (simulated flight, whole pixels):"
 echo

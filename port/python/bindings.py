@@ -1,11 +1,12 @@
 """Writes the C source of the extension module goe._goe: cffi's wrapper around the library's own headers.
 
-    python bindings.py --lib DIR --flight DIR --cmake DIR --out FILE
+    python bindings.py --lib DIR --flight DIR --cmake DIR [--out FILE]
 
 Types, constants and functions are taken from goe.h, goe_flight.h and the glue's headers as they are, and the C compiler
 holds cffi's idea of every size and offset against its own. CMakeLists.txt runs this whenever the package is built.
 
 ``fingerprint`` tells which sources a module was built from: a checkout can ask whether the installed one is its own.
+Without ``--out`` it is printed.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent
 MODULE = "goe._goe"
-SOURCES = (".c", ".h", ".py", ".pyi", ".toml", ".cmake")
-NAMES = ("CMakeLists.txt",)
+SOURCES = (".c", ".h", ".py", ".pyi", ".toml", ".cmake")  # what counts in a fingerprint
+OWN_BUILD = "CMakeLists.txt"  # ... of the package itself
 
 TYPES = {
     "goe.h": (
@@ -112,7 +113,7 @@ def sources(lib: Path, flight: Path, cmake: Path) -> Iterator[tuple[str, Path]]:
     roots = {"lib": lib, "flight": flight, "cmake": cmake, "package": PACKAGE}
     for name, paths in folders.items():
         for path in sorted(paths):
-            if path.is_file() and (path.suffix in SOURCES or path.name in NAMES):
+            if path.is_file() and (path.suffix in SOURCES or path == PACKAGE / OWN_BUILD):
                 yield f"{name}/{path.relative_to(roots[name]).as_posix()}", path
 
 
@@ -142,11 +143,15 @@ def main() -> None:
     parser.add_argument("--lib", type=Path, required=True, metavar="DIR", help="sources of the library")
     parser.add_argument("--flight", type=Path, required=True, metavar="DIR", help="sources of the flight layer")
     parser.add_argument("--cmake", type=Path, required=True, metavar="DIR", help="where goe_compile.cmake is")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="C file to write")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="C file to write")
     given = parser.parse_args()
+    printed = fingerprint(given.lib, given.flight, given.cmake)
+    if given.out is None:
+        print(printed)
+        return
     folders = {"goe.h": given.lib, "goe_flight.h": given.flight}
     headers = {name: (folders.get(name, PACKAGE / "csrc") / name).read_text(encoding="utf-8") for name in TYPES}
-    module(headers, fingerprint(given.lib, given.flight, given.cmake), given.out)
+    module(headers, printed, given.out)
 
 
 if __name__ == "__main__":

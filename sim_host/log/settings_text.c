@@ -12,7 +12,6 @@
 
 #define WHOLE_MAX 1.0e6
 #define LINE_MAX_LENGTH 100
-#define NAME_MAX_LENGTH 64
 #define INDENT "  "
 
 typedef enum { KIND_REAL, KIND_COUNT, KIND_TRUTH, KIND_CHOICE } setting_kind_t;
@@ -61,9 +60,8 @@ static bool suits(const setting_t *setting, double value) {
     return whole && (setting->kind != KIND_TRUTH || (value >= 0.0 && value <= 1.0));
 }
 
-/* farther: bytes from the field of the setting itself to where the value goes. */
-static void store(goe_settings_t *settings, const setting_t *setting, size_t farther, double value) {
-    unsigned char *field = (unsigned char *)settings + setting->offset + farther;
+static void store(goe_settings_t *settings, const setting_t *setting, double value) {
+    unsigned char *field = (unsigned char *)settings + setting->offset;
     switch (setting->kind) {
         case KIND_REAL: {
             const float number = number_to_float(value);
@@ -87,24 +85,6 @@ static void store(goe_settings_t *settings, const setting_t *setting, size_t far
             break;
         }
     }
-}
-
-/* The list of settings has one camera: another one's fields lie as far from its start as the first one's. */
-bool setting_put(goe_settings_t *settings, const char *name, double value) {
-    static const char first[] = "camera.", second[] = "more_cameras[0].";
-    char listed[NAME_MAX_LENGTH];
-    size_t farther = 0;
-    if (strncmp(name, second, sizeof second - 1u) == 0) {
-        (void)snprintf(listed, sizeof listed, "%s%s", first, name + sizeof second - 1u);
-        name = listed;
-        farther = offsetof(goe_settings_t, more_cameras) - offsetof(goe_settings_t, camera);
-    }
-    const setting_t *setting = find_setting(name, strlen(name), SETTINGS);
-    if (setting == NULL || !suits(setting, value)) {
-        return false;
-    }
-    store(settings, setting, farther, value);
-    return true;
 }
 
 /* ------------------------------------------------------------------------------------------------------- assignment -- */
@@ -157,7 +137,7 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
     if (!suits(setting, value)) {
         return tell_value(setting, text, setting->kind == KIND_TRUTH ? "0 or 1" : "a whole number", fault);
     }
-    store(settings, setting, 0, value);
+    store(settings, setting, value);
     return true;
 }
 

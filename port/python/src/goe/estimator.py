@@ -29,7 +29,7 @@ class Estimator:
 
     def __init__(self, settings: Settings) -> None:
         """Copies the settings and starts with an empty track. SettingError: one is outside its range."""
-        values = settings._values()
+        values = settings.numbers()
         self._cameras = 1 + len(settings.more_cameras)
         self._lock = threading.Lock()
         self._c = ffi.new("goe_estimator_t *")

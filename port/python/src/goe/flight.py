@@ -335,7 +335,7 @@ class Flight:
 
         SettingError: one is outside its range.
         """
-        values, layer = estimator._values(), (settings or FlightSettings())._values()
+        values, layer = estimator.numbers(), (settings or FlightSettings()).numbers()
         self._lock = threading.Lock()
         self._c = ffi.new("goe_flight_t *")
         bad = ffi.new("const char **")

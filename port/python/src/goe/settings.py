@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -249,35 +250,33 @@ class Settings(_Group):
 
     def check(self) -> None:
         """Raises SettingError for the first setting that is outside its range or no number."""
-        self._values()
+        self.numbers()
 
-    def _values(self) -> npt.NDArray[np.float64]:
-        """All numbers in the order of the C list, then those of each further camera; checked."""
-        if len(self.more_cameras) >= CAMERAS_MAX:
-            raise SettingError("more_cameras", f": {len(self.more_cameras)}, not at most {CAMERAS_MAX - 1}")
-        rows, names = list(ROWS), [row.name for row in ROWS]
-        values = [self._value(row.name) for row in ROWS]
+    def numbers(self) -> npt.NDArray[np.float64]:
+        """All of them, checked and as single precision holds them, in the order of ``setting_rows``; after them those of
+        each further camera."""
+        count = len(self.more_cameras)
+        if count >= CAMERAS_MAX:
+            raise SettingError("more_cameras", f": {count}, not at most {CAMERAS_MAX - 1}")
+        values = _camera_values(self.camera, "camera")
+        values += [self._value(group, own) for group, own in _OTHERS]
         for number, camera in enumerate(self.more_cameras):
-            prefix = f"more_cameras[{number}]"
-            rows += CAMERA_ROWS
-            names += [row.name.replace("camera", prefix) for row in CAMERA_ROWS]
-            values += [_of_camera(camera, row.name, prefix) for row in CAMERA_ROWS]
-        return checked(rows, names, values)
+            values += _camera_values(camera, f"more_cameras[{number}]")
+        return checked(_bounds(ROWS + CAMERA_ROWS * count), values, _name_of)
 
-    def _value(self, name: str) -> Any:
-        group, _, own = name.rpartition(".")
-        if group == "camera":
-            return _of_camera(self.camera, name, group)
+    def _value(self, group: str, own: str) -> Any:
         if group:
             return getattr(getattr(self, group), own)
-        if name == "heading_auto":
+        if own == "heading_auto":
             return self.heading_deg is None
-        if name == "heading_deg":
+        if own == "heading_deg":
             return 0.0 if self.heading_deg is None else self.heading_deg
-        return self.shape if name == "model" else self.method
+        return self.shape if own == "model" else self.method
 
 
 _BY_NAME = {row.name: row for row in ROWS}
+_CAMERA_FIELDS = tuple(dict.fromkeys(row.name.rpartition(".")[2].partition("[")[0] for row in CAMERA_ROWS))
+_OTHERS = tuple(row.name.rpartition(".")[::2] for row in ROWS[len(CAMERA_ROWS) :])
 
 
 def _general(row: Row, value: Any) -> tuple[str, Any]:
@@ -288,30 +287,60 @@ def _general(row: Row, value: Any) -> tuple[str, Any]:
     return own, kind(int(value))
 
 
-def _of_camera(camera: Camera, name: str, prefix: str) -> Any:
-    own, _, index = name.rpartition(".")[2].rstrip("]").partition("[")
-    value = getattr(camera, own)
-    if not index:
-        return value
-    if len(value) != 3:
-        raise SettingError(f"{prefix}.{own}", f": {len(value)} numbers, not 3")
-    return value[int(index)]
+def _camera_values(camera: Camera, prefix: str) -> list[Any]:
+    """In the order of the C list."""
+    values: list[Any] = []
+    for own in _CAMERA_FIELDS:
+        value = getattr(camera, own)
+        if own != "offset_m":
+            values.append(value)
+        elif len(value) != 3:
+            raise SettingError(f"{prefix}.{own}", f": {len(value)} numbers, not 3")
+        else:
+            values += value
+    return values
 
 
-def checked(rows: Sequence[Row], names: Sequence[str], values: Sequence[Any]) -> npt.NDArray[np.float64]:
+def _name_of(number: int) -> str:
+    """Of the number-th of all values."""
+    if number < len(ROWS):
+        return ROWS[number].name
+    camera, row = divmod(number - len(ROWS), len(CAMERA_ROWS))
+    return CAMERA_ROWS[row].name.replace("camera", f"more_cameras[{camera}]")
+
+
+@dataclass(frozen=True)
+class _Bounds:
+    """The rows' ranges as arrays."""
+
+    rows: tuple[Row, ...]
+    low: npt.NDArray[np.float32]
+    high: npt.NDArray[np.float32]
+    any: npt.NDArray[np.bool_]  # not only whole numbers
+
+
+@lru_cache(maxsize=None)
+def _bounds(rows: tuple[Row, ...]) -> _Bounds:
+    low, high = (np.array([getattr(row, name) for row in rows], np.float32) for name in ("low", "high"))
+    return _Bounds(rows, low, high, np.array([not row.whole for row in rows]))
+
+
+_USUAL = {int, float, bool, Method, Shape, np.float64, np.float32}
+
+
+def checked(bounds: _Bounds, values: Sequence[Any], name_of: Callable[[int], str]) -> npt.NDArray[np.float64]:
     """Numbers that single precision holds, each within its row's range; SettingError names the first that is not."""
-    for name, value in zip(names, values):
-        if not isinstance(value, (int, float, np.number, np.bool_)):
-            raise SettingError(name, f" = {value!r}: not a number")
+    if not {type(value) for value in values} <= _USUAL:
+        for i, value in enumerate(values):
+            if not isinstance(value, (int, float, np.number, np.bool_)):
+                raise SettingError(name_of(i), f" = {value!r}: not a number")
     with np.errstate(over="ignore", invalid="ignore"):
         numbers = np.array(values, np.float64).astype(np.float32)
-    low, high, need_whole = (np.array(column) for column in zip(*((r.low, r.high, r.whole) for r in rows)))
-    with np.errstate(invalid="ignore"):
-        inside = (numbers >= low.astype(np.float32)) & (numbers <= high.astype(np.float32))
-        good = inside & (~need_whole | (numbers == np.rint(numbers)))
+        inside = (numbers >= bounds.low) & (numbers <= bounds.high)
+        good = inside & (bounds.any | (numbers == np.rint(numbers)))
     if not good.all():
         i = int(np.argmin(good))
-        raise SettingError(names[i], f" = {float(values[i]):g}: " + _wanted(rows[i], bool(inside[i])))
+        raise SettingError(name_of(i), f" = {float(values[i]):g}: " + _wanted(bounds.rows[i], bool(inside[i])))
     return numbers.astype(np.float64)
 
 
@@ -383,8 +412,9 @@ class FlightSettings(_Group):
 
     def check(self) -> None:
         """Raises SettingError for the first setting that is outside its range or no number."""
-        self._values()
+        self.numbers()
 
-    def _values(self) -> npt.NDArray[np.float32]:
+    def numbers(self) -> npt.NDArray[np.float32]:
+        """All of them, checked, in the order of goe_flight_settings_t."""
         names = [row.name for row in FLIGHT_ROWS]
-        return checked(FLIGHT_ROWS, names, [getattr(self, name) for name in names]).astype(np.float32)
+        return checked(_bounds(FLIGHT_ROWS), [getattr(self, n) for n in names], names.__getitem__).astype(np.float32)

@@ -22,6 +22,44 @@ QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_
 QUANTITY_BITS = np.array([BITS[name] for name in ("position", "position", "orientation", "width", "length", "height")])
 
 
+class _Places:
+    """Numbers of a goe_image_t that lie at even distances, as one array."""
+
+    def __init__(self, dtype: type[np.generic], first: int, steps: Sequence[int], shape: tuple[int, ...]) -> None:
+        self.dtype, self.first, self.steps, self.shape = dtype, first, tuple(steps), shape
+
+    def of(self, c: Array) -> Array:
+        """(K, ...): a view."""
+        return np.ndarray(c.shape + self.shape, self.dtype, c, self.first, c.strides + self.steps)
+
+
+def _point_offsets(field: str) -> list[int]:
+    assert IMAGE.fields is not None
+    inner = IMAGE["left"].fields
+    assert inner is not None
+    return [IMAGE.fields[name][1] + inner[field][1] for name in POINTS]
+
+
+def _step(offsets: Sequence[int]) -> int:
+    steps = set(np.diff(offsets).tolist())
+    if len(steps) != 1:
+        raise ImportError("goe_image_t: its points or sides do not lie at even distances")
+    return int(steps.pop())
+
+
+def _side_offsets() -> list[int]:
+    assert IMAGE.fields is not None
+    inner = IMAGE["box"].fields
+    assert inner is not None
+    return [IMAGE.fields["box"][1] + inner[f"{name}_px"][1] for name in SIDES]
+
+
+_U, _V, _SEEN, _SIDES = _point_offsets("u_px"), _point_offsets("v_px"), _point_offsets("seen"), _side_offsets()
+POINT_PLACES = _Places(np.float32, _U[0], (_step(_U), _step([_U[0], _V[0]])), (len(POINTS), 2))
+POINT_SEEN_PLACES = _Places(np.bool_, _SEEN[0], (_step(_SEEN),), (len(POINTS),))
+SIDE_PLACES = _Places(np.float32, _SIDES[0], (_step(_SIDES),), (len(SIDES),))
+
+
 @dataclass
 class Images:
     """K images of one obstacle, as columns; meaning, units and frames as in ``Image`` and ``Pose``.
@@ -59,15 +97,19 @@ class Images:
 
     def to_c(self) -> Array:
         """(K,) of goe_image_t: what ``Estimator.run`` takes as well. ValueError names the column of a wrong shape."""
-        count = len(self)
-        c = np.zeros(count, IMAGE)
+        c = np.zeros(len(self), IMAGE)
+        with np.errstate(over="ignore"):  # what single precision cannot hold is infinite, and refused by the library
+            self._fill(c, len(self))
+        return c
+
+    def _fill(self, c: Array, count: int) -> None:
         pose, noise = c["pose"], c["noise"]
         for place, name in ((pose, "time_us"), (pose, "position_ned_m"), (pose, "attitude"), (pose, "height_m")):
             _put(place, name, getattr(self, name), name)
         if self.points_px is not None:
             self._put_points(c, count)
         if self.box_px is not None:
-            self._put_boxes(c["box"], count)
+            self._put_boxes(c, count)
         if self.reset_count is not None:
             _put(pose, "reset_count", self.reset_count, "reset_count")
         if self.reset_delta_ned_m is not None:
@@ -77,7 +119,6 @@ class Images:
             noise["attitude_deg"], noise["height_m"], noise["pixel_px"] = columns
         if self.camera is not None:
             _put(c, "camera", self.camera, "camera")
-        return c
 
     def _put_points(self, c: Array, count: int) -> None:
         pixels = _shaped(self.points_px, (count, len(POINTS), 2), "points_px")
@@ -85,18 +126,14 @@ class Images:
             seen = np.isfinite(pixels).all(2)
         else:
             seen = _shaped(self.points_seen, (count, len(POINTS)), "points_seen").astype(bool)
-        with np.errstate(over="ignore"):
-            pixels = np.where(seen[..., None], pixels, 0.0).astype(np.float32)
-        for i, name in enumerate(POINTS):
-            point = c[name]
-            point["u_px"], point["v_px"], point["seen"] = pixels[:, i, 0], pixels[:, i, 1], seen[:, i]
+        POINT_PLACES.of(c)[...] = np.where(seen[..., None], pixels, 0.0)
+        POINT_SEEN_PLACES.of(c)[...] = seen
 
-    def _put_boxes(self, box: Array, count: int) -> None:
+    def _put_boxes(self, c: Array, count: int) -> None:
         sides = _shaped(self.box_px, (count, len(SIDES)), "box_px")
         seen = np.isfinite(sides)
-        for i, name in enumerate(SIDES):
-            box[f"{name}_px"] = np.where(seen[:, i], sides[:, i], 0.0)
-        box["seen"] = seen @ np.array(SEES, np.uint8)
+        SIDE_PLACES.of(c)[...] = np.where(seen, sides, 0.0)
+        c["box"]["seen"] = seen @ np.array(SEES, np.uint8)
 
     def _put_resets(self, pose: Array, count: int) -> None:
         delta = _shaped(self.reset_delta_ned_m, (count, 3), "reset_delta_ned_m")
@@ -117,13 +154,11 @@ def _put(place: Array, field: str, values: Any, name: str) -> None:
     array = _shaped(values, to.shape, name)
     if to.dtype.kind in "iu" and array.dtype.kind not in "iub":
         raise ValueError(f"{name}: {array.dtype}, not whole numbers")
-    if to.dtype.kind == "f":
-        with np.errstate(over="ignore"):  # infinite then, and refused by the library
-            to[...] = array
-    elif array.size and (array.min() < np.iinfo(to.dtype).min or array.max() > np.iinfo(to.dtype).max):
-        raise ValueError(f"{name}: not within {np.iinfo(to.dtype).min} to {np.iinfo(to.dtype).max}")
-    else:
-        to[...] = array
+    if to.dtype.kind != "f" and array.size and not np.can_cast(array.dtype, to.dtype):
+        low, high = np.iinfo(to.dtype).min, np.iinfo(to.dtype).max
+        if array.min() < low or array.max() > high:
+            raise ValueError(f"{name}: not within {low} to {high}")
+    to[...] = array
 
 
 @dataclass

@@ -16,7 +16,7 @@ from ... import spread
 from ...attack.rows import HALVES
 from ..flights.logged import KITTI_FOLDER
 from ..flights.recorded import RECORDED_FOLDER
-from ..library import library_path
+from ..library import ready
 from .attack import attack_group
 from .boxes import boxes_group
 from .early import early_group
@@ -48,7 +48,7 @@ GROUPS: dict[str, Callable[[str, Amount], list[Goal]]] = {
     "rivals": rivals_group,
 }
 ABSENT = {
-    "float32": "the target goe_batch_double is not built",
+    "float32": "the target goe_python_double is not built",
     "recorded": f"no flights in {RECORDED_FOLDER}",
     "kitti": f"no logs in {KITTI_FOLDER}",
     "rivals": "the rivals are not there",
@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name in chosen:
         if name not in GROUPS:
             raise ValueError(f"--only {name}: not one of {', '.join(GROUPS)}")
-    library_path()  # its absence is told before the work begins
+    ready()  # its absence is told before the work begins
     told = {"workers": spread.workers_of(arguments), "worst": arguments.worst, "half": arguments.half}
     amount = Amount(**{**vars(QUICK if arguments.quick else FULL), **told})
     goals: list[Goal] = []

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...spread import each
 from ..flights.measured import measure
-from ..library import library_path
+from ..library import ready
 from ..precision import Rounding, rounding_of
 from .goal import NAMES, Goal, named
 from .measures import nan_quantile
@@ -25,7 +25,7 @@ def float32_group(group: str, amount: Amount) -> list[Goal]:
     """The library in float32 against itself in float64: the largest difference over a flight's images, in sigmas."""
     result = []
     try:
-        library_path(double=True)
+        ready(double=True)
     except FileNotFoundError as reason:
         print(f"left out: {reason}")
         return []
