@@ -1,4 +1,4 @@
-"""tests/targets/embedded_logs.c as Python reads it, and the hash that tests/targets/replay.c makes of what comes out."""
+"""tests/targets/embedded_logs.c as Python reads it, and the hash of tests/targets/replay.c over all that comes out."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""The Python package over the embedded logs: the hashes that C has on every target, image by image through the typed classes, as
-whole tracks, and in threads."""
+"""The Python package over the embedded logs: the hashes that C has on every target, image by image through the typed
+classes, as whole tracks, and in threads."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int
     assert str(h) == golden("golden_hash.txt")
 
 
-# ---------------------------------------------------------------------------------------------------------- flight layer
+# -------------------------------------------------------------------------------------------------------- flight layer
 
 
 def hash_hazard(h: Hash, hazard: goe.Hazard | None) -> None:

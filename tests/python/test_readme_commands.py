@@ -98,6 +98,9 @@ RUN_BY = {
     "python -m goe_tools packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
     "python -m goe_tools packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
     "python -m goe_tools packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
+    "pip install ./port/python": By(
+        "tools/setup.sh", "pip install --quiet --disable-pip-version-check --no-build-isolation"
+    ),
     "cmake --preset": By("tools/test.sh", "cmake --preset"),
     "cmake --build --preset": By("tools/test.sh", "cmake --build --preset"),
     "ctest --preset": By("tools/test.sh", "ctest --preset"),
@@ -229,11 +232,13 @@ def test_set_up_with_rivals(tmp_path: Path, set_up: None) -> None:
     (bin_folder / "python").chmod(0o755)
     # What tools/setup.sh leaves in .venv to tell that it is as wanted.
     wanted = [(tmp_path / "tools" / name).read_text() for name in ("requirements.txt", "pyproject.toml")]
+    for name in ("lib", "port/flight", "port/cmake", "port/python"):  # what the installed package goe is made of
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
     version = output_of("python3", "--version")
     (tmp_path / ".venv" / "installed").write_text(f"{version}{''.join(wanted)}{tmp_path}\n")
     text = output_of(tmp_path / "tools" / "setup.sh", "--rivals", UNITY_DIR="not looked for", PYTHON="python3")
     assert "making .cache/rivals" in text
-    assert "making .venv" not in text
+    assert "making .venv" not in text and "building the Python package" not in text
     assert "there is no GTSAM for this Python" in text
     assert (tmp_path / ".cache" / "rivals" / "installed").exists()
 

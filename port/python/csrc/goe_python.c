@@ -101,8 +101,7 @@ void goe_python_update(goe_estimator_t *estimator, size_t images, const goe_imag
         }
         for (size_t i = 0; i < rules; i++) {
             const size_t place = k * rules + i;
-            hazard_status[place] =
-                (int32_t)ask(estimator, &estimate[k], velocity_ned_m_s[k], &rule[i], &hazard[place]);
+            hazard_status[place] = (int32_t)ask(estimator, &estimate[k], velocity_ned_m_s[k], &rule[i], &hazard[place]);
         }
     }
 }

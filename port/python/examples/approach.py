@@ -1,15 +1,15 @@
 # %% [markdown]
 # # Flying towards a mast
 #
-# A small aircraft flies north at 16 m/s, 15 m above the ground, towards a mast of 6 m by 30 m. A detector draws a box around it,
-# 8 times a second, with errors of its own. What does the estimator know, when, how surely, and when is it time to go around?
+# A small aircraft flies north at 16 m/s, 15 m above the ground, towards a mast of 6 m by 30 m. A detector draws a box
+# around it, 8 times a second, with errors of its own. What does the estimator know, when, how surely, and when is it
+# time to go around?
 #
 # Run it as it is, or cell by cell in an editor that knows `# %%`.
 
 # %%
-import numpy as np
-
 import goe
+import numpy as np
 
 FOCAL_PX, CENTER_PX = 914.0, 640.0
 SPEED_M_S, HEIGHT_M = 16.0, 15.0
@@ -26,8 +26,8 @@ print(f"goe {goe.__version__}; arithmetic {'as on every target' if goe.self_chec
 
 # %%
 def approach(east_m: float, seed: int) -> goe.Images:
-    """The flight past a mast `east_m` to the right of the path: boxes with 1 px of noise in each image, and with an error of 3 %
-    of the box that stays alike for about a second."""
+    """The flight past a mast `east_m` to the right of the path: boxes with 1 px of noise in each image, and with an
+    error of 3 % of the box that stays alike for about a second."""
     random = np.random.default_rng(seed)
     time_s = np.arange(IMAGES) / RATE_HZ
     ahead_m = MAST_NORTH_M - SPEED_M_S * time_s - MAST_WIDTH_M / 2
@@ -54,8 +54,8 @@ images = approach(MAST_EAST_M, seed=1)
 # %% [markdown]
 # ## What is known after each image
 #
-# The settings say how wrong the sensors are: the sigmas are only as good as that. One call takes the whole track. A rule asks
-# after each image what becomes of flying straight on, with margins that grow while the estimate is in doubt.
+# The settings say how wrong the sensors are: the sigmas are only as good as that. One call takes the whole track. A
+# rule asks after each image what becomes of flying straight on, with margins that grow while the estimate is in doubt.
 
 # %%
 settings = goe.Settings.for_camera(FOCAL_PX, FOCAL_PX, CENTER_PX, CENTER_PX, width_px=1280, height_px=1280)
@@ -95,7 +95,8 @@ if order is not None:
 # %% [markdown]
 # ## Is the sigma honest?
 #
-# Many flights with other noise, in threads; each has an estimator of its own, and the bits are those of one after the other.
+# Many flights with other noise, in threads; each has an estimator of its own, and the bits are those of one after the
+# other.
 
 # %%
 flights = [approach(MAST_EAST_M, seed) for seed in range(40)]

@@ -118,7 +118,9 @@ def package() -> Any:
     try:
         goe = importlib.import_module("goe")
     except ImportError as error:
-        raise FileNotFoundError(f"the Python package goe is not installed ({error}); tools/setup.sh does that") from None
+        raise FileNotFoundError(
+            f"the Python package goe is not installed ({error}); tools/setup.sh does that"
+        ) from None
     if PACKAGE.is_dir():
         here = _bindings().fingerprint(ROOT / "lib", ROOT / "port" / "flight", ROOT / "port" / "cmake")
         if here != goe.FINGERPRINT:

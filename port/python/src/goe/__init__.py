@@ -1,5 +1,6 @@
-"""goe - where a ground obstacle is, how big it is and how it stands, each with its one sigma, from a detector's boxes or points
-and the aircraft's own motion; and what a planned flight will meet. Over the C library of that name: the same bits.
+"""goe - where a ground obstacle is, how big it is and how it stands, each with its one sigma, from a detector's boxes
+or points and the aircraft's own motion; and what a planned flight will meet. Over the C library of that name: the same
+bits.
 
     >>> import goe
     >>> tower = goe.Estimator(goe.Settings.for_camera(914, 914, 640, 640))
@@ -11,12 +12,12 @@ and the aircraft's own motion; and what a planned flight will meet. Over the C l
     >>> print("{:.1f} +- {:.1f} m ahead".format(*estimate.position.z))
     183.6 +- 27.9 m ahead
 
-Frames      earth: north, east, down (NED), m, local. Body: forward, right, down; attitude: Hamilton quaternion (w, x, y, z)
-            that turns body into NED. Camera: pixel (u, v) = (right, down) from the top left corner. Trajectory: X right,
-            Z ahead, level; its origin is where the camera was at the track's first image.
+Frames      earth: north, east, down (NED), m, local. Body: forward, right, down; attitude: Hamilton quaternion
+            (w, x, y, z) that turns body into NED. Camera: pixel (u, v) = (right, down) from the top left corner.
+            Trajectory: X right, Z ahead, level; its origin is where the camera was at the track's first image.
 Units       stand in the names: _m, _deg, _px, _s, _us, _m_s.
 Not known   is None, or NaN in an array. "No position" does not mean "safe".
-Faults      of an image are told by ``Estimate.status``; a bad setting raises ``SettingError``, which names field and range.
+Faults      of an image are told by ``Estimate.status``; a bad setting raises ``SettingError`` with field and range.
 Threads     calls release Python's lock; one estimator serves one thread at a time.
 
 ``Estimator.update`` takes one image, ``run`` a whole track of numpy arrays, ``run_parallel`` several tracks at a time.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple
 
 from ._goe import lib
 from .status import Method, Model, Reason, Status
@@ -80,33 +80,33 @@ class Estimate:
 
     status: Status
     """What became of the image."""
-    method: Optional[Method]
+    method: Method | None
     """Behind this estimate; None: nothing is solved."""
-    model: Optional[Model]
+    model: Model | None
     """The shape behind position and sizes; None: nothing is solved."""
     fresh: bool
     """Solved from the latest image; otherwise stale: the last good answer."""
     suspect: bool
     """Its sigmas may be too small: widen the margins, never drop a warning."""
-    reason: Optional[Reason]
+    reason: Reason | None
     """Why; LATE also if it is not suspect."""
     images: int
     """Behind the answer."""
     age_s: float
     """Since the image of the last solution, s; 0 if fresh or none; at most 4000."""
-    position: Optional[Position]
+    position: Position | None
     """Where the obstacle is."""
-    width: Optional[Length]
+    width: Length | None
     """Disc: diameter; line, box: the front edge."""
-    length: Optional[Length]
+    length: Length | None
     """The side edge."""
-    height: Optional[Length]
+    height: Length | None
     """Top above ground."""
-    orientation: Optional[Orientation]
+    orientation: Orientation | None
     """How it stands."""
-    center: Optional[Center]
+    center: Center | None
     """The middle of its base."""
-    velocity: Optional[Velocity]
+    velocity: Velocity | None
     """If it moves and is followed."""
     trajectory_heading_deg: float
     """Of Z, clockwise from north, -180 to 180; from the track's first image on."""

@@ -90,7 +90,7 @@ class Estimator:
 
     def hazard(self, plan: Plan) -> Hazard | None:
         """Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. None: there is no
-        position, which does not mean that it is safe. ValueError names a number of the plan that is outside its range."""
+        position, which does not mean that it is safe. ValueError names a number of the plan outside its range."""
         plan._check()
         velocity = vector(plan.velocity_ned_m_s, 3, "velocity_ned_m_s")
         c = ffi.new("goe_plan_t *", (velocity, plan.margin_m, plan.clearance_m, plan.since_image_s))

@@ -14,7 +14,7 @@ import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -179,7 +179,7 @@ class Frame:
     camera: int = 0
     """Number of the camera that took it."""
     number: int | None = None
-    """Of detections in the whole image, if further calls with the same capture bring the others; None: these are all."""
+    """Of detections in the whole image, if further calls with the same capture bring the others; None: all are here."""
 
 
 @dataclass(frozen=True)
@@ -196,19 +196,19 @@ class Assessment:
     """A frame came in time, of every camera."""
     pose_alive: bool
     """Samples of attitude and position came within 0.5 s."""
-    worst: Optional[int]
+    worst: int | None
     """Slot of the worst obstacle, for ``Flight.obstacle``. None is "clear" only if detector and pose are alive."""
-    avoided: Optional[int]
+    avoided: int | None
     """Slot of the obstacle that the action is about, unless it was given up."""
     obstacles: int
     """With a position."""
     needed_s: float
     """Time that the action needs, or the best one would, s."""
-    target_ned_m: Optional[tuple[float, float, float]]
+    target_ned_m: tuple[float, float, float] | None
     """Where to, north, east, down, m; None without an action."""
-    target: Optional[LatLon]
+    target: LatLon | None
     """The same on the earth, if the origin is known."""
-    hazard: Optional[Hazard]
+    hazard: Hazard | None
     """Of the worst obstacle, from now."""
 
 
@@ -225,7 +225,7 @@ class Place(NamedTuple):
     """Of the circle, what is nearest to the aircraft, m."""
     nearest_body_m: tuple[float, float, float]
     """The same relative to the aircraft: forward, right, down, m."""
-    center: Optional[LatLon]
+    center: LatLon | None
     """The centre on the earth, if the origin is known."""
 
 
@@ -235,7 +235,7 @@ class Obstacle:
 
     id: int
     """The detector's; 0: it has none."""
-    model: Optional[Model]
+    model: Model | None
     """The shape."""
     suspect: bool
     """Its sigmas may be too small."""
@@ -247,17 +247,17 @@ class Obstacle:
     """It moves, and is followed."""
     age_s: float
     """Since it was last measured, from the latest assessment, s."""
-    place: Optional[Place]
+    place: Place | None
     """Where it is."""
-    height: Optional[Length]
+    height: Length | None
     """Of its top above the ground."""
-    width_m: Optional[float]
+    width_m: float | None
     """Disc: diameter; box: the front edge; m."""
-    length_m: Optional[float]
+    length_m: float | None
     """The side edge, m."""
-    length_heading_deg: Optional[float]
+    length_heading_deg: float | None
     """Of the length axis, clockwise from north, 0 to 180."""
-    hazard: Optional[Hazard]
+    hazard: Hazard | None
     """From the latest assessment on."""
 
 
@@ -331,7 +331,7 @@ class Flight:
     """The flight layer. Given to several threads it works for one after the other."""
 
     def __init__(self, estimator: Settings, settings: FlightSettings | None = None) -> None:
-        """Copies both settings and starts with nothing known. ``width_px`` and ``height_px`` of every camera must be set.
+        """Copies both settings and starts with nothing known. ``width_px`` and ``height_px`` of every camera are needed.
 
         SettingError: one is outside its range.
         """
@@ -428,8 +428,8 @@ class Flight:
         return _assessment_of(c) if status == FlightStatus.OK else None
 
     def obstacle(self, slot: int) -> Obstacle | None:
-        """One obstacle, slot 0 to ``SLOTS`` - 1, as of the latest image, with the hazard of the latest assessment. None:
-        there is none, or no pose."""
+        """One obstacle, slot 0 to ``SLOTS`` - 1, as of the latest image, with the hazard of the latest assessment.
+        None: there is none, or no pose."""
         c = ffi.new("goe_flight_obstacle_t *")
         with self._lock:
             status = lib.goe_flight_obstacle(self._c, slot, c)
@@ -453,7 +453,7 @@ class Flight:
         return result if status == FlightStatus.OK else None
 
     def restart(self) -> None:
-        """Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. After the autopilot restarted."""
+        """Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. For an autopilot's restart."""
         with self._lock:
             lib.goe_flight_restart(self._c)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple
 
 from .estimate import Length
 from .image import vector
@@ -61,12 +61,12 @@ class Hazard(NamedTuple):
     """What will become of it. Sigmas are to first order."""
 
     time_s: float
-    """Until the distance to the obstacle's outline is smallest, or the path enters it, s; 0: the distance grows already."""
+    """Until the distance to the obstacle's outline is smallest, or the path enters it, s; 0: the distance grows."""
     time_sd_s: float
     """Its one sigma, s; 0 if the time is."""
     miss: Length
     """That distance; 0 m if the path crosses the outline."""
-    clearance: Optional[Length]
+    clearance: Length | None
     """Camera above the top at that time, negative: below it; None: the height is not known."""
     violation: float
     """Probability, 0 to 1, that margin and clearance are both violated; without a height: that the margin is."""

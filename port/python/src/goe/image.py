@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple
 
 from ._goe import lib
 
@@ -40,11 +40,11 @@ class BoundingBox(NamedTuple):
     Feed raw detections: a tracker's smoothed boxes lag, which no sigma knows of.
     """
 
-    left_px: Optional[float] = None
-    top_px: Optional[float] = None
-    right_px: Optional[float] = None
+    left_px: float | None = None
+    top_px: float | None = None
+    right_px: float | None = None
     """Right of the left one."""
-    bottom_px: Optional[float] = None
+    bottom_px: float | None = None
     """Below the top one."""
 
 
@@ -83,7 +83,7 @@ class ImageNoise:
 
 @dataclass
 class Image:
-    """One image of one obstacle: a box, or points, or both. Any subset may be seen; none: give the image all the same."""
+    """One image of one obstacle: a box, or points, or both. Any subset may be seen; none: give it all the same."""
 
     pose: Pose = field(default_factory=Pose)
     """Where the aircraft was."""

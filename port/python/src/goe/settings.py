@@ -11,7 +11,7 @@ import difflib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -25,6 +25,7 @@ from .status import Method, SettingError, Shape
 CAMERAS_MAX: int = lib.GOE_CAMERAS_MAX
 """Cameras of one aircraft, the first included."""
 
+METHOD_DEFAULT, SHAPE_DEFAULT = Method(whole("method")), Shape(whole("model"))
 NAME = re.compile(r"(?:(\w+)(?:\[(\d+)\])?\.)?(\w+)(?:\[(\d+)\])?")
 
 
@@ -187,9 +188,9 @@ class Settings(_Group):
     """Number 0."""
     more_cameras: tuple[Camera, ...] = ()
     """Numbers 1 on; at most ``CAMERAS_MAX`` - 1."""
-    method: Method = Method(whole("method"))
+    method: Method = METHOD_DEFAULT
     """How it is estimated."""
-    shape: Shape = Shape(whole("model"))
+    shape: Shape = SHAPE_DEFAULT
     """Which shapes it may take the obstacle for; ``model`` in C."""
     heading_deg: float | None = None
     """Where Z of the trajectory's axes points: clockwise from north, degrees; None: where the nose does at the track's
@@ -218,6 +219,8 @@ class Settings(_Group):
         """
         settings, rest = cls(), dict(values)
         auto, heading_deg = rest.pop("heading_auto", 1), rest.pop("heading_deg", 0.0)
+        if auto not in (0, 1):
+            raise SettingError("heading_auto", f" = {auto}: not 0 or 1")
         settings.heading_deg = None if auto else heading_deg
         for name, value in rest.items():
             settings._assign(name, value)
@@ -237,7 +240,7 @@ class Settings(_Group):
             vector = list(getattr(place, own))
             vector[int(index)] = value
             value = tuple(vector)
-        elif row.kind == _table.TRUTH:
+        elif row.kind == _table.TRUTH and value in (0, 1):
             value = bool(value)
         setattr(place, own, value)
 
@@ -253,8 +256,8 @@ class Settings(_Group):
         self.numbers()
 
     def numbers(self) -> npt.NDArray[np.float64]:
-        """All of them, checked and as single precision holds them, in the order of ``setting_rows``; after them those of
-        each further camera."""
+        """All of them, checked and as single precision holds them, in the order of ``setting_rows``; after them those
+        of each further camera."""
         count = len(self.more_cameras)
         if count >= CAMERAS_MAX:
             raise SettingError("more_cameras", f": {count}, not at most {CAMERAS_MAX - 1}")
@@ -319,7 +322,7 @@ class _Bounds:
     any: npt.NDArray[np.bool_]  # not only whole numbers
 
 
-@lru_cache(maxsize=None)
+@cache
 def _bounds(rows: tuple[Row, ...]) -> _Bounds:
     low, high = (np.array([getattr(row, name) for row in rows], np.float32) for name in ("low", "high"))
     return _Bounds(rows, low, high, np.array([not row.whole for row in rows]))

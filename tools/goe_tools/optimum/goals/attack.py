@@ -1,7 +1,8 @@
 """The library over the hostile flights of ``attack``: a line of goals for each figure of a row.
 
-What the library tells besides (reasons of suspicion, the obstacle's velocity) is used where ``Track.more`` has the columns
-``reason`` (named by ``reason_names``) and ``VELOCITY``; settings that it does not have are left out, with a word."""
+What the library tells besides (reasons of suspicion, the obstacle's velocity) is used where ``Track.more`` has the
+columns ``reason`` (named by ``reason_names``) and ``VELOCITY``; settings that it does not have are left out, with a
+word."""
 
 from __future__ import annotations
 
