@@ -331,7 +331,7 @@ class Flight:
     """The flight layer. Given to several threads it works for one after the other."""
 
     def __init__(self, estimator: Settings, settings: FlightSettings | None = None) -> None:
-        """Copies both settings and starts with nothing known. ``width_px`` and ``height_px`` of every camera are needed.
+        """Copies both settings and starts with nothing known. Every camera needs its ``width_px`` and ``height_px``.
 
         SettingError: one is outside its range.
         """
@@ -453,7 +453,7 @@ class Flight:
         return result if status == FlightStatus.OK else None
 
     def restart(self) -> None:
-        """Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. For an autopilot's restart."""
+        """Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. If the autopilot restarts."""
         with self._lock:
             lib.goe_flight_restart(self._c)
 
