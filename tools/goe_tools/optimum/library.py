@@ -196,13 +196,19 @@ def _given(images: Images) -> Any:
     )  # fmt: skip
 
 
+@lru_cache(maxsize=64)
+def _settings(named: tuple[tuple[str, float], ...]) -> Any:
+    """As goe.Settings; the tracks of a case have the same ones."""
+    return package().Settings.from_names(dict(named))
+
+
 def run(images: Images, settings: dict[str, float], *, double: bool = False) -> Track:
     """Runs the library over a track."""
     goe = package()
     plans = images.plans if images.velocity_m_s is not None else ()
     rules = [goe.Rule(p.margin_m, p.clearance_m, p.doubt, p.drift_m_s) for p in plans]
     run_track = double_precision.run if double else goe.run
-    told = run_track(goe.Settings.from_names(settings), _given(images), rules=rules, covariance=True)
+    told = run_track(_settings(tuple(settings.items())), _given(images), rules=rules, covariance=True)
     return _track(told)
 
 

@@ -265,7 +265,7 @@ class Settings(_Group):
         values += [self._value(group, own) for group, own in _OTHERS]
         for number, camera in enumerate(self.more_cameras):
             values += _camera_values(camera, f"more_cameras[{number}]")
-        return checked(_bounds(ROWS + CAMERA_ROWS * count), values, _name_of)
+        return checked(_bounds(count), values, _name_of)
 
     def _value(self, group: str, own: str) -> Any:
         if group:
@@ -323,7 +323,11 @@ class _Bounds:
 
 
 @cache
-def _bounds(rows: tuple[Row, ...]) -> _Bounds:
+def _bounds(more_cameras: int) -> _Bounds:
+    return _bounds_of(ROWS + CAMERA_ROWS * more_cameras)
+
+
+def _bounds_of(rows: tuple[Row, ...]) -> _Bounds:
     low, high = (np.array([getattr(row, name) for row in rows], np.float32) for name in ("low", "high"))
     return _Bounds(rows, low, high, np.array([not row.whole for row in rows]))
 
@@ -356,6 +360,9 @@ def _wanted(row: Row, inside: bool) -> str:
 def setting_rows() -> Iterator[Row]:
     """Every setting as C lists it: ``name``, ``unit``, ``text``, ``low``, ``high``, ``default``."""
     return iter(ROWS)
+
+
+_FLIGHT_BOUNDS = _bounds_of(FLIGHT_ROWS)
 
 
 @dataclass
@@ -420,4 +427,4 @@ class FlightSettings(_Group):
     def numbers(self) -> npt.NDArray[np.float32]:
         """All of them, checked, in the order of goe_flight_settings_t."""
         names = [row.name for row in FLIGHT_ROWS]
-        return checked(_bounds(FLIGHT_ROWS), [getattr(self, n) for n in names], names.__getitem__).astype(np.float32)
+        return checked(_FLIGHT_BOUNDS, [getattr(self, n) for n in names], names.__getitem__).astype(np.float32)
