@@ -10,14 +10,13 @@
 #define ROW(field, kind, unit, low, high, value, text)                                                                 \
     {#field, unit, text, GOE_PYTHON_##kind, (double)(low), (double)(high), (double)(value)},
 #define PLACE(field, kind, unit, low, high, value, text) offsetof(goe_settings_t, field),
-#define ONE(field, kind, unit, low, high, value, text) 1,
+#define ONE(field, kind, unit, low, high, value, text) (char)1,
 
 static const goe_python_setting_t rows[] = {GOE_SETTINGS(ROW)};
 static const size_t places[] = {GOE_SETTINGS(PLACE)};
-static const char camera_rows[] = {GOE_SETTINGS_CAMERA(ONE)};
 
 #define ROWS ((int)(sizeof rows / sizeof rows[0]))
-#define CAMERA_ROWS ((int)sizeof camera_rows)
+#define CAMERA_ROWS ((int)sizeof((const char[]){GOE_SETTINGS_CAMERA(ONE)}))
 
 const goe_python_setting_t *goe_python_setting(int row) { return row >= 0 && row < ROWS ? &rows[row] : NULL; }
 
