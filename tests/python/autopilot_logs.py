@@ -218,7 +218,8 @@ def dataflash_messages(flown: Flown) -> dict[str, tuple[str, str, list[tuple[obj
         "XKF1": ("QBffffff", "TimeUS,C,VN,VE,VD,PN,PE,PD", [
             (us_k, core, *speed[k], *(place[k] + off)) for k, us_k in enumerate(us(t)) for core, off in cores]),
         "XKQ": ("QBffff", "TimeUS,C,Q1,Q2,Q3,Q4", [
-            (us_k, core, *(q[k] if core else (1.0, 0.0, 0.0, 0.0))) for k, us_k in enumerate(us(t)) for core, _ in cores]),
+            (us_k, core, *(q[k] if core else (1.0, 0.0, 0.0, 0.0)))
+            for k, us_k in enumerate(us(t)) for core, _ in cores]),
         "XKF4": ("QBffb", "TimeUS,C,OFN,OFE,PI", [(us_k, 0, *told[k], 1) for k, us_k in enumerate(us(slow))]),
         "IMU": ("QBfff", "TimeUS,I,GyrX,GyrY,GyrZ", [
             (us_k, 0, *row) for us_k, row in zip(us(rates_t), flown.rates(rates_t))]),

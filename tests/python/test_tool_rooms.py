@@ -19,6 +19,7 @@ FLOORS = (
     ("attack",),
     ("reference", "optimum", "cost", "packages"),
     ("report", "live"),
+    ("report", "exchange", "noise"),
     ("__main__",),
 )
 

@@ -8,6 +8,6 @@ tlog          a ground station's log of MAVLink messages
 detections    the detector's table
 clock         how far the camera's clock is off the autopilot's
 convert       the command that makes an observation log of both
-scene_update  an observation log and its estimates as messages of Foxglove's schemas
+messages      an observation log and its estimates as messages of Foxglove's schemas
 mcap_command  the command that writes them
 """

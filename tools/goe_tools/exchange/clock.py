@@ -172,7 +172,7 @@ class Search:
         return float(sum((left**2).sum() for left in self.residuals(offset_s)))
 
     def spread(self, offset_s: float) -> float:
-        """Variance of half the slope of the sum of squares, whatever the errors of neighbouring images have in common."""
+        """Variance of half the slope of the sum of squares, whatever neighbouring errors have in common."""
         step = float(FINE_S[-1])
         result = 0.0
         for left, after, before in zip(*(self.residuals(offset_s + k * step) for k in (0, 1, -1))):

@@ -130,8 +130,8 @@ def made_upright(distance: Series, attitude: Series) -> Series:
 
 
 class Poses:
-    """Where the vehicle was at any time. A known jump of the filter is taken off before positions are interpolated, and put
-    back after; nothing is interpolated across an unknown one."""
+    """Where the vehicle was at any time. A known jump of the filter is taken off before positions are interpolated, and
+    put back after; nothing is interpolated across an unknown one."""
 
     def __init__(self, recording: Recording) -> None:
         self.recording = recording
@@ -164,7 +164,7 @@ class Poses:
         return slerp(self.recording.attitude, time_s)
 
     def good(self, time_s: np.ndarray, gap_s: float) -> np.ndarray:
-        """(K,) whether the log tells the pose: not outside, not in a gap, not between the samples of an unknown jump."""
+        """(K,) whether the log tells the pose: not outside, in no gap, not between the samples of an unknown jump."""
         result = np.ones(len(time_s), bool)
         for series in (self.recording.position, self.recording.attitude):
             result &= within(series, time_s, gap_s)

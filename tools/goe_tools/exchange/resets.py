@@ -1,4 +1,4 @@
-"""Jumps of the autopilot's filter that its log does not tell of: what the motion between two samples does not explain."""
+"""Jumps of the autopilot's filter that its log does not tell of: what motion between two samples does not explain."""
 
 from __future__ import annotations
 

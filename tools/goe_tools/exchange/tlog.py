@@ -1,8 +1,8 @@
 """A ground station's log of MAVLink messages, by pymavlink.
 
 LOCAL_POSITION_NED, otherwise GLOBAL_POSITION_INT, otherwise ODOMETRY; ATTITUDE_QUATERNION or ATTITUDE, whichever comes
-more often, otherwise ODOMETRY; DISTANCE_SENSOR that looks down. Times are time_boot_ms (of ODOMETRY time_usec), those of the
-autopilot. Of resets only ODOMETRY tells; what else jumps is found by the velocity and the rates."""
+more often, otherwise ODOMETRY; DISTANCE_SENSOR that looks down. Times are time_boot_ms (of ODOMETRY time_usec), those
+of the autopilot. Of resets only ODOMETRY tells; what else jumps is found by the velocity and the rates."""
 
 from __future__ import annotations
 
