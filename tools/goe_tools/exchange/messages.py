@@ -24,7 +24,8 @@ Json = dict[str, Any]
 NS = 1_000_000_000
 TWO_SIGMA = 2.0
 UNKNOWN_HEIGHT_M = 1.0
-FOUND, DOUBTED, TRUE = (0.10, 0.45, 0.85, 0.8), (0.85, 0.45, 0.10, 0.8), (0.25, 0.65, 0.30, 0.5)
+FRESH = ("ok", "partial")  # status of an estimate that is solved from its own image
+FOUND, STALE, TRUE = (0.10, 0.45, 0.85, 0.8), (0.85, 0.45, 0.10, 0.8), (0.25, 0.65, 0.30, 0.5)
 REGION_ALPHA = 0.2
 REGION_HEIGHT_M = 0.1
 
@@ -142,11 +143,9 @@ def _shape(place: Json, heading_deg: float, size: Json, colour: Json, scale: boo
     return {"pose": pose, "size": size, "color": colour, **({"bottom_scale": 1.0, "top_scale": 1.0} if scale else {})}
 
 
-def obstacle_message(
-    frame: Frame, estimate: Estimate, heading_deg: float, ground_d_m: float, suspect: bool = False
-) -> Json | None:
-    """SceneUpdate of an estimate; None if it tells no centre. ``heading_deg``: of the trajectory frame's Z. The
-    region is that of two sigmas north and east, without their correlation."""
+def obstacle_message(frame: Frame, estimate: Estimate, heading_deg: float, ground_d_m: float) -> Json | None:
+    """SceneUpdate of an estimate; None if it tells no centre. ``heading_deg``: of the trajectory frame's Z. The region
+    is that of two sigmas north and east, without their correlation."""
     values = estimate.values
     if "center_n_m" not in values or "center_e_m" not in values:
         return None
@@ -154,7 +153,7 @@ def obstacle_message(
     height = values.get("height_m", UNKNOWN_HEIGHT_M)
     width = values.get("width_m", UNKNOWN_HEIGHT_M)
     middle, ground = _up(n, e, ground_d_m - 0.5 * height), _up(n, e, ground_d_m)
-    colour = DOUBTED if suspect else FOUND
+    colour = FOUND if estimate.status in FRESH else STALE
     cubes, cylinders = [], []
     if "length_m" in values and "orientation_deg" in values:
         size = _vector(values["length_m"], width, height)

@@ -33,14 +33,11 @@ RANGES = {  # of the library
     "detector.box_px": (0.05, 100.0), "detector.box_share": (0.0, 1.0), "detector.point_px": (0.05, 100.0),
     "detector.point_share": (0.0, 1.0), "navigation.attitude_white_deg": (1e-4, 30.0),
     "navigation.attitude_bias_deg": (1e-3, 30.0), "navigation.velocity_bias_m_s": (0.0, 100.0),
-    "navigation.position_walk_m": (0.0, 100.0), "navigation.height_bias_m": (1e-3, 1e3),
+    "navigation.height_bias_m": (1e-3, 1e3),
 }  # fmt: skip
 WHITE = "navigation.attitude_white_deg"
 FIRST = {"boxes": ("detector.box_px", "detector.box_share", WHITE), "points": ("detector.point_px", WHITE)}
-BESIDE_TRUTH = (
-    "navigation.attitude_bias_deg", "navigation.height_bias_m", "navigation.velocity_bias_m_s",
-    "navigation.position_walk_m",
-)  # fmt: skip
+BESIDE_TRUTH = ("navigation.attitude_bias_deg", "navigation.height_bias_m", "navigation.velocity_bias_m_s")
 LEAST_JUDGED = 4  # tracks of a half
 COVER_LOW, COVER_HIGH, COVER_ROUNDS = -4.0, 1.0, 8  # logarithms of the factor, and halvings
 HEIGHT, GROUND = "navigation.height_bias_m", "navigation.ground_m"
