@@ -13,11 +13,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Optional
 
 from .fields import LogError, Row, read_integer, read_number, read_optional, read_rows, read_text
 
 Pixel = tuple[float, float]
-Box = tuple[float | None, float | None, float | None, float | None]  # left, top, right, bottom; None: not seen
+Side = Optional[float]  # as Python 3.9 has it outside annotations
+Box = tuple[Side, Side, Side, Side]  # left, top, right, bottom; None: not seen
 
 TIME_LIMIT_US = 9.2e18  # just inside 64 bits
 FEATURES = ("left", "right", "top", "base_left", "base_near", "base_right")
