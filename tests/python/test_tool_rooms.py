@@ -18,8 +18,7 @@ FLOORS = (
     ("logs",),
     ("attack",),
     ("reference", "optimum", "cost", "packages"),
-    ("report", "live"),
-    ("report", "exchange", "noise"),
+    ("report", "live", "exchange", "noise"),
     ("__main__",),
 )
 
