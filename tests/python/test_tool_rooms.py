@@ -18,6 +18,7 @@ FLOORS = (
     ("logs",),
     ("attack",),
     ("reference", "optimum", "cost", "packages"),
+    ("view",),
     ("report", "live", "exchange", "noise"),
     ("__main__",),
 )
