@@ -37,7 +37,8 @@ class Track:
     corner: np.ndarray  # (K, 4, 2)
     region: np.ndarray  # (K, points, 2)
     closest: np.ndarray  # (K, 2) the aircraft at the predicted closest approach ...
-    nearest: np.ndarray  # (K, 2) ... and the outline's nearest point to it
+    nearest: np.ndarray  # (K, 2) ... and the outline's nearest point to it then
+    moved: np.ndarray  # (K, 2) the outline's middle then, if the obstacle moves and is followed
     anchor: np.ndarray | None  # (2,) where it stands at last, or in truth; None: it moves, or there is no answer
 
     @property
@@ -139,14 +140,11 @@ def _untold_radius(own: Answers, closest: np.ndarray, on_map: Callable[[np.ndarr
     return np.where(own.column["miss_m"] > 0.0, np.maximum(radius, 0.0), 0.0)
 
 
-def _anchor(own: Answers, circle: np.ndarray, corner: np.ndarray, truth_outline: np.ndarray) -> np.ndarray | None:
+def _anchor(own: Answers, middle: np.ndarray, moves: np.ndarray, truth_outline: np.ndarray) -> np.ndarray | None:
     answered = np.flatnonzero(own.answered)
     if len(truth_outline):
         return truth_outline.mean(0)
-    if not len(answered) or own.column["velocity_north_m_s"].any() or own.column["velocity_east_m_s"].any():
-        return None
-    last = answered[-1]
-    return circle[last, :2] if np.isfinite(circle[last, 0]) else corner[last].mean(0)
+    return middle[answered[-1]] if len(answered) and not moves.any() else None
 
 
 def _track(
@@ -157,20 +155,25 @@ def _track(
     turn = own.heading_rad - course
     eye = turned((own.camera_ne_m - origin)[:, ::-1], -course)
     closest = eye + turned(motion.velocity_m_s[own.moment][:, 1::-1], -course) * own.column["time_s"][:, None]
+    drift = np.stack([own.column["velocity_east_m_s"], own.column["velocity_north_m_s"]], -1)
+    moves = drift.any(1)
+    by = np.where(moves[:, None], turned(drift, -course) * own.column["time_s"][:, None], 0.0)
 
     def on_map(points: np.ndarray) -> np.ndarray:
         extra = (1,) * (points.ndim - 2)
         return turned(points, turn.reshape(-1, *extra)) + eye.reshape(-1, *extra, 2)
 
-    seen = outlines(own.column, own.model, own.covariance, _untold_radius(own, closest, on_map))
+    seen = outlines(own.column, own.model, own.covariance, _untold_radius(own, closest - by, on_map))
     circle = np.column_stack([on_map(seen.circle[:, :2]), seen.circle[:, 2]])
     corner, region = on_map(seen.corner), on_map(seen.region)
+    middle = np.where(np.isfinite(circle[:, :1]), circle[:, :2], corner.mean(1))
     outline = footprint(truth) if truth else np.empty((0, 2))
     outline_on_map = turned((outline - origin)[:, ::-1], -course)
     return Track(
         own, motion.time_s[own.moment], np.searchsorted(own.moment, kept, side="right") - 1,
-        true_columns(truth, own) if truth else {}, outline_on_map, circle, corner, region,
-        closest, nearest_on_outline(closest, circle, corner), _anchor(own, circle, corner, outline_on_map),
+        true_columns(truth, own) if truth else {}, outline_on_map, circle, corner, region, closest,
+        nearest_on_outline(closest - by, circle, corner) + by, np.where(moves[:, None], middle + by, np.nan),
+        _anchor(own, middle, moves, outline_on_map),
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from .answers import Answers
 from .outline import SIGMAS
 
 NOTHING = "–"
+OLD_S = 0.05  # an answer of less age is of now
 HARD = "\u00a0"  # a space at which no line ends
 MODELS = {"disc": "a disc", "line": "a front edge", "box": "a box", "prism": "an upright box, of unknown depth"}
 STATUS = {
@@ -104,7 +105,8 @@ def state(answers: Answers, k: int) -> str:
     said = f"Model: {MODELS.get(answers.model[k], answers.model[k])}"
     if not answers.fresh[k]:
         why = STATUS.get(answers.status[k], answers.status[k].replace("_", " "))
-        said += f". An older answer, {answers.age_s[k]:.1f} s old: {why}"
+        said += f". {why[0].upper()}{why[1:]}"
+        said += f"; the answer is {answers.age_s[k]:.1f} s old" if answers.age_s[k] >= OLD_S else ""
     elif answers.status[k] == "partial":
         said += ". A part of the image was not used"
     return said
@@ -116,6 +118,9 @@ def doubt(answers: Answers, k: int) -> str:
     words = REASONS.get(reason, reason)
     if reason == "late":
         words += f", by {float(answers.column['latency_s'][k]):.2f} s".replace("-", "−")
+    speed_m_s = math.hypot(*(float(answers.column[f"velocity_{axis}_m_s"][k]) for axis in ("north", "east")))
+    if reason == "moves" and speed_m_s > 0.0:
+        words += f", {speed_m_s:.1f}{HARD}m/s, and is followed"
     if answers.suspect[k]:
         return f"Suspect: {words}" if reason != "none" else "Suspect"
     return "" if reason == "none" else words[0].upper() + words[1:]
