@@ -20,6 +20,7 @@ from .outline import nearest_on_outline, outlines
 from .truth import footprint, true_columns
 
 MOST_ROWS = 3000  # of all obstacles, on one page
+EARLY_REGIONS = 0.1  # share of the two-sigma regions that may reach beyond the map, at each side
 COURSE_MIN_M = 1.0  # a shorter path has no course
 FIRST_LOOK, SIZED_FOR = 0.4, 0.05  # of the answered time: the moment shown first; and so long after the first width
 
@@ -190,3 +191,22 @@ def story_of(name: str, log: ObservationLog, options: Options, most_rows: int = 
         turned(motion.velocity_m_s[kept][:, 1::-1], -course), motion.look_rad[kept] - course, broken, reset, -course,
         tracks, len(log.frames), len(motion.time_s), options,
     )  # fmt: skip
+
+
+def map_bounds(story: Story) -> list[float]:
+    """left, right, bottom, top of the whole flight on the map: path, truth, outlines, and most of the regions."""
+    points = [story.path]
+    for track in story.tracks:
+        points.append(track.truth_outline)
+        answered = np.flatnonzero(track.answers.answered)
+        if len(answered):
+            last = answered[-1]
+            points += [track.region[last], track.corner[last], track.circle[last, None, :2]]
+            reach = track.region[answered]
+            low = np.quantile(reach.min(1), EARLY_REGIONS, axis=0)
+            high = np.quantile(reach.max(1), 1.0 - EARLY_REGIONS, axis=0)
+            points += [low[None], high[None]]
+    every = np.concatenate(points)
+    every = every[np.isfinite(every).all(1)]
+    low, high = every.min(0), every.max(0)
+    return [float(low[0]), float(high[0]), float(low[1]), float(high[1])]
