@@ -34,6 +34,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "rare": (".report.rare_command", "fly the flight layer's orders many times and keep what rarely happens"),
     "report": (".report.command", "write the campaign's report and print Table 3"),
     "settings": (".reference.settings_table", "print, write or check the manual's table of the library's settings"),
+    "view": (".view.command", "show a log: a page with a map and a slider over time, or a picture"),
     "table": (".logs.table", "print estimates as a table that a pilot can read"),
 }
 EXIT_BAD_INPUT = 2

@@ -7,4 +7,7 @@ truth     what each answer would be if it were right
 words     one image's answer as sentences
 story     all of it in the axes of the map, thinned to what a page can hold
 charts    what is drawn over time, for page and picture
+page      the page: page.html.j2, page.css, page.js and plotly.js in one file
+picture   the picture: PNG, or SVG that follows the reader's light or dark
+command   the command line
 """
