@@ -144,6 +144,9 @@ RUN_BY = {
     "python -m goe_tools report --table --out": By("tools/demo.sh", "report $campaign --table --out"),
     "python -m goe_tools scene ...": By("tests/python/test_scene.py", "python -m goe_tools scene"),
     "python -m goe_tools jsbsim_flight": By("tests/sim/test_sim_jsbsim.py", "jsbsim_flight"),
+    "python -m goe_tools view": By("tests/python/test_view_command.py", '"view"'),
+    "python -m goe_tools view --png --theme dark": By("tests/python/test_view_command.py", '"view"'),
+    "python -m goe_tools view --svg": By("tests/python/test_view_command.py", '"view"'),
     "python -m goe_tools settings --write lib/README.md": By(
         "tests/python/test_settings_table.py", '"settings", "--write"'
     ),
