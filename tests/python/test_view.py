@@ -18,7 +18,7 @@ from goe_tools.optimum import library
 from goe_tools.view import outline, words
 from goe_tools.view.answers import Options
 from goe_tools.view.motion import motion_of
-from goe_tools.view.story import MOST_ROWS, Story, kept_moments, story_of
+from goe_tools.view.story import MOST_ROWS, Story, kept_moments, map_bounds, story_of
 
 COLUMNS = {  # of goe_replay: those of the page
     **{name: name for name in ("x_m", "z_m", "width_m", "length_m", "height_m", "orientation_deg", "misfit")},
@@ -278,6 +278,22 @@ def test_thinning_keeps_what_changes() -> None:
     kept = kept_moments(motion, [everything], 40)
     assert len(kept) <= 40 and {0, len(motion.time_s) - 1} <= set(kept)
     assert set(changed) | set(np.flatnonzero(motion.reset)) <= set(kept)
+
+
+def test_what_is_shown_first() -> None:
+    """The obstacle with the most answers, once it has a width; of one seen briefly, its own part of the map."""
+    told = story(view_logs.several())
+    assert [told.brief(track) for track in told.tracks] == [False, False, False] and told.chosen(None).id == 3
+    for track in told.tracks:
+        row = track.row_at[told.first_look(track)]
+        assert math.isfinite(track.answers.column["width_m"][row])
+    log = view_logs.several()
+    frames = [f for f in log.frames if f.id != 11 or f.t_s > 6.0]
+    late = story(dataclasses.replace(log, frames=frames))
+    chimney = late.chosen(11)
+    assert late.brief(chimney)
+    left, right, bottom, top = map_bounds(late, chimney)
+    assert bottom > 100.0 and (left, right, top) != tuple(map_bounds(late)[i] for i in (0, 1, 3))
 
 
 def test_an_obstacle_between_the_kept_moments_is_not_lost() -> None:

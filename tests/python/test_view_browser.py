@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import math
+import os
 import re
 import subprocess
 from collections.abc import Callable, Iterator
@@ -251,6 +252,13 @@ def test_several_obstacles(make_page: Callable[..., Path], browser: Any, replay:
         assert drawn == {"names": ["3", "7", "11"], "own": 1, "others": 2, "truths": 3}
     moved(browser, 10)  # the chimney, chosen, comes later
     assert said(browser)["place"] == "Not seen yet"
+    for index in (0, 2):  # chosen anew it is shown when it is seen
+        browser.execute_script(
+            "const e = document.getElementById('obstacle'); e.value = arguments[0];"
+            "e.dispatchEvent(new Event('change'))",
+            index,
+        )
+    assert shown(browser) > 26 and " ahead" in said(browser)["place"].replace("\u00a0", " ")
     moved(browser, 76)  # the truck is seen in every third image
     browser.execute_script(
         "const e = document.getElementById('obstacle'); e.value = 1; e.dispatchEvent(new Event('change'))"
@@ -339,7 +347,9 @@ def test_looks(make_page: Callable[..., Path], browser: Any, size: tuple[int, in
         "return [...document.querySelectorAll('.js-plotly-plot')].map(p => p.getBoundingClientRect().width)"
     )
     assert len(plots) >= 10 and min(plots) > 250
-    screenshot(browser, tmp_path / "page.png")
+    folder = Path(os.environ.get("GOE_SCREENSHOTS", tmp_path))
+    folder.mkdir(parents=True, exist_ok=True)
+    screenshot(browser, folder / f"view_{'dark' if dark else 'light'}_{size[0]}.png")
     assert_quiet(browser)
 
 

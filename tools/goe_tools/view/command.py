@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--svg", type=Path, metavar="FILE", help="the same, light or dark as its reader is")
     add("--theme", choices=("light", "dark"), default="light", help="of the PNG (default light)")
     add("--at", type=_number(-1e12, 1e12), metavar="S", help="time shown first, and in the picture (default: midway)")
-    add("--id", type=int, metavar="N", help="obstacle shown first, and in the picture (default: the first answered)")
+    add("--id", type=int, metavar="N", help="obstacle shown first, and in the picture (default: the one answered most)")
     add("--method", choices=("refined", "window"), default="refined", help="as goe_replay's")
     add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
     add("--window", type=int, metavar="N", help="as goe_replay's: image points in the window")

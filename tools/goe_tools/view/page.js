@@ -7,6 +7,7 @@
   const CIRCLE_POINTS = 60;
   const MAP_MARGIN = { l: 46, r: 8, t: 8, b: 30 };
   const CLOSE_STEPS_M = [8, 15, 25, 40, 65, 100, 160, 250, 400, 650, 1000];
+  const GONE_S = 1; // an obstacle without an image for so long is not in view
   const PAGE_SHARE = 20; // PageUp and PageDown go so many times through the whole
   const state = { moment: 0, track: 0, view: "whole", playing: false };
   let story, plots = [];
@@ -107,8 +108,8 @@
   }
 
   function chartLayout(chart, own, track) {
-    const t = story.moments.time;
-    const spare = t.length > 1 ? 0 : 0.5;
+    const t = track.columns.time;
+    const spare = t[t.length - 1] > t[0] ? 0 : 0.5;
     return {
       ...layoutLook(), margin: { l: 44, r: 8, t: 6, b: 24 }, hovermode: "x",
       xaxis: { ...axisLook(), range: [t[0] - spare, t[t.length - 1] + spare], nticks: 6, ticksuffix: " s" },
@@ -302,7 +303,7 @@
   }
 
   const MAPS = [
-    { id: "map", bounds: wideBounds, room: 1.12, ticks: [6, 9], wedge: true },
+    { id: "map", bounds: wideBounds, room: 1.17, ticks: [6, 9], wedge: true },
     { id: "close", bounds: closeBounds, room: 1.04, ticks: [5, 5], wedge: false },
   ];
 
@@ -453,12 +454,21 @@
     for (const drawn of document.querySelectorAll(".js-plotly-plot svg, #js-plotly-tester")) drawn.setAttribute("aria-hidden", "true");
   }
 
+  /* Another obstacle: at the present time, or, if it is not seen then, when it is. */
+  function choose(index) {
+    const track = story.tracks[index], row = rowAt(track, state.moment);
+    if (row < 0 || story.moments.time[state.moment] - track.columns.time[row] > GONE_S) state.moment = track.first;
+    state.track = index;
+    redraw();
+    restartClock();
+  }
+
   function listen() {
     $("time").addEventListener("input", () => { goTo(Number($("time").value)); restartClock(); });
     $("play").addEventListener("click", () => play(!state.playing));
     $("speed").addEventListener("change", restartClock);
     document.addEventListener("keydown", onKey);
-    $("obstacle")?.addEventListener("change", (event) => { state.track = Number(event.target.value); redraw(); });
+    $("obstacle")?.addEventListener("change", (event) => choose(Number(event.target.value)));
     for (const radio of document.getElementsByName("view")) {
       radio.addEventListener("change", () => { state.view = radio.value; goTo(state.moment); });
     }
@@ -469,6 +479,8 @@
   unpack().then(() => {
     state.track = story.chosen;
     state.moment = story.first;
+    state.view = story.view;
+    document.querySelector(`input[name="view"][value="${state.view}"]`).checked = true;
     redraw();
     listen();
     document.documentElement.dataset.ready = "yes";

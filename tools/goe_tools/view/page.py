@@ -48,7 +48,7 @@ def _packed(content: bytes) -> Markup:
     return Markup(base64.b64encode(zlib.compress(content, LEVEL)).decode("ascii"))
 
 
-def _track_data(track: Track, described: tuple[Chart, ...], numbers: Numbers) -> dict[str, Any]:
+def _track_data(story: Story, track: Track, described: tuple[Chart, ...], numbers: Numbers) -> dict[str, Any]:
     answers, rows = track.answers, range(len(track.answers))
     columns = {"time": track.time_s, "rowAt": track.row_at, "suspect": answers.suspect, "fresh": answers.fresh}
     columns |= {"circle": track.circle, "corner": track.corner, "region": track.region, "closest": track.closest}
@@ -69,6 +69,7 @@ def _track_data(track: Track, described: tuple[Chart, ...], numbers: Numbers) ->
         "id": track.id,
         "columns": {name: numbers.put(values) for name, values in columns.items()},
         "charts": charts,
+        "first": story.first_look(track),
         "truth": track.truth_outline.round(3).tolist(),
         "anchor": None if track.anchor is None else track.anchor.round(3).tolist(),
         "place": [words.place(answers, k) for k in rows],
@@ -87,6 +88,7 @@ def _story_data(story: Story, chosen: Track, first: int, numbers: Numbers) -> di
     return {
         "moments": {name: numbers.put(values) for name, values in own.items()},
         "bounds": map_bounds(story),
+        "view": "ahead" if story.brief(chosen) else "whole",
         "north": math.degrees(story.north_rad),
         "first": first,
         "chosen": story.tracks.index(chosen),
@@ -95,7 +97,7 @@ def _story_data(story: Story, chosen: Track, first: int, numbers: Numbers) -> di
              "limit": c.limit}
             for c in described
         ],
-        "tracks": [_track_data(track, described, numbers) for track in story.tracks],
+        "tracks": [_track_data(story, track, described, numbers) for track in story.tracks],
     }  # fmt: skip
 
 

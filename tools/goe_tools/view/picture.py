@@ -178,7 +178,8 @@ def _draw_chart(ax: Axes, chart: Chart, story: Story, track: Track, moment: int,
     told = chart_text(chart, answers, row) if row >= 0 else words.NOTHING
     ax.set_title(chart.title, loc="left", fontsize=8.5, fontweight="bold", pad=4)
     ax.set_title(told, loc="right", fontsize=8.5, fontweight="bold", color=theme["estimate"], pad=4)
-    ax.set_xlim(story.time_s[0] - (0.5 if len(story.time_s) < 2 else 0.0), story.time_s[-1] + 1e-6)
+    first, last = track.time_s[0], track.time_s[-1]
+    ax.set_xlim(first - (0.0 if last > first else 0.5), last + 1e-6)
     ax.set_yticks([]) if limits is None else ax.set_ylim(*limits)
     if chart.sigma:
         band = SIGMAS * chart.scale * answers.column[chart.sigma]
@@ -238,7 +239,7 @@ def draw(story: Story, track: Track, moment: int, theme: dict[str, str]) -> Figu
         _draw_approach(ax, story, track, moment, theme)
         _draw_flight(ax, story, track, moment, theme, look=ax is whole)
         _metres(ax)
-    _same_scale(whole, map_bounds(story))
+    _same_scale(whole, map_bounds(story, track if story.brief(track) else None))
     near = _close_bounds(track, row)
     _same_scale(close, near or map_bounds(story), 1.06)
     close.locator_params(axis="y", nbins=4)

@@ -21,6 +21,7 @@ from .truth import footprint, true_columns
 
 MOST_ROWS = 3000  # of all obstacles, on one page
 EARLY_REGIONS = 0.1  # share of the two-sigma regions that may reach beyond the map, at each side
+BRIEF = 0.4  # share of the flight
 COURSE_MIN_M = 1.0  # a shorter path has no course
 FIRST_LOOK, SIZED_FOR = 0.4, 0.05  # of the answered time: the moment shown first; and so long after the first width
 
@@ -80,13 +81,17 @@ class Story:
         return self.at(max(first + FIRST_LOOK * (last - first), from_s + SIZED_FOR * (last - first)))
 
     def chosen(self, key: int | None) -> Track:
-        """The obstacle asked for, or the first that was answered."""
+        """The obstacle asked for, or the one that was answered most often."""
         if key is not None:
             for track in self.tracks:
                 if track.id == key:
                     return track
             raise ValueError(f"--id: no obstacle {key}; there are {', '.join(str(t.id) for t in self.tracks[:20])}")
-        return next((track for track in self.tracks if track.answers.answered.any()), self.tracks[0])
+        return max(self.tracks, key=lambda track: int(track.answers.answered.sum()))
+
+    def brief(self, track: Track) -> bool:
+        """Whether the obstacle was seen in a small part of the flight only."""
+        return bool(track.time_s[-1] - track.time_s[0] < BRIEF * (self.time_s[-1] - self.time_s[0]))
 
 
 def turned(points: np.ndarray, angle_rad: np.ndarray | float) -> np.ndarray:
@@ -193,10 +198,13 @@ def story_of(name: str, log: ObservationLog, options: Options, most_rows: int = 
     )  # fmt: skip
 
 
-def map_bounds(story: Story) -> list[float]:
-    """left, right, bottom, top of the whole flight on the map: path, truth, outlines, and most of the regions."""
+def map_bounds(story: Story, alone: Track | None = None) -> list[float]:
+    """left, right, bottom, top of the whole flight on the map: path, truth, outlines, and most of the regions.
+    ``alone``: of one obstacle, and the path while it was seen."""
     points = [story.path]
-    for track in story.tracks:
+    if alone is not None:
+        points = [story.path[(story.time_s >= alone.time_s[0]) & (story.time_s <= alone.time_s[-1])]]
+    for track in story.tracks if alone is None else [alone]:
         points.append(track.truth_outline)
         answered = np.flatnonzero(track.answers.answered)
         if len(answered):
