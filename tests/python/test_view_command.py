@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import os
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 from io import BytesIO
@@ -96,6 +99,16 @@ def test_bad_flags(words_: list[str], tmp_path: Path) -> None:
     with pytest.raises(SystemExit) as stopped:
         main(["view", str(view_logs.CORNER), "--out", str(tmp_path / "x.html"), *words_])
     assert stopped.value.code == 2
+
+
+def test_a_closed_pipe(tmp_path: Path) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    words = [sys.executable, "-m", "goe_tools", "view", str(view_logs.CORNER), "--out", str(tmp_path / "page.html")]
+    done = subprocess.run(words, stdout=writing, stderr=subprocess.PIPE, text=True)
+    os.close(writing)
+    assert done.returncode == 2
+    assert done.stderr == "goe_tools view: standard output: Broken pipe\n"
 
 
 def test_a_broken_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

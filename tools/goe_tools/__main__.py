@@ -6,6 +6,7 @@ import argparse
 import difflib
 import importlib
 import re
+import os
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
@@ -80,9 +81,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if argv is None else argv
     arguments = parser_for(words).parse_args(words)
     try:
-        return int(arguments.entry(arguments))
+        status = int(arguments.entry(arguments))
+        sys.stdout.flush()
+        return status
     except (LogError, ValueError, FileNotFoundError) as error:
         print(f"goe_tools {arguments.command}: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except BrokenPipeError as error:
+        print(f"goe_tools {arguments.command}: standard output: {error.strerror}", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python tries again on leaving
         return EXIT_BAD_INPUT
     except KeyboardInterrupt:
         print(f"goe_tools {arguments.command}: interrupted", file=sys.stderr)
