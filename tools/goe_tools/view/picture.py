@@ -38,6 +38,7 @@ EARLIER = (0.0, 0.25, 0.55)  # of the answered time before the moment: whose reg
 CIRCLE_POINTS = 60
 LEAST_M = 12.0  # half the width of the close view
 LOOK_STEPS = 24
+LINE_PT = 720.0  # size times letters of the bold line that fills the width
 
 
 def _style(theme: dict[str, str]) -> dict[str, object]:
@@ -218,7 +219,7 @@ def _legend(figure: Figure, theme: dict[str, str], truth: bool) -> None:
 def _sentence(figure: Figure, track: Track, row: int, now: float, theme: dict[str, str]) -> None:
     answers = track.answers
     place = words.place(answers, row) if row >= 0 else "Not seen yet"
-    figure.text(0.037, 0.955, place, fontsize=13.5 if len(place) < 62 else 12.0, fontweight="bold", va="center")
+    figure.text(0.037, 0.955, place, fontsize=min(13.5, LINE_PT / len(place)), fontweight="bold", va="center")
     if row >= 0:
         figure.text(0.037, 0.905, words.approach(answers, row), fontsize=9.5, color=theme["course"], va="center")
         doubt = words.doubt(answers, row)
