@@ -38,7 +38,7 @@ EARLIER = (0.0, 0.25, 0.55)  # of the answered time before the moment: whose reg
 CIRCLE_POINTS = 60
 LEAST_M = 12.0  # half the width of the close view
 LOOK_STEPS = 24
-LINE_PT = 720.0  # size times letters of the bold line that fills the width
+LINE_PT = 900.0  # size times letters of the bold line that fills the width
 
 
 def _style(theme: dict[str, str]) -> dict[str, object]:
