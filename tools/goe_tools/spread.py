@@ -86,9 +86,9 @@ def _deaf_children() -> Iterator[None]:
 
 def _begun(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers) -> Iterator[Result]:
     """The back end is chosen for what starts here, not for what the caller does between the results."""
-    with _cluster(workers.scheduler) if workers.scheduler else parallel_config("loky", n_jobs=workers.jobs):
-        with _deaf_children():
-            return Parallel(return_as="generator")(delayed(work)(task) for task in tasks)
+    backend = _cluster(workers.scheduler) if workers.scheduler else parallel_config("loky", n_jobs=workers.jobs)
+    with backend, _deaf_children():
+        return Parallel(return_as="generator")(delayed(work)(task) for task in tasks)
 
 
 def spread(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers) -> Iterator[Result]:

@@ -19,7 +19,6 @@ from .fields import LogError, Row, read_integer, read_number, read_optional, rea
 
 Pixel = tuple[float, float]
 Side = Optional[float]  # as Python 3.9 has it outside annotations
-Side = Optional[float]
 Box = tuple[Side, Side, Side, Side]  # left, top, right, bottom; None: not seen
 
 TIME_LIMIT_US = 9.2e18  # just inside 64 bits

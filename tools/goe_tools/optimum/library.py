@@ -23,7 +23,7 @@ PACKAGE = ROOT / "port" / "python"
 METHODS = {"window": 1, "refined": 2}
 MODEL_AUTO, MODEL_DISC, MODEL_LINE, MODEL_BOX, MODEL_PRISM = 1, 2, 3, 4, 5
 QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m")
-NUMBERS = ("velocity_north_m_s", "velocity_east_m_s", "latency_s")  # of ``Track.more``, each with its sigma
+NUMBERS = ("x_m", "z_m", "velocity_north_m_s", "velocity_east_m_s", "latency_s")  # of ``Track.more``, each with its sigma
 HAZARD = (
     "time_s", "miss_m", "clearance_m", "time_sd_s", "miss_sd_m", "clearance_sd_m", "violation", "has_clearance",
 )  # fmt: skip
@@ -217,9 +217,10 @@ def _track(told: Any) -> Track:
     column, sigma, hazard = told.estimates, told.estimates["sigma"], told.hazards
     values, sigmas = (np.stack([of[name] for name in QUANTITIES], 1) * TO_RADIANS for of in (column, sigma))
     valid = told.valid
-    more = {"reason": column["reason"]}
+    more = {name: column[name] for name in ("reason", "age_s", "trajectory_heading_deg")}
     for name in NUMBERS:
-        sd_name = name.replace("_m_s", "_sd_m_s") if name.endswith("_m_s") else name.replace("_s", "_sd_s")
+        unit = "_m_s" if name.endswith("_m_s") else name[-2:]
+        sd_name = f"{name[: -len(unit)]}_sd{unit}"
         more |= {name: column[name].astype(float), sd_name: sigma[name].astype(float)}
     return Track(
         told.status, column["method"], column["model"], column["fresh"], column["suspect"],

@@ -1,6 +1,6 @@
 """What the library says of each obstacle of a log, image by image, and what ``goe_hazard`` says of flying on as now.
 
-The library runs through goe_batch, bit for bit as in goe_replay. NaN: not valid, not known.
+The library runs through the Python package, bit for bit as in goe_replay. NaN: not valid, not known.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ REFUSED_WHOLE = (-10, -11, -12, -13)  # the camera stands where it stood at the 
 MODEL_NAMES = {0: "none", 2: "disc", 3: "line", 4: "box", 5: "prism"}
 MODEL_SETTINGS = {"auto": 1, "disc": 2, "line": 3}
 SETTING_GROUPS = ("navigation", "detector", "refined", "window")  # that --set may change, as in goe_replay
-TIME_UNKNOWN_S = -(2.0**63) * 1e-6  # goe_batch's microseconds of it are GOE_TIME_UNKNOWN
+TIME_UNKNOWN_S = -(2.0**63) * 1e-6  # the library's microseconds of it are GOE_TIME_UNKNOWN
 DOUBT, DRIFT_M_S = 2.0, 2.0  # the README's rule: margins are doubled while suspect, and grow with age
 MISFIT_MAX = 1.9  # default of refined.misfit_max
 QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m")
@@ -107,7 +107,7 @@ def settings_of(log: ObservationLog, options: Options) -> dict[str, float]:
 
 
 def _unusable(frame: Frame) -> bool:
-    """A side of the box that is given and no number: the library refuses the image, goe_batch takes it as unseen."""
+    """A side of the box that is given and no number: the library refuses the image, the package takes it as unseen."""
     return frame.box_px is not None and any(side is not None and not math.isfinite(side) for side in frame.box_px)
 
 
