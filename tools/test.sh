@@ -209,7 +209,7 @@ build_and_ctest() { build "$1" && ctest --preset "$1" -j "$jobs"; }
 sources() { find lib port sim_host tests -name target -prune -o \( -name '*.[ch]' -o -name '*.[ch]pp' \) -print; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
 tidy() {
-    find "$root"/{lib,port/flight,port/mavlink,port/companion,sim_host} -name '*.c' -print0 |
+    find "$root"/{lib,port/{flight,mavlink,companion,sqrtf,examples,nuttx,zephyr},sim_host} -name '*.c' -print0 |
         xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet -p build-clang 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
 }
 

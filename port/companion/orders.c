@@ -160,11 +160,12 @@ static void ask_for_mode_before(orders_t *orders, int64_t now_us) {
                  (float)PX4_MAIN(orders->mode_before), (float)PX4_SUB(orders->mode_before), now_us);
 }
 
-/* The flight layer ends an order when its obstacle lies behind or the course back is clear, and then still knows it; or when it
- * gives the obstacle up. */
+/* The flight layer ends an order when its obstacle lies behind or the course back is clear, and then still knows where it is; or when it
+ * gives the obstacle up, or its track ends, as by a reset of the heading. */
 static bool is_obstacle_known(const orders_t *orders) {
     goe_flight_obstacle_t obstacle;
-    return orders->slot >= 0 && goe_flight_obstacle(orders->flight, orders->slot, &obstacle) == GOE_FLIGHT_OK;
+    return orders->slot >= 0 && goe_flight_obstacle(orders->flight, orders->slot, &obstacle) == GOE_FLIGHT_OK &&
+           (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
 /* Back into the mode before, once the obstacle lies behind. What is only lost from sight may lie ahead there. */

@@ -57,8 +57,8 @@ static uint32_t least(const goe_flight_clock_t *clock) {
 
 /* How far arrivals lie above the least: while few have come, the least may be as far above the truth. */
 static void follow_spread(goe_flight_clock_t *clock, uint32_t offset_us) {
-    const float above_us = (float)goe_flight_between_us(offset_us, least(clock));
-    const float excess_us = goe_flight_clamped(above_us, 0.0f, (float)STRANGE_US);
+    const int32_t above_us = goe_flight_between_us(offset_us, least(clock));
+    const float excess_us = goe_flight_clamped((float)above_us, 0.0f, (float)STRANGE_US);
     const float share = 1.0f / goe_flight_smaller((float)clock->count, SPREAD_MEMORY);
     clock->excess_us += share * (excess_us - clock->excess_us);
 }

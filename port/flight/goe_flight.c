@@ -24,6 +24,8 @@
 #define POSE_ALIVE_S 0.5f
 #define SECTOR_MAX_CM 65000u
 #define NOBODY (-1)
+/* Of an obstacle, as goe_flight.h lists it. */
+#define TOLD (GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION)
 
 /* ---------------------------------------------------------------------------------------------------------- settings -- */
 
@@ -592,7 +594,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
     }
     const goe_flight_slot_t *one = &flight->slot[slot];
     obstacle->id = one->id;
-    obstacle->valid = one->valid & ~GOE_HAS_CENTER;
+    obstacle->valid = one->valid & TOLD;
     obstacle->model = (goe_model_t)one->model;
     obstacle->suspect = one->suspect;
     obstacle->in_view = one->in_view;

@@ -43,7 +43,8 @@ static inline int32_t goe_flight_between_us(uint32_t a, uint32_t b) {
 }
 
 static inline float goe_flight_between_s(uint32_t a, uint32_t b) {
-    return (float)goe_flight_between_us(a, b) * GOE_FLIGHT_S_PER_US;
+    const int32_t span_us = goe_flight_between_us(a, b);
+    return (float)span_us * GOE_FLIGHT_S_PER_US;
 }
 
 /* Saturating count. */

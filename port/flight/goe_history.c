@@ -112,7 +112,8 @@ static goe_flight_status_t find(const goe_flight_history_t *h, int ring, uint32_
     if (back == count || gap_us > GAP_MAX_US) {
         return GOE_FLIGHT_TOO_OLD;
     }
-    found->share = (float)goe_flight_between_us(time_us, older_us) / (float)gap_us;
+    const int32_t past_us = goe_flight_between_us(time_us, older_us);
+    found->share = (float)past_us / (float)gap_us;
     return GOE_FLIGHT_OK;
 }
 

@@ -222,8 +222,10 @@ bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box
     }
     for (int axis = 0; axis < 2; axis++) { /* two points of one row have a height too */
         const float lacking = 0.5f * goe_flight_larger(SIZE_MIN_PX - (extent[axis + 2] - extent[axis]), 0.0f);
-        box_px[axis] = (int16_t)goe_flight_clamped(extent[axis] - lacking, -PIXEL_MAX, PIXEL_MAX);
-        box_px[axis + 2] = (int16_t)goe_flight_clamped(extent[axis + 2] + lacking, -PIXEL_MAX, PIXEL_MAX);
+        const float low = goe_flight_clamped(extent[axis] - lacking, -PIXEL_MAX, PIXEL_MAX);
+        const float high = goe_flight_clamped(extent[axis + 2] + lacking, -PIXEL_MAX, PIXEL_MAX);
+        box_px[axis] = (int16_t)low;
+        box_px[axis + 2] = (int16_t)high;
     }
     return any;
 }

@@ -4,28 +4,19 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined(GOE_SQRTF_IN_INTEGERS)
-#define IN_HARDWARE 0
-#elif defined(__ARM_FP) && defined(__ARM_FEATURE_FMA)
-#define IN_HARDWARE ((__ARM_FP & 4) != 0)
-#elif defined(__riscv_fsqrt) || defined(__SSE2__) || defined(__aarch64__)
-#define IN_HARDWARE 1
-#else
-#define IN_HARDWARE 0
-#endif
+#if GOE_SQRTF_IS_INSTRUCTION
 
-#if IN_HARDWARE
-
+/* For callers that do not see the one in goe_sqrtf.h. */
 float goe_sqrtf(float square) { return __builtin_sqrtf(square); }
 
 #else
 
-#define SIGN 0x80000000u
-#define INFINITY_BITS 0x7F800000u
-#define QUIET_NAN_BITS 0x7FC00000u
-#define HIDDEN_BIT 0x00800000u
-#define MANTISSA_BITS 23
-#define BIAS 127
+#define SQRTF_SIGN 0x80000000u
+#define SQRTF_INFINITY 0x7F800000u
+#define SQRTF_QUIET_NAN 0x7FC00000u
+#define SQRTF_HIDDEN_BIT 0x00800000u
+#define SQRTF_MANTISSA_BITS 23
+#define SQRTF_BIAS 127
 
 static float float_of(uint32_t bits) {
     float number;
@@ -54,30 +45,31 @@ static uint32_t root_of(uint32_t m) {
 float goe_sqrtf(float square) {
     uint32_t bits;
     memcpy(&bits, &square, sizeof bits);
-    if ((bits & ~SIGN) == 0u || bits == INFINITY_BITS) {
+    if ((bits & ~SQRTF_SIGN) == 0u || bits == SQRTF_INFINITY) {
         return square;
     }
-    if (bits > INFINITY_BITS) { /* NaN, or below 0 */
-        return float_of(QUIET_NAN_BITS);
+    if (bits > SQRTF_INFINITY) { /* NaN, or below 0 */
+        return float_of(SQRTF_QUIET_NAN);
     }
-    int exponent = (int)(bits >> MANTISSA_BITS);
-    uint32_t mantissa = bits & (HIDDEN_BIT - 1u);
+    int exponent = (int)(bits >> SQRTF_MANTISSA_BITS);
+    uint32_t mantissa = bits & (SQRTF_HIDDEN_BIT - 1u);
     if (exponent == 0) { /* subnormal */
         exponent = 1;
-        while (mantissa < HIDDEN_BIT) {
+        while (mantissa < SQRTF_HIDDEN_BIT) {
             mantissa <<= 1;
             exponent--;
         }
     }
-    mantissa |= HIDDEN_BIT;
-    if (exponent % 2 == 0) { /* the power of two, exponent - BIAS, is odd */
+    mantissa |= SQRTF_HIDDEN_BIT;
+    if (exponent % 2 == 0) { /* the power of two, exponent - SQRTF_BIAS, is odd */
         mantissa <<= 1;
         exponent--;
     }
     /* 25 bits, the last one to be rounded. Never half way: the root would be odd, and its square cannot end in 25 zeros. */
     const uint32_t rounded = (root_of(mantissa) + 1u) >> 1;
-    const int half = (exponent - BIAS) / 2;                                    /* exact */
-    return float_of(((uint32_t)(half + BIAS - 1) << MANTISSA_BITS) + rounded); /* the hidden bit counts one */
+    const int half = (exponent - SQRTF_BIAS) / 2;             /* exact */
+    const uint32_t power = (uint32_t)(half + SQRTF_BIAS - 1); /* the hidden bit counts one */
+    return float_of((power << SQRTF_MANTISSA_BITS) + rounded);
 }
 
 #endif

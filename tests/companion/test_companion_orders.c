@@ -135,6 +135,7 @@ static void know_obstacle(bool known) {
     (void)goe_flight_attitude(&flight, &attitude);
     (void)goe_flight_position(&flight, &position);
     flight.slot[0].used = known;
+    flight.slot[0].valid = GOE_HAS_POSITION;
 }
 
 static void ordered(void) {
@@ -144,6 +145,11 @@ static void ordered(void) {
     answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
     go_on(40, LOITER);
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+static void ordered_anew(void) {
+    autopilot.custom_mode = MISSION;
+    ordered();
 }
 
 static void an_order_is_repeated_until_it_is_acknowledged(void) {
@@ -232,6 +238,12 @@ static void the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed(void
     know_obstacle(true);
     ordered();
     know_obstacle(false);
+    decide(GOE_FLIGHT_NONE);
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    know_obstacle(true);
+    ordered_anew();
+    flight.slot[0].valid = 0; /* the track ended, as by a reset of the heading: the slot waits for images */
     decide(GOE_FLIGHT_NONE);
     go_on(30, LOITER);
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));

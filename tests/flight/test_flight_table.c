@@ -49,6 +49,19 @@ static void an_obstacle_is_found_where_it_is(void) {
     TEST_ASSERT_TRUE(obstacle.in_view && !obstacle.passed && obstacle.has_hazard);
 }
 
+/* Of what the estimator knows, and the manual of the layer lists, and nothing else. */
+static void valid_says_what_an_obstacle_tells(void) {
+    const unsigned told =
+        GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION; /* of goe_flight.h */
+    goe_flight_obstacle_t obstacle;
+    (void)flown_fly(&flown, 3.0);
+    for (unsigned bit = 1u; bit < 0x100u; bit <<= 1) {
+        flown.flight.slot[0].valid = (uint8_t)bit;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+        TEST_ASSERT_EQUAL_HEX(bit & told, obstacle.valid);
+    }
+}
+
 /* The hazard counts from now, not from the image that came 100 ms late. */
 static void the_hazard_counts_from_now(void) {
     flown.scene.x0_m = 0.0;
@@ -259,6 +272,7 @@ static void the_autopilots_clock_may_wrap(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_obstacle_is_found_where_it_is);
+    RUN_TEST(valid_says_what_an_obstacle_tells);
     RUN_TEST(the_hazard_counts_from_now);
     RUN_TEST(a_new_obstacle_waits_for_its_confirmation);
     RUN_TEST(a_low_score_is_not_looked_at);

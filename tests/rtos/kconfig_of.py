@@ -13,8 +13,17 @@ NUTTX = ROOT / "port" / "nuttx"
 
 # What the trees' own Kconfig files define, of all that ours read or our samples set.
 OF_THE_TREE = {
-    ZEPHYR: ("MINIMAL_LIBC", "NEWLIB_LIBC", "PICOLIBC", "INIT_STACKS", "THREAD_STACK_INFO", "FPU"),
-    NUTTX: ("LIBM", "DISABLE_PTHREAD"),
+    ZEPHYR: (
+        "MINIMAL_LIBC",
+        "NEWLIB_LIBC",
+        "PICOLIBC",
+        "INIT_STACKS",
+        "THREAD_STACK_INFO",
+        "FPU",
+        "FPU_SHARING",
+        "ARMV8_1_M_MVEF",
+    ),
+    NUTTX: ("LIBM", "LIBM_NONE", "DISABLE_PTHREAD", "BUILD_KERNEL", "ARM_HAVE_MVE"),
 }
 
 

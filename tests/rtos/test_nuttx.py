@@ -11,10 +11,13 @@ from pathlib import Path
 
 import pytest
 from kconfig_of import NUTTX, ROOT, apply, parse, write
+from scripted import assert_flown
 
 STAND_IN = Path(__file__).resolve().parent / "nuttx"
 SECONDS = 300
-BOTH = ("CONFIG_GOE=y", "CONFIG_GOE_GOLDEN_BITS=y", "CONFIG_GOE_MAVLINK=y", "CONFIG_LIBM=y")
+BOTH = (
+    "CONFIG_GOE=y", "CONFIG_GOE_SENSOR_LOOP=y", "CONFIG_GOE_GOLDEN_BITS=y", "CONFIG_GOE_MAVLINK=y", "CONFIG_LIBM=y",
+)  # fmt: skip
 
 
 def run(*words: str | Path) -> str:
@@ -57,11 +60,8 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_sensor_loop(programs: Path) -> None:
     text = run(programs / "goe_sensor_loop", "-f")
-    (shown,) = re.findall(r"^```text\n(.*?)^```$", (NUTTX / "README.md").read_text(), re.MULTILINE | re.DOTALL)
-    flown = [line for line in text.splitlines() if " s: " in line]
-    assert len(flown) > 10
-    assert flown == [line for line in shown.splitlines() if " s: " in line]
-    assert "self-check 0x00" in text and "\nimages 149; " in text
+    assert_flown(text)
+    assert "\nimages 135, dropped 0\n" in text
 
 
 def test_golden_bits(programs: Path) -> None:
@@ -90,22 +90,64 @@ def test_make_leaves_out_parts(tmp_path: Path) -> None:
     assert "-DGOE_WINDOW_MAX=5" in flags and "GOE_FLIGHT_SLOTS" not in flags
 
 
-def test_cmake_agrees_with_make(programs: Path, tmp_path: Path) -> None:
-    """The same files with the same flags; and the sensor loop links."""
-    config(tmp_path, *BOTH)
-    tree = tmp_path / "build"
+def test_make_does_not_vectorise_where_helium_would_flush(tmp_path: Path) -> None:
+    apps = checkout(tmp_path)
+    for value in "yn":
+        config(apps, "CONFIG_GOE=y", f"CONFIG_ARM_HAVE_MVE={value}")
+        assert ("-fno-tree-vectorize" in commands_of_make(apps)["goe_estimator"]) == (value == "y")
+
+
+def test_make_renames_main_in_modules_too(tmp_path: Path) -> None:
+    """A kernel build compiles with CELFFLAGS; three functions main() would not link."""
+    apps = checkout(tmp_path)
+    config(apps, *BOTH, "CONFIG_BUILD_KERNEL=y")
+    commands = commands_of_make(apps)
+    assert all("-fvisibility=hidden" in command for command in commands.values())
+    assert "-Dmain=goe_replay_main" in commands["replay_main"]
+    assert "-Dmain=goe_flight_main" in commands["flight_main"]
+    assert "-Dmain" not in commands["goe_golden_bits_main"] + commands["goe_estimator"]
+
+
+def commands_of_make(apps: Path) -> dict[str, list[str]]:
+    """Words of the command that compiles each file, by the file's stem."""
+    text = run("make", "-n", "-B", "-C", apps / "external", f"APPDIR={apps}", "STAND_IN_CFLAGS=-O0")
+    commands = [line.split() for line in text.splitlines() if " -c " in line]
+    return {Path(words[-1]).stem: words for words in commands}
+
+
+def meaning_of(words: list[str]) -> set[str]:
+    """Definitions, options and what is included first."""
+    return {word for word in words if word.startswith(("-D", "-f"))} | {
+        f"include {Path(word).resolve()}" for before, word in zip(words, words[1:]) if before == "-include"
+    }
+
+
+@pytest.mark.parametrize("helium", "yn")
+def test_cmake_agrees_with_make(helium: str, tmp_path: Path) -> None:
+    """The same files with the same flags."""
+    apps = checkout(tmp_path)
+    config(apps, *BOTH, f"CONFIG_ARM_HAVE_MVE={helium}")
+    by_make = commands_of_make(apps)
+    by_cmake = {
+        Path(entry["file"]).stem: entry["command"].split()
+        for entry in json.loads((configured(apps, tmp_path / "build") / "compile_commands.json").read_text())
+    }
+    assert set(by_cmake) == set(by_make)
+    for stem, words in by_cmake.items():
+        assert meaning_of(words) == meaning_of(by_make[stem]), stem
+        assert {"-ffp-contract=off", "-DGOE_FLIGHT_SLOTS=4", "-Dsqrtf=goe_sqrtf"} <= meaning_of(words)
+
+
+def test_cmake_hands_on_what_programs_need(tmp_path: Path) -> None:
+    config(tmp_path, "CONFIG_GOE=y", "CONFIG_GOE_SENSOR_LOOP=y")
+    tree = configured(tmp_path, tmp_path / "build")
+    run("cmake", "--build", tree, "-j", "2", "--target", "goe_sensor_loop")
+    assert_flown(run(tree / "external" / "goe_sensor_loop", "-f"))
+
+
+def configured(folder: Path, tree: Path) -> Path:
     run(
-        "cmake", "-G", "Ninja", "-S", STAND_IN / "cmake", "-B", tree, f"-DSTAND_IN_CONFIG={tmp_path}",
+        "cmake", "-G", "Ninja", "-S", STAND_IN / "cmake", "-B", tree, f"-DSTAND_IN_CONFIG={folder}",
         f"-DGOE_APP={NUTTX}", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", "-DCMAKE_C_FLAGS=-O0",
     )  # fmt: skip
-    commands = {
-        Path(entry["file"]).stem: entry["command"] for entry in json.loads((tree / "compile_commands.json").read_text())
-    }
-    assert set(commands) == {file.stem for file in programs.glob("*.o")}
-    for stem, command in commands.items():
-        assert "-ffp-contract=off" in command and "-DGOE_FLIGHT_SLOTS=4" in command and "-DGOE_WITH_HAZARD=1" in command
-        in_library = not ((ROOT / "port" / "examples" / "scripted_flight" / f"{stem}.c").exists() or "main" in stem or "replay" in stem
-                          or stem == "embedded_logs")  # fmt: skip
-        assert ("-Dsqrtf=goe_sqrtf" in command) == in_library, stem
-    run("cmake", "--build", tree, "-j", "2", "--target", "goe_sensor_loop")
-    assert "\nimages 149; " in run(tree / "external" / "goe_sensor_loop", "-f")
+    return tree

@@ -75,11 +75,40 @@ def test_every_choice_of_parts_compiles(port: Path, tmp_path: Path) -> None:
     assert len(seen) == 5 * 4, "a combination that would compile cannot be chosen"
 
 
-@pytest.mark.parametrize("port, poor", [(ZEPHYR, "MINIMAL_LIBC"), (NUTTX, "LIBM")], ids=["zephyr", "nuttx"])
-def test_own_square_root_where_the_tree_has_a_poor_one(port: Path, poor: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "port, poor", [(ZEPHYR, "MINIMAL_LIBC"), (NUTTX, "LIBM"), (NUTTX, "LIBM_NONE")], ids=["zephyr", "nuttx", "none"]
+)
+def test_own_square_root_where_the_tree_has_a_poor_one_or_none(port: Path, poor: str, tmp_path: Path) -> None:
     parsed = parse(port, tmp_path)
     apply(parsed, ["CONFIG_GOE=y"])
     assert value(parsed, "GOE_OWN_SQRTF") == "n"
     apply(parsed, [f"CONFIG_{poor}=y"])
     assert value(parsed, "GOE_OWN_SQRTF") == "y"
     apply(parsed, ["CONFIG_GOE_OWN_SQRTF=n"])
+
+
+def test_programs_of_nuttx_are_built_only_if_asked_for(tmp_path: Path) -> None:
+    parsed = parse(NUTTX, tmp_path)
+    apply(parsed, ["CONFIG_GOE=y"])
+    assert value(parsed, "GOE_SENSOR_LOOP") == value(parsed, "GOE_GOLDEN_BITS") == "n"
+    apply(parsed, ["CONFIG_GOE_SENSOR_LOOP=y", "CONFIG_GOE_GOLDEN_BITS=y"])
+
+
+@pytest.mark.parametrize(
+    "other",
+    ["GOE_WITH_WINDOW=n", "GOE_WITH_REFINED=n", "GOE_WITH_MOVERS=n", "GOE_WITH_HAZARD=n", "GOE_WINDOW_MAX=9",
+     "GOE_CAMERAS_MAX=2", "GOE_FLIGHT_SLOTS=3"],
+)  # fmt: skip
+def test_golden_bits_are_those_of_the_whole_with_its_defaults(other: str, tmp_path: Path) -> None:
+    """Another build has other hashes: the program would cry wolf."""
+    parsed = parse(NUTTX, tmp_path)
+    apply(parsed, ["CONFIG_GOE=y", "CONFIG_GOE_GOLDEN_BITS=y"])
+    apply(parsed, [f"CONFIG_{other}"])
+    assert value(parsed, "GOE_GOLDEN_BITS") == "n"
+
+
+def test_priorities_of_nuttx_leave_one_above(tmp_path: Path) -> None:
+    parsed = parse(NUTTX, tmp_path)
+    apply(parsed, ["CONFIG_GOE=y"])
+    ((_, high, _),) = parsed.syms["GOE_PRIORITY"].ranges
+    assert high.str_value == "254"

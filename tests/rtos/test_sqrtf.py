@@ -1,4 +1,4 @@
-"""The square root of port/sqrtf rounds correctly, in integers and by the instruction."""
+"""The square root of port/sqrtf in integers rounds correctly. tests/targets tries it on a processor, too."""
 
 from __future__ import annotations
 
@@ -9,17 +9,45 @@ import pytest
 from kconfig_of import ROOT
 
 HERE = Path(__file__).resolve().parent
+SQRTF = ROOT / "port" / "sqrtf"
+WARNINGS = ("-Wall", "-Wextra", "-Werror")
 
 
-@pytest.mark.parametrize("flags", [["-DGOE_SQRTF_IN_INTEGERS"], []], ids=["integers", "hardware"])
+def compile_root(folder: Path, *flags: str) -> Path:
+    made = folder / "goe_sqrtf.o"
+    subprocess.run(["cc", "-c", *WARNINGS, *flags, SQRTF / "goe_sqrtf.c", "-o", made], check=True)
+    return made
+
+
+@pytest.mark.parametrize("flags", [["-O2"], ["-O2", "-ffast-math"]], ids=["O2", "fast-math"])
 def test_every_root_is_right(flags: list[str], tmp_path: Path) -> None:
-    program = tmp_path / "sqrtf"
-    subprocess.run(
-        ["cc", "-O2", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", *flags, f"-I{ROOT / 'port' / 'sqrtf'}",
-         HERE / "sqrtf_main.c", ROOT / "port" / "sqrtf" / "goe_sqrtf.c", "-lm", "-o", program],
-        check=True,
-    )  # fmt: skip
+    """The other side, the host's own sqrtf, is compiled and linked without the flags."""
+    integers = "-DGOE_SQRTF_IN_INTEGERS"
+    root, program = compile_root(tmp_path, *flags, integers), tmp_path / "sqrtf"
+    other = ["-O2", "-fno-math-errno", integers, *WARNINGS, f"-I{SQRTF}", HERE / "sqrtf_main.c"]
+    subprocess.run(["cc", *other, root, "-lm", "-o", program], check=True)
     text = subprocess.run([program], capture_output=True, text=True, timeout=300).stdout
     tried, wrong = (int(word) for word in text.splitlines()[-1].split() if word.isdigit())
     assert wrong == 0, text
     assert tried > 50_000_000
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [["-fno-math-errno"], [], ["-fno-math-errno", "-DGOE_SQRTF_IN_INTEGERS"]],
+    ids=["no-errno", "errno", "integers"],
+)
+@pytest.mark.parametrize("seen", [True, False], ids=["header", "no-header"])
+def test_no_root_calls_the_c_library(flags: list[str], seen: bool, tmp_path: Path) -> None:
+    """It replaces a poor one. Its own file takes all flags that the library's files are given."""
+    caller = tmp_path / "caller.c"
+    caller.write_text("#include <math.h>\nfloat half(float x);\nfloat half(float x) { return 0.5f * sqrtf(x); }\n")
+    common = ["-O2", *WARNINGS, *flags, "-Dsqrtf=goe_sqrtf", f"-I{SQRTF}"]
+    if seen:
+        common += ["-include", "goe_sqrtf.h"]
+    made = tmp_path / "caller.o"
+    subprocess.run(["cc", "-c", *common, caller, "-o", made], check=True)
+    root = compile_root(tmp_path, *common)
+    symbols = subprocess.run(["nm", made, root], check=True, capture_output=True, text=True).stdout
+    assert " T goe_sqrtf\n" in symbols
+    assert " U sqrtf\n" not in symbols

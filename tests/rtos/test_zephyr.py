@@ -12,13 +12,14 @@ from typing import Any
 import pytest
 import yaml
 from kconfig_of import ROOT, ZEPHYR, apply, parse, write
+from scripted import assert_flown
 
 STAND_IN = Path(__file__).resolve().parent / "zephyr"
 SAMPLE = ZEPHYR / "samples" / "sensor_loop"
 GOLDEN_BITS = ZEPHYR / "tests" / "golden_bits"
 SECONDS = 300
 
-# Keys of module.yml that Zephyr 3.4.0 knows, compared on 22 Nov 2026.
+# Keys of module.yml that Zephyr 3.4.0 knows, compared on 2026-11-22.
 MODULE_KEYS = {"name", "build", "tests", "samples", "boards", "blobs"}
 BUILD_KEYS = {"cmake", "kconfig", "cmake-ext", "kconfig-ext", "depends", "settings"} | {
     f"sysbuild-{key}" for key in ("cmake", "kconfig", "cmake-ext", "kconfig-ext")
@@ -50,9 +51,10 @@ def configure(application: Path, folder: Path, *assignments: str, flags: str = "
     return folder / "build"
 
 
-def build(application: Path, folder: Path, *assignments: str, flags: str = "-O0") -> Path:
+def build(application: Path, folder: Path, *assignments: str, flags: str = "-O0", link: str = "") -> Path:
     """The program."""
     tree = configure(application, folder, *assignments, flags=flags)
+    run("cmake", f"-DCMAKE_EXE_LINKER_FLAGS={link}", tree)
     run("cmake", "--build", tree, "-j", "2")
     return tree / "app"
 
@@ -132,6 +134,14 @@ def test_every_source_is_in_the_library(tmp_path: Path) -> None:
     assert "-DGOE_FLIGHT_SLOTS=4" in found["port/zephyr/samples/sensor_loop/src/main.c"]
 
 
+def test_floats_are_not_vectorised_where_helium_would_flush_them(tmp_path: Path) -> None:
+    flags = "-fno-tree-vectorize -fno-tree-slp-vectorize"
+    for value in "yn":
+        (tmp_path / value).mkdir()
+        found = compiled(configure(SAMPLE, tmp_path / value, f"CONFIG_ARMV8_1_M_MVEF={value}"))
+        assert (flags in found["lib/goe_estimator.c"]) == (value == "y")
+
+
 def test_parts_left_out(tmp_path: Path) -> None:
     off = ("GOE_WITH_REFINED", "GOE_WITH_HAZARD", "GOE_SELF_CHECK")
     found = compiled(configure(SAMPLE, tmp_path, *(f"CONFIG_{name}=n" for name in off), "CONFIG_GOE_WINDOW_MAX=5"))
@@ -161,18 +171,24 @@ def test_wrong_arithmetic_is_told_at_start(tmp_path: Path) -> None:
 # ---------------------------------------------------------------------------------------------------------- the sample
 
 
-def test_sample_says_what_its_pages_promise(sample: Path) -> None:
+def test_sample_says_what_the_pages_promise(sample: Path) -> None:
     text = run(sample)
     assert_said(SAMPLE / "sample.yaml", text)
-    (shown,) = re.findall(r"^```text\n(.*?)^```$", (SAMPLE / "README.md").read_text(), re.MULTILINE | re.DOTALL)
-    flown = [line for line in text.splitlines() if " s: " in line]
-    assert len(flown) > 10
-    assert flown == [line for line in shown.splitlines() if " s: " in line]
-    assert "images 149, lost 0; " in text
+    assert_flown(text)
+    assert "\nimages 135, dropped 0; messages lost 0\n" in text
+
+
+def test_sample_with_a_shared_floating_point_unit(tmp_path: Path) -> None:
+    assert_flown(run(build(SAMPLE, tmp_path, "CONFIG_FPU=y", "CONFIG_FPU_SHARING=y", "CONFIG_MINIMAL_LIBC=y")))
+
+
+def test_sample_ends_if_the_layer_does_not_start(tmp_path: Path) -> None:
+    lines = run(build(SAMPLE, tmp_path, link="-Wl,--wrap=goe_flight_init")).splitlines()
+    assert lines[1:] == ["goe: no start: status -32, setting (none)", "done"]
 
 
 def test_sample_survives_an_estimator_that_is_too_slow(sample: Path) -> None:
     text = run(sample, STAND_IN_HURRY="1")
-    (lost,) = re.findall(r"lost (\d+);", text)
+    (lost,) = re.findall(r"messages lost (\d+)\n", text)
     assert int(lost) > 0
     assert text.splitlines()[-1] == "done"

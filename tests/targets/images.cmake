@@ -105,6 +105,18 @@ if(has_fpu)
     endif()
 endif()
 
+# ------------------------------------------------------------------------------------------------------- square root
+
+# That of port/sqrtf in integers against the C library's, of whose roots the replay has just shown that they are right.
+if(NOT has_fpu)
+    goe_image(sqrtf ${GOE_TARGET_BOARD} ${PROJECT_SOURCE_DIR}/tests/rtos/sqrtf_main.c
+        ${PROJECT_SOURCE_DIR}/port/sqrtf/goe_sqrtf.c)
+    target_include_directories(sqrtf PRIVATE ${PROJECT_SOURCE_DIR}/port/sqrtf)
+    target_compile_definitions(sqrtf PRIVATE DENSE=1009u SPARSE=99991u)
+    add_test(NAME sqrtf COMMAND sqrtf)
+    set_tests_properties(sqrtf PROPERTIES LABELS targets TIMEOUT 60 PASS_REGULAR_EXPRESSION "^every root is right\n")
+endif()
+
 # ---------------------------------------------------------------------------------------------------------- unit tests
 
 # All of tests/c but test_host_*.c, and test_double_*.c: those hold the library against double precision at length,

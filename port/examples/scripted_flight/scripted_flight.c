@@ -18,6 +18,9 @@
 #define HEIGHT_PX 480.0f
 #define TIME_SD_US 3000u
 
+#define SILENT_BEGIN_TICK 126u /* no image arrives after 2.5 s and before 4 s */
+#define SILENT_END_TICK 200u
+
 void scripted_settings(goe_settings_t *settings) {
     goe_settings_default(settings);
     settings->camera.fx_px = settings->camera.fy_px = FOCAL_PX;
@@ -65,6 +68,9 @@ static bool see_mast(uint32_t tick, goe_box_t *box) {
 
 bool scripted_image(uint32_t tick, scripted_image_t *image) {
     if (tick < SCRIPTED_DELAY_TICKS || (tick - SCRIPTED_DELAY_TICKS) % SCRIPTED_IMAGE_TICKS != 0u) {
+        return false;
+    }
+    if (tick >= SILENT_BEGIN_TICK && tick < SILENT_END_TICK) {
         return false;
     }
     const uint32_t exposed = tick - SCRIPTED_DELAY_TICKS;
@@ -116,15 +122,16 @@ void scripted_line(const goe_flight_t *flight, uint32_t now_us, const goe_flight
                    char text[SCRIPTED_LINE]) {
     line_t line = {text, 0u};
     goe_flight_obstacle_t obstacle;
-    add_number(&line, (float)(now_us / 1000u) * 0.001f, "s");
+    add_number(&line, 1e-6f * (float)now_us, "s");
     if (goe_flight_obstacle(flight, assessment->worst, &obstacle) == GOE_FLIGHT_OK) {
         add_obstacle(&line, &obstacle);
         add_text(&line, " in");
         add_number(&line, assessment->hazard.time_s, "s");
         add_number(&line, assessment->hazard.miss_m, "m aside;");
     } else {
-        add_text(&line, ": clear;");
+        add_text(&line, assessment->detector_alive ? ": clear;" : ": nothing known;");
     }
+    add_text(&line, assessment->detector_alive ? "" : " no detector;");
     add_text(&line, " action ");
     add_text(&line, goe_flight_action_text(assessment->action));
 }

@@ -23,7 +23,7 @@ PACKAGE = ROOT / "port" / "python"
 METHODS = {"window": 1, "refined": 2}
 MODEL_AUTO, MODEL_DISC, MODEL_LINE, MODEL_BOX, MODEL_PRISM = 1, 2, 3, 4, 5
 QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m")
-NUMBERS = ("x_m", "z_m", "velocity_north_m_s", "velocity_east_m_s", "latency_s")  # of ``Track.more``, each with its sigma
+NUMBERS = ("x_m", "z_m", "velocity_north_m_s", "velocity_east_m_s", "latency_s")  # of Track.more, with sigmas
 HAZARD = (
     "time_s", "miss_m", "clearance_m", "time_sd_s", "miss_sd_m", "clearance_sd_m", "violation", "has_clearance",
 )  # fmt: skip

@@ -9,6 +9,7 @@ enum { STAND_IN_APPLICATION = 200 };
     __attribute__((constructor(200))) static void function##_at_start(void) {                                          \
         _Static_assert((int)STAND_IN_##level == 200 && (priority) >= 0, "the stand-in knows APPLICATION alone");       \
         (void)function();                                                                                              \
-    }
+    }                                                                                                                  \
+    static int function(void)
 
 #endif

@@ -1,0 +1,102 @@
+/* What AP_GOE writes into the log. SPDX-License-Identifier: MIT */
+#include "AP_GOE_config.h"
+
+#if AP_GOE_ENABLED
+
+#include "AP_GOE.h"
+
+#include <AP_HAL/AP_HAL.h>
+#include <AP_Logger/AP_Logger.h>
+
+// @LoggerMessage: GOEO
+// @Description: Obstacles that are followed, ten times a second
+// @Field: TimeUS: Time since system startup
+// @Field: I: place in the table
+// @Field: Id: the detector's number of it; 0: it has none
+// @Field: N: middle of its base, north of the EKF's origin
+// @Field: E: middle of its base, east of the EKF's origin
+// @Field: D: its foot, below the EKF's origin
+// @Field: R: radius of the circle about the middle that holds its outline
+// @Field: W: width; 0: not known
+// @Field: H: height above its foot; 0: not known
+// @Field: HSD: one sigma of the height
+// @Field: NN: variance of the middle, north
+// @Field: NE: covariance of the middle, north and east
+// @Field: EE: variance of the middle, east
+// @Field: Age: time since it was measured
+// @Field: Mdl: what it is taken for: 2 disc, 3 line, 4 box, 5 something upright
+// @Field: Fl: 1 suspect, 2 passed, 4 in view
+void AP_GOE::log_obstacle(int slot, const goe_flight_obstacle_t &obstacle) const
+{
+#if HAL_LOGGING_ENABLED
+    const unsigned flags = (obstacle.suspect ? GOE_MAVLINK_SUSPECT : 0U) | (obstacle.passed ? GOE_MAVLINK_PASSED : 0U) |
+                           (obstacle.in_view ? GOE_MAVLINK_IN_VIEW : 0U);
+    AP::logger().WriteStreaming(
+        "GOEO", "TimeUS,I,Id,N,E,D,R,W,H,HSD,NN,NE,EE,Age,Mdl,Fl", "s#-mmmmmmm---s--", "F--0000000---0--",
+        "QBIfffffffffffBB", AP_HAL::micros64(), unsigned(slot), obstacle.id, double(obstacle.center_ned_m[0]),
+        double(obstacle.center_ned_m[1]), double(obstacle.center_ned_m[2]), double(obstacle.radius_m),
+        double(obstacle.width_m), double(obstacle.height_m), double(obstacle.height_sd_m),
+        double(obstacle.covariance_ne_m2[0]), double(obstacle.covariance_ne_m2[1]),
+        double(obstacle.covariance_ne_m2[2]), double(obstacle.age_s), unsigned(obstacle.model), flags);
+#endif
+}
+
+// @LoggerMessage: GOEH
+// @Description: What an obstacle means for the present course, ten times a second
+// @Field: TimeUS: Time since system startup
+// @Field: I: place in the table
+// @Field: T: time to the closest approach
+// @Field: TSD: one sigma of it
+// @Field: Miss: horizontal distance to the outline then
+// @Field: MSD: one sigma of it
+// @Field: Clr: height over its top then; 0: the top is not known
+// @Field: CSD: one sigma of it
+// @Field: Vio: probability that margin and clearance are both violated
+// @Field: Act: action of the worst obstacle: 1 left, 2 right, 3 climb, 4 go around, 5 hold
+// @Field: Wst: 1: this is the worst obstacle
+void AP_GOE::log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const
+{
+#if HAL_LOGGING_ENABLED
+    if (!obstacle.has_hazard) {
+        return;
+    }
+    const goe_hazard_t &hazard = obstacle.hazard;
+    AP::logger().WriteStreaming("GOEH", "TimeUS,I,T,TSD,Miss,MSD,Clr,CSD,Vio,Act,Wst", "s#ssmmmm---", "F-000000---",
+                                "QBfffffffBB", AP_HAL::micros64(), unsigned(slot), double(hazard.time_s),
+                                double(hazard.time_sd_s), double(hazard.miss_m), double(hazard.miss_sd_m),
+                                double(hazard.clearance_m), double(hazard.clearance_sd_m), double(hazard.violation),
+                                unsigned(_state->assessment.action), unsigned(slot == _state->assessment.worst));
+#endif
+}
+
+// @LoggerMessage: GOES
+// @Description: State of the obstacle estimation, once a second, also with nothing in view
+// @Field: TimeUS: Time since system startup
+// @Field: Tkn: images taken
+// @Field: Late: images that came too late
+// @Field: Erl: images that had to wait for a pose
+// @Field: Ref: samples, images or detections that were refused
+// @Field: Weak: detections of too low a score
+// @Field: Ren: obstacles that took over a new number
+// @Field: Evi: obstacles given up for a new one
+// @Field: Ful: detections that found no place in the table
+// @Field: Rst: known jumps of the position
+// @Field: Lst: unknown resets, all obstacles given up
+// @Field: Dly: mean delay from exposure to arrival
+// @Field: DM: longest delay from exposure to arrival
+// @Field: Ob: obstacles with a position
+// @Field: Al: 1 images come, 2 the pose does
+// @Field: SC: self check of the arithmetic; 0: right to the last bit
+void AP_GOE::log_status(const goe_mavlink_status_t &status) const
+{
+#if HAL_LOGGING_ENABLED
+    AP::logger().WriteStreaming("GOES", "TimeUS,Tkn,Late,Erl,Ref,Weak,Ren,Evi,Ful,Rst,Lst,Dly,DM,Ob,Al,SC",
+                                "s----------ss---", "F----------CC---", "QHHHHHHHHHHHHBBB", AP_HAL::micros64(),
+                                status.taken, status.late, status.early, status.refused, status.weak, status.renumbered,
+                                status.evicted, status.full, status.resets, status.lost, status.delay_mean,
+                                status.delay_max, unsigned(status.obstacles), unsigned(status.alive),
+                                unsigned(status.self_check));
+#endif
+}
+
+#endif // AP_GOE_ENABLED

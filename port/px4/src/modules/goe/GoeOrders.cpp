@@ -1,0 +1,187 @@
+/* The flight layer's decision as commands that PX4 follows. SPDX-License-Identifier: MIT */
+#include "GoeOrders.hpp"
+
+#include <math.h>
+#include <string.h>
+
+namespace {
+
+constexpr uint64_t REPEAT_US = 500000; /* without an acknowledgement */
+constexpr uint8_t RESUMES_MAX = 5;     /* times that the mission is asked for, until that is acknowledged */
+constexpr float TARGET_MOVED_M = 5.f;  /* from which on the target is sent anew */
+constexpr float CHANGE_MODE = 1.f;     /* DO_REPOSITION, param2: into Hold */
+constexpr float DEFAULT_SPEED = -1.f;  /* ... param1 */
+constexpr float CUSTOM_MODE = 1.f;     /* DO_SET_MODE, param1 */
+constexpr float MAIN_AUTO = 4.f;       /* ... param2 */
+constexpr float SUB_MISSION = 4.f;     /* ... param3 */
+constexpr double DEG_PER_E7 = 1.0e-7;
+
+bool is_place(goe_flight_action_t action) {
+    return action == GOE_FLIGHT_LEFT || action == GOE_FLIGHT_RIGHT || action == GOE_FLIGHT_CLIMB ||
+           action == GOE_FLIGHT_HOLD;
+}
+
+bool in_mission_or_hold(const GoeOrders::Vehicle &vehicle) {
+    return vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION ||
+           vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER;
+}
+
+bool may_command(goe_flight_action_t action, const GoeOrders::Vehicle &vehicle, int32_t react) {
+    if (!vehicle.armed) {
+        return false;
+    }
+    if (action == GOE_FLIGHT_GO_AROUND) {
+        return (react & GOE_REACT_GO_AROUND) != 0 &&
+               (in_mission_or_hold(vehicle) || vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LAND);
+    }
+    return is_place(action) && (react & GOE_REACT_REPOSITION) != 0 && vehicle.origin_known &&
+           in_mission_or_hold(vehicle);
+}
+
+void start(vehicle_command_s &command, uint32_t number, const GoeOrders::Vehicle &vehicle) {
+    memset(&command, 0, sizeof command);
+    command.timestamp = vehicle.now_us;
+    command.command = number;
+}
+
+} // namespace
+
+/* The first command of an order is given in the mode to go back to. */
+void GoeOrders::await(uint32_t command, const Vehicle &vehicle) {
+    if (!_given) {
+        _mode_before = vehicle.nav_state;
+    }
+    _awaited = command;
+    _sent_us = vehicle.now_us;
+    _given = true;
+}
+
+void GoeOrders::reposition(const goe_flight_assessment_t &assessment, const Vehicle &vehicle,
+                           vehicle_command_s &command) {
+    start(command, vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, vehicle);
+    command.param1 = DEFAULT_SPEED;
+    command.param2 = CHANGE_MODE;
+    command.param4 = NAN;
+    command.param5 = DEG_PER_E7 * static_cast<double>(assessment.target_lat_e7);
+    command.param6 = DEG_PER_E7 * static_cast<double>(assessment.target_lon_e7);
+    /* without an altitude PX4 keeps its own, which is no climb */
+    command.param7 = vehicle.altitude_known ? vehicle.origin_alt_m - assessment.target_ned_m[2] : NAN;
+    memcpy(_target_ned_m, assessment.target_ned_m, sizeof _target_ned_m);
+    await(command.command, vehicle);
+}
+
+void GoeOrders::go_around(const Vehicle &vehicle, vehicle_command_s &command) {
+    start(command, vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, vehicle);
+    await(command.command, vehicle);
+}
+
+void GoeOrders::set_mission(const Vehicle &vehicle, vehicle_command_s &command) {
+    start(command, vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, vehicle);
+    command.param1 = CUSTOM_MODE;
+    command.param2 = MAIN_AUTO;
+    command.param3 = SUB_MISSION;
+    _awaited = command.command;
+    _sent_us = vehicle.now_us;
+    _resumes_left--;
+}
+
+bool GoeOrders::has_moved(const goe_flight_assessment_t &assessment) const {
+    float square = 0.f;
+    for (int i = 0; i < 3; i++) {
+        const float moved_m = assessment.target_ned_m[i] - _target_ned_m[i];
+        square += moved_m * moved_m;
+    }
+    return square > TARGET_MOVED_M * TARGET_MOVED_M;
+}
+
+/* Of an order that was given: Hold is where it leads to, and until it has it is the mode before. */
+void GoeOrders::watch_mode(const Vehicle &vehicle) {
+    if (!_given || _action == GOE_FLIGHT_GO_AROUND) {
+        return;
+    }
+    if (vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER) {
+        _has_led = true;
+    } else if (_has_led || vehicle.nav_state != _mode_before) {
+        _overruled = true;
+    }
+}
+
+void GoeOrders::begin(goe_flight_action_t action) {
+    if (_action == GOE_FLIGHT_NONE) {
+        _has_led = _overruled = _given = false;
+    }
+    _action = action;
+    _wants_mission = false;
+}
+
+bool GoeOrders::may_resume(const Vehicle &vehicle) const {
+    return _wants_mission && _resumes_left > 0 && vehicle.armed &&
+           vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER;
+}
+
+/* The layer ends an order when the obstacle lies behind, or the course back is clear of it, and then still knows its place; or when
+ * its track has ended. What is only lost from sight may lie ahead in the mission. */
+bool GoeOrders::is_past(const Vehicle &vehicle) const { return vehicle.obstacle_known && _action != GOE_FLIGHT_HOLD; }
+
+bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &command) {
+    _wants_mission = resume && _has_led && !_overruled && is_past(vehicle) &&
+                     _mode_before == vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
+    _resumes_left = RESUMES_MAX;
+    _action = GOE_FLIGHT_NONE;
+    _awaited = 0;
+    _given = _overruled = false;
+    if (!may_resume(vehicle)) {
+        return false;
+    }
+    set_mission(vehicle, command);
+    return true;
+}
+
+bool GoeOrders::repeat_resume(const Vehicle &vehicle, vehicle_command_s &command) {
+    if (_awaited == 0 || vehicle.now_us - _sent_us < REPEAT_US || !may_resume(vehicle)) {
+        return false;
+    }
+    set_mission(vehicle, command);
+    return true;
+}
+
+bool GoeOrders::go_on(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool is_new,
+                      vehicle_command_s &command) {
+    const bool unanswered = _awaited != 0 && vehicle.now_us - _sent_us >= REPEAT_US;
+    const bool moved = is_place(assessment.action) && has_moved(assessment);
+    watch_mode(vehicle);
+    if (_overruled || !may_command(assessment.action, vehicle, react) || !(is_new || !_given || unanswered || moved)) {
+        return false;
+    }
+    if (assessment.action == GOE_FLIGHT_GO_AROUND) {
+        go_around(vehicle, command);
+    } else {
+        reposition(assessment, vehicle, command);
+    }
+    return true;
+}
+
+bool GoeOrders::follow(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool resume,
+                       vehicle_command_s &command) {
+    if (assessment.action == GOE_FLIGHT_NONE) {
+        return _action == GOE_FLIGHT_NONE ? repeat_resume(vehicle, command) : end(vehicle, resume, command);
+    }
+    const bool is_new = assessment.action != _action;
+    _slot = assessment.avoided;
+    if (is_new) {
+        begin(assessment.action);
+    }
+    return go_on(assessment, vehicle, react, is_new, command);
+}
+
+void GoeOrders::take(const vehicle_command_ack_s &answer) {
+    if (_awaited == 0 || answer.command != _awaited) {
+        return;
+    }
+    if (answer.result == vehicle_command_ack_s::VEHICLE_CMD_RESULT_ACCEPTED ||
+        answer.result == vehicle_command_ack_s::VEHICLE_CMD_RESULT_IN_PROGRESS) {
+        _awaited = 0;
+    } else {
+        _refused = static_cast<uint16_t>(_refused + (_refused < UINT16_MAX ? 1 : 0));
+    }
+}

@@ -1,0 +1,66 @@
+/* The flight layer's decision as commands that PX4 follows. SPDX-License-Identifier: MIT */
+#pragma once
+
+#include <uORB/topics/vehicle_command.h>
+#include <uORB/topics/vehicle_command_ack.h>
+#include <uORB/topics/vehicle_status.h>
+
+#include "GoeParameters.hpp"
+#include "goe_flight.h"
+
+/* Left, right, climb and hold become DO_REPOSITION with a change of mode to Hold; again when the target moves by 5 m, and until
+ * PX4 acknowledges it. Go around becomes DO_GO_AROUND. Only while armed, in Mission or Hold (go around: also in Land). A pilot or
+ * a failsafe that chooses another mode is not fought: until the end of the order nothing more is sent. The mission goes on only
+ * when the obstacle is known to be passed. */
+class GoeOrders {
+  public:
+    /* Where the aircraft is and how PX4 flies it. */
+    struct Vehicle {
+        bool armed;
+        uint8_t nav_state;   /* vehicle_status_s::NAVIGATION_STATE_... */
+        bool obstacle_known; /* the layer still knows the place of that of slot() */
+        bool origin_known, altitude_known;
+        float origin_alt_m; /* over the sea, of the local frame's down = 0 */
+        uint64_t now_us;
+    };
+
+    /* After every assessment. True: the command is to be published. */
+    bool follow(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool resume,
+                vehicle_command_s &command);
+
+    /* What is answered to a command of this system. */
+    void take(const vehicle_command_ack_s &answer);
+
+    /* What the order is about, or the latest one was; -1: nothing any more, the layer has given it up. */
+    int slot() const { return _slot; }
+
+    /* The order that stands was given to PX4. */
+    bool flown() const { return _given; }
+    bool overruled() const { return _overruled; }
+    uint16_t refused() const { return _refused; }
+
+  private:
+    void begin(goe_flight_action_t action);
+    bool end(const Vehicle &vehicle, bool resume, vehicle_command_s &command);
+    bool is_past(const Vehicle &vehicle) const;
+    bool repeat_resume(const Vehicle &vehicle, vehicle_command_s &command);
+    bool may_resume(const Vehicle &vehicle) const;
+    bool go_on(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool is_new,
+               vehicle_command_s &command);
+    void watch_mode(const Vehicle &vehicle);
+    bool has_moved(const goe_flight_assessment_t &assessment) const;
+    void await(uint32_t command, const Vehicle &vehicle);
+    void reposition(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, vehicle_command_s &command);
+    void go_around(const Vehicle &vehicle, vehicle_command_s &command);
+    void set_mission(const Vehicle &vehicle, vehicle_command_s &command);
+
+    goe_flight_action_t _action{GOE_FLIGHT_NONE};
+    int8_t _slot{-1};
+    uint8_t _mode_before{0};
+    bool _given{false}, _has_led{false}, _overruled{false}, _wants_mission{false};
+    uint8_t _resumes_left{0};
+    uint32_t _awaited{0}; /* command whose acknowledgement is awaited; 0: none */
+    uint64_t _sent_us{0};
+    float _target_ned_m[3]{};
+    uint16_t _refused{0};
+};

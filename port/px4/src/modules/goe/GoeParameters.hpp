@@ -1,0 +1,27 @@
+/* Parameters as the settings of estimator and flight layer. SPDX-License-Identifier: MIT */
+#pragma once
+
+#include <stdint.h>
+
+#include "goe_flight.h"
+
+/* Bits of GOE_IN, GOE_OUT and GOE_REACT. */
+enum GoeInput : int32_t { GOE_IN_TUNNEL = 1, GOE_IN_LANDING_TARGET = 2 };
+enum GoeOutput : int32_t { GOE_OUT_DISTANCES = 1, GOE_OUT_DETECT_AND_AVOID = 2 };
+enum GoeReact : int32_t { GOE_REACT_REPOSITION = 1, GOE_REACT_GO_AROUND = 2 };
+
+struct GoeParameters {
+    /* What the layer is initialised with: a change ends all tracks. */
+    goe_settings_t estimator;
+    goe_flight_settings_t flight;
+    /* What takes effect at once. */
+    float distance_max_m;                    /* GOE_DIST_MAX */
+    float target_delay_s, target_delay_sd_s; /* GOE_LT_DELAY, GOE_LT_DEL_SD */
+    int32_t inputs, outputs, react, resume;  /* GOE_IN, GOE_OUT, GOE_REACT, GOE_RESUME */
+};
+
+/* All defaults of the settings, then what the parameters say. Marks them as used, so that ground stations list them. */
+void goe_parameters_read(GoeParameters &parameters);
+
+/* Whether the layer would have to be initialised anew. */
+bool goe_parameters_differ(const GoeParameters &a, const GoeParameters &b);

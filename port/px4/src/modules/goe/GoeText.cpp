@@ -1,0 +1,185 @@
+/* What `goe status` says. SPDX-License-Identifier: MIT */
+#include "GoeText.hpp"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "GoeParameters.hpp"
+
+namespace {
+
+constexpr float DEG_PER_RAD = 57.29577951f;
+constexpr float PER_CENT = 100.f;
+constexpr unsigned LINES_OF_STATE = 6;
+constexpr unsigned LINES_OF_OBSTACLE = 2;
+
+const char *yes(bool is) { return is ? "alive" : "DEAD"; }
+
+double number(float value) { return static_cast<double>(value); }
+
+bool is_known(float value) { return !__builtin_isnan(value); }
+
+float own_distance_m(const GoeOverview &o, const goe_obstacle_s &obstacle) {
+    const float north_m = obstacle.nearest[0] - o.north_m;
+    const float east_m = obstacle.nearest[1] - o.east_m;
+    return sqrtf(north_m * north_m + east_m * east_m);
+}
+
+float bearing_deg(const GoeOverview &o, const goe_obstacle_s &obstacle) {
+    const float deg = DEG_PER_RAD * atan2f(obstacle.east - o.east_m, obstacle.north - o.north_m);
+    return deg < 0.f ? deg + 360.f : deg;
+}
+
+/* One sigma of the middle, as a circle. */
+float place_sd_m(const goe_obstacle_s &obstacle) {
+    return sqrtf(0.5f * (obstacle.covariance[0] + obstacle.covariance[2]));
+}
+
+void tell_settings(const GoeOverview &o, char *line) {
+    const goe_status_s &s = o.status;
+    if (!s.settings_in_use) {
+        snprintf(line, GOE_TEXT_LINE, "settings   NOT IN USE, nothing is done: %s is out of range or not set",
+                 o.bad_field != nullptr ? goe_text_parameter(o.bad_field) : "a parameter");
+    } else if (o.bad_field != nullptr) {
+        snprintf(line, GOE_TEXT_LINE, "settings   the old ones: %s was set out of range",
+                 goe_text_parameter(o.bad_field));
+    } else {
+        snprintf(line, GOE_TEXT_LINE, "settings   in use%s",
+                 s.settings_waiting ? "; changed ones wait until no obstacle is followed, or for disarming" : "");
+    }
+}
+
+void tell_detector(const goe_status_s &s, char *line) {
+    if (is_known(s.delay_mean)) {
+        snprintf(line, GOE_TEXT_LINE, "detector   %s, %.1f images/s, %.0f ms from exposure to here (at most %.0f)",
+                 yes(s.detector_alive), number(s.image_rate), number(s.delay_mean), number(s.delay_max));
+    } else {
+        snprintf(line, GOE_TEXT_LINE, "detector   %s, no image in the last second", yes(s.detector_alive));
+    }
+}
+
+void tell_images(const goe_status_s &s, char *line) {
+    snprintf(line, GOE_TEXT_LINE,
+             "images     %u taken, %u too late, %u waited in vain, %u refused, %u detections too weak", s.taken,
+             s.late_images, s.overdue, s.refused, s.weak);
+}
+
+void tell_tracks(const goe_status_s &s, char *line) {
+    const bool nothing = s.obstacles == 0;
+    snprintf(line, GOE_TEXT_LINE, "obstacles  %s%u of %d; tracks ended by resets: %u, no room for %u",
+             nothing && !(s.detector_alive && s.pose_alive) ? "NOT KNOWN, " : "", s.obstacles, GOE_FLIGHT_SLOTS, s.lost,
+             s.full);
+}
+
+void tell_order(const GoeOverview &o, char *line) {
+    const goe_status_s &s = o.status;
+    const char *const who = s.overruled ? ", overruled" : s.flown ? ", given to PX4" : ", told only";
+    if (s.action == goe_status_s::ACTION_NONE) {
+        snprintf(line, GOE_TEXT_LINE, "order      none%s%s", o.react == 0 ? "; GOE_REACT is 0: none is ever flown" : "",
+                 o.approach ? "; on approach" : "");
+    } else {
+        snprintf(line, GOE_TEXT_LINE, "order      %s%s%s, needs %.1f s",
+                 goe_flight_action_text(static_cast<goe_flight_action_t>(s.action)), who, s.late ? ", LATE" : "",
+                 number(s.needed));
+    }
+}
+
+void tell_place(const GoeOverview &o, const goe_obstacle_s &obstacle, char *line) {
+    char size[40] = "";
+    int used = 0;
+    if (is_known(obstacle.width)) {
+        used = snprintf(size, sizeof size, ", %.1f m wide", number(obstacle.width));
+    }
+    if (is_known(obstacle.height)) {
+        snprintf(size + used, sizeof size - static_cast<size_t>(used), ", %.1f m high", number(obstacle.height));
+    }
+    snprintf(line, GOE_TEXT_LINE, " %u id %-5lu %.0f m at %03.0f deg, +- %.1f m%s%s%s", obstacle.slot,
+             static_cast<unsigned long>(obstacle.id), number(own_distance_m(o, obstacle)),
+             number(bearing_deg(o, obstacle)), number(place_sd_m(obstacle)), size,
+             obstacle.in_view ? ", in view" : ", not in view", obstacle.suspect ? ", SUSPECT" : "");
+}
+
+void tell_hazard(const goe_obstacle_s &obstacle, char *line) {
+    char over[32] = "";
+    if (is_known(obstacle.clearance)) {
+        snprintf(over, sizeof over, ", %.0f m %s its top", number(fabsf(obstacle.clearance)),
+                 obstacle.clearance < 0.f ? "below" : "over");
+    }
+    if (!is_known(obstacle.miss)) {
+        snprintf(line, GOE_TEXT_LINE, "     its hazard is not known");
+    } else if (obstacle.passed) {
+        snprintf(line, GOE_TEXT_LINE, "     passed: its distance grows");
+    } else {
+        snprintf(line, GOE_TEXT_LINE, "     in %.1f +- %.1f s %.0f m beside it%s; %.0f %% to violate the margins%s",
+                 number(obstacle.time_to), number(obstacle.time_to_sd), number(obstacle.miss), over,
+                 number(PER_CENT * obstacle.violation), obstacle.worst ? ", worst" : "");
+    }
+}
+
+void tell_arithmetic(const goe_status_s &s, char *line) {
+    snprintf(line, GOE_TEXT_LINE, "arithmetic %s (self check 0x%02x)",
+             s.self_check == 0 ? "right, the bits of any host" : "NOT that of the tests", s.self_check);
+}
+
+void tell_state(const GoeOverview &o, unsigned number_of_line, char *line) {
+    switch (number_of_line) {
+        case 0:
+            tell_arithmetic(o.status, line);
+            break;
+        case 1:
+            tell_settings(o, line);
+            break;
+        case 2:
+            snprintf(line, GOE_TEXT_LINE, "pose       %s, jumps of PX4's filter taken along: %u",
+                     yes(o.status.pose_alive), o.status.resets);
+            break;
+        case 3:
+            tell_detector(o.status, line);
+            break;
+        case 4:
+            tell_images(o.status, line);
+            break;
+        default:
+            tell_order(o, line);
+            break;
+    }
+}
+
+} // namespace
+
+const char *goe_text_parameter(const char *setting) {
+    static const char *const names[][2] = {
+        {"camera.width_px", "GOE_CAM_W"}, {"camera.height_px", "GOE_CAM_H"}, {"camera.fx_px", "GOE_CAM_FX"},
+        {"camera.fy_px", "GOE_CAM_FY"},   {"camera.cx_px", "GOE_CAM_CX"},    {"camera.cy_px", "GOE_CAM_CY"},
+    };
+    for (const auto &name : names) {
+        if (strcmp(name[0], setting) == 0) {
+            return name[1];
+        }
+    }
+    return setting;
+}
+
+bool goe_text_status(const GoeOverview &overview, unsigned number_of_line, char line[GOE_TEXT_LINE]) {
+    line[0] = '\0';
+    if (number_of_line < LINES_OF_STATE) {
+        tell_state(overview, number_of_line, line);
+        return true;
+    }
+    const unsigned rest = number_of_line - LINES_OF_STATE;
+    if (rest == 0) {
+        tell_tracks(overview.status, line);
+        return true;
+    }
+    const unsigned index = (rest - 1u) / LINES_OF_OBSTACLE;
+    if (index >= overview.obstacles || index >= GOE_FLIGHT_SLOTS) {
+        return false;
+    }
+    if ((rest - 1u) % LINES_OF_OBSTACLE == 0u) {
+        tell_place(overview, overview.obstacle[index], line);
+    } else {
+        tell_hazard(overview.obstacle[index], line);
+    }
+    return true;
+}

@@ -1,0 +1,73 @@
+/* AP_GOE in a vehicle that flies past the test scene's obstacle, and beside it a flight layer of its own that is given the same by
+ * its own functions. SPDX-License-Identifier: MIT */
+#pragma once
+
+#include <AP_GOE.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+extern "C" {
+#include "flown.h"
+}
+#include "scripted.h"
+
+struct Parameter {
+    const char *name;
+    float value;
+};
+
+/* As the firmware has it: its objects begin as zeros. */
+AP_GOE *new_goe();
+
+/* Writes a parameter as a ground station does. */
+void set_parameter(AP_GOE &goe, const char *name, float value);
+float get_parameter(const AP_GOE &goe, const char *name);
+
+/* A GOE_FEATURES as the link's parser hands it over that does not know it. */
+mavlink_message_t features_message(const goe_mavlink_features_t &features, uint8_t system = 1);
+
+class FlownVehicle {
+  public:
+    FlownVehicle();
+
+    /* One sample on: pose, update, and an image every fifth. Compares. */
+    void step();
+    void fly(double seconds);
+
+    /* AP_GOE and the layer beside it know the same. */
+    void compare() const;
+
+    /* The layer beside starts anew with these parameters; as AP_GOE should have. */
+    void restart_layer();
+
+    AP_GOE *goe;
+    goe_flight_t layer;
+    goe_flight_assessment_t assessment;
+    flown_t flown;
+    bool compares;
+
+    // the detector
+    int delay;         // samples from exposure to arrival
+    int ahead_us;      // by which the sender's clock is wrong
+    bool sends;        // it is alive
+    uint8_t copies;    // obstacles in the image, side by side
+    uint64_t first_us; // of the vehicle's clock at sample 0
+    Vector3f jump;     // of the position, from now on
+    unsigned images;
+
+  private:
+    struct Kept {
+        goe_mavlink_features_t features;
+        uint32_t arrival_us;
+    };
+    void take_sample();
+    void send_image();
+    void send(const goe_mavlink_features_t &features);
+    void step_layer();
+    bool take_layer_image(const Kept &kept);
+
+    std::vector<Kept> waiting;
+    uint32_t assessed_ms;
+};

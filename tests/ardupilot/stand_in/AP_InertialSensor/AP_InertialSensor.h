@@ -1,0 +1,14 @@
+/* Stand-in, written by this project: only the names that AP_GOE uses. Names and signatures compared with ArduPilot 4.7-dev,
+ * commit 90700977c5, on 22 Nov 2026. What happens behind them is in scripted.h. SPDX-License-Identifier: MIT */
+#pragma once
+
+#include <cstdint>
+
+class AP_InertialSensor {
+  public:
+    uint32_t get_last_update_usec() const;
+};
+
+namespace AP {
+AP_InertialSensor &ins();
+}

@@ -1,0 +1,564 @@
+/* AP_GOE, compiled as ArduPilot compiles it and run with a scripted vehicle: it knows what a flight layer knows that is given the
+ * same, to the last bit, and does with it what its header says. SPDX-License-Identifier: MIT */
+#include "flown_vehicle.h"
+
+#include <AP_HAL/AP_HAL.h>
+
+#include <fenv.h>
+
+#include <cstring>
+#include <set>
+#include <string>
+
+extern "C" {
+#include "goe_settings_list.h"
+}
+
+static const uint32_t ID = 0x474F4500u;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static goe_flight_obstacle_t obstacle_of(const FlownVehicle &vehicle, int slot) {
+    goe_flight_obstacle_t obstacle;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(vehicle.goe->flight(), slot, &obstacle));
+    return obstacle;
+}
+
+static bool may_arm(const FlownVehicle &vehicle, const char *why) {
+    char text[42] = "";
+    const bool may = vehicle.goe->pre_arm_check(text, sizeof text);
+    if (!may) {
+        TEST_ASSERT_EQUAL_STRING(why, text);
+    }
+    return may;
+}
+
+// -------------------------------------------------------------------------------------------------------------- equality
+
+static void test_it_knows_what_the_layer_knows(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(8.0);
+    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+    TEST_ASSERT_GREATER_THAN(60, vehicle.layer.counters.taken);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+}
+
+static void test_an_early_image_waits_for_its_pose(void) {
+    FlownVehicle vehicle;
+    vehicle.delay = 0;
+    vehicle.ahead_us = 50000; // exposed between samples that are yet to come
+    vehicle.fly(4.0);
+    TEST_ASSERT_GREATER_THAN(20, vehicle.goe->flight()->counters.early);
+    TEST_ASSERT_GREATER_OR_EQUAL(vehicle.images - 1, vehicle.goe->flight()->counters.taken);
+    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+}
+
+static void test_images_of_the_future_hold_up_nobody(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false; // a full queue drops the oldest, which the layer beside does not
+    vehicle.ahead_us = 40000000;
+    vehicle.fly(4.0);
+    TEST_ASSERT_EQUAL(0, vehicle.goe->flight()->counters.taken);
+    TEST_ASSERT_FALSE(vehicle.goe->healthy());
+    vehicle.ahead_us = 0;
+    vehicle.fly(4.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+}
+
+static void test_a_late_image_is_counted_and_left(void) {
+    FlownVehicle vehicle;
+    vehicle.delay = 25; // half a second
+    vehicle.fly(4.0);
+    TEST_ASSERT_EQUAL(0, vehicle.goe->flight()->counters.taken);
+    TEST_ASSERT_GREATER_THAN(30, vehicle.goe->flight()->counters.late);
+    TEST_ASSERT_FALSE(vehicle.goe->healthy());
+    TEST_ASSERT_TRUE(scripted.pushes.empty());
+}
+
+static void test_the_clock_may_wrap(void) {
+    FlownVehicle vehicle;
+    vehicle.first_us = (uint64_t(1) << 32) - 3000000;
+    vehicle.fly(8.0);
+    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+}
+
+static void test_a_full_table(void) {
+    FlownVehicle vehicle;
+    vehicle.copies = GOE_FLIGHT_SLOTS + 2;
+    vehicle.fly(6.0);
+    std::set<uint32_t> ids;
+    for (const auto &item : scripted.database()) {
+        TEST_ASSERT_GREATER_OR_EQUAL(ID, item.first);
+        TEST_ASSERT_LESS_THAN(ID + GOE_FLIGHT_SLOTS, item.first);
+        ids.insert(item.first);
+    }
+    TEST_ASSERT_GREATER_THAN(1, ids.size());
+    TEST_ASSERT_GREATER_THAN(0, vehicle.goe->flight()->counters.full + vehicle.goe->flight()->counters.evicted);
+}
+
+// ---------------------------------------------------------------------------------------------------------------- resets
+
+static void test_a_known_jump_moves_the_obstacle_in_the_database(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    const Vector3f before = scripted.database().at(ID).place;
+    scripted.horizontal_reset_ms = AP_HAL::millis();
+    scripted.horizontal_change = Vector2f(7.0f, -4.0f);
+    vehicle.jump = Vector3f(7.0f, -4.0f, 0.0f);
+    vehicle.fly(0.3);
+    const Vector3f after = scripted.database().at(ID).place;
+    CHECK_CLOSE(0.5, 7.0, after.x - before.x);
+    CHECK_CLOSE(0.5, -4.0, after.y - before.y);
+    TEST_ASSERT_EQUAL(1, vehicle.goe->flight()->counters.resets);
+    TEST_ASSERT_EQUAL(0, vehicle.goe->flight()->counters.lost);
+}
+
+static void test_a_reset_of_the_heading_ends_all(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    scripted.yaw_reset_ms = AP_HAL::millis();
+    vehicle.step();
+    TEST_ASSERT_EQUAL(1, vehicle.goe->flight()->counters.lost);
+    vehicle.fly(0.2);
+    TEST_ASSERT_TRUE(scripted.has_said("all obstacles given up"));
+    TEST_ASSERT_EQUAL(0, vehicle.goe->assessment()->obstacles);
+}
+
+static void test_another_filter_ends_all(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    vehicle.compares = false;
+    scripted.ekf_type = 2;
+    vehicle.step();
+    TEST_ASSERT_EQUAL(1, vehicle.goe->flight()->counters.lost);
+}
+
+static void test_time_jumps(void) {
+    for (const int64_t jump_us : {INT64_C(-900000), INT64_C(700000), INT64_C(20000000)}) {
+        FlownVehicle vehicle;
+        vehicle.fly(2.0);
+        vehicle.first_us += uint64_t(jump_us);
+        vehicle.fly(5.0); // compared at each step
+        TEST_ASSERT_TRUE(vehicle.goe->healthy());
+        TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+    }
+}
+
+static void test_without_a_pose_it_is_not_healthy(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.fly(3.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+    scripted.has_nav = false;
+    vehicle.fly(1.0);
+    TEST_ASSERT_FALSE(vehicle.goe->healthy());
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no pose"));
+    scripted.has_nav = true;
+    vehicle.fly(3.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+}
+
+// ---------------------------------------------------------------------------------------------------------------- health
+
+static void test_healthy_means_alive_and_not_that_something_is_there(void) {
+    FlownVehicle vehicle;
+    vehicle.flown.sees = false;
+    vehicle.fly(3.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+    TEST_ASSERT_EQUAL(0, vehicle.goe->assessment()->obstacles);
+    TEST_ASSERT_TRUE(may_arm(vehicle, ""));
+    vehicle.sends = false;
+    vehicle.fly(3.0);
+    TEST_ASSERT_FALSE(vehicle.goe->healthy());
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no images"));
+    TEST_ASSERT_TRUE(scripted.has_said("GOE: no images"));
+    set_parameter(*vehicle.goe, "OPTIONS", 0);
+    TEST_ASSERT_TRUE(may_arm(vehicle, ""));
+    set_parameter(*vehicle.goe, "OPTIONS", 1);
+    vehicle.sends = true;
+    vehicle.fly(3.0);
+    TEST_ASSERT_TRUE(may_arm(vehicle, ""));
+}
+
+static void test_disabled_it_takes_no_memory_and_keeps_nobody_from_arming(void) {
+    FlownVehicle vehicle;
+    set_parameter(*vehicle.goe, "ENABLE", 0);
+    vehicle.compares = false;
+    vehicle.fly(2.0);
+    TEST_ASSERT_EQUAL(0, scripted.allocations);
+    TEST_ASSERT_NULL(vehicle.goe->flight());
+    TEST_ASSERT_TRUE(may_arm(vehicle, ""));
+    TEST_ASSERT_TRUE(scripted.sent.empty() && scripted.log.empty() && scripted.texts.empty());
+}
+
+static void test_switched_off_it_is_not_healthy_and_keeps_nobody_from_arming(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(3.0);
+    vehicle.sends = false;
+    vehicle.fly(3.0);
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no images"));
+    vehicle.sends = true;
+    vehicle.fly(3.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+    vehicle.compares = false;
+    set_parameter(*vehicle.goe, "ENABLE", 0);
+    const size_t so_far = scripted.pushes.size();
+    vehicle.fly(3.0);
+    TEST_ASSERT_EQUAL(so_far, scripted.pushes.size());
+    TEST_ASSERT_FALSE(vehicle.goe->healthy());
+    TEST_ASSERT_TRUE(may_arm(vehicle, ""));
+}
+
+static void test_without_memory_it_says_so(void) {
+    FlownVehicle vehicle;
+    scripted.has_memory = false;
+    vehicle.compares = false;
+    vehicle.fly(2.0);
+    TEST_ASSERT_EQUAL(1, scripted.allocations);
+    TEST_ASSERT_FALSE(vehicle.goe->healthy());
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no memory"));
+}
+
+// ------------------------------------------------------------------------------------------------------------ parameters
+
+static void test_parameters_wait_in_flight_until_nothing_is_followed(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    scripted.armed = true;
+    set_parameter(*vehicle.goe, "MARGIN", 25);
+    vehicle.fly(3.0); // compared with the layer that has the old ones
+    TEST_ASSERT_TRUE(scripted.has_said("parameters wait"));
+    CHECK_CLOSE(0.0, 15.0, vehicle.goe->flight()->settings.margin_m);
+    vehicle.flown.sees = false;
+    vehicle.fly(1.0);
+    vehicle.compares = false;
+    vehicle.fly(13.0); // forgotten by then
+    TEST_ASSERT_TRUE(scripted.has_said("parameters taken"));
+    CHECK_CLOSE(0.0, 25.0, vehicle.goe->flight()->settings.margin_m);
+}
+
+static void test_on_the_ground_parameters_are_taken_at_once(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(3.0);
+    vehicle.compares = false;
+    set_parameter(*vehicle.goe, "FORGET", 20);
+    vehicle.fly(1.1);
+    CHECK_CLOSE(0.0, 20.0, vehicle.goe->flight()->settings.forget_s);
+    vehicle.fly(3.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+}
+
+static void test_bad_parameters_are_refused_and_the_good_ones_go_on(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(3.0);
+    vehicle.compares = false;
+    set_parameter(*vehicle.goe, "BANK", 90);
+    vehicle.fly(4.0);
+    TEST_ASSERT_TRUE(scripted.has_said("GOE: bad setting bank_deg"));
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad setting bank_deg"));
+    TEST_ASSERT_FALSE(vehicle.goe->healthy());
+    CHECK_CLOSE(0.0, 30.0, vehicle.goe->flight()->settings.bank_deg);
+    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles); // it goes on
+    set_parameter(*vehicle.goe, "BANK", 35);
+    vehicle.fly(4.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+    CHECK_CLOSE(0.0, 35.0, vehicle.goe->flight()->settings.bank_deg);
+}
+
+static void test_without_a_camera_it_names_what_is_missing(void) {
+    FlownVehicle vehicle;
+    set_parameter(*vehicle.goe, "FX", 0);
+    vehicle.compares = false;
+    vehicle.fly(2.0);
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad setting camera.fx_px"));
+}
+
+static void test_defaults_are_those_of_the_library(void) {
+    scripted = Scripted();
+    AP_GOE &goe = *new_goe();
+    set_parameter(goe, "ENABLE", 1);
+    set_parameter(goe, "WIDTH", 640);
+    set_parameter(goe, "HEIGHT", 480);
+    set_parameter(goe, "FX", 500);
+    goe.update();
+    goe_flight_settings_t expected;
+    goe_flight_settings_default(&expected);
+    expected.resets = GOE_FLIGHT_RESETS_TIME;
+    const goe_flight_settings_t &actual = goe.flight()->settings;
+#define GOE_FLIGHT_SETTING(field, least, most, usual) CHECK_SAME(expected.field, actual.field);
+#include "goe_flight_settings_list.h"
+#undef GOE_FLIGHT_SETTING
+    goe_settings_t library;
+    goe_settings_default(&library);
+    CHECK_SAME(library.navigation.attitude_bias_deg, get_parameter(goe, "ATT_BIAS"));
+    CHECK_SAME(library.navigation.attitude_white_deg, get_parameter(goe, "ATT_WHITE"));
+    CHECK_CLOSE(1e-6, 0.3, get_parameter(goe, "ATT_DRIFT")); // the library's 0 is of a better filter
+    CHECK_SAME(library.navigation.velocity_bias_m_s, get_parameter(goe, "VEL_BIAS"));
+    CHECK_SAME(library.navigation.ground_m, get_parameter(goe, "GND_SD"));
+    CHECK_SAME(library.detector.box_px, get_parameter(goe, "BOX_PX"));
+    CHECK_SAME(library.detector.box_share, get_parameter(goe, "BOX_SHARE"));
+    CHECK_SAME(library.detector.correlation_s, get_parameter(goe, "BOX_TIME"));
+}
+
+static void test_parameters_fit_into_their_table(void) {
+    std::set<unsigned> numbers;
+    std::set<std::string> names;
+    for (const AP_Param::GroupInfo *info = AP_GOE::var_info; info->type != AP_PARAM_NONE; info++) {
+        TEST_ASSERT_LESS_OR_EQUAL_MESSAGE(16, strlen("GOE_") + strlen(info->name), info->name);
+        TEST_ASSERT_LESS_THAN_MESSAGE(64, info->idx, info->name);
+        TEST_ASSERT_TRUE_MESSAGE(numbers.insert(info->idx).second, info->name);
+        TEST_ASSERT_TRUE_MESSAGE(names.insert(info->name).second, info->name);
+    }
+    TEST_ASSERT_EQUAL(49, numbers.size());
+}
+
+// -------------------------------------------------------------------------------------------------------------- messages
+
+static unsigned taken_of(void (*change)(mavlink_message_t &, FlownVehicle &)) {
+    FlownVehicle vehicle;
+    vehicle.sends = false;
+    vehicle.compares = false;
+    vehicle.fly(1.0);
+    goe_mavlink_features_t features;
+    memset(&features, 0, sizeof features);
+    features.time_usec = scripted.now_us - 50000;
+    features.image_width = features.image_height = 1280;
+    mavlink_message_t message = features_message(features);
+    change(message, vehicle);
+    vehicle.goe->handle_unknown(message, MAVLINK_COMM_0);
+    vehicle.fly(0.2);
+    return vehicle.goe->flight()->counters.taken;
+}
+
+static bool accepts_none(const mavlink_status_t *, uint32_t) { return false; }
+static bool accepts_any(const mavlink_status_t *, uint32_t) { return true; }
+
+static mavlink_signing_t no_callback = {nullptr}, strict = {accepts_none}, lenient = {accepts_any};
+
+static void test_only_whole_messages_of_the_own_vehicle_are_taken(void) {
+    TEST_ASSERT_EQUAL(1, taken_of([](mavlink_message_t &, FlownVehicle &) {}));
+    TEST_ASSERT_EQUAL(0, taken_of([](mavlink_message_t &m, FlownVehicle &) { m.checksum ^= 1; }));
+    TEST_ASSERT_EQUAL(0, taken_of([](mavlink_message_t &m, FlownVehicle &) { m.payload64[0] ^= 4; }));
+    TEST_ASSERT_EQUAL(0, taken_of([](mavlink_message_t &m, FlownVehicle &) { m.len = 0; }));
+    TEST_ASSERT_EQUAL(0, taken_of([](mavlink_message_t &m, FlownVehicle &) { m.len = 255; }));
+    TEST_ASSERT_EQUAL(0, taken_of([](mavlink_message_t &m, FlownVehicle &) { m.msgid = 42701; }));
+    TEST_ASSERT_EQUAL(0, taken_of([](mavlink_message_t &m, FlownVehicle &) {
+                          goe_mavlink_features_t features;
+                          goe_mavlink_read_features(reinterpret_cast<const uint8_t *>(_MAV_PAYLOAD(&m)), m.len,
+                                                    &features);
+                          m = features_message(features, 2);
+                      }));
+    TEST_ASSERT_EQUAL(0, taken_of([](mavlink_message_t &, FlownVehicle &) { scripted.channel[0].signing = &strict; }));
+    TEST_ASSERT_EQUAL(
+        0, taken_of([](mavlink_message_t &, FlownVehicle &) { scripted.channel[0].signing = &no_callback; }));
+    TEST_ASSERT_EQUAL(1, taken_of([](mavlink_message_t &, FlownVehicle &) { scripted.channel[0].signing = &lenient; }));
+    TEST_ASSERT_EQUAL(1, taken_of([](mavlink_message_t &m, FlownVehicle &vehicle) {
+                          vehicle.goe->handle_message(m); // by a dialect that knows it
+                          m.checksum ^= 1;
+                      }));
+}
+
+static unsigned count_sent(mavlink_channel_t channel, uint32_t msgid) {
+    unsigned count = 0;
+    for (const ScriptedSent &sent : scripted.sent) {
+        count += sent.channel == channel && sent.msgid == msgid;
+    }
+    return count;
+}
+
+static void test_what_it_sends(void) {
+    FlownVehicle vehicle;
+    scripted.channel.resize(3);
+    scripted.active = {true, true, true};
+    scripted.is_private = {false, false, true};
+    scripted.channel[1].flags = MAVLINK_STATUS_FLAG_OUT_MAVLINK1;
+    vehicle.fly(6.0);
+    TEST_ASSERT_INT_WITHIN(1, 6, count_sent(MAVLINK_COMM_0, 42703));
+    TEST_ASSERT_GREATER_THAN(2, count_sent(MAVLINK_COMM_0, 42701));
+    TEST_ASSERT_EQUAL(count_sent(MAVLINK_COMM_0, 42701), count_sent(MAVLINK_COMM_0, 42702));
+    TEST_ASSERT_EQUAL(count_sent(MAVLINK_COMM_0, 42701) + count_sent(MAVLINK_COMM_0, 42702) +
+                          count_sent(MAVLINK_COMM_0, 42703),
+                      scripted.sent.size());
+    for (const ScriptedSent &sent : scripted.sent) {
+        const goe_mavlink_info_t *info = goe_mavlink_info(goe_mavlink_of_id(sent.msgid));
+        TEST_ASSERT_EQUAL(info->length, sent.payload.size());
+        TEST_ASSERT_EQUAL(info->crc_extra, sent.crc_extra);
+    }
+    goe_mavlink_status_t status;
+    const ScriptedSent &last = scripted.sent.back();
+    TEST_ASSERT_EQUAL(42703, last.msgid);
+    goe_mavlink_read_status(last.payload.data(), last.payload.size(), &status);
+    TEST_ASSERT_EQUAL(3, status.alive);
+    TEST_ASSERT_INT_WITHIN(3, 100, status.delay_mean);
+    TEST_ASSERT_EQUAL(1, status.obstacles);
+
+    const size_t so_far = scripted.sent.size();
+    scripted.txspace = 40;
+    vehicle.fly(2.0);
+    scripted.txspace = 1000;
+    set_parameter(*vehicle.goe, "REPORT_HZ", 0);
+    vehicle.fly(2.0);
+    TEST_ASSERT_EQUAL(so_far, scripted.sent.size());
+}
+
+// -------------------------------------------------------------------------------------------------------------- database
+
+static void test_an_obstacle_in_the_database(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    const goe_flight_obstacle_t obstacle = obstacle_of(vehicle, 0);
+    TEST_ASSERT_EQUAL(1, scripted.database().size());
+    const ScriptedPush push = scripted.database().at(ID);
+    CHECK_CLOSE(0.0011, obstacle.radius_m, push.radius);
+    CHECK_CLOSE(0.0, obstacle.center_ned_m[0], push.place.x);
+    CHECK_CLOSE(0.0, obstacle.center_ned_m[1], push.place.y);
+    TEST_ASSERT_TRUE(push.source == AP_OADatabase::OA_DbItem::Source::AIS);
+    const float distance = hypotf(push.place.x - scripted.position.x, push.place.y - scripted.position.y);
+    CHECK_CLOSE(3.0, distance, push.distance);
+    TEST_ASSERT_UINT32_WITHIN(300, AP_HAL::millis(), push.timestamp_ms);
+    CHECK_SAME(false, scripted.pushes[scripted.pushes.size() - 2].radius == push.radius); // else it would not move
+}
+
+static void test_the_sphere_is_at_the_own_height_between_foot_and_top(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    const goe_flight_obstacle_t obstacle = obstacle_of(vehicle, 0);
+    const float foot = -obstacle.center_ned_m[2], own = -scripted.position.z, up = scripted.database().at(ID).place.z;
+    TEST_ASSERT_TRUE((obstacle.valid & GOE_HAS_HEIGHT) != 0);
+    const float top = foot + obstacle.height_m + 2.0f * obstacle.height_sd_m;
+    CHECK_CLOSE(0.3, fminf(fmaxf(own, foot), top), up);
+    vehicle.compares = false;
+    scripted.vertical_reset_ms = AP_HAL::millis();
+    vehicle.flown.sees = false;
+    vehicle.jump = Vector3f(0.0f, 0.0f, -500.0f); // far over it
+    vehicle.fly(0.4);
+    TEST_ASSERT_TRUE(scripted.database().at(ID).place.z < own + 100.0f);
+}
+
+static void test_sigmas_widen_the_sphere(void) {
+    FlownVehicle vehicle;
+    set_parameter(*vehicle.goe, "OA_SIGMA", 2);
+    vehicle.fly(6.0);
+    const goe_flight_obstacle_t obstacle = obstacle_of(vehicle, 0);
+    const float worst = sqrtf(fmaxf(obstacle.covariance_ne_m2[0], obstacle.covariance_ne_m2[2]));
+    TEST_ASSERT_FALSE(obstacle.suspect);
+    TEST_ASSERT_TRUE(scripted.database().at(ID).radius >= obstacle.radius_m + 1.99f * worst);
+    TEST_ASSERT_TRUE(scripted.database().at(ID).radius <= obstacle.radius_m + 3.0f * worst);
+}
+
+static void test_without_a_database_it_flies_on(void) {
+    FlownVehicle vehicle;
+    scripted.has_database = false;
+    vehicle.fly(5.0);
+    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+    TEST_ASSERT_TRUE(scripted.pushes.empty());
+}
+
+// --------------------------------------------------------------------------------------------------------------- heights
+
+static float height_of_range_finder(float roll_deg, float range_m, const Vector3f &offset, RangeFinder::Status status) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.sends = false;
+    vehicle.fly(0.5);
+    scripted.has_range_finder = true;
+    scripted.range_finder = status;
+    scripted.range_m = range_m;
+    scripted.range_finder_offset = offset;
+    const float half = roll_deg * 3.14159265f / 360.0f;
+    scripted.q.q1 = cosf(half);
+    scripted.q.q2 = sinf(half);
+    scripted.q.q3 = scripted.q.q4 = 0.0f;
+    scripted.sample_us += 30000;
+    scripted.now_us += 30000;
+    vehicle.goe->update();
+    const goe_flight_t &flight = *vehicle.goe->flight();
+    return flight.ground_source == GOE_FLIGHT_RANGE_FINDER ? flight.ground_down_m - scripted.position.z : -1.0f;
+}
+
+static void test_a_range_finder_counts_along_the_vertical(void) {
+    const RangeFinder::Status good = RangeFinder::Status::Good;
+    CHECK_CLOSE(0.001, 20.0, height_of_range_finder(0, 20, Vector3f(), good));
+    CHECK_CLOSE(0.001, 17.3205, height_of_range_finder(30, 20, Vector3f(), good));
+    CHECK_CLOSE(0.001, 20.4, height_of_range_finder(0, 20, Vector3f(0, 0, 0.4f), good));
+    CHECK_CLOSE(0.001, 17.3205 + 0.5,
+                height_of_range_finder(30, 20, Vector3f(0, 1, 0), good)); // rolled right: right is low
+    CHECK_CLOSE(0.0, -1.0, height_of_range_finder(60, 20, Vector3f(), good));
+    CHECK_CLOSE(0.0, -1.0, height_of_range_finder(0, 20, Vector3f(), RangeFinder::Status::OutOfRangeHigh));
+}
+
+// ------------------------------------------------------------------------------------------------------------------- log
+
+static void test_the_log(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    for (const char *name : {"GOEO", "GOEH", "GOES"}) {
+        const std::vector<ScriptedRecord> &records = scripted.log[name];
+        TEST_ASSERT_FALSE_MESSAGE(records.empty(), name);
+        const ScriptedRecord &record = records.back();
+        size_t length = 0;
+        for (const std::string &label : record.labels) {
+            length += label.size() + 1;
+        }
+        TEST_ASSERT_LESS_OR_EQUAL_MESSAGE(65, length, name);
+        TEST_ASSERT_LESS_OR_EQUAL_MESSAGE(16, record.labels.size(), name);
+        TEST_ASSERT_EQUAL_MESSAGE(record.labels.size(), record.value.size(), name); // no label twice
+        TEST_ASSERT_EQUAL_MESSAGE(record.labels.size(), record.format.size(), name);
+        TEST_ASSERT_EQUAL_MESSAGE(record.labels.size(), record.units.size(), name);
+        TEST_ASSERT_EQUAL_MESSAGE(record.labels.size(), record.mults.size(), name);
+    }
+    const goe_flight_obstacle_t obstacle = obstacle_of(vehicle, 0);
+    const auto &place = scripted.log["GOEO"].back().value;
+    CHECK_CLOSE(0.0, obstacle.center_ned_m[1], place.at("E"));
+    CHECK_CLOSE(0.0, obstacle.radius_m, place.at("R"));
+    CHECK_CLOSE(0.0, obstacle.covariance_ne_m2[2], place.at("EE"));
+    TEST_ASSERT_EQUAL(obstacle.id, place.at("Id"));
+    TEST_ASSERT_EQUAL(obstacle.model, place.at("Mdl"));
+    const auto &hazard = scripted.log["GOEH"].back().value;
+    CHECK_CLOSE(0.0, obstacle.hazard.miss_m, hazard.at("Miss"));
+    TEST_ASSERT_EQUAL(0, hazard.at("I"));
+    const auto &status = scripted.log["GOES"].back().value;
+    TEST_ASSERT_INT_WITHIN(12, vehicle.goe->flight()->counters.taken, status.at("Tkn"));
+    TEST_ASSERT_EQUAL(3, status.at("Al"));
+    TEST_ASSERT_INT_WITHIN(3, 100, status.at("Dly"));
+    TEST_ASSERT_INT_WITHIN(1, 6, scripted.log["GOES"].size());
+}
+
+int main(void) {
+#if defined(__GLIBC__) && defined(TRAPS_FLOAT_EXCEPTIONS) // as ArduPilot's simulator does
+    feenableexcept(FE_OVERFLOW | FE_DIVBYZERO | FE_INVALID);
+#endif
+    UNITY_BEGIN();
+    RUN_TEST(test_it_knows_what_the_layer_knows);
+    RUN_TEST(test_an_early_image_waits_for_its_pose);
+    RUN_TEST(test_images_of_the_future_hold_up_nobody);
+    RUN_TEST(test_a_late_image_is_counted_and_left);
+    RUN_TEST(test_the_clock_may_wrap);
+    RUN_TEST(test_a_full_table);
+    RUN_TEST(test_a_known_jump_moves_the_obstacle_in_the_database);
+    RUN_TEST(test_a_reset_of_the_heading_ends_all);
+    RUN_TEST(test_another_filter_ends_all);
+    RUN_TEST(test_time_jumps);
+    RUN_TEST(test_without_a_pose_it_is_not_healthy);
+    RUN_TEST(test_healthy_means_alive_and_not_that_something_is_there);
+    RUN_TEST(test_disabled_it_takes_no_memory_and_keeps_nobody_from_arming);
+    RUN_TEST(test_switched_off_it_is_not_healthy_and_keeps_nobody_from_arming);
+    RUN_TEST(test_without_memory_it_says_so);
+    RUN_TEST(test_parameters_wait_in_flight_until_nothing_is_followed);
+    RUN_TEST(test_on_the_ground_parameters_are_taken_at_once);
+    RUN_TEST(test_bad_parameters_are_refused_and_the_good_ones_go_on);
+    RUN_TEST(test_without_a_camera_it_names_what_is_missing);
+    RUN_TEST(test_defaults_are_those_of_the_library);
+    RUN_TEST(test_parameters_fit_into_their_table);
+    RUN_TEST(test_only_whole_messages_of_the_own_vehicle_are_taken);
+    RUN_TEST(test_what_it_sends);
+    RUN_TEST(test_an_obstacle_in_the_database);
+    RUN_TEST(test_the_sphere_is_at_the_own_height_between_foot_and_top);
+    RUN_TEST(test_sigmas_widen_the_sphere);
+    RUN_TEST(test_without_a_database_it_flies_on);
+    RUN_TEST(test_a_range_finder_counts_along_the_vertical);
+    RUN_TEST(test_the_log);
+    return UNITY_END();
+}

@@ -1,0 +1,12 @@
+/* Fields that are used of PX4's topic: standin.hpp. SPDX-License-Identifier: MIT */
+#pragma once
+
+#include "standin.hpp"
+
+struct mavlink_tunnel_s {
+    uint64_t timestamp;
+    uint16_t payload_type;
+    uint8_t payload_length, payload[128];
+};
+
+STANDIN_TOPIC(mavlink_tunnel, 1)

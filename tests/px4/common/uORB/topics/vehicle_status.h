@@ -1,0 +1,15 @@
+/* Fields that are used of PX4's topic: standin.hpp. SPDX-License-Identifier: MIT */
+#pragma once
+
+#include "standin.hpp"
+
+struct vehicle_status_s {
+    static constexpr uint8_t ARMING_STATE_DISARMED = 1, ARMING_STATE_ARMED = 2;
+    static constexpr uint8_t NAVIGATION_STATE_POSCTL = 2, NAVIGATION_STATE_AUTO_MISSION = 3,
+                             NAVIGATION_STATE_AUTO_LOITER = 4, NAVIGATION_STATE_AUTO_RTL = 5,
+                             NAVIGATION_STATE_AUTO_LAND = 18;
+    uint64_t timestamp;
+    uint8_t arming_state, nav_state, system_id, component_id;
+};
+
+STANDIN_TOPIC(vehicle_status, 1)

@@ -1,0 +1,483 @@
+/* The module of port/px4 by a scripted broker: what it makes of a flight is what the flight layer makes of it, to the last bit, and what
+ * becomes of it when topics are late, early, missing or jump. SPDX-License-Identifier: MIT */
+#include "px4_flight.hpp"
+
+#include "GoeText.hpp"
+
+static Px4Flight flight;
+
+extern "C" void setUp(void) { flight.begin(); }
+extern "C" void tearDown(void) { flight.end(); }
+
+static bool says(const std::string &text, const char *word) { return text.find(word) != std::string::npos; }
+
+static std::string status_text() {
+    standin::console().clear();
+    TEST_ASSERT_EQUAL(0, goe_command("status"));
+    return standin::console();
+}
+
+/* --------------------------------------------------------------------------------------------------------- the flight -- */
+
+static void it_is_the_flight_layer_to_the_last_bit() {
+    flight.fly(5.0);
+    TEST_ASSERT_GREATER_THAN(25, flight.compared);
+    goe_obstacle_s topic;
+    TEST_ASSERT_TRUE(flight.obstacle(topic));
+    TEST_ASSERT_EQUAL_UINT32(7u, topic.id);
+    const goe_status_s status = flight.status();
+    TEST_ASSERT_EQUAL_HEX8(0, status.self_check); /* by PX4's flags, and the module's own */
+    TEST_ASSERT_TRUE(status.settings_in_use);
+    TEST_ASSERT_EQUAL(1, status.obstacles);
+    CHECK_CLOSE(0.5, 10.0, status.image_rate);
+    CHECK_CLOSE(0.5, 104.0, status.delay_mean);
+}
+
+static void the_clocks_32_bits_may_wrap_in_flight() {
+    flight.end();
+    flight.begin(0xFFFFFFFFull - 2500000ull);
+    flight.fly(5.0);
+    TEST_ASSERT_GREATER_THAN(25, flight.compared);
+}
+
+static void statuses_come_ten_times_a_second() {
+    flight.fly(3.0);
+    const unsigned before = standin::published(ORB_ID(goe_status));
+    flight.fly(2.0);
+    TEST_ASSERT_INT_WITHIN(1, 20, static_cast<int>(standin::published(ORB_ID(goe_status)) - before));
+}
+
+/* ------------------------------------------------------------------------------------------------------- late and early -- */
+
+static void an_image_that_is_too_new_waits_for_its_pose() {
+    flight.fly(1.0);
+    const uint16_t taken = flight.status().taken;
+    flight.follows = flight.tells_images = false;
+    flight.publish_image(flight.flown.sample, flight.time_of(flight.flown.sample) + 30000u);
+    flight.fly(0.04);
+    standin::advance(1000);
+    TEST_ASSERT_EQUAL(taken, flight.status().taken);
+    flight.fly(0.2);
+    TEST_ASSERT_EQUAL(taken + 1, flight.status().taken);
+    TEST_ASSERT_EQUAL(0, flight.status().overdue);
+}
+
+/* A companion's clock, converted, may be some milliseconds ahead. */
+static void an_image_that_was_sent_in_the_future_waits_too() {
+    flight.fly(1.0);
+    const uint16_t taken = flight.status().taken;
+    flight.follows = flight.tells_images = false;
+    goe_features_s topic = flight.features_of(flight.flown.sample);
+    topic.timestamp_sample = flight.time_of(flight.flown.sample) + 30000u;
+    topic.timestamp = topic.timestamp_sample + 20000u;
+    standin::publish(ORB_ID(goe_features), &topic);
+    flight.fly(0.3);
+    TEST_ASSERT_EQUAL(taken + 1, flight.status().taken);
+    TEST_ASSERT_EQUAL(0, flight.status().overdue);
+}
+
+static void an_image_that_no_pose_comes_for_is_given_up() {
+    flight.fly(1.0);
+    const uint16_t taken = flight.status().taken;
+    flight.follows = flight.tells_images = flight.tells_pose = false;
+    flight.publish_image(0, flight.time_of(flight.flown.sample) + 50000u);
+    flight.fly(0.4);
+    TEST_ASSERT_EQUAL(0, flight.status().overdue);
+    flight.fly(0.4);
+    TEST_ASSERT_EQUAL(1, flight.status().overdue);
+    TEST_ASSERT_EQUAL(taken, flight.status().taken);
+    TEST_ASSERT_FALSE(flight.status().pose_alive);
+}
+
+static void more_images_than_can_wait_cost_the_oldest() {
+    flight.fly(1.0);
+    flight.follows = flight.tells_images = flight.tells_pose = false;
+    for (int i = 0; i < 11; i++) {
+        flight.publish_image(0, flight.time_of(flight.flown.sample) + 50000u + static_cast<uint64_t>(i));
+        standin::advance(10000);
+    }
+    standin::advance(100000);
+    TEST_ASSERT_EQUAL(3, flight.status().overdue);
+}
+
+static void an_image_that_comes_too_late_is_counted() {
+    flight.fly(2.0);
+    flight.follows = false;
+    flight.publish_image(flight.flown.sample - 25, flight.time_of(flight.flown.sample - 25));
+    flight.fly(0.2);
+    TEST_ASSERT_EQUAL(1, flight.status().late_images);
+}
+
+/* --------------------------------------------------------------------------------------------------------------- resets -- */
+
+static void a_known_jump_keeps_the_track() {
+    flight.fly(3.0);
+    flight.flown.jump_ned_m[0] = flight.position.delta_xy[0] = 30.f;
+    flight.flown.jump_ned_m[1] = flight.position.delta_xy[1] = -20.f;
+    flight.position.xy_reset_counter++;
+    goe_obstacle_s before;
+    goe_obstacle_s after;
+    TEST_ASSERT_TRUE(flight.obstacle(before));
+    flight.fly(1.0);
+    TEST_ASSERT_TRUE(flight.obstacle(after));
+    TEST_ASSERT_EQUAL(1, flight.status().resets);
+    TEST_ASSERT_EQUAL(0, flight.status().lost);
+    CHECK_CLOSE(2.0, 30.0, after.north - before.north);
+    CHECK_CLOSE(2.0, -20.0, after.east - before.east);
+}
+
+static void a_missed_reset_ends_the_track() {
+    flight.fly(3.0);
+    flight.position.z_reset_counter = static_cast<uint8_t>(flight.position.z_reset_counter + 2);
+    flight.fly(0.2);
+    TEST_ASSERT_EQUAL(1, flight.status().lost);
+    TEST_ASSERT_EQUAL(0, flight.status().obstacles);
+}
+
+static void a_reset_of_the_heading_ends_the_track() {
+    flight.fly(3.0);
+    flight.quat_reset_counter++;
+    flight.fly(0.2);
+    TEST_ASSERT_EQUAL(1, flight.status().lost);
+    TEST_ASSERT_EQUAL(0, flight.status().obstacles);
+}
+
+static void an_invalid_position_is_no_sample() {
+    flight.fly(2.0);
+    flight.follows = false;
+    flight.tells_pose = false;
+    for (int i = 0; i < 40; i++) {
+        flight.step();
+        flight.position.timestamp_sample = standin::now_us();
+        flight.position.xy_valid = false;
+        standin::publish(ORB_ID(vehicle_local_position), &flight.position);
+    }
+    TEST_ASSERT_FALSE(flight.status().pose_alive);
+    TEST_ASSERT_EQUAL(0, flight.status().refused);
+}
+
+/* ------------------------------------------------------------------------------------------------- who is there, who not -- */
+
+static void a_full_table_is_told() {
+    flight.follows = flight.tells_images = false;
+    for (int k = 0; k < 150; k++) {
+        flight.step();
+        if (k % 5 != 0) {
+            continue;
+        }
+        for (int i = 0; i < 6; i++) {
+            goe_features_s topic = flight.features_of(flight.flown.sample - 1);
+            topic.timestamp_sample = flight.time_of(flight.flown.sample - 1);
+            topic.number = 6;
+            topic.id = 100u + static_cast<uint32_t>(i);
+            topic.seen = goe_features_s::SEES_BOX;
+            topic.box[0] = 150.f * static_cast<float>(i + 1);
+            topic.box[2] = topic.box[0] + 40.f;
+            standin::publish(ORB_ID(goe_features), &topic);
+        }
+        standin::settle();
+    }
+    TEST_ASSERT_GREATER_THAN(0, flight.status().full);
+    TEST_ASSERT_EQUAL(0, flight.status().overdue);
+}
+
+static void two_obstacles_of_one_image_are_one_image() {
+    flight.follows = flight.tells_images = false;
+    for (int k = 0; k < 150; k++) {
+        flight.step();
+        const int exposed = flight.flown.sample - 1 - FLOWN_DELAY;
+        for (uint32_t id = 1; k % 5 == 0 && exposed >= 0 && id <= 2; id++) {
+            goe_features_s topic = flight.features_of(exposed);
+            topic.number = 2;
+            topic.id = id;
+            standin::publish(ORB_ID(goe_features), &topic);
+        }
+        standin::settle();
+    }
+    CHECK_CLOSE(0.5, 10.0, flight.status().image_rate);
+    TEST_ASSERT_GREATER_THAN(50, flight.status().taken); /* messages */
+}
+
+static void publish_range() {
+    distance_sensor_s sensor{};
+    sensor.timestamp = standin::now_us();
+    sensor.max_distance = 40.f;
+    sensor.current_distance = 18.f; /* 20 m, by dist_bottom */
+    sensor.signal_quality = 100;
+    sensor.orientation = distance_sensor_s::ROTATION_DOWNWARD_FACING;
+    standin::publish(ORB_ID(distance_sensor), &sensor, 1);
+}
+
+/* With a distance sensor the ground is where it says, not where dist_bottom says. */
+static void a_distance_sensor_tells_the_ground() {
+    goe_obstacle_s by_terrain;
+    goe_obstacle_s by_range;
+    flight.fly(4.0);
+    TEST_ASSERT_TRUE(flight.obstacle(by_terrain));
+    flight.end();
+    flight.begin();
+    flight.follows = false;
+    for (int k = 0; k < 200; k++) {
+        publish_range();
+        flight.step();
+    }
+    TEST_ASSERT_TRUE(flight.obstacle(by_range));
+    CHECK_CLOSE(0.1, -2.0, by_range.ground_down - by_terrain.ground_down);
+}
+
+static void a_distance_sensor_that_has_fallen_silent_tells_nothing() {
+    goe_obstacle_s obstacle;
+    flight.fly(4.0);
+    TEST_ASSERT_TRUE(flight.obstacle(obstacle));
+    const float by_terrain_m = obstacle.ground_down;
+    flight.end();
+    flight.begin();
+    flight.flown.sees = false;
+    flight.fly(1.0);
+    flight.follows = false;
+    publish_range();
+    flight.fly(0.5);
+    flight.flown.sees = true;
+    flight.fly(3.0);
+    TEST_ASSERT_TRUE(flight.obstacle(obstacle));
+    CHECK_CLOSE(0.1, by_terrain_m, obstacle.ground_down);
+}
+
+static unsigned known_sectors() {
+    obstacle_distance_s topic{};
+    unsigned count = 0;
+    TEST_ASSERT_TRUE(standin::latest(ORB_ID(obstacle_distance), 0, &topic));
+    for (const uint16_t distance : topic.distances) {
+        count += distance != GOE_FLIGHT_SECTOR_UNKNOWN ? 1u : 0u;
+    }
+    return count;
+}
+
+static void a_dead_detector_is_not_clear() {
+    flight.flown.sees = false;
+    flight.fly(2.0);
+    TEST_ASSERT_TRUE(flight.status().detector_alive); /* images with nothing in view */
+    TEST_ASSERT_GREATER_THAN(5, known_sectors());
+    flight.follows = flight.tells_images = false;
+    flight.fly(1.5);
+    TEST_ASSERT_FALSE(flight.status().detector_alive);
+    TEST_ASSERT_TRUE(flight.status().pose_alive);
+    TEST_ASSERT_EQUAL(0, known_sectors());
+    TEST_ASSERT_TRUE(says(status_text(), "detector   DEAD"));
+    TEST_ASSERT_TRUE(says(standin::console(), "NOT KNOWN, 0 of 4"));
+}
+
+static void without_an_attitude_the_status_still_comes() {
+    flight.fly(1.0);
+    flight.follows = flight.tells_images = flight.tells_pose = false;
+    const unsigned before = standin::published(ORB_ID(goe_status));
+    flight.fly(2.0);
+    TEST_ASSERT_INT_WITHIN(1, 20, static_cast<int>(standin::published(ORB_ID(goe_status)) - before));
+    TEST_ASSERT_FALSE(flight.status().pose_alive);
+    TEST_ASSERT_EQUAL(0, known_sectors());
+}
+
+static void a_clock_that_jumps_ends_nothing_for_long() {
+    flight.fly(2.0);
+    flight.follows = flight.in_step = false;
+    standin::set_clock(standin::now_us() - 1500000u); /* back: samples are newer than the clock */
+    flight.fly(0.5);
+    standin::set_clock(standin::now_us() + 20000000u); /* and ahead: samples are old */
+    flight.fly(0.3);
+    TEST_ASSERT_FALSE(flight.status().pose_alive);
+    flight.end();
+    flight.begin(60000000u);
+    flight.fly(3.0);
+    TEST_ASSERT_EQUAL(1, flight.status().obstacles);
+}
+
+static void statuses_go_on_while_the_clock_is_set_back() {
+    flight.fly(2.0);
+    flight.follows = flight.in_step = false;
+    const unsigned before = standin::published(ORB_ID(goe_status));
+    standin::set_clock(standin::now_us() - 1500000u);
+    flight.fly(0.5);
+    TEST_ASSERT_GREATER_THAN(before + 3u, standin::published(ORB_ID(goe_status)));
+}
+
+/* The samples' own time goes back, as when the estimator starts anew: after 16 of them the layer begins anew, too. */
+static void samples_that_go_back_in_time_begin_a_new_history() {
+    flight.fly(2.0);
+    flight.follows = false;
+    flight.flown.sample -= 75;
+    flight.in_step = false;
+    flight.fly(1.0);
+    TEST_ASSERT_GREATER_THAN(0, flight.status().lost);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ parameters -- */
+
+static void a_change_in_flight_waits_for_the_end_of_the_tracks() {
+    flight.set_mode(true, vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION);
+    flight.fly(4.0);
+    TEST_ASSERT_EQUAL(1, flight.status().obstacles);
+    standin::set("GOE_MARGIN", 40.f);
+    flight.fly(1.2); /* the reference goes on with the old one */
+    TEST_ASSERT_TRUE(flight.status().settings_waiting);
+    TEST_ASSERT_EQUAL(1, flight.status().obstacles);
+    TEST_ASSERT_TRUE(says(status_text(), "changed ones wait"));
+    flight.follows = false;
+    flight.set_mode(false, vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION);
+    flight.fly(0.2);
+    TEST_ASSERT_FALSE(flight.status().settings_waiting);
+    TEST_ASSERT_EQUAL(0, flight.status().obstacles);
+}
+
+static void one_that_is_taken_back_waits_for_nothing() {
+    flight.set_mode(true, vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION);
+    flight.fly(4.0);
+    standin::set("GOE_MARGIN", 40.f);
+    flight.fly(1.1);
+    standin::set("GOE_MARGIN", 15.f);
+    flight.fly(1.1);
+    TEST_ASSERT_FALSE(flight.status().settings_waiting);
+    TEST_ASSERT_EQUAL(0, flight.status().lost);
+}
+
+static void what_costs_no_track_takes_effect_at_once() {
+    flight.set_mode(true, vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION);
+    flight.fly(3.0);
+    standin::set("GOE_OUT", 0);
+    flight.fly(1.1);
+    const unsigned before = standin::published(ORB_ID(obstacle_distance));
+    flight.fly(1.0);
+    TEST_ASSERT_EQUAL(before, standin::published(ORB_ID(obstacle_distance)));
+    TEST_ASSERT_FALSE(flight.status().settings_waiting);
+}
+
+static void the_range_of_the_sectors_is_a_parameter() {
+    obstacle_distance_s topic{};
+    flight.follows = false;
+    for (const float range_m : {50.f, 650.f}) {
+        standin::set("GOE_DIST_MAX", range_m);
+        flight.fly(1.5);
+        TEST_ASSERT_TRUE(standin::latest(ORB_ID(obstacle_distance), 0, &topic));
+        TEST_ASSERT_EQUAL(static_cast<int>(100.f * range_m), topic.max_distance);
+    }
+}
+
+static void a_bad_parameter_leaves_the_old_ones() {
+    flight.fly(1.0);
+    flight.follows = false;
+    standin::set("GOE_CAM_FX", -1.f);
+    flight.fly(1.2);
+    TEST_ASSERT_TRUE(flight.status().settings_in_use);
+    TEST_ASSERT_TRUE(says(standin::mavlink_texts(), "goe: not set right: GOE_CAM_FX"));
+    TEST_ASSERT_TRUE(says(status_text(), "the old ones: GOE_CAM_FX"));
+    flight.fly(2.0);
+    TEST_ASSERT_EQUAL(1, flight.status().obstacles);
+    standin::set("GOE_CAM_FX", flight.flown.scene.camera.fx_px);
+    flight.fly(1.2);
+    TEST_ASSERT_FALSE(says(status_text(), "the old ones"));
+}
+
+static void without_a_camera_nothing_is_done_and_said_so() {
+    flight.end();
+    flight.begin(5000000u, false);
+    flight.fly(1.0);
+    TEST_ASSERT_FALSE(flight.status().settings_in_use);
+    TEST_ASSERT_FALSE(flight.status().detector_alive);
+    TEST_ASSERT_EQUAL(0, known_sectors());
+    TEST_ASSERT_TRUE(says(status_text(), "NOT IN USE, nothing is done: GOE_CAM_"));
+}
+
+static void all_parameters_are_marked_as_used() {
+    for (const auto &parameter : px4::standin_parameter) {
+        TEST_ASSERT_TRUE_MESSAGE(standin::is_used(parameter.name), parameter.name);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- commands -- */
+
+static void the_status_is_told_in_words() {
+    flight.fly(4.0);
+    const std::string text = status_text();
+    TEST_ASSERT_TRUE(says(text, "arithmetic right, the bits of any host (self check 0x00)"));
+    TEST_ASSERT_TRUE(says(text, "settings   in use"));
+    TEST_ASSERT_TRUE(says(text, "detector   alive, 10.0 images/s, 104 ms from exposure to here"));
+    TEST_ASSERT_TRUE(says(text, "obstacles  1 of 4"));
+    TEST_ASSERT_TRUE(says(text, "GOE_REACT is 0"));
+    TEST_ASSERT_TRUE(says(text, " 0 id 7 "));
+    TEST_ASSERT_TRUE(says(text, "to violate the margins, worst"));
+    printf("%s", text.c_str());
+}
+
+static std::string line_of(const GoeOverview &overview, unsigned number) {
+    char line[GOE_TEXT_LINE];
+    return goe_text_status(overview, number, line) ? line : "none";
+}
+
+/* 50 m west of an obstacle, 5 m below its top, with a late order. */
+static void the_words_are_those_of_the_numbers() {
+    GoeOverview overview{};
+    goe_obstacle_s &obstacle = overview.obstacle[0];
+    overview.obstacles = overview.status.obstacles = 1;
+    overview.east_m = 100.f;
+    overview.north_m = obstacle.north = obstacle.nearest[0] = 30.f;
+    overview.react = 1;
+    obstacle.east = 40.f;
+    obstacle.nearest[1] = 50.f;
+    obstacle.width = obstacle.height = NAN;
+    obstacle.miss = 3.f;
+    obstacle.clearance = -5.f;
+    overview.status.action = goe_status_s::ACTION_LEFT;
+    overview.status.late = true;
+    TEST_ASSERT_EQUAL_STRING("order      left, told only, LATE, needs 0.0 s", line_of(overview, 5).c_str());
+    TEST_ASSERT_TRUE(says(line_of(overview, 7), "50 m at 270 deg"));
+    TEST_ASSERT_TRUE(says(line_of(overview, 8), "5 m below its top"));
+    TEST_ASSERT_EQUAL_STRING("none", line_of(overview, 9).c_str());
+    overview.status.obstacles = 0;
+    overview.status.detector_alive = true; /* but no pose */
+    TEST_ASSERT_TRUE(says(line_of(overview, 6), "NOT KNOWN"));
+    overview.status.pose_alive = true;
+    TEST_ASSERT_FALSE(says(line_of(overview, 6), "NOT KNOWN"));
+}
+
+static void it_starts_once_and_explains_itself() {
+    TEST_ASSERT_NOT_EQUAL(0, goe_command("start"));
+    TEST_ASSERT_EQUAL(0, goe_command(""));
+    TEST_ASSERT_EQUAL(0, goe_command("dance"));
+    TEST_ASSERT_TRUE(says(standin::console(), "unknown command"));
+    TEST_ASSERT_TRUE(says(standin::console(), "GOE_CAM_FX"));
+}
+
+int main() {
+    UNITY_BEGIN();
+    RUN_TEST(it_is_the_flight_layer_to_the_last_bit);
+    RUN_TEST(the_clocks_32_bits_may_wrap_in_flight);
+    RUN_TEST(statuses_come_ten_times_a_second);
+    RUN_TEST(an_image_that_is_too_new_waits_for_its_pose);
+    RUN_TEST(an_image_that_was_sent_in_the_future_waits_too);
+    RUN_TEST(an_image_that_no_pose_comes_for_is_given_up);
+    RUN_TEST(more_images_than_can_wait_cost_the_oldest);
+    RUN_TEST(an_image_that_comes_too_late_is_counted);
+    RUN_TEST(a_known_jump_keeps_the_track);
+    RUN_TEST(a_missed_reset_ends_the_track);
+    RUN_TEST(a_reset_of_the_heading_ends_the_track);
+    RUN_TEST(an_invalid_position_is_no_sample);
+    RUN_TEST(a_full_table_is_told);
+    RUN_TEST(two_obstacles_of_one_image_are_one_image);
+    RUN_TEST(a_distance_sensor_tells_the_ground);
+    RUN_TEST(a_distance_sensor_that_has_fallen_silent_tells_nothing);
+    RUN_TEST(a_dead_detector_is_not_clear);
+    RUN_TEST(without_an_attitude_the_status_still_comes);
+    RUN_TEST(a_clock_that_jumps_ends_nothing_for_long);
+    RUN_TEST(statuses_go_on_while_the_clock_is_set_back);
+    RUN_TEST(samples_that_go_back_in_time_begin_a_new_history);
+    RUN_TEST(a_change_in_flight_waits_for_the_end_of_the_tracks);
+    RUN_TEST(one_that_is_taken_back_waits_for_nothing);
+    RUN_TEST(what_costs_no_track_takes_effect_at_once);
+    RUN_TEST(the_range_of_the_sectors_is_a_parameter);
+    RUN_TEST(a_bad_parameter_leaves_the_old_ones);
+    RUN_TEST(without_a_camera_nothing_is_done_and_said_so);
+    RUN_TEST(all_parameters_are_marked_as_used);
+    RUN_TEST(the_status_is_told_in_words);
+    RUN_TEST(the_words_are_those_of_the_numbers);
+    RUN_TEST(it_starts_once_and_explains_itself);
+    return UNITY_END();
+}

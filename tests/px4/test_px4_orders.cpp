@@ -1,0 +1,467 @@
+/* Orders of the module of port/px4: which commands PX4 is given, and when none. SPDX-License-Identifier: MIT */
+#include "px4_flight.hpp"
+
+#include <uORB/topics/position_setpoint_triplet.h>
+
+#include "GoeOrders.hpp"
+
+static constexpr uint8_t MISSION = vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
+static constexpr uint8_t HOLD = vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER;
+static constexpr uint8_t LAND = vehicle_status_s::NAVIGATION_STATE_AUTO_LAND;
+static constexpr uint8_t POSITION = vehicle_status_s::NAVIGATION_STATE_POSCTL;
+static constexpr uint8_t RETURN = vehicle_status_s::NAVIGATION_STATE_AUTO_RTL;
+static constexpr int32_t REPOSITION = GOE_REACT_REPOSITION;
+static constexpr int32_t ALL = GOE_REACT_REPOSITION | GOE_REACT_GO_AROUND;
+
+static GoeOrders orders;
+static GoeOrders::Vehicle vehicle;
+static goe_flight_assessment_t assessment;
+static vehicle_command_s command;
+
+extern "C" void setUp(void) {
+    orders = GoeOrders();
+    vehicle = GoeOrders::Vehicle{true, MISSION, true, true, true, 489.f, 1000000u};
+    memset(&assessment, 0, sizeof assessment);
+    assessment.action = GOE_FLIGHT_LEFT;
+    assessment.target_ned_m[0] = 100.f;
+    assessment.target_ned_m[1] = -40.f;
+    assessment.target_ned_m[2] = -30.f;
+    assessment.target_lat_e7 = 474000000;
+    assessment.target_lon_e7 = -85000000;
+}
+extern "C" void tearDown(void) {}
+
+/* 100 ms on. */
+static bool follow(int32_t react = ALL, bool resume = false) {
+    vehicle.now_us += 100000u;
+    return orders.follow(assessment, vehicle, react, resume, command);
+}
+
+static void answer(uint8_t result) {
+    vehicle_command_ack_s ack{};
+    ack.command = command.command;
+    ack.result = result;
+    orders.take(ack);
+}
+
+static void accept(uint8_t mode) {
+    answer(vehicle_command_ack_s::VEHICLE_CMD_RESULT_ACCEPTED);
+    vehicle.nav_state = mode;
+}
+
+static void a_place_is_a_reposition_with_change_of_mode() {
+    TEST_ASSERT_TRUE(follow());
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
+    CHECK_CLOSE(0, 1, command.param2);
+    TEST_ASSERT_TRUE(std::fabs(command.param5 - 47.4) < 1e-9 && std::fabs(command.param6 + 8.5) < 1e-9);
+    CHECK_CLOSE(0, 519, command.param7);
+    TEST_ASSERT_TRUE(__builtin_isnan(command.param4));
+    TEST_ASSERT_TRUE(orders.flown());
+}
+
+static void without_an_altitude_it_keeps_its_own() {
+    vehicle.altitude_known = false;
+    TEST_ASSERT_TRUE(follow());
+    TEST_ASSERT_TRUE(__builtin_isnan(command.param7));
+}
+
+static void nothing_is_given_unless_all_allows_it() {
+    TEST_ASSERT_FALSE(follow(0));
+    TEST_ASSERT_FALSE(follow(GOE_REACT_GO_AROUND));
+    vehicle.armed = false;
+    TEST_ASSERT_FALSE(follow());
+    vehicle.armed = true;
+    vehicle.origin_known = false;
+    TEST_ASSERT_FALSE(follow());
+    vehicle.origin_known = true;
+    for (const uint8_t mode : {POSITION, RETURN, LAND}) {
+        vehicle.nav_state = mode;
+        TEST_ASSERT_FALSE(follow());
+    }
+    TEST_ASSERT_FALSE(orders.flown());
+    vehicle.nav_state = MISSION;
+    TEST_ASSERT_TRUE(follow());
+}
+
+static void it_is_repeated_until_it_is_answered() {
+    TEST_ASSERT_TRUE(follow());
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+}
+
+static void a_refusal_is_counted_and_repeated() {
+    TEST_ASSERT_TRUE(follow());
+    answer(vehicle_command_ack_s::VEHICLE_CMD_RESULT_DENIED);
+    TEST_ASSERT_EQUAL(1, orders.refused());
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+    TEST_ASSERT_TRUE(follow());
+}
+
+static void a_target_that_moves_is_sent_anew() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    assessment.target_ned_m[1] -= 4.f;
+    TEST_ASSERT_FALSE(follow());
+    assessment.target_ned_m[1] -= 2.f;
+    TEST_ASSERT_TRUE(follow());
+    TEST_ASSERT_FALSE(follow());
+    assessment.target_ned_m[2] -= 6.f; /* upwards, too */
+    TEST_ASSERT_TRUE(follow());
+    answer(vehicle_command_ack_s::VEHICLE_CMD_RESULT_IN_PROGRESS);
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+}
+
+static void another_action_is_sent_at_once() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    assessment.action = GOE_FLIGHT_HOLD;
+    TEST_ASSERT_TRUE(follow());
+}
+
+static void a_pilot_is_not_fought() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    vehicle.nav_state = POSITION;
+    TEST_ASSERT_FALSE(follow());
+    TEST_ASSERT_TRUE(orders.overruled());
+    vehicle.nav_state = MISSION; /* also when he goes on with the mission */
+    assessment.target_ned_m[0] += 100.f;
+    TEST_ASSERT_FALSE(follow());
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    TEST_ASSERT_FALSE(orders.overruled());
+    assessment.action = GOE_FLIGHT_RIGHT; /* the next order is another one */
+    TEST_ASSERT_TRUE(follow());
+}
+
+static void a_pilot_who_goes_on_with_the_mission_is_not_fought() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    vehicle.nav_state = MISSION;
+    assessment.target_ned_m[0] += 100.f;
+    TEST_ASSERT_FALSE(follow());
+    TEST_ASSERT_TRUE(orders.overruled());
+}
+
+/* What the order before has led to is not what this one has. */
+static void the_next_order_begins_anew() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(MISSION);
+    assessment.action = GOE_FLIGHT_LEFT;
+    TEST_ASSERT_TRUE(follow());
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+    TEST_ASSERT_FALSE(orders.overruled());
+    TEST_ASSERT_TRUE(follow());
+}
+
+static void an_order_that_stood_while_a_pilot_flew_is_given_in_the_mission() {
+    vehicle.nav_state = POSITION;
+    TEST_ASSERT_FALSE(follow());
+    vehicle.nav_state = MISSION;
+    TEST_ASSERT_TRUE(follow());
+    TEST_ASSERT_FALSE(follow());
+    TEST_ASSERT_FALSE(orders.overruled());
+}
+
+static void the_mission_is_resumed_if_that_is_wanted() {
+    for (const bool wanted : {false, true}) {
+        setUp();
+        TEST_ASSERT_TRUE(follow());
+        accept(HOLD);
+        TEST_ASSERT_FALSE(follow());
+        assessment.action = GOE_FLIGHT_NONE;
+        TEST_ASSERT_EQUAL(wanted, follow(ALL, wanted));
+    }
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, command.command);
+    CHECK_CLOSE(0, 4, command.param2);
+    CHECK_CLOSE(0, 4, command.param3);
+    int asked = 1;
+    for (int i = 0; i < 100; i++) {
+        asked += follow(ALL, true) ? 1 : 0;
+    }
+    TEST_ASSERT_EQUAL(5, asked); /* unanswered */
+}
+
+static void a_resume_that_is_answered_is_not_repeated() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(MISSION);
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow(ALL, true));
+    }
+}
+
+/* What is sent in Hold, as the target moves, does not make Hold the mode to go back to. */
+static void the_mission_is_resumed_after_a_target_that_moved() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    assessment.target_ned_m[0] += 20.f;
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+}
+
+/* Given up, or only turned away from: it may lie ahead in the mission. */
+static void the_mission_is_not_resumed_before_the_obstacle_is_passed() {
+    for (const bool holds : {false, true}) {
+        setUp();
+        assessment.action = holds ? GOE_FLIGHT_HOLD : GOE_FLIGHT_RIGHT;
+        TEST_ASSERT_TRUE(follow(ALL, true));
+        accept(HOLD);
+        TEST_ASSERT_FALSE(follow(ALL, true));
+        vehicle.obstacle_known = holds;
+        assessment.action = GOE_FLIGHT_NONE;
+        for (int i = 0; i < 20; i++) {
+            TEST_ASSERT_FALSE(follow(ALL, true));
+        }
+    }
+}
+
+static void the_slot_is_that_of_the_latest_order() {
+    TEST_ASSERT_EQUAL(-1, orders.slot());
+    assessment.avoided = 2;
+    (void)follow();
+    assessment.action = GOE_FLIGHT_NONE;
+    assessment.avoided = -1;
+    (void)follow();
+    TEST_ASSERT_EQUAL(2, orders.slot());
+    assessment.action = GOE_FLIGHT_LEFT; /* that has given its obstacle up */
+    (void)follow();
+    TEST_ASSERT_EQUAL(-1, orders.slot());
+}
+
+static void an_order_in_hold_resumes_nothing() {
+    vehicle.nav_state = HOLD;
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_FALSE(follow(ALL, true));
+}
+
+static void a_go_around_is_given_in_landing() {
+    assessment.action = GOE_FLIGHT_GO_AROUND;
+    vehicle.nav_state = LAND;
+    vehicle.origin_known = false;
+    TEST_ASSERT_FALSE(follow(REPOSITION));
+    TEST_ASSERT_TRUE(follow());
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
+    accept(LAND);
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+    for (const uint8_t mode : {HOLD, LAND}) { /* where it leads to is PX4's affair */
+        vehicle.nav_state = mode;
+        TEST_ASSERT_FALSE(follow());
+        TEST_ASSERT_FALSE(orders.overruled());
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ the whole, flown */
+
+static Px4Flight flight;
+static vehicle_command_s last;
+
+static constexpr uint8_t SYSTEM = 1, GROUND_STATION = 255;
+
+/* Towards a mast, or in landing a truck. */
+static void start_towards_one(uint8_t mode, bool lands, int32_t react) {
+    flight.begin();
+    standin::set("GOE_REACT", react);
+    if (lands) {
+        flight.flown.scene.altitude_m = 9.0; /* over a truck of 2.5 m: less than GOE_CLEAR */
+    } else {
+        scene_make_cylinder(&flight.flown.scene);
+    }
+    flight.flown.scene.x0_m = 0.5;
+    flight.flown.scene.z0_m = 260.0;
+    flight.position.xy_global = flight.position.z_global = true;
+    flight.position.ref_lat = 47.4;
+    flight.position.ref_lon = 8.5;
+    flight.position.ref_alt = 489.f;
+    flight.follows = !lands;
+    position_setpoint_triplet_s setpoint{};
+    setpoint.current.valid = true;
+    setpoint.current.type =
+        lands ? position_setpoint_s::SETPOINT_TYPE_LAND : position_setpoint_s::SETPOINT_TYPE_POSITION;
+    standin::publish(ORB_ID(position_setpoint_triplet), &setpoint);
+    flight.set_mode(true, mode);
+}
+
+/* PX4 accepts what it is given, and tells `asker` so. */
+static void obey(const vehicle_command_s &one, uint8_t asker) {
+    vehicle_command_ack_s ack{};
+    ack.command = one.command;
+    ack.target_system = asker;
+    standin::publish(ORB_ID(vehicle_command_ack), &ack);
+    if (one.command == vehicle_command_s::VEHICLE_CMD_DO_REPOSITION) {
+        flight.set_mode(true, HOLD);
+    } else if (one.command == vehicle_command_s::VEHICLE_CMD_DO_SET_MODE) {
+        flight.set_mode(true, MISSION);
+    }
+}
+
+/* Returns how many commands there were; the first and the last one are kept. */
+static unsigned fly_on(double seconds, uint8_t asker = SYSTEM) {
+    unsigned commands = 0;
+    for (int i = 0; i < static_cast<int>(seconds * FLOWN_POSE_HZ); i++) {
+        const unsigned before = standin::published(ORB_ID(vehicle_command));
+        flight.step();
+        if (standin::published(ORB_ID(vehicle_command)) > before) {
+            TEST_ASSERT_TRUE(standin::latest(ORB_ID(vehicle_command), 0, &last));
+            command = commands == 0 ? last : command;
+            obey(last, asker);
+            commands++;
+        }
+    }
+    return commands;
+}
+
+static unsigned fly_towards_one(uint8_t mode, bool lands, double seconds, int32_t react) {
+    start_towards_one(mode, lands, react);
+    return fly_on(seconds);
+}
+
+static void no_command_is_ever_given_by_default() {
+    TEST_ASSERT_EQUAL(0, fly_towards_one(MISSION, false, 14.0, 0));
+    TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action); /* it is told */
+    TEST_ASSERT_FALSE(flight.status().flown);
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("(told only)") != std::string::npos);
+    flight.end();
+}
+
+static void a_mast_on_the_course_is_passed_aside() {
+    TEST_ASSERT_GREATER_THAN(0, fly_towards_one(MISSION, false, 13.0, ALL));
+    TEST_ASSERT_TRUE(flight.status().flown);
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
+    TEST_ASSERT_EQUAL(1, command.target_system);
+    CHECK_CLOSE(2.0, 489.f - flight.position.z, command.param7); /* its own height, in level flight */
+    TEST_ASSERT_EQUAL(1, command.target_component);
+    TEST_ASSERT_EQUAL(1, command.source_component);
+    TEST_ASSERT_FALSE(command.from_external);
+    const double east_m = (command.param6 - 8.5) * 111194.9 * std::cos(47.4 * 0.0174532925);
+    check_report("target aside of the course, m", std::fabs(east_m));
+    TEST_ASSERT_TRUE(std::fabs(east_m) > 15.0 && std::fabs(east_m) < 200.0); /* margin; with the loiter circle */
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("goe: obstacle in") != std::string::npos);
+    flight.end();
+}
+
+static void it_flies_on_in_its_mission_past_the_mast() {
+    start_towards_one(MISSION, false, ALL);
+    standin::set("GOE_RESUME", 1);
+    TEST_ASSERT_GREATER_THAN(1, fly_on(20.0));
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, last.command);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("goe: the order ends") != std::string::npos);
+    flight.end();
+}
+
+static void the_answer_to_a_ground_station_is_none_to_the_module() {
+    start_towards_one(MISSION, false, ALL);
+    const unsigned answered = fly_on(13.0);
+    flight.end();
+    start_towards_one(MISSION, false, ALL);
+    TEST_ASSERT_GREATER_THAN(answered + 2, fly_on(13.0, GROUND_STATION));
+    flight.end();
+}
+
+/* A reset of the heading ends the track; the order stands for GOE_HOLD after that, and so long settings wait. Where the obstacle is
+ * is not known then: no way back into the mission. */
+static void an_order_outlives_its_track() {
+    start_towards_one(MISSION, false, ALL);
+    standin::set("GOE_RESUME", 1);
+    TEST_ASSERT_GREATER_THAN(0, fly_on(10.0));
+    flight.flown.sees = false;
+    flight.quat_reset_counter++;
+    (void)fly_on(0.2);
+    TEST_ASSERT_EQUAL(0, flight.status().obstacles);
+    TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+    standin::set("GOE_MARGIN", 40.f);
+    (void)fly_on(1.2);
+    TEST_ASSERT_TRUE(flight.status().settings_waiting);
+    TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+    flight.follows = false;
+    (void)fly_on(2.0);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+    TEST_ASSERT_FALSE(flight.status().settings_waiting);
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, last.command);
+    flight.end();
+}
+
+static void the_status_tells_of_a_pilot_and_of_refusals() {
+    start_towards_one(MISSION, false, ALL);
+    TEST_ASSERT_GREATER_THAN(0, fly_on(10.0, GROUND_STATION));
+    TEST_ASSERT_FALSE(flight.status().overruled);
+    vehicle_command_ack_s ack{};
+    ack.command = vehicle_command_s::VEHICLE_CMD_DO_REPOSITION;
+    ack.target_system = SYSTEM;
+    ack.result = vehicle_command_ack_s::VEHICLE_CMD_RESULT_DENIED;
+    standin::publish(ORB_ID(vehicle_command_ack), &ack);
+    flight.fly(0.2);
+    TEST_ASSERT_EQUAL(1, flight.status().commands_refused);
+    flight.set_mode(true, POSITION);
+    (void)fly_on(0.3);
+    TEST_ASSERT_TRUE(flight.status().overruled);
+    TEST_ASSERT_EQUAL(0, goe_command("status"));
+    TEST_ASSERT_TRUE(standin::console().find(", overruled, needs") != std::string::npos);
+    flight.end();
+}
+
+static void an_approach_is_broken_off() {
+    TEST_ASSERT_GREATER_THAN(0, fly_towards_one(LAND, true, 14.0, ALL));
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
+    flight.end();
+}
+
+int main() {
+    UNITY_BEGIN();
+    RUN_TEST(a_place_is_a_reposition_with_change_of_mode);
+    RUN_TEST(without_an_altitude_it_keeps_its_own);
+    RUN_TEST(nothing_is_given_unless_all_allows_it);
+    RUN_TEST(it_is_repeated_until_it_is_answered);
+    RUN_TEST(a_refusal_is_counted_and_repeated);
+    RUN_TEST(a_target_that_moves_is_sent_anew);
+    RUN_TEST(another_action_is_sent_at_once);
+    RUN_TEST(a_pilot_is_not_fought);
+    RUN_TEST(a_pilot_who_goes_on_with_the_mission_is_not_fought);
+    RUN_TEST(the_next_order_begins_anew);
+    RUN_TEST(an_order_that_stood_while_a_pilot_flew_is_given_in_the_mission);
+    RUN_TEST(the_mission_is_resumed_if_that_is_wanted);
+    RUN_TEST(a_resume_that_is_answered_is_not_repeated);
+    RUN_TEST(the_mission_is_resumed_after_a_target_that_moved);
+    RUN_TEST(the_mission_is_not_resumed_before_the_obstacle_is_passed);
+    RUN_TEST(the_slot_is_that_of_the_latest_order);
+    RUN_TEST(an_order_in_hold_resumes_nothing);
+    RUN_TEST(a_go_around_is_given_in_landing);
+    RUN_TEST(no_command_is_ever_given_by_default);
+    RUN_TEST(a_mast_on_the_course_is_passed_aside);
+    RUN_TEST(it_flies_on_in_its_mission_past_the_mast);
+    RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
+    RUN_TEST(an_order_outlives_its_track);
+    RUN_TEST(the_status_tells_of_a_pilot_and_of_refusals);
+    RUN_TEST(an_approach_is_broken_off);
+    return UNITY_END();
+}
