@@ -37,7 +37,7 @@
     X(order) X(violation) X(hazard_s) X(hazard_sd_s) X(miss_m) X(miss_sd_m) X(clearance_m) X(clearance_sd_m) X(has_clearance)
 /* clang-format on */
 
-/* The version of the library, "0.2.0". */
+/* The version of the library, "0.3.0". */
 const char *live_version(void);
 
 /* Names one after the other, each with its ending zero; an empty one ends the list. */

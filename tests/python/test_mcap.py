@@ -87,7 +87,7 @@ def test_it_reads_back_as_the_csv_says(folder: Path, tmp_path: Path, capsys: pyt
                 for column, text in row.items():
                     if text == "":
                         assert column not in content, column
-                    elif column in ("status", "model"):
+                    elif column in ("status", "model", "reason"):
                         assert content[column] == text
                     else:
                         assert content[column] == float(text), column

@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
 WORDS = Words('NAME "N" <maintainer@goe.invalid>', "https://goe.invalid/?a=1&b=2")
 HEADINGS = ["From this tree", "Into a project", "Parts", "How it is checked", "What is missing"]
-PAGES = ("arduino", "conan", "debian", "esp-idf", "pkgconfig", "platformio", "rust")
+PAGES = ("arduino", "conan", "debian", "esp-idf", "pkgconfig", "platformio", "python", "rust")
 
 # Of Arduino's library specification.
 ARDUINO_CATEGORIES = (

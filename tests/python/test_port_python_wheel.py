@@ -68,7 +68,7 @@ def test_the_sdist_has_every_source_and_no_link(sdist: Path, tmp_path: Path) -> 
         members = {member.name.partition("/")[2]: member for member in archive.getmembers()}
         assert all(member.isreg() for member in members.values())
         for prefix, folder in (("csrc/lib", "lib"), ("csrc/flight", "port/flight")):
-            names = FACTS.files(folder, ".c") + FACTS.files(folder, ".h")
+            names = FACTS.files(folder, (".c",)) + FACTS.files(folder, (".h",))
             for name in names:
                 packed = archive.extractfile(members[f"{prefix}/{name}"])
                 assert packed is not None and packed.read() == (ROOT / folder / name).read_bytes()

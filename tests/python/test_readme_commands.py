@@ -83,6 +83,9 @@ class By:
 RUN_BY = {
     "tools/test.sh": By(".ci/run", "tools/test.sh"),
     "cmake --install": By("tests/CMakeLists.txt", "--install"),
+    "cmake --install build": By("tests/python/test_install.py", '"cmake", "--install", BUILD'),
+    "build/port/examples/example_minimal": By("tests/examples/CMakeLists.txt", "add_test(NAME example_"),
+    "cc -Ilib ...": By("tests/python/test_examples.py", 'r"^cc '),
     "cmake -S . -B build-deb ...": By("tests/python/test_packages_hosts.py", "(cmake .*)"),
     "cmake --build build-deb": By("tests/python/test_packages_hosts.py", "(cmake .*)"),
     "cmake --build build-deb --target package": By(

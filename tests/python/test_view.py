@@ -29,7 +29,7 @@ COLUMNS = {  # of goe_replay: those of the page
 @pytest.fixture(autouse=True)
 def built() -> None:
     try:
-        library.library_path()
+        library.ready()
     except FileNotFoundError as error:
         pytest.skip(str(error))
 

@@ -41,7 +41,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 def make_page(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
     """Writes the page of a log, once for each name; the log lies beside it."""
     try:
-        library.library_path()
+        library.ready()
     except FileNotFoundError as error:
         pytest.skip(str(error))
     pages: dict[str, Path] = {}

@@ -26,7 +26,7 @@ MOST_KB = 4000.0
 @pytest.fixture(autouse=True)
 def built() -> None:
     try:
-        library.library_path()
+        library.ready()
     except FileNotFoundError as error:
         pytest.skip(str(error))
 
@@ -80,9 +80,9 @@ def test_truth_of_its_own_and_truth_that_is_not_there(tmp_path: Path) -> None:
         (["LOG", "--id", "9"], "no obstacle 9; there are 1"),
         (["LOG", "--out", "LOG/frames.csv"], "the output would replace the log"),
         (["LOG", "--out", "LOG"], "is a folder"),
-        (["LOG", "--set", "detector.nothing=1"], "setting detector.nothing = 1: unknown"),
-        (["LOG", "--set", "detector.point_px=-1"], "refuses the setting detector.point_px"),
-        (["LOG", "--window", "999"], "refuses the setting window.points"),
+        (["LOG", "--set", "detector.nothing=1"], "detector.nothing: no such setting"),
+        (["LOG", "--set", "detector.point_px=-1"], "detector.point_px = -1: not within 0.05 to 100 px"),
+        (["LOG", "--window", "999"], "window.points = 999: not within 3 to 64 images"),
     ],
 )  # fmt: skip
 def test_bad_usage(change: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

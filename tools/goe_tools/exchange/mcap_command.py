@@ -138,7 +138,7 @@ def messages(log: ObservationLog, estimates: Estimates) -> Iterator[Message]:
 
 def write_mcap(path: Path, log: ObservationLog, estimates: Estimates) -> dict[str, int]:
     """Messages written, by topic."""
-    columns: dict[str, list[str]] = {"goe.Estimate": ["n_used", *NUMBERS]}
+    columns: dict[str, list[str]] = {"goe.Estimate": ["n_used", *NUMBERS, "suspect"]}
     if log.frames:
         columns["goe.Observation"] = list(observation_numbers(log.frames[0]))
     count: dict[str, int] = {}

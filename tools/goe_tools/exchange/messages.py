@@ -66,7 +66,7 @@ SCHEMAS = {
 
 def plain_schema(names: list[str]) -> Json:
     """Of a message with these numbers, a time stamp and words."""
-    words = {name: TEXT for name in ("status", "model")}
+    words = {name: TEXT for name in ("status", "model", "reason")}
     return _object(timestamp=TIME, **words, **{name: NUMBER for name in names if name not in words})
 
 
@@ -164,6 +164,8 @@ def obstacle_message(frame: Frame, estimate: Estimate, heading_deg: float, groun
     region = _vector(*spread, REGION_HEIGHT_M)
     cylinders.append(_shape(ground, 90.0, region, _colour(colour, REGION_ALPHA), True))
     told = {"model": estimate.model, "status": estimate.status}
+    if estimate.suspect:
+        told["suspect"] = estimate.reason
     return _update([_entity(frame.t_s, f"obstacle {frame.id}", cubes, cylinders, told)])
 
 
@@ -183,7 +185,8 @@ def truth_message(t_s: float, truth: Truth) -> Json:
 
 def estimate_message(t_s: float, estimate: Estimate) -> Json:
     words = {"timestamp": _time(t_s), "status": estimate.status, "model": estimate.model, "n_used": estimate.n_used}
-    return {**words, **estimate.values}
+    doubt = {"suspect": int(estimate.suspect), "reason": estimate.reason}  # a plot takes numbers
+    return {**words, **estimate.values, **doubt}
 
 
 def observation_numbers(frame: Frame) -> dict[str, float | None]:
