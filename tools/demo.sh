@@ -27,11 +27,18 @@ echo
 orders=build/avoid.csv
 build/sim_host/goe_avoid --runs 20 --csv $orders
 echo
-.venv/bin/python -m goe_tools report $campaign --table --out build/report.html --avoid $orders
+goals=build/goals.json
+.venv/bin/python -m goe_tools goals --quick --only early,kitti,attack --json $goals >build/goals.txt
+tail -n 1 build/goals.txt
+echo
+.venv/bin/python -m goe_tools report $campaign --table --out build/report.html --avoid $orders --goals $goals \
+    --approach tests/data/corner --rare tests/data/rare_events.json
+.venv/bin/python -m goe_tools view tests/data/corner --out build/view.html
 echo
 echo "Every image's estimate of the replay: $root/$out"
 echo "The campaign's statistics:            $root/$campaign/cases.csv"
 echo "Every run of the orders:              $root/$orders"
 echo "The report:                           $root/build/report.html"
+echo "The replay, with a slider over time:  $root/build/view.html"
 echo "More tools:                           . .venv/bin/activate, then python -m goe_tools --help"
 echo "Every promised figure, in minutes:    .venv/bin/python -m goe_tools goals --quick"

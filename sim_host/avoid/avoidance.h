@@ -46,7 +46,8 @@ typedef struct {
     double ahead_s;             /* the first order came this long before the obstacle would be reached */
     int suspect, assessed;      /* assessments with a position, until the first order */
     double height_gained_m;     /* highest over the path */
-    bool confident; /* AVOID_WRONG_TIMES assessments in a row had an obstacle's middle more than AVOID_WRONG_SIGMAS of its
+    bool
+        confident; /* AVOID_WRONG_TIMES assessments in a row had an obstacle's middle more than AVOID_WRONG_SIGMAS of its
                                    own sigmas off, and nothing said that it was suspect */
 } avoid_outcome_t;
 

@@ -78,6 +78,7 @@ class Campaign:
     goals: Goals | None = None
     avoid: Avoid | None = None  # what goe_avoid wrote
     rare: Record | None = None  # what the rare command wrote
+    approach: Path | None = None  # a log to begin the page with
 
     def series(self, case: int, model: str) -> Cases | None:
         """The time series of a case of the paper's study (first seed), or None if it was not written."""
@@ -95,6 +96,7 @@ def read_campaign(
     goals: Path | None = None,
     avoid: Path | None = None,
     rare: Path | None = None,
+    approach: Path | None = None,
 ) -> Campaign:
     """Reads cases.csv and campaign.json, the goals' file, that of goe_avoid and the record of rare events if there are
     any. ``cases`` are the rows of one method."""
@@ -117,7 +119,7 @@ def read_campaign(
     return Campaign(
         folder, rows.select(method=method), _read_facts(folder / "campaign.json"), refined if len(refined) else None,
         read_goals(goals) if goals else None, read_avoid(avoid) if avoid else None,
-        read_record(rare) if rare else None,
+        read_record(rare) if rare else None, approach,
     )  # fmt: skip
 
 
