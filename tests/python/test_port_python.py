@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import dataclasses
 import doctest
+import importlib
 import pickle
 import re
 import runpy
@@ -68,7 +69,7 @@ def test_another_source_is_another_fingerprint(name: str, monkeypatch: pytest.Mo
 
 
 def test_a_package_of_other_sources_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(goe, "FINGERPRINT", "0" * 64)
+    monkeypatch.setattr(importlib.import_module("goe"), "FINGERPRINT", "0" * 64)
     library.package.cache_clear()
     try:
         with pytest.raises(FileNotFoundError, match=r"other sources.*tools/setup\.sh"):

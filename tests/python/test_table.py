@@ -56,7 +56,7 @@ def test_what_it_says(estimates: Path, tmp_path: Path, capsys) -> None:
 
 @pytest.mark.parametrize(
     ("doubt", "words"),
-    [("1,moves", "suspect: moves"), ("1,convention", "suspect: inputs disagree"), ("0,late", "poses late")],
+    [("1,moves", "suspect: moves"), ("1,convention", "suspect: convention"), ("0,late", "poses late")],
 )
 def test_a_doubt_is_told(doubt: str, words: str, tmp_path: Path, capsys) -> None:
     path = tmp_path / "estimates.csv"

@@ -17,7 +17,7 @@ DEFAULT_ROWS = 12
 NOTHING = "-"
 MODEL_WORDS = {"disc": "disc", "line": "front edge", "box": "box", "prism": "upright", "none": NOTHING}
 WIDTH_WORDS = {"disc": "diameter", "prism": "width across the line of sight"}
-REASON_WORDS = {"convention": "inputs disagree", "late": "poses late"}
+REASON_WORDS = {"late": "poses late"}
 HINT = (
     "Ahead and aside: from the aircraft to the obstacle's reference point, along and across the direction of flight "
     "(disc: its centre; front edge, box: the middle of the front edge). Turned: the side edge against the direction of "
@@ -181,6 +181,6 @@ def run(arguments: argparse.Namespace) -> int:
     truths = read_truth(arguments.truth) if arguments.truth else {}
     console = Console(highlight=False)
     if not console.is_terminal:
-        console = Console(width=120, highlight=False)
+        console = Console(width=140, highlight=False)
     print_tables(console, rows, truths, arguments.rows)
     return 0
