@@ -481,3 +481,9 @@ def test_page_begins_with_what_a_pilot_understands(campaign: Campaign, tmp_path:
     assert order == sorted(order)
     assert "data:image/png;base64," in section_of(text, "approach")
     assert f"In {flights(record.counts):,} simulated flights" in section_of(text, "rare")
+
+
+def test_the_head_tells_the_counts_that_goe_campaign_printed(campaign: Campaign) -> None:
+    counted = replace(campaign, facts={**campaign.facts, "flights": 1346, "runs": 2874, "frames": 229218})
+    text = page.render_page(counted, [])
+    assert all(f"<b>{number}</b>" in text for number in ("1,346", "2,874", "229,218"))
