@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "avoid_text.h"
+#include "option_fault.h"
 #include "output_file.h"
 
 #define PROGRAM "goe_avoid"
@@ -218,11 +219,17 @@ static bool run_options(poptContext context) {
         puts(PROGRAM " " GOE_VERSION);
         return true;
     }
-    if (said < -1 || poptPeekArg(context) != NULL || runs < 1 || runs > RUNS_MAX || seed < 0 ||
-        !(delay_s >= 0.0 && delay_s <= 2.0)) {
-        (void)fprintf(stderr, PROGRAM ": %s\n",
-                      said < -1 ? poptStrerror(said) : "runs: 1 to 100000; seed: 0 or more; delay: 0 to 2 s");
-        return false;
+    if (said < -1) {
+        const char *bad = poptBadOption(context, POPT_BADOPTION_NOALIAS);
+        char reason[OPTION_FAULT_MAX];
+        option_fault(reason, options, bad, said);
+        return give_up(bad, reason);
+    }
+    if (poptPeekArg(context) != NULL) {
+        return give_up(poptPeekArg(context), "options only; see --help");
+    }
+    if (runs < 1 || runs > RUNS_MAX || seed < 0 || !(delay_s >= 0.0 && delay_s <= 2.0)) {
+        return give_up("--runs is 1 to 100000, --seed 0 or more, --delay 0 to 2 s", "out of range");
     }
     return csv != NULL ? print_and_write() : print_tables(NULL);
 }

@@ -17,6 +17,7 @@
 #include "campaign_text.h"
 #include "case_run.h"
 #include "case_statistics.h"
+#include "option_fault.h"
 #include "progress.h"
 #include "work_pool.h"
 
@@ -377,22 +378,7 @@ static void print_help(poptContext context) {
         "\nExit status: 0 done; 2 bad usage or DIR cannot be written, then it is as it was.");
 }
 
-/* The option whose value is bad, where popt names the value alone. */
-static const char *bad_option(poptContext context, int argc, char **argv) {
-    const char *bad = poptBadOption(context, 0);
-    for (int i = 2; i < argc; i++) {
-        if (strcmp(argv[i], bad) == 0 && bad[0] != '-' && argv[i - 1][0] == '-') {
-            return argv[i - 1];
-        }
-    }
-    return bad;
-}
-
-static bool run(poptContext context, options_t *options, int argc, char **argv) {
-    const int result = poptGetNextOpt(context);
-    if (result < -1) {
-        return complain(bad_option(context, argc, argv), poptStrerror(result));
-    }
+static bool run(poptContext context, options_t *options) {
     if (poptPeekArg(context) != NULL) {
         return complain(poptPeekArg(context), "options only");
     }
@@ -424,12 +410,18 @@ int main(int argc, char **argv) {
     const char **arguments = (void *)argv; /* popt reads them only */
     poptContext context = poptGetContext(PROGRAM, argc, arguments, table, 0);
     bool done = false;
+    const int result = context == NULL ? 0 : poptGetNextOpt(context);
     if (context == NULL) {
         (void)give_up("options", "out of memory");
+    } else if (result < -1) {
+        const char *bad = option_blamed(context, argc, arguments);
+        char reason[OPTION_FAULT_MAX];
+        option_fault(reason, table, bad, result);
+        (void)complain(bad, reason);
     } else {
-        done = run(context, &options, argc, argv);
-        (void)poptFreeContext(context);
+        done = run(context, &options);
     }
+    (void)poptFreeContext(context);
     free(options.out_text);
     free(options.studies_text);
     return done ? EXIT_DONE : EXIT_FAILED;

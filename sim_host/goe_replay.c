@@ -12,6 +12,7 @@
 #include "frame_reader.h"
 #include "goe.h"
 #include "input_error.h"
+#include "option_fault.h"
 #include "output_file.h"
 #include "settings_text.h"
 #include "track_table.h"
@@ -110,10 +111,13 @@ static bool default_path(char **path, const char *directory, const char *name, c
     return true;
 }
 
-static bool parse_arguments(poptContext context, options_t *options) {
+static bool parse_arguments(poptContext context, const struct poptOption *table, options_t *options) {
     const int result = poptGetNextOpt(context);
     if (result < -1) {
-        return complain(poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(result));
+        const char *bad = poptBadOption(context, POPT_BADOPTION_NOALIAS);
+        char reason[OPTION_FAULT_MAX];
+        option_fault(reason, table, bad, result);
+        return complain(bad, reason);
     }
     if (options->help || options->version || options->settings) {
         return true;
@@ -155,7 +159,9 @@ static void print_help(poptContext context) {
     (void)puts(
         "\nDIR holds camera.ini and frames.csv. One row comes out for each row of frames.csv; a quantity that is not\n"
         "known is empty. The fields are named in the first line: metres, degrees, each quantity followed by its\n"
-        "one-sigma (..._sd_...).\n"
+        "one-sigma (..._sd_...). suspect is 1 where the track does not fit what it is taken for, and reason tells "
+        "why:\n"
+        "widen the margins then.\n"
         "\nMETHOD: refined, the square-root information filter over the whole track, by default; window, the paper's\n"
         "sliding window. NAME=VALUE: a setting of goe.h, which tells its meaning and range; by default");
     (void)settings_print(stdout, &defaults);
@@ -295,8 +301,8 @@ static int replay(const options_t *options) {
 
 /* ------------------------------------------------------------------------------------------------------------ main -- */
 
-static int run(poptContext context, options_t *options) {
-    if (!parse_arguments(context, options)) {
+static int run(poptContext context, const struct poptOption *table, options_t *options) {
+    if (!parse_arguments(context, table, options)) {
         return EXIT_BAD_INPUT;
     }
     if (!options->help && !options->version && !options->settings) {
@@ -323,7 +329,7 @@ int main(int argc, char **argv) {
         {"window", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &options.window, 0, "image points in the window", "N"},
         {"set", 0, POPT_ARG_ARGV, &options.set, 0, "change a setting; may be repeated", "NAME=VALUE"},
         {"residuals", 0, POPT_ARG_NONE, &options.residuals, 0,
-         "eleven columns more: nis, nis_rows, misfit, suspect and why, velocity, latency (refined)", NULL},
+         "nine columns more: nis, nis_rows, misfit, velocity, latency (refined)", NULL},
         {"out", 'o', POPT_ARG_STRING, &options.out, 0, "where to write the estimates; standard output by default",
          "FILE"},
         {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},
@@ -340,7 +346,7 @@ int main(int argc, char **argv) {
         return EXIT_BAD_INPUT;
     }
     poptSetOtherOptionHelp(context, "[OPTION...] DIR");
-    const int status = run(context, &options);
+    const int status = run(context, table, &options);
     (void)poptFreeContext(context);
     free_options(&options);
     return status;

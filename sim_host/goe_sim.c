@@ -14,13 +14,17 @@
 
 #include "flight_case.h"
 #include "log_writer.h"
+#include "option_fault.h"
 #include "scenario.h"
+#include "scenario_file.h"
 #include "text_numbers.h"
 #include "turbulence.h"
 
 #define EXIT_ENDED_EARLY 1
 #define EXIT_BAD_USAGE 2
 #define FAULT_SIZE 4608
+
+#define SEED_SHIFT 48
 
 #define NOT_SAID (-DBL_MAX)
 
@@ -35,6 +39,7 @@ enum {
     WORD_FLIGHT,
     WORD_FEATURES,
     WORD_SECOND_CAMERA,
+    WORD_SCENARIO,
     WORD_OUT,
     WORD_COUNT
 };
@@ -55,6 +60,7 @@ typedef struct {
 } arguments_t;
 
 static arguments_t given;
+static scenario_file_t scenario_file;
 
 #define NUMBER(name, variable, unit, text) {name, '\0', POPT_ARG_DOUBLE, &given.variable, 0, text, unit}
 #define WORD(name, number, form, text) {name, '\0', POPT_ARG_STRING, NULL, number, text, form}
@@ -139,6 +145,8 @@ static struct poptOption program_options[] = {
     {NULL, '\0', POPT_ARG_INCLUDE_TABLE, scene_options, 0, "Obstacle and flight:", NULL},
     {NULL, '\0', POPT_ARG_INCLUDE_TABLE, camera_options, 0, "Camera:", NULL},
     {NULL, '\0', POPT_ARG_INCLUDE_TABLE, noise_options, 0, "Sensors:", NULL},
+    WORD("scenario", WORD_SCENARIO, "FILE",
+         "flight and obstacles from a file, [flight] and [obstacle N]; options given here override it"),
     {"case", '\0', POPT_ARG_INT, &given.paper_case, 0, "start from this case of the paper's campaign", "N"},
     {"list-cases", '\0', POPT_ARG_NONE, &given.list_cases, 0, "list the paper's campaign and stop", NULL},
     WORD("out", WORD_OUT, "DIR", "folder of the log; replaced if it holds one"),
@@ -340,23 +348,50 @@ static int list_cases(void) {
     return fflush(stdout) == 0 ? EXIT_SUCCESS : complain("stdout", "write error");
 }
 
-static int fly_and_write(const flight_case_t *setup) {
+/* Past all obstacles. The flight ends with the first one that it ends at. Null, or why it could not be flown; the logs are to be
+ * freed either way. */
+static const char *fly_past_all(const flight_case_t *setup, flight_log_t *log, size_t *count) {
+    const char *reason = flight_case_fly(setup, log);
+    *count = reason == NULL ? 1 : 0;
+    for (int i = 0; i < scenario_file.neighbours && reason == NULL; i++) {
+        /* no other flight's seed: small numbers are what people give */
+        const uint64_t seed = setup->seed ^ ((uint64_t)(i + 1) << SEED_SHIFT);
+        reason = flight_log_of_neighbour(setup, log, &scenario_file.neighbour[i], seed, &log[*count]);
+        *count += reason == NULL ? 1u : 0u;
+    }
+    for (size_t i = 1; i < *count; i++) {
+        if (log[i].count < log[0].count) {
+            log[0].count = log[i].count;
+            log[0].ended = log[i].ended;
+        }
+    }
+    return reason;
+}
+
+static int write_logs(const flight_case_t *setup, const flight_logs_t *logs) {
     char fault[FAULT_SIZE];
-    flight_log_t log;
-    const char *reason = flight_case_fly(setup, &log);
-    if (reason != NULL) {
-        return complain("cannot fly", reason);
-    }
-    int status = EXIT_SUCCESS;
-    if (!log_write(given.word[WORD_OUT], setup, &log, fault, sizeof fault)) {
+    const flight_log_t *log = logs->log;
+    if (!log_write(given.word[WORD_OUT], setup, logs, fault, sizeof fault)) {
         (void)fprintf(stderr, "goe_sim: %s\n", fault);
-        status = EXIT_BAD_USAGE;
-    } else if (log.ended != NULL) {
-        const double last_s = log.count > 0 ? (double)log.frames[log.count - 1].time_us * 1e-6 : 0.0;
-        (void)fprintf(stderr, "goe_sim: %s: log ends at %g s: %s\n", given.word[WORD_OUT], last_s, log.ended);
-        status = EXIT_ENDED_EARLY;
+        return EXIT_BAD_USAGE;
     }
-    flight_log_free(&log);
+    if (log->ended == NULL) {
+        return EXIT_SUCCESS;
+    }
+    const double last_s = log->count > 0 ? (double)log->frames[log->count - 1].time_us * 1e-6 : 0.0;
+    (void)fprintf(stderr, "goe_sim: %s: log ends at %g s: %s\n", given.word[WORD_OUT], last_s, log->ended);
+    return EXIT_ENDED_EARLY;
+}
+
+static int fly_and_write(const flight_case_t *setup) {
+    flight_log_t log[1 + SCENARIO_NEIGHBOURS_MAX];
+    size_t count = 0;
+    const char *reason = fly_past_all(setup, log, &count);
+    const flight_logs_t logs = {log, count};
+    const int status = reason != NULL ? complain("cannot fly", reason) : write_logs(setup, &logs);
+    for (size_t i = 0; i < count; i++) {
+        flight_log_free(&log[i]);
+    }
     return status;
 }
 
@@ -385,17 +420,6 @@ static int fly(void) {
     return status;
 }
 
-/* The option whose value is bad, where popt names the value alone. */
-static const char *bad_option(poptContext context, int argc, const char **argv) {
-    const char *bad = poptBadOption(context, 0);
-    for (int i = 2; i < argc; i++) {
-        if (strcmp(argv[i], bad) == 0 && bad[0] != '-' && argv[i - 1][0] == '-') {
-            return argv[i - 1];
-        }
-    }
-    return bad;
-}
-
 static void free_words(void) {
     for (size_t i = 0; i < WORD_COUNT; i++) {
         free(given.word[i]);
@@ -413,15 +437,60 @@ static int read_options(poptContext context) {
     return option;
 }
 
+/* An option of a scenario file, as if it stood on the command line. */
+static bool take_option(const char *name, const char *value, char reason[SCENARIO_REASON_MAX]) {
+    static const char *const no_options[] = {"scenario", "out", "case", "list-cases", "help", "usage"};
+    for (size_t i = 0; i < sizeof no_options / sizeof no_options[0]; i++) {
+        if (strcmp(name, no_options[i]) == 0) {
+            (void)snprintf(reason, SCENARIO_REASON_MAX, "belongs on the command line");
+            return false;
+        }
+    }
+    char option[SCENARIO_REASON_MAX];
+    const int length = snprintf(option, sizeof option, "--%s=%s", name, value);
+    if (length < 0 || (size_t)length >= sizeof option) {
+        (void)snprintf(reason, SCENARIO_REASON_MAX, "too long");
+        return false;
+    }
+    const char *argv[] = {"goe_sim", option, NULL};
+    poptContext context = poptGetContext("goe_sim", 2, argv, program_options, 0);
+    const int error = read_options(context);
+    if (error < -1) {
+        option_fault_bare(reason, SCENARIO_REASON_MAX, program_options, name, error);
+    }
+    (void)poptFreeContext(context);
+    return error >= -1;
+}
+
+/* The file's options first, then once more those of the command line, which go before them. */
+static bool read_scenario(poptContext context) {
+    char fault[FAULT_SIZE];
+    char *path = given.word[WORD_SCENARIO];
+    given.word[WORD_SCENARIO] = NULL;
+    const bool read = scenario_file_read(path, take_option, &scenario_file, fault, sizeof fault);
+    free(path);
+    if (!read) {
+        (void)fprintf(stderr, "goe_sim: %s\n", fault);
+        return false;
+    }
+    poptResetContext(context);
+    return read_options(context) >= -1;
+}
+
 int main(int argc, const char **argv) {
     nothing_said();
     poptContext context = poptGetContext("goe_sim", argc, argv, program_options, 0);
     const int error = read_options(context);
     int status;
     if (error < -1) {
-        status = complain(bad_option(context, argc, argv), poptStrerror(error));
+        const char *bad = option_blamed(context, argc, argv);
+        char reason[OPTION_FAULT_MAX];
+        option_fault(reason, program_options, bad, error);
+        status = complain(bad, reason);
     } else if (poptPeekArg(context) != NULL) {
         status = complain(poptPeekArg(context), "options only; see --help");
+    } else if (given.word[WORD_SCENARIO] != NULL && !read_scenario(context)) {
+        status = EXIT_BAD_USAGE;
     } else {
         status = given.list_cases ? list_cases() : fly();
     }

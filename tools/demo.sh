@@ -8,10 +8,8 @@ cd "$root"
 
 tools/setup.sh --demo
 log=.cache/demo-build.log
-if [ ! -e build/CMakeCache.txt ]; then
-    cmake --preset default -DGOE_BUILD_TESTS=OFF >$log 2>&1 || { cat $log >&2; exit 1; }
-fi
-cmake --build build --target goe_replay goe_campaign goe_avoid goe_batch >$log 2>&1 || { cat $log >&2; exit 1; }
+cmake --preset default -DGOE_BUILD_HOST=ON >$log 2>&1 || { cat $log >&2; exit 1; }
+cmake --build build --target goe_replay goe_sim goe_campaign goe_avoid >$log 2>&1 || { cat $log >&2; exit 1; }
 
 echo "A recorded approach, replayed (simulated flight, whole pixels):"
 echo
@@ -29,10 +27,18 @@ echo
 orders=build/avoid.csv
 build/sim_host/goe_avoid --runs 20 --csv $orders
 echo
-.venv/bin/python -m goe_tools report $campaign --table --out build/report.html --avoid $orders
+goals=build/goals.json
+.venv/bin/python -m goe_tools goals --quick --only early,kitti,attack --json $goals >build/goals.txt
+tail -n 1 build/goals.txt
+echo
+.venv/bin/python -m goe_tools report $campaign --table --out build/report.html --avoid $orders --goals $goals \
+    --approach tests/data/corner --rare tests/data/rare_events.json
+.venv/bin/python -m goe_tools view tests/data/corner --out build/view.html
 echo
 echo "Every image's estimate of the replay: $root/$out"
 echo "The campaign's statistics:            $root/$campaign/cases.csv"
 echo "Every run of the orders:              $root/$orders"
 echo "The report:                           $root/build/report.html"
+echo "The replay, with a slider over time:  $root/build/view.html"
+echo "More tools:                           . .venv/bin/activate, then python -m goe_tools --help"
 echo "Every promised figure, in minutes:    .venv/bin/python -m goe_tools goals --quick"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Gets what the project needs: Debian packages, the Unity test framework, a Python environment in .venv.
+# Gets what the project needs: Debian packages, the Unity test framework, a Python environment in .venv with the package goe
+# of port/python, compiled from the present sources.
 #
 #   tools/setup.sh          everything
 #   tools/setup.sh --demo   only what tools/demo.sh needs
@@ -63,6 +64,8 @@ find_missing() {
         want needed xz-utils has xz
         # Without these parts of tools/test.sh are skipped.
         want extra clang-19 has clang-19
+        want extra lld-19 has wasm-ld-19
+        want extra binaryen has wasm-opt
         want extra clang-format-19 has clang-format-19
         want extra clang-tidy-19 has clang-tidy-19
         want extra shellcheck has shellcheck
@@ -148,6 +151,16 @@ if [ ! -e $stamp ] || [ "$(cat $stamp)" != "$state" ]; then
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --editable tools >>"$log" 2>&1 ||
         die "pip cannot install tools/"
     echo "$state" >$stamp
+fi
+
+# The Python package goe, always of the present sources: goe.FINGERPRINT tells which ones an installed package is made of, and
+# goe_tools refuses any other. It is compiled from nothing: no time stamp can keep an old object.
+present=$(.venv/bin/python port/python/bindings.py --lib lib --flight port/flight --cmake port/cmake) ||
+    die "port/python/bindings.py does not run"
+if [ "$(.venv/bin/python -I -c 'import goe; print(goe.FINGERPRINT)' 2>>"$log")" != "$present" ]; then
+    echo "setup: building the Python package goe"
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
+        --force-reinstall ./port/python >>"$log" 2>&1 || die "pip cannot build port/python"
 fi
 
 if $rivals; then

@@ -242,7 +242,7 @@ if [ "${state_of[build]}" != ok ]; then
 fi
 
 # What takes a moment comes first, then what takes longest.
-add "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests
+add "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests port/python
 if has clang-format-19; then
     add "clang-format" check_format
 else

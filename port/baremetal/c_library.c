@@ -12,7 +12,8 @@ void *_sbrk(int bytes);
 
 void _exit(int status) { port_exit(status); }
 
-void *_sbrk(int bytes) {
+/* console.c has another one. */
+__attribute__((weak)) void *_sbrk(int bytes) {
     (void)bytes;
     return (void *)-1;
 }

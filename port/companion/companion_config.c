@@ -11,6 +11,7 @@
 
 #include "camera_file.h"
 #include "link.h"
+#include "nearest_name.h"
 #include "number_text.h"
 #include "settings_text.h"
 
@@ -299,6 +300,20 @@ static void take_flight(config_reader_t *reader, const char *name, const char *t
     FAIL(reader, name, "no setting of the flight layer");
 }
 
+static void tell_unknown(config_reader_t *reader, const char *name, bool in_section) {
+    nearest_name_t nearest = nearest_name_of(name, strlen(name));
+    for (size_t i = 0; i < KEYS; i++) {
+        nearest_name_try(&nearest, keys[i].name);
+    }
+    if (!in_section) {
+        FAIL(reader, name, "unknown key before any [section]");
+    } else if (nearest.name == NULL) {
+        FAIL(reader, name, "unknown key");
+    } else {
+        FAIL(reader, name, "unknown key; did you mean %s?", nearest.name);
+    }
+}
+
 /* The parser's call for one key. */
 static int on_key(void *user, const char *section, const char *name, const char *text) {
     config_reader_t *reader = user;
@@ -314,8 +329,7 @@ static int on_key(void *user, const char *section, const char *name, const char 
             i++;
         }
         if (i == KEYS) {
-            FAIL(reader, *section != '\0' ? full : name, "unknown key%s",
-                 *section != '\0' ? "" : " before any [section]");
+            tell_unknown(reader, *section != '\0' ? full : name, *section != '\0');
         } else {
             take_key(reader, i, text);
         }

@@ -8,6 +8,7 @@
 
 #include "companion.h"
 #include "companion_config.h"
+#include "option_fault.h"
 #include "status_line.h"
 
 #ifndef GOE_VERSION
@@ -51,10 +52,13 @@ static bool complain(const char *subject, const char *reason) {
     return false;
 }
 
-static bool parse_arguments(poptContext context, options_t *options) {
+static bool parse_arguments(poptContext context, const struct poptOption *table, options_t *options) {
     const int result = poptGetNextOpt(context);
     if (result < -1) {
-        return complain(poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(result));
+        const char *bad = poptBadOption(context, POPT_BADOPTION_NOALIAS);
+        char reason[OPTION_FAULT_MAX];
+        option_fault(reason, table, bad, result);
+        return complain(bad, reason);
     }
     if (options->help || options->version) {
         return true;
@@ -115,7 +119,7 @@ int main(int count, const char **arguments) {
     };
     poptContext context = poptGetContext(PROGRAM, count, arguments, table, 0);
     poptSetOtherOptionHelp(context, "[OPTIONS] CONFIGURATION");
-    const bool good = parse_arguments(context, &options);
+    const bool good = parse_arguments(context, table, &options);
     int status = good ? EXIT_DONE : EXIT_BAD_INPUT;
     if (good && options.help) {
         poptPrintHelp(context, stdout, 0);

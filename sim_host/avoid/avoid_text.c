@@ -12,7 +12,7 @@ bool avoid_run_is_false(const avoid_run_t *run) { return avoid_is_pass(&run->set
 
 void avoid_text_header(FILE *stream) {
     (void)fputs("kind,course,seed,delay_s,margin_m,collision_m,pass_m,action,ahead_s,late,false_order,"
-                "closest_without_m,collided_without,closest_with_m,collided_with,suspect,assessed\n",
+                "closest_without_m,collided_without,closest_with_m,collided_with,suspect,assessed,confident\n",
                 stream);
 }
 
@@ -49,5 +49,6 @@ void avoid_text_row(FILE *stream, const avoid_run_t *run, double margin_m) {
     } else {
         put_distance(stream, &run->with);
     }
-    (void)fprintf(stream, ",%d,%d\n", orders->suspect, orders->assessed);
+    (void)fprintf(stream, ",%d,%d,%d\n", orders->suspect, orders->assessed,
+                  run->with.confident || run->without.confident ? 1 : 0);
 }

@@ -51,6 +51,7 @@ typedef struct {
     double course_rad, speed_mps, height_m, glide_rad, reach_m, t_s;
     goe_flight_assessment_t order, obeyed; /* the latest, and the one that is carried out */
     double order_s;
+    int wrong_times[GOE_FLIGHT_SLOTS]; /* assessments in a row */
 } run_t;
 
 /* ------------------------------------------------------------------------------------------------------------- scene -- */
@@ -289,11 +290,33 @@ static void note_order(const run_t *run, const goe_flight_assessment_t *now, avo
     outcome->ahead_s = (run->reach_m - along_m) / run->speed_mps;
 }
 
+/* The middle's error in its own sigmas, squared: e' C^-1 e. */
+static double off_sigmas_squared(const goe_flight_obstacle_t *found, const obstacle_t *truth) {
+    const double n = (double)found->center_ned_m[0] - truth->center_n_m,
+                 e = (double)found->center_ned_m[1] - truth->center_e_m;
+    const double nn = (double)found->covariance_ne_m2[0], ne = (double)found->covariance_ne_m2[1];
+    const double ee = (double)found->covariance_ne_m2[2], determinant = nn * ee - ne * ne;
+    return determinant > 0.0 ? (ee * n * n - 2.0 * ne * n * e + nn * e * e) / determinant : HUGE_VAL;
+}
+
+static void judge_places(run_t *run, avoid_outcome_t *outcome) {
+    for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
+        goe_flight_obstacle_t found;
+        const bool known =
+            goe_flight_obstacle(&run->flight, slot, &found) == GOE_FLIGHT_OK && (found.valid & GOE_HAS_POSITION) != 0u;
+        const bool wrong = known && !found.suspect &&
+                           off_sigmas_squared(&found, &run->obstacle) > AVOID_WRONG_SIGMAS * AVOID_WRONG_SIGMAS;
+        run->wrong_times[slot] = wrong ? run->wrong_times[slot] + 1 : 0;
+        outcome->confident = outcome->confident || run->wrong_times[slot] >= AVOID_WRONG_TIMES;
+    }
+}
+
 static void assess(run_t *run, avoid_outcome_t *outcome) {
     goe_flight_assessment_t now;
     if (goe_flight_assess(&run->flight, clock_us(run->t_s), run->approach, &now) != GOE_FLIGHT_OK) {
         return;
     }
+    judge_places(run, outcome);
     if (now.action != GOE_FLIGHT_NONE && !outcome->ordered) {
         note_order(run, &now, outcome);
     }

@@ -23,6 +23,9 @@
 
 #define AVOID_COLLISION_M (0.5 * AIRCRAFT_SPAN_M) /* the aircraft's middle nearer than this: a collision */
 
+#define AVOID_WRONG_SIGMAS 5.0
+#define AVOID_WRONG_TIMES 5
+
 typedef enum { AVOID_MAST, AVOID_BUILDING, AVOID_TRUCK, AVOID_KINDS } avoid_kind_t;
 
 extern const char *const AVOID_NAMES[AVOID_KINDS];
@@ -43,6 +46,9 @@ typedef struct {
     double ahead_s;             /* the first order came this long before the obstacle would be reached */
     int suspect, assessed;      /* assessments with a position, until the first order */
     double height_gained_m;     /* highest over the path */
+    bool
+        confident; /* AVOID_WRONG_TIMES assessments in a row had an obstacle's middle more than AVOID_WRONG_SIGMAS of its
+                                   own sigmas off, and nothing said that it was suspect */
 } avoid_outcome_t;
 
 /* Not a collision course. */

@@ -262,13 +262,12 @@ static int choose_camera(const flight_case_t *setup, const obstacle_t *obstacle,
     return best;
 }
 
-static void expose(const flight_case_t *setup, const flight_log_t *log, sensors_t *sensors, const exposure_t *exposure,
-                   double t_s, flight_frame_t *frame) {
-    frame->camera = choose_camera(setup, &log->obstacle, &exposure->truth);
+/* What the image holds of the obstacle, from frame->truth. */
+static void look(const flight_case_t *setup, const flight_log_t *log, sensors_t *sensors, double t_s,
+                 flight_frame_t *frame) {
+    frame->camera = choose_camera(setup, &log->obstacle, &frame->truth);
     const camera_t *camera = &setup->camera[frame->camera];
-    const view_t view = camera_view(camera, &exposure->truth);
-    frame->truth = exposure->truth;
-    frame->airspeed_mps = exposure->airspeed_mps;
+    const view_t view = camera_view(camera, &frame->truth);
     frame->exact = features_project(&log->obstacle, setup->cylinder_model, camera, &view);
     frame->measured = sensors_features(sensors, &frame->exact, camera);
     memset(&frame->exact_box, 0, sizeof frame->exact_box);
@@ -279,6 +278,14 @@ static void expose(const flight_case_t *setup, const flight_log_t *log, sensors_
         frame->measured_box = sensors_box(sensors, &whole, camera, t_s);
     }
     frame->true_agl_m = log->obstacle.ground_d_m - view.eye_ned_m.z;
+}
+
+static void expose(const flight_case_t *setup, const flight_log_t *log, sensors_t *sensors, const exposure_t *exposure,
+                   double t_s, flight_frame_t *frame) {
+    frame->truth = exposure->truth;
+    frame->airspeed_mps = exposure->airspeed_mps;
+    look(setup, log, sensors, t_s, frame);
+    const camera_t *camera = &setup->camera[frame->camera];
     const pose_t sensed = sensors_pose(sensors, &exposure->truth, t_s);
     if (setup->recording == NULL) {
         frame->logged = sensed;
@@ -290,10 +297,10 @@ static void expose(const flight_case_t *setup, const flight_log_t *log, sensors_
 }
 
 /* Truth in T's axes, from where the first frame was taken. */
-static void settle_truth(const flight_case_t *setup, flight_log_t *log) {
+static void settle_truth(const flight_case_t *setup, double alpha_deg, flight_log_t *log) {
     const obstacle_t *o = &log->obstacle;
     const double c = cos(log->course_rad), s = sin(log->course_rad);
-    double folded = wrap_pi(2.0 * radians(setup->alpha_deg)) / 2.0; /* an axis: 180 degrees are no difference */
+    double folded = wrap_pi(2.0 * radians(alpha_deg)) / 2.0; /* an axis: 180 degrees are no difference */
     if (folded <= -0.5 * SIM_PI) {
         folded += SIM_PI;
     }
@@ -315,7 +322,8 @@ static void place_for_recording(const flight_case_t *setup, flight_log_t *log) {
     const vec3_t way = vec3_sub(reach.truth.position_ned_m, start.truth.position_ned_m);
     log->course_rad = setup->course_given ? radians(setup->course_deg) : atan2(way.y, way.x);
     const double z0 = isnan(setup->z0_m) ? cos(log->course_rad) * way.x + sin(log->course_rad) * way.y : setup->z0_m;
-    const vec3_t center = vec3_add(start.truth.position_ned_m, to_ned(log->course_rad, z0, -setup->x0_m, 0.0));
+    log->origin_ned_m = start.truth.position_ned_m;
+    const vec3_t center = vec3_add(log->origin_ned_m, to_ned(log->course_rad, z0, -setup->x0_m, 0.0));
     const double ground = setup->altitude_given ? reach.truth.position_ned_m.z + setup->altitude_m : 0.0;
     obstacle_place(&log->obstacle, center.x, center.y, ground, log->course_rad + radians(setup->alpha_deg));
 }
@@ -387,9 +395,53 @@ const char *flight_case_fly(const flight_case_t *given, flight_log_t *log) {
     }
     fault = take_frames(&setup, &flight, log);
     if (fault == NULL) {
-        settle_truth(&setup, log);
+        settle_truth(&setup, setup.alpha_deg, log);
     }
     return fault;
+}
+
+const char *neighbour_fault(const neighbour_t *neighbour) {
+    if (!within(neighbour->x0_m, -1e5, 1e5) || !within(neighbour->z0_m, -1e5, 1e5)) {
+        return "x0 and z0: must lie within +-100000 m";
+    }
+    return within(neighbour->alpha_deg, -360.0, 360.0) ? NULL : "alpha: must be -360 to 360 deg";
+}
+
+const char *flight_log_of_neighbour(const flight_case_t *setup, const flight_log_t *flown, const neighbour_t *neighbour,
+                                    uint64_t seed, flight_log_t *log) {
+    memset(log, 0, sizeof *log);
+    const char *fault = neighbour_fault(neighbour);
+    if (fault != NULL) {
+        return fault;
+    }
+    flight_case_t prepared = *setup;
+    for (int i = 0; i < prepared.cameras; i++) {
+        camera_prepare(&prepared.camera[i]);
+    }
+    log->frames = calloc(flown->count + 1u, sizeof *log->frames);
+    if (log->frames == NULL) {
+        return "out of memory";
+    }
+    log->origin_ned_m = flown->origin_ned_m;
+    log->course_rad = flown->course_rad;
+    log->obstacle = neighbour->obstacle;
+    const vec3_t center = vec3_add(log->origin_ned_m, to_ned(log->course_rad, neighbour->z0_m, -neighbour->x0_m, 0.0));
+    obstacle_place(&log->obstacle, center.x, center.y, flown->obstacle.ground_d_m,
+                   log->course_rad + radians(neighbour->alpha_deg));
+    sensors_t sensors = sensors_start(&setup->noise, seed);
+    for (size_t k = 0; k < flown->count && log->ended == NULL; k++) {
+        flight_frame_t frame = flown->frames[k];
+        const double height_error_m = frame.agl_m - frame.true_agl_m;
+        look(&prepared, log, &sensors, (double)frame.time_us * 1e-6, &frame);
+        frame.agl_m = frame.true_agl_m + height_error_m;
+        if (obstacle_contains(&log->obstacle, frame.truth.position_ned_m)) {
+            log->ended = "the aircraft flew into the obstacle";
+        } else {
+            log->frames[log->count++] = frame;
+        }
+    }
+    settle_truth(&prepared, neighbour->alpha_deg, log);
+    return NULL;
 }
 
 void flight_log_free(flight_log_t *log) {

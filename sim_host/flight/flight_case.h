@@ -79,6 +79,7 @@ typedef struct {
     flight_frame_t *frames; /* frames that were not lost, in order of time */
     size_t count;
     obstacle_t obstacle; /* placed */
+    vec3_t origin_ned_m; /* where the path starts: x0_m and z0_m of all obstacles are from there */
     double course_rad;
     /* in T's axes, from the true camera of the first frame: centre of the base, middle of the near base edge across the
      * length axis (line model's reference; of a cylinder the centre) */
@@ -101,6 +102,21 @@ const char *flight_case_fault(const flight_case_t *setup);
 /* Flies. Returns null and fills *log (to be freed with flight_log_free), or says why not. Touches nothing else: cases may be
  * flown in several threads at once. */
 const char *flight_case_fly(const flight_case_t *given, flight_log_t *log);
+
+/* Another obstacle beside that of a flight. */
+typedef struct {
+    obstacle_t obstacle;          /* its shape */
+    double x0_m, z0_m, alpha_deg; /* as those of flight_case_t; z0_m must be known */
+} neighbour_t;
+
+/* Null if it can be placed, otherwise why not. */
+const char *neighbour_fault(const neighbour_t *neighbour);
+
+/* What the camera of a flight that was flown with *setup shows of another obstacle on the same ground: times, poses and lost
+ * frames are the flight's, pixels have errors of their own, drawn from seed. It ends where the aircraft is inside of the other
+ * one. Returns null and fills *log (to be freed with flight_log_free), or says why not. */
+const char *flight_log_of_neighbour(const flight_case_t *setup, const flight_log_t *flown, const neighbour_t *neighbour,
+                                    uint64_t seed, flight_log_t *log);
 
 void flight_log_free(flight_log_t *log);
 

@@ -14,7 +14,7 @@
 #define PATH_SIZE 4096
 #define NUMBER_SIZE 32 /* of any double in text */
 
-typedef void (*content_t)(FILE *file, const flight_case_t *setup, const flight_log_t *log);
+typedef void (*content_t)(FILE *file, const flight_case_t *setup, const flight_logs_t *logs);
 
 typedef struct {
     const char *name;
@@ -120,21 +120,22 @@ static void put_camera(FILE *file, const char *name, const camera_t *camera) {
     put_key(file, name, "offset_z_m", camera->offset_m.z);
 }
 
-static void write_camera(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
+static void write_camera(FILE *file, const flight_case_t *setup, const flight_logs_t *logs) {
     put_camera(file, "camera", &setup->camera[0]);
     if (setup->cameras > 1) {
         put_camera(file, "camera2", &setup->camera[1]);
     }
-    put_key(file, "trajectory", "heading_deg", degrees(log->course_rad));
+    put_key(file, "trajectory", "heading_deg", degrees(logs->log[0].course_rad));
 }
 
-static void write_frames(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
+static void write_frames(FILE *file, const flight_case_t *setup, const flight_logs_t *logs) {
     (void)fputs("t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz", file);
     put_image_names(file, setup);
-    for (size_t i = 0; i < log->count; i++) {
-        const flight_frame_t *frame = &log->frames[i];
+    for (size_t i = 0; i < logs->log[0].count * logs->count; i++) {
+        const size_t track = i % logs->count;
+        const flight_frame_t *frame = &logs->log[track].frames[i / logs->count];
         put_time(file, frame->time_us);
-        (void)fprintf(file, ",%d", LOG_TRACK_ID);
+        (void)fprintf(file, ",%d", LOG_TRACK_ID + (int)track);
         put_vector(file, frame->logged.position_ned_m);
         put(file, frame->agl_m);
         put_attitude(file, frame->logged.attitude);
@@ -145,13 +146,14 @@ static void write_frames(FILE *file, const flight_case_t *setup, const flight_lo
     }
 }
 
-static void write_truth_frames(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
+static void write_truth_frames(FILE *file, const flight_case_t *setup, const flight_logs_t *logs) {
     (void)fputs("t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz,airspeed_mps", file);
     put_image_names(file, setup);
-    for (size_t i = 0; i < log->count; i++) {
-        const flight_frame_t *frame = &log->frames[i];
+    for (size_t i = 0; i < logs->log[0].count * logs->count; i++) {
+        const size_t track = i % logs->count;
+        const flight_frame_t *frame = &logs->log[track].frames[i / logs->count];
         put_time(file, frame->time_us);
-        (void)fprintf(file, ",%d", LOG_TRACK_ID);
+        (void)fprintf(file, ",%d", LOG_TRACK_ID + (int)track);
         put_vector(file, frame->truth.position_ned_m);
         put(file, frame->true_agl_m);
         put_attitude(file, frame->truth.attitude);
@@ -163,25 +165,28 @@ static void write_truth_frames(FILE *file, const flight_case_t *setup, const fli
     }
 }
 
-static void write_truth(FILE *file, const flight_case_t *setup, const flight_log_t *log) {
-    const obstacle_t *o = &log->obstacle;
+static void write_truth(FILE *file, const flight_case_t *setup, const flight_logs_t *logs) {
     (void)fputs("id,static,center_n_m,center_e_m,ground_d_m,width_m,length_m,height_m,heading_deg,"
                 "x0_m,z0_m,front_x0_m,front_z0_m,orientation_deg,kind,seed\n",
                 file);
-    (void)fprintf(file, "%d,1", LOG_TRACK_ID);
-    put(file, o->center_n_m);
-    put(file, o->center_e_m);
-    put(file, o->ground_d_m);
-    put(file, o->width_m);
-    put(file, o->length_m);
-    put(file, o->height_m);
-    put(file, degrees(o->heading_rad));
-    put(file, log->x0_m);
-    put(file, log->z0_m);
-    put(file, log->front_x0_m);
-    put(file, log->front_z0_m);
-    put(file, log->orientation_deg);
-    (void)fprintf(file, ",%s,%" PRIu64 "\n", o->kind == OBSTACLE_BOX ? "box" : "cylinder", setup->seed);
+    for (size_t track = 0; track < logs->count; track++) {
+        const flight_log_t *log = &logs->log[track];
+        const obstacle_t *o = &log->obstacle;
+        (void)fprintf(file, "%d,1", LOG_TRACK_ID + (int)track);
+        put(file, o->center_n_m);
+        put(file, o->center_e_m);
+        put(file, o->ground_d_m);
+        put(file, o->width_m);
+        put(file, o->length_m);
+        put(file, o->height_m);
+        put(file, degrees(o->heading_rad));
+        put(file, log->x0_m);
+        put(file, log->z0_m);
+        put(file, log->front_x0_m);
+        put(file, log->front_z0_m);
+        put(file, log->orientation_deg);
+        (void)fprintf(file, ",%s,%" PRIu64 "\n", o->kind == OBSTACLE_BOX ? "box" : "cylinder", setup->seed);
+    }
 }
 
 static const log_file_t LOG_FILES[] = {{"camera.ini", write_camera},
@@ -196,7 +201,7 @@ static bool join(char path[PATH_SIZE], const char *folder, const char *name) {
 }
 
 static bool write_file(const char *folder, const log_file_t *entry, const flight_case_t *setup,
-                       const flight_log_t *log) {
+                       const flight_logs_t *logs) {
     char path[PATH_SIZE];
     if (!join(path, folder, entry->name)) {
         errno = ENAMETOOLONG;
@@ -206,7 +211,7 @@ static bool write_file(const char *folder, const log_file_t *entry, const flight
     if (file == NULL) {
         return false;
     }
-    entry->content(file, setup, log);
+    entry->content(file, setup, logs);
     const bool written = !ferror(file);
     return fclose(file) == 0 && written;
 }
@@ -273,10 +278,10 @@ static bool exchange(const char *folder, const char *fresh, bool exists) {
 }
 
 static bool write_and_exchange(const char *folder, const char *fresh, bool exists, const flight_case_t *setup,
-                               const flight_log_t *log) {
+                               const flight_logs_t *logs) {
     bool done = chmod(fresh, S_IRWXU | S_IRGRP | S_IXGRP | S_IROTH | S_IXOTH) == 0;
     for (size_t i = 0; i < LOG_FILE_COUNT && done; i++) {
-        done = write_file(fresh, &LOG_FILES[i], setup, log);
+        done = write_file(fresh, &LOG_FILES[i], setup, logs);
     }
     done = done && exchange(folder, fresh, exists);
     if (!done) {
@@ -287,7 +292,7 @@ static bool write_and_exchange(const char *folder, const char *fresh, bool exist
     return done;
 }
 
-bool log_write(const char *folder, const flight_case_t *setup, const flight_log_t *log, char *fault,
+bool log_write(const char *folder, const flight_case_t *setup, const flight_logs_t *logs, char *fault,
                size_t fault_size) {
     char fresh[PATH_SIZE - 16], place[PATH_SIZE - 64];
     bool exists;
@@ -314,7 +319,7 @@ bool log_write(const char *folder, const flight_case_t *setup, const flight_log_
     (void)sigaddset(&interrupts, SIGHUP);
     (void)sigprocmask(SIG_BLOCK, &interrupts, &before);
     (void)snprintf(fresh, sizeof fresh, "%s.part-XXXXXX", place);
-    const bool done = mkdtemp(fresh) != NULL && write_and_exchange(place, fresh, exists, setup, log);
+    const bool done = mkdtemp(fresh) != NULL && write_and_exchange(place, fresh, exists, setup, logs);
     if (!done) {
         (void)snprintf(fault, fault_size, "%s: %s", place, strerror(errno));
     }

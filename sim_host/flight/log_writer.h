@@ -16,9 +16,16 @@
 
 #include "flight_case.h"
 
-#define LOG_TRACK_ID 1
+#define LOG_TRACK_ID 1 /* of the first obstacle; the next ones follow */
+
+/* Of one flight, an obstacle each: with the same number of frames, at the same times. */
+typedef struct {
+    const flight_log_t *log;
+    size_t count;
+} flight_logs_t;
 
 /* False: fault says why; the folder is as it was. */
-bool log_write(const char *folder, const flight_case_t *setup, const flight_log_t *log, char *fault, size_t fault_size);
+bool log_write(const char *folder, const flight_case_t *setup, const flight_logs_t *logs, char *fault,
+               size_t fault_size);
 
 #endif

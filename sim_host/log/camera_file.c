@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "nearest_name.h"
 #include "number_text.h"
+#include "settings_text.h"
 
 #define HEADING_AUTO "auto"
 #define SMALLEST_SIZE_PX 1.0f
@@ -163,6 +165,23 @@ static bool find_key(const char *name, size_t *camera, size_t *i) {
     return false;
 }
 
+/* The key that a mistyped one was probably meant to be; empty: none is like it. */
+static key_name_t nearest_key(const char *name) {
+    key_name_t names[CAMERAS * KEYS], none = {""};
+    nearest_name_t nearest = nearest_name_of(name, strlen(name));
+    for (size_t i = 0; i < CAMERAS * KEYS; i++) {
+        names[i] = key_name(i / KEYS, &keys[i % KEYS]);
+        if (i < KEYS || keys[i % KEYS].kind != KIND_HEADING) {
+            nearest_name_try(&nearest, names[i].text);
+        }
+    }
+    if (nearest.name == NULL) {
+        return none;
+    }
+    (void)snprintf(none.text, sizeof none.text, "%s", nearest.name);
+    return none;
+}
+
 static void store_text(camera_reader_t *reader, size_t camera, const camera_key_t *key, const char *text) {
     double number = 0.0;
     if (key->kind == KIND_HEADING) {
@@ -185,7 +204,9 @@ static int on_key(void *user, const char *section, const char *name, const char 
     camera_reader_t *reader = user;
     size_t camera, i;
     if (!find_key(name, &camera, &i)) {
-        FAIL(reader, reader->line, name, "unknown key");
+        const key_name_t guess = nearest_key(name);
+        FAIL(reader, reader->line, name, "unknown key%s%s%s", *guess.text != '\0' ? "; did you mean " : "", guess.text,
+             *guess.text != '\0' ? "?" : "");
     } else if (reader->key_line[camera][i] != 0) {
         FAIL(reader, reader->line, name, "the key appears twice, first in line %lu", reader->key_line[camera][i]);
     } else {
@@ -224,7 +245,10 @@ static void check_key(camera_reader_t *reader, size_t camera, size_t i) {
     if (key_missing(reader, camera, i)) {
         FAIL(reader, reader->line == 0 ? 1u : reader->line, name.text, "missing key, not found up to here");
     } else if (!value_accepted(&keys[i], stored(&reader->settings, camera, &keys[i]))) {
-        FAIL(reader, reader->key_line[camera][i], name.text, "out of range");
+        double low = 0.0, high = 0.0;
+        (void)setting_range(keys[i].offset, &low, &high);
+        low = keys[i].kind == KIND_SIZE ? (double)SMALLEST_SIZE_PX : low;
+        FAIL(reader, reader->key_line[camera][i], name.text, "out of range: %g to %g", low, high);
     }
 }
 

@@ -36,17 +36,18 @@ static const quantity_t velocities[] = {
 #define VELOCITIES (sizeof velocities / sizeof velocities[0])
 
 #define LEADING_MAX 160 /* time text, id, status, model and number of points */
-#define REASON_MAX 16
-#define RESIDUALS_MAX ((3 + 2 * VELOCITIES + 2) * (NUMBER_TEXT_MAX + 1) + REASON_MAX + 4)
-#define ROW_MAX (LEADING_MAX + 2 * QUANTITIES * (NUMBER_TEXT_MAX + 1) + RESIDUALS_MAX + 1)
+#define DOUBT_MAX 20    /* suspect and reason */
+#define RESIDUALS_MAX ((3 + 2 * VELOCITIES + 2) * (NUMBER_TEXT_MAX + 1))
+#define ROW_MAX (LEADING_MAX + 2 * QUANTITIES * (NUMBER_TEXT_MAX + 1) + DOUBT_MAX + RESIDUALS_MAX + 1)
 
 bool estimate_write_header(FILE *stream, bool residuals) {
     bool written = fputs("t_s,id,status,model,n_used", stream) >= 0;
     for (size_t i = 0; i < QUANTITIES; i++) {
         written = fprintf(stream, ",%s,%s", quantities[i].name, quantities[i].sigma_name) >= 0 && written;
     }
+    written = fputs(",suspect,reason", stream) >= 0 && written;
     if (residuals) {
-        written = fputs(",nis,nis_rows,misfit,suspect,reason", stream) >= 0 && written;
+        written = fputs(",nis,nis_rows,misfit", stream) >= 0 && written;
         for (size_t i = 0; i < VELOCITIES; i++) {
             written = fprintf(stream, ",%s,%s", velocities[i].name, velocities[i].sigma_name) >= 0 && written;
         }
@@ -86,6 +87,11 @@ static char *append_quantity(char *out, const goe_estimate_t *estimate, const qu
     return valid ? append_number(out, estimate, quantity->sigma) : out;
 }
 
+static char *append_doubt(char *out, const goe_estimate_t *estimate) {
+    const int length = snprintf(out, DOUBT_MAX, ",%d,%s", estimate->suspect ? 1 : 0, goe_reason_text(estimate->reason));
+    return out + (length < 0 ? 0 : length);
+}
+
 static char *append_residuals(char *out, const goe_estimate_t *estimate) {
     *out++ = ',';
     if (estimate->nis_rows > 0) {
@@ -97,9 +103,6 @@ static char *append_residuals(char *out, const goe_estimate_t *estimate) {
     if (estimate->misfit > 0.0f) {
         out += number_format(out, estimate->misfit);
     }
-    *out++ = ',';
-    *out++ = estimate->suspect ? '1' : '0';
-    out += snprintf(out, REASON_MAX, ",%s", goe_reason_text(estimate->reason));
     for (size_t i = 0; i < VELOCITIES; i++) {
         out = append_quantity(out, estimate, &velocities[i]);
     }
@@ -121,6 +124,7 @@ bool estimate_write_row(FILE *stream, const char *time_text, int64_t id, goe_sta
     for (size_t i = 0; i < QUANTITIES; i++) {
         out = append_quantity(out, estimate, &quantities[i]);
     }
+    out = append_doubt(out, estimate);
     out = residuals ? append_residuals(out, estimate) : out;
     *out++ = '\n';
     const size_t length = (size_t)(out - row);

@@ -8,8 +8,8 @@
 
 #include "goe.h"
 
-/* The header line. residuals: with the columns nis, nis_rows, misfit, suspect, reason, and
- * of velocity north and east and of the latency the value and its sigma, at the end.
+/* The header line; suspect (0 or 1) and reason (goe_reason_text) follow the quantities. residuals: with the columns nis, nis_rows,
+ * misfit, and of velocity north and east and of the latency the value and its sigma, at the end.
  * False if it could not be written: errno says why. */
 bool estimate_write_header(FILE *stream, bool residuals);
 

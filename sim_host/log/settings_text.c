@@ -7,11 +7,11 @@
 
 #include "goe_settings_list.h"
 #include "input_error.h"
+#include "nearest_name.h"
 #include "number_text.h"
 
 #define WHOLE_MAX 1.0e6
 #define LINE_MAX_LENGTH 100
-#define NAME_MAX_LENGTH 64
 #define INDENT "  "
 
 typedef enum { KIND_REAL, KIND_COUNT, KIND_TRUTH, KIND_CHOICE } setting_kind_t;
@@ -60,9 +60,8 @@ static bool suits(const setting_t *setting, double value) {
     return whole && (setting->kind != KIND_TRUTH || (value >= 0.0 && value <= 1.0));
 }
 
-/* farther: bytes from the field of the setting itself to where the value goes. */
-static void store(goe_settings_t *settings, const setting_t *setting, size_t farther, double value) {
-    unsigned char *field = (unsigned char *)settings + setting->offset + farther;
+static void store(goe_settings_t *settings, const setting_t *setting, double value) {
+    unsigned char *field = (unsigned char *)settings + setting->offset;
     switch (setting->kind) {
         case KIND_REAL: {
             const float number = number_to_float(value);
@@ -88,24 +87,6 @@ static void store(goe_settings_t *settings, const setting_t *setting, size_t far
     }
 }
 
-/* The list of settings has one camera: another one's fields lie as far from its start as the first one's. */
-bool setting_put(goe_settings_t *settings, const char *name, double value) {
-    static const char first[] = "camera.", second[] = "more_cameras[0].";
-    char listed[NAME_MAX_LENGTH];
-    size_t farther = 0;
-    if (strncmp(name, second, sizeof second - 1u) == 0) {
-        (void)snprintf(listed, sizeof listed, "%s%s", first, name + sizeof second - 1u);
-        name = listed;
-        farther = offsetof(goe_settings_t, more_cameras) - offsetof(goe_settings_t, camera);
-    }
-    const setting_t *setting = find_setting(name, strlen(name), SETTINGS);
-    if (setting == NULL || !suits(setting, value)) {
-        return false;
-    }
-    store(settings, setting, farther, value);
-    return true;
-}
-
 /* ------------------------------------------------------------------------------------------------------- assignment -- */
 
 static void append(setting_fault_t *fault, const char *text) {
@@ -115,6 +96,15 @@ static void append(setting_fault_t *fault, const char *text) {
 
 static bool tell_names(const char *name, size_t length, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(name, length);
+    nearest_name_t nearest = nearest_name_of(name, length);
+    for (size_t i = 0; i < count_tuned(); i++) {
+        nearest_name_try(&nearest, settings_by_name[i].name);
+    }
+    if (nearest.name != NULL) {
+        (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting; did you mean %s?", excerpt.text,
+                       nearest.name);
+        return false;
+    }
     (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting; there are ", excerpt.text);
     for (size_t i = 0; i < count_tuned(); i++) {
         append(fault, settings_by_name[i].name);
@@ -147,7 +137,7 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
     if (!suits(setting, value)) {
         return tell_value(setting, text, setting->kind == KIND_TRUTH ? "0 or 1" : "a whole number", fault);
     }
-    store(settings, setting, 0, value);
+    store(settings, setting, value);
     return true;
 }
 
@@ -208,6 +198,17 @@ bool settings_print(FILE *stream, const goe_settings_t *settings) {
         column = (fresh_line ? strlen(INDENT) : column + 1u) + strlen(entry);
     }
     return fputc('\n', stream) != EOF;
+}
+
+bool setting_range(size_t offset, double *low, double *high) {
+    for (size_t i = 0; i < SETTINGS; i++) {
+        if (settings_by_name[i].offset == offset) {
+            *low = settings_by_name[i].low;
+            *high = settings_by_name[i].high;
+            return true;
+        }
+    }
+    return false;
 }
 
 bool settings_list(FILE *stream) {

@@ -12,17 +12,15 @@ typedef struct {
     char text[1024];
 } setting_fault_t;
 
-/* Sets any field by its name in goe_settings_t ("detector.point_px", "camera.fx_px", "method", ...). Whole numbers, truth
- * values (0 or 1) and enumerations as numbers too; the second camera as "more_cameras[0].fx_px". Ranges are goe_init()'s affair.
- * False, and nothing set, if there is no such field or the value is not of its kind. */
-bool setting_put(goe_settings_t *settings, const char *name, double value);
-
 /* Takes "NAME=VALUE" of the settings to be tuned: navigation, detector, refined and window; the others have places of their own
  * in logs and options. False, and nothing set: *fault says why. */
 bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fault_t *fault);
 
 /* Whether goe_init() takes the settings, the camera aside. Otherwise *fault names the first bad one and its range. */
 bool settings_in_range(const goe_settings_t *settings, setting_fault_t *fault);
+
+/* The range of the setting at an offset in goe_settings_t. False: there is none. */
+bool setting_range(size_t offset, double *low, double *high);
 
 /* The names of the settings to be tuned with their values, in lines. False if they could not be written. */
 bool settings_print(FILE *stream, const goe_settings_t *settings);

@@ -29,10 +29,10 @@ pytestmark = pytest.mark.skipif(
 HEADER = (
     "t_s,id,status,model,n_used,x0_m,x0_sd_m,z0_m,z0_sd_m,x_m,x_sd_m,z_m,z_sd_m,width_m,width_sd_m,"
     "length_m,length_sd_m,height_m,height_sd_m,orientation_deg,orientation_sd_deg,"
-    "center_n_m,center_n_sd_m,center_e_m,center_e_sd_m"
+    "center_n_m,center_n_sd_m,center_e_m,center_e_sd_m,suspect,reason"
 )
 RESIDUALS = (
-    ",nis,nis_rows,misfit,suspect,reason,velocity_n_m_s,velocity_n_sd_m_s,velocity_e_m_s,velocity_e_sd_m_s"
+    ",nis,nis_rows,misfit,velocity_n_m_s,velocity_n_sd_m_s,velocity_e_m_s,velocity_e_sd_m_s"
     ",latency_s,latency_sd_s"
 )
 PAPER = ("--method", "window")
@@ -326,6 +326,8 @@ def test_suspect() -> None:
     assert number(out[-1], "misfit") > 1.9
     images = accumulate(int(row["nis_rows"]) > 0 for row in out)
     told_so = [row["suspect"] for row in out]
+    assert {row["reason"] for row in out if row["suspect"] == "1"} <= {"noise", "base", "convention"}
+    assert [row["suspect"] for row in replay(CORNER, *told, "--set", "refined.huber_sigma=100")] == told_so
     assert told_so == [str(int(n >= 8 and float(row["misfit"] or 0.0) > 1.9)) for n, row in zip(images, out)]
     bold = [row["suspect"] for row in replay(CORNER, "--residuals", *told, "--set", "refined.misfit_max=1e3")]
     assert bold.count("1") < told_so.count("1")  # what is left are base corners that proved wrong
@@ -789,15 +791,15 @@ BAD_CAMERA = [
         (f"no {key}", camera_with(f"camera.{key}", None), 6, f"camera.{key}: missing key")
         for key in ("width", "height", "fx", "fy", "cx", "cy")
     ],
-    ("unknown key", CAMERA + "camera.k4 = 0\n", 8, "camera.k4: unknown key"),
+    ("unknown key", CAMERA + "camera.k4 = 0\n", 8, "camera.k4: unknown key; did you mean camera.k1?"),
     ("key twice", CAMERA + "camera.fx = 1000\n", 8, "camera.fx: the key appears twice, first in line 4"),
     ("unit", camera_with("camera.fx", "1000 px"), 7, "camera.fx: '1000 px' is not a number"),
     ("no value", camera_with("camera.fx", ""), 7, "camera.fx: '' is not a number"),
     ("auto where it is not allowed", camera_with("camera.fx", "auto"), 7, "camera.fx: 'auto' is not a number"),
-    ("nan", camera_with("camera.k1", "nan"), 8, "camera.k1: out of range"),
+    ("nan", camera_with("camera.k1", "nan"), 8, "camera.k1: out of range: -100 to 100"),
     ("huge", camera_with("camera.k1", "1e99"), 8, "camera.k1: out of range"),
     ("zero focal length", camera_with("camera.fy", "0"), 7, "camera.fy: out of range"),
-    ("image without size", camera_with("camera.height", "0"), 7, "camera.height: out of range"),
+    ("image without size", camera_with("camera.height", "0"), 7, "camera.height: out of range: 1 to 100000"),
     ("image too large", camera_with("camera.width", "100001"), 7, "camera.width: out of range"),
     ("lever arm", camera_with("camera.offset_z_m", "20000"), 8, "camera.offset_z_m: out of range"),
     ("heading", camera_with("trajectory.heading_deg", "north"), 8, "trajectory.heading_deg: 'north' is not a number"),
@@ -813,6 +815,7 @@ BAD_CAMERA = [
     ],
     ("one key of the second", CAMERA + "camera2.mount_yaw_deg = 30\n", 8, "camera2.width: missing key"),
     ("a second camera alone", CAMERA.replace("camera.", "camera2."), 7, "camera.width: missing key"),
+    ("no heading of a second camera", CAMERA + "camera2.heading_deg = 3\n", 8, "camera2.heading_deg: unknown key"),
     ("a third camera", CAMERA + CAMERA.replace("camera.", "camera3."), 9, "camera3.width: unknown key"),
     (
         "second twice",
@@ -869,8 +872,11 @@ BAD_USAGE = [
     (["--set"], "--set: missing argument"),
     (["--set", ""], "--set: '' is no setting; there are navigation.attitude_bias_deg, "),
     (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are navigation.attitude_bias_deg, "),
-    (["--set", "detector.point_p=1"], "--set: 'detector.point_p' is no setting"),
-    (["--set", "detector.point_pxx=1"], "orientation_memory and window.min_baseline_m"),
+    (["--set", "detector.point_p=1"], "--set: 'detector.point_p' is no setting; did you mean detector.point_px?"),
+    (["--set", "detector.pixel_px=1"], "--set: 'detector.pixel_px' is no setting; did you mean detector.point_px?"),
+    (["--metohd", "window"], "--metohd: unknown option; did you mean --method?"),
+    (["--something-else"], "--something-else: unknown option ("),
+    (["--set", "something.else=1"], "orientation_memory and window.min_baseline_m"),
     (["--set", "window=5"], "--set: 'window' is no setting"),
     (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting"),
     (["--set", "\x1b[31m=5"], "--set: '?[31m' is no setting"),

@@ -236,6 +236,7 @@ def avoid_rows(runs: int = 20) -> list[dict[str, Any]]:
             "pass_m": None, "action": action, "ahead_s": ahead + rng.normal(), "late": 0, "false_order": None,
             "closest_without_m": 3.0 if k == 0 else 0.9, "collided_without": int(k > 0),
             "closest_with_m": away + 1.5 * rng.uniform(-1.0, 1.0), "collided_with": 0, "suspect": 0, "assessed": 90,
+            "confident": 0,
         }  # fmt: skip
         if course == "pass":
             false = kind == "building" and k == 1

@@ -17,7 +17,7 @@ from goe_tools.attack.solids import Solid
 from goe_tools.optimum.goals import attack, hazard
 from goe_tools.optimum.goals.goal import NAMES, Goal
 from goe_tools.optimum.goals.work import QUICK
-from goe_tools.optimum.library import METHODS, Track, library_path
+from goe_tools.optimum.library import METHODS, Track, ready
 from goe_tools.places import ROOT
 from goe_tools.report import attack_command
 
@@ -33,7 +33,7 @@ AMOUNT = replace(QUICK, attack=3, hazard=3)
 @pytest.fixture
 def built() -> None:
     try:
-        library_path()
+        ready()
     except FileNotFoundError as reason:
         pytest.skip(str(reason))
 

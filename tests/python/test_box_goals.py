@@ -15,7 +15,7 @@ from goe_tools.optimum.goals import boxes
 from goe_tools.optimum.goals.goal import Goal
 from goe_tools.optimum.goals.work import QUICK
 from goe_tools.optimum.judge import HEIGHT, WIDTH, X0, Z0
-from goe_tools.optimum.library import METHODS, MODEL_PRISM, Track, camera_settings, estimate, library_path
+from goe_tools.optimum.library import METHODS, MODEL_PRISM, Track, camera_settings, estimate, ready
 from goe_tools.optimum.prism_offline import PrismFit
 
 NAN = math.nan
@@ -180,7 +180,7 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
 def test_the_library_tells_prisms() -> None:
     """Boxes and default settings go through to the library, and its answers come back about the middle."""
     try:
-        library_path()
+        ready()
     except FileNotFoundError as reason:
         pytest.skip(str(reason))
     flight = box_flight(MAST, BoxOptions(roll_deg=10.0), 2)

@@ -430,6 +430,7 @@ def test_the_readme_s_camera_sends_what_c_reads(newer: ModuleType, echo: Path) -
         def write(self, data: bytes) -> None:
             written.append(bytes(data))
 
+    before = sys.modules.get("goe")  # the Python package has that name, too
     sys.modules["goe"] = newer
     try:
         scope: dict[str, Any] = {}
@@ -438,6 +439,8 @@ def test_the_readme_s_camera_sends_what_c_reads(newer: ModuleType, echo: Path) -
         scope["send"](Link(), 1280, 720, [], 0.035)
     finally:
         del sys.modules["goe"]
+        if before is not None:
+            sys.modules["goe"] = before
     assert echoed(echo, written) == written
     reader = newer.MAVLink(None)
     first, second, empty = (reader.parse_buffer(frame)[0] for frame in written)

@@ -29,9 +29,8 @@ from goe_tools.optimum.library import (
     MODEL_DISC,
     MODEL_PRISM,
     Track,
-    boxes_of,
     estimate,
-    library_path,
+    ready,
     settings_of,
 )
 
@@ -53,9 +52,9 @@ def disc_scene(x0: float = 25.0) -> Scene:
 
 
 @pytest.fixture
-def built() -> Path:
+def built() -> None:
     try:
-        return library_path()
+        ready()
     except FileNotFoundError as reason:
         pytest.skip(str(reason))
 
@@ -316,7 +315,7 @@ def test_a_disc_for_a_box_is_held_against_its_middle() -> None:
 # ------------------------------------------------------------------------------------------------- library and goals
 
 
-def test_the_library_over_a_flight(built: Path) -> None:
+def test_the_library_over_a_flight(built: None) -> None:
     flight = measure(box_scene(), NOISES["gauss0.3"], 1)
     track = estimate(flight)
     error = judge(track, flight)
@@ -331,16 +330,7 @@ def test_the_library_over_a_flight(built: Path) -> None:
         estimate(flight, camera__fx_px=-1.0)
 
 
-def test_sides_that_are_not_seen_have_no_bit() -> None:
-    sides = np.array([[1.0, 2.0, 3.0, 4.0], [np.nan, 2.0, np.nan, 4.0], [1.0, np.nan, 3.0, np.nan], [np.nan] * 4])
-    flight = replace(measure(box_scene(), EXACT), box_px=sides)
-    told, seen = boxes_of(flight)
-    assert seen.tolist() == [0x0F, 0x0A, 0x05, 0x00] and seen.dtype == np.uint8
-    assert np.array_equal(told, np.nan_to_num(sides)) and told.dtype == np.float32
-    assert boxes_of(replace(flight, box_px=None)) == ()
-
-
-def test_the_size_of_the_image_is_a_setting(built: Path) -> None:
+def test_the_size_of_the_image_is_a_setting(built: None) -> None:
     flight = replace(measure(box_scene(), EXACT), image_size_px=(1280.0, 960.0))
     told = settings_of(flight)
     assert (told["camera.width_px"], told["camera.height_px"]) == (1280.0, 960.0)
@@ -349,7 +339,7 @@ def test_the_size_of_the_image_is_a_setting(built: Path) -> None:
 
 
 @pytest.mark.parametrize("double", [False, True])
-def test_the_library_over_two_cameras(built: Path, double: bool) -> None:
+def test_the_library_over_two_cameras(built: None, double: bool) -> None:
     """A second camera like the first is as good as one; one that looks elsewhere is not; none at all is refused."""
     flight = measure(box_scene(), EXACT)
     one = settings_of(flight)
@@ -384,7 +374,7 @@ def boxed(images: int) -> Flight:
 
 
 @pytest.mark.parametrize("double", [False, True])
-def test_the_library_over_boxes_alone(built: Path, double: bool) -> None:
+def test_the_library_over_boxes_alone(built: None, double: bool) -> None:
     flight = boxed(80)
     assert flight.box_px is not None
     flight.box_px[5] = np.nan
@@ -409,7 +399,7 @@ def test_caught_at_a_share_of_false_flags() -> None:
     assert caught(static, moving, 0.1) == 75.0
 
 
-def test_goals_of_table3(built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_goals_of_table3(built: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "goals.json"
     assert main(["goals", "--quick", "--only", "table3", "--json", str(out)]) == 0
     assert "cylinder" in capsys.readouterr().out
@@ -419,7 +409,7 @@ def test_goals_of_table3(built: Path, tmp_path: Path, capsys: pytest.CaptureFixt
     assert all(row["values"]["Z0"] > 5.0 for row in asked)
 
 
-def test_goals_says_what_it_does_not_know(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_goals_says_what_it_does_not_know(built: None, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["goals", "--only", "everything"]) == 2
     assert "everything" in capsys.readouterr().err
 

@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
 WORDS = Words('NAME "N" <maintainer@goe.invalid>', "https://goe.invalid/?a=1&b=2")
 HEADINGS = ["From this tree", "Into a project", "Parts", "How it is checked", "What is missing"]
-PAGES = ("arduino", "conan", "debian", "esp-idf", "pkgconfig", "platformio", "rust")
+PAGES = ("arduino", "conan", "debian", "esp-idf", "pkgconfig", "platformio", "python", "rust")
 
 # Of Arduino's library specification.
 ARDUINO_CATEGORIES = (
@@ -69,7 +69,7 @@ def test_manifests_in_the_tree_are_renewed() -> None:
 @pytest.fixture
 def small_tree(tmp_path: Path) -> Path:
     """What --check and --write read."""
-    for name in (*COMMITTED, "lib/goe.h", "port/rust/Cargo.toml.j2"):
+    for name in (*COMMITTED, "lib/goe.h", "port/rust/Cargo.toml.j2", "port/python/pyproject.toml.j2"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / name, tmp_path / name)
     return tmp_path
@@ -94,7 +94,7 @@ def test_another_version_is_noticed(small_tree: Path) -> None:
     facts = dataclasses.replace(FACTS, root=small_tree)
     patched = f"{FACTS.version.rpartition('.')[0]}.7"
     assert facts.version == patched
-    assert [line.split(":")[0] for line in differences(facts)] == ["port/rust/Cargo.toml", "tools/pyproject.toml"]
+    assert [line.split(":")[0] for line in differences(facts)] == list(COMMITTED)
     assert all(f'version = "{patched}"' in text(facts) for text in COMMITTED.values())
 
 
@@ -134,7 +134,7 @@ def test_words_that_would_break_a_manifest(tmp_path: Path) -> None:
 
 
 def test_the_read_me_commands_stage_one_target(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for target in ("arduino", "conan", "esp-idf", "platformio", "rust"):
+    for target in ("arduino", "conan", "esp-idf", "platformio", "python", "rust"):
         assert main(["packages", "--target", target, "--out", str(tmp_path)]) == 0
     assert {path.name for path in tmp_path.iterdir()} == set(TARGETS)
     assert str(tmp_path / "esp-idf" / "goe") in capsys.readouterr().out.splitlines()
@@ -162,6 +162,7 @@ PLACES = {  # of the library's and of the flight layer's sources
     "platformio": ("goe/src", "goe_flight/src"),
     "esp-idf": ("goe/lib", "goe/flight"),
     "conan": ("goe/lib", "goe/port/flight"),
+    "python": ("goe/csrc/lib", "goe/csrc/flight"),
     "rust": ("goe/csrc/lib", "goe/csrc/flight"),
 }
 

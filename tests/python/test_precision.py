@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
 
 import numpy as np
 import pytest
+from goe_tools.optimum import double_precision
 from goe_tools.optimum.flights.measured import measure
 from goe_tools.optimum.flights.noise import NOISES
 from goe_tools.optimum.flights.scene import Scene
 from goe_tools.optimum.flights.simulated import paper_scenes, random_scenes
-from goe_tools.optimum.library import MODEL_DISC, estimate, library_path
+from goe_tools.optimum.library import MODEL_DISC, estimate, package, ready
 from goe_tools.optimum.precision import rounding_of
 
 LIMIT = 0.05  # of one sigma
@@ -22,7 +22,7 @@ NAMES = ("gauss0.3", "gauss1", "field")
 def built() -> None:
     for double in (False, True):
         try:
-            library_path(double)
+            ready(double)
         except FileNotFoundError as reason:
             pytest.skip(str(reason))
 
@@ -50,13 +50,10 @@ def test_rounding_is_small_beside_the_sigma(noise: str, scenes: list[Scene]) -> 
 
 
 def test_the_other_build_does_compute_in_float64(box: Scene) -> None:
-    """Its settings are of doubles, and its answers are others, if only a little."""
-    sizes = []
-    for double in (False, True):
-        size = ctypes.CDLL(str(library_path(double))).goe_batch_settings_size
-        size.restype = ctypes.c_size_t
-        sizes.append(size())
-    assert sizes[1] > 1.5 * sizes[0]
+    """Its structs are of doubles, and its answers are others, if only a little."""
+    _, types = double_precision.library()
+    single = [getattr(package(), name) for name in ("IMAGE", "ESTIMATE", "HAZARD")]
+    assert all(wide.itemsize > 1.5 * plain.itemsize for wide, plain in zip(types, single))
     flight = measure(box, NOISES["gauss0.3"], 1)
     single, double = estimate(flight), estimate(flight, double=True)
     assert 0.0 < np.nanmax(np.abs(single.values[-1] - double.values[-1])) < 0.1

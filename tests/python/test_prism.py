@@ -11,7 +11,7 @@ import pytest
 from goe_tools.optimum import prism_filter
 from goe_tools.optimum.flights.boxes import BUILDING, EXACT, MAST, WALL, BoxOptions, box_flight
 from goe_tools.optimum.flights.flight import Flight
-from goe_tools.optimum.library import MODEL_PRISM, Track, camera_settings, estimate, library_path
+from goe_tools.optimum.library import MODEL_PRISM, Track, camera_settings, estimate, ready
 from goe_tools.optimum.prism import (
     BOX_BOTTOM,
     BOX_LEFT,
@@ -53,7 +53,7 @@ MOUNT = {"mount_pitch_deg": 2.0, "mount_yaw_deg": 1.0, "mount_roll_deg": 3.0, "f
 def built() -> None:
     for double in (False, True):
         try:
-            library_path(double)
+            ready(double)
         except FileNotFoundError as reason:
             pytest.skip(str(reason))
 

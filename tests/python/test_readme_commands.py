@@ -83,6 +83,8 @@ class By:
 RUN_BY = {
     "tools/test.sh": By(".ci/run", "tools/test.sh"),
     "cmake --install": By("tests/CMakeLists.txt", "--install"),
+    "cmake --install build": By("tests/python/test_install.py", '"cmake", "--install", BUILD'),
+    "cc -Ilib ...": By("tests/python/test_examples.py", 'r"^cc '),
     "cmake -S . -B build-deb ...": By("tests/python/test_packages_hosts.py", "(cmake .*)"),
     "cmake --build build-deb": By("tests/python/test_packages_hosts.py", "(cmake .*)"),
     "cmake --build build-deb --target package": By(
@@ -98,6 +100,9 @@ RUN_BY = {
     "python -m goe_tools packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
     "python -m goe_tools packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
     "python -m goe_tools packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
+    "pip install ./port/python": By(
+        "tools/setup.sh", "pip install --quiet --disable-pip-version-check --no-build-isolation"
+    ),
     "cmake --preset": By("tools/test.sh", "cmake --preset"),
     "cmake --build --preset": By("tools/test.sh", "cmake --build --preset"),
     "ctest --preset": By("tools/test.sh", "ctest --preset"),
@@ -124,11 +129,16 @@ RUN_BY = {
     "python -m goe_tools attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
     "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
+    "python -m goe_tools convert...": By("tests/python/test_convert.py", '"convert", f"--{kind}"'),
+    "python -m goe_tools mcap...": By("tests/python/test_mcap.py", '"mcap", str(folder), "--out"'),
+    "python -m goe_tools noise...": By("tests/python/test_noise.py", '"noise", *logs'),
     "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
     "python -m goe_tools flight_cost": By("tools/test.sh", "goe_tools flight_cost"),
     "python -m goe_tools ledger": By("tools/test.sh", "goe_tools ledger"),
     "python -m goe_tools ledger --check": By("tools/test.sh", "goe_tools ledger --check"),
     "python -m goe_tools ledger --write": By("tests/python/test_cost.py", '"ledger", "--write"'),
+    "python -m goe_tools live": By("tests/python/test_live_page.py", '"live", "--out"'),
+    "python -m goe_tools live --out live.html": By("tests/python/test_live_page.py", '"live", "--out"'),
     "python -m goe_tools offline": By("tests/python/test_optimum.py", '"offline"'),
     "python -m goe_tools peers": By("tests/python/test_peers.py", "peers"),
     "python -m goe_tools peers --quick": By("tests/python/test_peers.py", '"peers", "--quick"'),
@@ -137,6 +147,9 @@ RUN_BY = {
     "python -m goe_tools report --table --out": By("tools/demo.sh", "report $campaign --table --out"),
     "python -m goe_tools scene ...": By("tests/python/test_scene.py", "python -m goe_tools scene"),
     "python -m goe_tools jsbsim_flight": By("tests/sim/test_sim_jsbsim.py", "jsbsim_flight"),
+    "python -m goe_tools view": By("tests/python/test_view_command.py", '"view"'),
+    "python -m goe_tools view --png --theme dark": By("tests/python/test_view_command.py", '"view"'),
+    "python -m goe_tools view --svg": By("tests/python/test_view_command.py", '"view"'),
     "python -m goe_tools settings --write lib/README.md": By(
         "tests/python/test_settings_table.py", '"settings", "--write"'
     ),
@@ -242,11 +255,13 @@ def test_set_up_with_rivals(tmp_path: Path, set_up: None) -> None:
     (bin_folder / "python").chmod(0o755)
     # What tools/setup.sh leaves in .venv to tell that it is as wanted.
     wanted = [(tmp_path / "tools" / name).read_text() for name in ("requirements.txt", "pyproject.toml")]
+    for name in ("lib", "port/flight", "port/cmake", "port/python"):  # what the installed package goe is made of
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
     version = output_of("python3", "--version")
     (tmp_path / ".venv" / "installed").write_text(f"{version}{''.join(wanted)}{tmp_path}\n")
     text = output_of(tmp_path / "tools" / "setup.sh", "--rivals", UNITY_DIR="not looked for", PYTHON="python3")
     assert "making .cache/rivals" in text
-    assert "making .venv" not in text
+    assert "making .venv" not in text and "building the Python package" not in text
     assert "there is no GTSAM for this Python" in text
     assert (tmp_path / ".cache" / "rivals" / "installed").exists()
 

@@ -24,6 +24,7 @@ from goe_tools.report.figures import FIGURES
 from goe_tools.report.goals_file import read_goals
 from goe_tools.report.prose import misses, table3
 from goe_tools.report.prose import refined as refined_prose
+from goe_tools.report.rare_record import flights, read_record
 from goe_tools.report.style import number
 from rich.console import Console
 from synthetic_campaign import write_avoid, write_campaign, write_goals
@@ -296,7 +297,8 @@ def section_of(text: str, name: str) -> str:
 
 
 def test_page_shows_the_goals_met_and_missed(campaign: Campaign, written: Path) -> None:
-    section = section_of(written.read_text(encoding="utf-8"), "refined")
+    text = written.read_text(encoding="utf-8")
+    section = section_of(text, "goals") + section_of(text, "refined")
     assert re.search(r'class="n miss"[^>]*>81.7<', section) and re.search(r'class="miss">5 %: 34.7<', section)
     assert section.count("✗ missed") == 2 and section.count("✓ met") == 4
     for number_told in ("1.01", "0.997", "96.6", "0.661", "0.987", "0.021"):
@@ -323,7 +325,7 @@ def test_page_shows_where_the_sigma_holds(campaign: Campaign, written: Path, tmp
         "Positions confidently wrong, and not suspect, in most tracks: slope 3 % (36 %).",
         "Violators without a warning 5 s ahead, by the README's rule: none.",
     ]
-    others = section_of(page.render_page(hostile, []), "refined")
+    others = section_of(page.render_page(hostile, []), "goals")
     assert "slope 3 %" not in others and "4 of 6 goals are met" in others
 
 
@@ -468,3 +470,20 @@ def test_nothing_half_written(campaign: Campaign, tmp_path: Path, monkeypatch: p
         page.write_page(campaign, out)
     assert out.read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [out]
+
+
+def test_page_begins_with_what_a_pilot_understands(campaign: Campaign, tmp_path: Path) -> None:
+    """One approach, the goals, the orders, the record of rare events; then the paper."""
+    root = Path(__file__).resolve().parents[2]
+    log, record = root / "tests" / "data" / "corner", read_record(root / "tests" / "data" / "rare_events.json")
+    text = page.render_page(replace(campaign, approach=log, rare=record), [])
+    order = [text.index(f'<section id="{name}">') for name in ("approach", "goals", "rare", "table3", "refined")]
+    assert order == sorted(order)
+    assert "data:image/png;base64," in section_of(text, "approach")
+    assert f"In {flights(record.counts):,} simulated flights" in section_of(text, "rare")
+
+
+def test_the_head_tells_the_counts_that_goe_campaign_printed(campaign: Campaign) -> None:
+    counted = replace(campaign, facts={**campaign.facts, "flights": 1346, "runs": 2874, "frames": 229218})
+    text = page.render_page(counted, [])
+    assert all(f"<b>{number}</b>" in text for number in ("1,346", "2,874", "229,218"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 import os
 import shutil
 import subprocess
@@ -11,20 +10,17 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import chromium
 import pytest
+from chromium import open_page, screenshot
 from goe_tools.report import data, page
 from goe_tools.report.figures import FIGURES
 from synthetic_campaign import write_avoid, write_campaign, write_goals
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-CHROMEDRIVER = shutil.which("chromedriver")
 WIDE, PHONE = (1280, 900), (390, 844)  # px
-LEAST_INK = 0.005  # share of a screenshot's or print's bytes that a blank page has not
 
 selenium = pytest.importorskip("selenium", reason="the browser test needs selenium (pip)")
-pytestmark = pytest.mark.skipif(
-    CHROMIUM is None or CHROMEDRIVER is None, reason="the browser test needs chromium and chromium-driver"
-)
+pytestmark = pytest.mark.skipif(chromium.MISSING, reason=chromium.WHY_MISSING)
 
 
 @pytest.fixture(scope="module")
@@ -53,46 +49,9 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(CHROMIUM)
-    for argument in (
-        "headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking",
-        "disable-component-update", "disable-sync", "disable-default-apps", "disable-dev-shm-usage",
-        "hide-scrollbars", f"user-data-dir={tmp_path_factory.mktemp('profile')}",
-    ):  # fmt: skip
-        options.add_argument(f"--{argument}")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(options=options, service=Service(str(CHROMEDRIVER)))
+    driver = chromium.start(tmp_path_factory.mktemp("profile"))
     yield driver
     driver.quit()
-
-
-def open_page(browser: Any, report: Path, size: tuple[int, int]) -> None:
-    width, height = size
-    browser.get_log("performance"), browser.get_log("browser")  # what came before is not this page's
-    browser.execute_cdp_cmd(
-        "Emulation.setDeviceMetricsOverride",
-        {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600},
-    )
-    browser.get(report.as_uri())
-    for _ in range(50):  # pictures are decoded in the background
-        if browser.execute_script("return [...document.images].every(i => i.complete)"):
-            return
-    browser.execute_async_script(
-        "const done = arguments[0]; Promise.allSettled([...document.images].map(i => i.decode())).then(() => done())"
-    )
-
-
-def screenshot(browser: Any, file: Path) -> None:
-    """The whole page, not only what the window shows."""
-    size = browser.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]
-    clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
-    shot = browser.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True, "clip": clip})
-    file.write_bytes(base64.b64decode(shot["data"]))
-    assert file.stat().st_size > LEAST_INK * size["width"] * size["height"]
 
 
 @pytest.mark.parametrize("size", [WIDE, PHONE], ids=["wide", "phone"])
@@ -117,13 +76,7 @@ def test_page_in_browser(browser: Any, report: Path, shots: Path, size: tuple[in
     )
     assert overflow == []
 
-    requested = []
-    for entry in browser.get_log("performance"):
-        message = json.loads(entry["message"])["message"]
-        if message["method"] == "Network.requestWillBeSent":
-            requested.append(message["params"]["request"]["url"])
-    away = [url for url in requested if not url.startswith("data:")]
-    assert away == [report.as_uri()]
+    assert chromium.requested(browser) == [report.as_uri()]
     assert browser.get_log("browser") == []
     screenshot(browser, shots / f"report_{request.node.callspec.id}.png")
 

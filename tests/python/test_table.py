@@ -54,6 +54,28 @@ def test_what_it_says(estimates: Path, tmp_path: Path, capsys) -> None:
     assert "obstacle 2: no estimate in 1 images (last: collecting)" in told
 
 
+@pytest.mark.parametrize(
+    ("doubt", "words"),
+    [("1,moves", "suspect: moves"), ("1,convention", "suspect: convention"), ("0,late", "poses late")],
+)
+def test_a_doubt_is_told(doubt: str, words: str, tmp_path: Path, capsys) -> None:
+    path = tmp_path / "estimates.csv"
+    path.write_text(f"{HEADER},suspect,reason\n{row(1.0, 1, 'ok', 'line', **LINE)},{doubt}\n")
+    assert main(["table", str(path)]) == 0
+    assert re.search(rf" front edge +{words} *$", capsys.readouterr().out, re.MULTILINE)
+
+
+def test_the_width_across_the_line_of_sight_has_no_truth(estimates: Path, tmp_path: Path, capsys) -> None:
+    truth = tmp_path / "truth.csv"
+    truth.write_text(
+        "id,static,center_n_m,center_e_m,ground_d_m,width_m,length_m,height_m,heading_deg\n1,1,1,2,3,12,20,5,7\n"
+    )
+    estimates.write_text(estimates.read_text().replace(",line,", ",prism,"))
+    assert main(["table", str(estimates), "--truth", str(truth)]) == 0
+    told = capsys.readouterr().out
+    assert re.search(r"width across the line of sight +12\.10 ±0\.21 m +- +- *$", told, re.MULTILINE)
+
+
 def test_without_truth(estimates: Path, capsys) -> None:
     assert main(["table", str(estimates)]) == 0
     assert "120.0 ±2.0 m" in capsys.readouterr().out
@@ -111,6 +133,7 @@ def test_the_demo(replay: Path, tmp_path: Path, capsys) -> None:
     subprocess.run([replay, "--out", out, folder], check=True)
     assert main(["table", str(out), "--truth", str(folder / "truth.csv")]) == 0
     told = capsys.readouterr().out
+    assert "suspect:" not in told
     assert re.search(r" disc +$", told, re.MULTILINE) and re.search(r" box +$", told, re.MULTILINE)
     errors = [line.split()[-2] for line in told.splitlines() if line.startswith(("width of", "length of", "height "))]
     assert len(errors) == 3

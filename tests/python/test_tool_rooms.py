@@ -14,11 +14,12 @@ PACKAGE = Path(__file__).resolve().parents[2] / "tools" / "goe_tools"
 
 # From the ground up. A room knows the floors below its own, and no other room of its own floor.
 FLOORS = (
-    ("__init__", "places"),
+    ("__init__", "places", "spread"),
     ("logs",),
     ("attack",),
     ("reference", "optimum", "cost", "packages"),
-    ("report",),
+    ("view",),
+    ("report", "live", "exchange", "noise"),
     ("__main__",),
 )
 

@@ -171,6 +171,10 @@ if(NOT GOE_TARGET_TESTS STREQUAL none)
         set_tests_properties(${name} PROPERTIES LABELS unit TIMEOUT 300)
     endforeach()
 
+    if(GOE_TARGET_TESTS STREQUAL all)
+        add_subdirectory(${PROJECT_SOURCE_DIR}/tests/examples examples)
+    endif()
+
     # The safety tests, with the library under the flags of four firmwares that run on such processors.
     if(has_fpu AND CMAKE_SYSTEM_PROCESSOR STREQUAL arm AND CMAKE_C_COMPILER_ID STREQUAL GNU
        AND CMAKE_C_FLAGS_RELEASE STREQUAL -O2)

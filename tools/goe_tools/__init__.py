@@ -3,4 +3,4 @@
 README.md, beside this file, tells what is in which folder.
 """
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import importlib
+import os
+import re
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from .logs.obslog import LogError
 
@@ -15,27 +19,53 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "scene": (".logs.scene_command", "write a synthetic observation log of a box or a cylinder"),
     "embed_logs": (".logs.embed_logs", "write or check the synthetic logs that the target images carry"),
     "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
+    "convert": (".exchange.convert", "make an observation log of an autopilot's log and a detector's table"),
     "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),
     "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
     "flight_cost": (".cost.flight", "measure what the calls of the flight layer take"),
     "ledger": (".cost.ledger", "measure what the library costs on each target"),
+    "live": (".live.command", "write a page in which the library runs, compiled to WebAssembly"),
     "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
+    "mcap": (".exchange.mcap_command", "write a log and its estimates as MCAP, for Foxglove and PlotJuggler"),
     "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
+    "noise": (".noise.command", "find the settings of the noise that logs ask for"),
     "offline": (".optimum.offline", "fit all images of a log with truth at once"),
     "packages": (".packages.command", "stage packages for other package managers, or check their manifests"),
     "peers": (".cost.peers.command", "hold the window fit and the filter update against other solvers"),
+    "rare": (".report.rare_command", "fly the flight layer's orders many times and keep what rarely happens"),
     "report": (".report.command", "write the campaign's report and print Table 3"),
     "settings": (".reference.settings_table", "print, write or check the manual's table of the library's settings"),
+    "view": (".view.command", "show a log: a page with a map and a slider over time, or a picture"),
     "table": (".logs.table", "print estimates as a table that a pilot can read"),
 }
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C
 
 
+class Parser(argparse.ArgumentParser):
+    """Tells the name that a mistyped command or option was probably meant to be."""
+
+    def words(self) -> list[str]:
+        """Its options, its commands, and their options: a command hands back what it does not know."""
+        found = [word for action in self._actions for word in action.option_strings]
+        for action in self._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                for name, parser in action.choices.items():
+                    found += [name, *parser.words()]
+        return found
+
+    def error(self, message: str) -> NoReturn:
+        known = self.words()
+        mistyped = re.search(r"argument command: invalid choice: '([^']*)'|unrecognized arguments: (\S+)", message)
+        word = (mistyped[1] or mistyped[2]).split("=")[0] if mistyped else ""
+        near = difflib.get_close_matches(word, [name for name in known if (name[0] == "-") == word.startswith("-")], 1)
+        super().error(f"{message}; did you mean {near[0]}?" if near else message)
+
+
 def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
     """The parser of a command line. Only the module of the command that is asked for is imported: plots, tables and
     solvers take their time to start."""
-    parser = argparse.ArgumentParser(prog="goe_tools", description="Tools of the ground obstacle estimator.")
+    parser = Parser(prog="goe_tools", description="Tools of the ground obstacle estimator.")
     commands = parser.add_subparsers(dest="command", required=True)
     asked = next((word for word in words if not word.startswith("-")), None)
     for name, (module_name, text) in COMMANDS.items():
@@ -51,9 +81,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if argv is None else argv
     arguments = parser_for(words).parse_args(words)
     try:
-        return int(arguments.entry(arguments))
+        status = int(arguments.entry(arguments))
+        sys.stdout.flush()
+        return status
     except (LogError, ValueError, FileNotFoundError) as error:
         print(f"goe_tools {arguments.command}: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except BrokenPipeError as error:
+        print(f"goe_tools {arguments.command}: standard output: {error.strerror}", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python tries again on leaving
         return EXIT_BAD_INPUT
     except KeyboardInterrupt:
         print(f"goe_tools {arguments.command}: interrupted", file=sys.stderr)

@@ -44,6 +44,8 @@ class Estimate:
     model: str = "none"
     n_used: int = 0
     values: dict[str, float] = field(default_factory=dict)
+    suspect: bool = False
+    reason: str = "none"  # why it is suspect; "late" also of one that is not
 
 
 def read_estimates(path: Path) -> list[tuple[float, int, Estimate]]:
@@ -66,7 +68,14 @@ def read_estimates(path: Path) -> list[tuple[float, int, Estimate]]:
                         if row[name]:
                             values[name] = float(row[name])
                     name = "n_used"
-                    estimate = Estimate(row["status"], row["model"], int(row["n_used"]), values)
+                    estimate = Estimate(
+                        row["status"],
+                        row["model"],
+                        int(row["n_used"]),
+                        values,
+                        suspect=row.get("suspect") == "1",  # logs of before 0.3 have neither column
+                        reason=row.get("reason") or "none",
+                    )
                     name = "t_s"
                     result.append((float(row["t_s"]), int(row["id"]), estimate))
                 except ValueError:

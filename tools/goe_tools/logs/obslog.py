@@ -10,12 +10,16 @@ from __future__ import annotations
 import csv
 import dataclasses
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Optional
+
+from .fields import LogError, Row, read_integer, read_number, read_optional, read_rows, read_text
 
 Pixel = tuple[float, float]
-Box = tuple[float | None, float | None, float | None, float | None]  # left, top, right, bottom; None: not seen
+Side = Optional[float]  # as Python 3.9 has it outside annotations
+Box = tuple[Side, Side, Side, Side]  # left, top, right, bottom; None: not seen
 
 TIME_LIMIT_US = 9.2e18  # just inside 64 bits
 FEATURES = ("left", "right", "top", "base_left", "base_near", "base_right")
@@ -38,15 +42,6 @@ TRUTH_COLUMNS = (
     "height_m",
     "heading_deg",
 )
-
-
-class LogError(ValueError):
-    """Bad input; its text is ``file:line: column: reason`` (without the parts that do not apply)."""
-
-    def __init__(self, path: Path, line: int, column: str, reason: str) -> None:
-        self.path, self.line, self.column, self.reason = Path(path), line, column, reason
-        where = f"{path}:{line}: " if line else f"{path}: "
-        super().__init__(where + (f"{column}: " if column else "") + reason)
 
 
 @dataclass
@@ -77,6 +72,14 @@ class Camera:
 CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.name != "heading_deg")
 REQUIRED_CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.default is dataclasses.MISSING)
 HEADING_KEY = "trajectory.heading_deg"
+SIZE_RANGE, PIXEL_RANGE, LENS_RANGE, ANGLE_RANGE = (1.0, 1e5), (-1e5, 1e5), (-100.0, 100.0), (-360.0, 360.0)
+CAMERA_RANGES = {  # as the library has them; an image has at least a pixel
+    **dict.fromkeys(("width", "height", "fx", "fy"), SIZE_RANGE),
+    **dict.fromkeys(("cx", "cy"), PIXEL_RANGE),
+    **dict.fromkeys(("k1", "k2", "p1", "p2", "k3"), LENS_RANGE),
+    **dict.fromkeys(("mount_roll_deg", "mount_pitch_deg", "mount_yaw_deg", "heading_deg"), ANGLE_RANGE),
+    **dict.fromkeys(("offset_x_m", "offset_y_m", "offset_z_m"), (-1e4, 1e4)),
+}
 CAMERA_NAMES = ("camera", "camera2")  # their keys begin so
 
 
@@ -150,33 +153,6 @@ class ObservationLog:
 # ----------------------------------------------------------------------------------------------------------- reading
 
 
-def _number(text: str, path: Path, line: int, column: str) -> float:
-    try:
-        if "_" in text:  # Python's digit grouping, unknown to every other reader
-            raise ValueError
-        return float(text)
-    except ValueError:
-        raise LogError(path, line, column, f"'{text}' is not a number") from None
-
-
-def _integer(text: str, path: Path, line: int, column: str) -> int:
-    try:
-        if "_" in text:
-            raise ValueError
-        return int(text)
-    except ValueError:
-        raise LogError(path, line, column, f"'{text}' is not an integer") from None
-
-
-def _read_text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or str(error)) from None
-    except UnicodeDecodeError as error:
-        raise LogError(path, 0, "", f"not UTF-8 text: {error.reason}") from None
-
-
 def _key_of(key: str) -> tuple[str, str]:
     """The camera's name and the field of a key; empty if there is none."""
     if key == HEADING_KEY:
@@ -189,7 +165,7 @@ def read_cameras(path: Path) -> list[Camera]:
     """Reads camera.ini, one camera or two; an unknown, doubled, missing or non-numeric key is a LogError."""
     path = Path(path)
     found: dict[str, dict[str, float | None]] = {CAMERA_NAMES[0]: {}}
-    for line, raw in enumerate(_read_text(path).splitlines(), start=1):
+    for line, raw in enumerate(read_text(path).splitlines(), start=1):
         text = raw.split("#", 1)[0].strip()
         if not text:
             continue
@@ -205,11 +181,12 @@ def read_cameras(path: Path) -> list[Camera]:
         if key == HEADING_KEY and value == "auto":
             values[name] = None
             continue
-        number = _number(value, path, line, key)
+        number = read_number(value, path, line, key)
         if not math.isfinite(number):
             raise LogError(path, line, key, f"'{value}' is not finite")
-        if name in ("width", "height", "fx", "fy") and number <= 0.0:
-            raise LogError(path, line, key, "must be positive")
+        low, high = CAMERA_RANGES[name]
+        if not low <= number <= high:
+            raise LogError(path, line, key, f"'{value}' is out of range: {low:g} to {high:g}")
         values[name] = number
     for owner, values in found.items():
         for name in REQUIRED_CAMERA_FIELDS:
@@ -227,84 +204,67 @@ def read_camera(path: Path) -> Camera:
     return cameras[0]
 
 
-def _rows(path: Path, required: Sequence[str], known: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
-    """Yields (line number, column -> text) of a CSV file with a header line."""
-    reader = csv.reader(_read_text(path).splitlines(keepends=True))
-    header: list[str] | None = None
-    for row in reader:
-        if not any(text.strip() for text in row) and len(row) <= 1:
-            continue
-        if header is None:
-            header = [name.strip() for name in row]
-            for name in required:
-                if name not in header:
-                    raise LogError(path, reader.line_num, name, "column is missing")
-            for name in known:
-                if header.count(name) > 1:
-                    raise LogError(path, reader.line_num, name, "column is given twice")
-            for name in FEATURES:
-                if (f"{name}_u" in header) != (f"{name}_v" in header):
-                    absent = f"{name}_v" if f"{name}_u" in header else f"{name}_u"
-                    raise LogError(path, reader.line_num, absent, "column is missing")
-            jumps = [name for name in JUMP_COLUMNS if name in header]
-            if jumps and RESET_COLUMN not in header:
-                raise LogError(path, reader.line_num, RESET_COLUMN, f"column is missing, {jumps[0]} is there")
-            continue
-        if len(row) != len(header):
-            raise LogError(path, reader.line_num, "", f"{len(row)} fields under {len(header)} columns")
-        yield reader.line_num, {name: text.strip() for name, text in zip(header, row)}
-    if header is None:
-        raise LogError(path, 0, "", "empty: no header line")
+def check_pairs(header: list[str], path: Path, line: int) -> None:
+    """An image point needs both its columns, and the jump of a reset the count."""
+    for name in FEATURES:
+        if (f"{name}_u" in header) != (f"{name}_v" in header):
+            absent = f"{name}_v" if f"{name}_u" in header else f"{name}_u"
+            raise LogError(path, line, absent, "column is missing")
+    jumps = [name for name in JUMP_COLUMNS if name in header]
+    if jumps and RESET_COLUMN not in header:
+        raise LogError(path, line, RESET_COLUMN, f"column is missing, {jumps[0]} is there")
 
 
-def _optional(row: dict[str, str], path: Path, line: int, column: str) -> float | None:
-    text = row.get(column, "")
-    return _number(text, path, line, column) if text else None
-
-
-def _pixel(row: dict[str, str], path: Path, line: int, feature: str) -> Pixel | None:
-    u = _optional(row, path, line, f"{feature}_u")
-    v = _optional(row, path, line, f"{feature}_v")
+def _pixel(row: Row, path: Path, line: int, feature: str) -> Pixel | None:
+    u = read_optional(row, path, line, f"{feature}_u")
+    v = read_optional(row, path, line, f"{feature}_v")
     return None if u is None or v is None else (u, v)
 
 
-def _box(row: dict[str, str], path: Path, line: int) -> Box | None:
-    left, top, right, bottom = (_optional(row, path, line, column) for column in BOX_COLUMNS)
+def _box(row: Row, path: Path, line: int) -> Box | None:
+    left, top, right, bottom = (read_optional(row, path, line, column) for column in BOX_COLUMNS)
     box = (left, top, right, bottom)
     return None if box == (None, None, None, None) else box
 
 
-def _jump(row: dict[str, str], path: Path, line: int) -> tuple[float, float, float] | None:
-    n, e, d = (_optional(row, path, line, column) for column in JUMP_COLUMNS)
+def _jump(row: Row, path: Path, line: int) -> tuple[float, float, float] | None:
+    n, e, d = (read_optional(row, path, line, column) for column in JUMP_COLUMNS)
     return None if n is None or e is None or d is None else (n, e, d)
 
 
-def _camera_number(row: dict[str, str], path: Path, line: int, cameras: int) -> int:
+def _camera_number(row: Row, path: Path, line: int, cameras: int) -> int:
     text = row.get(CAMERA_COLUMN, "")
-    number = _integer(text, path, line, CAMERA_COLUMN) if text else 0
+    number = read_integer(text, path, line, CAMERA_COLUMN) if text else 0
     if not 0 <= number < cameras:
         raise LogError(path, line, CAMERA_COLUMN, f"there is no camera {number}")
     return number
+
+
+def read_features(row: Row, path: Path, line: int, cameras: int) -> dict[str, object]:
+    """What a detector tells in one row, as the fields of ``Frame`` of that name: points, box, number of the camera."""
+    return {
+        **{feature: _pixel(row, path, line, feature) for feature in FEATURES},
+        "box_px": _box(row, path, line),
+        CAMERA_COLUMN: _camera_number(row, path, line, cameras),
+    }
 
 
 def read_frames(path: Path, cameras: int = len(CAMERA_NAMES)) -> list[Frame]:
     """Reads frames.csv of so many cameras. An empty pose field becomes NaN: a bad measurement, no bad input."""
     path = Path(path)
     frames = []
-    for line, row in _rows(path, REQUIRED_COLUMNS, FRAME_COLUMNS):
-        pose = [_optional(row, path, line, column) for column in POSE_COLUMNS]
+    for line, row in read_rows(path, REQUIRED_COLUMNS, FRAME_COLUMNS, check_pairs):
+        pose = [read_optional(row, path, line, column) for column in POSE_COLUMNS]
         n, e, d, qw, qx, qy, qz = (math.nan if value is None else value for value in pose)
         frames.append(
             Frame(
-                t_s=_number(row["t_s"], path, line, "t_s"),
-                id=_integer(row["id"], path, line, "id"),
+                t_s=read_number(row["t_s"], path, line, "t_s"),
+                id=read_integer(row["id"], path, line, "id"),
                 position_m=(n, e, d),
                 attitude=(qw, qx, qy, qz),
-                agl_m=_optional(row, path, line, "agl_m"),
-                **{feature: _pixel(row, path, line, feature) for feature in FEATURES},
-                box_px=_box(row, path, line),
-                camera=_camera_number(row, path, line, cameras),
-                reset_count=_integer(row[RESET_COLUMN], path, line, RESET_COLUMN) if row.get(RESET_COLUMN) else 0,
+                agl_m=read_optional(row, path, line, "agl_m"),
+                **read_features(row, path, line, cameras),  # type: ignore[arg-type]
+                reset_count=read_integer(row[RESET_COLUMN], path, line, RESET_COLUMN) if row.get(RESET_COLUMN) else 0,
                 reset_delta_m=_jump(row, path, line),
             )
         )
@@ -315,24 +275,26 @@ def read_truth(path: Path) -> dict[int, Truth]:
     """Reads truth.csv into a dictionary by id."""
     path = Path(path)
     result: dict[int, Truth] = {}
-    for line, row in _rows(path, TRUTH_COLUMNS, TRUTH_COLUMNS):
-        key = _integer(row["id"], path, line, "id")
+    for line, row in read_rows(path, TRUTH_COLUMNS, TRUTH_COLUMNS):
+        key = read_integer(row["id"], path, line, "id")
         if key in result:
             raise LogError(path, line, "id", f"{key} is given twice")
+        if row["static"] not in ("0", "1"):
+            raise LogError(path, line, "static", f"'{row['static']}' is not 0 or 1")
 
-        def value(column: str, row: dict[str, str] = row, line: int = line) -> float:
-            return _number(row[column], path, line, column)
+        def value(column: str, row: Row = row, line: int = line) -> float:
+            return read_number(row[column], path, line, column)
 
         result[key] = Truth(
             id=key,
-            static=_integer(row["static"], path, line, "static") != 0,
+            static=row["static"] == "1",
             center_n_m=value("center_n_m"),
             center_e_m=value("center_e_m"),
             ground_d_m=value("ground_d_m"),
             width_m=value("width_m"),
-            length_m=_optional(row, path, line, "length_m"),
+            length_m=read_optional(row, path, line, "length_m"),
             height_m=value("height_m"),
-            heading_deg=_optional(row, path, line, "heading_deg"),
+            heading_deg=read_optional(row, path, line, "heading_deg"),
             extra={name: text for name, text in row.items() if name not in TRUTH_COLUMNS},
         )
     return result

@@ -15,12 +15,15 @@ from .obslog import LogError, Truth, read_truth
 
 DEFAULT_ROWS = 12
 NOTHING = "-"
-MODEL_WORDS = {"disc": "disc", "line": "front edge", "box": "box", "none": NOTHING}
+MODEL_WORDS = {"disc": "disc", "line": "front edge", "box": "box", "prism": "upright", "none": NOTHING}
+WIDTH_WORDS = {"disc": "diameter", "prism": "width across the line of sight"}
+REASON_WORDS = {"late": "poses late"}
 HINT = (
     "Ahead and aside: from the aircraft to the obstacle's reference point, along and across the direction of flight "
     "(disc: its centre; front edge, box: the middle of the front edge). Turned: the side edge against the direction of "
     "flight, clockwise. "
-    "± is one sigma. A row marked * repeats an older solution."
+    "± is one sigma. A row marked * repeats an older solution. Suspect: the track does not fit what it is taken for, "
+    "so its sigmas may be too small; widen the margins."
 )
 
 
@@ -42,6 +45,17 @@ def decimals(sigma: float, value: float) -> int:
     if not sigma > 0.0:
         return 1 if abs(value) >= 100.0 else 2
     return min(2, max(0, 1 - math.floor(math.log10(sigma))))
+
+
+def remark(estimate: Estimate) -> str:
+    """What a reader must know of an estimate beside its numbers."""
+    told = [] if estimate.status in ("ok", "partial") else [f"* {estimate.status.replace('_', ' ')}"]
+    reason = REASON_WORDS.get(estimate.reason, estimate.reason)
+    if estimate.suspect:
+        told.append(f"suspect: {reason}")
+    elif estimate.reason != "none":
+        told.append(reason)
+    return ", ".join(told)
 
 
 def true_values(truth: Truth) -> dict[str, float | None]:
@@ -89,7 +103,7 @@ def flight_table(track: int, rows: Sequence[tuple[float, int, Estimate]], count:
             measured(estimate, "height_m", " m"),
             measured(estimate, "orientation_deg", "°"),
             MODEL_WORDS.get(estimate.model, estimate.model),
-            "" if estimate.status in ("ok", "partial") else f"* {estimate.status.replace('_', ' ')}",
+            remark(estimate),
         )
     return table
 
@@ -97,6 +111,8 @@ def flight_table(track: int, rows: Sequence[tuple[float, int, Estimate]], count:
 def summary_table(last: Estimate, truth: Truth | None) -> Table:
     """The last estimate, quantity by quantity, beside the truth."""
     known = true_values(truth) if truth else {}
+    if truth and last.model == "prism" and truth.width_m != truth.length_m:
+        known["width_m"] = None  # across the line of sight: neither side's
     table = Table(box=None, pad_edge=False)
     table.add_column("last estimate")
     for heading in ("estimate ± sigma", "truth", "error"):
@@ -104,7 +120,7 @@ def summary_table(last: Estimate, truth: Truth | None) -> Table:
     lines = (
         ("distance ahead at the start", "z0_m", " m"),
         ("distance to the right at the start", "x0_m", " m"),
-        ("width of the front (disc: diameter)", "width_m", " m"),
+        (WIDTH_WORDS.get(last.model, "width of the front"), "width_m", " m"),
         ("length of the side", "length_m", " m"),
         ("height", "height_m", " m"),
         ("side edge from the flight direction", "orientation_deg", "°"),
@@ -165,6 +181,6 @@ def run(arguments: argparse.Namespace) -> int:
     truths = read_truth(arguments.truth) if arguments.truth else {}
     console = Console(highlight=False)
     if not console.is_terminal:
-        console = Console(width=120, highlight=False)
+        console = Console(width=140, highlight=False)
     print_tables(console, rows, truths, arguments.rows)
     return 0

@@ -12,7 +12,7 @@ from ..places import ROOT
 NEEDS = {"movers": ("refined",)}  # parts that make no sense without others
 
 # What a package may hold of a folder. Whatever else lies there was built, or is somebody's own.
-SUFFIXES = (".c", ".cmake", ".h", ".in", ".ino", ".py", ".rs", ".txt", ".xml", ".yml")
+SUFFIXES = (".c", ".cmake", ".h", ".in", ".ino", ".py", ".pyi", ".rs", ".txt", ".typed", ".xml", ".yml")
 NO_SOURCES = ("build", "target", "__pycache__", "dist")  # folders that tools fill
 
 

@@ -30,6 +30,10 @@ def cargo_manifest(facts: Facts) -> str:
     return render(facts, "rust/Cargo.toml.j2", packed=False)
 
 
+def python_manifest(facts: Facts) -> str:
+    return render(facts, "python/pyproject.toml.j2", packed=False)
+
+
 def tools_manifest(facts: Facts) -> str:
     """The tools' own manifest, which is written by hand but for the version."""
     text = (facts.root / TOOLS).read_text(encoding="utf-8")
@@ -41,7 +45,11 @@ def tools_manifest(facts: Facts) -> str:
 
 TOOLS = "tools/pyproject.toml"
 # Manifests that lie in the tree, and what they must say.
-COMMITTED: dict[str, Callable[[Facts], str]] = {"port/rust/Cargo.toml": cargo_manifest, TOOLS: tools_manifest}
+COMMITTED: dict[str, Callable[[Facts], str]] = {
+    "port/python/pyproject.toml": python_manifest,
+    "port/rust/Cargo.toml": cargo_manifest,
+    TOOLS: tools_manifest,
+}
 
 
 def rust(facts: Facts, words: Words, folder: Path) -> list[Path]:
@@ -54,6 +62,22 @@ def rust(facts: Facts, words: Words, folder: Path) -> list[Path]:
     stage.copy_library("csrc/lib")
     stage.copy_flight("csrc/flight")
     stage.copy_page("rust")
+    return [stage.folder]
+
+
+def python(facts: Facts, words: Words, folder: Path) -> list[Path]:
+    stage = Stage(facts, words, folder / "goe")
+    for name in ("src", "examples"):
+        stage.copy_tree(f"port/python/{name}", name)
+    glue = facts.root / "port" / "python" / "csrc"
+    stage.copy_files("port/python/csrc", tuple(path.name for path in sorted(glue.iterdir()) if path.is_file()), "csrc")
+    for name in ("CMakeLists.txt", "bindings.py"):
+        stage.copy(f"port/python/{name}", name)
+    stage.copy("port/cmake/goe_compile.cmake", "csrc/cmake/goe_compile.cmake")
+    stage.render("pyproject.toml", "python/pyproject.toml.j2", packed=True)
+    stage.copy_library("csrc/lib")
+    stage.copy_flight("csrc/flight")
+    stage.copy_page("python")
     return [stage.folder]
 
 
@@ -133,5 +157,6 @@ TARGETS: dict[str, Callable[[Facts, Words, Path], list[Path]]] = {
     "conan": conan,
     "esp-idf": esp_idf,
     "platformio": platformio,
+    "python": python,
     "rust": rust,
 }

@@ -6,6 +6,9 @@ goals_file  what the goals command wrote
 avoid_file  what goe_avoid wrote
 statistics  ranges, verdicts, comparisons of studies
 refined     the same of the refined method
+rare        how often what must not happen does: on the page
+rare_record the events, their counts, the file that keeps them
+rare_command flies, in many processes, and goes on where a record ends
 attacks     hostile flights of the goals: where the sigma holds, and where not
 avoid       the flight layer's orders, flown: collisions with and without
 style       colours, sizes, names

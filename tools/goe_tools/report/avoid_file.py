@@ -17,7 +17,7 @@ ACTIONS = (NO_ORDER, "left", "right", "climb", "go_around", "hold")
 LABELS = {"kind": KINDS, "course": COURSES, "action": ACTIONS}
 SETUP = ("delay_s", "margin_m", "collision_m", "pass_m")  # alike in every run
 NUMBERS = ("seed", "delay_s", "margin_m", "collision_m", "closest_without_m", "suspect", "assessed")
-FLAGS = ("late", "collided_without")
+FLAGS = ("late", "collided_without", "confident")
 OF_COURSE = {  # what a run of the other course has not: numbers, flags
     COLLISION: (("closest_with_m",), ("collided_with",)),
     PASS: (("pass_m",), ("false_order",)),

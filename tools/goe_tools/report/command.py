@@ -13,6 +13,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("campaign", type=Path, metavar="CAMPAIGN_DIR", help="folder that goe_campaign wrote")
     parser.add_argument("--goals", type=Path, metavar="FILE.json", help="what the goals command wrote with --json")
     parser.add_argument("--avoid", type=Path, metavar="FILE.csv", help="what goe_avoid wrote with --csv")
+    parser.add_argument("--approach", type=Path, metavar="LOG", help="log folder whose flight the page begins with")
+    parser.add_argument("--rare", type=Path, metavar="FILE.json", help="the record that the rare command wrote")
     parser.add_argument("--out", type=Path, metavar="FILE.html", help="page to write; figures go to FILE_figures/")
     parser.add_argument("--table", action="store_true", help="print Table 3: the paper's numbers, window, refined")
 
@@ -20,7 +22,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     if arguments.out is None and not arguments.table:
         raise ValueError("nothing to do: give --out FILE.html, --table or both")
-    campaign = read_campaign(arguments.campaign, goals=arguments.goals, avoid=arguments.avoid)
+    campaign = read_campaign(
+        arguments.campaign,
+        goals=arguments.goals,
+        avoid=arguments.avoid,
+        rare=arguments.rare,
+        approach=arguments.approach,
+    )
     if arguments.table:
         print_table3(campaign)
     if arguments.out is not None:

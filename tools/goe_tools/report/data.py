@@ -14,6 +14,7 @@ from ..logs.obslog import LogError
 from .avoid_file import Avoid, read_avoid
 from .columns import read_columns
 from .goals_file import Goals, read_goals
+from .rare_record import Record, read_record
 
 LABELS = ("study", "obstacle", "path", "speed_profile", "wind", "noise", "method", "model")
 SETUP = ("case", "side_m", "alpha_deg", "altitude_m", "glide_deg", "seed", "window", "fps_hz", "fraction")
@@ -76,6 +77,8 @@ class Campaign:
     refined: Cases | None = None  # the refined method's rows, if the campaign has any
     goals: Goals | None = None
     avoid: Avoid | None = None  # what goe_avoid wrote
+    rare: Record | None = None  # what the rare command wrote
+    approach: Path | None = None  # a log to begin the page with
 
     def series(self, case: int, model: str) -> Cases | None:
         """The time series of a case of the paper's study (first seed), or None if it was not written."""
@@ -88,10 +91,15 @@ class Campaign:
 
 
 def read_campaign(
-    folder: Path, method: str = "window", goals: Path | None = None, avoid: Path | None = None
+    folder: Path,
+    method: str = "window",
+    goals: Path | None = None,
+    avoid: Path | None = None,
+    rare: Path | None = None,
+    approach: Path | None = None,
 ) -> Campaign:
-    """Reads cases.csv and campaign.json, the goals' file and that of goe_avoid if there are any. ``cases`` are the rows
-    of one method."""
+    """Reads cases.csv and campaign.json, the goals' file, that of goe_avoid and the record of rare events if there are
+    any. ``cases`` are the rows of one method."""
     if not folder.is_dir():
         raise LogError(folder, 0, "", "no such folder")
     path = folder / "cases.csv"
@@ -111,6 +119,7 @@ def read_campaign(
     return Campaign(
         folder, rows.select(method=method), _read_facts(folder / "campaign.json"), refined if len(refined) else None,
         read_goals(goals) if goals else None, read_avoid(avoid) if avoid else None,
+        read_record(rare) if rare else None, approach,
     )  # fmt: skip
 
 

@@ -15,8 +15,12 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
+from ..logs.obslog import read_log
 from ..optimum import paper_table3 as t3
-from . import attacks, avoid, boxes
+from ..view.answers import Options
+from ..view.picture import png
+from ..view.story import story_of
+from . import attacks, avoid, boxes, rare
 from . import refined as rf
 from . import statistics as st
 from .data import COVERED, Campaign
@@ -340,6 +344,23 @@ def _avoid(campaign: Campaign) -> dict[str, Any] | None:
     }  # fmt: skip
 
 
+def _rare(campaign: Campaign) -> dict[str, Any] | None:
+    """The record of rare events; None without one."""
+    if campaign.rare is None:
+        return None
+    return {"sentence": rare.sentence(campaign.rare), "heads": rare.HEADS, "rows": rare.table(campaign.rare)}
+
+
+def _approach(campaign: Campaign) -> str | None:
+    """One flight as a picture, light as the page."""
+    if campaign.approach is None:
+        return None
+    log = read_log(campaign.approach)
+    story = story_of(campaign.approach.resolve().name, log, Options())
+    chosen = story.chosen(None)
+    return _data_uri("png", png(story, chosen, story.first_look(chosen)))
+
+
 def _version(campaign: Campaign) -> str:
     version = str(campaign.facts.get("version", ""))
     return version if version[:1].isdigit() else ""
@@ -377,6 +398,8 @@ def render_page(campaign: Campaign, figures: list[PageFigure]) -> str:
         boxes=_boxes(campaign),
         attacks=_attacks(campaign),
         avoid=_avoid(campaign),
+        rare=_rare(campaign),
+        approach=_approach(campaign),
         real=rp.real_data(campaign),
         goal_symbols=[GOAL_SYMBOLS[name] for name in QUANTITIES],
         figures=figures,

@@ -281,13 +281,14 @@ def quartiles_by(rows: Cases, factor: str, values: np.ndarray) -> tuple[np.ndarr
 
 
 def campaign_counts(campaign: Campaign) -> dict[str, Any]:
-    """What the page's head tells, from the rows alone."""
+    """What the page's head tells: what goe_campaign counted and printed; otherwise from the rows, where an image that
+    two runs saw counts twice."""
     whole = campaign.cases.select(fraction=max(campaign.cases.levels("fraction")))
     flights = set(whole.keys(("study", "case", "seed", "path", "speed_profile", "wind", "noise", "roll_deg")))
     return {
-        "runs": len(whole),
-        "flights": len(flights),
+        "runs": campaign.facts.get("runs", len(whole)),
+        "flights": campaign.facts.get("flights", len(flights)),
         "paper_cases": len(set(whole.select(study="paper").keys(("case",)))),
         "seeds": len(whole.levels("seed")),
-        "images": int(np.sum(whole["frames"])),
+        "images": campaign.facts.get("frames", int(np.sum(whole["frames"]))),
     }

@@ -1,7 +1,8 @@
 """The library over the hostile flights of ``attack``: a line of goals for each figure of a row.
 
-What the library tells besides (reasons of suspicion, the obstacle's velocity) is used where goe_batch has the columns
-``reason`` (named by goe_batch_reason) and ``VELOCITY``; settings that it does not have are left out, with a word."""
+What the library tells besides (reasons of suspicion, the obstacle's velocity) is used where ``Track.more`` has the
+columns ``reason`` (named by ``reason_names``) and ``VELOCITY``; settings that it does not have are left out, with a
+word."""
 
 from __future__ import annotations
 
@@ -15,6 +16,7 @@ from ...attack import approach, judging, rows, scenario
 from ...attack.judging import Answers, Outcome
 from ...attack.rows import MOVES, Ask, Row
 from ...attack.scenario import Told
+from ...spread import each
 from ..flights.measured import measure
 from ..flights.recorded import recorded_scenes
 from ..library import (
@@ -30,7 +32,7 @@ from ..library import (
     settings_of,
 )
 from .goal import OPEN, Figures, Goal, Range, named
-from .work import Amount, each
+from .work import Amount
 
 VELOCITY = ("velocity_north_m_s", "velocity_east_m_s", "velocity_north_sd_m_s", "velocity_east_sd_m_s")
 PLANS = (
@@ -176,7 +178,7 @@ def attack_group(group: str, amount: Amount) -> list[Goal]:
     """The whole table."""
     goals, left_out = [], set()
     for row in rows.ROWS:
-        results = each(partial(perform, row), tracks_of(row, amount), amount.jobs, row.title)
+        results = each(partial(perform, row), tracks_of(row, amount), amount.workers, row.title)
         goals += goals_of(f"{group}: {row.section}", row, results)
         unknown = {name: value for name, value in row.if_known.items() if name not in known(row.if_known)}
         if unknown:

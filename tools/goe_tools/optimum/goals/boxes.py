@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...attack.judging import CONFIDENT_IMAGES, coverage, is_confidently_wrong
+from ...spread import each
 from ..flights import box_logs
 from ..flights.boxes import BUILDING, MAST, WALL, BoxOptions, Solid, box_flight
 from ..flights.flight import Flight
@@ -23,7 +24,7 @@ from ..prism_bound import bound_of
 from ..prism_offline import fit
 from .goal import OPEN, Goal, Range, named, names_of
 from .measures import nan_quantile
-from .work import Amount, each
+from .work import Amount
 
 TOLD = (X0, Z0, HEIGHT)
 ROLLS_DEG = (0.0, 5.0, 10.0, 25.0)
@@ -151,7 +152,7 @@ def _fly(
     solid: Solid, options: BoxOptions, amount: Amount, title: str, settings: dict[str, float] | None = None
 ) -> list[BoxOutcome]:
     tasks = [Simulated(solid, options, seed, settings or {}) for seed in range(1, amount.boxes + 1)]
-    return each(perform, tasks, amount.jobs, title)
+    return each(perform, tasks, amount.workers, title)
 
 
 def _coverage_goal(group: str, name: str, outcomes: Sequence[BoxOutcome], *asked: int) -> Goal:
@@ -227,7 +228,7 @@ def _bound_goals(group: str, amount: Amount) -> list[Goal]:
     result = []
     for roll in BOUND_ROLLS_DEG:
         tasks = _gauss_tasks(MAST, roll, amount)
-        ratio = _rmse(np.array(each(over_bound, tasks, amount.jobs, f"{group} bound {roll:g}")))
+        ratio = _rmse(np.array(each(over_bound, tasks, amount.workers, f"{group} bound {roll:g}")))
         name = f"{MAST.name}, roll {roll:g} deg: RMSE / bound"
         result.append(Goal(group, name, "1", _told(ratio), BOUND_MOST, names_of(TOLD)))
     return result
@@ -239,7 +240,7 @@ def _fit_goals(group: str, amount: Amount) -> list[Goal]:
     for solid in (MAST, BUILDING):
         for roll in ROLLS_DEG:
             tasks = _gauss_tasks(solid, roll, amount)
-            errors = np.array(each(beside_fit, tasks, amount.jobs, f"{group} {solid.name} fit {roll:g}"))
+            errors = np.array(each(beside_fit, tasks, amount.workers, f"{group} {solid.name} fit {roll:g}"))
             ours = errors[:, 0]
             best = np.where(np.isfinite(ours), errors[:, 1], math.nan)
             name = f"{solid.name}, roll {roll:g} deg"
@@ -311,14 +312,14 @@ def _odmd_goals(group: str, name: str, tracks: Sequence[Flight], amount: Amount)
     answer."""
     settings = ODMD_SETTINGS[name]
     every = [Recorded(f, {**settings, **EVERY_TRACK}) for f in tracks]
-    told = _depth_figures(each(perform, every, amount.jobs, group))
+    told = _depth_figures(each(perform, every, amount.workers, group))
     return [
         _line(group, "depth error, mean", "%", Z0, told["mean"], ODMD_MEAN[name]),
         _line(group, "depth error, median", "%", Z0, told["median"], ODMD_MEDIAN.get(name)),
         _line(group, "within 2 sigma", "%", Z0, told["within 2 sigma"], COVERED_RECORDED),
         Goal(group, f"answered, of {len(tracks)}", "%", {"tracks": told["answered"]}, (100.0, 100.0), ("tracks",)),
         Goal(group, "depth error by default settings", "%", _depth_figures(
-            each(perform, [Recorded(f, settings) for f in tracks], amount.jobs, group))),
+            each(perform, [Recorded(f, settings) for f in tracks], amount.workers, group))),
     ]  # fmt: skip
 
 
@@ -330,7 +331,7 @@ def recorded_goals(group: str, amount: Amount) -> list[Goal]:
         tasks = [Recorded(f) for f in box_logs.kitti_box_flights(feed) if f.truth.static and f.path_m() > KITTI_PATH_M]
         if tasks:
             title = f"{group}: KITTI, {feed.name}"
-            result += _kitti_goals(title, each(perform, tasks, amount.jobs, title))
+            result += _kitti_goals(title, each(perform, tasks, amount.workers, title))
     if not feeds:
         absent.append("KITTI's boxes")
     for name in box_logs.ODMD_SETS:

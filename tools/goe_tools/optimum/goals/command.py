@@ -1,6 +1,6 @@
 """The command ``goals``: every figure that the project promises, beside the figure that is reached.
 
-    python -m goe_tools goals [--quick] [--only GROUP,...] [--json FILE] [--jobs N] [--half HALF]
+    python -m goe_tools goals [--quick] [--only GROUP,...] [--json FILE] [--half HALF] [--jobs N | --scheduler ADDRESS]
 
 A new group of goals is a module beside this one and a line in ``GROUPS``.
 """
@@ -12,10 +12,11 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+from ... import spread
 from ...attack.rows import HALVES
 from ..flights.logged import KITTI_FOLDER
 from ..flights.recorded import RECORDED_FOLDER
-from ..library import library_path
+from ..library import ready
 from .attack import attack_group
 from .boxes import boxes_group
 from .early import early_group
@@ -47,7 +48,7 @@ GROUPS: dict[str, Callable[[str, Amount], list[Goal]]] = {
     "rivals": rivals_group,
 }
 ABSENT = {
-    "float32": "the target goe_batch_double is not built",
+    "float32": "the target goe_python_double is not built",
     "recorded": f"no flights in {RECORDED_FOLDER}",
     "kitti": f"no logs in {KITTI_FOLDER}",
     "rivals": "the rivals are not there",
@@ -67,7 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="judge",
         help="tracks of the attacks; thresholds are settled by the other half",
     )
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    spread.add_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -75,10 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
     for name in chosen:
         if name not in GROUPS:
             raise ValueError(f"--only {name}: not one of {', '.join(GROUPS)}")
-    if arguments.jobs < 1:
-        raise ValueError(f"--jobs {arguments.jobs}: must be at least 1")
-    library_path()  # its absence is told before the work begins
-    told = {"jobs": arguments.jobs, "worst": arguments.worst, "half": arguments.half}
+    ready()  # its absence is told before the work begins
+    told = {"workers": spread.workers_of(arguments), "worst": arguments.worst, "half": arguments.half}
     amount = Amount(**{**vars(QUICK if arguments.quick else FULL), **told})
     goals: list[Goal] = []
     for name in chosen:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...spread import each
 from ..flights.measured import measure
-from ..library import library_path
+from ..library import ready
 from ..precision import Rounding, rounding_of
 from .goal import NAMES, Goal, named
 from .measures import nan_quantile
 from .outcome import Task
-from .work import Amount, each, simulated_tasks
+from .work import Amount, simulated_tasks
 
 ROUNDING_MOST = 0.05  # of one sigma
 ROUNDING_TITLE = "float32 against float64"
@@ -24,13 +25,13 @@ def float32_group(group: str, amount: Amount) -> list[Goal]:
     """The library in float32 against itself in float64: the largest difference over a flight's images, in sigmas."""
     result = []
     try:
-        library_path(double=True)
+        ready(double=True)
     except FileNotFoundError as reason:
         print(f"left out: {reason}")
         return []
     for noise in ("gauss0.3", "gauss1", "field"):
         tasks = simulated_tasks(noise, amount.precision_seeds, amount)
-        flights = each(_rounding, tasks, amount.jobs, f"{group} {noise}")
+        flights = each(_rounding, tasks, amount.workers, f"{group} {noise}")
         largest = np.array([r.worst for r in flights])
         for label, share in (("99th percentile", 0.99), ("worst", 1.0)):
             values = named(nan_quantile(largest, share))

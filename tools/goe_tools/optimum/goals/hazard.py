@@ -10,10 +10,11 @@ import numpy as np
 
 from ...attack import approach, rows, scenario
 from ...attack.approach import HazardRow, Run, Warnings
+from ...spread import each
 from ..library import METHODS, run
 from .attack import PLANS, images_of, known
 from .goal import Goal
-from .work import Amount, each
+from .work import Amount
 
 COVERED = (90.0, 100.0)
 FALSE_MOST = (0.0, 15.0)
@@ -55,5 +56,5 @@ def hazard_group(group: str, amount: Amount) -> list[Goal]:
     goals = []
     for row in approach.ROWS:
         numbers = rows.numbers(amount.half, amount.hazard)
-        goals += goals_of(group, row, each(partial(perform, row), numbers, amount.jobs, row.name))
+        goals += goals_of(group, row, each(partial(perform, row), numbers, amount.workers, row.name))
     return goals

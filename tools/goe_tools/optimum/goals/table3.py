@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...spread import each
 from ..bound import bound
 from ..flights.measured import measure
 from ..flights.noise import NOISES
@@ -17,7 +18,7 @@ from ..paper_table3 import FRACTION, MOST, PAPER_TABLE3, TABLE3_QUANTITIES, hold
 from .goal import NAMES, Goal, named
 from .measures import by_obstacle
 from .outcome import Outcome, Task
-from .work import Amount, each, perform_all
+from .work import Amount, perform_all
 
 TABLE3_NUMBERS = dict(zip(TABLE3_QUANTITIES, (Z0, X0, WIDTH, LENGTH, HEIGHT)))
 
@@ -51,7 +52,7 @@ def _bound_when_judged(task: Task) -> np.ndarray:
 
 def table3_bounds(group: str, tasks: Sequence[Task], outcomes: Sequence[Outcome], amount: Amount) -> list[Goal]:
     """What no unbiased estimator can better: the bound with the images up to the first one that Table 3 judges."""
-    bounds = dict(zip([id(o) for o in outcomes], each(_bound_when_judged, tasks, amount.jobs, f"{group} bounds")))
+    bounds = dict(zip([id(o) for o in outcomes], each(_bound_when_judged, tasks, amount.workers, f"{group} bounds")))
     result = []
     for obstacle, chosen in by_obstacle(outcomes).items():
         asked = (X0, Z0, WIDTH, LENGTH, HEIGHT) if chosen[0].box else (X0, Z0, WIDTH, HEIGHT)

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import signal
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
-from tqdm import tqdm
 
 from ...attack.approach import RUNS
 from ...attack.rows import TRACKS_EACH
+from ...spread import ALONE, Workers, each
 from ..flights.noise import NOISES
 from ..flights.simulated import paper_scenes, random_scenes
 from .outcome import Outcome, Task, perform
 from .output import print_worst
-
-Job = TypeVar("Job")
-Result = TypeVar("Result")
 
 
 @dataclass
@@ -38,7 +32,7 @@ class Amount:
     attack: int  # tracks of each attack
     hazard: int  # runs of each row of warnings
     half: str = "judge"  # of the attacks' tracks: what settles a threshold must not judge it
-    jobs: int = 1
+    workers: Workers = ALONE
     worst: int = 0  # flights to be named, those of the largest NEES
 
 
@@ -52,16 +46,8 @@ FULL = Amount(
 )  # fmt: skip
 
 
-def each(work: Callable[[Job], Result], tasks: Sequence[Job], jobs: int, title: str) -> list[Result]:
-    progress = {"total": len(tasks), "desc": title, "disable": None, "leave": False}
-    if jobs == 1:
-        return [work(task) for task in tqdm(tasks, **progress)]
-    with multiprocessing.Pool(jobs, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:  # Ctrl-C: ours alone
-        return list(tqdm(pool.imap(work, tasks, chunksize=8), **progress))
-
-
 def perform_all(tasks: Sequence[Task], amount: Amount, title: str) -> list[Outcome]:
-    outcomes = each(perform, tasks, amount.jobs, title)
+    outcomes = each(perform, tasks, amount.workers, title)
     print_worst(title, outcomes, amount.worst)
     return outcomes
 

@@ -1,4 +1,4 @@
-/* Included before everything else (-include), this turns the library and goe_batch into the same filter in float64. For
+/* Included before everything else (-include), this turns the library into the same filter in float64. For
  * the host's tests and tools only: it shows how much of an answer is the rounding of floats. SPDX-License-Identifier: MIT
  *
  * Constants stay floats, as in the library itself: what differs is the arithmetic and nothing else. The functions of
@@ -42,10 +42,6 @@ static inline bool goe_within(double x, double limit) { return fabs(x) <= fabs(l
 static inline double goe_larger(double a, double b) { return a > b ? a : b; }
 
 static inline double goe_square(double x) { return x * x; }
-
-/* The arrays of goe_batch.h are those of the other build. */
-typedef float goe_batch_float_t;
-#define GOE_BATCH_FLOAT
 
 #define float double
 #define sqrtf sqrt

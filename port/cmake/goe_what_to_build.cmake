@@ -1,0 +1,35 @@
+# GOE_BUILD_HOST and GOE_BUILD_TESTS that are AUTO become ON or OFF for this run: ON if the project is not part of another one and
+# what they need is found. What is left out is said, with what would bring it in.
+
+# goe_left_out(<variable> <what> <missing>)
+function(goe_left_out variable what missing)
+    message(STATUS "${what} left out: no ${missing}. tools/setup.sh installs what is missing; -D${variable}=ON insists")
+endfunction()
+
+if(GOE_BUILD_HOST STREQUAL AUTO)
+    set(GOE_BUILD_HOST ${goe_is_top_level})
+    foreach(needed popt csv ini)
+        string(TOUPPER ${needed} name)
+        string(REPLACE INI INIH name ${name}) # as sim_host looks for them
+        string(REPLACE ini inih library ${needed})
+        if(GOE_BUILD_HOST)
+            find_path(${name}_INCLUDE_DIR ${needed}.h)
+            find_library(${name}_LIBRARY ${library})
+            if(NOT ${name}_INCLUDE_DIR OR NOT ${name}_LIBRARY)
+                set(GOE_BUILD_HOST OFF)
+                goe_left_out(GOE_BUILD_HOST "The programs for the host are" "${needed}.h or lib${library}")
+            endif()
+        endif()
+    endforeach()
+endif()
+
+if(GOE_BUILD_TESTS STREQUAL AUTO)
+    set(GOE_BUILD_TESTS ${goe_is_top_level})
+    if(GOE_BUILD_TESTS AND NOT CMAKE_CROSSCOMPILING)
+        include(${PROJECT_SOURCE_DIR}/port/cmake/unity.cmake)
+        if(NOT TARGET unity::framework)
+            set(GOE_BUILD_TESTS OFF)
+            goe_left_out(GOE_BUILD_TESTS "The tests are" "Unity test framework")
+        endif()
+    endif()
+endif()

@@ -1,0 +1,50 @@
+/* What Python needs beside goe.h: settings by number, and whole tracks in one call. The package `goe` compiles it; so does
+ * sim_host, in double precision, for the tools that ask what the rounding of floats does. SPDX-License-Identifier: MIT */
+#ifndef GOE_PYTHON_H
+#define GOE_PYTHON_H
+
+#include "goe.h"
+
+enum { GOE_PYTHON_REAL, GOE_PYTHON_COUNT, GOE_PYTHON_TRUTH, GOE_PYTHON_CHOICE };
+
+/* A row of goe_settings_list.h. A setting whose default is outside its range must be set. */
+typedef struct {
+    const char *name, *unit, *text;
+    int kind; /* GOE_PYTHON_REAL, ... */
+    double low, high, value;
+} goe_python_setting_t;
+
+/* Rows from 0 on, those of the camera first; null after the last. */
+const goe_python_setting_t *goe_python_setting(int row);
+
+/* How many of them are of the camera. */
+int goe_python_camera_settings(void);
+
+/* values: of every row; after them those of the camera's rows for each further camera. */
+void goe_python_settings(const double *values, int cameras, goe_settings_t *settings);
+
+/* goe_init() with such settings; the estimator is of goe_python_estimator_size() bytes. */
+goe_status_t goe_python_init(goe_estimator_t *estimator, const double *values, int cameras, const char **bad_field);
+size_t goe_python_estimator_size(void);
+
+/* Bytes of goe_image_t, goe_estimate_t and goe_hazard_t, for callers that lay them out by themselves. */
+void goe_python_sizes(size_t sizes[3]);
+
+/* What goe_hazard() is asked after each image, by the project's rule: margin and clearance grow with doubt and age. */
+typedef struct {
+    float margin_m, clearance_m;
+    float doubt;         /* times both while the estimate is suspect; 1: as they are */
+    float drift_m_s;     /* times the estimate's age, added to both; 0: as they are */
+    float since_image_s; /* as in goe_plan_t */
+} goe_python_rule_t;
+
+/* Images go in, one after the other, and what is known after each comes out.
+ *   velocity_ned_m_s  [images] planned; read if there are rules
+ *   covariance        [images]; null: not wanted
+ *   hazard_status, hazard  [images][rules]; written if there are rules */
+void goe_python_update(goe_estimator_t *estimator, size_t images, const goe_image_t *image, int32_t *status,
+                       goe_estimate_t *estimate, float (*covariance)[GOE_QUANTITIES][GOE_QUANTITIES], size_t rules,
+                       const goe_python_rule_t *rule, const float (*velocity_ned_m_s)[3], int32_t *hazard_status,
+                       goe_hazard_t *hazard);
+
+#endif /* GOE_PYTHON_H */

@@ -1,0 +1,140 @@
+"""What the estimator is given with each image."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from ._goe import lib
+
+POINTS = ("left", "right", "top", "base_left", "base_near", "base_right")
+"""Points of an image, in the order of whole tracks."""
+SIDES = ("left", "top", "right", "bottom")
+"""Sides of a box, in the order of whole tracks."""
+SEES = (lib.GOE_SEES_LEFT, lib.GOE_SEES_TOP, lib.GOE_SEES_RIGHT, lib.GOE_SEES_BOTTOM)
+TIME_UNKNOWN = -(2**63)
+"""A pose's time that is not known: the image is refused."""
+
+
+def vector(values: Sequence[float], count: int, name: str) -> tuple[float, ...]:
+    """Exactly so many numbers; C would take fewer for zeros."""
+    numbers = tuple(values)
+    if len(numbers) != count:
+        raise ValueError(f"{name}: {len(numbers)} numbers, not {count}")
+    return numbers
+
+
+class Pixel(NamedTuple):
+    """A point of the raw image, px; each within 1e5."""
+
+    u_px: float
+    """From the left."""
+    v_px: float
+    """From the top."""
+
+
+class BoundingBox(NamedTuple):
+    """A detector's upright box in the raw image, px; each within 1e5. None: that side is cut, hidden or not believed.
+
+    Feed raw detections: a tracker's smoothed boxes lag, which no sigma knows of.
+    """
+
+    left_px: float | None = None
+    top_px: float | None = None
+    right_px: float | None = None
+    """Right of the left one."""
+    bottom_px: float | None = None
+    """Below the top one."""
+
+
+@dataclass
+class Pose:
+    """Where the aircraft was at the time of exposure, not when the image arrived."""
+
+    time_us: int = 0
+    """Any origin, microseconds; strictly increasing."""
+    position_ned_m: Sequence[float] = (0.0, 0.0, 0.0)
+    """The vehicle's reference point in north, east, down, m; each within 1e6."""
+    height_m: float = 0.0
+    """Of the camera itself above the ground at the obstacle, m; within 1e5."""
+    attitude: Sequence[float] = (1.0, 0.0, 0.0, 0.0)
+    """Quaternion w, x, y, z that turns body (forward, right, down) into north, east, down; refused if its norm is off 1
+    by over 1 %."""
+    reset_count: int = 0
+    """Counts the resets of the autopilot's filter; any start; its lowest 8 bits count."""
+    reset_delta_ned_m: Sequence[float] | None = None
+    """By what the position jumped with them, new minus old, summed over all resets since the last image that was taken,
+    m. None: not known; then a change of ``reset_count`` starts the track anew."""
+
+
+@dataclass
+class ImageNoise:
+    """This image's own errors, one sigma each, instead of those of the settings; None: as there. Refined method."""
+
+    attitude_deg: float | None = None
+    """Instead of ``Navigation.attitude_white_deg``, degrees; up to 30. A late pose belongs here: 20 ms at 24 degrees a
+    second are 0.5 degrees."""
+    height_m: float | None = None
+    """Instead of ``Navigation.height_bias_m``, m; up to 1e3."""
+    pixel_px: float | None = None
+    """Instead of the detector's ``point_px`` and ``box_px``, px; up to 100."""
+
+
+@dataclass
+class Image:
+    """One image of one obstacle: a box, or points, or both. Any subset may be seen; none: give it all the same."""
+
+    pose: Pose = field(default_factory=Pose)
+    """Where the aircraft was."""
+    left: Pixel | None = None
+    """Leftmost point of the silhouette."""
+    right: Pixel | None = None
+    """Rightmost point of the silhouette."""
+    top: Pixel | None = None
+    """Point of the roof's edge over the nearest base corner; of a disc the nearest point of its upper rim."""
+    base_left: Pixel | None = None
+    """Corner of the base on the ground, in image order."""
+    base_near: Pixel | None = None
+    """The one between two visible faces; not seen when one face alone is."""
+    base_right: Pixel | None = None
+    """The last in image order."""
+    bounding_box: BoundingBox | None = None
+    """What detectors give. It stands for left, right and top, which are not read then."""
+    noise: ImageNoise = field(default_factory=ImageNoise)
+    """This image's own errors."""
+    camera: int = 0
+    """Number of the camera that took it."""
+
+
+def fill_points(c: Any, points: Any) -> None:
+    """``points`` has the attributes of POINTS."""
+    for name in POINTS:
+        pixel, place = getattr(points, name), getattr(c, name)
+        place.seen = pixel is not None
+        place.u_px, place.v_px = (0.0, 0.0) if pixel is None else pixel
+
+
+def fill_box(c: Any, box: BoundingBox | None) -> None:
+    sides = box or BoundingBox()
+    c.left_px, c.top_px, c.right_px, c.bottom_px = (0.0 if side is None else side for side in sides)
+    c.seen = sum(bit for bit, side in zip(SEES, sides) if side is not None)
+
+
+def fill_image(c: Any, image: Image) -> None:
+    """Writes all of a goe_image_t."""
+    pose, to = image.pose, c.pose
+    to.time_us = pose.time_us
+    to.position_ned_m = vector(pose.position_ned_m, 3, "position_ned_m")
+    to.height_m = pose.height_m
+    to.attitude = vector(pose.attitude, 4, "attitude")
+    to.reset_count = pose.reset_count & 0xFF
+    to.reset_delta_known = pose.reset_delta_ned_m is not None
+    delta = (0.0, 0.0, 0.0) if pose.reset_delta_ned_m is None else pose.reset_delta_ned_m
+    to.reset_delta_ned_m = vector(delta, 3, "reset_delta_ned_m")
+    fill_points(c, image)
+    fill_box(c.box, image.bounding_box)
+    c.noise.attitude_deg = image.noise.attitude_deg or 0.0
+    c.noise.height_m = image.noise.height_m or 0.0
+    c.noise.pixel_px = image.noise.pixel_px or 0.0
+    c.camera = image.camera

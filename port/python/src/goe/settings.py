@@ -1,0 +1,430 @@
+"""What the estimator has to know before it starts.
+
+Names, units and meaning are those of goe_settings_t in goe.h; defaults and ranges come from the C library. Numbers are
+rounded to single precision. A range is checked when an estimator is made, or by ``Settings.check``; a name that is not
+there is refused at once.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _table
+from ._goe import lib
+from ._table import CAMERA_ROWS, FLIGHT_ROWS, ROWS, Row, flight, real, whole
+from .status import Method, SettingError, Shape
+
+CAMERAS_MAX: int = lib.GOE_CAMERAS_MAX
+"""Cameras of one aircraft, the first included."""
+
+METHOD_DEFAULT, SHAPE_DEFAULT = Method(whole("method")), Shape(whole("model"))
+NAME = re.compile(r"(?:(\w+)(?:\[(\d+)\])?\.)?(\w+)(?:\[(\d+)\])?")
+
+
+def _meant(name: str, names: Sequence[str]) -> str:
+    close = difflib.get_close_matches(name, names, n=1)
+    return f"; did you mean {close[0]}?" if close else ""
+
+
+class _Group:
+    """Takes no names but its own."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        names = self.__dataclass_fields__
+        if name not in names:
+            raise AttributeError(f"{type(self).__name__} has no setting {name}{_meant(name, tuple(names))}")
+        object.__setattr__(self, name, value)
+
+
+@dataclass
+class Camera(_Group):
+    """Pinhole camera with Brown-Conrady lens, in OpenCV's conventions, and how it sits on the aircraft.
+
+    The camera that is not turned looks along body x, with image x = body y and image y = body z. It is turned by yaw
+    about z, then pitch about the new y, then roll about the newest x: a camera that looks left has a negative yaw.
+    """
+
+    fx_px: float = real("camera.fx_px")
+    """Focal length along x, px; 1 to 1e5; must be set."""
+    fy_px: float = real("camera.fy_px")
+    """Focal length along y, px; 1 to 1e5; must be set."""
+    cx_px: float = real("camera.cx_px")
+    """Principal point from the left, px; within 1e5; must be set."""
+    cy_px: float = real("camera.cy_px")
+    """Principal point from the top, px; within 1e5; must be set."""
+    k1: float = real("camera.k1")
+    """Lens distortion, radial."""
+    k2: float = real("camera.k2")
+    """Lens distortion, radial."""
+    p1: float = real("camera.p1")
+    """Lens distortion, tangential."""
+    p2: float = real("camera.p2")
+    """Lens distortion, tangential."""
+    k3: float = real("camera.k3")
+    """Lens distortion, radial."""
+    mount_yaw_deg: float = real("camera.mount_yaw_deg")
+    """Mounting, degrees."""
+    mount_pitch_deg: float = real("camera.mount_pitch_deg")
+    """Mounting, degrees."""
+    mount_roll_deg: float = real("camera.mount_roll_deg")
+    """Mounting, degrees."""
+    offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Camera relative to the pose's reference point, body axes: forward, right, down, m."""
+    width_px: float = real("camera.width_px")
+    """Width of the image, px; 0: not known. The flight layer needs it."""
+    height_px: float = real("camera.height_px")
+    """Height of the image, px; 0: not known. The flight layer needs it."""
+    border_share: float = real("camera.border_share")
+    """A box's side nearer to the border than this is not measured, fraction of the image's width."""
+    cut_share: float = real("camera.cut_share")
+    """While left or right is nearer to the border than this the other sides count less: ``Detector.cut_noise``."""
+
+
+@dataclass
+class Navigation(_Group):
+    """How wrong the pose is, one sigma each; for the refined method."""
+
+    attitude_bias_deg: float = real("navigation.attitude_bias_deg")
+    """Constant attitude error about each body axis, mounting included, degrees."""
+    attitude_white_deg: float = real("navigation.attitude_white_deg")
+    """Attitude error that is new in each image, degrees."""
+    attitude_drift_deg: float = real("navigation.attitude_drift_deg")
+    """Random walk of the attitude error, degrees per square root of a second."""
+    height_bias_m: float = real("navigation.height_bias_m")
+    """Constant error of the pose's ``height_m`` over the obstacle's ground, m."""
+    velocity_bias_m_s: float = real("navigation.velocity_bias_m_s")
+    """Constant error of the own horizontal velocity, each axis, m/s."""
+    position_walk_m: float = real("navigation.position_walk_m")
+    """Random walk of the own position, m per square root of a second."""
+    position_white_m: float = real("navigation.position_white_m")
+    """Error of the own position that is new in each image, each axis, m. Upright boxes only."""
+    height_white_m: float = real("navigation.height_white_m")
+    """Error of the height that is new in each image, m; 0: points take each image's height as it is."""
+    slope: float = real("navigation.slope")
+    """Slope of the ground that the height is above, m per m flown."""
+    ground_m: float = real("navigation.ground_m")
+    """How far the obstacle's ground may lie off that which the height is above, m. Upright boxes only."""
+
+
+@dataclass
+class Detector(_Group):
+    """How wrong the detector's features are, one sigma each; for the refined method."""
+
+    point_px: float = real("detector.point_px")
+    """Error of an image point, new in each image, px."""
+    point_share: float = real("detector.point_share")
+    """Error of left, right and top as points, added to it, fraction of the silhouette's width."""
+    point_correlation: float = real("detector.point_correlation")
+    """Correlation of a point's error from image to image."""
+    shape_share: float = real("detector.shape_share")
+    """How far a real silhouette departs from a cylinder's, fraction of its width; cars as discs: about 0.12."""
+    box_px: float = real("detector.box_px")
+    """Error of a box's side that is new in each image, px."""
+    box_share: float = real("detector.box_share")
+    """Error of a side that stays alike from image to image, fraction of the box's width or height."""
+    correlation_s: float = real("detector.correlation_s")
+    """How long it stays alike, time constant, s."""
+    cut_noise: float = real("detector.cut_noise")
+    """Error of every side while the image's border cuts the box, fraction of the box."""
+
+
+@dataclass
+class RefinedSettings(_Group):
+    """The refined method: a square-root information filter over the whole track."""
+
+    typical_size_m: float = real("refined.typical_size_m")
+    """Width that the range is first guessed from, m."""
+    gate_sigma: float = real("refined.gate_sigma")
+    """A point farther off is left out, sigmas."""
+    huber_sigma: float = real("refined.huber_sigma")
+    """A point farther off counts less, sigmas."""
+    misfit_max: float = real("refined.misfit_max")
+    """Misfit above which the obstacle is suspect."""
+    range_share: float = real("refined.range_share")
+    """Sigma over range up to which a position is reported."""
+    top_is_highest: bool = bool(whole("refined.top_is_highest"))
+    """``top`` is the highest point in the image, also when seen from above the roof."""
+
+
+@dataclass
+class WindowSettings(_Group):
+    """The paper's method: least squares over the last images."""
+
+    points: int = whole("window.points")
+    """Images in the window."""
+    line_points: int = whole("window.line_points")
+    """Line points before the line is reported, at least ``points``."""
+    edge_min_px: float = real("window.edge_min_px")
+    """An edge counts if its ends are farther apart, px."""
+    orientation_min_px: float = real("window.orientation_min_px")
+    """... and has an orientation if they differ by more in aligned y, px."""
+    side_min_px: float = real("window.side_min_px")
+    """A side edge nearer to edge-on gives no length, px."""
+    orientation_memory: int = whole("window.orientation_memory")
+    """Images that the low-pass of the orientation remembers."""
+    min_baseline_m: float = real("window.min_baseline_m")
+    """Least spread of the flown baseline, m."""
+
+
+@dataclass
+class Settings(_Group):
+    """All settings of an estimator.
+
+    >>> settings = Settings.for_camera(914.0, 914.0, 640.0, 480.0)
+    >>> settings.navigation.attitude_bias_deg = 1.0
+    """
+
+    camera: Camera = field(default_factory=Camera)
+    """Number 0."""
+    more_cameras: tuple[Camera, ...] = ()
+    """Numbers 1 on; at most ``CAMERAS_MAX`` - 1."""
+    method: Method = METHOD_DEFAULT
+    """How it is estimated."""
+    shape: Shape = SHAPE_DEFAULT
+    """Which shapes it may take the obstacle for; ``model`` in C."""
+    heading_deg: float | None = None
+    """Where Z of the trajectory's axes points: clockwise from north, degrees; None: where the nose does at the track's
+    first image (``heading_auto`` in C)."""
+    navigation: Navigation = field(default_factory=Navigation)
+    """Errors of the pose."""
+    detector: Detector = field(default_factory=Detector)
+    """Errors of the features."""
+    refined: RefinedSettings = field(default_factory=RefinedSettings)
+    """The refined method."""
+    window: WindowSettings = field(default_factory=WindowSettings)
+    """The window method."""
+
+    @classmethod
+    def for_camera(cls, fx_px: float, fy_px: float, cx_px: float, cy_px: float, **more: Any) -> Settings:
+        """The defaults, with a camera of these focal lengths and this principal point, px; ``more``: others of its
+        fields, width_px=1280 for one."""
+        return cls(camera=Camera(fx_px, fy_px, cx_px, cy_px, **more))
+
+    @classmethod
+    def from_names(cls, values: Mapping[str, float]) -> Settings:
+        """The defaults, changed by name as in C and in goe_replay's ``--set``: {"detector.point_px": 0.8, "method": 1,
+        "heading_auto": 0, "heading_deg": 90, "more_cameras[0].fx_px": 900, ...}.
+
+        Raises SettingError for a name that is not there.
+        """
+        settings, rest = cls(), dict(values)
+        auto, heading_deg = rest.pop("heading_auto", 1), rest.pop("heading_deg", 0.0)
+        if auto not in (0, 1):
+            raise SettingError("heading_auto", f" = {auto}: not 0 or 1")
+        settings.heading_deg = None if auto else heading_deg
+        for name, value in rest.items():
+            settings._assign(name, value)
+        return settings
+
+    def _assign(self, name: str, value: Any) -> None:
+        parts = NAME.fullmatch(name)
+        group, number, own, index = parts.groups() if parts else (None, None, name, None)
+        known = name if number is None else f"camera.{own}" + (f"[{index}]" if index else "")
+        row = _BY_NAME.get(known)
+        if row is None or (number is not None and (group != "more_cameras" or int(number) + 1 >= CAMERAS_MAX)):
+            raise SettingError(name, f": no such setting{_meant(name, tuple(_BY_NAME))}")
+        if group is None:
+            own, value = _general(row, value)
+        place: Any = self if group is None else self._group(group, number)
+        if index is not None:
+            vector = list(getattr(place, own))
+            vector[int(index)] = value
+            value = tuple(vector)
+        elif row.kind == _table.TRUTH and value in (0, 1):
+            value = bool(value)
+        setattr(place, own, value)
+
+    def _group(self, group: str, number: str | None) -> Any:
+        if number is None:
+            return getattr(self, group)
+        while len(self.more_cameras) <= int(number):
+            self.more_cameras += (Camera(),)
+        return self.more_cameras[int(number)]
+
+    def check(self) -> None:
+        """Raises SettingError for the first setting that is outside its range or no number."""
+        self.numbers()
+
+    def numbers(self) -> npt.NDArray[np.float64]:
+        """All of them, checked and as single precision holds them, in the order of ``setting_rows``; after them those
+        of each further camera."""
+        count = len(self.more_cameras)
+        if count >= CAMERAS_MAX:
+            raise SettingError("more_cameras", f": {count}, not at most {CAMERAS_MAX - 1}")
+        values = _camera_values(self.camera, "camera")
+        values += [self._value(group, own) for group, own in _OTHERS]
+        for number, camera in enumerate(self.more_cameras):
+            values += _camera_values(camera, f"more_cameras[{number}]")
+        return checked(_bounds(count), values, _name_of)
+
+    def _value(self, group: str, own: str) -> Any:
+        if group:
+            return getattr(getattr(self, group), own)
+        if own == "heading_auto":
+            return self.heading_deg is None
+        if own == "heading_deg":
+            return 0.0 if self.heading_deg is None else self.heading_deg
+        return self.shape if own == "model" else self.method
+
+
+_BY_NAME = {row.name: row for row in ROWS}
+_CAMERA_FIELDS = tuple(dict.fromkeys(row.name.rpartition(".")[2].partition("[")[0] for row in CAMERA_ROWS))
+_OTHERS = tuple(row.name.rpartition(".")[::2] for row in ROWS[len(CAMERA_ROWS) :])
+
+
+def _general(row: Row, value: Any) -> tuple[str, Any]:
+    """Name and value in Settings of a setting without group: method or model."""
+    own, kind = ("shape", Shape) if row.name == "model" else ("method", Method)
+    if value not in tuple(kind):
+        raise SettingError(row.name, f" = {value:g}: not one of {', '.join(f'{k:d} ({k})' for k in kind)}")
+    return own, kind(int(value))
+
+
+def _camera_values(camera: Camera, prefix: str) -> list[Any]:
+    """In the order of the C list."""
+    values: list[Any] = []
+    for own in _CAMERA_FIELDS:
+        value = getattr(camera, own)
+        if own != "offset_m":
+            values.append(value)
+        elif len(value) != 3:
+            raise SettingError(f"{prefix}.{own}", f": {len(value)} numbers, not 3")
+        else:
+            values += value
+    return values
+
+
+def _name_of(number: int) -> str:
+    """Of the number-th of all values."""
+    if number < len(ROWS):
+        return ROWS[number].name
+    camera, row = divmod(number - len(ROWS), len(CAMERA_ROWS))
+    return CAMERA_ROWS[row].name.replace("camera", f"more_cameras[{camera}]")
+
+
+@dataclass(frozen=True)
+class _Bounds:
+    """The rows' ranges as arrays."""
+
+    rows: tuple[Row, ...]
+    low: npt.NDArray[np.float32]
+    high: npt.NDArray[np.float32]
+    any: npt.NDArray[np.bool_]  # not only whole numbers
+
+
+@cache
+def _bounds(more_cameras: int) -> _Bounds:
+    return _bounds_of(ROWS + CAMERA_ROWS * more_cameras)
+
+
+def _bounds_of(rows: tuple[Row, ...]) -> _Bounds:
+    low, high = (np.array([getattr(row, name) for row in rows], np.float32) for name in ("low", "high"))
+    return _Bounds(rows, low, high, np.array([not row.whole for row in rows]))
+
+
+_USUAL = {int, float, bool, Method, Shape, np.float64, np.float32}
+
+
+def checked(bounds: _Bounds, values: Sequence[Any], name_of: Callable[[int], str]) -> npt.NDArray[np.float64]:
+    """Numbers that single precision holds, each within its row's range; SettingError names the first that is not."""
+    if not {type(value) for value in values} <= _USUAL:
+        for i, value in enumerate(values):
+            if not isinstance(value, (int, float, np.number, np.bool_)):
+                raise SettingError(name_of(i), f" = {value!r}: not a number")
+    with np.errstate(over="ignore", invalid="ignore"):
+        numbers = np.array(values, np.float64).astype(np.float32)
+        inside = (numbers >= bounds.low) & (numbers <= bounds.high)
+        good = inside & (bounds.any | (numbers == np.rint(numbers)))
+    if not good.all():
+        i = int(np.argmin(good))
+        raise SettingError(name_of(i), f" = {float(values[i]):g}: " + _wanted(bounds.rows[i], bool(inside[i])))
+    return numbers.astype(np.float64)
+
+
+def _wanted(row: Row, inside: bool) -> str:
+    unit = f" {row.unit}" if row.unit else ""
+    must = "; it must be set" if not row.low <= row.default <= row.high else ""
+    return "not a whole number" if inside else f"not within {row.low:g} to {row.high:g}{unit}{must}"
+
+
+def setting_rows() -> Iterator[Row]:
+    """Every setting as C lists it: ``name``, ``unit``, ``text``, ``low``, ``high``, ``default``."""
+    return iter(ROWS)
+
+
+_FLIGHT_BOUNDS = _bounds_of(FLIGHT_ROWS)
+
+
+@dataclass
+class FlightSettings(_Group):
+    """Settings of the flight layer, beside those of the estimators."""
+
+    score_min: float = flight("score_min")
+    """A detection of less is not looked at."""
+    confirm_images: float = flight("confirm_images")
+    """Images that a new obstacle must be seen in before it is followed."""
+    alive_s: float = flight("alive_s")
+    """Without a frame for this long the detector counts as dead, s."""
+    forget_s: float = flight("forget_s")
+    """An obstacle that was not seen for this long is given up, s."""
+    delay_s: float = flight("delay_s")
+    """Least time from sending to arrival, s."""
+    delay_sd_s: float = flight("delay_sd_s")
+    """Its one sigma, and that of any capture time whose sender tells none, s."""
+    delay_max_s: float = flight("delay_max_s")
+    """A frame that comes later after its exposure is refused, s."""
+    resets: float = flight("resets")
+    """How the autopilot tells resets: 0 by counters (PX4), 1 by times (ArduPilot)."""
+    range_finder_sd_m: float = flight("range_finder_sd_m")
+    """One sigma of the range finder, m."""
+    range_finder_max_m: float = flight("range_finder_max_m")
+    """The highest that it is believed at, m."""
+    terrain_sd_m: float = flight("terrain_sd_m")
+    """One sigma of the terrain's height, m."""
+    home_sd_m: float = flight("home_sd_m")
+    """One sigma of the height over home, m."""
+    margin_m: float = flight("margin_m")
+    """Wanted to the outline, horizontally, m."""
+    clearance_m: float = flight("clearance_m")
+    """Wanted over the top, m."""
+    violation_max: float = flight("violation_max")
+    """Probability of violating both from which on there is a reaction."""
+    doubt: float = flight("doubt")
+    """Factor on margin and clearance while the estimate is suspect."""
+    drift_m_s: float = flight("drift_m_s")
+    """By which both grow while the estimate is not renewed, m/s."""
+    bank_deg: float = flight("bank_deg")
+    """Bank of an avoiding turn, degrees."""
+    roll_in_s: float = flight("roll_in_s")
+    """From the order to that turn, s."""
+    climb_m_s: float = flight("climb_m_s")
+    """Rate of an avoiding climb, m/s."""
+    climb_in_s: float = flight("climb_in_s")
+    """From the order to that climb, s."""
+    loiter_m: float = flight("loiter_m")
+    """Radius of the circle that the autopilot flies about a point, m; 0: it flies through."""
+    reserve_s: float = flight("reserve_s")
+    """An order comes this much before its last moment, s."""
+    confirm_s: float = flight("confirm_s")
+    """The hazard must stay for this long before an order, s."""
+    hold_s: float = flight("hold_s")
+    """... and its end before the order is taken back, s."""
+
+    def check(self) -> None:
+        """Raises SettingError for the first setting that is outside its range or no number."""
+        self.numbers()
+
+    def numbers(self) -> npt.NDArray[np.float32]:
+        """All of them, checked, in the order of goe_flight_settings_t."""
+        names = [row.name for row in FLIGHT_ROWS]
+        return checked(_FLIGHT_BOUNDS, [getattr(self, n) for n in names], names.__getitem__).astype(np.float32)

@@ -1,0 +1,64 @@
+// What a report says to a pilot. SPDX-License-Identifier: MIT
+
+export const HAS = { position: 1, length: 2, height: 4, orientation: 8, center: 16, width: 32 };
+export const ORDER = { nothing: 0, clear: 1, doubt: 2, goAround: 3 };
+
+const REASONS = {
+  convention: "what is given does not belong together",
+  moves: "the obstacle seems to move",
+  base: "the base corners are none",
+  shape: "its shape is not that of a disc",
+  late: "the poses come late against the images",
+  noise: "the errors are larger than told, or the shape is another",
+  none: "the images do not fit what is told",
+};
+
+const STATUS = {
+  collecting: "collecting images",
+  nothing_seen: "nothing is seen",
+};
+
+/** Metres or degrees as one reads them: 3.2, 18, 182. */
+export function amount(value) {
+  const size = Math.abs(value);
+  const text = size.toFixed(size < 9.95 ? 1 : 0);
+  return value < 0 && Number(text) !== 0 ? `−${text}` : text;
+}
+
+/** Where a thing stands relative to the track: "18 m left". */
+export function side(value_m) {
+  return Math.abs(value_m) < 0.05 ? "on the track" : `${amount(Math.abs(value_m))} m ${value_m < 0 ? "left" : "right"}`;
+}
+
+/** How the flight will pass, after "in 8 s": "3.0 m beside it". */
+function passing(r) {
+  if (r.has_clearance && r.clearance_m > 0 && r.miss_m < 15) return `${amount(r.clearance_m)} m over its top (± ${amount(2 * r.clearance_sd_m)})`;
+  return r.miss_m > 0 ? `${amount(r.miss_m)} m beside it (± ${amount(2 * r.miss_sd_m)})` : "through it";
+}
+
+function when(r) {
+  return r.hazard_s > 0 ? `in ${Math.round(r.hazard_s)} s` : "now";
+}
+
+/** What the answer is worth: why it is suspect, how old it is; empty if neither. */
+export function doubts(r) {
+  const found = [];
+  if (r.suspect) found.push(`Suspect: ${REASONS[r.reason] ?? r.reason}. Margins are doubled.`);
+  if (r.valid && r.age_s > 0.25) found.push(`Not measured for ${r.age_s.toFixed(1)} s: an older answer, carried on.`);
+  return found.join(" ");
+}
+
+/** A headline and a line below it. */
+export function order(r) {
+  const words = `${when(r)}, ${passing(r)}`;
+  switch (r.order) {
+    case ORDER.goAround:
+      return { name: "go-around", head: "Go around", line: words };
+    case ORDER.doubt:
+      return { name: "doubt", head: "Keep watching", line: `perhaps too close: ${words}; there is time to look longer` };
+    case ORDER.clear:
+      return { name: "clear", head: "Clear", line: `passes ${words}` };
+    default:
+      return { name: "nothing", head: "Nothing known yet", line: STATUS[r.status] ?? r.status.replaceAll("_", " ") };
+  }
+}

@@ -1,0 +1,53 @@
+/* Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT */
+#include "option_fault.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "nearest_name.h"
+
+static bool is_end(const struct poptOption *option) {
+    return option->longName == NULL && option->shortName == '\0' && option->arg == NULL;
+}
+
+/* Tables include others, which include none. */
+static void try_table(nearest_name_t *nearest, const struct poptOption *table) {
+    for (const struct poptOption *option = table; !is_end(option); option++) {
+        if (option->longName != NULL) {
+            nearest_name_try(nearest, option->longName);
+        }
+    }
+}
+
+const char *option_blamed(poptContext context, int argc, const char *const *argv) {
+    const char *bad = poptBadOption(context, 0);
+    for (int i = 2; i < argc; i++) {
+        if (strcmp(argv[i], bad) == 0 && bad[0] != '-' && argv[i - 1][0] == '-') {
+            return argv[i - 1];
+        }
+    }
+    return bad;
+}
+
+static void tell(char *text, size_t room, const struct poptOption *table, const char *word, int error,
+                 const char *dashes) {
+    nearest_name_t nearest = nearest_name_of(word, strcspn(word, "="));
+    try_table(&nearest, table);
+    for (const struct poptOption *option = table; !is_end(option); option++) {
+        if ((option->argInfo & POPT_ARG_MASK) == POPT_ARG_INCLUDE_TABLE) {
+            try_table(&nearest, option->arg);
+        }
+    }
+    const bool guess = error == POPT_ERROR_BADOPT && nearest.name != NULL;
+    (void)snprintf(text, room, "%s%s%s%s%s", poptStrerror(error), guess ? "; did you mean " : "", guess ? dashes : "",
+                   guess ? nearest.name : "", guess ? "?" : "");
+}
+
+void option_fault_bare(char *text, size_t room, const struct poptOption *table, const char *name, int error) {
+    tell(text, room, table, name, error, "");
+}
+
+void option_fault(char text[OPTION_FAULT_MAX], const struct poptOption *table, const char *bad, int error) {
+    tell(text, OPTION_FAULT_MAX, table, bad + strspn(bad, "-"), error, "--");
+}

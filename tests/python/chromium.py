@@ -1,0 +1,75 @@
+"""Headless Chromium for the tests of pages."""
+
+from __future__ import annotations
+
+import base64
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+CHROMEDRIVER = shutil.which("chromedriver")
+MISSING = CHROMIUM is None or CHROMEDRIVER is None
+WHY_MISSING = "the browser test needs chromium and chromium-driver"
+LEAST_INK = 0.005  # share of a screenshot's or print's bytes that a blank page has not
+
+
+def start(profile: Path) -> Any:
+    """A driver; who starts it ends it by ``quit()``."""
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = str(CHROMIUM)
+    for argument in (
+        "headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking",
+        "disable-component-update", "disable-sync", "disable-default-apps", "disable-dev-shm-usage",
+        "hide-scrollbars", f"user-data-dir={profile}",
+    ):  # fmt: skip
+        options.add_argument(f"--{argument}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    return webdriver.Chrome(options=options, service=Service(str(CHROMEDRIVER)))
+
+
+def set_size(browser: Any, size: tuple[int, int]) -> None:
+    width, height = size
+    browser.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600},
+    )
+
+
+def open_page(browser: Any, page: Path, size: tuple[int, int]) -> None:
+    browser.get_log("performance"), browser.get_log("browser")  # what came before is not this page's
+    set_size(browser, size)
+    browser.get(page.as_uri())
+    for _ in range(50):  # pictures are decoded in the background
+        if browser.execute_script("return [...document.images].every(i => i.complete)"):
+            return
+    browser.execute_async_script(
+        "const done = arguments[0]; Promise.allSettled([...document.images].map(i => i.decode())).then(() => done())"
+    )
+
+
+def requested(browser: Any) -> list[str]:
+    """What was fetched since the page was opened, data within the page left out."""
+    found = []
+    for entry in browser.get_log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            found.append(message["params"]["request"]["url"])
+    return [url for url in found if not url.startswith(("data:", "blob:"))]
+
+
+def screenshot(browser: Any, file: Path, whole: bool = True) -> None:
+    """The whole page, or what the window shows."""
+    if whole:
+        size = browser.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]
+        clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
+        shot = browser.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True, "clip": clip})
+        least = LEAST_INK * size["width"] * size["height"]
+    else:
+        shot, least = browser.execute_cdp_cmd("Page.captureScreenshot", {}), 0.0
+    file.write_bytes(base64.b64decode(shot["data"]))
+    assert file.stat().st_size > least

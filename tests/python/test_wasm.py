@@ -1,0 +1,154 @@
+"""The library as WebAssembly (port/wasm): its size, and its bits under node against those of C."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import struct
+import subprocess
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from goe_tools.__main__ import EXIT_BAD_INPUT, main
+from goe_tools.live import modules, page
+
+ROOT = Path(__file__).resolve().parents[2]
+TESTS = ROOT / "tests" / "wasm"
+NODE = shutil.which("node")
+MOST_BYTES = 60_000  # of the library
+
+# kind, detector, roll, pixel, height offset, side, knows, seed: in the order of LIVE_CONTROLS
+FLIGHTS = (
+    (0, 0, 5, 1, 0, -24, 1, 1),
+    (0, 1, 20, 0.5, 4, 0, 1, 2),
+    (1, 0, 0, 3, -6, 18, 0, 3),
+    (1, 1, 12, 1.5, 0, -60, 0, 4),
+    (2, 0, 25, 8, 10, 60, 0, 5),
+    (2, 1, 7, 0, 0, -3, 1, 6),
+)
+
+
+@pytest.fixture(scope="module")
+def built() -> modules.Modules:
+    absent = modules.missing()
+    if absent:
+        pytest.skip(f"WebAssembly needs {', '.join(absent)}")
+    return modules.build(ROOT / "build-wasm")
+
+
+def under_node(folder: Path, given: modules.Modules, flights: tuple[tuple[float, ...], ...] = ()) -> dict[str, Any]:
+    """What tests/wasm/fly.mjs tells of these modules."""
+    if NODE is None:
+        pytest.skip("needs node; tests/python/test_live_page.py tries the hash in Chromium")
+    for name, content in asdict(given).items():
+        (folder / f"{name}.wasm").write_bytes(content)
+    command = [NODE, str(TESTS / "fly.mjs"), str(folder), json.dumps(flights)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def flown(built: modules.Modules, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    return under_node(tmp_path_factory.mktemp("node"), built, FLIGHTS)
+
+
+def test_size(built: modules.Modules) -> None:
+    assert len(built.goe) <= MOST_BYTES
+
+
+def test_the_readme_tells_the_sizes(built: modules.Modules) -> None:
+    text = (ROOT / "port" / "wasm" / "README.md").read_text(encoding="utf-8")
+    told = dict(re.findall(r"^\| `(\w+)\.wasm` \| ([\d,]+) \|", text, re.MULTILINE))
+    assert set(told) == {"goe", "flight", "golden"}
+    for name, size in told.items():
+        assert abs(len(getattr(built, name)) / int(size.replace(",", "")) - 1.0) < 0.02, name
+
+
+def numbers(text: str, form: str) -> dict[str, float]:
+    return {name: float(value) for name, value in re.findall(form, text, re.MULTILINE)}
+
+
+def test_numbers_that_are_told_twice_agree() -> None:
+    """The rule for going around, of README.md; the camera and the margin, which the page draws."""
+    port = ROOT / "port" / "wasm"
+    define, const = r"#define (\w+) ([\d.]+)f?\b", r"\b([A-Z_]+) = ([\d.]+)"
+    rule = numbers((ROOT / "README.md").read_text(encoding="utf-8"), define)
+    flown = numbers((port / "live.c").read_text(encoding="utf-8"), define)
+    assert len(rule) == 5
+    assert {name: flown.get(name) for name in rule} == rule
+    approach = numbers((port / "approach.h").read_text(encoding="utf-8"), define)
+    camera = numbers((port / "page" / "camera.mjs").read_text(encoding="utf-8"), const)
+    assert approach["APPROACH_IMAGE_WIDTH_PX"] == camera["WIDTH"]
+    assert approach["APPROACH_IMAGE_HEIGHT_PX"] == camera["HEIGHT"]
+    assert approach["APPROACH_FOCAL_PX"] == camera["FOCAL"]
+    drawn = numbers((port / "page" / "map.mjs").read_text(encoding="utf-8"), const)
+    assert drawn["MARGIN_M"] == rule["MARGIN_M"]
+
+
+def test_nothing_is_asked_of_the_host(flown: dict[str, Any]) -> None:
+    assert flown["imports"] == []
+    assert set(flown["flightImports"]) <= set(flown["exports"])
+    assert {"memory", "goe_init", "goe_update", "goe_covariance", "goe_hazard", "goe_reset"} <= set(flown["exports"])
+    header = (ROOT / "lib" / "goe.h").read_text(encoding="utf-8")
+    assert flown["version"] == ".".join(re.findall(r"#define GOE_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header))
+
+
+def test_golden_hash(flown: dict[str, Any]) -> None:
+    assert flown["selfCheck"] == 0
+    assert flown["hash"] == page.golden_hash()
+
+
+def test_a_wrong_bit_is_told(built: modules.Modules, tmp_path: Path) -> None:
+    """One bit of degrees per radian, wherever the module has it as a constant; and bits of the logs."""
+    constant = struct.pack("<f", 57.2957795)
+    assert constant in built.goe
+    wrong = [replace(built, goe=built.goe.replace(constant, bytes([constant[0] ^ 1]) + constant[1:]))]
+    logs = built.golden.index(struct.pack("<fff", 120.0, -75.0, -25.0))  # the first image's position, then its height
+    for at in (logs, logs + 5, logs + 14):
+        wrong.append(replace(built, golden=built.golden[:at] + bytes([built.golden[at] ^ 1]) + built.golden[at + 1 :]))
+    hashes = {under_node(tmp_path, spoiled)["hash"] for spoiled in wrong}
+    assert len(hashes) == len(wrong) and page.golden_hash() not in hashes
+
+
+def test_flights_are_those_of_c(flown: dict[str, Any], tmp_path: Path) -> None:
+    program = tmp_path / "fly"
+    port = ROOT / "port" / "wasm"
+    sources = [*(ROOT / "lib").rglob("*.c"), port / "live.c", port / "approach.c", TESTS / "fly_main.c"]
+    flags = ["-std=c99", "-O0", "-ffp-contract=off", "-fno-math-errno", f"-I{ROOT / 'lib'}", f"-I{port}"]
+    subprocess.run(["cc", *flags, *map(str, sources), "-o", str(program), "-lm"], check=True)
+    for controls, lines in zip(FLIGHTS, flown["flights"]):
+        told = subprocess.run([program, *map(str, controls)], capture_output=True, text=True, check=True).stdout
+        assert told.splitlines() == lines, controls
+    assert len({line for lines in flown["flights"] for line in lines}) > 1000
+
+
+def test_bad_command_lines(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    assert main(["live", "--out", str(tmp_path)]) == EXIT_BAD_INPUT
+    assert "is a folder" in capsys.readouterr().err
+    assert main(["live", "--out", str(tmp_path / "none" / "page.html")]) == EXIT_BAD_INPUT
+    assert "there is no folder" in capsys.readouterr().err
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["live", "--out", str(tmp_path / "page.html")]) == EXIT_BAD_INPUT
+    assert "needs cmake, ninja, clang-19, wasm-ld-19, wasm-opt" in capsys.readouterr().err
+
+
+def test_a_broken_build_is_told(tmp_path: Path) -> None:
+    if modules.missing():
+        pytest.skip("needs the compiler")
+    (tmp_path / "CMakeCache.txt").write_text("broken")
+    with pytest.raises(ValueError, match="exit status"):
+        modules.build(tmp_path)
+
+
+def test_scripts_are_joined(tmp_path: Path) -> None:
+    (tmp_path / "a.mjs").write_text('import { two } from "./b.mjs";\nexport const four = two + two;\n')
+    (tmp_path / "b.mjs").write_text("const one = 1;\nexport const two = one + one;\n")
+    text = page.joined(tmp_path / "a.mjs")
+    assert text.index("const module_b") < text.index("const { two } = module_b;") < text.index("return { four }")
+    (tmp_path / "a.mjs").write_text('import * as b from "./b.mjs";\n')
+    with pytest.raises(ValueError, match=r"import \* as b"):
+        page.joined(tmp_path / "a.mjs")

@@ -1,0 +1,65 @@
+"""Jumps of the autopilot's filter that its log does not tell of: what motion between two samples does not explain."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..optimum.flights.rotations import multiply
+from .recording import Jump, Series, conjugate, linear, turned_by
+
+STEP_M = 0.5  # a position that is farther off than that ...
+STEP_SHARE = 0.1  # ... and that share of the way flown since the last sample has jumped
+TURN_RAD = math.radians(3.0)  # an attitude that is farther off than that ...
+TURN_SHARE = 0.2  # ... and that share of the turn has jumped
+LONGEST_S = 0.5  # between the samples; what happened in a longer gap cannot be told
+
+
+def unexplained_m(position: Series, velocity: Series) -> np.ndarray:
+    """(N - 1, 3): by how much each position differs from the one before and the way flown, trapezoidal rule."""
+    speed = linear(velocity, position.time_s)
+    way = 0.5 * (speed[1:] + speed[:-1]) * np.diff(position.time_s)[:, None]
+    return np.diff(position.value, axis=0) - way
+
+
+def position_jumps(position: Series, velocity: Series, cause: str) -> list[Jump]:
+    """Steps of the position that the velocity does not explain, with their size."""
+    off = unexplained_m(position, velocity)
+    way = np.linalg.norm(np.diff(position.value, axis=0) - off, axis=1)
+    large = np.linalg.norm(off, axis=1) > STEP_M + STEP_SHARE * way
+    large &= np.diff(position.time_s) <= LONGEST_S
+    return [
+        Jump(float(position.time_s[k + 1]), tuple(float(x) for x in off[k]), cause)  # type: ignore[arg-type]
+        for k in np.flatnonzero(large)
+    ]
+
+
+def attitude_jumps(attitude: Series, gyro: Series, cause: str) -> list[Jump]:
+    """Turns of the attitude that the rates do not explain."""
+    turns = multiply(conjugate(attitude.value[:-1]), attitude.value[1:])
+    angle = 2.0 * np.arctan2(np.linalg.norm(turns[:, 1:], axis=1), np.abs(turns[:, 0]))
+    result = []
+    for k in np.flatnonzero(angle > TURN_RAD):
+        start, end = attitude.time_s[k], attitude.time_s[k + 1]
+        if end - start > LONGEST_S or start < gyro.time_s[0] or end > gyro.time_s[-1]:
+            continue
+        left = multiply(conjugate(turned_by(gyro, start, end)), turns[k])
+        off = 2.0 * math.atan2(float(np.linalg.norm(left[1:])), abs(float(left[0])))
+        if off > TURN_RAD + TURN_SHARE * (float(angle[k]) - off):
+            result.append(Jump(float(end), None, f"{cause} {math.degrees(off):.1f} deg"))
+    return result
+
+
+def merged(jumps: list[Jump]) -> list[Jump]:
+    """By time; of those at one time the sum, unknown if one of them is."""
+    result: list[Jump] = []
+    for jump in sorted(jumps, key=lambda one: one.time_s):
+        if result and result[-1].time_s == jump.time_s:
+            last = result.pop()
+            both = None
+            if last.delta_m is not None and jump.delta_m is not None:
+                both = tuple(a + b for a, b in zip(last.delta_m, jump.delta_m))
+            jump = Jump(jump.time_s, both, f"{last.cause}, {jump.cause}")  # type: ignore[arg-type]
+        result.append(jump)
+    return result

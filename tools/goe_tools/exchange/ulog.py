@@ -1,0 +1,146 @@
+"""PX4's log, by pyulog.
+
+vehicle_local_position: x, y, z, vx, vy, vz, dist_bottom; xy_reset_counter with delta_xy, z_reset_counter with delta_z
+vehicle_attitude: q; quat_reset_counter
+vehicle_angular_velocity: xyz; of older logs sensor_combined: gyro_rad"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..logs.fields import LogError
+from .recording import Jump, Recording, Series, make_attitude, make_series
+from .resets import merged, unexplained_m
+
+POSITION, ATTITUDE = "vehicle_local_position", "vehicle_attitude"
+GYROS = (("vehicle_angular_velocity", "xyz"), ("sensor_combined", "gyro_rad"))
+US = 1e-6
+AGREES_M, AGREES_SHARE = 0.5, 0.2  # of a told jump with the positions around it
+
+Columns = dict[str, np.ndarray]
+
+
+def _topics(path: Path) -> tuple[dict[str, Columns], list[str]]:
+    """Columns of the first instance of each topic that is read, and what there is to tell of the file."""
+    import pyulog  # here: it takes its time to start, and the other formats do without
+
+    names = [POSITION, ATTITUDE, *(name for name, _ in GYROS)]
+    try:
+        log = pyulog.ULog(str(path), names)
+    except OSError as error:
+        raise LogError(path, 0, "", error.strerror or str(error)) from None
+    except Exception as error:  # pyulog lets struct, index and key errors out of files that it does not understand
+        raise LogError(path, 0, "", f"not a ULog file: {error}") from None
+    result: dict[str, Columns] = {}
+    for data in sorted(log.data_list, key=lambda one: one.multi_id):
+        result.setdefault(data.name, data.data)
+    notes = ["the file is damaged: what could not be read is left out"] if log.file_corruption else []
+    if log.dropouts:
+        notes.append(f"the logger lost {sum(one.duration for one in log.dropouts)} ms in {len(log.dropouts)} dropouts")
+    return result, notes
+
+
+def _columns(path: Path, topic: str, columns: Columns, *names: str) -> np.ndarray:
+    """(N, n)"""
+    for name in names:
+        if name not in columns:
+            raise LogError(path, 0, f"{topic}.{name}", "the topic has no such field")
+    return np.column_stack([columns[name].astype(float) for name in names])
+
+
+def _time_s(columns: Columns) -> np.ndarray:
+    """Of the samples behind the estimate, where the log tells it, otherwise of its publication."""
+    sampled = columns.get("timestamp_sample")
+    stamps = sampled if sampled is not None and (sampled > 0).all() else columns["timestamp"]
+    return stamps.astype(float) * US
+
+
+def _steps(columns: Columns, counter: str) -> np.ndarray:
+    """(N,) by how much a counter of 8 bits rose since the sample before; 0 without it."""
+    if counter not in columns:
+        return np.zeros(len(columns["timestamp"]), int)
+    count = columns[counter].astype(int)
+    return np.diff(count, prepend=count[0]) % 256
+
+
+def _position_jumps(columns: Columns, time_s: np.ndarray) -> list[Jump]:
+    """Of both counters; a count that rose by more than one at a time leaves the size of the others untold."""
+    result = []
+    kinds = (("xy_reset_counter", ("delta_xy[0]", "delta_xy[1]")), ("z_reset_counter", ("delta_z",)))
+    for counter, deltas in kinds:
+        steps = _steps(columns, counter)
+        for k in np.flatnonzero(steps):
+            told = all(name in columns for name in deltas) and steps[k] == 1
+            size = [float(columns[name][k]) for name in deltas] if told else [np.nan]
+            delta = ((*size, 0.0) if len(deltas) == 2 else (0.0, 0.0, *size)) if np.isfinite(size).all() else None
+            result.append(Jump(float(time_s[k]), delta, f"{POSITION}.{counter}"))  # type: ignore[arg-type]
+    return result
+
+
+def _attitude_jumps(columns: Columns, time_s: np.ndarray) -> list[Jump]:
+    name = "quat_reset_counter"
+    return [Jump(float(time_s[k]), None, f"{ATTITUDE}.{name}") for k in np.flatnonzero(_steps(columns, name))]
+
+
+def _doubts(jumps: list[Jump], position: Series, velocity: Series | None) -> list[str]:
+    """Jumps that the positions around them do not show as told."""
+    if velocity is None:
+        return []
+    off, result = unexplained_m(position, velocity), []
+    for jump in jumps:
+        k = int(np.searchsorted(position.time_s, jump.time_s))
+        if jump.delta_m is None or not 0 < k < len(position.time_s):
+            continue
+        told = np.array(jump.delta_m)
+        if np.linalg.norm(off[k - 1] - told) > AGREES_M + AGREES_SHARE * np.linalg.norm(told):
+            words = ", ".join(f"{x:.2f}" for x in off[k - 1])
+            result.append(f"the jump at {jump.time_s:.3f} s is told as another one than the positions show: {words} m")
+    return result
+
+
+def _gyro(path: Path, topics: dict[str, Columns]) -> Series | None:
+    for topic, name in GYROS:
+        if topic in topics:
+            fields = [f"{name}[{i}]" for i in range(3)]
+            values = _columns(path, topic, topics[topic], *fields)
+            return make_series(path, f"{topic}.{name}", _time_s(topics[topic]), values)
+    return None
+
+
+def _clearance(path: Path, columns: Columns, time_s: np.ndarray) -> Series | None:
+    if "dist_bottom" not in columns or "dist_bottom_valid" not in columns:
+        return None
+    good = columns["dist_bottom_valid"].astype(bool)
+    if good.sum() < 2:
+        return None
+    return make_series(path, f"{POSITION}.dist_bottom", time_s[good], columns["dist_bottom"][good])
+
+
+def read_ulog(path: Path) -> Recording:
+    topics, notes = _topics(path)
+    for topic in (POSITION, ATTITUDE):
+        if topic not in topics:
+            raise LogError(path, 0, topic, "the log has no such topic")
+    place, turn = topics[POSITION], topics[ATTITUDE]
+    time_s, valid = _time_s(place), np.ones(len(place["timestamp"]), bool)
+    for name in ("xy_valid", "z_valid"):
+        valid &= place[name].astype(bool) if name in place else True
+    if not valid.all():
+        notes.append(f"{POSITION}: {int((~valid).sum())} samples are told as not valid and left out")
+    xyz = _columns(path, POSITION, place, "x", "y", "z")
+    position = make_series(path, f"{POSITION}.x, y, z", time_s[valid], xyz[valid])
+    velocity = None
+    if "vx" in place:
+        speed = _columns(path, POSITION, place, "vx", "vy", "vz")
+        velocity = make_series(path, f"{POSITION}.vx, vy, vz", time_s[valid], speed[valid])
+    q = _columns(path, ATTITUDE, turn, *(f"q[{i}]" for i in range(4)))
+    attitude_s = _time_s(turn)
+    attitude = make_attitude(path, f"{ATTITUDE}.q", attitude_s, q)
+    jumps = _position_jumps(place, time_s)
+    notes += _doubts(jumps, position, velocity)
+    return Recording(
+        path, position, attitude, _gyro(path, topics), velocity, _clearance(path, place, time_s),
+        merged(jumps + _attitude_jumps(turn, attitude_s)), notes,
+    )  # fmt: skip

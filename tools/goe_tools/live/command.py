@@ -1,0 +1,35 @@
+"""The command ``live``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from rich.console import Console
+
+from ..places import ROOT
+from .modules import build
+from .page import page
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE.html", help="page to write")
+    parser.add_argument(
+        "--build", type=Path, default=ROOT / "build-wasm", metavar="DIR", help="build folder (default: build-wasm)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    if arguments.out.is_dir():
+        raise ValueError(f"{arguments.out} is a folder: name a file")
+    if not arguments.out.parent.is_dir():
+        raise ValueError(f"there is no folder {arguments.out.parent}")
+    with Console(stderr=True).status("building the modules"):
+        modules = build(arguments.build.resolve())
+    text = page(modules)
+    arguments.out.write_text(text, encoding="utf-8")
+    print(
+        f"{arguments.out}: {len(text.encode('utf-8')):,} bytes; bytes of WebAssembly: library {len(modules.goe):,}, "
+        f"flight {len(modules.flight):,}, the tests' logs and their replay {len(modules.golden):,}"
+    )
+    return 0

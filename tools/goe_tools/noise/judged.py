@@ -1,0 +1,33 @@
+"""How often the truth lies within two sigmas of what the library answers with given settings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..attack.judging import coverage
+from ..optimum.flights.flight import Flight
+from ..optimum.goals.boxes import BoxOutcome
+from ..optimum.judge import HEIGHT, X0, Z0
+from ..optimum.library import METHODS, camera_settings, estimate
+
+TOLD = {"X0": X0, "Z0": Z0, "H": HEIGHT}
+
+
+def outcome_of(flight: Flight, settings: dict[str, float]) -> BoxOutcome:
+    """Errors and sigmas of X0, Z0 and H in all images that answer them."""
+    track = estimate(flight, {**camera_settings(flight), **settings})
+    judged = track.valid & (track.method == METHODS["refined"])[:, None]
+    judged[:, [i for i in range(6) if i not in TOLD.values()]] = False
+    error, sigma = (np.where(judged, a, np.nan) for a in (track.values - flight.truth.values, track.sigma))
+    return BoxOutcome(flight, error, sigma, track.suspect)
+
+
+def covered(flights: Sequence[Flight], settings: dict[str, float]) -> dict[str, float]:
+    """Percent of the answers within two sigmas, by quantity: of each track, then averaged; NaN without an answer."""
+    if not flights:
+        return dict.fromkeys(TOLD, math.nan)
+    shares = coverage([outcome_of(flight, settings) for flight in flights])
+    return {name: float(shares[i]) for name, i in TOLD.items()}

@@ -1,0 +1,134 @@
+"""The command ``view``."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+
+from ..logs.obslog import LogError, ObservationLog, read_log, read_truth
+from .answers import SETTING_GROUPS, Options
+from .story import MOST_ROWS, Story, story_of
+
+DEFAULT_PAGE = Path("view.html")
+EXIT_NO_ANSWER = 1
+
+
+def _number(low: float, high: float) -> Callable[[str], float]:
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"{text} is not within {low:g} and {high:g}")
+        return value
+
+    return parse
+
+
+def _setting(text: str) -> tuple[str, float]:
+    name, equals, value = text.partition("=")
+    if not equals or name.split(".")[0] not in SETTING_GROUPS:
+        groups = ", ".join(f"{group}.…" for group in SETTING_GROUPS)
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE of a setting in {groups}")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{name}: '{value}' is not a number") from None
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("log", type=Path, metavar="LOG", help="folder with camera.ini, frames.csv and, where it is known, truth.csv")
+    add("--truth", type=Path, metavar="FILE", help="in place of LOG/truth.csv")
+    add(
+        "--out",
+        type=Path,
+        metavar="PAGE",
+        help=f"page to write (default {DEFAULT_PAGE}, unless a picture is asked for)",
+    )
+    add("--png", type=Path, metavar="FILE", help="picture of one moment: map, and distance ahead over time")
+    add("--svg", type=Path, metavar="FILE", help="the same, light or dark as its reader is")
+    add("--theme", choices=("light", "dark"), default="light", help="of the PNG (default light)")
+    add("--at", type=_number(-1e12, 1e12), metavar="S", help="time shown first, and in the picture (default: midway)")
+    add("--id", type=int, metavar="N", help="obstacle shown first, and in the picture (default: the one answered most)")
+    add("--method", choices=("refined", "window"), default="refined", help="as goe_replay's")
+    add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
+    add("--window", type=int, metavar="N", help="as goe_replay's: image points in the window")
+    add(
+        "--set",
+        type=_setting,
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="as goe_replay's; may be repeated",
+    )
+    add("--margin", type=_number(0.0, 1e4), default=15.0, metavar="M", help="too close: aside (default 15 m)")
+    add("--clearance", type=_number(0.0, 1e4), default=10.0, metavar="M", help="... and over the top (default 10 m)")
+    add(
+        "--rows", type=_number(2, 1e5), default=MOST_ROWS, metavar="N",
+        help=f"images that the page holds at most; more are thinned (default {MOST_ROWS})",
+    )  # fmt: skip
+
+
+def read(arguments: argparse.Namespace) -> ObservationLog:
+    """The log with the truth that was asked for."""
+    log = read_log(arguments.log)
+    if not log.frames:
+        raise LogError(arguments.log / "frames.csv", 0, "", "there are no rows")
+    if arguments.truth is not None:
+        log.truth = read_truth(arguments.truth)
+        strange = sorted(log.truth.keys() - {frame.id for frame in log.frames})
+        if len(strange) == len(log.truth):
+            raise LogError(arguments.truth, 0, "id", "of no obstacle of the log")
+    return log
+
+
+def write_whole(path: Path, content: bytes, log: Path) -> None:
+    """Writes a file whole or not at all."""
+    if path.is_dir():
+        raise ValueError(f"{path} is a folder")
+    if path.resolve() in ((log / name).resolve() for name in ("camera.ini", "frames.csv", "truth.csv")):
+        raise ValueError(f"{path}: the output would replace the log")
+    part = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(content)
+        part.replace(path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise ValueError(f"{path}: {error.strerror or error}") from None
+    print(f"{path}: {len(content) / 1e3:,.0f} kB")
+
+
+def write_outputs(story: Story, arguments: argparse.Namespace) -> None:
+    chosen = story.chosen(arguments.id)
+    first = story.first_look(chosen) if arguments.at is None else story.at(arguments.at)
+    page = arguments.out if arguments.out or arguments.png or arguments.svg else DEFAULT_PAGE
+    if page:
+        from .page import render
+
+        write_whole(page, render(story, chosen, first).encode("utf-8"), arguments.log)
+    if arguments.png or arguments.svg:
+        from .picture import png, svg  # here: what draws takes its time to start
+
+        if arguments.png:
+            write_whole(arguments.png, png(story, chosen, first, arguments.theme), arguments.log)
+        if arguments.svg:
+            write_whole(arguments.svg, svg(story, chosen, first), arguments.log)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    log = read(arguments)
+    options = Options(
+        arguments.method, arguments.model, arguments.window, dict(arguments.set), arguments.margin, arguments.clearance
+    )
+    name = arguments.log.resolve().name
+    story = story_of(name, log, options, int(arguments.rows))
+    write_outputs(story, arguments)
+    answered = sum(int(track.answers.answered.sum()) for track in story.tracks)
+    if not answered:
+        print(f"{arguments.log}: no row gave an answer")
+        return EXIT_NO_ANSWER
+    return 0

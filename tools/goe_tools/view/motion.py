@@ -1,0 +1,139 @@
+"""The aircraft's own motion over a log: one entry for each time at which an image was taken.
+
+Frames: NED earth, metres. Known jumps of the autopilot's filter are taken off, so that the path goes on as it was flown
+from the first image's origin; at an unknown one it is broken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..logs.obslog import Camera, Frame, ObservationLog
+from ..optimum.flights.rotations import matrices, mounting
+from ..optimum.model import undistort
+
+VELOCITY_OVER_S = 1.0  # the own velocity is the mean over so long, or over the last two images
+QUATERNION_OFF = 0.01  # what the library refuses
+POSITION_MAX_M = 1e6  # what the library takes
+LEVEL_MIN = 0.2  # share of a sight line that is level; less, and it has no direction on the map
+
+
+@dataclass
+class Motion:
+    """Over M moments. ``of_frame`` names the moment of each row of the log, (rows,)."""
+
+    time_s: np.ndarray  # (M,) rising
+    camera_ne_m: np.ndarray  # (M, 2); where the log has none, between those before and after
+    down_m: np.ndarray  # (M,)
+    velocity_m_s: np.ndarray  # (M, 3) north, east, down; NaN: not known
+    look_rad: np.ndarray  # (M, 2) azimuths, clockwise from north, of the image's left and right border; NaN: none
+    broken: np.ndarray  # (M,) the path does not continue from the moment before
+    reset: np.ndarray  # (M,) the filter's reset count changed
+    of_frame: np.ndarray
+    shift_m: np.ndarray  # (rows, 3) what was taken off the position of each row
+
+
+def shown_times(frames: Sequence[Frame]) -> np.ndarray:
+    """(rows,) when a row is shown: its time; that of its track's latest before it if it has none, or runs backwards."""
+    times = np.array([frame.t_s for frame in frames], float)
+    first = float(times[np.isfinite(times)].min()) if np.isfinite(times).any() else 0.0
+    latest: dict[int, float] = {}
+    for i, frame in enumerate(frames):
+        before = latest.get(frame.id, first)
+        times[i] = max(times[i], before) if math.isfinite(times[i]) else before
+        latest[frame.id] = float(times[i])
+    return times
+
+
+def _jumps(frames: Sequence[Frame], order: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(rows, 3) sum of the known jumps up to each row; (rows,) whether the count changed there, and whether by an
+    unknown jump. Tracks share the filter: a jump counts once."""
+    shift, reset, unknown = np.zeros((len(frames), 3)), np.zeros(len(frames), bool), np.zeros(len(frames), bool)
+    total, count = np.zeros(3), None
+    for i in order:
+        frame = frames[i]
+        if count is not None and frame.reset_count != count:
+            known = frame.reset_delta_m is not None and np.isfinite(frame.reset_delta_m).all()
+            reset[i], unknown[i] = True, not known
+            total = total + (np.array(frame.reset_delta_m) if known else 0.0)
+        count = frame.reset_count
+        shift[i] = total
+    return shift, reset, unknown
+
+
+def _filled(time_s: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(M, n): rows with a NaN lie between those before and after them in time; zero if there is no good one."""
+    good = np.isfinite(values).all(1)
+    if not good.any():
+        return np.zeros_like(values)
+    return np.stack([np.interp(time_s, time_s[good], column[good]) for column in values.T], -1)
+
+
+def velocities(time_s: np.ndarray, position_m: np.ndarray, broken: np.ndarray) -> np.ndarray:
+    """(M, 3): mean velocity since ``VELOCITY_OVER_S`` ago, or since the image before; NaN at the start of a path."""
+    result = np.full((len(time_s), 3), np.nan)
+    starts = np.flatnonzero(broken)
+    since = np.searchsorted(time_s, time_s - VELOCITY_OVER_S - 1e-9)
+    for k in range(1, len(time_s)):
+        start = starts[np.searchsorted(starts, k, side="right") - 1] if len(starts) and starts[0] <= k else 0
+        j = max(min(since[k], k - 1), start)
+        if j < k and time_s[k] > time_s[j]:
+            result[k] = (position_m[k] - position_m[j]) / (time_s[k] - time_s[j])
+    return result
+
+
+def border_rays(camera: Camera) -> np.ndarray:
+    """(2, 3): body axes, through the middle of the image's left and right border."""
+    pixels = np.array([[0.0, 0.5 * camera.height], [camera.width, 0.5 * camera.height]])
+    try:
+        points, _ = undistort(camera, pixels)
+    except np.linalg.LinAlgError:  # the lens model does not reach so far
+        points = (pixels - [camera.cx, camera.cy]) / [camera.fx, camera.fy]
+    return np.column_stack([points, np.ones(2)]) @ mounting(camera).T
+
+
+def _azimuths(rays: np.ndarray) -> np.ndarray:
+    """(..., 2) of rays (..., 2, 3) in NED; both NaN if one has no direction on the map."""
+    level = np.hypot(rays[..., 0], rays[..., 1])
+    good = (level > LEVEL_MIN * np.linalg.norm(rays, axis=-1)).all(-1, keepdims=True)
+    return np.where(good, np.arctan2(rays[..., 1], rays[..., 0]), np.nan)
+
+
+def motion_of(log: ObservationLog) -> Motion:
+    """Of a log with at least one row."""
+    frames = log.frames
+    cameras = [log.camera, log.camera2 or log.camera]
+    shown = shown_times(frames)
+    order = np.argsort(shown, kind="stable")
+    shift, reset, unknown = _jumps(frames, order)
+    time_s, of_frame = np.unique(shown, return_inverse=True)
+    of_frame = of_frame.reshape(-1)
+    count = len(time_s)
+    position = np.array([frame.position_m for frame in frames], float) - shift
+    quaternion = np.array([frame.attitude for frame in frames], float)
+    with np.errstate(invalid="ignore", over="ignore"):
+        turned = np.abs(np.linalg.norm(quaternion, axis=1) - 1.0) < QUATERNION_OFF
+        good = turned & (np.abs(position) < POSITION_MAX_M).all(1)  # a NaN is not less either
+    position = np.where(good[:, None], position, np.nan)
+    rotation = matrices(np.where(turned[:, None], quaternion, [1.0, 0.0, 0.0, 0.0]))
+    number = np.array([frame.camera for frame in frames])
+    offsets = np.array([[c.offset_x_m, c.offset_y_m, c.offset_z_m] for c in cameras])
+    rays = np.array([border_rays(camera) for camera in cameras])
+    eye = position + np.einsum("kij,kj->ki", rotation, offsets[number])
+    look = _azimuths(np.einsum("kij,kbj->kbi", rotation, rays[number]))
+    at, camera_at, look_at = (np.full((count, n), np.nan) for n in (3, 3, 2))
+    for i in order[::-1]:  # of several rows at a time the first good one stands
+        if good[i]:
+            at[of_frame[i]], camera_at[of_frame[i]], look_at[of_frame[i]] = position[i], eye[i], look[i]
+    broken, resets = np.zeros(count, bool), np.zeros(count, bool)
+    np.logical_or.at(broken, of_frame, unknown)
+    np.logical_or.at(resets, of_frame, reset)
+    camera_m = _filled(time_s, camera_at)
+    return Motion(
+        time_s, camera_m[:, :2], camera_m[:, 2], velocities(time_s, _filled(time_s, at), broken), look_at, broken,
+        resets, of_frame, shift,
+    )  # fmt: skip
