@@ -1,7 +1,6 @@
 /* Reads the companion's configuration. SPDX-License-Identifier: MIT */
 #include "companion_config.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <ini.h>
 #include <inttypes.h>
@@ -10,6 +9,7 @@
 #include <string.h>
 
 #include "camera_file.h"
+#include "ini_lines.h"
 #include "link.h"
 #include "nearest_name.h"
 #include "number_text.h"
@@ -137,11 +137,8 @@ static void set_defaults(companion_config_t *config) {
 /* ----------------------------------------------------------------------------------------------------------- lines -- */
 
 typedef struct {
-    FILE *stream;
+    ini_lines_t lines;
     const char *path;
-    char *text; /* of the current line */
-    size_t text_room;
-    unsigned long line;
     unsigned long key_line[KEYS], flight_line[FLIGHT_KEYS]; /* where each was given; 0: nowhere */
     companion_config_t *config;
     bool failed;
@@ -153,40 +150,30 @@ typedef struct {
     do {                                                                                                               \
         if (!(reader)->failed) {                                                                                       \
             (reader)->failed = true;                                                                                   \
-            input_error_set((reader)->error, (reader)->path, (reader)->line, key, __VA_ARGS__);                        \
+            input_error_set((reader)->error, (reader)->path, (reader)->lines.number, key, __VA_ARGS__);                \
         }                                                                                                              \
     } while (0)
 
-/* One line for the parser, without comment and blanks at its ends, so that it takes none for a continuation. */
 static char *read_line(char *line, int size, void *user) {
     config_reader_t *reader = user;
-    const ssize_t read = reader->failed ? -1 : getline(&reader->text, &reader->text_room, reader->stream);
-    if (read < 0) {
+    const char *fault = NULL;
+    const char *text = reader->failed ? NULL : ini_lines_next(&reader->lines, &fault);
+    if (fault != NULL) {
+        FAIL(reader, NULL, "%s", fault);
+    }
+    if (text == NULL) {
         return NULL;
     }
-    reader->line++;
-    if (strlen(reader->text) != (size_t)read) {
-        FAIL(reader, NULL, "the line holds a NUL byte");
-        return NULL;
-    }
-    const char *begin = reader->text;
-    reader->text[strcspn(reader->text, "#")] = '\0';
-    while (isspace((unsigned char)*begin)) {
-        begin++;
-    }
-    size_t length = strlen(begin);
-    while (length > 0 && isspace((unsigned char)begin[length - 1u])) {
-        length--;
-    }
+    const size_t length = strlen(text);
     if (length > LINE_MAX_LENGTH) {
         FAIL(reader, NULL, "the line is longer than %d characters", LINE_MAX_LENGTH);
         return NULL;
     }
-    if (*begin == '[' && begin[length - 1u] != ']') {
+    if (*text == '[' && text[length - 1u] != ']') {
         FAIL(reader, NULL, "no ']' closes the name of the section");
         return NULL;
     }
-    (void)snprintf(line, (size_t)size, "%.*s\n", (int)length, begin);
+    (void)snprintf(line, (size_t)size, "%s\n", text);
     return line;
 }
 
@@ -248,7 +235,7 @@ static void take_key(config_reader_t *reader, size_t i, const char *text) {
         FAIL(reader, key->name, "the key appears twice, first in line %lu", reader->key_line[i]);
         return;
     }
-    reader->key_line[i] = reader->line;
+    reader->key_line[i] = reader->lines.number;
     switch (key->kind) {
         case KEY_TEXT:
             set_text(reader->config, key, text);
@@ -294,7 +281,7 @@ static void take_flight(config_reader_t *reader, const char *name, const char *t
             const float number = number_to_float(value);
             (void)memcpy((char *)&reader->config->flight + key->offset, &number, sizeof number);
         }
-        reader->flight_line[i] = reader->line;
+        reader->flight_line[i] = reader->lines.number;
         return;
     }
     FAIL(reader, name, "no setting of the flight layer");
@@ -340,18 +327,18 @@ static int on_key(void *user, const char *section, const char *name, const char 
 /* ------------------------------------------------------------------------------------------------------- interface -- */
 
 static void read_keys(config_reader_t *reader) {
-    reader->stream = fopen(reader->path, "r");
-    if (reader->stream == NULL) {
+    reader->lines.stream = fopen(reader->path, "r");
+    if (reader->lines.stream == NULL) {
         FAIL(reader, NULL, "cannot be opened: %s", strerror(errno));
         return;
     }
     const int parser_line = ini_parse_stream(read_line, reader, on_key, reader);
-    if (ferror(reader->stream) != 0) {
+    if (ferror(reader->lines.stream) != 0) {
         FAIL(reader, NULL, "cannot be read: %s", strerror(errno));
     } else if (parser_line != 0) {
         FAIL(reader, NULL, "not of the form: key = value");
     }
-    (void)fclose(reader->stream);
+    (void)fclose(reader->lines.stream);
 }
 
 /* A path of the configuration is relative to its folder. False: too long. */
@@ -394,7 +381,7 @@ static void check_link(config_reader_t *reader, size_t offset, const char *none)
     }
     const char *where = (const char *)value_of(reader->config, &keys[i]);
     if ((none == NULL || strcmp(where, none) != 0) && !link_check(where, fault, sizeof fault)) {
-        reader->line = reader->key_line[i];
+        reader->lines.number = reader->key_line[i];
         FAIL(reader, keys[i].name, "%s", fault);
     }
 }
@@ -405,19 +392,19 @@ static void check_whole(config_reader_t *reader) {
     check_link(reader, offsetof(companion_config_t, detections_from), "none");
     if (360u % reader->config->reports_distance_increment_deg != 0 ||
         reader->config->reports_distance_increment_deg % 5u != 0) {
-        reader->line = 0;
+        reader->lines.number = 0;
         FAIL(reader, NULL, "reports.distance_increment_deg: %u is no multiple of 5 that divides 360",
              reader->config->reports_distance_increment_deg);
     }
     if (reader->config->reaction_mode == REACTION_PX4 && !is_given(reader, "loiter_m")) {
-        reader->line = 0;
+        reader->lines.number = 0;
         FAIL(
             reader, NULL,
             "flight.loiter_m: reaction.mode px4 needs it: a fixed wing circles about the target that it is sent to, by "
             "NAV_LOITER_RAD; 0 for a vehicle that stops there");
     }
     if (reader->config->flight.resets > 0.0f) {
-        reader->line = 0;
+        reader->lines.number = 0;
         FAIL(reader, NULL, "flight.resets: the companion makes the marks of resets itself; leave it out");
     }
 }
@@ -430,7 +417,7 @@ bool companion_config_read(const char *path, companion_config_t *config, input_e
     reader.error = error;
     set_defaults(config);
     read_keys(&reader);
-    free(reader.text);
+    free(reader.lines.text);
     if (!reader.failed) {
         check_whole(&reader);
     }

@@ -1,7 +1,6 @@
 /* Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT */
 #include "scenario_file.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <ini.h>
 #include <math.h>
@@ -10,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ini_lines.h"
 #include "text_numbers.h"
 
 #define SECTION_FLIGHT "flight"
@@ -20,11 +20,8 @@ enum { KEY_WHAT, KEY_X0, KEY_Z0, KEY_ALPHA, OBSTACLE_KEYS };
 static const char *const KEY_NAMES[OBSTACLE_KEYS] = {"what", "x0", "z0", "alpha"};
 
 typedef struct {
-    FILE *stream;
+    ini_lines_t lines;
     const char *path;
-    char *text; /* of the current line */
-    size_t text_room;
-    unsigned long line;
     scenario_option_t option;
     scenario_file_t *scenario;
     unsigned long line_of[SCENARIO_NEIGHBOURS_MAX + 1]
@@ -48,36 +45,29 @@ fail(scenario_reader_t *reader, const char *key, const char *format, ...) {
     va_start(values, format);
     (void)vsnprintf(reason, sizeof reason, format, values);
     va_end(values);
-    (void)snprintf(reader->fault, reader->fault_size, "%s:%lu: %s%s%s", reader->path, reader->line,
+    (void)snprintf(reader->fault, reader->fault_size, "%s:%lu: %s%s%s", reader->path, reader->lines.number,
                    key != NULL ? key : "", key != NULL ? ": " : "", reason);
 }
 
-/* One line for the parser, without comment and blanks, so that it takes none for a continuation. */
 static char *read_line(char *line, int size, void *user) {
     scenario_reader_t *reader = user;
-    const ssize_t read = reader->failed ? -1 : getline(&reader->text, &reader->text_room, reader->stream);
-    if (read < 0) {
+    const char *fault = NULL;
+    const char *text = reader->failed ? NULL : ini_lines_next(&reader->lines, &fault);
+    if (fault != NULL) {
+        fail(reader, NULL, "%s", fault);
+    }
+    if (text == NULL) {
         return NULL;
     }
-    reader->line++;
-    if (strlen(reader->text) != (size_t)read) {
-        fail(reader, NULL, "the line holds a NUL byte");
-        return NULL;
-    }
-    char *begin = reader->text;
-    begin[strcspn(begin, "#;\n\r")] = '\0';
-    while (isspace((unsigned char)*begin)) {
-        begin++;
-    }
-    if (strlen(reader->text) + 2u > (size_t)size) {
+    if (strlen(text) + 2u > (size_t)size) {
         fail(reader, NULL, "the line is longer than %d characters", size - 2);
-    } else if (*begin == '[' ? strchr(begin, ']') == NULL : *begin != '\0' && strchr(begin, '=') == NULL) {
+    } else if (*text == '[' ? strchr(text, ']') == NULL : *text != '\0' && strchr(text, '=') == NULL) {
         fail(reader, NULL, "a line is [section] or key = value");
     }
     if (reader->failed) {
         return NULL;
     }
-    (void)snprintf(line, (size_t)size, "%s\n", begin);
+    (void)snprintf(line, (size_t)size, "%s\n", text);
     return line;
 }
 
@@ -151,7 +141,7 @@ static void take_obstacle(scenario_reader_t *reader, int number, const char *nam
         take_neighbour(reader, number - 2, key, value);
     }
     if (key < OBSTACLE_KEYS) {
-        lines[key] = reader->line;
+        lines[key] = reader->lines.number;
     }
 }
 
@@ -180,7 +170,7 @@ static void check_neighbours(scenario_reader_t *reader) {
             reason = "z0 is missing";
         }
         if (reason != NULL) {
-            reader->line = first_line(reader, i + 1);
+            reader->lines.number = first_line(reader, i + 1);
             fail(reader, NULL, "[obstacle %d]: %s", i + 2, reason);
         }
     }
@@ -196,21 +186,21 @@ bool scenario_file_read(const char *path, scenario_option_t option, scenario_fil
     reader.scenario = scenario;
     reader.fault = fault;
     reader.fault_size = fault_size;
-    reader.stream = fopen(path, "r");
-    if (reader.stream == NULL) {
+    reader.lines.stream = fopen(path, "r");
+    if (reader.lines.stream == NULL) {
         (void)snprintf(fault, fault_size, "%s: cannot be opened: %s", path, strerror(errno));
         return false;
     }
     errno = 0;
     const int parser_line = ini_parse_stream(read_line, &reader, on_key, &reader);
-    if (ferror(reader.stream) != 0) {
+    if (ferror(reader.lines.stream) != 0) {
         fail(&reader, NULL, "cannot be read: %s", strerror(errno));
     } else if (parser_line > 0) {
-        reader.line = reader.failed ? reader.line : (unsigned long)parser_line;
+        reader.lines.number = reader.failed ? reader.lines.number : (unsigned long)parser_line;
         fail(&reader, NULL, "cannot be understood");
     }
-    (void)fclose(reader.stream);
-    free(reader.text);
+    (void)fclose(reader.lines.stream);
+    free(reader.lines.text);
     check_neighbours(&reader);
     return !reader.failed;
 }

@@ -1,7 +1,6 @@
 /* Reads camera.ini. SPDX-License-Identifier: MIT */
 #include "camera_file.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <ini.h>
 #include <stddef.h>
@@ -9,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ini_lines.h"
 #include "nearest_name.h"
 #include "number_text.h"
 #include "settings_text.h"
@@ -58,11 +58,8 @@ typedef struct {
 } key_name_t;
 
 typedef struct {
-    FILE *stream;
+    ini_lines_t lines;
     const char *path;
-    char *text; /* of the current line */
-    size_t text_room;
-    unsigned long line;
     unsigned long key_line[CAMERAS][KEYS]; /* where a key was given; 0: nowhere */
     size_t cameras;                        /* of which any key was given; the first is always asked for */
     goe_settings_t settings;
@@ -81,49 +78,32 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------------------------- lines -- */
 
-/* Text without its comment and without blanks (CR among them) at either end: the parser is left no chance to take an
- * indented line for the continuation of the one before. */
-static char *trim(char *text) {
-    text[strcspn(text, "#")] = '\0';
-    while (isspace((unsigned char)*text)) {
-        text++;
-    }
-    size_t length = strlen(text);
-    while (length > 0 && isspace((unsigned char)text[length - 1u])) {
-        length--;
-    }
-    text[length] = '\0';
-    return text;
-}
-
 /* Sections, ';' comments and "key: value" are the parser's, not this format's. */
 static void check_line(camera_reader_t *reader, const char *text) {
     const char *stranger = strpbrk(text, "[]:;");
     if (stranger != NULL) {
-        FAIL(reader, reader->line, NULL, "unexpected '%c' in a line of the form: key = value # comment", *stranger);
+        FAIL(reader, reader->lines.number, NULL, "unexpected '%c' in a line of the form: key = value # comment",
+             *stranger);
     } else if (*text == '=' || (*text != '\0' && strchr(text, '=') == NULL)) {
-        FAIL(reader, reader->line, NULL, "'%s' is not of the form: key = value", excerpt_of(text, strlen(text)).text);
+        FAIL(reader, reader->lines.number, NULL, "'%s' is not of the form: key = value",
+             excerpt_of(text, strlen(text)).text);
     }
 }
 
 /* One line for the parser, in the manner of fgets(). Null ends the parsing: end of file, or a fault. */
 static char *read_line(char *line, int size, void *user) {
-    static const char mark[] = "\xef\xbb\xbf"; /* byte order mark */
     camera_reader_t *reader = user;
-    const ssize_t length = reader->failed ? -1 : getline(&reader->text, &reader->text_room, reader->stream);
-    if (length < 0) {
+    const char *fault = NULL;
+    const char *text = reader->failed ? NULL : ini_lines_next(&reader->lines, &fault);
+    if (fault != NULL) {
+        FAIL(reader, reader->lines.number, NULL, "%s", fault);
+    }
+    if (text == NULL) {
         return NULL;
     }
-    reader->line++;
-    if (strlen(reader->text) != (size_t)length) {
-        FAIL(reader, reader->line, NULL, "the line holds a NUL byte");
-        return NULL;
-    }
-    const bool marked = reader->line == 1 && strncmp(reader->text, mark, sizeof mark - 1u) == 0;
-    const char *text = trim(reader->text + (marked ? sizeof mark - 1u : 0u));
     check_line(reader, text);
     if (strlen(text) >= (size_t)size) {
-        FAIL(reader, reader->line, NULL, "the line is longer than %d characters", size - 1);
+        FAIL(reader, reader->lines.number, NULL, "the line is longer than %d characters", size - 1);
     }
     if (reader->failed) {
         return NULL;
@@ -193,7 +173,7 @@ static void store_text(camera_reader_t *reader, size_t camera, const camera_key_
     if (number_parse(text, strlen(text), &number)) {
         store(&reader->settings, camera, key, number_to_float(number));
     } else {
-        FAIL(reader, reader->line, key_name(camera, key).text, "'%s' is not a number%s",
+        FAIL(reader, reader->lines.number, key_name(camera, key).text, "'%s' is not a number%s",
              excerpt_of(text, strlen(text)).text, key->kind == KIND_HEADING ? " and not " HEADING_AUTO : "");
     }
 }
@@ -205,12 +185,13 @@ static int on_key(void *user, const char *section, const char *name, const char 
     size_t camera, i;
     if (!find_key(name, &camera, &i)) {
         const key_name_t guess = nearest_key(name);
-        FAIL(reader, reader->line, name, "unknown key%s%s%s", *guess.text != '\0' ? "; did you mean " : "", guess.text,
-             *guess.text != '\0' ? "?" : "");
+        FAIL(reader, reader->lines.number, name, "unknown key%s%s%s", *guess.text != '\0' ? "; did you mean " : "",
+             guess.text, *guess.text != '\0' ? "?" : "");
     } else if (reader->key_line[camera][i] != 0) {
-        FAIL(reader, reader->line, name, "the key appears twice, first in line %lu", reader->key_line[camera][i]);
+        FAIL(reader, reader->lines.number, name, "the key appears twice, first in line %lu",
+             reader->key_line[camera][i]);
     } else {
-        reader->key_line[camera][i] = reader->line;
+        reader->key_line[camera][i] = reader->lines.number;
         reader->cameras = camera < reader->cameras ? reader->cameras : camera + 1u;
         store_text(reader, camera, &keys[i], text);
     }
@@ -243,7 +224,8 @@ static bool value_accepted(const camera_key_t *key, float value) {
 static void check_key(camera_reader_t *reader, size_t camera, size_t i) {
     const key_name_t name = key_name(camera, &keys[i]);
     if (key_missing(reader, camera, i)) {
-        FAIL(reader, reader->line == 0 ? 1u : reader->line, name.text, "missing key, not found up to here");
+        FAIL(reader, reader->lines.number == 0 ? 1u : reader->lines.number, name.text,
+             "missing key, not found up to here");
     } else if (!value_accepted(&keys[i], stored(&reader->settings, camera, &keys[i]))) {
         double low = 0.0, high = 0.0;
         (void)setting_range(keys[i].offset, &low, &high);
@@ -265,19 +247,19 @@ static void check_keys(camera_reader_t *reader) {
 /* ------------------------------------------------------------------------------------------------------- interface -- */
 
 static void read_keys(camera_reader_t *reader) {
-    reader->stream = fopen(reader->path, "r");
-    if (reader->stream == NULL) {
+    reader->lines.stream = fopen(reader->path, "r");
+    if (reader->lines.stream == NULL) {
         FAIL(reader, 0u, NULL, "cannot be opened: %s", strerror(errno));
         return;
     }
     errno = 0;
     const int parser_line = ini_parse_stream(read_line, reader, on_key, reader);
-    if (ferror(reader->stream) != 0) {
+    if (ferror(reader->lines.stream) != 0) {
         FAIL(reader, 0u, NULL, "cannot be read: %s", strerror(errno));
     } else if (parser_line != 0) {
         FAIL(reader, parser_line > 0 ? (unsigned long)parser_line : 0u, NULL, "cannot be understood");
     }
-    (void)fclose(reader->stream);
+    (void)fclose(reader->lines.stream);
 }
 
 bool camera_file_read(const char *path, goe_settings_t *settings, input_error_t *error) {
@@ -288,7 +270,7 @@ bool camera_file_read(const char *path, goe_settings_t *settings, input_error_t 
     reader.cameras = 1;
     reader.settings = *settings;
     read_keys(&reader);
-    free(reader.text);
+    free(reader.lines.text);
     if (!reader.failed) {
         check_keys(&reader);
     }
