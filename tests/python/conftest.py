@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from goe_tools.logs.obslog import Camera, ObservationLog, write_log
 from goe_tools.logs.scene import Scene, make_log
+from goe_tools.optimum.library import ready
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -100,3 +101,12 @@ def replay() -> Path:
         if candidate and Path(candidate).is_file():
             return Path(candidate)
     pytest.skip("goe_replay is not built (GOE_REPLAY names it)")
+
+
+@pytest.fixture
+def built() -> None:
+    """The library can be called through the Python package; otherwise the test is skipped, and says why."""
+    try:
+        ready()
+    except FileNotFoundError as reason:
+        pytest.skip(str(reason))

@@ -17,7 +17,7 @@ from goe_tools.attack.solids import Solid
 from goe_tools.optimum.goals import attack, hazard
 from goe_tools.optimum.goals.goal import NAMES, Goal
 from goe_tools.optimum.goals.work import QUICK
-from goe_tools.optimum.library import METHODS, Track, ready
+from goe_tools.optimum.library import METHODS, Track
 from goe_tools.places import ROOT
 from goe_tools.report import attack_command
 
@@ -28,14 +28,6 @@ EXACT = {
 }  # fmt: skip
 BASE = Scenario(kind="box").by(**EXACT)
 AMOUNT = replace(QUICK, attack=3, hazard=3)
-
-
-@pytest.fixture
-def built() -> None:
-    try:
-        ready()
-    except FileNotFoundError as reason:
-        pytest.skip(str(reason))
 
 
 # ----------------------------------------------------------------------------------- another projection, point by point

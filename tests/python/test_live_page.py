@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import os
-import shutil
 import struct
 import time
 from collections.abc import Callable, Iterator
@@ -13,21 +12,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import chromium
 import pytest
 from goe_tools.__main__ import main
 from goe_tools.live import modules, page
 
 ROOT = Path(__file__).resolve().parents[2]
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-CHROMEDRIVER = shutil.which("chromedriver")
 WIDE, PHONE = (1280, 800), (400, 860)  # px
 PATIENCE_S = 10.0
 
 selenium = pytest.importorskip("selenium", reason="the browser test needs selenium (pip)")
 pytestmark = [
-    pytest.mark.skipif(
-        CHROMIUM is None or CHROMEDRIVER is None, reason="the browser test needs chromium and chromium-driver"
-    ),
+    pytest.mark.skipif(chromium.MISSING, reason=chromium.WHY_MISSING),
     pytest.mark.skipif(bool(modules.missing()), reason=f"WebAssembly needs {', '.join(modules.missing())}"),
 ]
 
@@ -56,19 +52,7 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(CHROMIUM)
-    for argument in (
-        "headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking",
-        "disable-component-update", "disable-sync", "disable-default-apps", "disable-dev-shm-usage",
-        "hide-scrollbars", f"user-data-dir={tmp_path_factory.mktemp('profile')}",
-    ):  # fmt: skip
-        options.add_argument(f"--{argument}")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(options=options, service=Service(str(CHROMEDRIVER)))
+    driver = chromium.start(tmp_path_factory.mktemp("profile"))
     yield driver
     driver.quit()
 
@@ -85,16 +69,12 @@ def wait_for(what: Callable[[], Any], told: str) -> Any:
 
 def open_page(browser: Any, file: Path, fragment: str, size: tuple[int, int] = WIDE, scheme: str = "light") -> None:
     """Waits until the page has proved its module, or failed to."""
-    width, height = size
     browser.get("about:blank")
     browser.get_log("performance"), browser.get_log("browser")  # what came before is not this page's
     browser.execute_cdp_cmd(
         "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
     )
-    browser.execute_cdp_cmd(
-        "Emulation.setDeviceMetricsOverride",
-        {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600},
-    )
+    chromium.set_size(browser, size)
     browser.get(f"{file.as_uri()}#{fragment}")
     wait_for(lambda: browser.execute_script("return document.documentElement.dataset.ready"), "ready")
 

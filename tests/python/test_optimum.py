@@ -30,7 +30,6 @@ from goe_tools.optimum.library import (
     MODEL_PRISM,
     Track,
     estimate,
-    ready,
     settings_of,
 )
 
@@ -49,14 +48,6 @@ def disc_scene(x0: float = 25.0) -> Scene:
     truth = Obstacle("disc", x0, 300.0, 0.0, 6.0, 6.0, 25.0)
     course = Course(15.0, 18.0, 20.0, 0.0, 300.0 / 18.0)
     return simulate("disc", "disc", pinhole(), truth, course, np.zeros(3))
-
-
-@pytest.fixture
-def built() -> None:
-    try:
-        ready()
-    except FileNotFoundError as reason:
-        pytest.skip(str(reason))
 
 
 # --------------------------------------------------------------------------------------------------------------- model

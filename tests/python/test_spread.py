@@ -17,19 +17,10 @@ from goe_tools.__main__ import main
 from goe_tools.optimum.flights.noise import NOISES
 from goe_tools.optimum.flights.simulated import random_scenes
 from goe_tools.optimum.goals.outcome import Outcome, Task, perform
-from goe_tools.optimum.library import ready
 from goe_tools.spread import Workers, each, spread
 
 cloudpickle.register_pickle_by_value(sys.modules[__name__])  # no worker could import it
 ROOT = Path(__file__).resolve().parents[2]
-
-
-@pytest.fixture
-def built() -> None:
-    try:
-        ready()
-    except FileNotFoundError as error:
-        pytest.skip(str(error))
 
 
 def cube(mark: Path | None, number: int) -> int:
