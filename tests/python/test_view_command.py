@@ -154,3 +154,13 @@ def test_svg_follows_its_reader(tmp_path: Path) -> None:
     bare = re.findall(r"(?:fill|stroke): (#[0-9a-f]{6})(?!; (?:fill|stroke): var)", twice[0])
     assert not set(bare) & set(LIGHT.values())
     assert len(twice[0]) < 250_000
+
+
+def test_the_first_picture_of_the_readme_is_drawn_by_the_command(tmp_path: Path) -> None:
+    """Its words and numbers; another version of the drawing library may place strokes otherwise."""
+    picture = view_logs.ROOT / "tools" / "goe_tools" / "view" / "approach.svg"
+    assert f"]({picture.relative_to(view_logs.ROOT)})" in (view_logs.ROOT / "README.md").read_text(encoding="utf-8")
+    assert main(["view", str(view_logs.CORNER), "--svg", str(tmp_path / "now.svg")]) == 0
+    pictures = [path.read_text(encoding="utf-8") for path in (picture, tmp_path / "now.svg")]
+    words, words_now = (re.findall(r"<!-- (.*?) -->", text) for text in pictures)
+    assert words == words_now and len(words) > 20
