@@ -64,6 +64,9 @@ find_missing() {
         want needed xz-utils has xz
         # Without these parts of tools/test.sh are skipped.
         want extra clang-19 has clang-19
+        want extra llvm-19 has llvm-cov-19
+        want extra cppcheck has cppcheck
+        want extra frama-c-base has frama-c
         want extra lld-19 has wasm-ld-19
         want extra binaryen has wasm-opt
         want extra clang-format-19 has clang-format-19

@@ -19,7 +19,7 @@ FLOORS = (
     ("attack",),
     ("reference", "optimum", "cost", "packages"),
     ("view",),
-    ("report", "live", "exchange", "noise"),
+    ("report", "live", "exchange", "noise", "evidence"),
     ("__main__",),
 )
 

@@ -20,6 +20,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "embed_logs": (".logs.embed_logs", "write or check the synthetic logs that the target images carry"),
     "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
     "convert": (".exchange.convert", "make an observation log of an autopilot's log and a detector's table"),
+    "evidence": (".evidence.command", "run what shows that the library is as it says, and print its table"),
     "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),
     "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
     "flight_cost": (".cost.flight", "measure what the calls of the flight layer take"),

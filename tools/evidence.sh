@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# What shows that the library is as it says, as one table of figures, goals and dates.
+#
+#   tools/evidence.sh --quick   what fits ten minutes
+#   tools/evidence.sh --long    all of it; keeps its figures in tests/evidence/record.json
+#   tools/evidence.sh --show    prints that record
+#
+# Further options are those of python -m goe_tools evidence --help. Exit status 1: a goal was missed.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+tools/setup.sh >&2
+export OPENBLAS_NUM_THREADS=1
+exec .venv/bin/python -m goe_tools evidence "$@"

@@ -1,0 +1,71 @@
+"""Rows of the table of evidence, and the file that keeps those of long runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..logs.obslog import LogError
+
+
+@dataclass(frozen=True)
+class Row:
+    what: str  # "lines of lib/ that the unit tests run"
+    figure: str  # as it is printed: "99.9 % (3,201 of 3,204)"
+    goal: str  # "100 % or a written reason"
+    met: bool | None  # None: a figure without a goal
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a part found. ``report``: text for a reader who asks why, one file of its own."""
+
+    rows: list[Row]
+    report: str = ""
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A part's rows with what made them."""
+
+    part: str
+    amount: str  # "quick" or "long"
+    date: str
+    golden_hash: str  # of the library's bits then
+    seconds: float
+    machine: str  # processor, compiler
+    rows: list[Row] = field(default_factory=list)
+
+
+def read(path: Path) -> dict[str, Kept]:
+    """By part. An absent file holds none."""
+    if not path.exists():
+        return {}
+    try:
+        told: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))
+        kept = [Kept(**{**entry, "rows": [Row(**row) for row in entry["rows"]]}) for entry in told]
+    except OSError as error:
+        raise LogError(path, 0, "", error.strerror or str(error)) from None
+    except (KeyError, TypeError, ValueError) as error:
+        raise LogError(path, 0, "", f"not a record of evidence: {error}") from None
+    return {entry.part: entry for entry in kept}
+
+
+def write(path: Path, kept: Iterable[Kept]) -> None:
+    part = path.with_name(path.name + ".part")
+    part.write_text(json.dumps([asdict(entry) for entry in kept], indent=1) + "\n", encoding="utf-8")
+    part.replace(path)
+
+
+def table(kept: Iterable[Kept]) -> str:
+    """Markdown: a line for each row."""
+    lines = ["| part | what | figure | goal | | run |", "|---|---|---|---|---|---|"]
+    for entry in kept:
+        for row in entry.rows:
+            word = {True: "met", False: "MISSED", None: ""}[row.met]
+            run = f"{entry.amount}, {entry.date}, {entry.golden_hash[:8]}"
+            lines.append(f"| {entry.part} | {row.what} | {row.figure} | {row.goal} | {word} | {run} |")
+    return "\n".join(lines)
