@@ -28,6 +28,7 @@
 #define PROGRAM "goe_campaign"
 #define DEFAULT_FOLDER "campaign"
 #define SEEDS_MAX 1000
+#define PARTS_MAX 10000
 #define SERIES_SEED 1
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 2 };
@@ -38,9 +39,10 @@ static const double FRACTIONS[] = {0.2, 0.4, 0.6, 1.0};
 /* --------------------------------------------------------------------------------------------------------- options -- */
 
 typedef struct {
-    char *out_text, *studies_text;
+    char *out_text, *studies_text, *part_text;
     const char *out;
     int seeds, jobs;
+    int part, parts; /* of the plan */
     int all_series, quiet, help, version;
     unsigned studies; /* set of 1u << study_t */
 } options_t;
@@ -74,9 +76,21 @@ static bool check_studies(options_t *options) {
     return complain("--studies", reason);
 }
 
+static bool check_part(options_t *options) {
+    char more;
+    options->part = options->parts = 1;
+    if (options->part_text != NULL &&
+        (sscanf(options->part_text, "%5d/%5d%c", &options->part, &options->parts, &more) != 2 || options->part < 1 ||
+         options->part > options->parts || options->parts > PARTS_MAX)) {
+        return complain("--part", "must be K/N, as 2/8: K from 1 to N, N up to 10000");
+    }
+    return true;
+}
+
 static bool check_options(options_t *options) {
     if (!check_range("--seeds", options->seeds, 1, SEEDS_MAX) ||
-        !check_range("--jobs", options->jobs, 1, WORK_POOL_JOBS_MAX) || !check_studies(options)) {
+        !check_range("--jobs", options->jobs, 1, WORK_POOL_JOBS_MAX) || !check_studies(options) ||
+        !check_part(options)) {
         return false;
     }
     options->out = options->out_text != NULL ? options->out_text : DEFAULT_FOLDER;
@@ -353,7 +367,8 @@ static bool run_campaign(const options_t *options) {
     const char *fault = "out of memory";
     bool done = false;
     if (campaign_plan_make(options->studies, options->seeds, &campaign.plan)) {
-        campaign.results = calloc(campaign.plan.count, sizeof *campaign.results);
+        campaign_plan_keep_part(&campaign.plan, options->part, options->parts);
+        campaign.results = calloc(campaign.plan.count + 1, sizeof *campaign.results); /* a part may be empty */
         done = campaign.results != NULL && fly_and_write(&campaign, &fault);
     }
     if (!done && fault != NULL) {
@@ -401,6 +416,8 @@ int main(int argc, char **argv) {
         {"out", 'o', POPT_ARG_STRING, &options.out_text, 0, "where to write; " DEFAULT_FOLDER " by default", "DIR"},
         {"studies", 0, POPT_ARG_STRING, &options.studies_text, 0, "names with commas between them; all by default",
          "NAMES"},
+        {"part", 0, POPT_ARG_STRING, &options.part_text, 0,
+         "fly part K of N only, for several machines: cases.csv of all parts in order is that of the whole", "K/N"},
         {"series", 0, POPT_ARG_NONE, &options.all_series, 0,
          "series of all the paper's cases, not only of those that the figures show", NULL},
         {"quiet", 'q', POPT_ARG_NONE, &options.quiet, 0, "no progress bar, no summary", NULL},
@@ -424,5 +441,6 @@ int main(int argc, char **argv) {
     (void)poptFreeContext(context);
     free(options.out_text);
     free(options.studies_text);
+    free(options.part_text);
     return done ? EXIT_DONE : EXIT_FAILED;
 }

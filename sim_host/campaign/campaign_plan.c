@@ -310,6 +310,13 @@ bool campaign_plan_make(unsigned studies, int seeds, campaign_plan_t *plan) {
     return true;
 }
 
+void campaign_plan_keep_part(campaign_plan_t *plan, int part, int parts) {
+    const size_t first = plan->count * (size_t)(part - 1) / (size_t)parts;
+    const size_t end = plan->count * (size_t)part / (size_t)parts;
+    memmove(plan->flights, plan->flights + first, (end - first) * sizeof *plan->flights);
+    plan->count = end - first;
+}
+
 void campaign_plan_free(campaign_plan_t *plan) {
     free(plan->flights);
     plan->flights = NULL;

@@ -72,6 +72,9 @@ bool campaign_plan_studies(const char *text, unsigned *studies, char *bad, size_
 /* Seeds 1 to seeds. False if memory is short. */
 bool campaign_plan_make(unsigned studies, int seeds, campaign_plan_t *plan);
 
+/* Keeps part 1 to parts of the flights, in their order; parts that follow one another make the whole plan. */
+void campaign_plan_keep_part(campaign_plan_t *plan, int part, int parts);
+
 void campaign_plan_free(campaign_plan_t *plan);
 
 #endif

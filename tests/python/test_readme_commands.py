@@ -121,6 +121,7 @@ RUN_BY = {
     "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
     "goe_sim --features": By("tests/sim/test_sim_boxes.py", '"--features"'),
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
+    "goe_campaign --part K/N": By("tests/sim/test_campaign.py", '"--part"'),
     "goe_companion": By("tests/companion/companion.py", "goe_companion"),
     "build/port/companion/goe_companion port/companion/companion.ini": By(
         "tests/companion/companion.py", '"companion" / "goe_companion"'
@@ -128,6 +129,7 @@ RUN_BY = {
     "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
     "python -m goe_tools attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
+    "python -m goe_tools campaign --out": By("tests/python/test_spread.py", '"campaign", "--studies"'),
     "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
     "python -m goe_tools convert...": By("tests/python/test_convert.py", '"convert", f"--{kind}"'),
     "python -m goe_tools mcap...": By("tests/python/test_mcap.py", '"mcap", str(folder), "--out"'),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -21,6 +23,7 @@ from goe_tools.spread import Workers, each, spread
 
 cloudpickle.register_pickle_by_value(sys.modules[__name__])  # no worker could import it
 ROOT = Path(__file__).resolve().parents[2]
+CAMPAIGN = "conditioning"  # the quickest of its studies with all obstacles in it
 
 
 def cube(mark: Path | None, number: int) -> int:
@@ -43,6 +46,49 @@ def assert_same(some: list[Outcome], others: list[Outcome]) -> None:
         assert np.array_equal(one.refined.error, other.refined.error, equal_nan=True)
 
 
+@pytest.fixture(scope="module")
+def conditioning(built: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What goe_campaign itself writes."""
+    folder = tmp_path_factory.mktemp("whole") / "campaign"
+    command = [str(ROOT / "build/sim_host/goe_campaign"), "--quiet", "--studies", CAMPAIGN, "--out", str(folder)]
+    subprocess.run(command, check=True)
+    return folder
+
+
+def assert_same_campaign(one: Path, other: Path) -> None:
+    """But for how it was flown."""
+    files = [{path.relative_to(folder) for path in folder.rglob("*")} for folder in (one, other)]
+    assert files[0] == files[1]
+    for name in files[0] - {Path("campaign.json")}:
+        if (one / name).is_file():
+            assert (one / name).read_bytes() == (other / name).read_bytes(), name
+    facts = [json.loads((folder / "campaign.json").read_text(encoding="utf-8")) for folder in (one, other)]
+    for told in facts:
+        del told["jobs"], told["wall_s"]
+    assert facts[0] == facts[1]
+
+
+def test_a_campaign_in_parts_is_the_whole(conditioning: Path, tmp_path: Path) -> None:
+    (tmp_path / "series").mkdir()
+    (tmp_path / "series" / "7_disc.csv").write_text("of an earlier campaign")
+    (tmp_path / "notes.txt").write_text("mine")
+    assert main(["campaign", "--studies", CAMPAIGN, "--out", str(tmp_path), "--jobs", "2"]) == 0
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+    (tmp_path / "notes.txt").unlink()
+    assert_same_campaign(tmp_path, conditioning)
+
+
+def test_a_campaign_that_cannot_be(tmp_path: Path, built: None, capsys: pytest.CaptureFixture[str]) -> None:
+    for words, told in (
+        (["--studies", "winds", "--out", str(tmp_path / "c")], "--studies: 'winds' is not paper"),
+        (["--seeds", "0", "--out", str(tmp_path / "c")], "--seeds: must be 1 to 1000, not 0"),
+        (["--out", str(tmp_path / "missing" / "c")], "missing/c: cannot be written"),
+    ):
+        assert main(["campaign", *words, "--jobs", "1"]) == 2
+        assert told in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_flights_are_those_of_one_process(built: None) -> None:
     assert_same(*(each(perform, flights(12), Workers(jobs), "flights") for jobs in (1, 2)))
 
@@ -61,7 +107,7 @@ def test_a_killed_process_is_told() -> None:
         list(spread(die, range(20), Workers(2)))
 
 
-def test_a_cluster_that_loses_a_worker(built: None, tmp_path: Path) -> None:
+def test_a_cluster_that_loses_a_worker(conditioning: Path, tmp_path: Path) -> None:
     """Two workers; one of them dies in the middle, and the other one does its work again. Flights come back as they are
     here."""
     distributed = pytest.importorskip("distributed")
@@ -75,6 +121,10 @@ def test_a_cluster_that_loses_a_worker(built: None, tmp_path: Path) -> None:
         assert [first, *results] == [number**3 for number in range(40)]
         flown = each(perform, flights(4), Workers(scheduler=cluster.scheduler_address), "flights")
         assert_same(flown, each(perform, flights(4), Workers(), "flights"))
+        words = ["--studies", CAMPAIGN, "--out", str(tmp_path / "campaign")]
+        assert main(["campaign", *words, "--scheduler", cluster.scheduler_address]) == 0
+    assert_same_campaign(tmp_path / "campaign", conditioning)
+    shutil.rmtree(tmp_path / "campaign")
     assert len({path.name.split("-")[1] for path in tmp_path.iterdir()}) >= 2
 
 

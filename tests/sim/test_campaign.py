@@ -551,6 +551,25 @@ def test_same_whatever_the_jobs(goe_campaign: Path, tmp_path: Path) -> None:
     assert len(one) == 1 + 3 * 6  # cases.csv; three runs over the six flights past the building turned by -20 degrees
 
 
+def test_parts_make_the_whole(goe_campaign: Path, paper: Path, tmp_path: Path) -> None:
+    """Also where there are more parts than flights: some are empty."""
+    parts = 200
+    rows, series = b"", {}
+    for part in range(1, parts + 1):
+        folder = tmp_path / str(part)
+        campaign(goe_campaign, folder, "--studies", "paper", "--series", "--part", f"{part}/{parts}")
+        files = contents(folder)
+        header, own = files.pop("cases.csv").split(b"\n", 1)
+        rows = (rows or header + b"\n") + own
+        del files["campaign.json"]
+        assert not series.keys() & files.keys()
+        series |= files
+    whole = contents(paper)
+    assert rows == whole.pop("cases.csv")
+    del whole["campaign.json"]
+    assert series == whole
+
+
 def test_seeds_are_runs_of_their_own(goe_campaign: Path, everything: Path, tmp_path: Path) -> None:
     campaign(goe_campaign, tmp_path / "two", "--studies", "paper,noise", "--seeds", 2)
     rows = read_rows(tmp_path / "two" / "cases.csv")
@@ -580,6 +599,10 @@ def test_seeds_are_runs_of_their_own(goe_campaign: Path, everything: Path, tmp_p
         (["--jobs", "0"], "--jobs: must be 1 to 1024, not 0"),
         (["--studies", "paper,winds"], "--studies: 'winds' is not paper, paths, wind"),
         (["--studies", ""], "--studies: '' is not"),
+        (["--part", "0/4"], "--part: must be K/N, as 2/8: K from 1 to N"),
+        (["--part", "5/4"], "--part: must be K/N"),
+        (["--part", "1/4x"], "--part: must be K/N"),
+        (["--part", "1"], "--part: must be K/N"),
         (["--speed", "3"], "--speed"),
         (["somewhere"], "somewhere: options only"),
     ],

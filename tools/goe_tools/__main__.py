@@ -18,6 +18,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "bound": (".optimum.bound", "print the Cramer-Rao bound of a log with truth"),
     "scene": (".logs.scene_command", "write a synthetic observation log of a box or a cylinder"),
     "embed_logs": (".logs.embed_logs", "write or check the synthetic logs that the target images carry"),
+    "campaign": (".report.campaign_command", "fly goe_campaign in parts, over processes or a cluster"),
     "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
     "convert": (".exchange.convert", "make an observation log of an autopilot's log and a detector's table"),
     "evidence": (".evidence.command", "run what shows that the library is as it says, and print its table"),

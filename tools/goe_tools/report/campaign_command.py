@@ -1,0 +1,113 @@
+"""The command ``campaign``: goe_campaign in parts, spread over processes or over a cluster.
+
+    python -m goe_tools campaign --out DIR [--seeds N] [--studies NAMES] [--series] [--jobs N | --scheduler ADDRESS]
+
+DIR gets what one run of goe_campaign writes there, byte for byte; campaign.json says how many workers and how long.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ..places import ROOT
+from ..spread import Workers, each, workers_of
+from ..spread import add_arguments as add_workers
+
+PROGRAM = ROOT / "build" / "sim_host" / "goe_campaign"
+CASES, FACTS, SERIES = "cases.csv", "campaign.json", "series"
+SUMS = ("flights", "flights_ended_early", "frames", "runs", "series")  # of campaign.json, over the parts
+PARTS = 64  # whatever the workers: enough that none waits long for the last one
+SERIES_ENDINGS = ("_auto.csv", "_disc.csv", "_refined.csv")
+
+
+@dataclass(frozen=True)
+class Flown:
+    """What a part's folder held: it may have been another machine's."""
+
+    cases: bytes
+    facts: dict[str, Any]
+    series: dict[str, bytes]
+
+
+def fly(program: Path, options: tuple[str, ...], part: int) -> Flown:
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "part"
+        how = ["--quiet", "--jobs", "1", "--part", f"{part}/{PARTS}", "--out", str(out)]
+        done = subprocess.run([str(program), *options, *how], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            told = done.stderr.strip().replace("goe_campaign: ", "", 1)
+            raise ValueError(told or f"{program}: ended with {done.returncode}")
+        series = {path.name: path.read_bytes() for path in sorted((out / SERIES).iterdir())}
+        return Flown((out / CASES).read_bytes(), json.loads((out / FACTS).read_text(encoding="utf-8")), series)
+
+
+def joined(parts: list[Flown]) -> Flown:
+    """As if one run had made them: the first part's header, every part's rows."""
+    facts = {**parts[0].facts, **{name: sum(part.facts[name] for part in parts) for name in SUMS}}
+    cases = parts[0].cases + b"".join(part.cases.split(b"\n", 1)[1] for part in parts[1:])
+    return Flown(cases, facts, {name: content for part in parts for name, content in part.series.items()})
+
+
+def write(folder: Path, flown: Flown) -> None:
+    """The folder's files change only once all are written beside them; only series of an earlier campaign go."""
+    folder.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".campaign-") as staged:
+        fresh = {f"{SERIES}/{name}": content for name, content in flown.series.items()}
+        fresh[CASES] = flown.cases
+        fresh[FACTS] = (json.dumps(flown.facts, indent=2) + "\n").encode()
+        (Path(staged) / SERIES).mkdir()
+        for name, content in fresh.items():
+            (Path(staged) / name).write_bytes(content)
+        (folder / SERIES).mkdir(exist_ok=True)
+        for path in (folder / SERIES).iterdir():
+            if path.name.endswith(SERIES_ENDINGS) and path.name.split("_")[0].isdigit():
+                path.unlink()
+        for name in fresh:
+            (Path(staged) / name).replace(folder / name)
+
+
+def check_out(folder: Path) -> None:
+    """Said before the flights, not after."""
+    place = folder if folder.exists() else folder.parent
+    if not place.is_dir() or not os.access(place, os.W_OK | os.X_OK):
+        raise ValueError(f"{folder}: cannot be written")
+
+
+def count_of(workers: Workers) -> int:
+    return 0 if workers.scheduler else workers.jobs  # a cluster's may come and go
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--out", type=Path, default=Path("campaign"), metavar="DIR", help="default: campaign")
+    parser.add_argument("--seeds", type=int, default=1, metavar="N", help="fly everything with the seeds 1 to N")
+    parser.add_argument("--studies", default="all", metavar="NAMES", help="as goe_campaign --help tells")
+    parser.add_argument("--series", action="store_true", help="series of all the paper's cases")
+    parser.add_argument("--program", type=Path, default=PROGRAM, help=argparse.SUPPRESS)
+    add_workers(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    workers = workers_of(arguments)
+    if not arguments.program.exists():
+        raise FileNotFoundError(f"{arguments.program} is not built (cmake --build build)")
+    check_out(arguments.out)
+    options = ("--seeds", str(arguments.seeds), "--studies", arguments.studies, *["--series"] * arguments.series)
+    begun = time.monotonic()
+    flown = joined(each(partial(fly, arguments.program, options), range(1, PARTS + 1), workers, "parts"))
+    seconds = round(time.monotonic() - begun, 3)
+    write(
+        arguments.out, Flown(flown.cases, {**flown.facts, "jobs": count_of(workers), "wall_s": seconds}, flown.series)
+    )
+    facts = flown.facts
+    told = f"{facts['flights']} flights, {facts['frames']} frames, {facts['runs']} runs in {seconds:.1f} s"
+    print(f"{told}: {arguments.out / CASES}")
+    return 0
