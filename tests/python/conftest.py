@@ -103,7 +103,7 @@ def replay() -> Path:
     pytest.skip("goe_replay is not built (GOE_REPLAY names it)")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def built() -> None:
     """The library can be called through the Python package; otherwise the test is skipped, and says why."""
     try:

@@ -114,6 +114,7 @@ RUN_BY = {
     "build_target.sh": By("tests/targets/host.cmake", "build_target.sh"),
     "tests/parts/parts.sh": By("tests/CMakeLists.txt", "parts/parts.sh"),
     "tests/flags/invariants.sh": By("tests/CMakeLists.txt", "flags/invariants.sh"),
+    "tools/evidence.sh": By("tests/python/test_evidence.py", '"tools" / "evidence.sh"'),
     "tools/setup.sh": By("tools/test.sh", "setup.sh"),
     "goe_replay": By("tests/host/test_replay.py", "goe_replay"),
     "goe_replay --set": By("tests/host/test_replay.py", '"--set"'),
@@ -121,7 +122,9 @@ RUN_BY = {
     "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
     "goe_sim --features": By("tests/sim/test_sim_boxes.py", '"--features"'),
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
-    "goe_campaign --part K/N": By("tests/sim/test_campaign.py", '"--part"'),
+    "goe_campaign --part K/N": By(
+        "tests/sim/test_campaign.py", 'goe_campaign, folder, "--studies", "paper", "--series"'
+    ),
     "goe_companion": By("tests/companion/companion.py", "goe_companion"),
     "build/port/companion/goe_companion port/companion/companion.ini": By(
         "tests/companion/companion.py", '"companion" / "goe_companion"'
