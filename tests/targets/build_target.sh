@@ -26,12 +26,12 @@ case $preset in
     *-clang-*) need clang-19 ;;
 esac
 
-# The safety tests run at full length where gcc -O2 built them; elsewhere what a compiler may do wrong shows early.
+# The safety tests run at full length on one processor; elsewhere what a compiler may do wrong shows early.
+# GOE_TARGETS_LONG=1: at full length everywhere, as tools/evidence.sh --long does.
 length=()
-case $preset in
-    *-gcc-o2) ;;
-    *) length=(-DPORT_ENVIRONMENT=GOE_TEST_UPDATES=2000) ;;
-esac
+if [ "$preset" != m4f-gcc-o2 ] && [ -z "${GOE_TARGETS_LONG:-}" ]; then
+    length=(-DPORT_ENVIRONMENT=GOE_TEST_UPDATES=2000)
+fi
 
 cd "$root"
 cmake --preset "$preset" -B "$tree" -DGOE_TARGET_TESTS="$3" -DUNITY_DIR="$4" "${length[@]}" >"$tree.log" 2>&1 || {
