@@ -81,6 +81,29 @@ def test_page_in_browser(browser: Any, report: Path, shots: Path, size: tuple[in
     screenshot(browser, shots / f"report_{request.node.callspec.id}.png")
 
 
+def test_dark(browser: Any, report: Path, shots: Path) -> None:
+    """As its reader is: no white is left, and what is written keeps apart from what it stands on."""
+    browser.execute_cdp_cmd(
+        "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}
+    )
+    try:
+        open_page(browser, report, WIDE)
+        weak = browser.execute_script(
+            "const bright = c => { const [r, g, b] = c.match(/[\\d.]+/g).map(x => (x / 255) ** 2.2);"
+            " return .2126 * r + .7152 * g + .0722 * b; };"
+            "const under = e => { for (; e; e = e.parentElement) { const c = getComputedStyle(e).backgroundColor;"
+            " if (c !== 'rgba(0, 0, 0, 0)') return c; } };"
+            "return [...document.body.querySelectorAll('*')].filter(e => e.innerText && e.innerText.trim()).map(e => {"
+            " const a = bright(getComputedStyle(e).color), b = bright(under(e));"
+            " return [(Math.max(a, b) + .05) / (Math.min(a, b) + .05), b, e.outerHTML.slice(0, 80)]; })"
+            ".filter(([ratio, ground]) => ratio < 4.5 || ground > .1)"
+        )
+        assert weak == []
+        screenshot(browser, shots / "report_dark.png")
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
 def test_print(browser: Any, report: Path, shots: Path) -> None:
     open_page(browser, report, WIDE)
     printed = browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": False})

@@ -351,14 +351,15 @@ def _rare(campaign: Campaign) -> dict[str, Any] | None:
     return {"sentence": rare.sentence(campaign.rare), "heads": rare.HEADS, "rows": rare.table(campaign.rare)}
 
 
-def _approach(campaign: Campaign) -> str | None:
-    """One flight as a picture, light as the page."""
+def _approach(campaign: Campaign) -> dict[str, str] | None:
+    """One flight as a picture, by the page's theme."""
     if campaign.approach is None:
         return None
     log = read_log(campaign.approach)
     story = story_of(campaign.approach.resolve().name, log, Options())
     chosen = story.chosen(None)
-    return _data_uri("png", png(story, chosen, story.first_look(chosen)))
+    moment = story.first_look(chosen)
+    return {theme: _data_uri("png", png(story, chosen, moment, theme)) for theme in ("light", "dark")}
 
 
 def _version(campaign: Campaign) -> str:
