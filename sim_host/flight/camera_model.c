@@ -5,7 +5,6 @@
 #include <stddef.h>
 #include <string.h>
 
-#define NEAREST_DEPTH_M 1e-3       /* a point nearer to the image plane has no image */
 #define WIDEST_RADIUS_SQUARED 64.0 /* tan^2 of 83 degrees off the axis: wider lenses need another model */
 #define RADIUS_STEPS 4096
 
@@ -80,7 +79,7 @@ bool camera_project(const camera_t *camera, const view_t *view, vec3_t point_ned
     const vec3_t ray = mat3_apply(&view->ned_to_camera, vec3_sub(point_ned_m, view->eye_ned_m));
     *u_px = ray.x < 0.0 ? -HUGE_VAL : HUGE_VAL;
     *v_px = 0.0;
-    if (!(ray.z > NEAREST_DEPTH_M)) {
+    if (!(ray.z > CAMERA_NEAREST_M)) {
         return false;
     }
     const double x = ray.x / ray.z, y = ray.y / ray.z;
@@ -94,6 +93,15 @@ bool camera_project(const camera_t *camera, const view_t *view, vec3_t point_ned
     *u_px = camera->fx_px * distorted_x + camera->cx_px;
     *v_px = camera->fy_px * distorted_y + camera->cy_px;
     return true;
+}
+
+bool camera_has_lens(const camera_t *camera) {
+    const double lens[] = {camera->k1, camera->k2, camera->p1, camera->p2, camera->k3};
+    bool lens_bends = false;
+    for (size_t i = 0; i < sizeof lens / sizeof lens[0]; i++) {
+        lens_bends = lens_bends || fabs(lens[i]) > 0.0;
+    }
+    return lens_bends;
 }
 
 bool camera_in_image(const camera_t *camera, double u_px, double v_px) {

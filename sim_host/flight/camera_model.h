@@ -12,6 +12,7 @@
 #include "rotation.h"
 
 #define CAMERAS_MAX 2
+#define CAMERA_NEAREST_M 1e-3 /* a point nearer to the image plane has no image */
 
 typedef struct {
     double width_px, height_px;
@@ -48,6 +49,9 @@ view_t camera_view(const camera_t *camera, const pose_t *pose);
 /* Pixel of a point. False: the point is behind the image plane or outside the field in which the lens model holds; u_px is
  * then -HUGE_VAL or HUGE_VAL, the side of the image on which the point lies, and v_px is 0. */
 bool camera_project(const camera_t *camera, const view_t *view, vec3_t point_ned_m, double *u_px, double *v_px);
+
+/* Whether straight lines are straight in its images. */
+bool camera_has_lens(const camera_t *camera);
 
 bool camera_in_image(const camera_t *camera, double u_px, double v_px);
 

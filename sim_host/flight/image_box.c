@@ -2,7 +2,6 @@
 #include "image_box.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 #define CURVES_MAX 12 /* edges of a box; of a cylinder two rims and two lines on the wall are enough */
@@ -151,15 +150,65 @@ static double refined(const outline_t *outline, const curve_t *curve, const extr
     return fmax(best->out_px, out_at(outline, curve, 0.5 * (low + high), side));
 }
 
-/* Without a lens a straight edge is straight in the image, and its ends reach farthest. */
-static bool is_bent(const camera_t *camera, const curve_t *curve) {
-    const double lens[] = {camera->k1, camera->k2, camera->p1, camera->p2, camera->k3};
-    bool bent = curve->radius_m > 0.0;
-    for (size_t i = 0; i < sizeof lens / sizeof lens[0]; i++) {
-        bent = bent || fabs(lens[i]) > 0.0;
-    }
-    return bent;
+/* ------------------------------------------------------------------------------------------- rims without a lens -- */
+
+/* What a camera axis sees of a point on a level circle: at + by_cos cos + by_sin sin of its azimuth from north. */
+typedef struct {
+    double at, by_cos, by_sin;
+} round_t;
+
+static round_t along_rim(const outline_t *outline, const curve_t *rim, int axis) {
+    const double *row = outline->view->ned_to_camera.m[axis];
+    const vec3_t offset = vec3_sub(rim->from, outline->view->eye_ned_m);
+    const round_t along = {row[0] * offset.x + row[1] * offset.y + row[2] * offset.z, rim->radius_m * row[0],
+                           rim->radius_m * row[1]};
+    return along;
 }
+
+static double ratio_at(const round_t *over, const round_t *under, double cosine, double sine) {
+    return (over->at + over->by_cos * cosine + over->by_sin * sine) /
+           (under->at + under->by_cos * cosine + under->by_sin * sine);
+}
+
+/* Least and largest of over / under, which is positive all round: where over' under - over under' = 0, that is
+ * a cos + b sin = -c. False: rounding leaves none. */
+static bool ends_of_ratio(const round_t *over, const round_t *under, double ends[2]) {
+    const double a = under->at * over->by_sin - over->at * under->by_sin;
+    const double b = over->at * under->by_cos - under->at * over->by_cos;
+    const double c = over->by_sin * under->by_cos - over->by_cos * under->by_sin;
+    const double norm = hypot(a, b);
+    if (!(norm > fabs(c))) {
+        return false;
+    }
+    const double nearer = -c / norm, aside = sqrt(1.0 - nearer * nearer);
+    const double one = ratio_at(over, under, (nearer * a - aside * b) / norm, (nearer * b + aside * a) / norm);
+    const double other = ratio_at(over, under, (nearer * a + aside * b) / norm, (nearer * b - aside * a) / norm);
+    ends[0] = fmin(one, other);
+    ends[1] = fmax(one, other);
+    return true;
+}
+
+/* A circle that lies in the field all round. False: it may not, and nothing was done. */
+static bool include_rim(const outline_t *outline, double out_px[SIDE_COUNT], const curve_t *rim) {
+    const camera_t *camera = outline->camera;
+    const round_t x = along_rim(outline, rim, 0), y = along_rim(outline, rim, 1), z = along_rim(outline, rim, 2);
+    double u[2], v[2];
+    if (!(z.at - hypot(z.by_cos, z.by_sin) > CAMERA_NEAREST_M) || !ends_of_ratio(&x, &z, u) ||
+        !ends_of_ratio(&y, &z, v)) {
+        return false;
+    }
+    const double widest = fmax(-u[0], u[1]), highest = fmax(-v[0], v[1]);
+    if (widest * widest + highest * highest > camera->lens_radius2) {
+        return false;
+    }
+    out_px[SIDE_LEFT] = fmax(out_px[SIDE_LEFT], -(camera->fx_px * u[0] + camera->cx_px));
+    out_px[SIDE_RIGHT] = fmax(out_px[SIDE_RIGHT], camera->fx_px * u[1] + camera->cx_px);
+    out_px[SIDE_TOP] = fmax(out_px[SIDE_TOP], -(camera->fy_px * v[0] + camera->cy_px));
+    out_px[SIDE_BOTTOM] = fmax(out_px[SIDE_BOTTOM], camera->fy_px * v[1] + camera->cy_px);
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------------- all curves -- */
 
 /* Every curve is refined, not the best of them alone: where a rim meets the wall, the rim's farthest point may lie between two
  * steps and reach farther than the wall's end. */
@@ -169,7 +218,10 @@ static void include_curve(const outline_t *outline, double out_px[SIDE_COUNT], c
         extremes[side].out_px = -HUGE_VAL;
         extremes[side].s = 0.0;
     }
-    const bool bent = is_bent(outline->camera, curve);
+    const bool rim = curve->radius_m > 0.0, lens = camera_has_lens(outline->camera), bent = rim || lens;
+    if (rim && !lens && include_rim(outline, out_px, curve)) {
+        return;
+    }
     if (bent || !look_at_ends(outline, extremes, curve)) {
         look_along(outline, extremes, curve);
     }
