@@ -11,6 +11,7 @@ from .record import Result
 
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
     "targets": "the same bits on every processor and compiler, the safety tests at full length",
+    "flips": "one flipped bit anywhere in the estimator's memory",
 }
 
 
