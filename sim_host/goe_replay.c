@@ -210,6 +210,13 @@ static bool write_failed(const options_t *options) {
     return false;
 }
 
+static bool too_many_tracks(const options_t *options, const frame_t *frame) {
+    input_error_t error;
+    input_error_set(&error, options->frames, frame->line, FRAME_ID_NAME,
+                    "no room for another track: %d are the most, and memory may be short", TRACK_TABLE_TRACKS_MAX);
+    return print_error(&error);
+}
+
 /* Row by row, until the end or the first fault. */
 static bool replay_rows(const options_t *options, frame_reader_t *reader, track_table_t *tracks, FILE *stream,
                         tally_t *tally) {
@@ -225,7 +232,7 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
     while ((result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
         goe_estimator_t *estimator = track_table_get(tracks, frame.id);
         if (estimator == NULL) {
-            return give_up(options->frames, "out of memory for another track");
+            return too_many_tracks(options, &frame);
         }
         frame_to_image(&frame, &image);
         const goe_status_t status = goe_update(estimator, &image, &estimate);

@@ -408,10 +408,10 @@ static int fly(void) {
     if (given.word[WORD_FLIGHT] == NULL) {
         return fly_and_write(&setup);
     }
-    char fault[FAULT_SIZE];
+    input_error_t error;
     recorded_flight_t recording;
-    if (!recorded_flight_read(given.word[WORD_FLIGHT], &recording, fault, sizeof fault)) {
-        (void)fprintf(stderr, "goe_sim: %s\n", fault);
+    if (!recorded_flight_read(given.word[WORD_FLIGHT], &recording, &error)) {
+        (void)fprintf(stderr, "goe_sim: %s\n", error.text);
         return EXIT_BAD_USAGE;
     }
     setup.recording = &recording;
