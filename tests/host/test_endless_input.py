@@ -1,4 +1,4 @@
-"""Input without an end: every reader of the programs ends with a word, in bounded memory.
+"""Input without an end: every reader of the programs and of the Python tools ends with a word, in bounded memory.
 
 GOE_REPLAY, GOE_SIM and GOE_COMPANION name the programs; by default they are looked for in build/.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import shlex
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -113,3 +114,54 @@ def test_settings(tmp_path: Path, feed: str, reason: str) -> None:
         ("goe_companion", "--check", str(tmp_path / "companion.ini")),
     ):
         assert f"/dev/stdin{reason}" in told(name, feed, *words)
+
+
+READ_IN_PYTHON = f"""
+import resource, subprocess, sys
+from pathlib import Path
+from goe_tools.logs import fields
+from goe_tools.logs.estimates import LABELS, NUMBERS, read_estimates
+from goe_tools.logs.obslog import TRUTH_COLUMNS, LogError, read_cameras, read_frames, read_truth
+
+resource.setrlimit(resource.RLIMIT_AS, (300 << 20, 300 << 20))
+fields.ROWS_MAX, fields.TABLE_BYTES_MAX = 2000, 1 << 22  # as many as there are would take a while
+
+def told(read, feed):
+    with subprocess.Popen(["sh", "-c", feed], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as source:
+        try:
+            read(Path(f"/dev/fd/{{source.stdout.fileno()}}"))
+        except LogError as error:
+            print(error.line, error.reason)
+        finally:
+            source.stdout.close()
+
+truth, estimates = ",".join(TRUTH_COLUMNS), ",".join((*LABELS, *NUMBERS))
+for read, header, row in (
+    (read_frames, {FRAMES!r}, "1,2,0,0,-9,1,0,0,0"),
+    (read_truth, truth, None),
+    (read_estimates, estimates, "1,1,ok,disc,8" + "," * len(NUMBERS)),
+):
+    told(read, "cat /dev/zero")
+    told(read, {ENDLESS_LINE!r})
+    told(read, "echo " + header + "; printf '1,\\"'; yes")
+    told(read, "echo " + header + "; yes '" + 4000 * " " + "'")
+    if row:
+        told(read, "echo " + header + "; yes " + row)
+told(read_cameras, "cat /dev/zero")
+told(read_cameras, "yes '# a comment'")
+"""
+
+
+def test_python_readers() -> None:
+    words = [sys.executable, "-c", READ_IN_PYTHON]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=SECONDS, check=False, cwd=ROOT / "tools")
+    assert (done.returncode, done.stderr) == (0, "")
+    long_row = "the row is longer than 1048576 bytes: a quote not closed?"
+    table = [f"1 {long_row}", f"1 {long_row}", f"2 {long_row}", "the file is longer than 4194304 bytes"]
+    said = done.stdout.splitlines()
+    assert said.pop() == said.pop() == "0 longer than 1048576 bytes"
+    for rows_too in (True, False, True):
+        expected = [*table, "2002 more than 2000 rows"][: 5 if rows_too else 4]
+        assert [line.endswith(end) for line, end in zip(said, expected)] == [True] * len(expected), said
+        said = said[len(expected) :]
+    assert said == []
