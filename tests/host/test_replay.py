@@ -870,14 +870,16 @@ def test_missing_file_and_folder_in_its_place(log: Path, name: str) -> None:
 
 
 BAD_USAGE = [
-    (["--window", "2"], "--window: must be 3 to 64"),
+    (["--window", "2"], "--window: must be 3 to 64, not 2"),
     (["--window", "65"], "--window: must be 3 to 64"),
     (["--window=-8"], "--window: must be 3 to 64"),
-    (["--window", "x"], "x: invalid numeric value"),
+    (["--window", "x"], "--window: invalid numeric value"),
     (["--window"], "--window: missing argument"),
-    (["--model", "box"], "box: --model must be auto, disc or line"),
+    (["--model", "box"], "box: --model must be auto, disc or line ("),
+    (["--model", "dics"], "dics: --model must be auto, disc or line; did you mean disc?"),
     (["--model", ""], "--model must be auto, disc or line"),
-    (["--method", "magic"], "magic: --method must be window or refined"),
+    (["--method", "magic"], "magic: --method must be refined or window ("),
+    (["--method", "widnow"], "widnow: --method must be refined or window; did you mean window?"),
     (["--set"], "--set: missing argument"),
     (["--set", ""], "--set: '' is no setting; there are navigation.attitude_bias_deg, "),
     (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are navigation.attitude_bias_deg, "),
@@ -996,11 +998,28 @@ def test_out_through_a_symbolic_link(tmp_path: Path, log: Path) -> None:
     assert link.is_symlink() and real.read_text() == call(log).stdout
 
 
-@pytest.mark.parametrize("name", ["frames.csv", "camera.ini"])
-def test_out_never_replaces_the_log(log: Path, name: str) -> None:
-    before = (log / name).read_bytes()
-    assert "would replace the log" in call("--out", log / name, log, check=2).stderr
-    assert (log / name).read_bytes() == before
+@pytest.mark.parametrize("way", ["itself", "symbolic link", "hard link", "other folder"])
+@pytest.mark.parametrize("name", ["frames.csv", "camera.ini", "truth.csv"])
+def test_out_never_replaces_the_log(tmp_path: Path, log: Path, name: str, way: str) -> None:
+    (log / "truth.csv").write_text("id,static\n1,1\n")
+    before, out = (log / name).read_bytes(), log / name
+    if way == "symbolic link":
+        out = tmp_path / "link"
+        out.symlink_to(log / name)
+    elif way == "hard link":
+        out = tmp_path / "link"
+        os.link(log / name, out)
+    words = ["--camera", log / "camera.ini", "--frames", log / "frames.csv"] if way == "other folder" else [log]
+    assert "would replace the log" in call("--out", out, *words, check=2).stderr
+    assert (log / name).read_bytes() == before and out.is_symlink() == (way == "symbolic link")
+
+
+def test_out_through_a_link_that_leads_nowhere(tmp_path: Path, log: Path) -> None:
+    """Neither is the link replaced nor a file made where it leads."""
+    link = tmp_path / "link.csv"
+    link.symlink_to(tmp_path / "nowhere.csv")
+    assert f"{link}: cannot be written: No such file" in call("--out", link, log, check=2).stderr
+    assert link.is_symlink() and sorted(path.name for path in tmp_path.iterdir()) == ["link.csv", "log"]
 
 
 def test_out_that_cannot_be_written(tmp_path: Path, log: Path) -> None:

@@ -441,6 +441,30 @@ def test_recordings_written_otherwise(goe_sim: Path, tmp_path: Path, change) -> 
     assert folder_bytes(tmp_path / "other") == folder_bytes(tmp_path / "plain")
 
 
+def test_out_never_replaces_an_input(goe_sim: Path, tmp_path: Path) -> None:
+    (tmp_path / "log").mkdir()
+    path = tmp_path / "log" / "frames.csv"
+    write_recording(path)
+    (tmp_path / "link.csv").symlink_to(path)
+    before = path.read_bytes()
+    for name in (path, tmp_path / "link.csv"):
+        done = run(goe_sim, "--flight", name, "--out", tmp_path / "log", expect=2)
+        assert done.stderr == f"goe_sim: {name}: the log would replace it\n"
+    assert path.read_bytes() == before
+
+
+def test_a_full_disk_leaves_nothing(goe_sim: Path, tmp_path: Path) -> None:
+    command = f'ulimit -f 8; exec "{goe_sim}" --out "{tmp_path}/log" --case 3'
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and done.stderr == f"goe_sim: {tmp_path}/log: File too large\n"
+    assert list(tmp_path.iterdir()) == []
+    for option in ("--help", "--list-cases"):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([goe_sim, option], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        assert done.returncode == 2
+        assert done.stderr == "goe_sim: standard output: cannot be written: No space left on device\n"
+
+
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
