@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from .record import Result
 
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
+    "programs": "what an attack found in the programs, and the tests that would fail if it came back",
+    "reproducible": "whether two builds of the same sources give the same bits",
+    "sbom": "the bill of materials: what the tests and tools install, and that the library holds nothing but itself",
 }
 
 
