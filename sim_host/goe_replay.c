@@ -65,16 +65,19 @@ static bool give_up(const char *subject, const char *reason) {
 /* Number of the name that a word is; the first one's without a word. -1: it is none, which is told. */
 static int choose(const char *option, const char *word, const char *const *names, int count) {
     char reason[CHOICE_FAULT_MAX];
-    nearest_name_t nearest = nearest_name_of(word != NULL ? word : "", word != NULL ? strlen(word) : 0u);
+    if (word == NULL) {
+        return 0;
+    }
+    nearest_name_t nearest = nearest_name_of(word, strlen(word));
     int used = snprintf(reason, sizeof reason, "%s must be %s", option, names[0]);
     for (int i = 0; i < count; i++) {
-        if (word == NULL || strcmp(word, names[i]) == 0) {
+        if (strcmp(word, names[i]) == 0) {
             return i;
         }
         nearest_name_try(&nearest, names[i]);
         if (i > 0) {
-            used +=
-                snprintf(reason + used, sizeof reason - (size_t)used, "%s%s", i + 1 < count ? ", " : " or ", names[i]);
+            const char *separator = i + 1 < count ? ", " : " or ";
+            used += snprintf(reason + used, sizeof reason - (size_t)used, "%s%s", separator, names[i]);
         }
     }
     if (nearest.name != NULL) {

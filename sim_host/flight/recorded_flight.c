@@ -14,7 +14,7 @@
 #define POSITION_LIMIT_M 1.0e6
 #define FIRST_CAPACITY 1024u
 
-enum { COLUMN_TIME, COLUMN_TRUTH, COLUMN_ESTIMATE = COLUMN_TRUTH + 7, COLUMNS = COLUMN_ESTIMATE + 7 };
+enum { COLUMN_TIME = 0, COLUMN_TRUTH = 1, COLUMN_ESTIMATE = 8, COLUMNS = 15 };
 
 /* In the order of a row's values: time, then position and quaternion, twice. */
 static const table_column_t columns[COLUMNS] = {

@@ -8,13 +8,14 @@
 #include <unistd.h>
 
 bool standard_output_written(const char *program) {
-    errno = 0;
     const bool failed_before = ferror(stdout) != 0;
-    if (fflush(stdout) == 0 && !failed_before) {
+    const char *cause = "";
+    if (fflush(stdout) != 0) {
+        cause = strerror(errno);
+    } else if (!failed_before) {
         return true;
     }
-    (void)fprintf(stderr, "%s: standard output: cannot be written%s%s\n", program, errno != 0 ? ": " : "",
-                  errno != 0 ? strerror(errno) : "");
+    (void)fprintf(stderr, "%s: standard output: cannot be written%s%s\n", program, *cause != '\0' ? ": " : "", cause);
     return false;
 }
 
