@@ -11,6 +11,7 @@
 
 #define BUFFER_BYTES (256u * 1024u)
 #define FIRST_ROOM 1024u
+#define FIELD_STEP_BYTES (64u * 1024u) /* by which the parser enlarges its room for a field; its own are tiny */
 
 struct table_reader {
     char *path;
@@ -328,6 +329,7 @@ static bool start(table_reader_t *reader, const char *path) {
     }
     csv_set_term_func(&reader->parser, ends_row);
     csv_set_space_func(&reader->parser, is_blank);
+    csv_set_blk_size(&reader->parser, FIELD_STEP_BYTES);
     reader->path = strdup(path);
     reader->buffer = malloc(BUFFER_BYTES);
     return reader->path != NULL && reader->buffer != NULL;
