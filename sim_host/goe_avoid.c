@@ -18,10 +18,12 @@
 #include "avoid_text.h"
 #include "option_fault.h"
 #include "output_file.h"
+#include "standard_output.h"
 
 #define PROGRAM "goe_avoid"
 #define EXIT_FAILED 2
 #define RUNS_MAX 100000
+#define DELAY_MAX_S 2.0
 #define TWICE_THE_MARGIN 2.0
 
 static int runs = 334;
@@ -213,14 +215,30 @@ static bool print_and_write(void) {
 
 /* ------------------------------------------------------------------------------------------------------------- main -- */
 
-static bool run_options(poptContext context) {
+static bool check_ranges(void) {
+    char reason[64];
+    if (runs < 1 || runs > RUNS_MAX) {
+        (void)snprintf(reason, sizeof reason, "must be 1 to %d, not %d", RUNS_MAX, runs);
+        return give_up("--runs", reason);
+    }
+    if (seed < 0) {
+        return give_up("--seed", "must be 0 or more");
+    }
+    if (!(delay_s >= 0.0 && delay_s <= DELAY_MAX_S)) {
+        (void)snprintf(reason, sizeof reason, "must be 0 to %g s, not %g", DELAY_MAX_S, delay_s);
+        return give_up("--delay", reason);
+    }
+    return true;
+}
+
+static bool run_options(poptContext context, int argc, const char *const *argv) {
     const int said = poptGetNextOpt(context);
     if (said == 'V') {
         puts(PROGRAM " " GOE_VERSION);
         return true;
     }
     if (said < -1) {
-        const char *bad = poptBadOption(context, POPT_BADOPTION_NOALIAS);
+        const char *bad = option_blamed(context, argc, argv);
         char reason[OPTION_FAULT_MAX];
         option_fault(reason, options, bad, said);
         return give_up(bad, reason);
@@ -228,15 +246,16 @@ static bool run_options(poptContext context) {
     if (poptPeekArg(context) != NULL) {
         return give_up(poptPeekArg(context), "options only; see --help");
     }
-    if (runs < 1 || runs > RUNS_MAX || seed < 0 || !(delay_s >= 0.0 && delay_s <= 2.0)) {
-        return give_up("--runs is 1 to 100000, --seed 0 or more, --delay 0 to 2 s", "out of range");
+    if (!check_ranges()) {
+        return false;
     }
     return csv != NULL ? print_and_write() : print_tables(NULL);
 }
 
 int main(int argc, const char **argv) {
     poptContext context = poptGetContext(PROGRAM, argc, argv, options, 0);
-    const bool done = run_options(context);
+    standard_output_watch(PROGRAM, EXIT_FAILED);
+    const bool done = run_options(context, argc, argv);
     poptFreeContext(context);
     free(csv);
     return done ? 0 : EXIT_FAILED;

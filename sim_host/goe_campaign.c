@@ -19,6 +19,7 @@
 #include "case_statistics.h"
 #include "option_fault.h"
 #include "progress.h"
+#include "standard_output.h"
 #include "work_pool.h"
 
 #ifndef GOE_VERSION
@@ -404,7 +405,7 @@ static bool run(poptContext context, options_t *options) {
     } else if (!check_options(options) || !run_campaign(options)) {
         return false;
     }
-    return fflush(stdout) == 0;
+    return standard_output_written(PROGRAM);
 }
 
 int main(int argc, char **argv) {

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "camera_file.h"
 #include "estimate_writer.h"
@@ -12,9 +11,11 @@
 #include "frame_reader.h"
 #include "goe.h"
 #include "input_error.h"
+#include "nearest_name.h"
 #include "option_fault.h"
 #include "output_file.h"
 #include "settings_text.h"
+#include "standard_output.h"
 #include "track_table.h"
 
 #ifndef GOE_VERSION
@@ -23,6 +24,7 @@
 
 #define PROGRAM "goe_replay"
 #define WINDOW_MIN 3
+#define CHOICE_FAULT_MAX 128
 
 enum { EXIT_DONE = 0, EXIT_NO_ESTIMATE = 1, EXIT_BAD_INPUT = 2 };
 
@@ -60,36 +62,53 @@ static bool give_up(const char *subject, const char *reason) {
     return false;
 }
 
-static bool parse_method(const char *text, goe_method_t *method) {
-    if (text == NULL || strcmp(text, "refined") == 0) {
-        *method = GOE_METHOD_REFINED;
-    } else if (strcmp(text, "window") == 0) {
-        *method = GOE_METHOD_WINDOW;
-    } else {
-        return complain(text, "--method must be window or refined");
+/* Number of the name that a word is; the first one's without a word. -1: it is none, which is told. */
+static int choose(const char *option, const char *word, const char *const *names, int count) {
+    char reason[CHOICE_FAULT_MAX];
+    if (word == NULL) {
+        return 0;
     }
-    return true;
+    nearest_name_t nearest = nearest_name_of(word, strlen(word));
+    int used = snprintf(reason, sizeof reason, "%s must be %s", option, names[0]);
+    for (int i = 0; i < count; i++) {
+        if (strcmp(word, names[i]) == 0) {
+            return i;
+        }
+        nearest_name_try(&nearest, names[i]);
+        if (i > 0) {
+            const char *separator = i + 1 < count ? ", " : " or ";
+            used += snprintf(reason + used, sizeof reason - (size_t)used, "%s%s", separator, names[i]);
+        }
+    }
+    if (nearest.name != NULL) {
+        (void)snprintf(reason + used, sizeof reason - (size_t)used, "; did you mean %s?", nearest.name);
+    }
+    (void)complain(excerpt_of(word, strlen(word)).text, reason);
+    return -1;
+}
+
+static bool parse_method(const char *text, goe_method_t *method) {
+    static const char *const names[] = {"refined", "window"};
+    static const goe_method_t methods[] = {GOE_METHOD_REFINED, GOE_METHOD_WINDOW};
+    const int chosen = choose("--method", text, names, (int)(sizeof names / sizeof names[0]));
+    *method = chosen >= 0 ? methods[chosen] : *method;
+    return chosen >= 0;
 }
 
 static bool parse_model(const char *text, goe_model_t *model) {
-    if (text == NULL || strcmp(text, "auto") == 0) {
-        *model = GOE_MODEL_AUTO;
-    } else if (strcmp(text, "disc") == 0) {
-        *model = GOE_MODEL_DISC;
-    } else if (strcmp(text, "line") == 0) {
-        *model = GOE_MODEL_LINE;
-    } else {
-        return complain(text, "--model must be auto, disc or line");
-    }
-    return true;
+    static const char *const names[] = {"auto", "disc", "line"};
+    static const goe_model_t models[] = {GOE_MODEL_AUTO, GOE_MODEL_DISC, GOE_MODEL_LINE};
+    const int chosen = choose("--model", text, names, (int)(sizeof names / sizeof names[0]));
+    *model = chosen >= 0 ? models[chosen] : *model;
+    return chosen >= 0;
 }
 
 static bool check_window(const options_t *options) {
-    char reason[64];
+    char reason[CHOICE_FAULT_MAX];
     if (options->window >= WINDOW_MIN && options->window <= GOE_WINDOW_MAX) {
         return true;
     }
-    (void)snprintf(reason, sizeof reason, "must be %d to %d", WINDOW_MIN, GOE_WINDOW_MAX);
+    (void)snprintf(reason, sizeof reason, "must be %d to %d, not %d", WINDOW_MIN, GOE_WINDOW_MAX, options->window);
     return complain("--window", reason);
 }
 
@@ -111,10 +130,11 @@ static bool default_path(char **path, const char *directory, const char *name, c
     return true;
 }
 
-static bool parse_arguments(poptContext context, const struct poptOption *table, options_t *options) {
+static bool parse_arguments(poptContext context, const struct poptOption *table, int argc, const char *const *argv,
+                            options_t *options) {
     const int result = poptGetNextOpt(context);
     if (result < -1) {
-        const char *bad = poptBadOption(context, POPT_BADOPTION_NOALIAS);
+        const char *bad = option_blamed(context, argc, argv);
         char reason[OPTION_FAULT_MAX];
         option_fault(reason, table, bad, result);
         return complain(bad, reason);
@@ -210,6 +230,13 @@ static bool write_failed(const options_t *options) {
     return false;
 }
 
+static bool too_many_tracks(const options_t *options, const frame_t *frame) {
+    input_error_t error;
+    input_error_set(&error, options->frames, frame->line, FRAME_ID_NAME,
+                    "no room for another track: %d are the most, and memory may be short", TRACK_TABLE_TRACKS_MAX);
+    return print_error(&error);
+}
+
 /* Row by row, until the end or the first fault. */
 static bool replay_rows(const options_t *options, frame_reader_t *reader, track_table_t *tracks, FILE *stream,
                         tally_t *tally) {
@@ -225,7 +252,7 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
     while ((result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
         goe_estimator_t *estimator = track_table_get(tracks, frame.id);
         if (estimator == NULL) {
-            return give_up(options->frames, "out of memory for another track");
+            return too_many_tracks(options, &frame);
         }
         frame_to_image(&frame, &image);
         const goe_status_t status = goe_update(estimator, &image, &estimate);
@@ -237,16 +264,29 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
     return result == FRAME_READER_END || print_error(&error);
 }
 
-static bool same_file(const char *a, const char *b) {
-    struct stat status_a, status_b;
-    return stat(a, &status_a) == 0 && stat(b, &status_b) == 0 && S_ISREG(status_a.st_mode) &&
-           status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
+/* Whether a path leads to any file of the log that an input is of. */
+static bool is_of_log(const char *path, const char *input) {
+    static const char *const names[] = {"camera.ini", "frames.csv", "truth.csv", "truth_frames.csv"};
+    const char *slash = strrchr(input, '/');
+    const int folder = slash != NULL ? (int)(slash - input) + 1 : 0;
+    bool found = output_file_is(path, input);
+    for (size_t i = 0; i < sizeof names / sizeof names[0] && !found; i++) {
+        const size_t room = (size_t)folder + strlen(names[i]) + 1u;
+        char *beside = malloc(room);
+        if (beside == NULL) {
+            return true; /* rather no output than a lost log */
+        }
+        (void)snprintf(beside, room, "%.*s%s", folder, input, names[i]);
+        found = output_file_is(path, beside);
+        free(beside);
+    }
+    return found;
 }
 
 static bool replay_to_output(const options_t *options, frame_reader_t *reader, track_table_t *tracks, tally_t *tally) {
     output_file_t output;
     if (options->out != NULL &&
-        (same_file(options->out, options->frames) || same_file(options->out, options->camera))) {
+        (is_of_log(options->out, options->frames) || is_of_log(options->out, options->camera))) {
         return give_up(options->out, "the output would replace the log");
     }
     if (!output_file_open(&output, options->out)) {
@@ -301,8 +341,9 @@ static int replay(const options_t *options) {
 
 /* ------------------------------------------------------------------------------------------------------------ main -- */
 
-static int run(poptContext context, const struct poptOption *table, options_t *options) {
-    if (!parse_arguments(context, table, options)) {
+static int run(poptContext context, const struct poptOption *table, int argc, const char *const *argv,
+               options_t *options) {
+    if (!parse_arguments(context, table, argc, argv, options)) {
         return EXIT_BAD_INPUT;
     }
     if (!options->help && !options->version && !options->settings) {
@@ -315,7 +356,7 @@ static int run(poptContext context, const struct poptOption *table, options_t *o
     } else {
         (void)puts(PROGRAM " " GOE_VERSION);
     }
-    return fflush(stdout) == 0 ? EXIT_DONE : EXIT_BAD_INPUT;
+    return standard_output_written(PROGRAM) ? EXIT_DONE : EXIT_BAD_INPUT;
 }
 
 int main(int argc, char **argv) {
@@ -346,7 +387,7 @@ int main(int argc, char **argv) {
         return EXIT_BAD_INPUT;
     }
     poptSetOtherOptionHelp(context, "[OPTION...] DIR");
-    const int status = run(context, table, &options);
+    const int status = run(context, table, argc, arguments, &options);
     (void)poptFreeContext(context);
     free_options(&options);
     return status;

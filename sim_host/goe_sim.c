@@ -17,6 +17,7 @@
 #include "option_fault.h"
 #include "scenario.h"
 #include "scenario_file.h"
+#include "standard_output.h"
 #include "text_numbers.h"
 #include "turbulence.h"
 
@@ -345,7 +346,7 @@ static int list_cases(void) {
         (void)printf("%4d %-10s %5g %10g %9g %9g %5g %7g\n", i, s.obstacle, s.x0_m, s.altitude_m, s.alpha_deg,
                      s.glide_deg, s.run_s, s.reach_s);
     }
-    return fflush(stdout) == 0 ? EXIT_SUCCESS : complain("stdout", "write error");
+    return EXIT_SUCCESS;
 }
 
 /* Past all obstacles. The flight ends with the first one that it ends at. Null, or why it could not be flown; the logs are to be
@@ -395,6 +396,18 @@ static int fly_and_write(const flight_case_t *setup) {
     return status;
 }
 
+/* An input that the log would replace; null: none. */
+static const char *replaced_input(void) {
+    static const int inputs[] = {WORD_FLIGHT, WORD_SCENARIO};
+    for (size_t i = 0; i < sizeof inputs / sizeof inputs[0]; i++) {
+        const char *path = given.word[inputs[i]];
+        if (path != NULL && log_write_replaces(given.word[WORD_OUT], path)) {
+            return path;
+        }
+    }
+    return NULL;
+}
+
 static int fly(void) {
     flight_case_t setup;
     const char *reason;
@@ -405,13 +418,16 @@ static int fly(void) {
     if (given.word[WORD_OUT] == NULL) {
         return complain("--out", "is needed: the folder of the log");
     }
+    if (replaced_input() != NULL) {
+        return complain(replaced_input(), "the log would replace it");
+    }
     if (given.word[WORD_FLIGHT] == NULL) {
         return fly_and_write(&setup);
     }
-    char fault[FAULT_SIZE];
+    input_error_t error;
     recorded_flight_t recording;
-    if (!recorded_flight_read(given.word[WORD_FLIGHT], &recording, fault, sizeof fault)) {
-        (void)fprintf(stderr, "goe_sim: %s\n", fault);
+    if (!recorded_flight_read(given.word[WORD_FLIGHT], &recording, &error)) {
+        (void)fprintf(stderr, "goe_sim: %s\n", error.text);
         return EXIT_BAD_USAGE;
     }
     setup.recording = &recording;
@@ -479,6 +495,7 @@ static bool read_scenario(poptContext context) {
 
 int main(int argc, const char **argv) {
     nothing_said();
+    standard_output_watch("goe_sim", EXIT_BAD_USAGE);
     poptContext context = poptGetContext("goe_sim", argc, argv, program_options, 0);
     const int error = read_options(context);
     int status;

@@ -417,7 +417,6 @@ bool companion_config_read(const char *path, companion_config_t *config, input_e
     reader.error = error;
     set_defaults(config);
     read_keys(&reader);
-    free(reader.lines.text);
     if (!reader.failed) {
         check_whole(&reader);
     }

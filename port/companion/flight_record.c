@@ -13,6 +13,8 @@
 #define LOGS_MAX 10000
 #define BYTES_PER_MB 1.0e6
 #define US_PER_S 1000000
+#define BUFFER_BYTES                                                                                                   \
+    (1024u * 1024u) /* more than a second of rows: the file grows by whole ones, and may end at any time */
 
 static const char header[] =
     "t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz,left_u,left_v,right_u,right_v,top_u,top_v,base_left_u,base_left_v,base_near_"
@@ -87,6 +89,9 @@ bool flight_record_open(flight_record_t *record, const companion_config_t *confi
     (void)mkdir(folder, 0777); /* what hinders it hinders the files, too */
     if (copy_camera(config->camera_file, camera, &why)) {
         record->stream = make_file(frames, &why);
+    }
+    if (record->stream != NULL) {
+        (void)setvbuf(record->stream, NULL, _IOFBF, BUFFER_BYTES);
     }
     if (record->stream == NULL || fputs(header, record->stream) < 0) {
         (void)snprintf(fault, fault_size, "record.folder: %s: %s", folder, why);

@@ -9,6 +9,7 @@
 #include "companion.h"
 #include "companion_config.h"
 #include "option_fault.h"
+#include "standard_output.h"
 #include "status_line.h"
 
 #ifndef GOE_VERSION
@@ -52,10 +53,11 @@ static bool complain(const char *subject, const char *reason) {
     return false;
 }
 
-static bool parse_arguments(poptContext context, const struct poptOption *table, options_t *options) {
+static bool parse_arguments(poptContext context, const struct poptOption *table, int argc, const char *const *argv,
+                            options_t *options) {
     const int result = poptGetNextOpt(context);
     if (result < -1) {
-        const char *bad = poptBadOption(context, POPT_BADOPTION_NOALIAS);
+        const char *bad = option_blamed(context, argc, argv);
         char reason[OPTION_FAULT_MAX];
         option_fault(reason, table, bad, result);
         return complain(bad, reason);
@@ -103,7 +105,7 @@ static int start(const options_t *options) {
     }
     if (options->check) {
         companion_config_print(stdout, &config);
-        return EXIT_DONE;
+        return standard_output_written(PROGRAM) ? EXIT_DONE : EXIT_BAD_INPUT;
     }
     return run(&config);
 }
@@ -119,12 +121,14 @@ int main(int count, const char **arguments) {
     };
     poptContext context = poptGetContext(PROGRAM, count, arguments, table, 0);
     poptSetOtherOptionHelp(context, "[OPTIONS] CONFIGURATION");
-    const bool good = parse_arguments(context, table, &options);
-    int status = good ? EXIT_DONE : EXIT_BAD_INPUT;
+    const bool good = parse_arguments(context, table, count, arguments, &options);
+    int status = EXIT_BAD_INPUT;
     if (good && options.help) {
         poptPrintHelp(context, stdout, 0);
+        status = standard_output_written(PROGRAM) ? EXIT_DONE : EXIT_BAD_INPUT;
     } else if (good && options.version) {
         (void)puts(PROGRAM " " GOE_VERSION);
+        status = standard_output_written(PROGRAM) ? EXIT_DONE : EXIT_BAD_INPUT;
     } else if (good) {
         status = start(&options);
     }

@@ -43,18 +43,42 @@ static const char *check_parent(const char *folder) {
     return access(length > 0 ? parent : ".", W_OK | X_OK) == 0 ? NULL : strerror(errno);
 }
 
+/* What stands where a file or the folder of the series is to go. */
+static const char *check_places(const char *folder) {
+    static const struct {
+        const char *name;
+        bool is_folder;
+    } places[] = {{"cases.csv", false}, {"campaign.json", false}, {CAMPAIGN_SERIES_FOLDER, true}};
+    char path[PATH_SIZE];
+    struct stat status;
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        if (!join(path, folder, places[i].name)) {
+            return strerror(ENAMETOOLONG);
+        }
+        if (lstat(path, &status) == 0 && places[i].is_folder != S_ISDIR(status.st_mode)) {
+            return places[i].is_folder ? "holds something in the place of the folder " CAMPAIGN_SERIES_FOLDER
+                                       : "holds a folder in the place of cases.csv or campaign.json";
+        }
+    }
+    return NULL;
+}
+
 const char *campaign_files_check(const char *folder) {
     struct stat status;
     if (*folder == '\0') {
         return "no name of a folder";
     }
     if (stat(folder, &status) != 0) {
-        return errno == ENOENT ? check_parent(folder) : strerror(errno);
+        const int cause = errno;
+        if (lstat(folder, &status) == 0) {
+            return "is a symbolic link that leads nowhere";
+        }
+        return cause == ENOENT ? check_parent(folder) : strerror(cause);
     }
     if (!S_ISDIR(status.st_mode)) {
         return "is there and is not a folder";
     }
-    return access(folder, R_OK | W_OK | X_OK) == 0 ? NULL : strerror(errno);
+    return access(folder, R_OK | W_OK | X_OK) == 0 ? check_places(folder) : strerror(errno);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- staging -- */
@@ -161,6 +185,7 @@ const char *campaign_files_write(const char *folder, const campaign_file_t *file
     (void)sigaddset(&interrupts, SIGTERM);
     (void)sigaddset(&interrupts, SIGHUP);
     (void)sigprocmask(SIG_BLOCK, &interrupts, &before);
+    (void)signal(SIGXFSZ, SIG_IGN); /* a write that cannot succeed shall fail where it is made */
     const bool made = mkdir(folder, FOLDER_MODE) == 0;
     const char *fault = NULL;
     if ((!made && errno != EEXIST) || !stage_and_exchange(folder, files, count)) {

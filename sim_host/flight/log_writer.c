@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "output_file.h"
+
 #define PATH_SIZE 4096
 #define NUMBER_SIZE 32 /* of any double in text */
 
@@ -216,6 +218,15 @@ static bool write_file(const char *folder, const log_file_t *entry, const flight
     return fclose(file) == 0 && written;
 }
 
+bool log_write_replaces(const char *folder, const char *path) {
+    char file[PATH_SIZE];
+    bool found = false;
+    for (size_t i = 0; i < LOG_FILE_COUNT && !found; i++) {
+        found = join(file, folder, LOG_FILES[i].name) && output_file_is(file, path);
+    }
+    return found;
+}
+
 /* Removes a folder that holds files of a log only. */
 static void remove_log(const char *folder) {
     char path[PATH_SIZE];
@@ -318,6 +329,7 @@ bool log_write(const char *folder, const flight_case_t *setup, const flight_logs
     (void)sigaddset(&interrupts, SIGTERM);
     (void)sigaddset(&interrupts, SIGHUP);
     (void)sigprocmask(SIG_BLOCK, &interrupts, &before);
+    (void)signal(SIGXFSZ, SIG_IGN); /* a write that cannot succeed shall fail where it is made */
     (void)snprintf(fresh, sizeof fresh, "%s.part-XXXXXX", place);
     const bool done = mkdtemp(fresh) != NULL && write_and_exchange(place, fresh, exists, setup, logs);
     if (!done) {

@@ -28,4 +28,7 @@ typedef struct {
 bool log_write(const char *folder, const flight_case_t *setup, const flight_logs_t *logs, char *fault,
                size_t fault_size);
 
+/* Whether log_write() to the folder would replace this file, by whatever links it is named. */
+bool log_write_replaces(const char *folder, const char *path);
+
 #endif

@@ -1,94 +1,74 @@
 /* Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT */
 #include "recorded_flight.h"
 
-#include <csv.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define COLUMNS 15
-#define MOST_FIELDS 64
-#define NORM_TOLERANCE 0.01
-#define NAME_SIZE 32
+#include "number_text.h"
+#include "table_reader.h"
 
-static const char *const COLUMN_NAMES[COLUMNS] = {"t_s",     "true_n_m", "true_e_m", "true_d_m", "true_qw",
-                                                  "true_qx", "true_qy",  "true_qz",  "est_n_m",  "est_e_m",
-                                                  "est_d_m", "est_qw",   "est_qx",   "est_qy",   "est_qz"};
+#define NORM_TOLERANCE 0.01
+#define TIME_LIMIT_S 9.2e12 /* ranges as those of a log's frames.csv */
+#define POSITION_LIMIT_M 1.0e6
+#define FIRST_CAPACITY 1024u
+
+enum { COLUMN_TIME = 0, COLUMN_TRUTH = 1, COLUMN_ESTIMATE = 8, COLUMNS = 15 };
+
+/* In the order of a row's values: time, then position and quaternion, twice. */
+static const table_column_t columns[COLUMNS] = {
+    {"t_s", true},     {"true_n_m", true}, {"true_e_m", true}, {"true_d_m", true}, {"true_qw", true},
+    {"true_qx", true}, {"true_qy", true},  {"true_qz", true},  {"est_n_m", true},  {"est_e_m", true},
+    {"est_d_m", true}, {"est_qw", true},   {"est_qx", true},   {"est_qy", true},   {"est_qz", true}};
 
 typedef struct {
     const char *path;
     recorded_flight_t *flight;
-    char *fault;
-    size_t fault_size;
-    size_t line, field;               /* line from 1 */
-    int column_of_field[MOST_FIELDS]; /* -1: not needed */
-    bool found[COLUMNS], filled[COLUMNS];
+    unsigned long line;
     double value[COLUMNS];
     double first_t_s;
+    bool failed;
+    input_error_t *error;
 } reader_t;
 
-static void fail(reader_t *reader, const char *column, const char *reason) {
-    if (reader->fault[0] == '\0') {
-        (void)snprintf(reader->fault, reader->fault_size, "%s:%zu: %s: %s", reader->path, reader->line, column, reason);
+/* The first fault of a file ends the reading. */
+#define FAIL(reader, ...)                                                                                              \
+    do {                                                                                                               \
+        if (!(reader)->failed) {                                                                                       \
+            (reader)->failed = true;                                                                                   \
+            input_error_set((reader)->error, (reader)->path, (reader)->line, __VA_ARGS__);                             \
+        }                                                                                                              \
+    } while (0)
+
+/* Quaternions are held by their norm. */
+static double limit_of(int column) {
+    if (column == COLUMN_TIME) {
+        return TIME_LIMIT_S;
     }
+    return (column - COLUMN_TRUTH) % (COLUMN_ESTIMATE - COLUMN_TRUTH) < 3 ? POSITION_LIMIT_M : (double)INFINITY;
 }
 
-static void take_name(reader_t *reader, const char *name) {
-    if (reader->field >= MOST_FIELDS) {
-        fail(reader, "-", "more than 64 columns");
-        return;
+static void take_number(reader_t *reader, const table_field_t *field) {
+    double value = 0.0;
+    const char *name = columns[field->column].name;
+    if (!number_parse(field->text, field->length, &value) || !isfinite(value)) {
+        FAIL(reader, name, "'%s' is not a finite number", excerpt_of(field->text, field->length).text);
+    } else if (fabs(value) > limit_of(field->column)) {
+        FAIL(reader, name, "%g is out of range: %g to %g", value, -limit_of(field->column), limit_of(field->column));
     }
-    reader->column_of_field[reader->field] = -1;
-    for (int i = 0; i < COLUMNS; i++) {
-        if (strcmp(name, COLUMN_NAMES[i]) == 0) {
-            if (reader->found[i]) {
-                fail(reader, COLUMN_NAMES[i], "column appears twice");
-            }
-            reader->found[i] = true;
-            reader->column_of_field[reader->field] = i;
-        }
-    }
+    reader->value[field->column] = value;
 }
 
-static void take_number(reader_t *reader, const char *text) {
-    const int column = reader->field < MOST_FIELDS ? reader->column_of_field[reader->field] : -1;
-    if (column < 0) {
-        return;
-    }
-    char *end;
-    reader->value[column] = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(reader->value[column])) {
-        fail(reader, COLUMN_NAMES[column], "not a finite number");
-    }
-    reader->filled[column] = true;
-}
-
-static void on_field(void *text, size_t length, void *context) {
-    reader_t *reader = context;
-    char field[NAME_SIZE * 2];
-    const size_t kept = length < sizeof field - 1 ? length : sizeof field - 1;
-    if (kept > 0) {
-        memcpy(field, text, kept);
-    }
-    field[kept] = '\0';
-    if (reader->line == 1) {
-        take_name(reader, field);
-    } else {
-        take_number(reader, field);
-    }
-    reader->field++;
-}
-
-static pose_t pose_of(reader_t *reader, const double *value, const char *name) {
+static pose_t pose_of(reader_t *reader, int first) {
     pose_t pose;
+    const double *value = &reader->value[first];
     pose.position_ned_m.x = value[0];
     pose.position_ned_m.y = value[1];
     pose.position_ned_m.z = value[2];
     const quat_t q = {value[3], value[4], value[5], value[6]};
-    if (fabs(sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z) - 1.0) > NORM_TOLERANCE) {
-        fail(reader, name, "norm of the quaternion is off 1 by more than 1 %");
+    if (!(fabs(sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z) - 1.0) <= NORM_TOLERANCE)) {
+        FAIL(reader, columns[first + 3].name, "norm of the quaternion is off 1 by more than 1 %%");
     }
     pose.attitude = quat_normalised(q);
     return pose;
@@ -96,11 +76,15 @@ static pose_t pose_of(reader_t *reader, const double *value, const char *name) {
 
 static void append(reader_t *reader, const recorded_pose_t *pose) {
     recorded_flight_t *flight = reader->flight;
+    if (flight->count == RECORDED_POSES_MAX) {
+        FAIL(reader, NULL, "more than %u poses", RECORDED_POSES_MAX);
+        return;
+    }
     if (flight->count == flight->capacity) {
-        const size_t capacity = flight->capacity > 0 ? 2 * flight->capacity : 1024;
+        const size_t capacity = flight->capacity > 0 ? 2 * flight->capacity : FIRST_CAPACITY;
         recorded_pose_t *grown = realloc(flight->poses, capacity * sizeof *grown);
         if (grown == NULL) {
-            fail(reader, "-", "out of memory");
+            FAIL(reader, NULL, "out of memory");
             return;
         }
         flight->poses = grown;
@@ -109,97 +93,62 @@ static void append(reader_t *reader, const recorded_pose_t *pose) {
     flight->poses[flight->count++] = *pose;
 }
 
-static void end_header(reader_t *reader) {
-    for (int i = 0; i < COLUMNS; i++) {
-        if (!reader->found[i]) {
-            fail(reader, COLUMN_NAMES[i], "column is missing");
+static void take_row(reader_t *reader, const table_row_t *row) {
+    const recorded_flight_t *flight = reader->flight;
+    recorded_pose_t pose;
+    reader->line = row->line;
+    for (size_t i = 0; i < row->fields && !reader->failed; i++) {
+        if (row->field[i].column != TABLE_STRANGER) {
+            take_number(reader, &row->field[i]);
         }
     }
-}
-
-static void end_values(reader_t *reader) {
-    const recorded_flight_t *flight = reader->flight;
-    for (int i = 0; i < COLUMNS; i++) {
-        if (!reader->filled[i]) {
-            fail(reader, COLUMN_NAMES[i], "field is missing");
-            return;
-        }
-        reader->filled[i] = false;
+    if (reader->failed) {
+        return;
     }
     if (flight->count == 0) {
-        reader->first_t_s = reader->value[0];
+        reader->first_t_s = reader->value[COLUMN_TIME];
     }
-    recorded_pose_t pose;
-    pose.t_s = reader->value[0] - reader->first_t_s;
+    pose.t_s = reader->value[COLUMN_TIME] - reader->first_t_s;
     if (flight->count > 0 && !(pose.t_s > flight->poses[flight->count - 1].t_s)) {
-        fail(reader, "t_s", "time does not increase");
+        FAIL(reader, columns[COLUMN_TIME].name, "time does not increase");
     }
-    pose.truth = pose_of(reader, &reader->value[1], "true_qw");
-    pose.estimated = pose_of(reader, &reader->value[8], "est_qw");
-    if (reader->fault[0] == '\0') {
+    pose.truth = pose_of(reader, COLUMN_TRUTH);
+    pose.estimated = pose_of(reader, COLUMN_ESTIMATE);
+    if (!reader->failed) {
         append(reader, &pose);
     }
 }
 
-static void on_row(int terminator, void *context) {
-    (void)terminator;
-    reader_t *reader = context;
-    if (reader->line == 1) {
-        end_header(reader);
-    } else if (reader->fault[0] == '\0') {
-        end_values(reader);
+static void read_rows(reader_t *reader, table_reader_t *table) {
+    table_row_t row;
+    table_result_t result = TABLE_ROW;
+    while (!reader->failed && (result = table_reader_next(table, &row, reader->error)) == TABLE_ROW) {
+        take_row(reader, &row);
     }
-    reader->field = 0;
-    reader->line++;
-}
-
-static void parse(reader_t *reader, FILE *file) {
-    struct csv_parser parser;
-    if (csv_init(&parser, CSV_APPEND_NULL) != 0) {
-        fail(reader, "-", "out of memory");
-        return;
-    }
-    char block[65536];
-    size_t length = sizeof block;
-    while (reader->fault[0] == '\0' && length == sizeof block) {
-        length = fread(block, 1, sizeof block, file);
-        if (csv_parse(&parser, block, length, on_field, on_row, reader) != length) {
-            fail(reader, "-", csv_strerror(csv_error(&parser)));
-        }
-    }
-    if (reader->fault[0] == '\0') {
-        (void)csv_fini(&parser, on_field, on_row, reader);
-    }
-    csv_free(&parser);
-    if (ferror(file)) {
-        fail(reader, "-", "read error");
-    } else if (reader->flight->count < 2) {
-        fail(reader, "-", "fewer than two poses");
+    reader->failed = reader->failed || result == TABLE_ERROR;
+    if (reader->flight->count < 2) {
+        FAIL(reader, NULL, "fewer than two poses");
     }
 }
 
-bool recorded_flight_read(const char *path, recorded_flight_t *flight, char *fault, size_t fault_size) {
+bool recorded_flight_read(const char *path, recorded_flight_t *flight, input_error_t *error) {
     reader_t reader;
     memset(&reader, 0, sizeof reader);
     memset(flight, 0, sizeof *flight);
-    fault[0] = '\0';
     reader.path = path;
     reader.flight = flight;
-    reader.fault = fault;
-    reader.fault_size = fault_size;
-    reader.line = 1;
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        (void)snprintf(fault, fault_size, "%s: %s", path, strerror(errno));
+    reader.error = error;
+    table_reader_t *table = table_reader_open(path, columns, COLUMNS, error);
+    if (table == NULL) {
         return false;
     }
-    parse(&reader, file);
-    (void)fclose(file);
-    if (fault[0] != '\0') {
+    reader.line = table_reader_header_line(table);
+    read_rows(&reader, table);
+    table_reader_close(table);
+    if (reader.failed) {
         recorded_flight_free(flight);
-        return false;
     }
-    return true;
+    return !reader.failed;
 }
 
 void recorded_flight_free(recorded_flight_t *flight) {

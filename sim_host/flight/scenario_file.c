@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "ini_lines.h"
@@ -200,7 +199,6 @@ bool scenario_file_read(const char *path, scenario_option_t option, scenario_fil
         fail(&reader, NULL, "cannot be understood");
     }
     (void)fclose(reader.lines.stream);
-    free(reader.lines.text);
     check_neighbours(&reader);
     return !reader.failed;
 }

@@ -5,7 +5,6 @@
 #include <ini.h>
 #include <stddef.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "ini_lines.h"
@@ -270,7 +269,6 @@ bool camera_file_read(const char *path, goe_settings_t *settings, input_error_t 
     reader.cameras = 1;
     reader.settings = *settings;
     read_keys(&reader);
-    free(reader.lines.text);
     if (!reader.failed) {
         check_keys(&reader);
     }

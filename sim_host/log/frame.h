@@ -48,6 +48,7 @@ typedef enum {
 extern const char *const frame_value_name[FRAME_VALUES]; /* as in the header line */
 
 typedef struct {
+    unsigned long line;                      /* of the file */
     char time_text[FRAME_TIME_TEXT_MAX + 1]; /* t_s as it was read */
     double time_s;
     int64_t id;

@@ -12,6 +12,7 @@ typedef struct track {
 
 struct track_table {
     void *tree; /* of tsearch(): balanced, grows track by track */
+    size_t count;
     track_t *newest;
     track_t *latest; /* asked for last: most logs stay with a track or have few */
     goe_estimator_t blank;
@@ -37,7 +38,7 @@ track_table_t *track_table_new(const goe_settings_t *settings, const char **bad_
 }
 
 static track_t *add_track(track_table_t *table, int64_t id) {
-    track_t *track = malloc(sizeof *track);
+    track_t *track = table->count < TRACK_TABLE_TRACKS_MAX ? malloc(sizeof *track) : NULL;
     if (track == NULL) {
         return NULL;
     }
@@ -49,6 +50,7 @@ static track_t *add_track(track_table_t *table, int64_t id) {
     }
     track->previous = table->newest;
     table->newest = track;
+    table->count++;
     return track;
 }
 

@@ -8,6 +8,7 @@ import re
 import shutil
 import signal
 import socket
+import subprocess
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -75,11 +76,26 @@ def test_version() -> None:
     assert ".".join(number[1] for number in numbers if number) in done.stdout
 
 
-@pytest.mark.parametrize("arguments", [(), ("--nonsense",), ("a.ini", "b.ini"), ("--check",)])
+@pytest.mark.parametrize("arguments", [(), ("--nonsense",), ("a.ini", "b.ini"), ("--check",), ("--check=3", "a.ini")])
 def test_wrong_calls(arguments: tuple[str, ...]) -> None:
     done = call(*arguments)
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.startswith("goe_companion: ") and done.stderr.count("\n") == 1
+
+
+def test_a_mistyped_option_is_guessed() -> None:
+    done = call("--chekc", "a.ini")
+    assert done.returncode == 2
+    assert done.stderr.startswith("goe_companion: --chekc: unknown option; did you mean --check?")
+
+
+def test_what_cannot_be_printed_is_told(folder: Path) -> None:
+    (folder / "companion.ini").write_text("", encoding="utf-8")
+    for words in (["--help"], ["--version"], ["--check", str(folder / "companion.ini")]):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        assert done.returncode == 2
+        assert done.stderr == "goe_companion: standard output: cannot be written: No space left on device\n"
 
 
 # ------------------------------------------------------------------------------------------------------ configurations

@@ -32,8 +32,7 @@ HEADER = (
     "center_n_m,center_n_sd_m,center_e_m,center_e_sd_m,suspect,reason"
 )
 RESIDUALS = (
-    ",nis,nis_rows,misfit,velocity_n_m_s,velocity_n_sd_m_s,velocity_e_m_s,velocity_e_sd_m_s"
-    ",latency_s,latency_sd_s"
+    ",nis,nis_rows,misfit,velocity_n_m_s,velocity_n_sd_m_s,velocity_e_m_s,velocity_e_sd_m_s,latency_s,latency_sd_s"
 )
 PAPER = ("--method", "window")
 CORNER = ROOT / "tests" / "data" / "corner"
@@ -422,9 +421,8 @@ def variants() -> list[tuple[str, bytes]]:
         ("CRLF", plain.replace("\n", "\r\n").encode()),
         ("byte order mark", b"\xef\xbb\xbf" + plain.encode()),
         ("byte order mark and CRLF", b"\xef\xbb\xbf" + plain.replace("\n", "\r\n").encode()),
-        ("quoted fields", "\n".join('"' + line.replace(",", '","') + '"' for line in plain.splitlines()).encode()),
+        ("quoted fields", "".join('"' + line.replace(",", '","') + '"\n' for line in plain.splitlines()).encode()),
         ("blanks around fields", plain.replace(",", " ,\t").encode()),
-        ("no line break at the end", plain.rstrip("\n").encode()),
         ("blank lines", ("\n \n" + plain.replace("\n", "\n\n")).encode()),
         ("no base corners", table(rows, [name for name in COLUMNS if not name.startswith("base")]).encode()),
         ("line break in quotes", table([{**row, "note": '"two\nlines"'} for row in rows], [*COLUMNS, "note"]).encode()),
@@ -729,7 +727,15 @@ BAD_FRAMES = [
     ("nan with text", edited(4, qw="nan(1)"), 6, "qw", "not a number"),
     ("control characters", edited(4, qw="\x1b[31m1"), 6, "qw", "'?[31m1' is not a number"),
     ("endless text", edited(4, qw="x" * 5000), 6, "qw", "xxx...' is not a number"),
-    ("NUL", edited(4, qw="1\0"), 6, "qw", "not a number"),
+    ("NUL", edited(4, qw="1\0"), 6, "qw", "holds a NUL byte"),
+    (
+        "NUL in a column of no meaning",
+        table([{**r, "note": "\0"} for r in chimney()], [*COLUMNS, "note"]),
+        2,
+        "note",
+        "NUL",
+    ),
+    ("NUL in the header", "\0" + table(chimney()), 1, "", "the header holds a NUL byte"),
     ("no time", edited(4, t_s=""), 6, "t_s", "not a number"),
     ("text for a time", edited(4, t_s="noon"), 6, "t_s", "not a number"),
     ("endless time", edited(4, t_s="0." + "3" * 70), 6, "t_s", "longer than 63 characters"),
@@ -745,6 +751,9 @@ BAD_FRAMES = [
     ),
     ("too many fields", table(chimney()).replace("\n0.40,1,", "\n0.40,1,1,"), 6, "base_right_v", "23 fields"),
     ("cut off", table(chimney())[:-60], 21, "", "the row ends before this column"),
+    ("cut off in its last number", table(box())[:-2], 41, "base_right_v", "the file ends without a line break"),
+    ("cut off behind its last number", table(box())[:-1], 41, "base_right_v", "the file ends without a line break"),
+    ("cut off in the header", table([])[:-1], 1, "base_right_v", "the file ends without a line break"),
     ("quote inside a field", edited(4, qx='0"0'), 6, "qx", "quote"),
     ("quote not closed", edited(4, qx='"0'), 6, "qx", "quote"),
     (
@@ -861,14 +870,16 @@ def test_missing_file_and_folder_in_its_place(log: Path, name: str) -> None:
 
 
 BAD_USAGE = [
-    (["--window", "2"], "--window: must be 3 to 64"),
+    (["--window", "2"], "--window: must be 3 to 64, not 2"),
     (["--window", "65"], "--window: must be 3 to 64"),
     (["--window=-8"], "--window: must be 3 to 64"),
-    (["--window", "x"], "x: invalid numeric value"),
+    (["--window", "x"], "--window: invalid numeric value"),
     (["--window"], "--window: missing argument"),
-    (["--model", "box"], "box: --model must be auto, disc or line"),
+    (["--model", "box"], "box: --model must be auto, disc or line ("),
+    (["--model", "dics"], "dics: --model must be auto, disc or line; did you mean disc?"),
     (["--model", ""], "--model must be auto, disc or line"),
-    (["--method", "magic"], "magic: --method must be window or refined"),
+    (["--method", "magic"], "magic: --method must be refined or window ("),
+    (["--method", "widnow"], "widnow: --method must be refined or window; did you mean window?"),
     (["--set"], "--set: missing argument"),
     (["--set", ""], "--set: '' is no setting; there are navigation.attitude_bias_deg, "),
     (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are navigation.attitude_bias_deg, "),
@@ -987,11 +998,28 @@ def test_out_through_a_symbolic_link(tmp_path: Path, log: Path) -> None:
     assert link.is_symlink() and real.read_text() == call(log).stdout
 
 
-@pytest.mark.parametrize("name", ["frames.csv", "camera.ini"])
-def test_out_never_replaces_the_log(log: Path, name: str) -> None:
-    before = (log / name).read_bytes()
-    assert "would replace the log" in call("--out", log / name, log, check=2).stderr
-    assert (log / name).read_bytes() == before
+@pytest.mark.parametrize("way", ["itself", "symbolic link", "hard link", "other folder"])
+@pytest.mark.parametrize("name", ["frames.csv", "camera.ini", "truth.csv"])
+def test_out_never_replaces_the_log(tmp_path: Path, log: Path, name: str, way: str) -> None:
+    (log / "truth.csv").write_text("id,static\n1,1\n")
+    before, out = (log / name).read_bytes(), log / name
+    if way == "symbolic link":
+        out = tmp_path / "link"
+        out.symlink_to(log / name)
+    elif way == "hard link":
+        out = tmp_path / "link"
+        os.link(log / name, out)
+    words = ["--camera", log / "camera.ini", "--frames", log / "frames.csv"] if way == "other folder" else [log]
+    assert "would replace the log" in call("--out", out, *words, check=2).stderr
+    assert (log / name).read_bytes() == before and out.is_symlink() == (way == "symbolic link")
+
+
+def test_out_through_a_link_that_leads_nowhere(tmp_path: Path, log: Path) -> None:
+    """Neither is the link replaced nor a file made where it leads."""
+    link = tmp_path / "link.csv"
+    link.symlink_to(tmp_path / "nowhere.csv")
+    assert f"{link}: cannot be written: No such file" in call("--out", link, log, check=2).stderr
+    assert link.is_symlink() and sorted(path.name for path in tmp_path.iterdir()) == ["link.csv", "log"]
 
 
 def test_out_that_cannot_be_written(tmp_path: Path, log: Path) -> None:

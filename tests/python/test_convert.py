@@ -301,6 +301,25 @@ def test_files_that_are_none(tmp_path: Path, capsys: pytest.CaptureFixture[str],
     assert f"goe_tools convert: {tmp_path}: " in refused(
         capsys, [*words(kind, path)[:2], str(tmp_path), *words(kind, path)[3:]]
     )
+    path.unlink()
+    path.symlink_to("/dev/zero")
+    assert f"goe_tools convert: {path}: is no file" in refused(capsys, words(kind, path))
+    path.unlink()
+    with path.open("wb") as file:
+        file.truncate(2**31 + 1)
+    assert f"goe_tools convert: {path}: longer than 2147483648 bytes" in refused(capsys, words(kind, path))
+
+
+def test_an_input_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """camera.ini of the folder that is to be written."""
+    path = autopilot_log(tmp_path, "ulog", FLOWN)
+    write_detections(tmp_path, FLOWN, 0.0)
+    (tmp_path / "log").mkdir()
+    (tmp_path / "camera.ini").rename(tmp_path / "log" / "camera.ini")
+    (tmp_path / "camera.ini").symlink_to(tmp_path / "log" / "camera.ini")
+    assert main(words("ulog", path, "--offset", "0")) == 2
+    assert f"the output would replace {tmp_path / 'camera.ini'}, which is read" in capsys.readouterr().err
+    assert [file.name for file in (tmp_path / "log").iterdir()] == ["camera.ini"]
 
 
 @pytest.mark.parametrize("kind", FORMATS)

@@ -25,7 +25,7 @@ Table = dict[str, str]  # column: the field of the one row
 
 GOOD = {"number": ("1.5", "-2", "+3e-2", ".5", "nan", "-inf", "1e400"), "integer": ("0", "1")}
 BAD = {
-    "number": ("high", "1,5", "0x1f", "1_0", "1.5m", "--1", "1 2", "nan(3)", "\u0661"),
+    "number": ("high", "1,5", "0x1f", "1_0", "1.5m", "--1", "1 2", "nan(3)", "\u0661", "\x0b1"),
     "integer": ("1.0", "1e3", "0x1", "x", "nan", str(BIG), str(-BIG - 1), "1_0"),
 }
 
@@ -150,13 +150,46 @@ def test_a_field_too_many_or_too_few(tmp_path: Path, replay: Callable[[Path], st
     camera_file(tmp_path, CAMERA_LINES)
     path = write(tmp_path / "frames.csv", plain(FRAMES))
     good = path.read_text().splitlines()
-    for row, column in ((good[1] + ",7", "qz"), (good[1].rpartition(",")[0], "qz"), ('"1,2', "")):
+    rows = ((good[1] + ",7", "qz"), (good[1].rpartition(",")[0], "qz"), ('"1,2', ""), (f'"{good[1]}', ""), ("\0", ""))
+    for row, column in rows:
         path.write_text(f"{good[0]}\n{row}\n")
         start = f"{path}:2: " + (f"{column}: " if column else "")
         assert replay(tmp_path).startswith(start)
         with pytest.raises(LogError) as error:
             read_frames(path)
         assert str(error.value).startswith(start)
+
+
+def test_a_last_row_that_may_be_cut_off(tmp_path: Path, replay: Callable[[Path], str]) -> None:
+    """869.5 must not be read as 86: without a line break at its end no row is known to be whole, also after blank lines
+    and with quotes; and no other byte than LF ends a row, so that both readers count the same lines."""
+    camera_file(tmp_path, CAMERA_LINES)
+    table = plain(FRAMES)
+    path = write(tmp_path / "frames.csv", table)
+    whole = path.read_bytes()
+    last = whole.splitlines()[1]
+    note = whole.replace(b"\n", b",note\n", 1)
+    for content, line in (
+        (whole[:-1], 2),
+        (whole[:-2], 2),
+        (whole.splitlines()[0], 1),
+        (whole + b"\n\n" + last, 5),
+        (whole + b"\n \r\n" + last + b"\r", 5),
+        (whole + last.replace(b"0.5", b'"0.5"'), 3),
+        (note[:-1] + b',"two\nlines"\n' + last + b",\x0b\x0c\x1c\xc2\x85\n" + last + b",x", 5),
+    ):
+        path.write_bytes(content)
+        assert replay(tmp_path).startswith(f"{path}:{line}: "), content
+        with pytest.raises(LogError, match="ends without a line break") as error:
+            read_frames(path, 1)
+        assert str(error.value).startswith(f"{path}:{line}: "), content
+        path.write_bytes(content + b"\n")
+        assert replay(tmp_path) == ""
+        read_frames(path, 1)
+    truth = write(tmp_path / "truth.csv", plain(TRUTH))
+    truth.write_bytes(truth.read_bytes()[:-1])
+    with pytest.raises(LogError, match=r"truth\.csv:2: the file ends without a line break"):
+        read_truth(truth)
 
 
 def test_what_is_out_of_range_is_read_and_its_image_refused(tmp_path: Path, replay: Callable[[Path], str]) -> None:

@@ -173,7 +173,7 @@ def test_boxes_and_resets_are_written_where_there_are_any(tmp_path: Path, corner
 
 def test_line_ends_and_blank_lines(tmp_path: Path) -> None:
     assert len(frames(tmp_path, HEADER, ROW, "", ROW, end="\r\n")) == 2
-    assert len(read_frames(write(tmp_path / "frames.csv", "\ufeff" + HEADER + "\n" + ROW))) == 1
+    assert len(read_frames(write(tmp_path / "frames.csv", "\ufeff" + HEADER + "\n" + ROW + "\n"))) == 1
     assert frames(tmp_path, HEADER) == []
 
 

@@ -98,6 +98,7 @@ RUN_BY = {
         "tests/python/test_packages_hosts.py", "conan create . -o '&:with_movers=False'"
     ),
     "python -m goe_tools packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
+    "python -m goe_tools packages --sbom": By("tests/python/test_sbom.py", '"packages", "--sbom"'),
     "python -m goe_tools packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
     "python -m goe_tools packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
     "pip install ./port/python": By(

@@ -443,15 +443,15 @@ def test_bad_files_are_named(tmp_path: Path) -> None:
 
     fields = first.split(",")
     fields[column] = "12,3".replace(",", ";")
-    cases.write_text("\n".join([header, ",".join(fields), *rest]), encoding="utf-8")
+    cases.write_text("\n".join([header, ",".join(fields), *rest, ""]), encoding="utf-8")
     with pytest.raises(LogError, match=r"cases\.csv:2: z0_mean: '12;3' is not a number"):
         read_campaign(folder)
 
-    cases.write_text("\n".join([header.replace("z0_mean,", "z0_men,"), first, *rest]), encoding="utf-8")
+    cases.write_text("\n".join([header.replace("z0_mean,", "z0_men,"), first, *rest, ""]), encoding="utf-8")
     with pytest.raises(LogError, match=r"cases\.csv:1: z0_mean: this column is missing"):
         read_campaign(folder)
 
-    cases.write_text("\n".join([header, first, rest[0] + ",7"]), encoding="utf-8")
+    cases.write_text("\n".join([header, first, rest[0] + ",7", ""]), encoding="utf-8")
     with pytest.raises(LogError, match=r"cases\.csv:3: .* fields"):
         read_campaign(folder)
 

@@ -76,7 +76,7 @@ def test_a_bad_field_is_named(tmp_path: Path, line: int, column: str, field: str
     file = write_avoid(tmp_path / "avoid.csv")
     lines = [text.split(",") for text in file.read_text(encoding="utf-8").splitlines()]
     lines[line - 1][lines[0].index(column)] = field
-    file.write_text("\n".join(map(",".join, lines)), encoding="utf-8")
+    file.write_text("\n".join(map(",".join, lines)) + "\n", encoding="utf-8")
     with pytest.raises(LogError) as caught:
         read_avoid(file)
     assert str(caught.value) == f"{file}:{line}: {message}"
@@ -84,7 +84,11 @@ def test_a_bad_field_is_named(tmp_path: Path, line: int, column: str, field: str
 
 @pytest.mark.parametrize(
     ("content", "message"),
-    [(b"", ": no rows"), (b"kind,course\nmast\n", ":2: 1 fields, the header has 2"), (b"\xff\n", ": no CSV: ")],
+    [
+        (b"", ": no rows"),
+        (b"kind,course\nmast\n", ":2: 1 fields, the header has 2"),
+        (b"\xff\n", ":1: not UTF-8 text: "),
+    ],
 )
 def test_a_file_that_is_none_of_it_is_named(
     tmp_path: Path, content: bytes, message: str, capsys: pytest.CaptureFixture[str]

@@ -14,7 +14,8 @@ from goe_tools.reference.compare import run_replay  # noqa: F401  (the stand-in 
 
 ROOT = Path(__file__).resolve().parents[2]
 
-HEADER = ",".join((*LABELS, *NUMBERS))
+FIELDS = (*LABELS, *NUMBERS)
+HEADER = ",".join(FIELDS)
 
 
 def row(t_s: float, track: int, status: str, model: str, **values: float) -> str:
@@ -111,11 +112,17 @@ def test_rows_are_spread() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "1: t_s: column is missing"),
+        ("", " empty: no header line"),
         (HEADER.replace(",x_m", "") + "\n", "1: x_m: column is missing"),
-        (HEADER + "\n" + row(1.0, 1, "ok", "disc", x0_m=1.0).replace("1.0,1,", "soon,1,"), "2: t_s: 'soon'"),
-        (HEADER + "\n" + row(1.0, 1, "ok", "disc", x0_m=1.0) + ",3", "2: number of fields"),
-        (HEADER + "\n" + row(1.0, 1, "ok", "disc")[:-3], "2: number of fields"),
+        (HEADER + "\n" + row(1.0, 1, "ok", "disc", x0_m=1.0).replace("1.0,1,", "soon,1,") + "\n", "2: t_s: 'soon'"),
+        (
+            HEADER + "\n" + row(1.0, 1, "ok", "disc", x0_m=1.0) + ",3\n",
+            f"2: {FIELDS[-1]}: {len(FIELDS) + 1} fields under {len(FIELDS)} columns",
+        ),
+        (
+            HEADER + "\n" + row(1.0, 1, "ok", "disc")[:-3] + "\n",
+            f"2: {FIELDS[-3]}: {len(FIELDS) - 3} fields under {len(FIELDS)} columns",
+        ),
     ],
 )
 def test_bad_estimates(text: str, message: str, tmp_path: Path) -> None:

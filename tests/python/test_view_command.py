@@ -78,7 +78,7 @@ def test_truth_of_its_own_and_truth_that_is_not_there(tmp_path: Path) -> None:
         (["nowhere"], "nowhere: no such folder"),
         (["LOG", "--truth", "none.csv"], "none.csv: No such file"),
         (["LOG", "--id", "9"], "no obstacle 9; there are 1"),
-        (["LOG", "--out", "LOG/frames.csv"], "the output would replace the log"),
+        (["LOG", "--out", "LOG/frames.csv"], "the output would replace "),
         (["LOG", "--out", "LOG"], "is a folder"),
         (["LOG", "--set", "detector.nothing=1"], "detector.nothing: no such setting"),
         (["LOG", "--set", "detector.point_px=-1"], "detector.point_px = -1: not within 0.05 to 100 px"),
@@ -114,10 +114,10 @@ def test_a_closed_pipe(tmp_path: Path) -> None:
 def test_a_broken_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = view_logs.written(view_logs.one_frame(), tmp_path / "log")
     rows = (folder / "frames.csv").read_text().splitlines()
-    (folder / "frames.csv").write_text("\n".join([rows[0], rows[1].replace("1200.0", "far")]))
+    (folder / "frames.csv").write_text("\n".join([rows[0], rows[1].replace("1200.0", "far"), ""]))
     assert main(["view", str(folder)]) == 2
     assert "frames.csv:2: n_m: 'far' is not a number" in capsys.readouterr().err
-    (folder / "frames.csv").write_text(rows[0])
+    (folder / "frames.csv").write_text(rows[0] + "\n")
     assert main(["view", str(folder)]) == 2
     assert "there are no rows" in capsys.readouterr().err
 

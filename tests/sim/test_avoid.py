@@ -46,6 +46,39 @@ def test_bad_usage_is_told(goe_avoid: Path) -> None:
         assert done.stderr.startswith("goe_avoid: ")
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--runs", "0"], "--runs: must be 1 to 100000, not 0"),
+        (["--seed", "-1"], "--seed: must be 0 or more"),
+        (["--delay", "2.5"], "--delay: must be 0 to 2 s, not 2.5"),
+        (["--delay", "nan"], "--delay: must be 0 to 2 s, not nan"),
+        (["--runs", "many"], "--runs: invalid numeric value"),
+        (["--sede", "3"], "--sede: unknown option; did you mean --seed?"),
+    ],
+)
+def test_bad_values_name_their_option(goe_avoid: Path, words: list[str], told: str) -> None:
+    done = subprocess.run([str(goe_avoid), *words], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"goe_avoid: {told}\n")
+
+
+def test_what_cannot_be_printed_is_told(goe_avoid: Path, tmp_path: Path) -> None:
+    for words in (["-n", "1"], ["--help"], ["-n", "1", "--csv", str(tmp_path / "runs.csv")]):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([str(goe_avoid), *words], stdout=full, stderr=subprocess.PIPE, text=True)
+        assert done.returncode == 2
+        assert done.stderr == "goe_avoid: standard output: cannot be written: No space left on device\n"
+
+
+def test_a_table_goes_through_no_link_that_leads_nowhere(goe_avoid: Path, tmp_path: Path) -> None:
+    (tmp_path / "link.csv").symlink_to(tmp_path / "nowhere.csv")
+    done = subprocess.run(
+        [str(goe_avoid), "--csv", str(tmp_path / "link.csv"), "-n", "1"], capture_output=True, text=True
+    )
+    assert done.returncode == 2 and "link.csv: No such file or directory" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["link.csv"]
+
+
 def rows_of(goe_avoid: Path, folder: Path, *arguments: str) -> tuple[str, list[dict[str, str]]]:
     file = folder / "runs.csv"
     text = avoid(goe_avoid, "--csv", str(file), *arguments)

@@ -629,6 +629,28 @@ def test_where_nothing_can_be_written(goe_campaign: Path, tmp_path: Path, out: s
     assert contents(tmp_path) == {"file": b"mine"}
 
 
+def test_places_that_are_taken_are_told_before_the_flights(goe_campaign: Path, tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    (tmp_path / "a" / "cases.csv").mkdir(parents=True)
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "series").write_text("mine")
+    for out, told in (("link", "leads nowhere"), ("a", "in the place of cases.csv"), ("b", "of the folder series")):
+        start = time.monotonic()
+        done = subprocess.run(
+            [str(goe_campaign), "--seeds", "1000", "--out", str(tmp_path / out)], capture_output=True, text=True
+        )
+        assert done.returncode == 2 and time.monotonic() - start < 5.0
+        assert done.stderr.startswith(f"goe_campaign: {tmp_path / out}: ") and told in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b", "link"]
+
+
+def test_a_full_disk_leaves_nothing(goe_campaign: Path, tmp_path: Path) -> None:
+    command = f'ulimit -f 8; exec "{goe_campaign}" --studies conditioning --out "{tmp_path}/c"'
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, f"goe_campaign: {tmp_path}/c: File too large\n")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_default_folder_and_facts(goe_campaign: Path, tmp_path: Path) -> None:
     done = subprocess.run(
         [str(goe_campaign), "--studies", "paper"], cwd=tmp_path, capture_output=True, text=True, check=False

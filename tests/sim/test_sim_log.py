@@ -391,15 +391,25 @@ def test_recorded_flight_ends_with_its_recording(goe_sim: Path, tmp_path: Path) 
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        (lambda text: text.replace("true_qw", "qw"), ":1: true_qw: column is missing"),
+        (lambda text: text.replace("true_qw", "qw"), ":1: true_qw: missing column"),
         (lambda text: text.replace("\n3.1,", "\n2.9,"), ":3: t_s: time does not increase"),
-        (lambda text: text.replace("-25,", "x,", 1), ":2: est_d_m: not a finite number"),
-        (lambda text: text.replace("-25,", "nan,", 1), ":2: est_d_m: not a finite number"),
-        (lambda text: text.replace("-25,", ",", 1), ":2: est_d_m: not a finite number"),
-        (lambda text: text.replace("-25,", "", 1), ":2: true_qz: field is missing"),
-        (lambda text: text.replace("est_n_m,", "t_s,", 1), ":1: t_s: column appears twice"),
+        (lambda text: text.replace("-25,", "x,", 1), ":2: est_d_m: 'x' is not a finite number"),
+        (lambda text: text.replace("-25,", "nan,", 1), ":2: est_d_m: 'nan' is not a finite number"),
+        (lambda text: text.replace("-25,", ",", 1), ":2: est_d_m: '' is not a finite number"),
+        (lambda text: text.replace("-25,", "", 1), ":2: true_qz: the row ends before this column: 14 fields"),
+        (lambda text: text.replace("est_n_m,", "t_s,", 1), ":1: t_s: the column appears twice"),
+        (lambda text: text.replace("-25,", "-25,7,", 1), ":2: true_qz: the row goes on after this column: 16 fields"),
+        (lambda text: text.replace("-25,", "-" + "0" * 70 + "x,", 1), ":2: est_d_m: '-000"),
+        (lambda text: text.replace("-25,", "-25\0,", 1), ":2: est_d_m: the field holds a NUL byte"),
+        (lambda text: text.replace("-25,", "-0x19,", 1), ":2: est_d_m: '-0x19' is not a finite number"),
+        (lambda text: text.replace("-25,", "1e308,", 1), ":2: est_d_m: 1e+308 is out of range: -1e+06 to 1e+06"),
+        (lambda text: text.replace("\n3.2,", "\n1e308,"), ":4: t_s: 1e+308 is out of range"),
+        (lambda text: text.replace("\n", "\n\n").replace("-25,", "x,", 1), ":3: est_d_m: 'x' is not"),
+        (lambda text: text.replace("\n3.2,", '\n"3\n.2",'), ":4: t_s: '3?.2' is not a finite number"),
+        (lambda text: text[:-2], ":202: true_qz: the file ends without a line break"),
+        (lambda text: text.replace("-25,", '"-25,', 1), "a quote is out of place or not closed"),
         (lambda text: text.splitlines()[0] + "\n", "fewer than two poses"),
-        (lambda text: "", "fewer than two poses"),
+        (lambda text: "", ":1: t_s: missing column, the file is empty"),
     ],
 )
 def test_bad_recordings_are_refused_with_their_place(goe_sim: Path, tmp_path: Path, change, complaint: str) -> None:
@@ -409,6 +419,50 @@ def test_bad_recordings_are_refused_with_their_place(goe_sim: Path, tmp_path: Pa
     done = run(goe_sim, "--flight", path, "--out", tmp_path / "log", expect=2)
     assert complaint in done.stderr and str(path) in done.stderr
     assert not (tmp_path / "log").exists()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: "\ufeff" + text,
+        lambda text: text.replace("\n", "\r\n"),
+        lambda text: text.replace("-25,", "-25." + "0" * 80 + ","),  # no field is cut
+        lambda text: "".join(f'"{line}, x",{line}\n' for line in text.splitlines()),
+    ],
+    ids=["byte order mark", "CRLF", "long numbers", "a column of one's own"],
+)
+def test_recordings_written_otherwise(goe_sim: Path, tmp_path: Path, change) -> None:
+    path = tmp_path / "flight.csv"
+    write_recording(path)
+    words = ("--run", "3", "--flight", path)
+    run(goe_sim, *words, "--out", tmp_path / "plain")
+    path.write_bytes(change(path.read_text()).encode())
+    run(goe_sim, *words, "--out", tmp_path / "other")
+    assert folder_bytes(tmp_path / "other") == folder_bytes(tmp_path / "plain")
+
+
+def test_out_never_replaces_an_input(goe_sim: Path, tmp_path: Path) -> None:
+    (tmp_path / "log").mkdir()
+    path = tmp_path / "log" / "frames.csv"
+    write_recording(path)
+    (tmp_path / "link.csv").symlink_to(path)
+    before = path.read_bytes()
+    for name in (path, tmp_path / "link.csv"):
+        done = run(goe_sim, "--flight", name, "--out", tmp_path / "log", expect=2)
+        assert done.stderr == f"goe_sim: {name}: the log would replace it\n"
+    assert path.read_bytes() == before
+
+
+def test_a_full_disk_leaves_nothing(goe_sim: Path, tmp_path: Path) -> None:
+    command = f'ulimit -f 8; exec "{goe_sim}" --out "{tmp_path}/log" --case 3'
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and done.stderr == f"goe_sim: {tmp_path}/log: File too large\n"
+    assert list(tmp_path.iterdir()) == []
+    for option in ("--help", "--list-cases"):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([goe_sim, option], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        assert done.returncode == 2
+        assert done.stderr == "goe_sim: standard output: cannot be written: No space left on device\n"
 
 
 @pytest.mark.parametrize(

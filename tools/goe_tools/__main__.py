@@ -79,6 +79,21 @@ def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
     return parser
 
 
+def fault_of(error: OSError) -> str:
+    """The file first; an error of the system that names none is of standard output: a full disk, a closed pipe."""
+    if error.strerror is None:
+        return str(error)
+    return f"{error.filename or 'standard output'}: {error.strerror}"
+
+
+def drop_output() -> None:
+    """What standard output did not take: Python would try again on leaving."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if argv is None else argv
     arguments = parser_for(words).parse_args(words)
@@ -86,12 +101,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         status = int(arguments.entry(arguments))
         sys.stdout.flush()
         return status
-    except (LogError, ValueError, FileNotFoundError) as error:
+    except OSError as error:
+        print(f"goe_tools {arguments.command}: {fault_of(error)}", file=sys.stderr)
+        drop_output()
+        return EXIT_BAD_INPUT
+    except (LogError, ValueError) as error:
         print(f"goe_tools {arguments.command}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
-    except BrokenPipeError as error:
-        print(f"goe_tools {arguments.command}: standard output: {error.strerror}", file=sys.stderr)
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python tries again on leaving
+    except MemoryError:
+        print(f"goe_tools {arguments.command}: out of memory", file=sys.stderr)
         return EXIT_BAD_INPUT
     except KeyboardInterrupt:
         print(f"goe_tools {arguments.command}: interrupted", file=sys.stderr)

@@ -232,11 +232,11 @@ static const way_t ways[] = {
 
 static int judge(const char *path) {
     recorded_flight_t recording;
-    char fault[4608];
+    input_error_t error;
     int bad = 0;
     double exact_m = 0.0, exact_covered = 1.0;
-    if (!recorded_flight_read(path, &recording, fault, sizeof fault)) {
-        fprintf(stderr, "%s\n", fault);
+    if (!recorded_flight_read(path, &recording, &error)) {
+        fprintf(stderr, "%s\n", error.text);
         return 1;
     }
     const double row_s = recorded_flight_duration(&recording) / (double)(recording.count - 1);

@@ -8,7 +8,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..logs.obslog import LogError
+from ..logs.fields import JSON_BYTES_MAX, LogError, read_text
+from ..logs.whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -44,20 +45,17 @@ def read(path: Path) -> dict[str, Kept]:
     """By part. An absent file holds none."""
     if not path.exists():
         return {}
+    text = read_text(path, JSON_BYTES_MAX)
     try:
-        told: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))
+        told: list[dict[str, Any]] = json.loads(text)
         kept = [Kept(**{**entry, "rows": [Row(**row) for row in entry["rows"]]}) for entry in told]
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or str(error)) from None
     except (KeyError, TypeError, ValueError) as error:
         raise LogError(path, 0, "", f"not a record of evidence: {error}") from None
     return {entry.part: entry for entry in kept}
 
 
 def write(path: Path, kept: Iterable[Kept]) -> None:
-    part = path.with_name(path.name + ".part")
-    part.write_text(json.dumps([asdict(entry) for entry in kept], indent=1) + "\n", encoding="utf-8")
-    part.replace(path)
+    write_whole(path, json.dumps([asdict(entry) for entry in kept], indent=1) + "\n")
 
 
 def table(kept: Iterable[Kept]) -> str:

@@ -21,7 +21,7 @@ from ..optimum.flights.rotations import matrices
 from .clock import find_offset
 from .dataflash import read_dataflash
 from .detections import read_detections, sees
-from .recording import Poses, Recording
+from .recording import Poses, Recording, check_size
 from .tlog import read_tlog
 from .ulog import read_ulog
 
@@ -141,6 +141,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _read(arguments: argparse.Namespace) -> Recording:
+    check_size(arguments.ulog or arguments.dataflash or arguments.tlog)
     if arguments.ulog is not None:
         return read_ulog(arguments.ulog)
     if arguments.dataflash is not None:
@@ -201,9 +202,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise LogError(arguments.detections, 0, "t_s", "no row has a pose: are the clocks the same but for the offset?")
     log = ObservationLog(cameras[0], result.frames, camera2=cameras[1] if len(cameras) > 1 else None)
     comment = f"{recording.path.name} and {arguments.detections.name}, t_s {offset_s:+.6f} s"
-    try:
-        write_log(arguments.out, log, comment)
-    except OSError as error:
-        raise LogError(arguments.out, 0, "", error.strerror or str(error)) from None
+    write_log(arguments.out, log, comment, [arguments.camera, arguments.detections, recording.path])
     print(f"{arguments.out}: {len(result.frames)} rows")
     return 0

@@ -20,6 +20,7 @@ from tqdm import tqdm
 from ..logs.estimates import NUMBERS, Estimate, read_estimates
 from ..logs.fields import LogError
 from ..logs.obslog import Frame, ObservationLog, read_log
+from ..logs.whole_file import log_files, refuse_inputs, replacing
 from ..optimum.flights.rotations import matrices
 from ..places import ROOT
 from .messages import (
@@ -142,19 +143,12 @@ def write_mcap(path: Path, log: ObservationLog, estimates: Estimates) -> dict[st
     if log.frames:
         columns["goe.Observation"] = list(observation_numbers(log.frames[0]))
     count: dict[str, int] = {}
-    partial = path.with_name(path.name + ".part")
-    try:
-        with partial.open("wb") as stream:
-            topics = Topics(stream)
-            for message in tqdm(messages(log, estimates), desc=str(path), disable=None, leave=False):
-                topics.write(message, columns.get(message[1], []))
-                count[message[0]] = count.get(message[0], 0) + 1
-            topics.close()
-        partial.replace(path)
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or str(error)) from None
-    finally:
-        partial.unlink(missing_ok=True)
+    with replacing(path) as place, place.open("wb") as stream:
+        topics = Topics(stream)
+        for message in tqdm(messages(log, estimates), desc=str(path), disable=None, leave=False):
+            topics.write(message, columns.get(message[1], []))
+            count[message[0]] = count.get(message[0], 0) + 1
+        topics.close()
     return count
 
 
@@ -166,6 +160,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
+    refuse_inputs(arguments.out, [*log_files(arguments.log), arguments.estimates])
     log = read_log(arguments.log)
     count = write_mcap(arguments.out, log, _estimates(arguments.log, arguments.estimates))
     if not count:

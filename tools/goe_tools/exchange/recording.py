@@ -12,8 +12,19 @@ import numpy as np
 from ..logs.fields import LogError
 from ..optimum.flights.rotations import matrices, multiply
 
+LOG_BYTES_MAX = 2**31  # of a file of messages: what is read of it is held in memory
 LEAST_SAMPLES = 2
 NORM_TOLERANCE = 0.01
+
+
+def check_size(path: Path) -> None:
+    """LogError of a log that is too large to be held, and of a device or pipe, which may have no end. What is not there
+    or is a folder is its reader's to tell."""
+    if path.is_file():
+        if path.stat().st_size > LOG_BYTES_MAX:
+            raise LogError(path, 0, "", f"longer than {LOG_BYTES_MAX} bytes")
+    elif path.exists() and not path.is_dir():
+        raise LogError(path, 0, "", "is no file")
 
 
 @dataclass

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from ..logs.whole_file import write_whole
 from ..places import ROOT
 from .modules import build
 from .page import page
@@ -27,7 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
     with Console(stderr=True).status("building the modules"):
         modules = build(arguments.build.resolve())
     text = page(modules)
-    arguments.out.write_text(text, encoding="utf-8")
+    write_whole(arguments.out, text)
     print(
         f"{arguments.out}: {len(text.encode('utf-8')):,} bytes; bytes of WebAssembly: library {len(modules.goe):,}, "
         f"flight {len(modules.flight):,}, the tests' logs and their replay {len(modules.golden):,}"

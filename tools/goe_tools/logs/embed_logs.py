@@ -25,6 +25,7 @@ from pathlib import Path
 
 from .obslog import FEATURES, Camera, Frame
 from .scene import Scene, make_log
+from .whole_file import write_whole
 
 TIME_UNKNOWN_US = -(2**63)
 DETECTOR_SIGMA_PX = 0.7
@@ -449,7 +450,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     text = c_text(make_book())
     if not arguments.check:
-        arguments.out.write_text(text, encoding="utf-8")
+        write_whole(arguments.out, text)
         print(f"{arguments.out}: {len(text)} characters")
         return 0
     if agrees(arguments.out.read_text(encoding="utf-8"), text):

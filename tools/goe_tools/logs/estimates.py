@@ -5,11 +5,10 @@ Column names and order are those of goe_replay's output.
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .obslog import LogError
+from .fields import Row, read_integer, read_number, read_rows
 
 QUANTITIES = (
     "x0_m",
@@ -48,38 +47,20 @@ class Estimate:
     reason: str = "none"  # why it is suspect; "late" also of one that is not
 
 
+def _estimate(row: Row, path: Path, line: int) -> tuple[float, int, Estimate]:
+    values = {name: read_number(row[name], path, line, name) for name in NUMBERS if row[name]}
+    estimate = Estimate(
+        row["status"],
+        row["model"],
+        read_integer(row["n_used"], path, line, "n_used"),
+        values,
+        suspect=row.get("suspect") == "1",  # logs of before 0.3 have neither column
+        reason=row.get("reason") or "none",
+    )
+    return read_number(row["t_s"], path, line, "t_s"), read_integer(row["id"], path, line, "id"), estimate
+
+
 def read_estimates(path: Path) -> list[tuple[float, int, Estimate]]:
     """Reads goe_replay's output: (t_s, id, estimate) per row."""
-    path = Path(path)
-    try:
-        with open(path, encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file, strict=True)
-            missing = [name for name in (*LABELS, *NUMBERS) if name not in (reader.fieldnames or ())]
-            if missing:
-                raise LogError(path, 1, missing[0], "column is missing")
-            result = []
-            for row in reader:
-                if None in row or None in row.values():
-                    raise LogError(path, reader.line_num, "", "number of fields differs from the header's")
-                name = ""
-                try:
-                    values = {}
-                    for name in NUMBERS:
-                        if row[name]:
-                            values[name] = float(row[name])
-                    name = "n_used"
-                    estimate = Estimate(
-                        row["status"],
-                        row["model"],
-                        int(row["n_used"]),
-                        values,
-                        suspect=row.get("suspect") == "1",  # logs of before 0.3 have neither column
-                        reason=row.get("reason") or "none",
-                    )
-                    name = "t_s"
-                    result.append((float(row["t_s"]), int(row["id"]), estimate))
-                except ValueError:
-                    raise LogError(path, reader.line_num, name, f"'{row[name]}' is not a number") from None
-            return result
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or str(error)) from None
+    path, columns = Path(path), (*LABELS, *NUMBERS)
+    return [_estimate(row, path, line) for line, row in read_rows(path, columns, columns)]

@@ -5,8 +5,17 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import IO
 
 INTEGER_MIN, INTEGER_MAX = -(2**63), 2**63 - 1  # what the programs' reader takes
+
+# What bounds the memory whatever a file holds, an endless one too; those of rows as the programs' reader has them.
+ROW_BYTES_MAX, COLUMNS_MAX = 2**20, 4096
+ROWS_MAX, TABLE_BYTES_MAX = 1_000_000, 2**29
+TEXT_BYTES_MAX, JSON_BYTES_MAX = 2**20, 2**26  # a file of settings; one that a tool wrote
+
+BLANKS = " \t\r\n"
+csv.field_size_limit(ROW_BYTES_MAX)  # the row's bytes are counted here
 Row = dict[str, str]
 
 
@@ -22,7 +31,7 @@ class LogError(ValueError):
 def read_number(text: str, path: Path, line: int, column: str) -> float:
     """A decimal number; also nan and inf, which are bad measurements, no bad input."""
     try:
-        if "_" in text or not text.isascii():  # Python's digit grouping, unknown to every other reader
+        if "_" in text or not text.isascii() or text != text.strip():  # Python's own, unknown to every other reader
             raise ValueError
         return float(text)
     except ValueError:
@@ -32,7 +41,7 @@ def read_number(text: str, path: Path, line: int, column: str) -> float:
 def read_integer(text: str, path: Path, line: int, column: str) -> int:
     """A whole number of 64 bits."""
     try:
-        if "_" in text or not text.isascii():
+        if "_" in text or not text.isascii() or text != text.strip():
             raise ValueError
         value = int(text)
     except ValueError:
@@ -48,10 +57,14 @@ def read_optional(row: Row, path: Path, line: int, column: str) -> float | None:
     return read_number(text, path, line, column) if text else None
 
 
-def read_text(path: Path) -> str:
-    """A whole file of UTF-8 text, without a byte order mark."""
+def read_text(path: Path, most_bytes: int = TEXT_BYTES_MAX) -> str:
+    """A whole file of UTF-8 text, without a byte order mark; not one that is longer, or that has no end."""
     try:
-        return path.read_text(encoding="utf-8-sig")
+        with open(path, "rb") as file:
+            content = file.read(most_bytes + 1)
+        if len(content) > most_bytes:
+            raise LogError(path, 0, "", f"longer than {most_bytes} bytes")
+        return content.decode("utf-8-sig")
     except OSError as error:
         raise LogError(path, 0, "", error.strerror or str(error)) from None
     except UnicodeDecodeError as error:
@@ -67,18 +80,76 @@ def _check_header(header: list[str], path: Path, line: int, required: Sequence[s
             raise LogError(path, line, name, "column is given twice")
 
 
-def _records(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """(line number, fields) of the lines that are not blank."""
-    reader = csv.reader(read_text(path).splitlines(keepends=True), strict=True)
+class _Lines:
+    """Lines of a table, which end in LF alone, one at a time; ``begin`` is called before each row."""
+
+    def __init__(self, path: Path, file: IO[bytes]) -> None:
+        self.path, self.file = path, file
+        self.number = self.first = 0  # of the latest line, and of that on which its row begins
+        self.row_bytes = self.bytes = 0
+        self.ended = True  # the latest line, by a line break
+
+    def begin(self) -> None:
+        self.first, self.row_bytes = self.number + 1, 0
+
+    def __iter__(self) -> _Lines:
+        return self
+
+    def __next__(self) -> str:
+        raw = self.file.readline(ROW_BYTES_MAX + 1)
+        if not raw:
+            raise StopIteration
+        self.number += 1
+        self.row_bytes += len(raw)
+        self.bytes += len(raw)
+        self.ended = raw.endswith(b"\n")
+        if self.row_bytes > ROW_BYTES_MAX:
+            raise LogError(
+                self.path, self.first, "", f"the row is longer than {ROW_BYTES_MAX} bytes: a quote not closed?"
+            )
+        if self.bytes > TABLE_BYTES_MAX:
+            raise LogError(self.path, self.number, "", f"the file is longer than {TABLE_BYTES_MAX} bytes")
+        try:
+            text = raw.decode("utf-8-sig" if self.number == 1 else "utf-8")
+        except UnicodeDecodeError as error:
+            raise LogError(self.path, self.number, "", f"not UTF-8 text: {error.reason}") from None
+        if "\0" in text:
+            raise LogError(self.path, self.number, "", "the row holds a NUL byte")
+        return text.replace("\r", " ")  # a blank, as the programs have it
+
+
+def _records_of(path: Path, file: IO[bytes]) -> Iterator[tuple[int, list[str]]]:
+    lines, rows = _Lines(path, file), 0
+    reader = csv.reader(lines, strict=True, skipinitialspace=True)
     while True:
+        lines.begin()
         try:
             fields = next(reader, None)
         except csv.Error as error:
-            raise LogError(path, reader.line_num, "", f"not CSV: {error}") from None
+            raise LogError(path, lines.first, "", f"not CSV: {error}") from None
         if fields is None:
             return
-        if len(fields) > 1 or any(text.strip() for text in fields):
-            yield reader.line_num, [text.strip() for text in fields]
+        fields = [text.strip(BLANKS) for text in fields]
+        if len(fields) < 2 and not any(fields):
+            continue
+        if rows > ROWS_MAX:
+            raise LogError(path, lines.first, "", f"more than {ROWS_MAX} rows")
+        if rows == 0 and len(fields) > COLUMNS_MAX:
+            raise LogError(path, lines.first, "", f"more than {COLUMNS_MAX} columns")
+        rows += 1
+        yield lines.first, fields
+        if not lines.ended:
+            raise LogError(path, lines.first, "", "the file ends without a line break: is it cut off here?")
+
+
+def read_records(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """(line on which it begins, fields without the blanks around them) of each row of a table that is not blank, in
+    memory that the constants above bound. Whether a row is whole is known when the next one is asked for."""
+    try:
+        with open(path, "rb") as file:
+            yield from _records_of(path, file)
+    except OSError as error:
+        raise LogError(path, 0, "", error.strerror or str(error)) from None
 
 
 def read_rows(
@@ -90,7 +161,7 @@ def read_rows(
     """Yields (line number, column -> text) of a CSV file with a header line. ``known``: columns that may not appear
     twice; ``check``: raises a LogError if the header line is none."""
     header: list[str] | None = None
-    for line, fields in _records(path):
+    for line, fields in read_records(path):
         if header is None:
             header = fields
             _check_header(header, path, line, required, known)

@@ -23,6 +23,8 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
+from .whole_file import replacing
+
 FEET_PER_METRE = 1.0 / 0.3048
 POUNDS_PER_NEWTON = 1.0 / 4.4482216152605
 GRAVITY_MPS2 = 9.80665
@@ -223,7 +225,7 @@ def fly(plan: Plan) -> list[list[float]]:
 def write_recording(path: Path, rows: list[list[float]]) -> None:
     """The estimate of a recording is what its autopilot believes; here it believes the truth."""
     names = ("n_m", "e_m", "d_m", "qw", "qx", "qy", "qz")
-    with path.open("w", newline="") as file:
+    with replacing(path) as place, place.open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["t_s", *(f"true_{name}" for name in names), *(f"est_{name}" for name in names)])
         for row in rows:

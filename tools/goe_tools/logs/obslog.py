@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Optional
 
 from .fields import LogError, Row, read_integer, read_number, read_optional, read_rows, read_text
+from .whole_file import replacing_all
 
 Pixel = tuple[float, float]
 Side = Optional[float]  # as Python 3.9 has it outside annotations
@@ -165,7 +166,9 @@ def read_cameras(path: Path) -> list[Camera]:
     """Reads camera.ini, one camera or two; an unknown, doubled, missing or non-numeric key is a LogError."""
     path = Path(path)
     found: dict[str, dict[str, float | None]] = {CAMERA_NAMES[0]: {}}
-    for line, raw in enumerate(read_text(path).splitlines(), start=1):
+    for line, raw in enumerate(read_text(path).split("\n"), start=1):
+        if "\0" in raw:
+            raise LogError(path, line, "", "the line holds a NUL byte")
         text = raw.split("#", 1)[0].strip()
         if not text:
             continue
@@ -365,11 +368,17 @@ def write_truth(path: Path, truth: dict[int, Truth]) -> None:
             writer.writerow([entry.id, int(entry.static), *numbers, *(entry.extra.get(name, "") for name in extra)])
 
 
-def write_log(folder: Path, log: ObservationLog, comment: str = "") -> None:
-    """Writes camera.ini, frames.csv and, if there is any truth, truth.csv; makes the folder."""
+def write_log(folder: Path, log: ObservationLog, comment: str = "", inputs: Sequence[Path] = ()) -> None:
+    """Writes camera.ini, frames.csv and, if there is any truth, truth.csv, all of them or none; makes the folder.
+    ``inputs``: files that it may not replace."""
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    write_camera(folder / "camera.ini", log.camera, comment, log.camera2)
-    write_frames(folder / "frames.csv", log.frames)
-    if log.truth:
-        write_truth(folder / "truth.csv", log.truth)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise LogError(folder, 0, "", error.strerror or str(error)) from None
+    names = ["camera.ini", "frames.csv", *(["truth.csv"] if log.truth else [])]
+    with replacing_all([folder / name for name in names], inputs) as (camera, frames, *truth):
+        write_camera(camera, log.camera, comment, log.camera2)
+        write_frames(frames, log.frames)
+        for path in truth:
+            write_truth(path, log.truth)

@@ -6,7 +6,7 @@ import argparse
 import math
 from pathlib import Path
 
-from .obslog import Camera, LogError, write_log
+from .obslog import Camera, write_log
 from .scene import Scene, make_log
 
 # name: shape, W, L, H in metres (of the cylinder: diameter, diameter, height)
@@ -194,9 +194,6 @@ def scene_of(arguments: argparse.Namespace) -> Scene:
 
 def run(arguments: argparse.Namespace) -> int:
     log = make_log(scene_of(arguments))
-    try:
-        write_log(arguments.out, log, "made by goe_tools scene")
-    except OSError as error:
-        raise LogError(arguments.out, 0, "", error.strerror or str(error)) from None
+    write_log(arguments.out, log, "made by goe_tools scene")
     print(f"{arguments.out}: {len(log.frames)} rows")
     return 0

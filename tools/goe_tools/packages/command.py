@@ -1,8 +1,9 @@
 """Stage packages, or check and write the manifests that lie in the tree.
 
-    python -m goe_tools packages --out DIR [--target NAME]... [--maintainer "NAME <ADDRESS>"] [--url URL]
-    python -m goe_tools packages --check
-    python -m goe_tools packages --write
+python -m goe_tools packages --out DIR [--target NAME]... [--maintainer "NAME <ADDRESS>"] [--url URL]
+python -m goe_tools packages --check
+python -m goe_tools packages --write
+python -m goe_tools packages --sbom FILE
 """
 
 from __future__ import annotations
@@ -10,7 +11,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ..logs.whole_file import write_whole
 from .facts import Facts
+from .installed import Sources
+from .sbom import as_text, make
 from .staging import Words
 from .targets import COMMITTED, TARGETS
 
@@ -20,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument("--out", type=Path, metavar="DIR", help="where to stage: DIR/<target>/goe; must not be there yet")
     what.add_argument("--check", action="store_true", help="fail if a manifest in the tree says something else")
     what.add_argument("--write", action="store_true", help="write the manifests in the tree")
+    what.add_argument("--sbom", type=Path, metavar="FILE", help="write the bill of materials, CycloneDX as JSON")
     parser.add_argument("--target", action="append", choices=sorted(TARGETS), help="only this one; may be repeated")
     parser.add_argument("--maintainer", help="who answers for the packages; default: the goe authors")
     parser.add_argument("--url", help="home page of the project; Arduino's index asks for one")
@@ -52,6 +57,9 @@ def run(arguments: argparse.Namespace) -> int:
         found = differences(facts)
         print("\n".join(found) or f"manifests are those of version {facts.version}")
         return 1 if found else 0
+    if arguments.sbom:
+        write_whole(arguments.sbom, as_text(make(facts, Sources())))
+        return 0
     if arguments.write:
         for name, text in COMMITTED.items():
             (facts.root / name).write_text(text(facts), encoding="utf-8")

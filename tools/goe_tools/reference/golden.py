@@ -22,6 +22,7 @@ import numpy as np
 from ..logs.estimates import NUMBERS
 from ..logs.obslog import FEATURES, Camera, Frame, read_log
 from ..logs.projection import distort
+from ..logs.whole_file import write_whole
 from ..places import ROOT
 from .gates import Gates
 from .mirror32 import Mirror32
@@ -387,5 +388,5 @@ def run(arguments: argparse.Namespace) -> int:
         return EXIT_DIFFERENT if found else 0
     arguments.out.mkdir(parents=True, exist_ok=True)
     for name, make in MAKERS.items():
-        (arguments.out / name).write_text(make(), encoding="utf-8")
+        write_whole(arguments.out / name, make())
     return 0

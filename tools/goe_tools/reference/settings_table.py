@@ -13,6 +13,7 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..logs.whole_file import write_whole
 from ..places import ROOT
 
 BEGIN, END = "<!-- settings: begin -->", "<!-- settings: end -->"
@@ -79,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     before, between, behind = parts(file.read_text(encoding="utf-8"), str(file))
     if arguments.write:
-        file.write_text(f"{before}{BEGIN}\n{text}\n{END}{behind}", encoding="utf-8")
+        write_whole(file, f"{before}{BEGIN}\n{text}\n{END}{behind}")
     elif between != text:
         print(f"{file}: its table of settings is not the library's; python -m goe_tools settings --write {file}")
         return 1

@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 
 from ..attack import approach, rows
+from ..logs.whole_file import write_whole
 from ..places import ROOT
 from .attacks import Attack, attacks, warnings
 from .goals_file import QUANTITIES, Goals, read_goals
@@ -93,5 +94,5 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     page = PAGE.read_text(encoding="utf-8")
     before, rest = page.split(BEGIN)
-    PAGE.write_text(f"{before}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}", encoding="utf-8")
+    write_whole(PAGE, f"{before}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}")
     return 0

@@ -2,43 +2,38 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from ..logs.obslog import LogError
+from ..logs.fields import LogError, read_records
 
 
 def read_columns(path: Path, text: Iterable[str]) -> dict[str, np.ndarray]:
     """Arrays of one length: text where named so, float64 otherwise, NaN where the field is empty."""
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or "cannot be read") from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise LogError(path, 0, "", f"no CSV: {error}") from None
+    lines, rows = [], []
+    for line, fields in read_records(path):
+        if rows and len(fields) != len(rows[0]):
+            raise LogError(path, line, "", f"{len(fields)} fields, the header has {len(rows[0])}")
+        lines.append(line)
+        rows.append(fields)
     if len(rows) < 2:
         raise LogError(path, 0, "", "no rows")
     header = rows[0]
-    for number, row in enumerate(rows[1:], start=2):
-        if len(row) != len(header):
-            raise LogError(path, number, "", f"{len(row)} fields, the header has {len(header)}")
     columns: dict[str, np.ndarray] = {}
     for name, fields in zip(header, zip(*rows[1:])):
-        columns[name] = np.array(fields) if name in text else _numbers(path, name, fields)
+        columns[name] = np.array(fields) if name in text else _numbers(path, name, lines[1:], fields)
     return columns
 
 
-def _numbers(path: Path, name: str, fields: Sequence[str]) -> np.ndarray:
+def _numbers(path: Path, name: str, lines: Sequence[int], fields: Sequence[str]) -> np.ndarray:
     try:
         return np.array([field or "nan" for field in fields], dtype=float)
     except ValueError:
-        for number, field in enumerate(fields, start=2):
+        for line, field in zip(lines, fields):
             try:
                 float(field or "nan")
             except ValueError:
-                raise LogError(path, number, name, f"{field!r} is not a number") from None
+                raise LogError(path, line, name, f"{field!r} is not a number") from None
         raise

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ..logs.whole_file import log_files, refuse_inputs
 from .data import read_campaign
 from .terminal import print_table3
 
@@ -29,6 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
         rare=arguments.rare,
         approach=arguments.approach,
     )
+    if arguments.out is not None:
+        read = [arguments.goals, arguments.avoid, arguments.rare, *log_files(arguments.approach or arguments.campaign)]
+        refuse_inputs(arguments.out, [*read, arguments.campaign / "cases.csv", arguments.campaign / "campaign.json"])
     if arguments.table:
         print_table3(campaign)
     if arguments.out is not None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..logs.obslog import LogError
+from ..logs.fields import JSON_BYTES_MAX, LogError, read_text
 from .avoid_file import Avoid, read_avoid
 from .columns import read_columns
 from .goals_file import Goals, read_goals
@@ -125,9 +125,7 @@ def read_campaign(
 
 def _read_facts(path: Path) -> dict[str, Any]:
     try:
-        facts = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or "cannot be read") from None
+        facts = json.loads(read_text(path, JSON_BYTES_MAX))
     except json.JSONDecodeError as error:
         raise LogError(path, error.lineno, "", error.msg) from None
     if not isinstance(facts, dict):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..logs.obslog import LogError
+from ..logs.fields import JSON_BYTES_MAX, LogError, read_text
 
 QUANTITIES = ("X0", "Z0", "orientation", "W", "L", "H")  # as the file names them, in the order of its tables
 
@@ -56,9 +56,7 @@ class Goals:
 
 def read_goals(path: Path) -> Goals:
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or "cannot be read") from None
+        content = json.loads(read_text(path, JSON_BYTES_MAX))
     except json.JSONDecodeError as error:
         raise LogError(path, error.lineno, "", error.msg) from None
     if not isinstance(content, dict) or not isinstance(content.get("goals"), list) or not content["goals"]:

@@ -16,6 +16,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
 from ..logs.obslog import read_log
+from ..logs.whole_file import write_whole
 from ..optimum import paper_table3 as t3
 from ..view.answers import Options
 from ..view.picture import png
@@ -105,7 +106,7 @@ def draw_figures(campaign: Campaign, folder: Path) -> list[PageFigure]:
             continue
         spec = FIGURES[drawn.index]
         for kind, content in drawn.wide.items():
-            (folder / f"{spec.key}.{kind}").write_bytes(content)
+            write_whole(folder / f"{spec.key}.{kind}", content)
         wide, narrow = (_data_uri(spec.in_page, images[spec.in_page]) for images in (drawn.wide, drawn.narrow))
         found[drawn.index] = PageFigure(spec.key, spec.title, spec.section, drawn.caption, drawn.alt, wide, narrow)
     return [found[index] for index in sorted(found)]
@@ -414,6 +415,4 @@ def write_page(campaign: Campaign, out: Path) -> None:
         raise ValueError(f"{out} is a folder")
     out.parent.mkdir(parents=True, exist_ok=True)
     figures = draw_figures(campaign, out.with_name(out.stem + "_figures"))
-    part = out.with_name(out.name + ".part")
-    part.write_text(render_page(campaign, figures), encoding="utf-8")
-    part.replace(out)
+    write_whole(out, render_page(campaign, figures))

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..logs.obslog import LogError
+from ..logs.fields import JSON_BYTES_MAX, LogError, read_text
+from ..logs.whole_file import write_whole
 from .avoid_file import COLLISION, KINDS, PASS, Avoid
 
 FIRST_SEED = 1_000_001  # far from those that tests, demo and README fly
@@ -90,22 +91,19 @@ class Record:
     first: Counts = field(default_factory=dict)  # of the first runs alone, to be flown again
 
     def write(self, path: Path) -> None:
-        part = path.with_name(path.name + ".part")
-        part.write_text(json.dumps(asdict(self), indent=1) + "\n", encoding="utf-8")
-        part.replace(path)
+        write_whole(path, json.dumps(asdict(self), indent=1) + "\n")
 
 
 def read_record(path: Path) -> Record:
+    text = read_text(path, JSON_BYTES_MAX)
     try:
-        told: Any = json.loads(path.read_text(encoding="utf-8"))
+        told: Any = json.loads(text)
         record = Record(**told)
         for course, names in EVENTS.items():
             for kind in KINDS:
                 of = record.counts[course][kind]
                 if of["runs"] != record.runs or not all(0 <= of[name] <= of["runs"] for name in names):
                     raise ValueError(f"{course}, {kind}: counts that cannot be")
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or str(error)) from None
     except (KeyError, TypeError, ValueError) as error:
         raise LogError(path, 0, "", f"not a record of rare events: {error}") from None
     return record

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..logs.obslog import LogError, ObservationLog, read_log, read_truth
+from ..logs.whole_file import log_files, write_whole
 from .answers import SETTING_GROUPS, Options
 from .story import MOST_ROWS, Story, story_of
 
@@ -85,20 +86,13 @@ def read(arguments: argparse.Namespace) -> ObservationLog:
     return log
 
 
-def write_whole(path: Path, content: bytes, log: Path) -> None:
-    """Writes a file whole or not at all."""
-    if path.is_dir():
-        raise ValueError(f"{path} is a folder")
-    if path.resolve() in ((log / name).resolve() for name in ("camera.ini", "frames.csv", "truth.csv")):
-        raise ValueError(f"{path}: the output would replace the log")
-    part = path.with_name(path.name + ".part")
+def write(path: Path, content: bytes, arguments: argparse.Namespace) -> None:
+    """Whole or not at all, into a folder that is made."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(content)
-        part.replace(path)
     except OSError as error:
-        part.unlink(missing_ok=True)
-        raise ValueError(f"{path}: {error.strerror or error}") from None
+        raise LogError(path, 0, "", error.strerror or str(error)) from None
+    write_whole(path, content, [*log_files(arguments.log), arguments.truth])
     print(f"{path}: {len(content) / 1e3:,.0f} kB")
 
 
@@ -109,14 +103,14 @@ def write_outputs(story: Story, arguments: argparse.Namespace) -> None:
     if page:
         from .page import render
 
-        write_whole(page, render(story, chosen, first).encode("utf-8"), arguments.log)
+        write(page, render(story, chosen, first).encode("utf-8"), arguments)
     if arguments.png or arguments.svg:
         from .picture import png, svg  # here: what draws takes its time to start
 
         if arguments.png:
-            write_whole(arguments.png, png(story, chosen, first, arguments.theme), arguments.log)
+            write(arguments.png, png(story, chosen, first, arguments.theme), arguments)
         if arguments.svg:
-            write_whole(arguments.svg, svg(story, chosen, first), arguments.log)
+            write(arguments.svg, svg(story, chosen, first), arguments)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ... import spread
 from ...attack.rows import HALVES
+from ...logs.whole_file import write_whole
 from ..flights.logged import KITTI_FOLDER
 from ..flights.recorded import RECORDED_FOLDER
 from ..library import ready
@@ -87,5 +88,5 @@ def run(arguments: argparse.Namespace) -> int:
     asked = [goal for goal in goals if goal.met is not None]
     print(f"\n{sum(bool(goal.met) for goal in asked)} of {len(asked)} goals met")
     if arguments.json:
-        arguments.json.write_text(json.dumps(as_json(goals, arguments.quick), indent=1) + "\n", encoding="utf-8")
+        write_whole(arguments.json, json.dumps(as_json(goals, arguments.quick), indent=1) + "\n")
     return 0

@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 typedef struct {
-    char text[512]; /* "file:line: column: reason", without a line break */
+    char text[4608]; /* "file:line: column: reason", without a line break; room for the longest path */
 } input_error_t;
 
 #if defined(__GNUC__) || defined(__clang__)

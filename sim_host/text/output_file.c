@@ -115,6 +115,21 @@ static bool open_beside(output_file_t *output, const char *path, const struct st
     return output->stream != NULL;
 }
 
+/* Leaves errno alone. */
+static bool is_link(const char *path) {
+    struct stat status;
+    const int cause = errno;
+    const bool link = lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
+    errno = cause;
+    return link;
+}
+
+bool output_file_is(const char *path, const char *input) {
+    struct stat a, b;
+    return stat(path, &a) == 0 && stat(input, &b) == 0 && S_ISREG(a.st_mode) && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
 bool output_file_open(output_file_t *output, const char *path) {
     struct stat status;
     (void)memset(output, 0, sizeof *output);
@@ -124,7 +139,7 @@ bool output_file_open(output_file_t *output, const char *path) {
     if (path == NULL) {
         output->stream = stdout;
     } else if (stat(path, &status) != 0) {
-        (void)open_beside(output, path, NULL);
+        (void)(errno == ENOENT && !is_link(path) && open_beside(output, path, NULL));
     } else if (S_ISREG(status.st_mode)) {
         (void)open_beside(output, path, &status);
     } else {

@@ -1,0 +1,79 @@
+"""Files that appear whole or not at all, and never in the place of an input."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from .fields import LogError
+
+
+def refuse_inputs(out: Path, inputs: Iterable[Path | None]) -> None:
+    """LogError if an output would replace an input, whatever links lead to it."""
+    for path in inputs:
+        if path is not None and out.is_file() and path.exists() and os.path.samefile(out, path):
+            raise LogError(out, 0, "", f"the output would replace {path}, which is read")
+
+
+def log_files(folder: Path) -> list[Path]:
+    """The files that a log may have."""
+    return [folder / name for name in ("camera.ini", "frames.csv", "truth.csv", "truth_frames.csv")]
+
+
+def _mode(target: Path) -> int:
+    """Of the file that is there, or of a new one."""
+    if target.exists():
+        return target.stat().st_mode & 0o777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+@contextmanager
+def _placed(path: Path) -> Iterator[Path]:
+    if path.is_dir():
+        raise LogError(path, 0, "", "is a folder")
+    if path.is_symlink() and not path.exists():
+        raise LogError(path, 0, "", "is a symbolic link that leads nowhere")
+    if path.exists() and not path.is_file():  # a device, a pipe: nothing to be replaced
+        yield path
+        return
+    target = path.resolve()
+    descriptor, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
+    part = Path(name)
+    try:
+        os.close(descriptor)
+        yield part
+        part.chmod(_mode(target))
+        part.replace(target)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def replacing(path: Path, inputs: Iterable[Path | None] = ()) -> Iterator[Path]:
+    """Where to write what is to stand in ``path`` once all is written; what is there stays until then, and if writing
+    fails or is interrupted. A symbolic link stays one; one that leads nowhere is refused, and so is an input."""
+    path = Path(path)
+    refuse_inputs(path, inputs)
+    try:
+        with _placed(path) as place:
+            yield place
+    except OSError as error:
+        raise LogError(path, 0, "", error.strerror or str(error)) from None
+
+
+@contextmanager
+def replacing_all(paths: Iterable[Path], inputs: Iterable[Path | None] = ()) -> Iterator[list[Path]]:
+    """The same for files that belong together."""
+    inputs = list(inputs)
+    with ExitStack() as stack:
+        yield [stack.enter_context(replacing(path, inputs)) for path in paths]
+
+
+def write_whole(path: Path, content: str | bytes, inputs: Iterable[Path | None] = ()) -> None:
+    with replacing(path, inputs) as place:
+        place.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
