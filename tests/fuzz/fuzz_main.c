@@ -306,9 +306,29 @@ static void print_counts(double seconds) {
     (void)puts("}");
 }
 
+typedef struct {
+    uint64_t work;
+    double seconds;
+} limits_t;
+
+/* True if it is an option, which takes the next argument. */
+static bool take_option(const char *name, const char *value, limits_t *limits) {
+    if (strcmp(name, "--random") == 0) {
+        fuzz.seed = fuzz.random = strtoull(value, NULL, 0);
+    } else if (strcmp(name, "--work") == 0) {
+        limits->work = strtoull(value, NULL, 0);
+    } else if (strcmp(name, "--seconds") == 0) {
+        limits->seconds = strtod(value, NULL);
+    } else if (strcmp(name, "--keep") == 0) {
+        fuzz.keep = value;
+    } else {
+        return false;
+    }
+    return true;
+}
+
 int main(int argc, char **argv) {
-    uint64_t work = 0;
-    double seconds = 0.0;
+    limits_t limits = {0, 0.0};
     int status = 0;
     fuzz.keep = ".";
     for (int i = 1; i + 1 < argc; i++) {
@@ -316,25 +336,14 @@ int main(int argc, char **argv) {
     }
     set_signals();
     const double begun_s = now_s();
-    for (int i = 1; i < argc && status == 0; i++) {
-        const char *value = i + 1 < argc ? argv[i + 1] : "";
-        const int before = i;
-        if (strcmp(argv[i], "--random") == 0) {
-            fuzz.seed = fuzz.random = strtoull(value, NULL, 0);
-        } else if (strcmp(argv[i], "--work") == 0) {
-            work = strtoull(value, NULL, 0);
-        } else if (strcmp(argv[i], "--seconds") == 0) {
-            seconds = strtod(value, NULL);
-        } else if (strcmp(argv[i], "--keep") == 0) {
-            fuzz.keep = value;
-        } else {
-            i--;
-            status = take(argv[before]);
-        }
-        i++;
+    int i = 1;
+    while (i < argc && status == 0) {
+        const bool is_option = take_option(argv[i], i + 1 < argc ? argv[i + 1] : "", &limits);
+        status = is_option ? 0 : take(argv[i]);
+        i += is_option ? 2 : 1;
     }
     if (status == 0 && fuzz.is_random) {
-        run_random(argv[0], work, seconds);
+        run_random(argv[0], limits.work, limits.seconds);
     }
     print_counts(now_s() - begun_s);
     return status;
