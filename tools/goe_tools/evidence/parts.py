@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from .record import Result
 
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
+    "fuzz": "whatever comes in: does every answer hold what the headers promise?",
 }
 
 
