@@ -23,6 +23,9 @@ extern fuzz_count_t fuzz_counts[];
 /* Ends the program unless `condition` holds. */
 #define FUZZ_HOLDS(condition) ((condition) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #condition))
 
+/* memcmp() == 0, of structures too: their padding may hold anything, which MemorySanitizer is not to be told. */
+bool fuzz_same(const void *a, const void *b, size_t size);
+
 void fuzz_broken(const char *file, int line, const char *what) __attribute__((noreturn));
 
 #endif

@@ -135,14 +135,14 @@ static unsigned char guard[GUARD_BYTES];
 static goe_estimator_t kept;
 
 static void check_guards(void) {
-    FUZZ_HOLDS(memcmp(memory.before, guard, GUARD_BYTES) == 0);
-    FUZZ_HOLDS(memcmp(memory.between, guard, GUARD_BYTES) == 0);
-    FUZZ_HOLDS(memcmp(memory.behind, guard, GUARD_BYTES) == 0);
+    FUZZ_HOLDS(fuzz_same(memory.before, guard, GUARD_BYTES));
+    FUZZ_HOLDS(fuzz_same(memory.between, guard, GUARD_BYTES));
+    FUZZ_HOLDS(fuzz_same(memory.behind, guard, GUARD_BYTES));
 }
 
 static void keep(void) { memcpy(&kept, &memory.estimator, sizeof kept); }
 
-static void check_kept(void) { FUZZ_HOLDS(memcmp(&kept, &memory.estimator, sizeof kept) == 0); }
+static void check_kept(void) { FUZZ_HOLDS(fuzz_same(&kept, &memory.estimator, sizeof kept)); }
 
 typedef struct {
     fuzz_input_t in;

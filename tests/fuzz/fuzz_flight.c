@@ -116,11 +116,11 @@ static void before_call(void) { memcpy(&kept, &memory.flight, sizeof kept); }
 static void after_call(run_t *run, goe_flight_status_t status) {
     FUZZ_HOLDS(((int)status <= (int)GOE_FLIGHT_TOO_NEW && (int)status >= (int)GOE_FLIGHT_NOTHING) ||
                ((int)status <= (int)GOE_FLIGHT_BAD_SETTINGS && (int)status >= (int)GOE_FLIGHT_NOT_INITIALISED));
-    FUZZ_HOLDS(memcmp(memory.before, guard, GUARD_BYTES) == 0 && memcmp(memory.behind, guard, GUARD_BYTES) == 0);
+    FUZZ_HOLDS(fuzz_same(memory.before, guard, GUARD_BYTES) && fuzz_same(memory.behind, guard, GUARD_BYTES));
     if (status != GOE_FLIGHT_OK && memory.flight.counters.lost == kept.counters.lost) {
         kept.counters = memory.flight.counters;
         kept.history.stale = memory.flight.history.stale;
-        FUZZ_HOLDS(memcmp(&kept, &memory.flight, sizeof kept) == 0);
+        FUZZ_HOLDS(fuzz_same(&kept, &memory.flight, sizeof kept));
     }
     hash_bytes(run, &status, sizeof status);
     count(CALLS);
@@ -441,7 +441,7 @@ static void read_all(run_t *run) {
     }
     read_sectors(run);
     read_pose(run);
-    FUZZ_HOLDS(memcmp(&kept, &memory.flight, sizeof kept) == 0);
+    FUZZ_HOLDS(fuzz_same(&kept, &memory.flight, sizeof kept));
 }
 
 /* ------------------------------------------------------------------------------------------------------------ sections -- */

@@ -11,6 +11,28 @@ void fuzz_broken(const char *file, int line, const char *what) {
     abort();
 }
 
+#if defined(__has_feature)
+#if __has_feature(memory_sanitizer)
+#include <sanitizer/msan_interface.h>
+#define LARGEST 65536u
+
+static unsigned char copies[2][LARGEST];
+#endif
+#endif
+
+bool fuzz_same(const void *a, const void *b, size_t size) {
+#ifdef LARGEST
+    FUZZ_HOLDS(size <= LARGEST);
+    memcpy(copies[0], a, size);
+    memcpy(copies[1], b, size);
+    __msan_unpoison(copies[0], size);
+    __msan_unpoison(copies[1], size);
+    a = copies[0];
+    b = copies[1];
+#endif
+    return memcmp(a, b, size) == 0;
+}
+
 static const uint32_t special_bits[] = {
     0x00000000u, 0x80000000u,                                        /* zeros */
     0x00000001u, 0x807FFFFFu,                                        /* subnormal */
