@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from goe_tools.evidence import fuzz
 from goe_tools.evidence.fuzz import MEMORY, PLAIN, SANITIZED, BrokenError, Job
-from goe_tools.evidence.fuzz_state import State, read_state, write_state
+from goe_tools.evidence.fuzz_state import Build, State, read_state, write_state
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -110,6 +110,25 @@ def test_a_target_that_breaks_is_told_and_ends_the_run(stand_in: Path, tmp_path:
     assert len(state.broken) == 1 and "it broke" in state.broken[0]
     assert json.loads(place.read_text())["broken"] == state.broken
     assert state.count("default/estimator", "updates") + state.count("fuzz/estimator", "updates") > 0
+
+
+def test_a_broken_input_counts_until_it_is_mended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ran = []
+
+    def drive(of: Build, target: str, arguments: list[str], keep: Path) -> dict[str, float]:
+        ran.append(target)
+        if "crash" in arguments[0]:
+            raise BrokenError("it breaks yet")
+        return {}
+
+    monkeypatch.setattr(fuzz, "drive", drive)
+    mended = tmp_path / "broken-fuzz_estimator-7-123"
+    broken = tmp_path / "broken-libfuzzer-log-crash-abc"
+    mended.touch()
+    broken.touch()
+    assert fuzz.still_broken(tmp_path) == [f"{broken.name}: it breaks yet"]
+    assert ran == ["estimator", "log"]
+    assert broken.exists() and not mended.exists()
 
 
 def test_libfuzzers_edges_are_read_from_its_last_line() -> None:

@@ -258,6 +258,20 @@ def run_quick(jobs: int, keep: Path) -> State:
     return state
 
 
+def still_broken(keep: Path) -> list[str]:
+    """What was kept of earlier runs and breaks yet; the others are removed, and fuzzing goes on."""
+    told = []
+    for path in sorted(keep.glob("broken-*")):
+        name = path.name.split("-")
+        target = name[2] if name[1] == "libfuzzer" else name[1].replace("fuzz_", "", 1)
+        try:
+            drive(SANITIZED, target, [str(path)], keep)
+            path.unlink()
+        except BrokenError as error:
+            told.append(f"{path.name}: {error}")
+    return told
+
+
 def run_long(updates: int, jobs: int, keep: Path) -> State:
     if shutil.which("clang-19") is None:
         raise NotHereError("clang-19 is not installed")
@@ -266,6 +280,7 @@ def run_long(updates: int, jobs: int, keep: Path) -> State:
     build(PLAIN, ["fuzz_estimator"], jobs)
     build(SANITIZED, [f"{kind}_{target}" for kind in ("fuzz", "libfuzzer") for target in TARGETS], jobs)
     build(MEMORY, [f"fuzz_{target}" for target in WITHOUT_LIBRARIES], jobs)
+    state.broken = still_broken(keep)
     run_slices(state, updates, jobs, keep, place)
     return state
 
