@@ -11,6 +11,7 @@ from .record import Result
 
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
     "fuzz": "whatever comes in: does every answer hold what the headers promise?",
+    "flips": "one flipped bit anywhere in the estimator's memory",
 }
 
 
