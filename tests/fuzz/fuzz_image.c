@@ -177,6 +177,18 @@ static void hide_one(fuzz_input_t *in, goe_image_t *image) {
     image->box.seen = (uint8_t)(image->box.seen & ~(1u << (which >> 5) % 4u));
 }
 
+/* Truth values that are neither 0 nor 1: they count as 1. Nobody but the library may read them. */
+static void put_truths(fuzz_input_t *in, goe_image_t *image) {
+    const uint8_t truth = fuzz_byte(in);
+    const uint32_t which = fuzz_byte(in);
+    for (uint32_t i = 0; i < 6u; i++) {
+        if ((which >> i & 1u) != 0) {
+            memset(&point_of(image, i)->seen, truth, sizeof(bool));
+        }
+    }
+    memset(&image->pose.reset_delta_known, truth >> 1, sizeof(bool));
+}
+
 static void swap_points(fuzz_input_t *in, goe_image_t *image) {
     const uint32_t which = fuzz_byte(in);
     goe_pixel_t *a = point_of(image, which);
@@ -263,6 +275,7 @@ enum {
     SPOIL_LATE,
     SPOIL_SHOWN,
     SPOIL_HEIGHT,
+    SPOIL_TRUTH,
     SPOILS
 };
 
@@ -328,6 +341,9 @@ static void spoil_features(fuzz_input_t *in, uint32_t what, fuzz_view_t *view, g
             break;
         case SPOIL_SIDES:
             image->box.seen = fuzz_byte(in);
+            break;
+        case SPOIL_TRUTH:
+            put_truths(in, image);
             break;
         case SPOIL_FROZEN:
         default:

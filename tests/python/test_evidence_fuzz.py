@@ -6,9 +6,11 @@ import json
 from pathlib import Path
 
 import pytest
-from goe_tools.evidence import fuzz
+from goe_tools.__main__ import main
+from goe_tools.evidence import command, fuzz
 from goe_tools.evidence.fuzz import MEMORY, PLAIN, SANITIZED, BrokenError, Job
 from goe_tools.evidence.fuzz_state import Build, State, read_state, write_state
+from goe_tools.evidence.record import read
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -135,6 +137,18 @@ def test_libfuzzers_edges_are_read_from_its_last_line() -> None:
     log = "#2 INITED cov: 12 ft: 13 corp: 1/1b\n#9 NEW    cov: 345 ft: 400 corp: 2/9b\nDone 9 runs\n"
     assert fuzz.edges_of(log) == 345
     assert fuzz.edges_of("nothing") == 0
+
+
+def test_a_long_run_is_recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    state = State("hash")
+    state.add("default/estimator", {"updates": 1234})
+    monkeypatch.setattr(fuzz, "run_long", lambda updates, jobs, keep: state)
+    monkeypatch.setattr(command, "REPORTS", tmp_path)
+    record = tmp_path / "record.json"
+    arguments = ["evidence", "--long", "--only", "fuzz", "--updates", "1000", "--record", str(record)]
+    assert main(arguments) == 1  # none of them under the sanitizers
+    rows = read(record)["fuzz"].rows
+    assert (rows[0].figure, rows[0].met) == ("1,234", True)
 
 
 def test_every_target_has_a_harness_and_a_corpus_that_is_small() -> None:
