@@ -82,7 +82,7 @@ def program(of: Build, target: str, kind: str = "fuzz") -> Path:
 
 def corpus(target: str) -> list[str]:
     """Text is mutated from its corpus; the estimator and the flight layer take any bytes, and longer ones."""
-    return [] if target in ("estimator", "flight", "mavlink") else [str(CORPUS / target)]
+    return [] if target in ("estimator", "flips", "flight", "mavlink") else [str(CORPUS / target)]
 
 
 def drive(of: Build, target: str, arguments: list[str], keep: Path) -> dict[str, float]:
@@ -224,6 +224,8 @@ def rows_of(state: State, updates: int) -> list[Row]:
         Row("... of a mover that is followed; with late poses told",
             f"{number(told.get('movers_followed', 0))}; {number(told.get('latency_told', 0))}", "both",
             min(told.get("movers_followed", 0), told.get("latency_told", 0)) > 0),
+        Row("bits flipped in flight", number(state.all_of("flips").get("flips", 0.0)), "some",
+            state.all_of("flips").get("flips", 0.0) > 0),
         Row("statuses of images reached", f"{len(reached)} of {len(statuses)}", "all", len(reached) == len(statuses)),
         Row(BROKEN, str(len(state.broken)), "0", not state.broken),
     ]  # fmt: skip
