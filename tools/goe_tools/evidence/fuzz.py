@@ -37,12 +37,8 @@ LEAST_SEEN = 1  # updates with a status, for it to count as reached
 PLAIN = Build("default", "build")
 SANITIZED = Build("fuzz", "build-fuzz")
 MEMORY = Build("fuzz-msan", "build-fuzz-msan")
-WITHOUT_LIBRARIES = (
-    "estimator",
-    "flight",
-    "mavlink",
-    "text",
-)  # what MemorySanitizer can run: no code but the project's
+# What MSan can run: no code but the project's.
+WITHOUT_LIBRARIES = ("estimator", "flips", "flight", "mavlink", "text")
 TARGETS = (*WITHOUT_LIBRARIES, "log", "simulation", "companion")
 
 # Ended by a signal, so that the input is kept; and no leak checks of a program that counts its own end by atexit().
