@@ -144,7 +144,7 @@ def test_a_long_run_is_recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     state.add("default/estimator", {"updates": 1234})
     monkeypatch.setattr(fuzz, "run_long", lambda updates, jobs, keep: state)
     monkeypatch.setattr(command, "REPORTS", tmp_path)
-    record = tmp_path / "record.json"
+    record = tmp_path / "new" / "record.json"
     arguments = ["evidence", "--long", "--only", "fuzz", "--updates", "1000", "--record", str(record)]
     assert main(arguments) == 1  # none of them under the sanitizers
     rows = read(record)["fuzz"].rows
