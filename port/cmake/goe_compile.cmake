@@ -41,7 +41,8 @@ function(goe_compile target)
         target_link_options(${target} PUBLIC ${goe_sanitizers})
         if(arg_LIBRARY)
             # The library never divides by zero and never casts what does not fit; test code may.
-            target_compile_options(${target} PRIVATE -fsanitize=float-divide-by-zero,float-cast-overflow)
+            target_compile_options(${target} PRIVATE -fsanitize=float-divide-by-zero,float-cast-overflow
+                $<$<C_COMPILER_ID:Clang>:-fsanitize=implicit-conversion>)
         endif()
     endif()
 endfunction()

@@ -109,6 +109,8 @@ RUN_BY = {
     "ctest --preset": By("tools/test.sh", "ctest --preset"),
     "build/tests/targets/replay": By("tests/targets/host.cmake", "goe_check_hash(replay replay)"),
     "build/tests/targets/flight_replay": By("tests/targets/host.cmake", "goe_check_flight_hash(flight_replay"),
+    "build/tests/fuzz/fuzz_estimator --random 1 --seconds 20": By("tools/goe_tools/evidence/fuzz.py", "fuzz_estimator"),
+    "python -m goe_tools evidence --long --only fuzz": By("tests/python/test_evidence_fuzz.py", '"evidence", "--long"'),
     "build/tests/flight/flight_recorded": By("tests/flight/CMakeLists.txt", "flight_recorded"),
     "host_builds.sh": By("tests/targets/host.cmake", "host_builds.sh"),
     "host_self_check.sh": By("tests/targets/host.cmake", "host_self_check.sh"),

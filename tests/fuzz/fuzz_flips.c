@@ -1,0 +1,156 @@
+/* One flipped bit in the estimator's memory, fuzzed: any bit, at any time of any flight. SPDX-License-Identifier: MIT
+ *
+ * goe.h: it leads to no trap, no endless loop, no write outside, no output that is not finite or not of its enumeration. Each section
+ * begins with goe_init(), flies, has one bit flipped and flies on. tests/flips counts what becomes of every bit of some flights;
+ * here are all flights, and some bits. */
+#include <math.h>
+#include <string.h>
+
+#include "estimate_checks.h"
+#include "fuzz.h"
+#include "fuzz_image.h"
+#include "fuzz_settings.h"
+
+#define GUARD_BYTES 64
+#define GUARD 0xC3
+#define UPDATES_MAX 6000u
+#define VALID_BITS 0x7Fu
+
+enum { UPDATES, FLIPS, CORRUPTED, NOT_INITIALISED, RESET_HELPED, FRESH_AFTER, SUSPECT_AFTER, COUNTS };
+
+fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
+                                        {"flips", 0},
+                                        {"answered_corrupted", 0},
+                                        {"answered_not_initialised", 0},
+                                        {"resets_that_helped", 0},
+                                        {"fresh_after", 0},
+                                        {"suspect_after", 0},
+                                        {NULL, 0}};
+
+static struct {
+    unsigned char before[GUARD_BYTES];
+    goe_estimator_t estimator;
+    unsigned char between[GUARD_BYTES];
+    goe_estimate_t estimate;
+    unsigned char behind[GUARD_BYTES];
+} memory;
+
+static unsigned char guard[GUARD_BYTES];
+
+static void check_guards(void) {
+    FUZZ_HOLDS(fuzz_same(memory.before, guard, GUARD_BYTES) && fuzz_same(memory.between, guard, GUARD_BYTES));
+    FUZZ_HOLDS(fuzz_same(memory.behind, guard, GUARD_BYTES));
+}
+
+static void check_finite(const void *from, size_t size) {
+    for (size_t i = 0; i + sizeof(float) <= size; i += sizeof(float)) {
+        float number;
+        memcpy(&number, (const unsigned char *)from + i, sizeof number);
+        FUZZ_HOLDS(fuzz_is_finite(number));
+    }
+}
+
+/* 0 or 1, looked at as a byte. */
+static void check_truth(const bool *truth) {
+    unsigned char byte;
+    memcpy(&byte, truth, sizeof byte);
+    FUZZ_HOLDS(byte <= 1u);
+}
+
+static void check_answer(goe_status_t status) {
+    const goe_estimate_t *e = &memory.estimate;
+    check_guards();
+    check_finite(&e->age_s, sizeof *e - offsetof(goe_estimate_t, age_s));
+    check_truth(&e->fresh);
+    check_truth(&e->suspect);
+    FUZZ_HOLDS(check_is_image_status(status) || status == GOE_CORRUPTED || status == GOE_NOT_INITIALISED);
+    FUZZ_HOLDS((int)e->method >= 0 && (int)e->method <= (int)GOE_METHOD_REFINED);
+    FUZZ_HOLDS((int)e->model >= (int)GOE_MODEL_NONE && (int)e->model <= (int)GOE_MODEL_PRISM);
+    FUZZ_HOLDS((int)e->reason >= (int)GOE_REASON_NONE && (int)e->reason <= (int)GOE_REASON_NOISE);
+    FUZZ_HOLDS((e->valid & ~VALID_BITS) == 0u);
+    FUZZ_HOLDS(check_is_image_status(status) || e->valid == 0u);
+}
+
+static void ask(const fuzz_view_t *view) {
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    goe_hazard_t hazard;
+    goe_plan_t plan;
+    memset(&plan, 0, sizeof plan);
+    memset(&hazard, 0xFF, sizeof hazard);
+    memset(covariance, 0xFF, sizeof covariance);
+    plan.velocity_ned_m_s[0] = view->path.speed_m_s * cosf(view->path.course_rad);
+    plan.velocity_ned_m_s[1] = view->path.speed_m_s * sinf(view->path.course_rad);
+    plan.margin_m = 15.0f;
+    plan.clearance_m = 10.0f;
+    (void)goe_covariance(&memory.estimator, covariance);
+    check_finite(covariance, sizeof covariance);
+    (void)!goe_hazard(&memory.estimator, &plan, &hazard);
+    check_finite(&hazard, offsetof(goe_hazard_t, has_clearance));
+    check_truth(&hazard.has_clearance);
+    FUZZ_HOLDS(hazard.violation >= 0.0f && hazard.violation <= 1.0f);
+    check_guards();
+}
+
+static void flip(fuzz_input_t *in) {
+    const size_t byte = fuzz_half(in) % sizeof memory.estimator;
+    const unsigned char bit = (unsigned char)(1u << fuzz_below(in, 8));
+    unsigned char *at = (unsigned char *)&memory.estimator + byte;
+    *at = (unsigned char)(*at ^ bit);
+    fuzz_counts[FLIPS].times++;
+}
+
+static void count_answer(goe_status_t status, bool flipped) {
+    fuzz_counts[UPDATES].times++;
+    if (flipped) {
+        fuzz_counts[CORRUPTED].times += status == GOE_CORRUPTED ? 1u : 0u;
+        fuzz_counts[NOT_INITIALISED].times += status == GOE_NOT_INITIALISED ? 1u : 0u;
+        fuzz_counts[FRESH_AFTER].times += memory.estimate.fresh ? 1u : 0u;
+        fuzz_counts[SUSPECT_AFTER].times += memory.estimate.suspect ? 1u : 0u;
+    }
+}
+
+/* Returns the images flown. */
+static uint32_t section(fuzz_input_t *in, fuzz_view_t *view) {
+    static goe_settings_t settings;
+    goe_image_t image;
+    fuzz_usual_settings(in, &settings);
+    if (fuzz_below(in, 4) == 3u) {
+        fuzz_change_settings(in, true, &settings);
+    }
+    if (goe_init(&memory.estimator, sizeof memory.estimator, &settings, NULL) != GOE_OK) {
+        return 1;
+    }
+    fuzz_view_begin(in, &settings, view);
+    const uint32_t before = fuzz_below(in, 80);
+    const uint32_t images = before + 10u + fuzz_below(in, 40);
+    for (uint32_t k = 0; k < images; k++) {
+        if (k == before) {
+            flip(in);
+        }
+        (void)fuzz_view_image(view, &image);
+        memset(&memory.estimate, 0xFF, sizeof memory.estimate);
+        const goe_status_t status = goe_update(&memory.estimator, &image, &memory.estimate);
+        check_answer(status);
+        count_answer(status, k >= before);
+        if (k >= before && k % 2u == 0) {
+            ask(view);
+        }
+        if (status == GOE_CORRUPTED && goe_reset(&memory.estimator) == GOE_OK) {
+            fuzz_counts[RESET_HELPED].times++;
+        }
+    }
+    return images;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    fuzz_input_t in = {data, size};
+    fuzz_view_t view;
+    uint32_t updates = 0;
+    memset(&view, 0, sizeof view);
+    memset(guard, GUARD, sizeof guard);
+    memset(&memory, GUARD, sizeof memory);
+    do {
+        updates += section(&in, &view);
+    } while (in.left > 0 && updates < UPDATES_MAX);
+    return 0;
+}

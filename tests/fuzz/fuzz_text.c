@@ -1,0 +1,186 @@
+/* What reads words and lines, fuzzed: numbers, names, settings, lines of configurations and of JSON. SPDX-License-Identifier: MIT
+ *
+ * The first letter of the input says which: n numbers, t numbers behind a word, m mistyped names, s a setting, i lines of a
+ * configuration, l lines of JSON; any other one: a float's text. None of it needs a library, so that it runs under every
+ * sanitizer. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fuzz.h"
+#include "fuzz_input.h"
+#include "ini_lines.h"
+#include "line_reader.h"
+#include "nearest_name.h"
+#include "number_text.h"
+#include "settings_text.h"
+#include "text_numbers.h"
+
+#define TEXT_MAX 8192u
+
+enum { INPUTS, NUMBERS, SETTINGS, SETTINGS_REFUSED, LINES, JSON_TEXTS, COUNTS };
+
+fuzz_count_t fuzz_counts[COUNTS + 1] = {{"inputs", 0}, {"numbers", 0},    {"settings", 0}, {"settings_refused", 0},
+                                        {"lines", 0},  {"json_texts", 0}, {NULL, 0}};
+
+static char text[TEXT_MAX + 1];
+
+static void try_numbers(size_t length) {
+    const double untouched = -7.25;
+    double value = untouched;
+    int64_t whole = -7;
+    char *end;
+    if (number_parse(text, length, &value)) {
+        const double expected = strtod(text, &end);
+        FUZZ_HOLDS(end == text + length);
+        FUZZ_HOLDS(memcmp(&expected, &value, sizeof value) == 0 || (isnan(expected) && isnan(value)));
+        FUZZ_HOLDS(strpbrk(text, "xXpP \t\n") == NULL);
+        (void)number_to_float(value);
+        fuzz_counts[NUMBERS].times++;
+    } else {
+        FUZZ_HOLDS(memcmp(&value, &untouched, sizeof value) == 0);
+    }
+    if (integer_parse(text, length, &whole)) {
+        FUZZ_HOLDS(whole == strtoll(text, &end, 10) && end == text + length);
+    } else {
+        FUZZ_HOLDS(whole == -7);
+    }
+}
+
+/* Exactly as printf would write it, and back again. */
+static void try_format(const uint8_t *data, size_t size) {
+    fuzz_input_t in = {data, size};
+    char ours[NUMBER_TEXT_MAX + 1];
+    char theirs[64];
+    do {
+        const float value = fuzz_float_of(fuzz_word(&in));
+        const size_t length = number_format(ours, value);
+        FUZZ_HOLDS(length <= NUMBER_TEXT_MAX);
+        ours[length] = '\0';
+        (void)snprintf(theirs, sizeof theirs, "%.9g", (double)value);
+        FUZZ_HOLDS(strcmp(ours, theirs) == 0);
+        fuzz_counts[NUMBERS].times++;
+    } while (in.left > 0);
+}
+
+static void try_words(void) {
+    double values[3] = {0.0, 0.0, 0.0};
+    if (text_numbers(text, "box:", values, 3)) {
+        FUZZ_HOLDS(isfinite(values[0]) && isfinite(values[1]) && isfinite(values[2]));
+        fuzz_counts[NUMBERS].times++;
+    }
+}
+
+static void try_name(size_t length) {
+    static const char *const names[] = {"camera.fx", "navigation.height_bias_m", "x", "", "detector.box_share"};
+    nearest_name_t nearest = nearest_name_of(text, length);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        nearest_name_try(&nearest, names[i]);
+    }
+    FUZZ_HOLDS(nearest.name == NULL || nearest.edits <= (length > 64u ? length : 64u));
+}
+
+static void try_setting(void) {
+    static goe_estimator_t estimator;
+    goe_settings_t settings, before;
+    setting_fault_t fault;
+    fault.text[0] = '\0';
+    goe_settings_default(&settings);
+    settings.camera.fx_px = settings.camera.fy_px = 900.0f;
+    before = settings;
+    if (!setting_assign(&settings, text, &fault)) {
+        FUZZ_HOLDS(fault.text[0] != '\0' && memchr(fault.text, '\0', sizeof fault.text) != NULL);
+        FUZZ_HOLDS(memcmp(&before, &settings, sizeof before) == 0);
+        fuzz_counts[SETTINGS_REFUSED].times++;
+        return;
+    }
+    fuzz_counts[SETTINGS].times++;
+    const bool taken = settings_in_range(&settings, &fault);
+    const goe_status_t status = goe_init(&estimator, sizeof estimator, &settings, NULL);
+    FUZZ_HOLDS(taken == (status == GOE_OK));
+}
+
+static void try_lines(size_t length) {
+    const char *fault = NULL;
+    if (length == 0) {
+        return; /* fmemopen() takes no empty memory */
+    }
+    ini_lines_t lines = {fmemopen(text, length, "r"), 0, NULL, 0};
+    FUZZ_HOLDS(lines.stream != NULL);
+    for (const char *line = ini_lines_next(&lines, &fault); line != NULL; line = ini_lines_next(&lines, &fault)) {
+        FUZZ_HOLDS(fault == NULL && strpbrk(line, "#\n") == NULL);
+        fuzz_counts[LINES].times++;
+    }
+    (void)fclose(lines.stream);
+    free(lines.text);
+}
+
+typedef struct {
+    uint64_t hash;
+    unsigned long texts;
+} taken_t;
+
+static void take_text(void *user, const char *line, size_t length) {
+    taken_t *taken = user;
+    FUZZ_HOLDS(length > 0 && length <= DETECTION_LINE_MAX);
+    for (size_t i = 0; i < length; i++) {
+        taken->hash = (taken->hash ^ (uint8_t)line[i]) * 0x100000001B3u;
+    }
+    taken->hash = (taken->hash ^ 0xFFu) * 0x100000001B3u;
+    taken->texts++;
+}
+
+/* The same texts come out, in whatever pieces the bytes come. */
+static void try_json_texts(size_t length) {
+    static line_reader_t at_once, in_pieces;
+    taken_t whole = {0, 0};
+    taken_t pieces = {0, 0};
+    memset(&at_once, 0, sizeof at_once);
+    memset(&in_pieces, 0, sizeof in_pieces);
+    line_reader_take(&at_once, text, length, take_text, &whole);
+    line_reader_end(&at_once, take_text, &whole);
+    for (size_t i = 0; i < length;) {
+        const size_t piece = 1u + (i * 7u + length) % 13u;
+        const size_t size = length - i < piece ? length - i : piece;
+        line_reader_take(&in_pieces, text + i, size, take_text, &pieces);
+        i += size;
+    }
+    line_reader_end(&in_pieces, take_text, &pieces);
+    FUZZ_HOLDS(whole.hash == pieces.hash && whole.texts == pieces.texts);
+    fuzz_counts[JSON_TEXTS].times += whole.texts;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    fuzz_counts[INPUTS].times++;
+    if (size == 0) {
+        return 0;
+    }
+    const size_t length = size - 1u < TEXT_MAX ? size - 1u : TEXT_MAX;
+    memcpy(text, data + 1, length);
+    text[length] = '\0';
+    switch (data[0]) {
+        case 'n':
+            try_numbers(length);
+            break;
+        case 't':
+            try_words();
+            break;
+        case 'm':
+            try_name(length);
+            break;
+        case 's':
+            try_setting();
+            break;
+        case 'i':
+            try_lines(length);
+            break;
+        case 'l':
+            try_json_texts(length);
+            break;
+        default:
+            try_format(data, size);
+            break;
+    }
+    return 0;
+}
