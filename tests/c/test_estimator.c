@@ -339,6 +339,22 @@ static void stopping_keeps_the_last_answer(void) {
     CHECK_SAME(last.width_m, estimate.width_m);
 }
 
+/* GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is told;
+ * before there is one to solve, the feature's fault is. */
+static void a_failed_solution_is_told_before_a_feature_s_fault(void) {
+    scene.speed_mps = 0.0;
+    start();
+    for (int k = 0; k < 12; k++) {
+        scene_image(&scene, k, &image, NULL);
+        const goe_pixel_t left = image.base_left;
+        image.base_left = image.base_right;
+        image.base_right = left;
+        CHECK_STATUS(k < WINDOW - 1 ? GOE_SWAPPED : GOE_NO_BASELINE, update());
+    }
+    TEST_ASSERT_EQUAL_UINT32(12u, estimator.causes[-GOE_SWAPPED]);
+    TEST_ASSERT_EQUAL_UINT32(5u, estimator.causes[-GOE_NO_BASELINE]);
+}
+
 /* An obstacle that flies along ahead of us never grows. */
 static void a_moving_obstacle_has_no_parallax(void) {
     scene_make_cylinder(&scene);
@@ -558,6 +574,29 @@ static void an_estimator_must_be_initialised(void) {
     }
 }
 
+/* Of the window's answer: the sigmas squared, and nothing beside the diagonal; all 0 without a position. */
+static void the_covariance_is_the_sigmas_squared(void) {
+    static const float nothing[GOE_QUANTITIES][GOE_QUANTITIES];
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    start();
+    (void)fly(0, 4);
+    memset(covariance, 0xFF, sizeof covariance);
+    CHECK_STATUS(GOE_COLLECTING, goe_covariance(&estimator, covariance));
+    TEST_ASSERT_EQUAL_MEMORY(nothing, covariance, sizeof covariance);
+    CHECK_STATUS(GOE_OK, fly(4, 20));
+    const goe_sigma_t *s = &estimate.sigma;
+    const float sigma[GOE_QUANTITIES] = {[GOE_X0] = s->x0_m,         [GOE_Z0] = s->z0_m,
+                                         [GOE_WIDTH] = s->width_m,   [GOE_ORIENTATION] = s->orientation_deg,
+                                         [GOE_LENGTH] = s->length_m, [GOE_HEIGHT] = s->height_m};
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        TEST_ASSERT_TRUE(sigma[i] > 0.0f);
+        for (int j = 0; j < GOE_QUANTITIES; j++) {
+            CHECK_SAME(i == j ? sigma[i] * sigma[i] : 0.0f, covariance[i][j]);
+        }
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------- tracks -- */
 
 /* GIVEN a track WHEN it is reset THEN the estimator goes on as a new one, but keeps its counters. */
@@ -665,6 +704,7 @@ int main(void) {
     RUN_TEST(a_side_seen_edge_on_gives_no_length);
     RUN_TEST(hovering_has_no_baseline);
     RUN_TEST(stopping_keeps_the_last_answer);
+    RUN_TEST(a_failed_solution_is_told_before_a_feature_s_fault);
     RUN_TEST(a_moving_obstacle_has_no_parallax);
     RUN_TEST(an_obstacle_that_is_said_to_lie_behind_is_passed);
     RUN_TEST(every_number_read_is_checked);
@@ -676,6 +716,7 @@ int main(void) {
     RUN_TEST(counters_saturate);
     RUN_TEST(null_pointers_are_refused);
     RUN_TEST(an_estimator_must_be_initialised);
+    RUN_TEST(the_covariance_is_the_sigmas_squared);
     RUN_TEST(a_reset_forgets_the_track_and_keeps_the_counters);
     RUN_TEST(estimators_share_nothing);
     RUN_TEST(an_estimator_may_be_moved);

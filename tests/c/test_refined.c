@@ -621,6 +621,38 @@ static void a_moving_obstacle_is_suspected(void) {
     TEST_ASSERT_EQUAL_INT(0, fly_past_a_mover(0.0, 0.0, 0.0));
 }
 
+/* GIVEN an autopilot that gives its attitude the wrong way round, on an aircraft that sways THEN the filter starts anew again and
+ * again, and the estimate tells that what it is given does not belong together; GIVEN the right way THEN it never says so. */
+static void a_wrong_convention_is_told(void) {
+    any = check_random_start("convention");
+    for (int wrong = 0; wrong < 2; wrong++) {
+        int told = 0;
+        setUp();
+        scene.wobble_deg = 10.0;
+        start();
+        for (int k = 0; k < IMAGES; k++) {
+            scene_image(&scene, k, &image, NULL);
+            scene_add_noise(&image, &any, 0.5);
+            for (int i = 1; wrong > 0 && i < 4; i++) {
+                image.pose.attitude[i] = -image.pose.attitude[i];
+            }
+            update();
+            told += estimate.reason == GOE_REASON_CONVENTION && estimate.suspect ? 1 : 0;
+        }
+        TEST_ASSERT_TRUE(wrong > 0 ? told > 0 : told == 0);
+    }
+}
+
+/* The number of images behind an answer stops at its largest value. */
+static void the_number_of_images_saturates(void) {
+    start();
+    fly(0, 20);
+    TEST_ASSERT_TRUE(estimate.points > 10 && estimate.points <= 20);
+    estimator.filter.health.images = INT16_MAX - 1;
+    fly(20, 25);
+    TEST_ASSERT_EQUAL_INT(32767, estimate.points);
+}
+
 /* -------------------------------------------------------------------------------------------------------- forced models -- */
 
 static void a_forced_disc_stays_a_disc(void) {
@@ -734,6 +766,29 @@ static void an_answer_follows_the_motion_while_nothing_is_seen(void) {
     TEST_ASSERT_TRUE(estimate.fresh);
     CHECK_SAME(0.0f, estimate.age_s);
     check_truth(1.0, 0.01);
+}
+
+/* GIVEN an answer that has grown old THEN its covariance is that of its sigmas alone: the filter may be another's by then. */
+static void the_covariance_of_an_old_answer_is_its_sigmas_squared(void) {
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    float value[GOE_QUANTITIES];
+    float sigma[GOE_QUANTITIES];
+    start();
+    fly(0, 25);
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    TEST_ASSERT_TRUE(covariance[GOE_Z0][GOE_WIDTH] != 0.0f);
+    scene_image(&scene, 25, &image, NULL);
+    for (int i = 0; i < 6; i++) {
+        pixel(i)->seen = false;
+    }
+    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    tell_answer(value, sigma);
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        for (int j = 0; j < GOE_QUANTITIES; j++) {
+            CHECK_SAME(i == j ? sigma[i] * sigma[i] : 0.0f, covariance[i][j]);
+        }
+    }
 }
 
 /* GIVEN a bounding box alone, or base corners alone THEN the track goes on. */
@@ -856,12 +911,15 @@ int main(void) {
     RUN_TEST(the_error_of_the_altitude_is_in_the_height);
     RUN_TEST(a_track_that_began_at_another_obstacle_recovers);
     RUN_TEST(a_moving_obstacle_is_suspected);
+    RUN_TEST(a_wrong_convention_is_told);
+    RUN_TEST(the_number_of_images_saturates);
     RUN_TEST(a_forced_disc_stays_a_disc);
     RUN_TEST(a_forced_line_is_a_box_and_no_disc_before_it);
     RUN_TEST(a_forced_line_without_corners_tells_nothing);
     RUN_TEST(a_stand_in_tells_no_width);
     RUN_TEST(the_window_answers_before_the_start_only);
     RUN_TEST(an_answer_follows_the_motion_while_nothing_is_seen);
+    RUN_TEST(the_covariance_of_an_old_answer_is_its_sigmas_squared);
     RUN_TEST(any_subset_of_the_features_will_do);
     RUN_TEST(a_refused_image_changes_one_counter);
     RUN_TEST(reading_calls_refuse_what_is_no_estimator);
