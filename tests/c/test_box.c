@@ -396,6 +396,23 @@ static void names_move_the_reference_point_and_not_the_middle(void) {
     }
 }
 
+/* (R24): 1 + 4 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
+static void an_unsure_depth_widens_what_hangs_on_the_corner(void) {
+    goe_box_edges_t edges;
+    goe_shape_t shape;
+    start_at(30.0);
+    goe_box_edges(filter.state, &edges);
+    static const double share[] = {0.0, 0.25, 1.0, 1.9, 3.0};
+    static const double early[] = {1.0, 1.25, 5.0, 15.44, 17.0};
+    for (int i = 0; i < 5; i++) {
+        memset(&filter.inverse, 0, sizeof filter.inverse);
+        filter.inverse.element[goe_inverse_column(GOE_DEPTH_DIFFERENCE) + GOE_DEPTH_DIFFERENCE] =
+            (float)(share[i] * (double)edges.sum);
+        goe_box_shape(&filter, &shape);
+        CHECK_CLOSE(1.0e-4 * early[i], early[i], shape.early);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(rows_are_those_of_the_corners_that_are_seen);
@@ -404,5 +421,6 @@ int main(void) {
     RUN_TEST(depths_solve_their_equations);
     RUN_TEST(an_edge_keeps_its_name_until_it_lies_clearly_across);
     RUN_TEST(names_move_the_reference_point_and_not_the_middle);
+    RUN_TEST(an_unsure_depth_widens_what_hangs_on_the_corner);
     return UNITY_END();
 }

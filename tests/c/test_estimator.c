@@ -488,6 +488,20 @@ static void time_must_run_on(void) {
     CHECK_STATUS(GOE_OK, update());
 }
 
+/* GIVEN settings that change after goe_init, and an estimator of which every byte is set THEN the estimator keeps what it was given,
+ * and begins with zeroed counters. */
+static void the_settings_are_copied_and_the_counters_zeroed(void) {
+    memset(&estimator, 0xA5, sizeof estimator);
+    start();
+    for (int i = 0; i < GOE_CAUSES; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[i]);
+    }
+    const goe_settings_t given = settings;
+    memset(&settings, 0xFF, sizeof settings);
+    TEST_ASSERT_EQUAL_MEMORY(&given, &estimator.settings, sizeof given);
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+}
+
 static void the_first_image_needs_a_time(void) {
     start();
     scene_image(&scene, 0, &image, NULL);
@@ -710,6 +724,7 @@ int main(void) {
     RUN_TEST(every_number_read_is_checked);
     RUN_TEST(what_is_not_seen_is_not_read);
     RUN_TEST(time_must_run_on);
+    RUN_TEST(the_settings_are_copied_and_the_counters_zeroed);
     RUN_TEST(the_first_image_needs_a_time);
     RUN_TEST(a_quaternion_may_be_off_by_one_percent);
     RUN_TEST(the_first_fault_is_told);

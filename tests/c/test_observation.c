@@ -246,6 +246,20 @@ static void an_image_may_know_its_own_errors(void) {
     TEST_ASSERT_EQUAL_FLOAT(7.0f, sight.side_px);
 }
 
+/* GIVEN an error less than the least that its setting takes THEN it counts as that. */
+static void less_than_the_least_counts_as_that(void) {
+    goe_observation_t sight;
+    start();
+    image.noise.attitude_deg = 1.0e-6f;
+    image.noise.pixel_px = 1.0e-6f;
+    estimator.filter.datum.sd_m = 1.0e-6f;
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    CHECK_CLOSE(1.0e-10, 1.0e-4 * (double)GOE_RAD_PER_DEG, sight.white_rad);
+    TEST_ASSERT_EQUAL_FLOAT(0.05f, sight.point_px);
+    TEST_ASSERT_EQUAL_FLOAT(0.05f, sight.side_px);
+    TEST_ASSERT_EQUAL_FLOAT(1.0e-3f, sight.height_sd_m);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(derivatives_are_those_of_the_projection);
@@ -257,5 +271,6 @@ int main(void) {
     RUN_TEST(points_out_of_order_do_not_count);
     RUN_TEST(an_edge_takes_two_base_corners);
     RUN_TEST(an_image_may_know_its_own_errors);
+    RUN_TEST(less_than_the_least_counts_as_that);
     return UNITY_END();
 }

@@ -643,6 +643,45 @@ static void a_wrong_convention_is_told(void) {
     }
 }
 
+/* GIVEN a noisy flight THEN a quantity is told only after two images in a row that knew it: the one before, and this one. */
+static void known_in_two_images_in_a_row(void) {
+    int held_back = 0;
+    any = check_random_start("two in a row");
+    for (int shape = 0; shape < 2; shape++) {
+        setUp();
+        if (shape > 0) {
+            scene_make_cylinder(&scene);
+        }
+        scene.z0_m = 180.0;
+        start();
+        unsigned before = 0u;
+        for (int k = 0; k < 80; k++) {
+            fly_noisily(k, k + 1, 0.5);
+            const unsigned now = estimator.filter.known;
+            const unsigned told = estimate.valid & ~(GOE_HAS_CENTER | GOE_HAS_VELOCITY);
+            if (estimate.fresh && estimate.method == GOE_METHOD_REFINED) {
+                TEST_ASSERT_EQUAL_HEX(before & now, told);
+                held_back += (now & ~told) != 0u ? 1 : 0;
+            }
+            before = now;
+        }
+    }
+    check_report("images whose quantities waited for the next one", held_back);
+    TEST_ASSERT_TRUE(held_back > 0);
+}
+
+/* The residual is the window's; the baseline is the way since the track began. */
+static void what_is_the_window_s_alone_is_0(void) {
+    scene.path = SCENE_STRAIGHT;
+    scene.wobble_deg = 0.0;
+    start();
+    fly(0, 30);
+    TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
+    CHECK_SAME(0.0f, estimate.residual);
+    CHECK_CLOSE(1.0e-3, 58.0, estimate.baseline_m);
+    CHECK_SAME(estimate.orientation_deg, estimate.orientation_raw_deg);
+}
+
 /* The number of images behind an answer stops at its largest value. */
 static void the_number_of_images_saturates(void) {
     start();
@@ -912,6 +951,8 @@ int main(void) {
     RUN_TEST(a_track_that_began_at_another_obstacle_recovers);
     RUN_TEST(a_moving_obstacle_is_suspected);
     RUN_TEST(a_wrong_convention_is_told);
+    RUN_TEST(known_in_two_images_in_a_row);
+    RUN_TEST(what_is_the_window_s_alone_is_0);
     RUN_TEST(the_number_of_images_saturates);
     RUN_TEST(a_forced_disc_stays_a_disc);
     RUN_TEST(a_forced_line_is_a_box_and_no_disc_before_it);
