@@ -104,6 +104,13 @@ static void the_number_of_line_points_is_a_setting(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
     (void)fly(7, 8);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
+    start(); /* ... of line points, too: until it is, the disc is told */
+    for (int k = 0; k < 13; k++) {
+        scene_image(&scene, k, &image, NULL);
+        image.base_left.seen = image.base_near.seen = image.base_right.seen = k >= 5;
+        (void)update();
+        TEST_ASSERT_EQUAL_INT(k < 7 ? GOE_MODEL_NONE : k < 12 ? GOE_MODEL_DISC : GOE_MODEL_LINE, estimate.model);
+    }
 }
 
 static void the_window_is_a_setting(void) {
@@ -293,6 +300,20 @@ static void a_negative_height_all_along_gives_no_height(void) {
         CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_PARTIAL, update());
         TEST_ASSERT_FALSE(estimate.valid & GOE_HAS_HEIGHT);
         TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.height_m);
+    }
+}
+
+/* GIVEN a top that lies below the ground THEN the mean of the heights is none, and is not told. */
+static void a_height_that_is_not_positive_is_none(void) {
+    scene_make_cylinder(&scene);
+    start();
+    for (int k = 0; k < 12; k++) {
+        scene_image(&scene, k, &image, NULL);
+        image.top.v_px += 800.0f;
+        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, update());
+        TEST_ASSERT_FALSE(estimate.valid & GOE_HAS_HEIGHT);
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.height_m);
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.sigma.height_m);
     }
 }
 
@@ -715,6 +736,7 @@ int main(void) {
     RUN_TEST(what_lies_behind_is_told);
     RUN_TEST(a_fault_beside_a_solution_is_partial);
     RUN_TEST(a_negative_height_all_along_gives_no_height);
+    RUN_TEST(a_height_that_is_not_positive_is_none);
     RUN_TEST(a_side_seen_edge_on_gives_no_length);
     RUN_TEST(hovering_has_no_baseline);
     RUN_TEST(stopping_keeps_the_last_answer);

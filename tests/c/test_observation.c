@@ -194,6 +194,29 @@ static void the_body_is_where_the_mounting_puts_it(void) {
     }
 }
 
+#if GOE_BESIDE
+/* GIVEN poses that are late WHEN an image is linearised THEN the attitude is that of the exposure: what the body turned by since is
+ * taken off the bias. */
+static void what_the_poses_are_late_by_is_taken_off(void) {
+    any = check_random_start("late");
+    for (int n = 0; n < CASES; n++) {
+        sighting_start(&sighting, &any);
+        goe_observation_t *sight = &sighting.sight;
+        goe_observation_linearise(sight);
+        const float still[3] = {sight->ex, sight->ey, sight->ez};
+        sight->latency_s = (float)check_random_between(&any, -0.3, 0.3);
+        for (int i = 0; i < 3; i++) {
+            sight->rate_rad_s[i] = (float)check_random_between(&any, -0.5, 0.5);
+        }
+        goe_observation_linearise(sight);
+        const float turned[3] = {sight->ex, sight->ey, sight->ez};
+        for (int i = 0; i < 3; i++) {
+            CHECK_CLOSE(1.0e-7, (double)still[i] - (double)sight->latency_s * (double)sight->rate_rad_s[i], turned[i]);
+        }
+    }
+}
+#endif
+
 static goe_point_t at(float x) { return (goe_point_t){x, 0.1f, true}; }
 
 static void points_out_of_order_do_not_count(void) {
@@ -268,6 +291,9 @@ int main(void) {
     RUN_TEST(the_spread_is_that_of_the_alignment);
     RUN_TEST(size_noise_is_a_share_of_the_width);
     RUN_TEST(the_body_is_where_the_mounting_puts_it);
+#if GOE_BESIDE
+    RUN_TEST(what_the_poses_are_late_by_is_taken_off);
+#endif
     RUN_TEST(points_out_of_order_do_not_count);
     RUN_TEST(an_edge_takes_two_base_corners);
     RUN_TEST(an_image_may_know_its_own_errors);

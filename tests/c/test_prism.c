@@ -415,6 +415,30 @@ static void a_prism_is_told_with_what_no_image_shows(void) {
     TEST_ASSERT_TRUE(prism.sigma.z0_m > 1.1f * disc.sigma.z0_m);
 }
 
+/* (R33): GIVEN a share of the range that the whole sigma passes, and what an image can show does not THEN the position is told, with
+ * the whole sigma. */
+static void what_no_image_shows_keeps_no_answer_back(void) {
+    static const float share[] = {0.02f, 0.01f};
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t image;
+    for (int strict = 0; strict < 2; strict++) {
+        scene_default(&scene);
+        scene.boxes = true;
+        goe_settings_t settings = scene_settings(&scene);
+        settings.refined.range_share = share[strict];
+        CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+        for (int k = 0; k < 34; k++) {
+            scene_image(&scene, k, &image, NULL);
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+        const bool told = estimate.fresh && estimate.method == GOE_METHOD_REFINED;
+        TEST_ASSERT_EQUAL_INT(strict == 0, told);
+        TEST_ASSERT_TRUE(!told || estimate.sigma.z0_m > share[strict] * estimate.z0_m);
+    }
+}
+
 /* GIVEN a box sooner than 0.08 of the time for which its errors stay alike THEN it adds nothing, and the answer stands; later it
  * does. */
 static void boxes_that_come_too_soon_are_not_used(void) {
@@ -448,6 +472,7 @@ int main(void) {
     RUN_TEST(every_side_that_is_seen_is_checked);
     RUN_TEST(a_height_s_own_error_counts_in_the_first_image);
     RUN_TEST(a_prism_is_told_with_what_no_image_shows);
+    RUN_TEST(what_no_image_shows_keeps_no_answer_back);
     RUN_TEST(boxes_that_come_too_soon_are_not_used);
     RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);
