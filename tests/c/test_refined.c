@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "goe_guard.h"
 #include "refined/goe_filter.h"
 #include "scene.h"
 
@@ -680,6 +681,7 @@ static void what_no_image_shows_of_the_own_motion_is_added(void) {
     fly(0, 25);
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, before));
     estimator.settings.navigation.position_walk_m = 2.0f;
+    goe_guard_seal(&estimator);
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, after));
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const double walked = i <= GOE_Z0 ? 4.0 * s : 0.0;
@@ -687,6 +689,7 @@ static void what_no_image_shows_of_the_own_motion_is_added(void) {
     }
     estimator.settings.navigation.position_walk_m = 0.0f;
     estimator.settings.navigation.velocity_bias_m_s = 1.0f;
+    goe_guard_seal(&estimator);
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, after));
     const double share = s / path_m;
     const double top = fmax((double)estimate.height_m, fabs((double)estimate.height_m - scene.altitude_m));
