@@ -36,7 +36,7 @@ def test_the_command(
 ) -> None:
     """Without breaking anything: that takes minutes."""
     monkeypatch.setattr(part, "rows_of_breaks", lambda _: ([Row("lines broken", "1 of 1", "all", True)], ["one"]))
-    record = tmp_path / "record.json"
+    record = tmp_path / "new" / "record.json"
     assert main(["evidence", how, "--only", "requirements", "--record", str(record)]) == 0
     assert record.exists() == (how == "--long")
     assert ("| requirements |" in capsys.readouterr().out) == (how != "--show")

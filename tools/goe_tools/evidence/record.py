@@ -55,6 +55,7 @@ def read(path: Path) -> dict[str, Kept]:
 
 
 def write(path: Path, kept: Iterable[Kept]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + ".part")
     part.write_text(json.dumps([asdict(entry) for entry in kept], indent=1) + "\n", encoding="utf-8")
     part.replace(path)
