@@ -321,11 +321,106 @@ static void depths_solve_their_equations(void) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------------- names -- */
+
+#define RANGE_M 100.0
+#define LENGTH_M 8.0
+#define WIDTH_M 3.0
+
+static goe_filter_t filter;
+
+/* The box whose side lies at this angle from Z. */
+static void lay(double deg) {
+    const double s = sin(deg * RAD_PER_DEG);
+    const double c = cos(deg * RAD_PER_DEG);
+    filter.state[GOE_BEARING] = -0.1f;
+    filter.state[GOE_INVERSE_RANGE] = (float)(1.0 / RANGE_M);
+    filter.state[GOE_SIDE_X] = (float)(LENGTH_M * s / RANGE_M);
+    filter.state[GOE_FRONT_X] = (float)(WIDTH_M * c / RANGE_M);
+    filter.state[GOE_DEPTH_DIFFERENCE] = (float)((LENGTH_M * c - WIDTH_M * fabs(s)) / RANGE_M);
+    goe_box_name(&filter);
+}
+
+static void start_at(double deg) {
+    memset(&filter, 0, sizeof filter);
+    filter.axes.turn_cos = 1.0f;
+    goe_box_enter(&filter, GOE_PHASE_BOX);
+    lay(deg);
+}
+
+/* GIVEN a box THEN its side is the edge nearer to Z at first, and keeps that name until it lies more than 52 degrees (tan b = 1.3)
+ * from Z; so does the other edge then. */
+static void an_edge_keeps_its_name_until_it_lies_clearly_across(void) {
+    static const double all_deg[] = {52.3, -52.3, 30.0, 52.6, 45.0, 37.7, 60.0, 37.3, 52.3};
+    static const bool exchanged[] = {false, false, false, true, true, true, true, false, false};
+    for (int sign = -1; sign <= 1; sign += 2) {
+        start_at(46.0 * sign);
+        TEST_ASSERT_TRUE(filter.naming.exchanged);
+        start_at(44.0 * sign);
+        TEST_ASSERT_FALSE(filter.naming.exchanged);
+        for (size_t i = 0; i < sizeof all_deg / sizeof all_deg[0]; i++) {
+            lay(all_deg[i] * sign);
+            TEST_ASSERT_EQUAL_INT(exchanged[i], filter.naming.exchanged);
+        }
+    }
+}
+
+/* GIVEN a box WHEN its edges exchange their names THEN width, length, orientation and the reference point are those of the other
+ * edge, and the middle of the base is where it was. */
+static void names_move_the_reference_point_and_not_the_middle(void) {
+    for (int deg = -70; deg <= 70; deg += 10) {
+        goe_shape_t shape[2];
+        double middle[2][2];
+        if (deg == 0) {
+            continue;
+        }
+        start_at(deg);
+        for (int i = 0; i < 2; i++) {
+            filter.naming.exchanged = i > 0;
+            goe_box_shape(&filter, &shape[i]);
+            const goe_linear_t *q = shape[i].quantity;
+            middle[i][0] = (double)q[GOE_X0].value + 0.5 * (double)q[GOE_LENGTH].value * (double)shape[i].length_axis.x;
+            middle[i][1] = (double)q[GOE_Z0].value + 0.5 * (double)q[GOE_LENGTH].value * (double)shape[i].length_axis.z;
+            CHECK_CLOSE(1.0e-3, (double)shape[i].middle.at.x * RANGE_M, middle[i][0]);
+            CHECK_CLOSE(1.0e-3, (double)shape[i].middle.at.z * RANGE_M, middle[i][1]);
+        }
+        CHECK_CLOSE(1.0e-4, LENGTH_M, shape[0].quantity[GOE_LENGTH].value);
+        CHECK_CLOSE(1.0e-4, WIDTH_M, shape[0].quantity[GOE_WIDTH].value);
+        CHECK_CLOSE(1.0e-4, WIDTH_M, shape[1].quantity[GOE_LENGTH].value);
+        CHECK_CLOSE(1.0e-4, LENGTH_M, shape[1].quantity[GOE_WIDTH].value);
+        CHECK_CLOSE(1.0e-4, deg * RAD_PER_DEG, shape[0].quantity[GOE_ORIENTATION].value);
+        CHECK_CLOSE(1.0e-4, (deg > 0 ? deg - 90.0 : deg + 90.0) * RAD_PER_DEG,
+                    shape[1].quantity[GOE_ORIENTATION].value);
+        CHECK_CLOSE(1.0e-4, middle[0][0], middle[1][0]);
+        CHECK_CLOSE(1.0e-4, middle[0][1], middle[1][1]);
+    }
+}
+
+/* (R24): 1 + 4 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
+static void an_unsure_depth_widens_what_hangs_on_the_corner(void) {
+    goe_box_edges_t edges;
+    goe_shape_t shape;
+    start_at(30.0);
+    goe_box_edges(filter.state, &edges);
+    static const double share[] = {0.0, 0.25, 1.0, 1.9, 3.0};
+    static const double early[] = {1.0, 1.25, 5.0, 15.44, 17.0};
+    for (int i = 0; i < 5; i++) {
+        memset(&filter.inverse, 0, sizeof filter.inverse);
+        filter.inverse.element[goe_inverse_column(GOE_DEPTH_DIFFERENCE) + GOE_DEPTH_DIFFERENCE] =
+            (float)(share[i] * (double)edges.sum);
+        goe_box_shape(&filter, &shape);
+        CHECK_CLOSE(1.0e-4 * early[i], early[i], shape.early);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(rows_are_those_of_the_corners_that_are_seen);
     RUN_TEST(a_silhouette_alone_takes_the_outermost_corners);
     RUN_TEST(a_missed_near_corner_is_told_from_a_single_face);
     RUN_TEST(depths_solve_their_equations);
+    RUN_TEST(an_edge_keeps_its_name_until_it_lies_clearly_across);
+    RUN_TEST(names_move_the_reference_point_and_not_the_middle);
+    RUN_TEST(an_unsure_depth_widens_what_hangs_on_the_corner);
     return UNITY_END();
 }

@@ -26,6 +26,7 @@ static goe_estimate_t estimate;
 static goe_image_t image;
 static unsigned phases; /* bit i: phase i was there */
 static bool suspected;
+static unsigned reasons; /* bit i: reason i was told */
 
 /* A box on the left whose front and right face are seen until the front turns away; the aircraft passes it closely. */
 void setUp(void) {
@@ -42,6 +43,7 @@ void setUp(void) {
     settings = scene_settings(&scene);
     phases = 0;
     suspected = false;
+    reasons = 0;
 }
 void tearDown(void) {}
 
@@ -54,7 +56,10 @@ static void update(void) {
     (void)goe_update(&estimator, &image, &estimate);
     phases |= 1u << estimator.filter.phase;
     suspected = suspected || estimate.suspect;
+    reasons |= 1u << estimate.reason;
 }
+
+static bool was_told(goe_reason_t reason) { return (reasons >> reason & 1u) != 0u; }
 
 static void leave_base_out(void) {
     image.base_left.seen = false;
@@ -293,6 +298,7 @@ static void a_disc_by_force_is_suspect(void) {
     }
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
     TEST_ASSERT_TRUE(estimate.suspect);
+    TEST_ASSERT_EQUAL_INT(GOE_REASON_SHAPE, estimate.reason);
 }
 
 /* ------------------------------------------------------------------------------------------------------ base corners -- */
@@ -329,6 +335,9 @@ static void false_base_corners_are_found_out(void) {
     }
     TEST_ASSERT_TRUE(was_in(GOE_PHASE_BOX));
     TEST_ASSERT_TRUE(suspected);
+    TEST_ASSERT_TRUE(was_told(GOE_REASON_BASE));
+    TEST_ASSERT_EQUAL_INT(GOE_REASON_BASE, estimate.reason); /* and stays so */
+    TEST_ASSERT_FALSE(goe_filter_is_box(&estimator.filter));
 }
 
 /* GIVEN noise larger than told by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
@@ -341,6 +350,8 @@ static void noise_does_not_make_corners_false(void) {
         update();
     }
     TEST_ASSERT_TRUE(suspected);
+    TEST_ASSERT_TRUE(was_told(GOE_REASON_NOISE));
+    TEST_ASSERT_FALSE(was_told(GOE_REASON_BASE));
     TEST_ASSERT_FALSE(estimator.filter.health.base_refused);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
 }

@@ -175,6 +175,35 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
     }
 }
 
+/* (R18): GIVEN base corners clearly below the horizon THEN flat ground tells the first range; GIVEN ones that are not, or a camera
+ * below the ground THEN the typical size does. */
+static void flat_ground_tells_the_first_range(void) {
+    static const struct {
+        float y, height_m;
+        bool ground;
+    } cases[] = {{0.2f, 20.0f, true}, {0.06f, 20.0f, true}, {0.01f, 20.0f, false}, {0.2f, -1.0f, false}};
+    any = check_random_start("flat ground");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        goe_triangle_t root;
+        float state[GOE_STATES];
+        any_disc();
+        sighting.settings.navigation.attitude_bias_deg = 0.5f; /* three of them are 0.026 */
+        sighting.settings.refined.typical_size_m = 6.0f;
+        sighting.sight.white_rad = 0.0f;
+        sighting.sight.height_m = cases[i].height_m;
+        sighting.sight.camera_m.x = 0.0f;
+        sighting.sight.camera_m.z = 0.0f;
+        sighting.sight.base = true;
+        for (size_t f = 0; f < GOE_FEATURES; f++) {
+            const float x = f == GOE_POINT_LEFT || f == GOE_POINT_BASE_LEFT ? -0.05f : 0.05f;
+            sighting.sight.point[f] = (goe_point_t){x, cases[i].y, f != GOE_POINT_BASE_NEAR};
+        }
+        TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, state, &root));
+        const double expected_m = cases[i].ground ? (double)cases[i].height_m / (double)cases[i].y : 6.0 / 0.1;
+        CHECK_CLOSE(1.0e-3 * expected_m, expected_m, 1.0 / (double)state[GOE_INVERSE_RANGE]);
+    }
+}
+
 static void no_width_is_no_start(void) {
     goe_triangle_t root;
     float state[GOE_STATES];
@@ -194,6 +223,7 @@ int main(void) {
     RUN_TEST(each_feature_alone_gives_its_row);
     RUN_TEST(shape_and_size_noise_are_shares_of_the_width);
     RUN_TEST(a_first_guess_has_the_right_direction_and_the_typical_size);
+    RUN_TEST(flat_ground_tells_the_first_range);
     RUN_TEST(no_width_is_no_start);
     return UNITY_END();
 }

@@ -281,6 +281,33 @@ static void standing_still_the_distance_is_that_of_now(void) {
     }
 }
 
+/* GIVEN less than 0.1 m/s over the ground THEN the aircraft stands still; GIVEN more THEN it moves. */
+static void a_creep_is_taken_as_standing_still(void) {
+    const obstacle_t chimney = {false, 0.0, 103.0, 6.0, 0.0, 0.0, 60.0};
+    const goe_plan_t creeping = plan_of(0.0999, 0.0, 1.0);
+    const goe_plan_t moving = plan_of(0.1001, 0.0, 1.0);
+    tell(&estimator.estimate, &chimney);
+    CHECK_CLOSE(0.0, 0.0, foresee(&creeping).time_s);
+    CHECK_CLOSE(1e-4, 100.0, foresee(&creeping).miss_m);
+    CHECK_CLOSE(0.1, 100.0 / 0.1001, foresee(&moving).time_s);
+    CHECK_CLOSE(0.0, 0.0, foresee(&moving).miss_m);
+}
+
+/* GIVEN an image that is two seconds old THEN the aircraft has flown on, and climbed, and times count from now. */
+static void since_the_image_the_aircraft_has_flown_on(void) {
+    const obstacle_t chimney = {false, 0.0, 143.0, 6.0, 0.0, 0.0, 60.0};
+    goe_plan_t plan = plan_of(20.0, 0.0, 1.0);
+    tell(&estimator.estimate, &chimney);
+    CHECK_CLOSE(1e-5, 7.0, foresee(&plan).time_s);
+    plan.since_image_s = 2.0f;
+    const goe_hazard_t hazard = foresee(&plan);
+    CHECK_CLOSE(1e-5, 5.0, hazard.time_s);
+    CHECK_CLOSE(1e-4, 50.0 + 7.0 - 60.0, hazard.clearance_m);
+    plan.since_image_s = 8.0f; /* 17 m behind the far side */
+    CHECK_CLOSE(0.0, 0.0, foresee(&plan).time_s);
+    CHECK_CLOSE(1e-4, 14.0, foresee(&plan).miss_m);
+}
+
 static void a_camera_in_the_middle_of_a_disc_has_an_answer(void) {
     const obstacle_t o = {false, 0.0, 0.0, 10.0, 0.0, 0.0, 45.0};
     const goe_plan_t plans[2] = {plan_of(0.0, 0.0, 0.0), plan_of(0.0, 15.0, 0.0)};
@@ -642,10 +669,11 @@ static void a_refusal_leaves_zeros(void) {
     check_refused(GOE_BAD_ARGUMENT, &estimator, NULL);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_hazard(&estimator, &good, NULL));
     tell(&estimator.estimate, &o);
-    for (int field = 0; field < 5; field++) {
-        static const float most[5] = {1e3f, 1e3f, 1e3f, 1e4f, 1e4f};
+    for (int field = 0; field < 6; field++) {
+        static const float most[6] = {1e3f, 1e3f, 1e3f, 1e4f, 1e4f, 1e3f};
         goe_plan_t plan = good;
-        float *x = field < 3 ? &plan.velocity_ned_m_s[field] : field == 3 ? &plan.margin_m : &plan.clearance_m;
+        float *const rest[] = {&plan.margin_m, &plan.clearance_m, &plan.since_image_s};
+        float *x = field < 3 ? &plan.velocity_ned_m_s[field] : rest[field - 3];
         goe_hazard_t hazard;
         *x = most[field];
         CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
@@ -675,6 +703,8 @@ int main(void) {
     RUN_TEST(what_lies_behind_is_as_far_as_now);
     RUN_TEST(over_the_roof_the_distance_is_none);
     RUN_TEST(standing_still_the_distance_is_that_of_now);
+    RUN_TEST(a_creep_is_taken_as_standing_still);
+    RUN_TEST(since_the_image_the_aircraft_has_flown_on);
     RUN_TEST(a_camera_in_the_middle_of_a_disc_has_an_answer);
     RUN_TEST(what_is_not_known_leaves_a_circle_or_a_point);
     RUN_TEST(without_a_height_the_margin_alone_counts);

@@ -104,6 +104,13 @@ static void the_number_of_line_points_is_a_setting(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
     (void)fly(7, 8);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
+    start(); /* ... of line points, too: until it is, the disc is told */
+    for (int k = 0; k < 13; k++) {
+        scene_image(&scene, k, &image, NULL);
+        image.base_left.seen = image.base_near.seen = image.base_right.seen = k >= 5;
+        (void)update();
+        TEST_ASSERT_EQUAL_INT(k < 7 ? GOE_MODEL_NONE : k < 12 ? GOE_MODEL_DISC : GOE_MODEL_LINE, estimate.model);
+    }
 }
 
 static void the_window_is_a_setting(void) {
@@ -296,6 +303,20 @@ static void a_negative_height_all_along_gives_no_height(void) {
     }
 }
 
+/* GIVEN a top that lies below the ground THEN the mean of the heights is none, and is not told. */
+static void a_height_that_is_not_positive_is_none(void) {
+    scene_make_cylinder(&scene);
+    start();
+    for (int k = 0; k < 12; k++) {
+        scene_image(&scene, k, &image, NULL);
+        image.top.v_px += 800.0f;
+        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, update());
+        TEST_ASSERT_FALSE(estimate.valid & GOE_HAS_HEIGHT);
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.height_m);
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.sigma.height_m);
+    }
+}
+
 /* GIVEN a truck flown past so that its side points at the camera THEN lengths are skipped and it is told. */
 static void a_side_seen_edge_on_gives_no_length(void) {
     scene.x0_m = -1.9; /* the plane of the right side passes 0.65 m from the camera */
@@ -337,6 +358,22 @@ static void stopping_keeps_the_last_answer(void) {
     TEST_ASSERT_TRUE(estimate.age_s > 0.5f);
     CHECK_SAME(last.z0_m, estimate.z0_m);
     CHECK_SAME(last.width_m, estimate.width_m);
+}
+
+/* GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is told;
+ * before there is one to solve, the feature's fault is. */
+static void a_failed_solution_is_told_before_a_feature_s_fault(void) {
+    scene.speed_mps = 0.0;
+    start();
+    for (int k = 0; k < 12; k++) {
+        scene_image(&scene, k, &image, NULL);
+        const goe_pixel_t left = image.base_left;
+        image.base_left = image.base_right;
+        image.base_right = left;
+        CHECK_STATUS(k < WINDOW - 1 ? GOE_SWAPPED : GOE_NO_BASELINE, update());
+    }
+    TEST_ASSERT_EQUAL_UINT32(12u, estimator.causes[-GOE_SWAPPED]);
+    TEST_ASSERT_EQUAL_UINT32(5u, estimator.causes[-GOE_NO_BASELINE]);
 }
 
 /* An obstacle that flies along ahead of us never grows. */
@@ -472,6 +509,20 @@ static void time_must_run_on(void) {
     CHECK_STATUS(GOE_OK, update());
 }
 
+/* GIVEN settings that change after goe_init, and an estimator of which every byte is set THEN the estimator keeps what it was given,
+ * and begins with zeroed counters. */
+static void the_settings_are_copied_and_the_counters_zeroed(void) {
+    memset(&estimator, 0xA5, sizeof estimator);
+    start();
+    for (int i = 0; i < GOE_CAUSES; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[i]);
+    }
+    const goe_settings_t given = settings;
+    memset(&settings, 0xFF, sizeof settings);
+    TEST_ASSERT_EQUAL_MEMORY(&given, &estimator.settings, sizeof given);
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+}
+
 static void the_first_image_needs_a_time(void) {
     start();
     scene_image(&scene, 0, &image, NULL);
@@ -555,6 +606,29 @@ static void an_estimator_must_be_initialised(void) {
         CHECK_STATUS(GOE_NOT_INITIALISED, goe_reset(&estimator));
         TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
         TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
+    }
+}
+
+/* Of the window's answer: the sigmas squared, and nothing beside the diagonal; all 0 without a position. */
+static void the_covariance_is_the_sigmas_squared(void) {
+    static const float nothing[GOE_QUANTITIES][GOE_QUANTITIES];
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    start();
+    (void)fly(0, 4);
+    memset(covariance, 0xFF, sizeof covariance);
+    CHECK_STATUS(GOE_COLLECTING, goe_covariance(&estimator, covariance));
+    TEST_ASSERT_EQUAL_MEMORY(nothing, covariance, sizeof covariance);
+    CHECK_STATUS(GOE_OK, fly(4, 20));
+    const goe_sigma_t *s = &estimate.sigma;
+    const float sigma[GOE_QUANTITIES] = {[GOE_X0] = s->x0_m,         [GOE_Z0] = s->z0_m,
+                                         [GOE_WIDTH] = s->width_m,   [GOE_ORIENTATION] = s->orientation_deg,
+                                         [GOE_LENGTH] = s->length_m, [GOE_HEIGHT] = s->height_m};
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        TEST_ASSERT_TRUE(sigma[i] > 0.0f);
+        for (int j = 0; j < GOE_QUANTITIES; j++) {
+            CHECK_SAME(i == j ? sigma[i] * sigma[i] : 0.0f, covariance[i][j]);
+        }
     }
 }
 
@@ -662,20 +736,24 @@ int main(void) {
     RUN_TEST(what_lies_behind_is_told);
     RUN_TEST(a_fault_beside_a_solution_is_partial);
     RUN_TEST(a_negative_height_all_along_gives_no_height);
+    RUN_TEST(a_height_that_is_not_positive_is_none);
     RUN_TEST(a_side_seen_edge_on_gives_no_length);
     RUN_TEST(hovering_has_no_baseline);
     RUN_TEST(stopping_keeps_the_last_answer);
+    RUN_TEST(a_failed_solution_is_told_before_a_feature_s_fault);
     RUN_TEST(a_moving_obstacle_has_no_parallax);
     RUN_TEST(an_obstacle_that_is_said_to_lie_behind_is_passed);
     RUN_TEST(every_number_read_is_checked);
     RUN_TEST(what_is_not_seen_is_not_read);
     RUN_TEST(time_must_run_on);
+    RUN_TEST(the_settings_are_copied_and_the_counters_zeroed);
     RUN_TEST(the_first_image_needs_a_time);
     RUN_TEST(a_quaternion_may_be_off_by_one_percent);
     RUN_TEST(the_first_fault_is_told);
     RUN_TEST(counters_saturate);
     RUN_TEST(null_pointers_are_refused);
     RUN_TEST(an_estimator_must_be_initialised);
+    RUN_TEST(the_covariance_is_the_sigmas_squared);
     RUN_TEST(a_reset_forgets_the_track_and_keeps_the_counters);
     RUN_TEST(estimators_share_nothing);
     RUN_TEST(an_estimator_may_be_moved);

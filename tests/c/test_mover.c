@@ -292,6 +292,7 @@ static void nothing_moves_that_does_not(void) {
         TEST_ASSERT_EQUAL_INT(0, flight.moving);
         TEST_ASSERT_EQUAL_INT(0, flight.suspect);
         TEST_ASSERT_EQUAL_INT(GOE_REASON_NONE, flight.estimate.reason);
+        CHECK_SAME(0.0f, flight.estimate.latency_s);
         TEST_ASSERT_EQUAL_HEX(0, flight.estimate.valid & GOE_HAS_VELOCITY);
         CHECK_SAME(0.0f, flight.estimate.velocity_north_m_s);
     }
@@ -329,6 +330,57 @@ static void an_obstacle_that_moves_is_followed(void) {
         TEST_ASSERT_TRUE(fabs(north) < 4.0 && fabs(east) < 4.0);
         TEST_ASSERT_TRUE(e->sigma.velocity_east_m_s < 2.0f && e->sigma.velocity_east_m_s > 0.0f);
     }
+}
+
+/* GIVEN poses that are ahead of the images THEN the latency is told as negative. */
+static void early_poses_are_told_as_early(void) {
+    const flight_t flight = fly(-(int)(0.1 * FINE_HZ), 0.0, 0.0);
+    check_report("latency of -0.1 s", (double)flight.estimate.latency_s);
+    TEST_ASSERT_EQUAL_INT(GOE_REASON_LATE, flight.estimate.reason);
+    CHECK_CLOSE(0.03, -0.1, flight.estimate.latency_s);
+    TEST_ASSERT_TRUE(flight.estimate.sigma.latency_s > 0.0f && flight.estimate.sigma.latency_s < 0.03f);
+}
+
+/* GIVEN an obstacle that is followed WHEN it is not seen for a while THEN its place relative to the camera moves on with both, and
+ * is known less well. */
+static void an_old_place_moves_on(void) {
+    const flight_t flight = fly(0, -12.0, 0.0);
+    goe_estimate_t old;
+    goe_image_t image;
+    TEST_ASSERT_TRUE(flight.estimate.valid & GOE_HAS_VELOCITY);
+    scene_image(&scene, 20 + STEP * (IMAGES - 1), &image, NULL);
+    image.pose.position_ned_m[0] += (float)(-12.0 * (20 + STEP * (IMAGES - 1)) / FINE_HZ);
+    image.pose.time_us += 2000000; /* the camera stands, the obstacle comes */
+    image.left.seen = image.right.seen = image.top.seen = false;
+    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &old));
+    const double heading = (double)old.trajectory_heading_deg * 0.017453292519943295;
+    const double north_m = 2.0 * (double)flight.estimate.velocity_north_m_s;
+    const double east_m = 2.0 * (double)flight.estimate.velocity_east_m_s;
+    CHECK_CLOSE(0.01, (double)flight.estimate.z_m + cos(heading) * north_m + sin(heading) * east_m, old.z_m);
+    CHECK_CLOSE(0.01, (double)flight.estimate.x_m + cos(heading) * east_m - sin(heading) * north_m, old.x_m);
+    TEST_ASSERT_TRUE(old.sigma.z_m > flight.estimate.sigma.z_m);
+    CHECK_SAME(flight.estimate.z0_m, old.z0_m);
+}
+
+/* GIVEN an outline alone, which shows directions and no scale WHEN it moves THEN it is never followed. */
+static void an_outline_that_moves_is_not_followed(void) {
+    int suspect = 0;
+    scene_make_cylinder(&scene);
+    goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < IMAGES; k++) {
+        goe_image_t image;
+        goe_estimate_t estimate;
+        const int fine = 20 + STEP * k;
+        scene_image(&scene, fine, &image, NULL);
+        image.pose.position_ned_m[1] += (float)(8.0 * fine / FINE_HZ);
+        scene_add_noise(&image, &any, NOISE_PX);
+        (void)goe_update(&estimator, &image, &estimate);
+        TEST_ASSERT_EQUAL_HEX(0u, estimate.valid & GOE_HAS_VELOCITY);
+        suspect += estimate.suspect ? 1 : 0;
+    }
+    check_report("images in which it is suspect", suspect);
 }
 
 #if GOE_WITH_HAZARD
@@ -397,6 +449,9 @@ int main(void) {
     RUN_TEST(nothing_moves_that_does_not);
     RUN_TEST(late_poses_are_told_and_taken_off);
     RUN_TEST(an_obstacle_that_moves_is_followed);
+    RUN_TEST(early_poses_are_told_as_early);
+    RUN_TEST(an_old_place_moves_on);
+    RUN_TEST(an_outline_that_moves_is_not_followed);
 #if GOE_WITH_HAZARD
     RUN_TEST(what_begins_to_be_followed_is_warned_of);
     RUN_TEST(the_hazard_counts_with_both_velocities);

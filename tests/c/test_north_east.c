@@ -100,6 +100,63 @@ static void the_axes_point_north_and_east(void) {
 #endif
 }
 
+/* GIVEN a box by either method THEN the axes in T are unit vectors of the orientation, and the other side is square to it. */
+static void the_axes_agree_with_the_orientation(void) {
+    int told = 0;
+    for (int method = GOE_METHOD_WINDOW; method <= GOE_METHOD_REFINED; method++) {
+#if !GOE_WITH_WINDOW
+        if (method == GOE_METHOD_WINDOW) {
+            continue;
+        }
+#endif
+        for (int alpha = -80; alpha <= 80; alpha += 20) {
+            scene_default(&scene);
+            scene.alpha_deg = alpha;
+            settings = scene_settings(&scene);
+            settings.method = (goe_method_t)method;
+            const goe_estimate_t e = fly(25.0);
+            const double rad = (double)e.orientation_deg * RAD_PER_DEG;
+            if (!(e.valid & GOE_HAS_ORIENTATION)) {
+                continue;
+            }
+            told++;
+            CHECK_CLOSE(1.0e-5, sin(rad), e.length_axis[0]);
+            CHECK_CLOSE(1.0e-5, cos(rad), e.length_axis[1]);
+            CHECK_CLOSE(1.0e-5, cos(rad), e.width_axis[0]);
+            CHECK_CLOSE(1.0e-5, -sin(rad), e.width_axis[1]);
+            CHECK_CLOSE(1.0e-4, 90.0, fabs((double)e.other_side_deg - (double)e.orientation_deg));
+            TEST_ASSERT_TRUE(e.other_side_deg > -90.0f && e.other_side_deg <= 90.0f);
+        }
+    }
+    TEST_ASSERT_TRUE(told >= (GOE_WITH_WINDOW ? 12 : 6));
+}
+
+#if GOE_WITH_WINDOW
+/* GIVEN images of noise THEN the window's raw orientation is that of the latest image alone, and the filtered one scatters less. */
+static void the_raw_orientation_is_that_of_the_latest_image(void) {
+    check_random_t any = check_random_start("raw orientation");
+    double raw = 0.0;
+    double filtered = 0.0;
+    settings = scene_window_settings(&scene);
+    scene.alpha_deg = 20.0;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 40; k++) {
+        goe_estimate_t estimate;
+        goe_image_t image;
+        scene_image(&scene, k, &image, NULL);
+        scene_add_noise(&image, &any, 1.0);
+        (void)goe_update(&estimator, &image, &estimate);
+        if (k >= 20) {
+            raw += fabs((double)estimate.orientation_raw_deg - 20.0);
+            filtered += fabs((double)estimate.orientation_deg - 20.0);
+        }
+    }
+    check_report("mean error of the raw orientation, deg", raw / 20.0);
+    check_report("... of the filtered one", filtered / 20.0);
+    TEST_ASSERT_TRUE(raw > 1.5 * filtered);
+}
+#endif
+
 /* Covariance of the centre along and across the course, and of the two. */
 typedef struct {
     double along, across, both;
@@ -170,6 +227,10 @@ int main(void) {
     RUN_TEST(the_heading_is_told_from_the_first_image_on);
     RUN_TEST(a_set_heading_is_told);
     RUN_TEST(the_axes_point_north_and_east);
+    RUN_TEST(the_axes_agree_with_the_orientation);
+#if GOE_WITH_WINDOW
+    RUN_TEST(the_raw_orientation_is_that_of_the_latest_image);
+#endif
     RUN_TEST(a_track_that_began_before_a_turn_sees_what_is_ahead);
     RUN_TEST(the_spread_of_the_centre_turns_with_the_course);
     return UNITY_END();

@@ -194,6 +194,29 @@ static void the_body_is_where_the_mounting_puts_it(void) {
     }
 }
 
+#if GOE_BESIDE
+/* GIVEN poses that are late WHEN an image is linearised THEN the attitude is that of the exposure: what the body turned by since is
+ * taken off the bias. */
+static void what_the_poses_are_late_by_is_taken_off(void) {
+    any = check_random_start("late");
+    for (int n = 0; n < CASES; n++) {
+        sighting_start(&sighting, &any);
+        goe_observation_t *sight = &sighting.sight;
+        goe_observation_linearise(sight);
+        const float still[3] = {sight->ex, sight->ey, sight->ez};
+        sight->latency_s = (float)check_random_between(&any, -0.3, 0.3);
+        for (int i = 0; i < 3; i++) {
+            sight->rate_rad_s[i] = (float)check_random_between(&any, -0.5, 0.5);
+        }
+        goe_observation_linearise(sight);
+        const float turned[3] = {sight->ex, sight->ey, sight->ez};
+        for (int i = 0; i < 3; i++) {
+            CHECK_CLOSE(1.0e-7, (double)still[i] - (double)sight->latency_s * (double)sight->rate_rad_s[i], turned[i]);
+        }
+    }
+}
+#endif
+
 static goe_point_t at(float x) { return (goe_point_t){x, 0.1f, true}; }
 
 static void points_out_of_order_do_not_count(void) {
@@ -246,6 +269,20 @@ static void an_image_may_know_its_own_errors(void) {
     TEST_ASSERT_EQUAL_FLOAT(7.0f, sight.side_px);
 }
 
+/* GIVEN an error less than the least that its setting takes THEN it counts as that. */
+static void less_than_the_least_counts_as_that(void) {
+    goe_observation_t sight;
+    start();
+    image.noise.attitude_deg = 1.0e-6f;
+    image.noise.pixel_px = 1.0e-6f;
+    estimator.filter.datum.sd_m = 1.0e-6f;
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    CHECK_CLOSE(1.0e-10, 1.0e-4 * (double)GOE_RAD_PER_DEG, sight.white_rad);
+    TEST_ASSERT_EQUAL_FLOAT(0.05f, sight.point_px);
+    TEST_ASSERT_EQUAL_FLOAT(0.05f, sight.side_px);
+    TEST_ASSERT_EQUAL_FLOAT(1.0e-3f, sight.height_sd_m);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(derivatives_are_those_of_the_projection);
@@ -254,8 +291,12 @@ int main(void) {
     RUN_TEST(the_spread_is_that_of_the_alignment);
     RUN_TEST(size_noise_is_a_share_of_the_width);
     RUN_TEST(the_body_is_where_the_mounting_puts_it);
+#if GOE_BESIDE
+    RUN_TEST(what_the_poses_are_late_by_is_taken_off);
+#endif
     RUN_TEST(points_out_of_order_do_not_count);
     RUN_TEST(an_edge_takes_two_base_corners);
     RUN_TEST(an_image_may_know_its_own_errors);
+    RUN_TEST(less_than_the_least_counts_as_that);
     return UNITY_END();
 }

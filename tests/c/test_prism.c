@@ -344,8 +344,136 @@ static void errors_of_an_image_are_checked(void) {
 #endif
 }
 
+/* GIVEN a side of the box that is no number, or out of range THEN the image is refused; one that is not seen is not read. */
+static void every_side_that_is_seen_is_checked(void) {
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t image;
+    scene_default(&scene);
+    scene.boxes = true;
+    const goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int side = 0; side < GOE_BOX_SIDES; side++) {
+        float *const px[] = {&image.box.left_px, &image.box.top_px, &image.box.right_px, &image.box.bottom_px};
+        scene_image(&scene, 0, &image, NULL);
+        *px[side] = check_from_bits(0x7FC00000u);
+        CHECK_STATUS(GOE_NOT_FINITE, goe_update(&estimator, &image, &estimate));
+        *px[side] = check_next_away(side < 2 ? -1.0e5f : 1.0e5f);
+        CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
+        TEST_ASSERT_FALSE(estimator.motion.started);
+    }
+    for (int side = 0; side < GOE_BOX_SIDES; side++) {
+        float *const px[] = {&image.box.left_px, &image.box.top_px, &image.box.right_px, &image.box.bottom_px};
+        scene_image(&scene, 1 + side, &image, NULL);
+        *px[side] = check_from_bits(0x7FC00000u);
+        image.box.seen = (uint8_t)(GOE_SEES_BOX & ~(1u << side));
+        TEST_ASSERT_TRUE(goe_update(&estimator, &image, &estimate) >= GOE_OK);
+    }
+}
+
+/* The flight of the boxes whose images know these errors of their heights, 0: as in the settings. */
+static float height_sigma_with(float first_m, float later_m, goe_model_t model, goe_estimate_t *estimate) {
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_image_t image;
+    scene_default(&scene);
+    scene.boxes = true;
+    goe_settings_t settings = scene_settings(&scene);
+    settings.navigation.ground_m = 0.0f;
+    settings.model = model;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 45; k++) {
+        scene_image(&scene, k, &image, NULL);
+        image.noise.height_m = k == 0 ? first_m : later_m;
+        (void)goe_update(&estimator, &image, estimate);
+    }
+    TEST_ASSERT_TRUE(estimate->valid & GOE_HAS_HEIGHT);
+    return estimate->sigma.height_m;
+}
+
+/* GIVEN an image that knows the error of its height THEN it counts in the first image with a box, and in no other. */
+static void a_height_s_own_error_counts_in_the_first_image(void) {
+    goe_estimate_t estimate;
+    const float plain = height_sigma_with(0.0f, 0.0f, GOE_MODEL_AUTO, &estimate);
+    const float doubtful = height_sigma_with(20.0f, 0.0f, GOE_MODEL_AUTO, &estimate);
+    check_report("sigma of the height, the first height 20 m off instead of 0.5", (double)doubtful / (double)plain);
+    TEST_ASSERT_TRUE(doubtful > 1.04f * plain);
+    CHECK_SAME(plain, height_sigma_with(0.0f, 3.0f, GOE_MODEL_AUTO, &estimate));
+}
+
+/* GIVEN the same boxes WHEN a disc is asked for THEN the range is known better: a prism's sigma holds what no image can show of its
+ * depth, and that keeps no answer back. */
+static void a_prism_is_told_with_what_no_image_shows(void) {
+    goe_estimate_t prism;
+    goe_estimate_t disc;
+    (void)height_sigma_with(0.0f, 0.0f, GOE_MODEL_AUTO, &prism);
+    (void)height_sigma_with(0.0f, 0.0f, GOE_MODEL_DISC, &disc);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_PRISM, prism.model);
+    TEST_ASSERT_TRUE(prism.valid & disc.valid & GOE_HAS_POSITION);
+    check_report("sigma of Z0 over that of a disc", (double)prism.sigma.z0_m / (double)disc.sigma.z0_m);
+    TEST_ASSERT_TRUE(prism.sigma.z0_m > 1.1f * disc.sigma.z0_m);
+}
+
+/* (R33): GIVEN a share of the range that the whole sigma passes, and what an image can show does not THEN the position is told, with
+ * the whole sigma. */
+static void what_no_image_shows_keeps_no_answer_back(void) {
+    static const float share[] = {0.02f, 0.01f};
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t image;
+    for (int strict = 0; strict < 2; strict++) {
+        scene_default(&scene);
+        scene.boxes = true;
+        goe_settings_t settings = scene_settings(&scene);
+        settings.refined.range_share = share[strict];
+        CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+        for (int k = 0; k < 34; k++) {
+            scene_image(&scene, k, &image, NULL);
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+        const bool told = estimate.fresh && estimate.method == GOE_METHOD_REFINED;
+        TEST_ASSERT_EQUAL_INT(strict == 0, told);
+        TEST_ASSERT_TRUE(!told || estimate.sigma.z0_m > share[strict] * estimate.z0_m);
+    }
+}
+
+/* GIVEN a box sooner than 0.08 of the time for which its errors stay alike THEN it adds nothing, and the answer stands; later it
+ * does. */
+static void boxes_that_come_too_soon_are_not_used(void) {
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t image;
+    scene_default(&scene);
+    scene.boxes = true;
+    const goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 30; k++) {
+        scene_image(&scene, k, &image, NULL);
+        (void)goe_update(&estimator, &image, &estimate);
+    }
+    TEST_ASSERT_TRUE(estimate.fresh);
+    const int points = estimate.points;
+    const int64_t last_us = image.pose.time_us;
+    const float early_s = 0.08f * settings.detector.correlation_s;
+    image.pose.time_us = last_us + (int64_t)((early_s - 0.002f) * 1.0e6f);
+    CHECK_STATUS(GOE_HELD, goe_update(&estimator, &image, &estimate));
+    TEST_ASSERT_FALSE(estimate.fresh);
+    TEST_ASSERT_EQUAL_INT(points, estimate.points);
+    image.pose.time_us = last_us + (int64_t)((early_s + 0.002f) * 1.0e6f);
+    CHECK_STATUS(GOE_OK, goe_update(&estimator, &image, &estimate));
+    TEST_ASSERT_EQUAL_INT(points + 1, estimate.points);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(every_side_that_is_seen_is_checked);
+    RUN_TEST(a_height_s_own_error_counts_in_the_first_image);
+    RUN_TEST(a_prism_is_told_with_what_no_image_shows);
+    RUN_TEST(what_no_image_shows_keeps_no_answer_back);
+    RUN_TEST(boxes_that_come_too_soon_are_not_used);
     RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);
     RUN_TEST(a_jump_of_the_filter_moves_the_datum);

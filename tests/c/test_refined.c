@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "check.h"
+#include "goe_guard.h"
+#include "refined/goe_filter.h"
 #include "scene.h"
 
 #define IMAGES 44 /* of a flight towards an obstacle 100 m ahead, 2 m each */
@@ -445,6 +447,22 @@ static void a_known_jump_is_compensated(void) {
     TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[RESETS]);
 }
 
+/* GIVEN an answer that is old WHEN the filter jumps by a known delta, and nothing is seen THEN the centre moves along. */
+static void a_jump_moves_an_old_centre_along(void) {
+    start();
+    fly(0, 25);
+    const goe_estimate_t before = estimate;
+    TEST_ASSERT_TRUE(before.valid & GOE_HAS_CENTER);
+    scene_image(&scene, 25, &image, NULL);
+    jump_by_then(true);
+    for (int i = 0; i < 6; i++) {
+        pixel(i)->seen = false;
+    }
+    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_CLOSE(1.0e-4, before.center_north_m + jump[0], estimate.center_north_m);
+    CHECK_CLOSE(1.0e-4, before.center_east_m + jump[1], estimate.center_east_m);
+}
+
 /* GIVEN a jump of unknown size THEN the track is that of an estimator which starts with this image. */
 static void an_unknown_jump_starts_anew(void) {
     goe_estimator_t fresh;
@@ -583,6 +601,107 @@ static void a_track_that_began_at_another_obstacle_recovers(void) {
     check_truth(5.0, 0.02);
 }
 
+/* (R15): GIVEN a cylinder much narrower or wider than the first guess, near, and pixels that are nearly exact THEN what
+ * linearising at a wrong range leaves out neither captures the filter nor makes it sure of a wrong one. */
+static void a_first_guess_that_is_far_off_comes_right(void) {
+    static const double width_m[] = {1.0, 3.0, 12.0, 25.0};
+    static const double range_m[] = {60.0, 100.0};
+    for (int i = 0; i < 8; i++) {
+        int points = 0;
+        setUp();
+        scene.path = SCENE_STRAIGHT;
+        scene.wobble_deg = 0.0;
+        scene.top_nearest = false;
+        scene_make_cylinder(&scene);
+        scene.x0_m = -25.0;
+        scene.width_m = width_m[i % 4];
+        scene.z0_m = range_m[i / 4];
+        scene_tell_no_noise(&settings);
+        start();
+        for (int k = 0; k < 24; k++) {
+            fly(k, k + 1);
+            TEST_ASSERT_TRUE(estimate.points >= points); /* no restart */
+            points = estimate.points;
+            if (estimate.fresh) {
+                CHECK_CLOSE(2.5 * (double)estimate.sigma.z0_m, scene.z0_m, estimate.z0_m);
+            }
+        }
+        TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+        TEST_ASSERT_FALSE(estimate.suspect);
+        CHECK_CLOSE(0.1, scene.z0_m, estimate.z0_m);
+    }
+}
+
+/* (R14): GIVEN images in which nothing is seen THEN what the bias and the bearing gain in them is kept beside the inverse, and is in
+ * the root. */
+static void time_adds_to_the_bias_and_the_bearing(void) {
+    const double dt_s = 0.125;
+    settings.navigation.attitude_drift_deg = 0.5f;
+    settings.navigation.position_walk_m = 0.3f;
+    settings.navigation.slope = 0.0f;
+    start();
+    fly(0, 25);
+    goe_filter_t *filter = &estimator.filter;
+    const goe_inverse_t before = filter->inverse;
+    CHECK_SAME(0.0f, filter->drift_rad2);
+    CHECK_SAME(0.0f, filter->walk2);
+    for (int k = 25; k < 29; k++) {
+        scene_image(&scene, k, &image, NULL);
+        for (int i = 0; i < 6; i++) {
+            pixel(i)->seen = false;
+        }
+        CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    }
+    const double drift2 = 4.0 * dt_s * 0.25 * RAD_PER_DEG * RAD_PER_DEG;
+    const double q = (double)filter->state[GOE_INVERSE_RANGE];
+    const double walk2 = 4.0 * dt_s * 0.09 * q * q;
+    CHECK_CLOSE(1.0e-4 * drift2, drift2, filter->drift_rad2);
+    CHECK_CLOSE(1.0e-4 * walk2, walk2, filter->walk2);
+    goe_srif_invert(&filter->root, &filter->inverse);
+    for (size_t i = GOE_BIAS_X; i <= GOE_BIAS_Z; i++) {
+        const double was = (double)goe_inverse_variance(&before, i);
+        CHECK_CLOSE(0.01 * drift2, was + drift2, goe_inverse_variance(&filter->inverse, i));
+    }
+    const double was = (double)goe_inverse_variance(&before, GOE_BEARING);
+    TEST_ASSERT_TRUE((double)goe_inverse_variance(&filter->inverse, GOE_BEARING) > was + 0.4 * walk2);
+}
+
+/* (R23): GIVEN the same filter WHEN the own velocity and position are given as less well known THEN the covariance grows by what no
+ * image shows: shares of range and sizes, and the walk. */
+static void what_no_image_shows_of_the_own_motion_is_added(void) {
+    float before[GOE_QUANTITIES][GOE_QUANTITIES];
+    float after[GOE_QUANTITIES][GOE_QUANTITIES];
+    const double s = 24.0 * 0.125;
+    const double path_m = 48.0;
+    scene.path = SCENE_STRAIGHT;
+    scene.wobble_deg = 0.0;
+    settings.navigation.velocity_bias_m_s = 0.0f;
+    settings.navigation.position_walk_m = 0.0f;
+    start();
+    fly(0, 25);
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, before));
+    estimator.settings.navigation.position_walk_m = 2.0f;
+    goe_guard_seal(&estimator);
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, after));
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        const double walked = i <= GOE_Z0 ? 4.0 * s : 0.0;
+        CHECK_CLOSE(1.0e-3 * (walked + 1.0e-3), walked, after[i][i] - before[i][i]);
+    }
+    estimator.settings.navigation.position_walk_m = 0.0f;
+    estimator.settings.navigation.velocity_bias_m_s = 1.0f;
+    goe_guard_seal(&estimator);
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, after));
+    const double share = s / path_m;
+    const double top = fmax((double)estimate.height_m, fabs((double)estimate.height_m - scene.altitude_m));
+    const double by[GOE_QUANTITIES] = {
+        [GOE_X0] = share * (double)estimate.z0_m,         [GOE_Z0] = share * (double)estimate.z0_m,
+        [GOE_ORIENTATION] = share / RAD_PER_DEG,          [GOE_WIDTH] = share * (double)estimate.width_m,
+        [GOE_LENGTH] = share * (double)estimate.length_m, [GOE_HEIGHT] = share * top};
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        CHECK_CLOSE(5.0e-3 * by[i] * by[i], by[i] * by[i], after[i][i] - before[i][i]);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------- not a static obstacle -- */
 
 /* The obstacle moves: speeds in T, m/s. Returns the number of images in which it was suspected. */
@@ -619,6 +738,77 @@ static void a_moving_obstacle_is_suspected(void) {
     setUp();
     scene.x0_m = -20.0;
     TEST_ASSERT_EQUAL_INT(0, fly_past_a_mover(0.0, 0.0, 0.0));
+}
+
+/* GIVEN an autopilot that gives its attitude the wrong way round, on an aircraft that sways THEN the filter starts anew again and
+ * again, and the estimate tells that what it is given does not belong together; GIVEN the right way THEN it never says so. */
+static void a_wrong_convention_is_told(void) {
+    any = check_random_start("convention");
+    for (int wrong = 0; wrong < 2; wrong++) {
+        int told = 0;
+        setUp();
+        scene.wobble_deg = 10.0;
+        start();
+        for (int k = 0; k < IMAGES; k++) {
+            scene_image(&scene, k, &image, NULL);
+            scene_add_noise(&image, &any, 0.5);
+            for (int i = 1; wrong > 0 && i < 4; i++) {
+                image.pose.attitude[i] = -image.pose.attitude[i];
+            }
+            update();
+            told += estimate.reason == GOE_REASON_CONVENTION && estimate.suspect ? 1 : 0;
+        }
+        TEST_ASSERT_TRUE(wrong > 0 ? told > 0 : told == 0);
+    }
+}
+
+/* GIVEN a noisy flight THEN a quantity is told only after two images in a row that knew it: the one before, and this one. */
+static void known_in_two_images_in_a_row(void) {
+    int held_back = 0;
+    any = check_random_start("two in a row");
+    for (int shape = 0; shape < 2; shape++) {
+        setUp();
+        if (shape > 0) {
+            scene_make_cylinder(&scene);
+        }
+        scene.z0_m = 180.0;
+        start();
+        unsigned before = 0u;
+        for (int k = 0; k < 80; k++) {
+            fly_noisily(k, k + 1, 0.5);
+            const unsigned now = estimator.filter.known;
+            const unsigned told = estimate.valid & ~(GOE_HAS_CENTER | GOE_HAS_VELOCITY);
+            if (estimate.fresh && estimate.method == GOE_METHOD_REFINED) {
+                TEST_ASSERT_EQUAL_HEX(before & now, told);
+                held_back += (now & ~told) != 0u ? 1 : 0;
+            }
+            before = now;
+        }
+    }
+    check_report("images whose quantities waited for the next one", held_back);
+    TEST_ASSERT_TRUE(held_back > 0);
+}
+
+/* The residual is the window's; the baseline is the way since the track began. */
+static void what_is_the_window_s_alone_is_0(void) {
+    scene.path = SCENE_STRAIGHT;
+    scene.wobble_deg = 0.0;
+    start();
+    fly(0, 30);
+    TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
+    CHECK_SAME(0.0f, estimate.residual);
+    CHECK_CLOSE(1.0e-3, 58.0, estimate.baseline_m);
+    CHECK_SAME(estimate.orientation_deg, estimate.orientation_raw_deg);
+}
+
+/* The number of images behind an answer stops at its largest value. */
+static void the_number_of_images_saturates(void) {
+    start();
+    fly(0, 20);
+    TEST_ASSERT_TRUE(estimate.points > 10 && estimate.points <= 20);
+    estimator.filter.health.images = INT16_MAX - 1;
+    fly(20, 25);
+    TEST_ASSERT_EQUAL_INT(32767, estimate.points);
 }
 
 /* -------------------------------------------------------------------------------------------------------- forced models -- */
@@ -736,6 +926,29 @@ static void an_answer_follows_the_motion_while_nothing_is_seen(void) {
     check_truth(1.0, 0.01);
 }
 
+/* GIVEN an answer that has grown old THEN its covariance is that of its sigmas alone: the filter may be another's by then. */
+static void the_covariance_of_an_old_answer_is_its_sigmas_squared(void) {
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    float value[GOE_QUANTITIES];
+    float sigma[GOE_QUANTITIES];
+    start();
+    fly(0, 25);
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    TEST_ASSERT_TRUE(covariance[GOE_Z0][GOE_WIDTH] != 0.0f);
+    scene_image(&scene, 25, &image, NULL);
+    for (int i = 0; i < 6; i++) {
+        pixel(i)->seen = false;
+    }
+    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    tell_answer(value, sigma);
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        for (int j = 0; j < GOE_QUANTITIES; j++) {
+            CHECK_SAME(i == j ? sigma[i] * sigma[i] : 0.0f, covariance[i][j]);
+        }
+    }
+}
+
 /* GIVEN a bounding box alone, or base corners alone THEN the track goes on. */
 static void any_subset_of_the_features_will_do(void) {
     start();
@@ -848,6 +1061,7 @@ int main(void) {
     RUN_TEST(the_covariance_is_positive_and_holds_the_sigmas);
     RUN_TEST(sigmas_tell_the_error);
     RUN_TEST(a_known_jump_is_compensated);
+    RUN_TEST(a_jump_moves_an_old_centre_along);
     RUN_TEST(an_unknown_jump_starts_anew);
     RUN_TEST(a_reset_forgets_the_track);
     RUN_TEST(single_outliers_are_left_out);
@@ -855,13 +1069,21 @@ int main(void) {
     RUN_TEST(another_top_costs_the_height_alone);
     RUN_TEST(the_error_of_the_altitude_is_in_the_height);
     RUN_TEST(a_track_that_began_at_another_obstacle_recovers);
+    RUN_TEST(a_first_guess_that_is_far_off_comes_right);
+    RUN_TEST(time_adds_to_the_bias_and_the_bearing);
+    RUN_TEST(what_no_image_shows_of_the_own_motion_is_added);
     RUN_TEST(a_moving_obstacle_is_suspected);
+    RUN_TEST(a_wrong_convention_is_told);
+    RUN_TEST(known_in_two_images_in_a_row);
+    RUN_TEST(what_is_the_window_s_alone_is_0);
+    RUN_TEST(the_number_of_images_saturates);
     RUN_TEST(a_forced_disc_stays_a_disc);
     RUN_TEST(a_forced_line_is_a_box_and_no_disc_before_it);
     RUN_TEST(a_forced_line_without_corners_tells_nothing);
     RUN_TEST(a_stand_in_tells_no_width);
     RUN_TEST(the_window_answers_before_the_start_only);
     RUN_TEST(an_answer_follows_the_motion_while_nothing_is_seen);
+    RUN_TEST(the_covariance_of_an_old_answer_is_its_sigmas_squared);
     RUN_TEST(any_subset_of_the_features_will_do);
     RUN_TEST(a_refused_image_changes_one_counter);
     RUN_TEST(reading_calls_refuse_what_is_no_estimator);

@@ -87,6 +87,15 @@ static void doubt_widens_and_trust_does_not_shrink(void) {
     filter.scatter.products = -50.0f; /* residuals that alternate */
     filter.scatter.squares = 60.0f;
     CHECK_SAME(1.0f, goe_scatter_factor(&filter, 1.0f));
+    filter.health.mean_nis = 1.0f;
+    filter.health.excess = 0.0f;
+    filter.scatter.products = 30.0f; /* rho = 30/(10 + 30) less what is chance */
+    filter.scatter.squares = 30.0f;
+    const double rho = 0.75 - 0.0049 / 0.75;
+    CHECK_CLOSE(1.0e-3, (1.0 + rho) / (1.0 - rho), goe_scatter_factor(&filter, 1.0f));
+    filter.scatter.products = 1.0e6f; /* at most 0.9 */
+    filter.scatter.squares = 1.0e6f;
+    CHECK_CLOSE(1.0e-3, 19.0, goe_scatter_factor(&filter, 1.0f));
 }
 
 /* GIVEN a feature that is refused or not seen in an image THEN what comes after joins nothing before it; GIVEN an outlier THEN it

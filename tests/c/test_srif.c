@@ -532,6 +532,53 @@ static void a_singular_covariance_gives_a_finite_root(void) {
     }
 }
 
+/* (R21): GIVEN new states of which the last seven old ones are functions THEN the information in the new ones is D'(R'R)D. */
+static void a_substitution_keeps_the_information(void) {
+    any = check_random_start("substitution");
+    for (int c = 0; c < CASES; c++) {
+        goe_triangle_t root = no_root;
+        goe_matrix_t rows;
+        goe_substitution_t old;
+        dense_t d;
+        random_root(&root);
+        memset(&d, 0, sizeof d);
+        for (int i = 0; i < N; i++) {
+            d.m[i][i] = 1.0;
+        }
+        for (size_t i = 0; i < GOE_CHANGED; i++) {
+            for (size_t j = 0; j < GOE_CHANGED; j++) {
+                old.by[i][j] = (float)((i == j ? 1.5 : 0.0) + 0.2 * check_random_normal(&any));
+                d.m[N - GOE_CHANGED + i][N - GOE_CHANGED + j] = (double)old.by[i][j];
+            }
+        }
+        const dense_t r = dense_of(&root);
+        dense_t rd;
+        memset(&rd, 0, sizeof rd);
+        for (int i = 0; i < N; i++) {
+            for (int j = 0; j < N; j++) {
+                for (int k = 0; k < N; k++) {
+                    rd.m[i][j] += r.m[i][k] * d.m[k][j];
+                }
+            }
+        }
+        goe_srif_substitute(&root, &old, &rows);
+        const dense_t changed = dense_of(&root);
+        for (int i = 0; i < N; i++) {
+            for (int j = 0; j < N; j++) {
+                double expected = 0.0;
+                double actual = 0.0;
+                double size = 0.0;
+                for (int k = 0; k < N; k++) {
+                    expected += rd.m[k][i] * rd.m[k][j];
+                    actual += changed.m[k][i] * changed.m[k][j];
+                    size += fabs(rd.m[k][i] * rd.m[k][j]);
+                }
+                CHECK_CLOSE(SHARE * (size + 1.0e-6), expected, actual);
+            }
+        }
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_update_solves_the_normal_equations);
@@ -546,5 +593,6 @@ int main(void) {
     RUN_TEST(a_variance_is_the_covariance_seen_along_the_weights);
     RUN_TEST(a_marginal_makes_a_root_again);
     RUN_TEST(a_singular_covariance_gives_a_finite_root);
+    RUN_TEST(a_substitution_keeps_the_information);
     return UNITY_END();
 }

@@ -1,6 +1,7 @@
 """The command ``evidence``: runs the parts, prints the table, keeps the record.
 
 python -m goe_tools evidence --quick | --long | --show [--only PART] ... [--record FILE]
+python -m goe_tools evidence --page FILE | --check-page FILE
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import time
 from pathlib import Path
 
 from ..places import ROOT
+from . import testing_page
 from .parts import MODULES, Amount, NotHereError, runner
 from .record import Kept, read, table, write
 
@@ -46,6 +48,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     how.add_argument("--quick", action="store_true", help="what fits ten minutes")
     how.add_argument("--long", action="store_true", help="all of it, and keep the figures in the record")
     how.add_argument("--show", action="store_true", help="print the record's table, run nothing")
+    how.add_argument("--page", type=Path, metavar="FILE", help="put counts and the record's table into a page")
+    how.add_argument("--check-page", type=Path, metavar="FILE", help="fail if a page shows others")
     parser.add_argument("--only", action="append", choices=sorted(MODULES), metavar="PART", help=", ".join(MODULES))
     parser.add_argument("--updates", type=int, default=0, metavar="N", help="fuzzing: at least so many updates")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes")
@@ -57,6 +61,15 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.show:
         print(table(kept.values()))
         return 0
+    if arguments.page:
+        testing_page.write(arguments.page, kept)
+        return 0
+    if arguments.check_page:
+        page = arguments.check_page
+        _, told, _ = testing_page.parts(page.read_text(encoding="utf-8"), str(page))
+        wrong = list(testing_page.stale(told, kept))
+        print(*(f"{page}: {what}: python -m goe_tools evidence --page {page}" for what in wrong), sep="\n")
+        return 1 if wrong else 0
     amount = Amount(arguments.long, arguments.jobs, arguments.updates)
     ran: list[Kept] = []
     for name in arguments.only or MODULES:

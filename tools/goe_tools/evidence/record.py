@@ -56,6 +56,7 @@ def read(path: Path) -> dict[str, Kept]:
 
 def write(path: Path, kept: Iterable[Kept]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
+    path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, json.dumps([asdict(entry) for entry in kept], indent=1) + "\n")
 
 

@@ -1,0 +1,221 @@
+/* How well the images fit, and when the filter has to start anew. SPDX-License-Identifier: MIT */
+#include "refined/goe_health.h"
+
+#include <string.h>
+
+#include "check.h"
+
+#define ALL 0x3Fu
+#define LEFT (1u << GOE_POINT_LEFT)
+#define TOP (1u << GOE_POINT_TOP)
+#define HALF 0x07u /* three of six */
+#define ROWS 9
+#define SEEDS 8
+#define MEAN_IMAGES 64
+
+static goe_filter_t filter;
+static goe_settings_t settings;
+
+/* A disc whose state is one of an obstacle. */
+void setUp(void) {
+    goe_settings_default(&settings);
+    memset(&filter, 0, sizeof filter);
+    goe_filter_clear(&filter);
+    goe_filter_enter(&filter, GOE_PHASE_DISC);
+    filter.state[GOE_FRONT_X] = 0.1f;
+    for (size_t i = 0; i < GOE_UNKNOWNS; i++) {
+        *goe_srif_at(&filter.root, i, i) = 1.0f;
+    }
+}
+void tearDown(void) {}
+
+static goe_verdict_t verdict_of(unsigned refused) {
+    goe_verdict_t verdict;
+    memset(&verdict, 0, sizeof verdict);
+    verdict.measured = ALL;
+    verdict.refused = refused;
+    verdict.rows = ROWS;
+    return verdict;
+}
+
+static void take(float ratio) { goe_health_take(&filter.health, verdict_of(0u), ratio * (float)ROWS); }
+static bool judge(unsigned refused) { return goe_health_judge(&filter, &settings, verdict_of(refused)); }
+
+/* ------------------------------------------------------------------------------------------------------------- means -- */
+
+/* GIVEN images whose NIS is that of their rows THEN the misfit is their mean with eight zeros before, of 64 images from then on. */
+static void the_misfit_begins_with_eight_zeros_and_remembers_64_images(void) {
+    double expected = 0.0;
+    for (int n = 1; n <= 200; n++) {
+        const int heard = n + SEEDS < MEAN_IMAGES ? n + SEEDS : MEAN_IMAGES;
+        const float ratio = n > 100 ? 2.0f : 1.0f;
+        take(ratio);
+        expected += ((double)ratio - expected) / heard;
+        CHECK_CLOSE(1.0e-5, expected, filter.health.mean_nis);
+        if (n == 24) {
+            CHECK_CLOSE(1.0e-5, 24.0 / 32.0, filter.health.mean_nis);
+        }
+    }
+    CHECK_CLOSE(1.0e-5, 18.0, filter.health.nis);
+    TEST_ASSERT_EQUAL_INT(ROWS, filter.health.nis_rows);
+    TEST_ASSERT_EQUAL_INT(200, filter.health.images);
+    goe_health_expect(&filter.health);
+    CHECK_SAME(0.0f, filter.health.nis);
+    TEST_ASSERT_EQUAL_INT(0, filter.health.nis_rows);
+}
+
+/* GIVEN one image that fits not at all, or of which half of the points or all were refused THEN it counts as 20 times too large. */
+static void one_image_does_not_decide(void) {
+    take(1.0e9f);
+    CHECK_CLOSE(1.0e-5, 20.0 / 9.0, filter.health.mean_nis);
+    TEST_ASSERT_TRUE(check_is_finite(filter.health.nis));
+    setUp();
+    take(check_from_bits(0x7FC00000u));
+    CHECK_CLOSE(1.0e-5, 20.0 / 9.0, filter.health.mean_nis);
+    setUp();
+    goe_health_take(&filter.health, verdict_of(HALF), (float)ROWS);
+    CHECK_CLOSE(1.0e-5, 20.0 / 9.0, filter.health.mean_nis);
+    setUp();
+    goe_health_take_refused(&filter.health, verdict_of(ALL));
+    CHECK_CLOSE(1.0e-5, 20.0 / 9.0, filter.health.mean_nis);
+    TEST_ASSERT_EQUAL_INT(1, filter.health.images);
+    setUp();
+    goe_verdict_t nothing = verdict_of(0u);
+    nothing.measured = 0u;
+    goe_health_take_refused(&filter.health, nothing);
+    TEST_ASSERT_EQUAL_INT(0, filter.health.images);
+}
+
+static void the_count_of_images_saturates(void) {
+    filter.health.images = INT16_MAX - 1;
+    take(1.0f);
+    TEST_ASSERT_EQUAL_INT(INT16_MAX, filter.health.images);
+    take(1.0f);
+    TEST_ASSERT_EQUAL_INT(INT16_MAX, filter.health.images);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- recovery -- */
+
+/* GIVEN one point that is refused in 4 images in a row, of a chord in 8 THEN the filter starts anew; an image between in which it
+ * fits begins the count again, one in which it is not measured does not. */
+static void a_point_refused_again_and_again_starts_the_filter_anew(void) {
+    for (int chord = 0; chord < 2; chord++) {
+        const int most = chord > 0 ? 8 : 4;
+        setUp();
+        filter.phase = chord > 0 ? GOE_PHASE_CHORD : GOE_PHASE_DISC;
+        for (int i = 1; i < most; i++) {
+            TEST_ASSERT_FALSE(judge(LEFT));
+        }
+        TEST_ASSERT_FALSE(judge(0u));
+        for (int i = 1; i < most; i++) {
+            TEST_ASSERT_FALSE(judge(LEFT));
+        }
+        goe_verdict_t unseen = verdict_of(0u);
+        unseen.measured = ALL & ~LEFT;
+        TEST_ASSERT_FALSE(goe_health_judge(&filter, &settings, unseen));
+        TEST_ASSERT_TRUE(judge(LEFT));
+        TEST_ASSERT_EQUAL_UINT8(0u, filter.health.refused[GOE_POINT_LEFT]);
+    }
+}
+
+static void half_of_the_points_refused_three_times_start_the_filter_anew(void) {
+    TEST_ASSERT_FALSE(judge(HALF));
+    TEST_ASSERT_FALSE(judge(HALF));
+    TEST_ASSERT_FALSE(judge(0u));
+    TEST_ASSERT_FALSE(judge(HALF));
+    TEST_ASSERT_FALSE(judge(HALF));
+    TEST_ASSERT_TRUE(judge(HALF));
+}
+
+static void images_that_do_not_fit_start_the_filter_anew(void) {
+    filter.health.recent_nis = 6.0f;
+    TEST_ASSERT_FALSE(judge(0u));
+    filter.health.recent_nis = 6.01f;
+    TEST_ASSERT_TRUE(judge(0u));
+    setUp();
+    take(10.0f); /* the first of a phase says nothing */
+    CHECK_SAME(1.0f, filter.health.recent_nis);
+    take(9.0f);
+    CHECK_CLOSE(1.0e-6, 2.0, filter.health.recent_nis);
+}
+
+static void a_state_of_no_obstacle_starts_the_filter_anew(void) {
+    filter.state[GOE_FRONT_X] = 0.0f;
+    TEST_ASSERT_TRUE(judge(0u));
+    setUp();
+    filter.state[GOE_BEARING] = 1.1e6f;
+    TEST_ASSERT_TRUE(judge(0u));
+    setUp();
+    filter.state[GOE_TOP] = check_from_bits(0x7FC00000u);
+    TEST_ASSERT_TRUE(judge(0u));
+    setUp();
+    *goe_srif_at(&filter.root, GOE_TOP, GOE_TOP) = check_from_bits(0x7F800000u);
+    TEST_ASSERT_TRUE(judge(0u));
+}
+
+/* GIVEN the top alone refused 3 times THEN it is freed, and the filter goes on. */
+static void a_top_that_is_refused_is_freed(void) {
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_FLOAT(1.0f, *goe_srif_at(&filter.root, GOE_TOP, GOE_TOP));
+        TEST_ASSERT_FALSE(judge(TOP));
+    }
+    TEST_ASSERT_TRUE(*goe_srif_at(&filter.root, GOE_TOP, GOE_TOP) < 0.99f);
+    TEST_ASSERT_EQUAL_UINT8(0u, filter.health.refused[GOE_POINT_TOP]);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- doubt -- */
+
+static void fail_once(void) {
+    filter.state[GOE_FRONT_X] = 0.0f;
+    TEST_ASSERT_TRUE(judge(0u));
+    filter.state[GOE_FRONT_X] = 0.1f;
+}
+
+/* GIVEN a box of base corners that fails twice, late in its track THEN these are given up; a disc's failures, a box's in the first
+ * 32 images, or one that was asked for, say nothing of them. */
+static void base_corners_that_fail_twice_are_given_up(void) {
+    for (int phase = GOE_PHASE_DISC; phase <= GOE_PHASE_BOX_OUTLINE; phase++) {
+        for (int late = 0; late < 2; late++) {
+            for (int forced = 0; forced < 2; forced++) {
+                const bool by_corners = phase == GOE_PHASE_BOX || phase == GOE_PHASE_BOX_FACE;
+                setUp();
+                settings.model = forced ? GOE_MODEL_LINE : GOE_MODEL_AUTO;
+                filter.phase = (unsigned char)phase;
+                filter.health.images = late ? 32 : 31;
+                fail_once();
+                TEST_ASSERT_FALSE(filter.health.base_refused);
+                fail_once();
+                TEST_ASSERT_EQUAL_INT(by_corners && late && !forced, filter.health.base_refused);
+            }
+        }
+    }
+}
+
+/* GIVEN two restarts within 24 images THEN what is given does not belong together; farther apart they are an outlier's. */
+static void two_restarts_soon_are_one_too_many(void) {
+    for (int between = 22; between < 26; between++) {
+        setUp();
+        fail_once();
+        TEST_ASSERT_FALSE(filter.health.adrift);
+        for (int i = 0; i < between; i++) {
+            take(1.0f);
+        }
+        fail_once();
+        TEST_ASSERT_EQUAL_INT(between < 23, filter.health.adrift);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_misfit_begins_with_eight_zeros_and_remembers_64_images);
+    RUN_TEST(one_image_does_not_decide);
+    RUN_TEST(the_count_of_images_saturates);
+    RUN_TEST(a_point_refused_again_and_again_starts_the_filter_anew);
+    RUN_TEST(half_of_the_points_refused_three_times_start_the_filter_anew);
+    RUN_TEST(images_that_do_not_fit_start_the_filter_anew);
+    RUN_TEST(a_state_of_no_obstacle_starts_the_filter_anew);
+    RUN_TEST(a_top_that_is_refused_is_freed);
+    RUN_TEST(base_corners_that_fail_twice_are_given_up);
+    RUN_TEST(two_restarts_soon_are_one_too_many);
+    return UNITY_END();
+}
