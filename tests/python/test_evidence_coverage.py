@@ -91,7 +91,7 @@ def test_a_reason_covers_its_outcome_and_the_independence_that_needs_it(tmp_path
     assert [item.outcome for item, _ in verdict.reasoned] == ["false", "independent"]
     branches = count(found, verdict, "branches")
     assert (branches.of, branches.covered, branches.reasoned, branches.missing) == (4, 3, 1, 0)
-    assert branches.figure() == "75.0 % (3 of 4, 1 reasoned)"
+    assert branches.figure() == "75.00 % (3 of 4, 1 reasoned)"
     last = " ".join(per_file(found, verdict).splitlines()[-1].split())
     assert last == "all 4 4 0 0 3 4 1 0 1 2 1 0"  # of each kind: reached, of, reasoned, missing
 

@@ -20,8 +20,8 @@ from .record import Result, Row
 REASONS = ROOT / "tests" / "coverage" / "reasons.csv"
 GOAL = "100 % or a written reason"
 
-LIBRARY = Group("lib", "^c_", "lib/libgoe.a")
-FLIGHT = Group("port/flight", "^flight_", "port/flight/libgoe_flight.a")
+LIBRARY = Group("lib", "lib/libgoe.a", "tests/c", "c_", cut=True)
+FLIGHT = Group("port/flight", "port/flight/libgoe_flight.a", "tests/flight", "flight_")
 WHAT = {
     "lines": "lines of {} that its unit tests reach",
     "branches": "outcomes of its conditions",
@@ -43,7 +43,7 @@ class Count:
 
     def figure(self) -> str:
         share = 100.0 * self.covered / self.of if self.of else 100.0
-        told = f"{share:.1f} % ({self.covered:,} of {self.of:,}"
+        told = f"{share:.2f} % ({self.covered:,} of {self.of:,}"
         return (
             told
             + "".join(f", {n} {word}" for n, word in ((self.reasoned, "reasoned"), (self.missing, "missing")) if n)

@@ -29,8 +29,10 @@ class Group:
     """Tests that count for the sources of one folder."""
 
     folder: str  # of the sources, in the project
-    tests: str  # pattern of the names in ctest; all have the label unit
-    library: str  # archive that the sources are compiled into, in the build
+    archive: str  # that these are compiled into, in the build
+    tests: str  # folder of the tests' programs, in the build
+    prefix: str  # of the names of the tests in ctest; the programs are test_<name>, all have the label unit
+    cut: bool = False  # ... without the prefix
 
 
 def _run(command: Sequence[str | Path], profile: Path | None = None) -> str:
@@ -53,14 +55,21 @@ def configure() -> None:
     _run(["cmake", "--preset", PRESET, "-DGOE_BUILD_TESTS=ON", *([f"-DUNITY_DIR={unity}"] if unity else [])])
 
 
+def _select(group: Group) -> list[str]:
+    return ["ctest", "--test-dir", str(BUILD), "-L", "^unit$", "-R", f"^{group.prefix}"]
+
+
+def programs(group: Group) -> list[str]:
+    """Of the group's tests."""
+    tests = json.loads(_run([*_select(group), "--show-only=json-v1"]))["tests"]
+    names = [str(test["name"]) for test in tests]
+    return sorted("test_" + (name[len(group.prefix) :] if group.cut else name) for name in names)
+
+
 def build(groups: Sequence[Group], jobs: int) -> None:
-    """The programs of the groups' tests and no others. A test c_<name> or <name> is run by the program test_<name>."""
-    programs: set[str] = set()
-    for group in groups:
-        command = ["ctest", "--test-dir", BUILD, "-L", "^unit$", "-R", group.tests, "--show-only=json-v1"]
-        names = [str(test["name"]) for test in json.loads(_run(command))["tests"]]
-        programs |= {"test_" + (name[2:] if name.startswith("c_") else name) for name in names}
-    _run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(programs)])
+    """The programs of the groups' tests and no others."""
+    targets = sorted({program for group in groups for program in programs(group)})
+    _run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *targets])
 
 
 def run_tests(group: Group, jobs: int) -> Path:
@@ -70,15 +79,16 @@ def run_tests(group: Group, jobs: int) -> Path:
     merged = PROFILES / f"{name}.profdata"
     shutil.rmtree(raw, ignore_errors=True)
     raw.mkdir(parents=True)
-    command = ["ctest", "--test-dir", BUILD, "-L", "^unit$", "-R", group.tests, "-j", str(jobs), "--output-on-failure"]
-    _run([*command, "--no-tests=error"], profile=raw / "%p.profraw")
+    command = [*_select(group), "-j", str(jobs), "--output-on-failure", "--no-tests=error"]
+    _run(command, profile=raw / "%p.profraw")
     _run(["llvm-profdata-19", "merge", "--sparse", "-o", merged, *sorted(raw.glob("*.profraw"))])
     shutil.rmtree(raw)
     return merged
 
 
 def export(group: Group, profile: Path) -> dict[str, Any]:
-    """llvm-cov's counts of the group's sources."""
-    command = ["llvm-cov-19", "export", "--instr-profile", profile, BUILD / group.library, "--sources"]
-    told: dict[str, Any] = json.loads(_run([*command, ROOT / group.folder]))["data"][0]
+    """llvm-cov's counts of the group's sources: as they lie in the archive, and as a test compiles them for itself."""
+    objects = [f"--object={BUILD / group.tests / program}" for program in programs(group)]
+    command = ["llvm-cov-19", "export", "--instr-profile", profile, BUILD / group.archive, *objects]
+    told: dict[str, Any] = json.loads(_run([*command, "--sources", ROOT / group.folder]))["data"][0]
     return told
