@@ -252,6 +252,41 @@ static void the_columns_are_derivatives(void) {
     }
 }
 
+/* ----------------------------------------------------------------------------------------------------------- followed -- */
+
+/* One image after an obstacle began to be followed, by what is known of it then. */
+static goe_mover_t judge_followed(float latency_s, float velocity_m_s, float velocity_sd_m_s) {
+    const float sd[GOE_BESIDE] = {0.01f, velocity_sd_m_s, velocity_sd_m_s};
+    const float change[GOE_UNKNOWNS] = {0.0f};
+    goe_filter_t filter;
+    sighting_t s;
+    sighting_start(&s, &any);
+    goe_filter_clear(&filter);
+    filter.mover.followed = true;
+    filter.mover.beside[GOE_BESIDE_LATENCY] = latency_s;
+    filter.mover.beside[GOE_BESIDE_VELOCITY_X] = velocity_m_s;
+    filter.root.estimated = GOE_BESIDE;
+    filter.inverse.estimated = GOE_BESIDE;
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        filter.inverse.element[goe_inverse_column(GOE_STATES + i) + GOE_STATES + i] = sd[i];
+    }
+    TEST_ASSERT_FALSE(goe_mover_judge(&filter, &s.sight, change, 0.1f));
+    return filter.mover;
+}
+
+/* GIVEN an obstacle that is followed THEN it moves, unless the poses have proved late meanwhile: then only what is fast, and
+ * surely so, as late poses of a turn look like a motion. */
+static void late_poses_end_a_motion_that_is_none(void) {
+    const goe_mover_t in_time = judge_followed(0.0f, 0.5f, 0.1f);
+    TEST_ASSERT_TRUE(in_time.moves && !in_time.late);
+    const goe_mover_t both = judge_followed(0.2f, 5.0f, 0.2f);
+    TEST_ASSERT_TRUE(both.moves && both.late);
+    const goe_mover_t slow = judge_followed(0.2f, 0.5f, 0.05f);
+    TEST_ASSERT_TRUE(!slow.moves && slow.late);
+    const goe_mover_t unsure = judge_followed(-0.2f, 5.0f, 3.0f);
+    TEST_ASSERT_TRUE(!unsure.moves && unsure.late);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- flights -- */
 
 typedef struct {
@@ -394,6 +429,7 @@ int main(void) {
     RUN_TEST(the_variance_holds_what_is_beside_the_state);
     RUN_TEST(a_change_of_states_keeps_what_is_beside_them);
     RUN_TEST(the_columns_are_derivatives);
+    RUN_TEST(late_poses_end_a_motion_that_is_none);
     RUN_TEST(nothing_moves_that_does_not);
     RUN_TEST(late_poses_are_told_and_taken_off);
     RUN_TEST(an_obstacle_that_moves_is_followed);

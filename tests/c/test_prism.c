@@ -317,6 +317,23 @@ static void a_jump_of_the_filter_moves_the_datum(void) {
     CHECK_CLOSE(0.01 * (double)steady.sigma.height_m, steady.height_m, jumped.height_m);
 }
 
+/* GIVEN a depth that an update throws far off THEN it stays what a body can have, flat or deep, and can come back. */
+static void the_depth_of_a_body_is_bounded(void) {
+    goe_filter_t filter;
+    float change[GOE_UNKNOWNS] = {0.0f};
+    goe_filter_clear(&filter);
+    filter.state[GOE_PRISM_DEPTH] = 50.0f;
+    goe_prism_follow(&filter, change);
+    const float most = filter.state[GOE_PRISM_DEPTH];
+    TEST_ASSERT_TRUE(most > 1.0f && most < 5.0f);
+    filter.state[GOE_PRISM_DEPTH] = -50.0f;
+    goe_prism_follow(&filter, change);
+    CHECK_SAME(-most, filter.state[GOE_PRISM_DEPTH]);
+    filter.state[GOE_PRISM_DEPTH] = -0.5f * most;
+    goe_prism_follow(&filter, change);
+    CHECK_SAME(-0.5f * most, filter.state[GOE_PRISM_DEPTH]);
+}
+
 /* GIVEN errors of an image that are none THEN the image is refused, and nothing changes; by the window method they are not
  * read. */
 static void errors_of_an_image_are_checked(void) {
@@ -346,6 +363,7 @@ static void errors_of_an_image_are_checked(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(the_depth_of_a_body_is_bounded);
     RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);
     RUN_TEST(a_jump_of_the_filter_moves_the_datum);

@@ -681,6 +681,18 @@ static void a_stand_in_tells_no_width(void) {
     TEST_ASSERT_TRUE(stood_in);
 }
 
+/* GIVEN a track of more images than are counted THEN the count stays at the most that it may tell. */
+static void the_count_of_images_saturates(void) {
+    start();
+    fly(0, 20);
+    estimator.filter.health.images = INT16_MAX - 1;
+    for (int k = 20; k < 23; k++) {
+        fly(k, k + 1);
+        TEST_ASSERT_EQUAL_INT(32767, estimate.points);
+        TEST_ASSERT_TRUE(estimate.misfit >= 0.0f && estimate.misfit < 1.0f);
+    }
+}
+
 /* GIVEN a forced line and a truck so far away that its orientation is not told yet WHEN the window solves THEN its answer
  * is told, and never again once the box has begun. */
 static void the_window_answers_before_the_start_only(void) {
@@ -860,6 +872,7 @@ int main(void) {
     RUN_TEST(a_forced_line_is_a_box_and_no_disc_before_it);
     RUN_TEST(a_forced_line_without_corners_tells_nothing);
     RUN_TEST(a_stand_in_tells_no_width);
+    RUN_TEST(the_count_of_images_saturates);
     RUN_TEST(the_window_answers_before_the_start_only);
     RUN_TEST(an_answer_follows_the_motion_while_nothing_is_seen);
     RUN_TEST(any_subset_of_the_features_will_do);
