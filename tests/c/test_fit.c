@@ -165,6 +165,20 @@ static void hopeless_rows_have_a_finite_sigma(void) {
                      check_is_finite(fit.sigma.width_m) && check_is_finite(fit.residual));
 }
 
+/* GIVEN a wide obstacle whose X jumps from row to row by far more than any image shows THEN its sigma stops where squares and
+ * products of it are still finite. */
+static void a_sigma_is_bounded(void) {
+    for (int k = 0; k < LENGTH; k++) {
+        const float ahead_m = 1000.0f * (float)k;
+        goe_fit_add(&window, LENGTH, 0.0f, ahead_m,
+                    (goe_row_t){k % 2 ? 1.0e6f : -1.0e6f, (5.0e5f - ahead_m) * 1.0e-5f});
+    }
+    CHECK_STATUS(GOE_OK, solve());
+    TEST_ASSERT_FLOAT_WITHIN(1.0e3f, 1.0e5f, fit.width_m);
+    TEST_ASSERT_EQUAL_FLOAT(1.0e9f, fit.sigma.x0_m);
+    TEST_ASSERT_TRUE(fit.sigma.z0_m > 0.0f && check_is_finite(fit.sigma.z0_m * fit.sigma.z0_m));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(exact_rows_are_solved_exactly);
@@ -180,5 +194,6 @@ int main(void) {
     RUN_TEST(the_count_of_points_saturates);
     RUN_TEST(a_shorter_window_uses_its_own_length);
     RUN_TEST(hopeless_rows_have_a_finite_sigma);
+    RUN_TEST(a_sigma_is_bounded);
     return UNITY_END();
 }

@@ -42,6 +42,14 @@ static goe_faces_t see_one(float heading_deg) {
     return update(MEMORY);
 }
 
+/* Before any edge had a heading there is nothing to divide by. */
+static void no_measurement_has_no_sigma(void) {
+    orientation.variance_deg2 = 9.0f;
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, goe_orientation_sigma_deg(&orientation));
+    orientation.count = 4;
+    TEST_ASSERT_EQUAL_FLOAT(1.5f, goe_orientation_sigma_deg(&orientation));
+}
+
 static void the_side_is_the_edge_nearer_to_the_flight_direction(void) {
     goe_faces_t faces = see_two(-80.0f, 10.0f);
     TEST_ASSERT_TRUE(faces.measured && faces.side_is_right);
@@ -166,6 +174,7 @@ static void nothing_measured_has_no_spread(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(no_measurement_has_no_sigma);
     RUN_TEST(the_side_is_the_edge_nearer_to_the_flight_direction);
     RUN_TEST(the_front_tells_the_orientation_if_the_side_cannot);
     RUN_TEST(a_single_edge_is_a_front_beyond_45_degrees);
