@@ -2,7 +2,8 @@
 
 Of lib/ every line, every outcome of every condition, and every condition of a decision shown to decide alone (MC/DC) is
 reached by tests/c, or has its reason in tests/coverage/reasons.csv; a reason that fits nothing any more, or whose
-condition is covered now, is a fault, too. Of port/flight the figures are told.
+condition is covered now, is a fault, too. Of port/flight the figures are told; long runs tell those of what reads text
+in sim_host, by the tests in Python of the programs.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..places import ROOT
-from .coverage_build import Group, build, configure, export, need_tools, run_tests
+from .coverage_build import Group, Readers, build, configure, count_readers, count_tests, need_tools, programs
 from .coverage_counts import KINDS, Item, items
 from .coverage_reasons import Verdict, read, settle
 from .parts import Amount
@@ -22,8 +23,20 @@ GOAL = "100 % or a written reason"
 
 LIBRARY = Group("lib", "lib/libgoe.a", "tests/c", "c_", cut=True)
 FLIGHT = Group("port/flight", "port/flight/libgoe_flight.a", "tests/flight", "flight_")
+READERS = Readers(
+    "sim_host",
+    {"GOE_REPLAY": "goe_replay", "GOE_SIM": "goe_sim"},
+    ("tests/host", "tests/sim/test_sim_scenario.py", "tests/sim/test_sim_log.py"),
+)
+READING = (  # folders and files of it that read text
+    "sim_host/log/",
+    "sim_host/text/",
+    "sim_host/flight/recorded_flight.c",
+    "sim_host/flight/scenario_file.c",
+    "sim_host/flight/text_numbers.c",
+)
 WHAT = {
-    "lines": "lines of {} that its unit tests reach",
+    "lines": "lines of {} that its tests reach",
     "branches": "outcomes of its conditions",
     "MC/DC": "conditions of its decisions that decide alone (MC/DC)",
 }
@@ -95,32 +108,37 @@ def reasons_told(verdict: Verdict) -> list[str]:
     return told
 
 
-def rows_of(group: Group, found: Sequence[Item], verdict: Verdict, goal: str) -> list[Row]:
+def rows_of(name: str, found: Sequence[Item], verdict: Verdict, goal: str) -> list[Row]:
     rows: list[Row] = []
     for kind, what in WHAT.items():
         counted = count(found, verdict, kind)
-        rows.append(
-            Row(what.format(f"{group.folder}/"), counted.figure(), goal, counted.missing == 0 if goal else None)
-        )
+        rows.append(Row(what.format(name), counted.figure(), goal, counted.missing == 0 if goal else None))
     return rows
+
+
+def of_library(jobs: int) -> Result:
+    found = items(count_tests(LIBRARY, jobs), ROOT)
+    verdict = settle(found, read(REASONS))
+    stale = Row("reasons that fit nothing, or what is covered", str(len(verdict.stale)), "0", not verdict.stale)
+    told = [per_file(found, verdict), "", *faults(verdict), "", "Not reached, and why:", *reasons_told(verdict), ""]
+    return Result([*rows_of("lib/", found, verdict, GOAL), stale], "\n".join(told))
+
+
+def of_others(name: str, found: Sequence[Item]) -> Result:
+    """Figures without a goal."""
+    verdict = settle(found, [])
+    return Result(rows_of(name, found, verdict, ""), "\n".join([per_file(found, verdict), "", *faults(verdict), ""]))
 
 
 def run(amount: Amount) -> Result:
     need_tools()
-    groups = (LIBRARY, FLIGHT)
     configure()
-    build(groups, amount.jobs)
-    rows: list[Row] = []
-    report: list[str] = []
-    for group in groups:
-        found = items(export(group, run_tests(group, amount.jobs)), ROOT)
-        held = group is LIBRARY
-        verdict = settle(found, read(REASONS) if held else [])
-        rows += rows_of(group, found, verdict, GOAL if held else "")
-        report += [per_file(found, verdict), "", *faults(verdict), ""]
-        if held:
-            rows.append(
-                Row("reasons that fit nothing, or what is covered", str(len(verdict.stale)), "0", not verdict.stale)
-            )
-            report += ["Not reached, and why:", *reasons_told(verdict), ""]
-    return Result(rows, "\n".join(report))
+    build([*programs(LIBRARY), *programs(FLIGHT), *(READERS.programs.values() if amount.long else ())], amount.jobs)
+    results = [
+        of_library(amount.jobs),
+        of_others("port/flight/", items(count_tests(FLIGHT, amount.jobs), ROOT)),
+    ]
+    if amount.long:
+        found = items(count_readers(READERS), ROOT, strict=False)
+        results.append(of_others("sim_host's readers", [item for item in found if item.file.startswith(READING)]))
+    return Result([row for result in results for row in result.rows], "\n".join(result.report for result in results))

@@ -6,7 +6,8 @@ import json
 import os
 import shutil
 import subprocess
-from collections.abc import Sequence
+import sys
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -35,12 +36,13 @@ class Group:
     cut: bool = False  # ... without the prefix
 
 
-def _run(command: Sequence[str | Path], profile: Path | None = None) -> str:
-    environment = {**os.environ, **({"LLVM_PROFILE_FILE": str(profile)} if profile else {})}
-    ended = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+def _run(command: Sequence[str | Path], **environment: str) -> str:
+    ended = subprocess.run(
+        command, cwd=ROOT, env={**os.environ, **environment}, capture_output=True, text=True, check=False
+    )
     if ended.returncode:
         told = "\n".join((ended.stdout + ended.stderr).splitlines()[-40:])
-        raise BuildError(f"{' '.join(map(str, command))}\n{told}")
+        raise BuildError(f"{' '.join(map(str, command[:8]))}: exit status {ended.returncode}\n{told}")
     return ended.stdout
 
 
@@ -66,29 +68,49 @@ def programs(group: Group) -> list[str]:
     return sorted("test_" + (name[len(group.prefix) :] if group.cut else name) for name in names)
 
 
-def build(groups: Sequence[Group], jobs: int) -> None:
-    """The programs of the groups' tests and no others."""
-    targets = sorted({program for group in groups for program in programs(group)})
-    _run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *targets])
+def build(targets: Iterable[str], jobs: int) -> None:
+    _run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(set(targets))])
 
 
-def run_tests(group: Group, jobs: int) -> Path:
-    """Runs the group's tests. Returns the merged profile."""
-    name = group.folder.replace("/", "_")
+def _profile(name: str, command: Sequence[str | Path], **environment: str) -> Path:
+    """Runs what leaves profiles, and merges these."""
     raw = PROFILES / name
     merged = PROFILES / f"{name}.profdata"
     shutil.rmtree(raw, ignore_errors=True)
     raw.mkdir(parents=True)
-    command = [*_select(group), "-j", str(jobs), "--output-on-failure", "--no-tests=error"]
-    _run(command, profile=raw / "%p.profraw")
-    _run(["llvm-profdata-19", "merge", "--sparse", "-o", merged, *sorted(raw.glob("*.profraw"))])
+    _run(command, LLVM_PROFILE_FILE=str(raw / "%p.profraw"), **environment)
+    # A program that a test kills may leave half a profile: that one is left out.
+    _run(["llvm-profdata-19", "merge", "--sparse", "--failure-mode=all", "-o", merged, *sorted(raw.glob("*.profraw"))])
     shutil.rmtree(raw)
     return merged
 
 
-def export(group: Group, profile: Path) -> dict[str, Any]:
-    """llvm-cov's counts of the group's sources: as they lie in the archive, and as a test compiles them for itself."""
-    objects = [f"--object={BUILD / group.tests / program}" for program in programs(group)]
-    command = ["llvm-cov-19", "export", "--instr-profile", profile, BUILD / group.archive, *objects]
-    told: dict[str, Any] = json.loads(_run([*command, "--sources", ROOT / group.folder]))["data"][0]
+def _export(profile: Path, objects: Sequence[str], folder: str) -> dict[str, Any]:
+    first, *more = [str(BUILD / name) for name in objects]
+    command = ["llvm-cov-19", "export", "--instr-profile", profile, first, *(f"--object={name}" for name in more)]
+    told: dict[str, Any] = json.loads(_run([*command, "--sources", ROOT / folder]))["data"][0]
     return told
+
+
+def count_tests(group: Group, jobs: int) -> dict[str, Any]:
+    """Runs the tests. Returns llvm-cov's counts of the sources, also as a test compiles them for itself."""
+    command = [*_select(group), "-j", str(jobs), "--output-on-failure", "--no-tests=error"]
+    profile = _profile(group.folder.replace("/", "_"), command)
+    return _export(profile, [group.archive, *(f"{group.tests}/{name}" for name in programs(group))], group.folder)
+
+
+@dataclass(frozen=True)
+class Readers:
+    """Programs for the host, run by tests in Python."""
+
+    folder: str  # of the sources, in the project, and of the programs, in the build
+    programs: dict[str, str]  # by the variable that names it to the tests
+    tests: tuple[str, ...]  # files or folders
+
+
+def count_readers(readers: Readers) -> dict[str, Any]:
+    places = {variable: f"{readers.folder}/{name}" for variable, name in readers.programs.items()}
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-c", "tools/pyproject.toml"]
+    named = {variable: str(BUILD / place) for variable, place in places.items()}
+    profile = _profile(readers.folder, [*command, *readers.tests], **named)
+    return _export(profile, list(places.values()), readers.folder)

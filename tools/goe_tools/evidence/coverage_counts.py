@@ -139,7 +139,7 @@ def _independent(records: Iterable[Sequence[Any]], file: str) -> dict[_Span, lis
     return shown
 
 
-def _branches(source: _Source, told: dict[str, Any], file: str) -> Iterable[tuple[int, str, str, bool]]:
+def _branches(source: _Source, told: dict[str, Any], file: str, strict: bool) -> Iterable[tuple[int, str, str, bool]]:
     counts: dict[_Span, list[int]] = {}
     kinds: dict[_Span, int] = {}
     for branch in told["branches"]:
@@ -152,7 +152,11 @@ def _branches(source: _Source, told: dict[str, Any], file: str) -> Iterable[tupl
     for decision, shown in decisions.items():
         conditions = _conditions(decision, decisions, kinds.items())
         if len(conditions) != len(shown):
-            raise CountError(f"{file}:{decision[0]}: {len(shown)} conditions, of which {len(conditions)} are found")
+            if strict:
+                raise CountError(f"{file}:{decision[0]}: {len(shown)} conditions, of which {len(conditions)} are found")
+            for number, alone in enumerate(shown, start=1):
+                yield decision[0], f"{plain(source.at(*decision))}, condition {number}", "independent", alone
+            continue
         for condition, alone in zip(conditions, shown):
             text[condition] = _marked(source, decision, condition)
             yield condition[0], text[condition], "independent", alone
@@ -161,19 +165,21 @@ def _branches(source: _Source, told: dict[str, Any], file: str) -> Iterable[tupl
         yield span[0], text[span], "false", false > 0
 
 
-def items(export: dict[str, Any], root: Path) -> list[Item]:
-    """All that is to be reached in the files of an export of llvm-cov, by file and line."""
+def items(export: dict[str, Any], root: Path, strict: bool = True) -> list[Item]:
+    """All that is to be reached in the files of an export of llvm-cov, by file and line. strict: no macro holds a condition;
+    otherwise outcomes in macros, which are those of the system's headers, do not count.
+    """
     found: list[Item] = []
     for told in export["files"]:
         path = Path(told["filename"])
         file = path.relative_to(root).as_posix()
-        if any(expansion["branches"] for expansion in told.get("expansions", [])):
+        if strict and any(expansion["branches"] for expansion in told.get("expansions", [])):
             raise CountError(f"{file}: a macro with a condition: its places are those of the macro's text")
         source = _Source(path.read_text(encoding="utf-8"))
         function = _functions(export["functions"], told["filename"])
         for line, text, outcome, reached in [
             *_lines(source, told["segments"]),
-            *_branches(source, told, file),
+            *_branches(source, told, file, strict),
         ]:
             found.append(Item(file, function(line), text, outcome, line, reached))
     return sorted(found, key=lambda item: (item.file, item.line, OUTCOMES.index(item.outcome), item.text))
