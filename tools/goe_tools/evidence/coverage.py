@@ -21,8 +21,8 @@ from .record import Result, Row
 REASONS = ROOT / "tests" / "coverage" / "reasons.csv"
 GOAL = "100 % or a written reason"
 
-LIBRARY = Group("lib", "lib/libgoe.a", "tests/c", "c_", cut=True)
-FLIGHT = Group("port/flight", "port/flight/libgoe_flight.a", "tests/flight", "flight_")
+LIBRARY = Group("lib", "goe", "tests/c", "c_", cut=True)
+FLIGHT = Group("port/flight", "goe_flight", "tests/flight", "flight_")
 READERS = Readers(
     "sim_host",
     {"GOE_REPLAY": "goe_replay", "GOE_SIM": "goe_sim"},
