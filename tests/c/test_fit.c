@@ -135,6 +135,24 @@ static void the_oldest_rows_leave(void) {
     TEST_ASSERT_EQUAL_INT(13, window.count);
 }
 
+/* GIVEN a place in the ring that a flipped bit made none of it THEN nothing is written beside it, and the ring goes on. */
+static void a_place_outside_the_ring_is_its_first(void) {
+    static const int16_t places[] = {INT16_MIN, -1, LENGTH, INT16_MAX};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        struct {
+            goe_fit_ring_t before, ring, behind;
+        } memory;
+        memset(&memory, 0, sizeof memory);
+        const goe_fit_ring_t nothing = memory.before;
+        memory.ring.next = places[i];
+        goe_fit_add(&memory.ring, LENGTH, 2.0f, 3.0f, (goe_row_t){4.0f, 5.0f});
+        TEST_ASSERT_EQUAL_MEMORY(&nothing, &memory.before, sizeof nothing);
+        TEST_ASSERT_EQUAL_MEMORY(&nothing, &memory.behind, sizeof nothing);
+        TEST_ASSERT_EQUAL_FLOAT(2.0f, memory.ring.point[0].dx_m);
+        TEST_ASSERT_EQUAL_INT(1, memory.ring.next);
+    }
+}
+
 static void the_count_of_points_saturates(void) {
     window.count = INT16_MAX - 1;
     add(1.0f, 10.0f, 1.0f, 0.0f, 0.0f);
@@ -191,6 +209,7 @@ int main(void) {
     RUN_TEST(an_obstacle_abeam_or_behind_is_passed);
     RUN_TEST(what_is_too_far_to_be_an_obstacle_is_no_parallax);
     RUN_TEST(the_oldest_rows_leave);
+    RUN_TEST(a_place_outside_the_ring_is_its_first);
     RUN_TEST(the_count_of_points_saturates);
     RUN_TEST(a_shorter_window_uses_its_own_length);
     RUN_TEST(hopeless_rows_have_a_finite_sigma);

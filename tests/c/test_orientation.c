@@ -63,6 +63,24 @@ static void the_side_is_the_edge_nearer_to_the_flight_direction(void) {
     TEST_ASSERT_EQUAL_FLOAT(-5.0f, orientation.raw_deg);
 }
 
+/* GIVEN a count or an angle that no image can have left THEN the next measurement is the first. */
+static void what_no_image_left_begins_anew(void) {
+    static const struct {
+        int count;
+        uint32_t filtered;
+    } flipped[] = {{-1, 0u}, {MEMORY + 1, 0u}, {INT32_MIN, 0u}, {3, 0x7FC00000u}, {3, 0xFF800000u}, {3, 0x4E800000u}};
+    for (size_t i = 0; i < sizeof flipped / sizeof flipped[0]; i++) {
+        setUp();
+        orientation.count = flipped[i].count;
+        orientation.filtered_deg = check_from_bits(flipped[i].filtered);
+        orientation.variance_deg2 = 5.0f;
+        (void)see_one(20.0f);
+        TEST_ASSERT_EQUAL_INT(1, orientation.count);
+        TEST_ASSERT_EQUAL_FLOAT(20.0f, orientation.filtered_deg);
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, orientation.variance_deg2);
+    }
+}
+
 static void the_front_tells_the_orientation_if_the_side_cannot(void) {
     (void)see_two(70.0f, none);
     TEST_ASSERT_EQUAL_FLOAT(-20.0f, orientation.raw_deg);
@@ -176,6 +194,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(no_measurement_has_no_sigma);
     RUN_TEST(the_side_is_the_edge_nearer_to_the_flight_direction);
+    RUN_TEST(what_no_image_left_begins_anew);
     RUN_TEST(the_front_tells_the_orientation_if_the_side_cannot);
     RUN_TEST(a_single_edge_is_a_front_beyond_45_degrees);
     RUN_TEST(no_heading_leaves_everything_as_it_is);

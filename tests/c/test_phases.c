@@ -228,6 +228,19 @@ static void what_is_no_phase_changes_nothing(void) {
     }
 }
 
+/* GIVEN a number that a flipped bit made no phase WHEN an image comes THEN the filter starts with it, as at a track's begin. */
+static void what_is_no_phase_starts_the_filter_anew(void) {
+    for (int number = PHASES; number <= UINT8_MAX; number += 62) {
+        goe_image_t image;
+        fly(SEE_ALL, 20);
+        estimator.filter.phase = (uint8_t)number;
+        scene_image(&scene, 20, &image, NULL);
+        (void)goe_update(&estimator, &image, &estimate);
+        TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
+        TEST_ASSERT_EQUAL_INT64(image.pose.time_us, estimator.filter.axes.start_time_us);
+    }
+}
+
 /* GIVEN a state or a root that no images lead to, one element of it at a time THEN the filter starts anew, and nothing of it
  * reaches an answer. */
 static void what_is_not_finite_starts_the_filter_anew(void) {
@@ -296,6 +309,7 @@ int main(void) {
     RUN_TEST(a_side_that_lies_across_takes_the_name_of_the_front);
     RUN_TEST(what_does_not_fit_starts_the_filter_anew);
     RUN_TEST(what_is_no_phase_changes_nothing);
+    RUN_TEST(what_is_no_phase_starts_the_filter_anew);
     RUN_TEST(what_is_not_finite_starts_the_filter_anew);
     RUN_TEST(no_other_transition_happens);
     return UNITY_END();

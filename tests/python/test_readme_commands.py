@@ -133,6 +133,7 @@ RUN_BY = {
     "python -m goe_tools mcap...": By("tests/python/test_mcap.py", '"mcap", str(folder), "--out"'),
     "python -m goe_tools noise...": By("tests/python/test_noise.py", '"noise", *logs'),
     "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
+    "python -m goe_tools evidence --quick --only coverage": By("tools/test.sh", "evidence --quick --only coverage"),
     "python -m goe_tools flight_cost": By("tools/test.sh", "goe_tools flight_cost"),
     "python -m goe_tools ledger": By("tools/test.sh", "goe_tools ledger"),
     "python -m goe_tools ledger --check": By("tools/test.sh", "goe_tools ledger --check"),

@@ -50,6 +50,9 @@ def need_tools() -> None:
     missing = [tool for tool in TOOLS if not shutil.which(tool)]
     if missing:
         raise NotHereError(f"not installed: {', '.join(missing)}")
+    resources = Path(_run(["clang-19", "--print-resource-dir"]).strip())
+    if not any(resources.rglob("libclang_rt.profile*")):
+        raise NotHereError("not installed: clang's library for profiles (libclang-rt-19-dev)")
 
 
 def configure() -> None:

@@ -168,7 +168,7 @@ def _branches(source: _Source, told: dict[str, Any], file: str, strict: bool) ->
 def items(export: dict[str, Any], root: Path, strict: bool = True) -> list[Item]:
     """All that is to be reached in the files of an export of llvm-cov, by file and line.
 
-    strict: a macro with a condition is refused; otherwise outcomes in macros, those of the system's headers, do not count.
+    strict: a macro with a condition is refused; otherwise outcomes in macros, which are the system's, do not count.
     """
     found: list[Item] = []
     for told in export["files"]:
