@@ -11,6 +11,7 @@ from .record import Result
 
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
     "coverage": "what the unit tests reach of every line, branch and condition",
+    "flips": "one flipped bit anywhere in the estimator's memory",
 }
 
 
