@@ -2,8 +2,8 @@
 
 Of lib/ every line, every outcome of every condition, and every condition of a decision shown to decide alone (MC/DC) is
 reached by tests/c, or has its reason in tests/coverage/reasons.csv; a reason that fits nothing any more, or whose
-condition is covered now, is a fault, too. Of port/flight the figures are told; long runs tell those of what reads text
-in sim_host, by the tests in Python of the programs.
+condition is covered now, is a fault, too. Told without a goal: the same without the safety tests, which reach much and
+ask for little; port/flight; in long runs what reads text in sim_host, by the tests in Python of the programs.
 """
 
 from __future__ import annotations
@@ -117,17 +117,20 @@ def rows_of(name: str, found: Sequence[Item], verdict: Verdict, goal: str) -> li
 
 
 def of_library(jobs: int) -> Result:
-    found = items(count_tests(LIBRARY, jobs), ROOT)
+    every, judging = count_tests(LIBRARY, jobs)
+    found = items(every, ROOT)
     verdict = settle(found, read(REASONS))
     stale = Row("reasons that fit nothing, or what is covered", str(len(verdict.stale)), "0", not verdict.stale)
     told = [per_file(found, verdict), "", *faults(verdict), "", "Not reached, and why:", *reasons_told(verdict), ""]
-    return Result([*rows_of("lib/", found, verdict, GOAL), stale], "\n".join(told))
+    judged = of_others("lib/ without the safety tests", items(judging, ROOT))
+    return Result([*rows_of("lib/", found, verdict, GOAL), stale, *judged.rows], "\n".join([*told, judged.report]))
 
 
 def of_others(name: str, found: Sequence[Item]) -> Result:
     """Figures without a goal."""
     verdict = settle(found, [])
-    return Result(rows_of(name, found, verdict, ""), "\n".join([per_file(found, verdict), "", *faults(verdict), ""]))
+    told = [f"{name}:", "", per_file(found, verdict), "", *faults(verdict), ""]
+    return Result(rows_of(name, found, verdict, ""), "\n".join(told))
 
 
 def run(amount: Amount) -> Result:
@@ -136,7 +139,7 @@ def run(amount: Amount) -> Result:
     build([*programs(LIBRARY), *programs(FLIGHT), *(READERS.programs.values() if amount.long else ())], amount.jobs)
     results = [
         of_library(amount.jobs),
-        of_others("port/flight/", items(count_tests(FLIGHT, amount.jobs), ROOT)),
+        of_others("port/flight/", items(count_tests(FLIGHT, amount.jobs)[0], ROOT)),
     ]
     if amount.long:
         found = items(count_readers(READERS), ROOT, strict=False)

@@ -18,6 +18,7 @@ from .parts import NotHereError
 PRESET = "coverage"
 BUILD = ROOT / ".cache" / "evidence" / "coverage"  # as CMakePresets.json names it
 PROFILES = ROOT / ".cache" / "evidence" / "coverage-profiles"
+SAFETY = "safety"  # in the names of the tests of any input
 TOOLS = ("cmake", "ninja", "clang-19", "llvm-profdata-19", "llvm-cov-19")
 
 
@@ -60,8 +61,8 @@ def configure() -> None:
     _run(["cmake", "--preset", PRESET, "-DGOE_BUILD_TESTS=ON", *([f"-DUNITY_DIR={unity}"] if unity else [])])
 
 
-def _select(group: Group) -> list[str]:
-    return ["ctest", "--test-dir", str(BUILD), "-L", "^unit$", "-R", f"^{group.prefix}"]
+def _select(group: Group, but: str = "") -> list[str]:
+    return ["ctest", "--test-dir", str(BUILD), "-L", "^unit$", "-R", f"^{group.prefix}{but}"]
 
 
 def programs(group: Group) -> list[str]:
@@ -78,13 +79,18 @@ def build(targets: Iterable[str], jobs: int) -> None:
 def _profile(name: str, command: Sequence[str | Path], **environment: str) -> Path:
     """Runs what leaves profiles, and merges these."""
     raw = PROFILES / name
-    merged = PROFILES / f"{name}.profdata"
     shutil.rmtree(raw, ignore_errors=True)
     raw.mkdir(parents=True)
     _run(command, LLVM_PROFILE_FILE=str(raw / "%p.profraw"), **environment)
-    # A program that a test kills may leave half a profile: that one is left out.
-    _run(["llvm-profdata-19", "merge", "--sparse", "--failure-mode=all", "-o", merged, *sorted(raw.glob("*.profraw"))])
+    merged = _merge(name, sorted(raw.glob("*.profraw")))
     shutil.rmtree(raw)
+    return merged
+
+
+def _merge(name: str, profiles: Sequence[Path]) -> Path:
+    merged = PROFILES / f"{name}.profdata"
+    # A program that a test kills may leave half a profile: that one is left out.
+    _run(["llvm-profdata-19", "merge", "--sparse", "--failure-mode=all", "-o", merged, *profiles])
     return merged
 
 
@@ -102,11 +108,17 @@ def _objects(group: Group) -> list[str]:
     return [f"{folder}/{source.relative_to(ROOT / group.folder).as_posix()}.o" for source in sources]
 
 
-def count_tests(group: Group, jobs: int) -> dict[str, Any]:
-    """Runs the tests. Returns llvm-cov's counts of the sources, also as a test compiles them for itself."""
-    command = [*_select(group), "-j", str(jobs), "--output-on-failure", "--no-tests=error"]
-    profile = _profile(group.folder.replace("/", "_"), command)
-    return _export(profile, [*_objects(group), *(f"{group.tests}/{name}" for name in programs(group))], group.folder)
+def count_tests(group: Group, jobs: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Runs the tests. Returns llvm-cov's counts of the sources, also as a test compiles them for itself.
+
+    First those of all tests, then without the safety tests, which ask of any input no more than that it does no harm.
+    """
+    name = group.folder.replace("/", "_")
+    how = ["-j", str(jobs), "--output-on-failure", "--no-tests=error"]
+    judging = _profile(f"{name}_judging", [*_select(group), "-E", SAFETY, *how])
+    every = _merge(name, [judging, _profile(f"{name}_safety", [*_select(group, but=f".*{SAFETY}"), *how])])
+    objects = [*_objects(group), *(f"{group.tests}/{name}" for name in programs(group))]
+    return _export(every, objects, group.folder), _export(judging, objects, group.folder)
 
 
 @dataclass(frozen=True)
