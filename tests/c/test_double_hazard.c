@@ -642,10 +642,13 @@ static void a_refusal_leaves_zeros(void) {
     check_refused(GOE_BAD_ARGUMENT, &estimator, NULL);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_hazard(&estimator, &good, NULL));
     tell(&estimator.estimate, &o);
-    for (int field = 0; field < 5; field++) {
-        static const float most[5] = {1e3f, 1e3f, 1e3f, 1e4f, 1e4f};
+    for (int field = 0; field < 6; field++) {
+        static const float most[] = {1e3f, 1e3f, 1e3f, 1e4f, 1e4f, 1e3f};
         goe_plan_t plan = good;
-        float *x = field < 3 ? &plan.velocity_ned_m_s[field] : field == 3 ? &plan.margin_m : &plan.clearance_m;
+        float *const fields[] = {&plan.velocity_ned_m_s[0], &plan.velocity_ned_m_s[1],
+                                 &plan.velocity_ned_m_s[2], &plan.margin_m,
+                                 &plan.clearance_m,         &plan.since_image_s};
+        float *x = fields[field];
         goe_hazard_t hazard;
         *x = most[field];
         CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));

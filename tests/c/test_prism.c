@@ -317,6 +317,56 @@ static void a_jump_of_the_filter_moves_the_datum(void) {
     CHECK_CLOSE(0.01 * (double)steady.sigma.height_m, steady.height_m, jumped.height_m);
 }
 
+/* GIVEN rows of unit noise to which the image's own position error adds one that they share WHEN they are freed of it THEN they are
+ * the old ones times the inverse of a Cholesky root of their covariance: none shares anything any more. */
+static void rows_are_freed_of_what_they_share(void) {
+    any = check_random_start("shared shifts");
+    for (int n = 0; n < CASES; n++) {
+        goe_filter_t filter;
+        goe_matrix_t before;
+        double root[GOE_BOX_SIDES][GOE_BOX_SIDES];
+        goe_filter_clear(&filter);
+        goe_rows_clear(&sighting.rows, &sighting.matrix);
+        sighting.rows.white_rad = 1.0e-3f;
+        sighting.rows.shifts = true;
+        sighting.rows.count = (size_t)(1 + n % (int)GOE_BOX_SIDES);
+        for (size_t i = 0; i < sighting.rows.count; i++) {
+            sighting.rows.feature[i] = (uint8_t)feature_of_side[i];
+            sighting.rows.variance[i] = (float)check_random_between(&any, 100.0, 1000.0); /* by then the weight */
+            for (int k = 0; k < 3; k++) {
+                sighting.rows.shift[i][k] = (float)(3.0e-3 * check_random_normal(&any));
+            }
+            for (size_t c = 0; c < GOE_COLUMNS; c++) {
+                sighting.matrix.row[i][c] = (float)check_random_normal(&any);
+            }
+        }
+        before = sighting.matrix;
+        for (size_t i = 0; i < sighting.rows.count; i++) { /* the root of I + N, row by row */
+            for (size_t j = 0; j <= i; j++) {
+                double sum = i == j ? 1.0 : 0.0;
+                for (int k = 0; k < 3; k++) {
+                    sum += (double)sighting.rows.variance[i] * (double)sighting.rows.shift[i][k] *
+                           (double)sighting.rows.variance[j] * (double)sighting.rows.shift[j][k];
+                }
+                for (size_t k = 0; k < j; k++) {
+                    sum -= root[i][k] * root[j][k];
+                }
+                root[i][j] = i == j ? sqrt(sum) : sum / root[j][j];
+            }
+        }
+        goe_prism_learn(&filter, &sighting.rows);
+        for (size_t i = 0; i < sighting.rows.count; i++) {
+            for (size_t c = 0; c < GOE_COLUMNS; c++) {
+                double back = 0.0;
+                for (size_t j = 0; j <= i; j++) {
+                    back += root[i][j] * (double)sighting.matrix.row[j][c];
+                }
+                CHECK_CLOSE(1.0e-4, before.row[i][c], back);
+            }
+        }
+    }
+}
+
 /* GIVEN a depth that an update throws far off THEN it stays what a body can have, flat or deep, and can come back. */
 static void the_depth_of_a_body_is_bounded(void) {
     goe_filter_t filter;
@@ -351,6 +401,16 @@ static void errors_of_an_image_are_checked(void) {
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
     }
     image.noise.attitude_deg = 0.0f;
+    static const float bad_m[] = {-1.0f, 1001.0f};
+    static const float bad_px[] = {-1.0f, 101.0f};
+    for (int i = 0; i < 2; i++) {
+        image.noise.height_m = bad_m[i];
+        CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
+        image.noise.height_m = 0.0f;
+        image.noise.pixel_px = bad_px[i];
+        CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
+        image.noise.pixel_px = 0.0f;
+    }
     image.noise.height_m = check_from_bits(0x7FC00000u);
     CHECK_STATUS(GOE_NOT_FINITE, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimator.motion.started);
@@ -363,6 +423,7 @@ static void errors_of_an_image_are_checked(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(rows_are_freed_of_what_they_share);
     RUN_TEST(the_depth_of_a_body_is_bounded);
     RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);

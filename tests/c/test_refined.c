@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "refined/goe_filter.h"
 #include "scene.h"
 
 #define IMAGES 44 /* of a flight towards an obstacle 100 m ahead, 2 m each */
@@ -549,6 +550,33 @@ static void another_top_costs_the_height_alone(void) {
     CHECK_CLOSE(0.3, scene.height_m, estimate.height_m);
 }
 
+/* GIVEN an attitude whose error drifts WHEN nothing is seen for a while THEN each of the biases is less certain by the variance of a
+ * random walk over that time, and the gate counts with it before the filter is inverted again. */
+static void the_attitude_s_error_drifts_with_time(void) {
+    const double drift_rad = 0.2 * RAD_PER_DEG; /* per root second */
+    settings.navigation.attitude_drift_deg = 0.2f;
+    start();
+    fly(0, 20);
+    goe_filter_t before = estimator.filter;
+    goe_filter_invert(&before);
+    for (int k = 20; k < 36; k++) {
+        scene_image(&scene, k, &image, NULL);
+        for (int i = 0; i < 6; i++) {
+            pixel(i)->seen = false;
+        }
+        CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    }
+    const double gained = drift_rad * drift_rad * 16.0 / scene.image_rate_hz;
+    goe_filter_t after = estimator.filter;
+    CHECK_CLOSE(1.0e-3 * gained, gained, after.drift_rad2);
+    goe_filter_invert(&after);
+    for (int i = GOE_BIAS_X; i <= GOE_BIAS_Z; i++) {
+        const double was = (double)goe_filter_variance(&before, (goe_state_index_t)i);
+        const double is = (double)goe_filter_variance(&after, (goe_state_index_t)i);
+        CHECK_CLOSE(0.01 * (was + gained), was + gained, is);
+    }
+}
+
 /* GIVEN a cylinder, of which nothing shows how high the camera is above the ground THEN the told sigma of that is in the
  * height's, and only there. */
 static void the_error_of_the_altitude_is_in_the_height(void) {
@@ -865,6 +893,7 @@ int main(void) {
     RUN_TEST(single_outliers_are_left_out);
     RUN_TEST(a_track_that_began_with_an_outlier_recovers);
     RUN_TEST(another_top_costs_the_height_alone);
+    RUN_TEST(the_attitude_s_error_drifts_with_time);
     RUN_TEST(the_error_of_the_altitude_is_in_the_height);
     RUN_TEST(a_track_that_began_at_another_obstacle_recovers);
     RUN_TEST(a_moving_obstacle_is_suspected);
