@@ -320,6 +320,37 @@ static flight_t fly(int late, double north_m_s, double east_m_s) {
     return flight;
 }
 
+/* GIVEN a turn of constant rate WHEN images come seldom or often THEN rate and velocity are the turn's; poses nearer than 45 ms tell
+ * their noise and are waited for, and farther than 0.6 s a mean, which says nothing. */
+static void rate_and_velocity_are_those_of_the_flight(void) {
+    static const double rates_hz[] = {80.0, 40.0, 20.0, 8.0, 2.0, 1.25};
+    for (size_t i = 0; i < sizeof rates_hz / sizeof rates_hz[0]; i++) {
+        goe_estimate_t estimate;
+        scene.path = SCENE_ARC;
+        scene.arc_radius_m = 120.0;
+        scene.wobble_deg = 0.0;
+        scene.image_rate_hz = rates_hz[i];
+        const goe_settings_t settings = scene_settings(&scene);
+        CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+        for (int k = 0; k < 12; k++) {
+            goe_image_t image;
+            scene_image(&scene, k, &image, NULL);
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+        const goe_motion_t *m = &estimator.motion;
+        const bool seldom = rates_hz[i] < 1.0 / 0.6;
+        TEST_ASSERT_EQUAL(!seldom, m->paced);
+        const double turning =
+            seldom ? 0.0 : scene.speed_mps / scene.arc_radius_m; /* to the right: about Y, which is down */
+        CHECK_CLOSE(0.01, turning, m->rate_rad_s[1]);
+        CHECK_CLOSE(0.01, turning, m->rate_before_rad_s[1]);
+        if (!seldom) {
+            CHECK_CLOSE(0.01 * scene.speed_mps, scene.speed_mps,
+                        hypot((double)m->velocity_m_s[0], (double)m->velocity_m_s[1]));
+        }
+    }
+}
+
 /* GIVEN a static obstacle and poses in time THEN nothing moves, nothing is late, and nothing is suspect. */
 static void nothing_moves_that_does_not(void) {
     for (int n = 0; n < FLIGHTS; n++) {
@@ -430,6 +461,7 @@ int main(void) {
     RUN_TEST(a_change_of_states_keeps_what_is_beside_them);
     RUN_TEST(the_columns_are_derivatives);
     RUN_TEST(late_poses_end_a_motion_that_is_none);
+    RUN_TEST(rate_and_velocity_are_those_of_the_flight);
     RUN_TEST(nothing_moves_that_does_not);
     RUN_TEST(late_poses_are_told_and_taken_off);
     RUN_TEST(an_obstacle_that_moves_is_followed);

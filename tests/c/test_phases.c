@@ -129,6 +129,17 @@ static void a_width_starts_a_disc(void) {
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
 }
 
+/* ... that of base corners alone, too, whose range is that of the ground. */
+static void base_corners_alone_start_a_disc(void) {
+    goe_image_t image;
+    start();
+    scene_image(&scene, 0, &image, NULL);
+    image.left.seen = image.right.seen = image.top.seen = false;
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
+    CHECK_CLOSE(0.1 * scene.z0_m, scene.z0_m, 1.0 / (double)estimator.filter.state[GOE_INVERSE_RANGE]);
+}
+
 static void two_faces_make_a_box_of_a_disc(void) {
     fly(SEE_ALL, 40);
     TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_BOX]);
@@ -299,6 +310,7 @@ static void no_other_transition_happens(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_width_starts_a_disc);
+    RUN_TEST(base_corners_alone_start_a_disc);
     RUN_TEST(two_faces_make_a_box_of_a_disc);
     RUN_TEST(one_face_makes_a_box_whose_length_is_held);
     RUN_TEST(a_second_face_frees_the_length);
