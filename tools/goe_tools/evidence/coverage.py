@@ -36,9 +36,9 @@ READING = (  # folders and files of it that read text
     "sim_host/flight/text_numbers.c",
 )
 WHAT = {
-    "lines": "lines of {} that its tests reach",
-    "branches": "outcomes of its conditions",
-    "MC/DC": "conditions of its decisions that decide alone (MC/DC)",
+    "lines": "lines that the tests reach: {}",
+    "branches": "outcomes of conditions: {}",
+    "MC/DC": "conditions that decide alone (MC/DC): {}",
 }
 
 
@@ -122,7 +122,7 @@ def of_library(jobs: int) -> Result:
     verdict = settle(found, read(REASONS))
     stale = Row("reasons that fit nothing, or what is covered", str(len(verdict.stale)), "0", not verdict.stale)
     told = [per_file(found, verdict), "", *faults(verdict), "", "Not reached, and why:", *reasons_told(verdict), ""]
-    judged = of_others("lib/ without the safety tests", items(judging, ROOT))
+    judged = of_others("lib/, safety tests left out", items(judging, ROOT))
     return Result([*rows_of("lib/", found, verdict, GOAL), stale, *judged.rows], "\n".join([*told, judged.report]))
 
 
@@ -143,5 +143,7 @@ def run(amount: Amount) -> Result:
     ]
     if amount.long:
         found = items(count_readers(READERS), ROOT, strict=False)
-        results.append(of_others("sim_host's readers", [item for item in found if item.file.startswith(READING)]))
+        results.append(
+            of_others("sim_host/, what reads text", [item for item in found if item.file.startswith(READING)])
+        )
     return Result([row for result in results for row in result.rows], "\n".join(result.report for result in results))
