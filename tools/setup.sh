@@ -45,6 +45,7 @@ want() {
 has() { command -v "$1"; }
 has_header() { echo "#include <$1>" | cc -E -x c -; }
 has_arm_cxx_header() { echo "#include <$1>" | arm-none-eabi-g++ -E -x c++ -; }
+can_count() { echo "int main(void) { return 0; }" | clang-19 -fprofile-instr-generate -x c - -o /dev/null; }
 has_arm_header() { echo "#include <$1>" | arm-none-eabi-gcc -E -x c -; }
 
 find_missing() {
@@ -65,6 +66,7 @@ find_missing() {
         # Without these parts of tools/test.sh are skipped.
         want extra clang-19 has clang-19
         want extra llvm-19 has llvm-cov-19
+        want extra libclang-rt-19-dev can_count
         want extra cppcheck has cppcheck
         want extra frama-c-base has frama-c
         want extra lld-19 has wasm-ld-19

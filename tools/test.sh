@@ -282,6 +282,13 @@ if has clang-19; then
 else
     skip "clang: unit tests and the firmwares' flags (no clang-19)"
 fi
+if has clang-19 && has llvm-cov-19 && has llvm-profdata-19 &&
+    find "$(clang-19 --print-resource-dir)/" -name 'libclang_rt.profile*' | grep -q .; then
+    tells='^\| coverage' add "coverage of the unit tests" \
+        "$python" -m goe_tools evidence --quick --only coverage --jobs "$jobs"
+else
+    skip "coverage of the unit tests (needs clang-19, llvm-19 and libclang-rt-19-dev)"
+fi
 if has clang-19 && has clang-tidy-19; then
     after="clang" add "clang-tidy" tidy
 else

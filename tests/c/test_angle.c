@@ -72,6 +72,19 @@ static void sine_and_cosine_stay_bounded_at_any_angle_allowed(void) {
     }
 }
 
+/* GIVEN an angle whose quarters no int can count, or that is none THEN it counts as 0. */
+static void sine_and_cosine_of_no_angle_are_those_of_none(void) {
+    static const uint32_t none[] = {0x49742401u, 0xC9742401u, 0x7F7FFFFFu, 0x7F800000u, 0xFF800000u, 0x7FC00000u};
+    for (size_t i = 0; i < sizeof none / sizeof none[0];
+         i++) { /* the first two: the float next to 1e6, and its negative */
+        float s = 5.0f;
+        float c = 5.0f;
+        goe_sincos_deg(check_from_bits(none[i]), &s, &c);
+        CHECK_SAME(0.0f, s);
+        CHECK_SAME(1.0f, c);
+    }
+}
+
 static void folding_names_the_same_undirected_line(void) {
     TEST_ASSERT_EQUAL_FLOAT(90.0f, goe_fold_deg(90.0f));
     TEST_ASSERT_EQUAL_FLOAT(90.0f, goe_fold_deg(-90.0f));
@@ -97,6 +110,7 @@ int main(void) {
     RUN_TEST(sine_and_cosine_at_quarter_turns);
     RUN_TEST(sine_and_cosine_lie_on_the_circle);
     RUN_TEST(sine_and_cosine_stay_bounded_at_any_angle_allowed);
+    RUN_TEST(sine_and_cosine_of_no_angle_are_those_of_none);
     RUN_TEST(folding_names_the_same_undirected_line);
     return UNITY_END();
 }

@@ -224,6 +224,10 @@ static void what_one_face_does_not_tell_is_refused(void) {
     TEST_ASSERT_FALSE(one_face());
     show_face((place_t){-20.0, 51.0}, (place_t){20.0, 49.0}); /* larger than 0.4 of the range */
     TEST_ASSERT_FALSE(one_face());
+    show_face((place_t){0.0, 5.0},
+              (place_t){1.0e-4, 5.0}); /* a tenth of a millimetre has no direction, whatever its sigma */
+    TEST_ASSERT_FALSE(one_face());
+    TEST_ASSERT_TRUE(box.sigma_rad < 0.2f);
 }
 
 static void what_two_faces_do_not_tell_is_refused(void) {

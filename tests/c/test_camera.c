@@ -154,6 +154,27 @@ static void no_wrong_ray_is_given(void) {
     TEST_ASSERT_TRUE(worst <= 5.0e-4);
 }
 
+/* GIVEN a library for one camera WHEN an image names another THEN it is refused whole. */
+static void another_camera_is_refused(void) {
+#if GOE_CAMERAS_MAX == 1
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t image;
+    scene_default(&scene);
+    const goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    scene_image(&scene, 0, &image, NULL);
+    for (unsigned number = 1; number < 256u; number *= 3u) {
+        image.camera = (uint8_t)number;
+        CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
+        TEST_ASSERT_FALSE(estimator.motion.started);
+    }
+#else
+    TEST_IGNORE_MESSAGE("this library has more cameras than one");
+#endif
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_unmounted_camera_looks_ahead);
@@ -166,5 +187,6 @@ int main(void) {
     RUN_TEST(a_pincushion_lens_is_inverted);
     RUN_TEST(a_pixel_outside_the_lens_is_refused);
     RUN_TEST(no_wrong_ray_is_given);
+    RUN_TEST(another_camera_is_refused);
     return UNITY_END();
 }

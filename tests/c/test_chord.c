@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "refined/goe_report.h"
 #include "scene.h"
 #include "sighting.h"
 
@@ -262,6 +263,73 @@ static void base_corners_end_the_chord(void) {
     check_box(1.0e-3);
 }
 
+/* -------------------------------------------------------------------------------------- an end that leaves, made by hand -- */
+
+static goe_filter_t filter;
+
+/* A chord whose right end has left it, the camera 20 m before its middle: the ray to that end meets the circle over the chord at
+ * a corner, and front and side are what leads there from the ends. Units of Z0. */
+static void leave_chord(float side_x, float front_x, float right_x) {
+    any = check_random_start("leaving");
+    sighting_start(&sighting, &any);
+    goe_filter_clear(&filter);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        *goe_srif_at(&filter.root, i, i) = 100.0f;
+    }
+    filter.phase = GOE_PHASE_CHORD;
+    filter.phase_images = UINT8_MAX;
+    filter.leaving.outward = 3.0f;
+    filter.leaving.turning = 3.0f;
+    filter.state[GOE_INVERSE_RANGE] = 0.01f;
+    filter.state[GOE_SIDE_X] = side_x;
+    filter.state[GOE_FRONT_X] = front_x;
+    sighting.sight.state = filter.state;
+    sighting.sight.camera_m = (goe_xz_t){0.0f, 0.0f};
+    sighting.sight.point[GOE_POINT_LEFT] = (goe_point_t){-right_x, 0.0f, true};
+    sighting.sight.point[GOE_POINT_RIGHT] = (goe_point_t){right_x, 0.0f, true};
+    sighting_look(&sighting);
+}
+
+static bool changes(void) {
+    const goe_filter_t before = filter;
+    const bool changed = goe_chord_change(&filter, &sighting.sight);
+    TEST_ASSERT_TRUE(changed || memcmp(&before, &filter, sizeof filter) == 0);
+    return changed;
+}
+
+/* GIVEN a corner of which the two faces are those of a box THEN the chord becomes that box. */
+static void a_corner_makes_a_box(void) {
+    leave_chord(0.02f, 0.1f, 0.04f);
+    TEST_ASSERT_TRUE(changes());
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_BOX_OUTLINE, filter.phase);
+}
+
+/* GIVEN an end that left now to the one side and now to the other, as of noise THEN none is said to turn away. */
+static void ends_that_leave_in_turn_make_no_box(void) {
+    leave_chord(0.02f, 0.1f, 0.04f);
+    filter.leaving.turning = 0.1f;
+    TEST_ASSERT_FALSE(changes());
+}
+
+/* GIVEN a camera that stands within the circle over the chord THEN no ray of it meets that circle from outside. */
+static void within_the_circle_there_is_no_corner(void) {
+    leave_chord(0.0f, 0.1f, 0.04f);
+    filter.state[GOE_FRONT_X] = 2.2f;
+    TEST_ASSERT_FALSE(changes());
+}
+
+/* GIVEN a front whose middle would lie at less than a third of the range that the filter started with THEN it is no box that the
+ * states could hold; nor is one whose front leads to the left, or whose side leads towards the camera. */
+static void faces_of_no_box_are_left_a_chord(void) {
+    leave_chord(0.0f, 3.4f, 0.04f);
+    sighting.sight.camera_m.z = -90.0f; /* it has flown away from the obstacle since: the circle lies before it */
+    TEST_ASSERT_FALSE(changes());
+    leave_chord(-0.9f, 0.117f, 0.4f);
+    TEST_ASSERT_FALSE(changes());
+    leave_chord(-0.609f, 0.57f, 0.458f);
+    TEST_ASSERT_FALSE(changes());
+}
+
 /* ---------------------------------------------------------------------------------------------------------- cylinders -- */
 
 /* GIVEN cylinders, noise-free and noisy THEN they stay discs and are not suspect, also if a disc was asked for. */
@@ -340,6 +408,22 @@ static void false_base_corners_are_found_out(void) {
     TEST_ASSERT_FALSE(goe_filter_is_box(&estimator.filter));
 }
 
+/* GIVEN base corners that proved to be none WHEN the window answers, which knows of no doubt THEN its answer tells of it, and a
+ * graver reason stands. */
+static void refused_corners_are_told_with_every_answer(void) {
+    goe_filter_clear(&filter);
+    for (int refused = 0; refused < 2; refused++) {
+        filter.health.base_refused = refused != 0;
+        memset(&estimate, 0, sizeof estimate);
+        goe_report_doubt(&filter, &estimate);
+        TEST_ASSERT_EQUAL_INT(refused ? GOE_REASON_BASE : GOE_REASON_NONE, estimate.reason);
+        TEST_ASSERT_EQUAL(refused != 0, estimate.suspect);
+        estimate.reason = GOE_REASON_CONVENTION;
+        goe_report_doubt(&filter, &estimate);
+        TEST_ASSERT_EQUAL_INT(GOE_REASON_CONVENTION, estimate.reason);
+    }
+}
+
 /* GIVEN noise larger than told by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
 static void noise_does_not_make_corners_false(void) {
     any = check_random_start("large noise");
@@ -363,9 +447,14 @@ int main(void) {
     RUN_TEST(noise_does_not_hide_the_box);
     RUN_TEST(left_and_right_are_alike);
     RUN_TEST(base_corners_end_the_chord);
+    RUN_TEST(a_corner_makes_a_box);
+    RUN_TEST(ends_that_leave_in_turn_make_no_box);
+    RUN_TEST(within_the_circle_there_is_no_corner);
+    RUN_TEST(faces_of_no_box_are_left_a_chord);
     RUN_TEST(a_cylinder_stays_a_disc);
     RUN_TEST(a_disc_by_force_is_suspect);
     RUN_TEST(false_base_corners_are_found_out);
+    RUN_TEST(refused_corners_are_told_with_every_answer);
     RUN_TEST(noise_does_not_make_corners_false);
     return UNITY_END();
 }

@@ -135,6 +135,24 @@ static void the_oldest_rows_leave(void) {
     TEST_ASSERT_EQUAL_INT(13, window.count);
 }
 
+/* GIVEN a place in the ring that a flipped bit made none of it THEN nothing is written beside it, and the ring goes on. */
+static void a_place_outside_the_ring_is_its_first(void) {
+    static const int16_t places[] = {INT16_MIN, -1, LENGTH, INT16_MAX};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        struct {
+            goe_fit_ring_t before, ring, behind;
+        } memory;
+        memset(&memory, 0, sizeof memory);
+        const goe_fit_ring_t nothing = memory.before;
+        memory.ring.next = places[i];
+        goe_fit_add(&memory.ring, LENGTH, 2.0f, 3.0f, (goe_row_t){4.0f, 5.0f});
+        TEST_ASSERT_EQUAL_MEMORY(&nothing, &memory.before, sizeof nothing);
+        TEST_ASSERT_EQUAL_MEMORY(&nothing, &memory.behind, sizeof nothing);
+        TEST_ASSERT_EQUAL_FLOAT(2.0f, memory.ring.point[0].dx_m);
+        TEST_ASSERT_EQUAL_INT(1, memory.ring.next);
+    }
+}
+
 static void the_count_of_points_saturates(void) {
     window.count = INT16_MAX - 1;
     add(1.0f, 10.0f, 1.0f, 0.0f, 0.0f);
@@ -165,6 +183,20 @@ static void hopeless_rows_have_a_finite_sigma(void) {
                      check_is_finite(fit.sigma.width_m) && check_is_finite(fit.residual));
 }
 
+/* GIVEN a wide obstacle whose X jumps from row to row by far more than any image shows THEN its sigma stops where squares and
+ * products of it are still finite. */
+static void a_sigma_is_bounded(void) {
+    for (int k = 0; k < LENGTH; k++) {
+        const float ahead_m = 1000.0f * (float)k;
+        goe_fit_add(&window, LENGTH, 0.0f, ahead_m,
+                    (goe_row_t){k % 2 ? 1.0e6f : -1.0e6f, (5.0e5f - ahead_m) * 1.0e-5f});
+    }
+    CHECK_STATUS(GOE_OK, solve());
+    TEST_ASSERT_FLOAT_WITHIN(1.0e3f, 1.0e5f, fit.width_m);
+    TEST_ASSERT_EQUAL_FLOAT(1.0e9f, fit.sigma.x0_m);
+    TEST_ASSERT_TRUE(fit.sigma.z0_m > 0.0f && check_is_finite(fit.sigma.z0_m * fit.sigma.z0_m));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(exact_rows_are_solved_exactly);
@@ -177,8 +209,10 @@ int main(void) {
     RUN_TEST(an_obstacle_abeam_or_behind_is_passed);
     RUN_TEST(what_is_too_far_to_be_an_obstacle_is_no_parallax);
     RUN_TEST(the_oldest_rows_leave);
+    RUN_TEST(a_place_outside_the_ring_is_its_first);
     RUN_TEST(the_count_of_points_saturates);
     RUN_TEST(a_shorter_window_uses_its_own_length);
     RUN_TEST(hopeless_rows_have_a_finite_sigma);
+    RUN_TEST(a_sigma_is_bounded);
     return UNITY_END();
 }

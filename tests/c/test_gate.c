@@ -218,6 +218,25 @@ static void an_unsure_state_opens_the_gate(void) {
     }
 }
 
+/* GIVEN an own position that may be off by many pixels in a row THEN that row may be, too; WHEN all rows share it THEN it is in none
+ * of their differences, and an outlier among them is found. */
+static void the_own_position_s_error_opens_the_gate(void) {
+    for (int shared = 0; shared < 2; shared++) {
+        for (int told = 0; told < 2; told++) {
+            setUp();
+            memset(rows.shift, 0, sizeof rows.shift);
+            rows.shifts = told != 0;
+            rows.count = GOE_BOX_SIDES; /* so many of a box: along x, x, y, x */
+            for (size_t i = 0; i < rows.count; i++) {
+                rows.shift[i][1] = shared || i == 0 ? 0.01f : 0.0f;
+            }
+            *residual(0) = (float)(15.0 / FOCAL_PX);
+            apply();
+            TEST_ASSERT_EQUAL_HEX32(told && !shared ? 0u : 1u << rows.feature[0], verdict.refused);
+        }
+    }
+}
+
 static void no_rows_are_no_verdict(void) {
     goe_rows_clear(&rows, &matrix);
     apply();
@@ -235,6 +254,7 @@ int main(void) {
     RUN_TEST(the_limits_are_settings);
     RUN_TEST(correlated_errors_count_less);
     RUN_TEST(an_unsure_state_opens_the_gate);
+    RUN_TEST(the_own_position_s_error_opens_the_gate);
     RUN_TEST(no_rows_are_no_verdict);
     return UNITY_END();
 }

@@ -111,6 +111,20 @@ static void readings_tell_the_mean_and_no_more(void) {
     }
 }
 
+/* GIVEN more readings than are counted THEN the mean goes on as that of so many, and the count does not begin anew. */
+static void the_count_of_readings_saturates(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M, obs.height_sd_m);
+    filter.datum.readings = UINT16_MAX - 1u;
+    for (int k = 0; k < 3; k++) {
+        const double before_m = (double)filter.datum.mean_m;
+        read_height(HEIGHT_M + 10.0f, 0.0f);
+        TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, filter.datum.readings);
+        CHECK_CLOSE(1.0e-6, (10.0 - before_m) / UINT16_MAX, (double)filter.datum.mean_m - before_m);
+    }
+}
+
 /* GIVEN an image whose rows are all taken THEN what the heights tell waits, and none of it is lost. */
 static void what_finds_no_room_is_told_later(void) {
     settings.navigation.height_white_m = WHITE_M;
@@ -146,10 +160,60 @@ static void a_wrong_first_range_leaves_the_height_as_told(void) {
     }
 }
 
+/* -------------------------------------------------------------------------------------------------------------- slope -- */
+
+#define SLOPE 0.1f
+#define FLOWN_M 50.0f
+
+/* Of the obstacle's own height, units of Z0: of its top above the altimeter's zero, and of the ground below that. */
+static double sum_sd(void) {
+    float sum[GOE_STATES] = {0.0f};
+    sum[GOE_GROUND] = 1.0f;
+    sum[GOE_TOP] = 1.0f;
+    return sqrt((double)goe_srif_variance(&filter.inverse, sum));
+}
+
+/* GIVEN ground that rises or falls below the altimeter WHEN a way was flown THEN the height above the obstacle's ground is off by
+ * slope times way more, once for each metre however many images it took; the obstacle's own height is none the worse. */
+static void the_slope_of_the_ground_adds_up_over_the_way(void) {
+    settings.navigation.slope = SLOPE;
+    for (int steps = 1; steps <= 4; steps += 3) {
+        start(RANGE_M, CONSTANT_M);
+        const double height_sd = sum_sd();
+        for (int k = 1; k <= steps; k++) {
+            filter.flown_m = FLOWN_M * (float)k / (float)steps;
+            goe_ground_climb(&filter, &settings.navigation);
+            goe_ground_climb(&filter, &settings.navigation); /* nothing was flown since */
+        }
+        goe_filter_invert(&filter);
+        CHECK_CLOSE(1.0e-3, hypot((double)CONSTANT_M, (double)(SLOPE * FLOWN_M)), ground_sd_m());
+        CHECK_CLOSE(1.0e-4 * height_sd, height_sd, sum_sd());
+    }
+}
+
+/* GIVEN heights that are not taken as they come, but by those of all images or as of the first one THEN the way that was flown
+ * is in none of them. */
+static void a_height_that_is_kept_has_no_slope(void) {
+    settings.navigation.slope = SLOPE;
+    for (int kept = 0; kept < 2; kept++) {
+        start(RANGE_M, CONSTANT_M);
+        filter.phase = kept == 0 ? GOE_PHASE_PRISM : GOE_PHASE_DISC;
+        settings.navigation.height_white_m = kept == 0 ? 0.0f : WHITE_M;
+        TEST_ASSERT_TRUE(goe_ground_is_steady(&filter, &settings.navigation));
+        filter.flown_m = FLOWN_M;
+        goe_ground_climb(&filter, &settings.navigation);
+        goe_filter_invert(&filter);
+        CHECK_CLOSE(1.0e-4, (double)CONSTANT_M, ground_sd_m());
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(readings_tell_the_mean_and_no_more);
+    RUN_TEST(the_count_of_readings_saturates);
     RUN_TEST(what_finds_no_room_is_told_later);
     RUN_TEST(a_wrong_first_range_leaves_the_height_as_told);
+    RUN_TEST(the_slope_of_the_ground_adds_up_over_the_way);
+    RUN_TEST(a_height_that_is_kept_has_no_slope);
     return UNITY_END();
 }

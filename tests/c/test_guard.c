@@ -153,6 +153,8 @@ static void what_is_not_defined_is_found(void) {
     bad = estimate;
     bad.points = -1;
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
+    bad.points = 32768; /* more than goe.h promises */
+    TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
     bad = estimate;
     memset(&bad.fresh, 2, 1);
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
@@ -182,6 +184,20 @@ static void a_corrupted_track_begins_anew(void) {
 static void a_track_that_is_nowhere_begins_anew(void) {
     start();
     estimator.motion.origin_ne_m[0] = check_from_bits(0xFF800000u);
+    CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
+    TEST_ASSERT_FALSE(estimator.motion.started);
+}
+
+/* ... also while there is no answer that would tell of it. */
+static void a_track_that_is_nowhere_and_knows_nothing_begins_anew(void) {
+    const goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    fly(0, 1);
+    TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
+    estimator.motion.origin_ne_m[0] = check_from_bits(0xFF800000u);
+    scene_image(&scene, 1, &image, NULL);
+    image.left.seen = image.right.seen = image.top.seen = false;
+    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimator.motion.started);
 }
@@ -230,6 +246,7 @@ int main(void) {
     RUN_TEST(what_is_not_defined_is_found);
     RUN_TEST(a_corrupted_track_begins_anew);
     RUN_TEST(a_track_that_is_nowhere_begins_anew);
+    RUN_TEST(a_track_that_is_nowhere_and_knows_nothing_begins_anew);
     RUN_TEST(no_call_hands_out_what_is_no_number);
     RUN_TEST(any_truth_but_none_is_one);
     return UNITY_END();

@@ -36,6 +36,20 @@ static void the_newest_values_are_averaged(void) {
     }
 }
 
+/* GIVEN a place or a count that a flipped bit made none THEN the mean is that of values which came. */
+static void a_place_that_is_none_is_the_first(void) {
+    static const int16_t none[] = {INT16_MIN, -1, 3, INT16_MAX};
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
+        setUp();
+        mean.next = none[i];
+        CHECK_SAME(2.0f, goe_mean_add(&mean, 3, 2.0f).mean);
+        TEST_ASSERT_EQUAL_INT(1, mean.next);
+        mean.count = none[i];
+        (void)goe_mean_add(&mean, 3, 4.0f);
+        TEST_ASSERT_TRUE(mean.count > 0 && mean.count <= 3);
+    }
+}
+
 static void an_outlier_leaves_without_a_trace(void) {
     goe_average_t a = {0.0f, 0.0f};
     (void)goe_mean_add(&mean, 4, 1.0e12f);
@@ -59,6 +73,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_first_value_is_its_own_mean);
     RUN_TEST(the_newest_values_are_averaged);
+    RUN_TEST(a_place_that_is_none_is_the_first);
     RUN_TEST(an_outlier_leaves_without_a_trace);
     RUN_TEST(a_long_run_collects_no_rounding);
     return UNITY_END();

@@ -252,6 +252,41 @@ static void the_columns_are_derivatives(void) {
     }
 }
 
+/* ----------------------------------------------------------------------------------------------------------- followed -- */
+
+/* One image after an obstacle began to be followed, by what is known of it then. */
+static goe_mover_t judge_followed(float latency_s, float velocity_m_s, float velocity_sd_m_s) {
+    const float sd[GOE_BESIDE] = {0.01f, velocity_sd_m_s, velocity_sd_m_s};
+    const float change[GOE_UNKNOWNS] = {0.0f};
+    goe_filter_t filter;
+    sighting_t s;
+    sighting_start(&s, &any);
+    goe_filter_clear(&filter);
+    filter.mover.followed = true;
+    filter.mover.beside[GOE_BESIDE_LATENCY] = latency_s;
+    filter.mover.beside[GOE_BESIDE_VELOCITY_X] = velocity_m_s;
+    filter.root.estimated = GOE_BESIDE;
+    filter.inverse.estimated = GOE_BESIDE;
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        filter.inverse.element[goe_inverse_column(GOE_STATES + i) + GOE_STATES + i] = sd[i];
+    }
+    TEST_ASSERT_FALSE(goe_mover_judge(&filter, &s.sight, change, 0.1f));
+    return filter.mover;
+}
+
+/* GIVEN an obstacle that is followed THEN it moves, unless the poses have proved late meanwhile: then only what is fast, and
+ * surely so, as late poses of a turn look like a motion. */
+static void late_poses_end_a_motion_that_is_none(void) {
+    const goe_mover_t in_time = judge_followed(0.0f, 0.5f, 0.1f);
+    TEST_ASSERT_TRUE(in_time.moves && !in_time.late);
+    const goe_mover_t both = judge_followed(0.2f, 5.0f, 0.2f);
+    TEST_ASSERT_TRUE(both.moves && both.late);
+    const goe_mover_t slow = judge_followed(0.2f, 0.5f, 0.05f);
+    TEST_ASSERT_TRUE(!slow.moves && slow.late);
+    const goe_mover_t unsure = judge_followed(-0.2f, 5.0f, 3.0f);
+    TEST_ASSERT_TRUE(!unsure.moves && unsure.late);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- flights -- */
 
 typedef struct {
@@ -283,6 +318,37 @@ static flight_t fly(int late, double north_m_s, double east_m_s) {
         flight.suspect += flight.estimate.suspect ? 1 : 0;
     }
     return flight;
+}
+
+/* GIVEN a turn of constant rate WHEN images come seldom or often THEN rate and velocity are the turn's; poses nearer than 45 ms tell
+ * their noise and are waited for, and farther than 0.6 s a mean, which says nothing. */
+static void rate_and_velocity_are_those_of_the_flight(void) {
+    static const double rates_hz[] = {80.0, 40.0, 20.0, 8.0, 2.0, 1.25};
+    for (size_t i = 0; i < sizeof rates_hz / sizeof rates_hz[0]; i++) {
+        goe_estimate_t estimate;
+        scene.path = SCENE_ARC;
+        scene.arc_radius_m = 120.0;
+        scene.wobble_deg = 0.0;
+        scene.image_rate_hz = rates_hz[i];
+        const goe_settings_t settings = scene_settings(&scene);
+        CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+        for (int k = 0; k < 12; k++) {
+            goe_image_t image;
+            scene_image(&scene, k, &image, NULL);
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+        const goe_motion_t *m = &estimator.motion;
+        const bool seldom = rates_hz[i] < 1.0 / 0.6;
+        TEST_ASSERT_EQUAL(!seldom, m->paced);
+        const double turning =
+            seldom ? 0.0 : scene.speed_mps / scene.arc_radius_m; /* to the right: about Y, which is down */
+        CHECK_CLOSE(0.01, turning, m->rate_rad_s[1]);
+        CHECK_CLOSE(0.01, turning, m->rate_before_rad_s[1]);
+        if (!seldom) {
+            CHECK_CLOSE(0.01 * scene.speed_mps, scene.speed_mps,
+                        hypot((double)m->velocity_m_s[0], (double)m->velocity_m_s[1]));
+        }
+    }
 }
 
 /* GIVEN a static obstacle and poses in time THEN nothing moves, nothing is late, and nothing is suspect. */
@@ -446,6 +512,8 @@ int main(void) {
     RUN_TEST(the_variance_holds_what_is_beside_the_state);
     RUN_TEST(a_change_of_states_keeps_what_is_beside_them);
     RUN_TEST(the_columns_are_derivatives);
+    RUN_TEST(late_poses_end_a_motion_that_is_none);
+    RUN_TEST(rate_and_velocity_are_those_of_the_flight);
     RUN_TEST(nothing_moves_that_does_not);
     RUN_TEST(late_poses_are_told_and_taken_off);
     RUN_TEST(an_obstacle_that_moves_is_followed);

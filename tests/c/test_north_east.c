@@ -1,8 +1,11 @@
 /* What is reported in north and east: T's heading, both axes, the centre and how it is uncertain.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
+#include <string.h>
 
 #include "check.h"
+#include "refined/goe_prism.h"
+#include "refined/goe_quantities.h"
 #include "scene.h"
 
 #define IMAGES 60
@@ -222,6 +225,35 @@ static void a_track_that_began_before_a_turn_sees_what_is_ahead(void) {
     CHECK_CLOSE(1.0e-3, 20.0, told.trajectory_heading_deg);
 }
 
+/* GIVEN a place known in X and in Z to 800 km each, the two errors alike WHEN the course leads to the north-east THEN that makes
+ * more than 1000 km along one of north and east, and no centre is told, whichever it is; the place is. */
+static void a_centre_that_is_nowhere_is_not_told(void) {
+    static const float errors_alike[] = {1.0f, -1.0f};
+    const float range_m = 4.0e5f;
+    const float spread = 2.0f; /* of X and of Z, over the range */
+    settings.refined.range_share = 10.0f;
+    for (int i = 0; i < 3; i++) {
+        goe_filter_t filter;
+        goe_motion_t motion;
+        goe_quantities_t quantities;
+        goe_filter_clear(&filter);
+        memset(&motion, 0, sizeof motion);
+        motion.heading_cos = i < 2 ? sqrtf(0.5f) : 1.0f;
+        motion.heading_sin = i < 2 ? sqrtf(0.5f) : 0.0f;
+        filter.phase = GOE_PHASE_PRISM;
+        filter.known = GOE_HAS_POSITION;
+        filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
+        filter.state[GOE_PRISM_HALF] = 1.0e-3f;
+        filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_BEARING] = spread;
+        filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] =
+            (i < 2 ? errors_alike[i] : 1.0f) * spread / range_m;
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        CHECK_CLOSE(1.0e3, spread * range_m, quantities.sigma[GOE_X0]);
+        CHECK_CLOSE(1.0e3, spread * range_m, quantities.sigma[GOE_Z0]);
+        TEST_ASSERT_EQUAL_HEX32(i < 2 ? GOE_HAS_POSITION : GOE_HAS_POSITION | GOE_HAS_CENTER, quantities.known);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_heading_is_told_from_the_first_image_on);
@@ -233,5 +265,6 @@ int main(void) {
 #endif
     RUN_TEST(a_track_that_began_before_a_turn_sees_what_is_ahead);
     RUN_TEST(the_spread_of_the_centre_turns_with_the_course);
+    RUN_TEST(a_centre_that_is_nowhere_is_not_told);
     return UNITY_END();
 }

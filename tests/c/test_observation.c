@@ -283,6 +283,24 @@ static void less_than_the_least_counts_as_that(void) {
     TEST_ASSERT_EQUAL_FLOAT(1.0e-3f, sight.height_sd_m);
 }
 
+/* GIVEN an altimeter whose noise is new in each image THEN the height is that of the mean of its readings so far, whose noise
+ * falls with their number, and whose constant error stays. */
+static void a_noisy_height_is_that_of_all_readings(void) {
+    goe_observation_t sight;
+    start();
+    estimator.settings.navigation.height_bias_m = 3.0f;
+    estimator.motion.height_m = 20.0f;
+    estimator.filter.datum.height_m = 24.0f;
+    estimator.filter.datum.readings = 4;
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    TEST_ASSERT_EQUAL_FLOAT(20.0f, sight.height_m);
+    TEST_ASSERT_EQUAL_FLOAT(3.0f, sight.height_sd_m);
+    estimator.settings.navigation.height_white_m = 8.0f;
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    TEST_ASSERT_EQUAL_FLOAT(24.0f, sight.height_m);
+    CHECK_CLOSE(1.0e-5, sqrt(9.0 + 64.0 / 4.0), sight.height_sd_m);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(derivatives_are_those_of_the_projection);
@@ -298,5 +316,6 @@ int main(void) {
     RUN_TEST(an_edge_takes_two_base_corners);
     RUN_TEST(an_image_may_know_its_own_errors);
     RUN_TEST(less_than_the_least_counts_as_that);
+    RUN_TEST(a_noisy_height_is_that_of_all_readings);
     return UNITY_END();
 }

@@ -42,6 +42,14 @@ static goe_faces_t see_one(float heading_deg) {
     return update(MEMORY);
 }
 
+/* Before any edge had a heading there is nothing to divide by. */
+static void no_measurement_has_no_sigma(void) {
+    orientation.variance_deg2 = 9.0f;
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, goe_orientation_sigma_deg(&orientation));
+    orientation.count = 4;
+    TEST_ASSERT_EQUAL_FLOAT(1.5f, goe_orientation_sigma_deg(&orientation));
+}
+
 static void the_side_is_the_edge_nearer_to_the_flight_direction(void) {
     goe_faces_t faces = see_two(-80.0f, 10.0f);
     TEST_ASSERT_TRUE(faces.measured && faces.side_is_right);
@@ -53,6 +61,24 @@ static void the_side_is_the_edge_nearer_to_the_flight_direction(void) {
     TEST_ASSERT_TRUE(faces.measured && !faces.side_is_right);
     TEST_ASSERT_EQUAL_PTR(&edges.edge[0], faces.side);
     TEST_ASSERT_EQUAL_FLOAT(-5.0f, orientation.raw_deg);
+}
+
+/* GIVEN a count or an angle that no image can have left THEN the next measurement is the first. */
+static void what_no_image_left_begins_anew(void) {
+    static const struct {
+        int count;
+        uint32_t filtered;
+    } flipped[] = {{-1, 0u}, {MEMORY + 1, 0u}, {INT32_MIN, 0u}, {3, 0x7FC00000u}, {3, 0xFF800000u}, {3, 0x4E800000u}};
+    for (size_t i = 0; i < sizeof flipped / sizeof flipped[0]; i++) {
+        setUp();
+        orientation.count = flipped[i].count;
+        orientation.filtered_deg = check_from_bits(flipped[i].filtered);
+        orientation.variance_deg2 = 5.0f;
+        (void)see_one(20.0f);
+        TEST_ASSERT_EQUAL_INT(1, orientation.count);
+        TEST_ASSERT_EQUAL_FLOAT(20.0f, orientation.filtered_deg);
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, orientation.variance_deg2);
+    }
 }
 
 static void the_front_tells_the_orientation_if_the_side_cannot(void) {
@@ -166,7 +192,9 @@ static void nothing_measured_has_no_spread(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(no_measurement_has_no_sigma);
     RUN_TEST(the_side_is_the_edge_nearer_to_the_flight_direction);
+    RUN_TEST(what_no_image_left_begins_anew);
     RUN_TEST(the_front_tells_the_orientation_if_the_side_cannot);
     RUN_TEST(a_single_edge_is_a_front_beyond_45_degrees);
     RUN_TEST(no_heading_leaves_everything_as_it_is);

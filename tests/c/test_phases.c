@@ -6,6 +6,8 @@
 
 #include "check.h"
 #include "refined/goe_filter.h"
+#include "refined/goe_health.h"
+#include "refined/goe_model.h"
 #include "scene.h"
 
 #define IMAGES 188
@@ -127,6 +129,17 @@ static void a_width_starts_a_disc(void) {
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
 }
 
+/* ... that of base corners alone, too, whose range is that of the ground. */
+static void base_corners_alone_start_a_disc(void) {
+    goe_image_t image;
+    start();
+    scene_image(&scene, 0, &image, NULL);
+    image.left.seen = image.right.seen = image.top.seen = false;
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
+    CHECK_CLOSE(0.1 * scene.z0_m, scene.z0_m, 1.0 / (double)estimator.filter.state[GOE_INVERSE_RANGE]);
+}
+
 static void two_faces_make_a_box_of_a_disc(void) {
     fly(SEE_ALL, 40);
     TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_BOX]);
@@ -209,6 +222,56 @@ static void what_does_not_fit_starts_the_filter_anew(void) {
     TEST_ASSERT_TRUE(happened[GOE_PHASE_BOX_FACE][GOE_PHASE_NONE]);
 }
 
+/* GIVEN a phase that has no model to change, or a number that is no phase THEN nothing of the filter changes. */
+static void what_is_no_phase_changes_nothing(void) {
+    static const uint8_t none[] = {GOE_PHASE_NONE, PHASES, UINT8_MAX};
+    goe_observation_t sight;
+    memset(&sight, 0, sizeof sight);
+    sight.settings = &settings;
+    for (size_t i = 0; i < sizeof none; i++) {
+        goe_filter_t filter;
+        goe_filter_t before;
+        goe_filter_clear(&filter);
+        filter.phase = none[i];
+        before = filter;
+        TEST_ASSERT_FALSE(goe_model_change(&filter, &sight));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &filter, sizeof filter);
+    }
+}
+
+/* GIVEN a number that a flipped bit made no phase WHEN an image comes THEN the filter starts with it, as at a track's begin. */
+static void what_is_no_phase_starts_the_filter_anew(void) {
+    for (int number = PHASES; number <= UINT8_MAX; number += 62) {
+        goe_image_t image;
+        fly(SEE_ALL, 20);
+        estimator.filter.phase = (uint8_t)number;
+        scene_image(&scene, 20, &image, NULL);
+        (void)goe_update(&estimator, &image, &estimate);
+        TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
+        TEST_ASSERT_EQUAL_INT64(image.pose.time_us, estimator.filter.axes.start_time_us);
+    }
+}
+
+/* GIVEN a state or a root that no images lead to, one element of it at a time THEN the filter starts anew, and nothing of it
+ * reaches an answer. */
+static void what_is_not_finite_starts_the_filter_anew(void) {
+    const goe_verdict_t good = {1u, 0u, 1, GOE_FEATURES, 0.0f, false};
+    for (size_t i = 0; i <= 2 * GOE_STATES; i++) {
+        fly(SEE_ALL, 20);
+        goe_filter_t *filter = &estimator.filter;
+        TEST_ASSERT_FALSE(goe_health_judge(filter, &settings, good));
+        if (i < GOE_STATES) {
+            filter->state[i] = check_from_bits(i % 2 ? 0x7FC00000u : 0x7F800000u);
+        } else if (i < 2 * GOE_STATES) {
+            const size_t k = i - GOE_STATES;
+            *goe_srif_at(&filter->root, k, k) = check_from_bits(i % 2 ? 0xFF800000u : 0x7FC00000u);
+        } else {
+            filter->state[GOE_FRONT_X] = 0.0f; /* no obstacle is as narrow */
+        }
+        TEST_ASSERT_TRUE(goe_health_judge(filter, &settings, good));
+    }
+}
+
 /* --------------------------------------------------------------------------------------------------------- no others -- */
 
 static void make_any_scene(void) {
@@ -247,6 +310,7 @@ static void no_other_transition_happens(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_width_starts_a_disc);
+    RUN_TEST(base_corners_alone_start_a_disc);
     RUN_TEST(two_faces_make_a_box_of_a_disc);
     RUN_TEST(one_face_makes_a_box_whose_length_is_held);
     RUN_TEST(a_second_face_frees_the_length);
@@ -256,6 +320,9 @@ int main(void) {
     RUN_TEST(a_chord_learns_an_end_anew_when_a_face_comes_into_view);
     RUN_TEST(a_side_that_lies_across_takes_the_name_of_the_front);
     RUN_TEST(what_does_not_fit_starts_the_filter_anew);
+    RUN_TEST(what_is_no_phase_changes_nothing);
+    RUN_TEST(what_is_no_phase_starts_the_filter_anew);
+    RUN_TEST(what_is_not_finite_starts_the_filter_anew);
     RUN_TEST(no_other_transition_happens);
     return UNITY_END();
 }

@@ -317,6 +317,187 @@ static void a_jump_of_the_filter_moves_the_datum(void) {
     CHECK_CLOSE(0.01 * (double)steady.sigma.height_m, steady.height_m, jumped.height_m);
 }
 
+/* ------------------------------------------------------------------------------------------------------------- start -- */
+
+static float first[GOE_STATES];
+static goe_triangle_t first_root;
+
+/* A level camera 20 m above the ground, which knows its height and attitude well; the box of a tower 100 m ahead, 6 m wide, whose top
+ * lies 10 m above the camera. */
+static void show_tower(void) {
+    static const float level[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f};
+    any = check_random_start("tower");
+    sighting_start(&sighting, &any);
+    goe_camera_t *camera = &sighting.settings.camera;
+    memset(camera, 0, sizeof *camera);
+    camera->fx_px = camera->fy_px = 1000.0f;
+    sighting.settings.navigation.ground_m = 0.1f;
+    memcpy(sighting.sight.camera_to_axes, level, sizeof level);
+    sighting.sight.steady_height_m = 20.0f;
+    sighting.sight.height_sd_m = 0.1f;
+    sighting.sight.sides = &sides;
+    sides.px[GOE_BOX_LEFT] = -30.0f;
+    sides.px[GOE_BOX_RIGHT] = 30.0f;
+    sides.px[GOE_BOX_TOP] = -100.0f;
+    sides.px[GOE_BOX_BOTTOM] = 200.0f;
+    sides.usable = GOE_SEES_BOX;
+}
+
+static bool starts(void) { return goe_prism_start(&sighting.sight, first, &first_root); }
+
+static double first_range_m(void) {
+    TEST_ASSERT_TRUE(starts());
+    return 1.0 / (double)first[GOE_INVERSE_RANGE];
+}
+
+static double first_sd(size_t state) { return 1.0 / (double)first_root.element[goe_srif_row(state) + state]; }
+
+/* GIVEN a foot clearly below the horizon THEN the range is that of flat ground, to the middle; width and top follow from it. */
+static void the_ground_tells_the_first_range(void) {
+    show_tower();
+    CHECK_CLOSE(0.1, 103.0, first_range_m());
+    CHECK_CLOSE(1.0e-6, 0.03, first[GOE_PRISM_HALF]);
+    CHECK_CLOSE(1.0e-3, 30.3, (double)first[GOE_PRISM_TOP] * first_range_m());
+    CHECK_SAME(0.0f, first[GOE_GROUND]);
+    CHECK_SAME(0.0f, first[GOE_BEARING]);
+    sides.usable &= (uint8_t)~GOE_SEES_TOP; /* then it is taken to reach as high as the camera */
+    CHECK_CLOSE(0.1, 103.0, first_range_m());
+    CHECK_CLOSE(1.0e-4, 20.0, (double)first[GOE_PRISM_TOP] / (double)first[GOE_INVERSE_RANGE]);
+}
+
+/* GIVEN a foot that is not seen, or lies too near to the horizon, or a height that says nothing THEN the range is that of the typical
+ * size. */
+static void the_typical_size_tells_it_otherwise(void) {
+    show_tower();
+    sighting.settings.refined.typical_size_m = 12.0f;
+    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
+    CHECK_CLOSE(0.01, 200.0, first_range_m());
+    show_tower();
+    sighting.settings.refined.typical_size_m = 12.0f;
+    sides.px[GOE_BOX_BOTTOM] = 20.0f;
+    CHECK_CLOSE(0.01, 200.0, first_range_m());
+    show_tower();
+    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.sight.steady_height_m = 0.4f;
+    CHECK_CLOSE(0.01, 200.0, first_range_m());
+    show_tower();
+    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.camera.k1 = -100.0f; /* a lens that no ray gives the foot in */
+    CHECK_CLOSE(0.01, 200.0, first_range_m());
+    show_tower();
+    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.camera.k1 = 1.0e-6f; /* ... and one that changes next to nothing */
+    CHECK_CLOSE(0.1, 103.0, first_range_m());
+}
+
+/* GIVEN a first range beyond any obstacle's, or within the camera THEN the filter does not start. */
+static void no_range_is_no_start(void) {
+    show_tower();
+    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
+    sighting.settings.refined.typical_size_m = 1000.0f;
+    sides.px[GOE_BOX_LEFT] = -0.6f;
+    sides.px[GOE_BOX_RIGHT] = 0.6f;
+    TEST_ASSERT_TRUE(starts());
+    sides.px[GOE_BOX_LEFT] = -0.4f;
+    sides.px[GOE_BOX_RIGHT] = 0.4f;
+    TEST_ASSERT_FALSE(starts());
+    sighting.settings.refined.typical_size_m = 0.1f;
+    sides.px[GOE_BOX_LEFT] = -100.0f;
+    sides.px[GOE_BOX_RIGHT] = 100.0f;
+    TEST_ASSERT_FALSE(starts());
+}
+
+/* GIVEN a height that is as good as not known THEN the first box's foot sets it, if it is seen. */
+static void without_an_altimeter_the_foot_tells_the_height(void) {
+    show_tower();
+    sighting.sight.height_sd_m = 100.0f;
+    sighting.settings.refined.typical_size_m = 12.0f;
+    CHECK_CLOSE(0.01, 200.0, first_range_m());
+    CHECK_CLOSE(1.0e-5, 0.2 - 20.0 / 200.0, first[GOE_GROUND]); /* 40 m above the ground, by that range */
+    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
+    TEST_ASSERT_TRUE(starts());
+    CHECK_SAME(0.0f, first[GOE_GROUND]);
+}
+
+/* GIVEN a disc that was asked for THEN it is as deep as wide, and stays so. */
+static void a_disc_by_force_has_no_depth_of_its_own(void) {
+    show_tower();
+    TEST_ASSERT_TRUE(starts());
+    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) > 0.1 && first_sd(GOE_PRISM_UNSEEN) > 1.0);
+    sighting.settings.model = GOE_MODEL_DISC;
+    TEST_ASSERT_TRUE(starts());
+    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) < 0.01 && first_sd(GOE_PRISM_UNSEEN) < 0.01);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ errors -- */
+
+/* GIVEN rows of unit noise to which the image's own position error adds one that they share WHEN they are freed of it THEN they are
+ * the old ones times the inverse of a Cholesky root of their covariance: none shares anything any more. */
+static void rows_are_freed_of_what_they_share(void) {
+    any = check_random_start("shared shifts");
+    for (int n = 0; n < CASES; n++) {
+        goe_filter_t filter;
+        goe_matrix_t before;
+        double root[GOE_BOX_SIDES][GOE_BOX_SIDES];
+        goe_filter_clear(&filter);
+        goe_rows_clear(&sighting.rows, &sighting.matrix);
+        sighting.rows.white_rad = 1.0e-3f;
+        sighting.rows.shifts = true;
+        sighting.rows.count = (size_t)(1 + n % (int)GOE_BOX_SIDES);
+        for (size_t i = 0; i < sighting.rows.count; i++) {
+            sighting.rows.feature[i] = (uint8_t)feature_of_side[i];
+            sighting.rows.variance[i] = (float)check_random_between(&any, 100.0, 1000.0); /* by then the weight */
+            for (int k = 0; k < 3; k++) {
+                sighting.rows.shift[i][k] = (float)(3.0e-3 * check_random_normal(&any));
+            }
+            for (size_t c = 0; c < GOE_COLUMNS; c++) {
+                sighting.matrix.row[i][c] = (float)check_random_normal(&any);
+            }
+        }
+        before = sighting.matrix;
+        for (size_t i = 0; i < sighting.rows.count; i++) { /* the root of I + N, row by row */
+            for (size_t j = 0; j <= i; j++) {
+                double sum = i == j ? 1.0 : 0.0;
+                for (int k = 0; k < 3; k++) {
+                    sum += (double)sighting.rows.variance[i] * (double)sighting.rows.shift[i][k] *
+                           (double)sighting.rows.variance[j] * (double)sighting.rows.shift[j][k];
+                }
+                for (size_t k = 0; k < j; k++) {
+                    sum -= root[i][k] * root[j][k];
+                }
+                root[i][j] = i == j ? sqrt(sum) : sum / root[j][j];
+            }
+        }
+        goe_prism_learn(&filter, &sighting.rows);
+        for (size_t i = 0; i < sighting.rows.count; i++) {
+            for (size_t c = 0; c < GOE_COLUMNS; c++) {
+                double back = 0.0;
+                for (size_t j = 0; j <= i; j++) {
+                    back += root[i][j] * (double)sighting.matrix.row[j][c];
+                }
+                CHECK_CLOSE(1.0e-4, before.row[i][c], back);
+            }
+        }
+    }
+}
+
+/* GIVEN a depth that an update throws far off THEN it stays what a body can have, flat or deep, and can come back. */
+static void the_depth_of_a_body_is_bounded(void) {
+    goe_filter_t filter;
+    float change[GOE_UNKNOWNS] = {0.0f};
+    goe_filter_clear(&filter);
+    filter.state[GOE_PRISM_DEPTH] = 50.0f;
+    goe_prism_follow(&filter, change);
+    const float most = filter.state[GOE_PRISM_DEPTH];
+    TEST_ASSERT_TRUE(most > 1.0f && most < 5.0f);
+    filter.state[GOE_PRISM_DEPTH] = -50.0f;
+    goe_prism_follow(&filter, change);
+    CHECK_SAME(-most, filter.state[GOE_PRISM_DEPTH]);
+    filter.state[GOE_PRISM_DEPTH] = -0.5f * most;
+    goe_prism_follow(&filter, change);
+    CHECK_SAME(-0.5f * most, filter.state[GOE_PRISM_DEPTH]);
+}
+
 /* GIVEN errors of an image that are none THEN the image is refused, and nothing changes; by the window method they are not
  * read. */
 static void errors_of_an_image_are_checked(void) {
@@ -334,6 +515,16 @@ static void errors_of_an_image_are_checked(void) {
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
     }
     image.noise.attitude_deg = 0.0f;
+    static const float bad_m[] = {-1.0f, 1001.0f};
+    static const float bad_px[] = {-1.0f, 101.0f};
+    for (int i = 0; i < 2; i++) {
+        image.noise.height_m = bad_m[i];
+        CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
+        image.noise.height_m = 0.0f;
+        image.noise.pixel_px = bad_px[i];
+        CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
+        image.noise.pixel_px = 0.0f;
+    }
     image.noise.height_m = check_from_bits(0x7FC00000u);
     CHECK_STATUS(GOE_NOT_FINITE, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimator.motion.started);
@@ -474,6 +665,13 @@ int main(void) {
     RUN_TEST(a_prism_is_told_with_what_no_image_shows);
     RUN_TEST(what_no_image_shows_keeps_no_answer_back);
     RUN_TEST(boxes_that_come_too_soon_are_not_used);
+    RUN_TEST(the_ground_tells_the_first_range);
+    RUN_TEST(the_typical_size_tells_it_otherwise);
+    RUN_TEST(no_range_is_no_start);
+    RUN_TEST(without_an_altimeter_the_foot_tells_the_height);
+    RUN_TEST(a_disc_by_force_has_no_depth_of_its_own);
+    RUN_TEST(rows_are_freed_of_what_they_share);
+    RUN_TEST(the_depth_of_a_body_is_bounded);
     RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);
     RUN_TEST(a_jump_of_the_filter_moves_the_datum);

@@ -567,6 +567,33 @@ static void another_top_costs_the_height_alone(void) {
     CHECK_CLOSE(0.3, scene.height_m, estimate.height_m);
 }
 
+/* GIVEN an attitude whose error drifts WHEN nothing is seen for a while THEN each of the biases is less certain by the variance of a
+ * random walk over that time, and the gate counts with it before the filter is inverted again. */
+static void the_attitude_s_error_drifts_with_time(void) {
+    const double drift_rad = 0.2 * RAD_PER_DEG; /* per root second */
+    settings.navigation.attitude_drift_deg = 0.2f;
+    start();
+    fly(0, 20);
+    goe_filter_t before = estimator.filter;
+    goe_filter_invert(&before);
+    for (int k = 20; k < 36; k++) {
+        scene_image(&scene, k, &image, NULL);
+        for (int i = 0; i < 6; i++) {
+            pixel(i)->seen = false;
+        }
+        CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    }
+    const double gained = drift_rad * drift_rad * 16.0 / scene.image_rate_hz;
+    goe_filter_t after = estimator.filter;
+    CHECK_CLOSE(1.0e-3 * gained, gained, after.drift_rad2);
+    goe_filter_invert(&after);
+    for (int i = GOE_BIAS_X; i <= GOE_BIAS_Z; i++) {
+        const double was = (double)goe_filter_variance(&before, (goe_state_index_t)i);
+        const double is = (double)goe_filter_variance(&after, (goe_state_index_t)i);
+        CHECK_CLOSE(0.01 * (was + gained), was + gained, is);
+    }
+}
+
 /* GIVEN a cylinder, of which nothing shows how high the camera is above the ground THEN the told sigma of that is in the
  * height's, and only there. */
 static void the_error_of_the_altitude_is_in_the_height(void) {
@@ -871,6 +898,18 @@ static void a_stand_in_tells_no_width(void) {
     TEST_ASSERT_TRUE(stood_in);
 }
 
+/* GIVEN a track of more images than are counted THEN the count stays at the most that it may tell. */
+static void the_count_of_images_saturates(void) {
+    start();
+    fly(0, 20);
+    estimator.filter.health.images = INT16_MAX - 1;
+    for (int k = 20; k < 23; k++) {
+        fly(k, k + 1);
+        TEST_ASSERT_EQUAL_INT(32767, estimate.points);
+        TEST_ASSERT_TRUE(estimate.misfit >= 0.0f && estimate.misfit < 1.0f);
+    }
+}
+
 /* GIVEN a forced line and a truck so far away that its orientation is not told yet WHEN the window solves THEN its answer
  * is told, and never again once the box has begun. */
 static void the_window_answers_before_the_start_only(void) {
@@ -1067,6 +1106,7 @@ int main(void) {
     RUN_TEST(single_outliers_are_left_out);
     RUN_TEST(a_track_that_began_with_an_outlier_recovers);
     RUN_TEST(another_top_costs_the_height_alone);
+    RUN_TEST(the_attitude_s_error_drifts_with_time);
     RUN_TEST(the_error_of_the_altitude_is_in_the_height);
     RUN_TEST(a_track_that_began_at_another_obstacle_recovers);
     RUN_TEST(a_first_guess_that_is_far_off_comes_right);
@@ -1081,6 +1121,7 @@ int main(void) {
     RUN_TEST(a_forced_line_is_a_box_and_no_disc_before_it);
     RUN_TEST(a_forced_line_without_corners_tells_nothing);
     RUN_TEST(a_stand_in_tells_no_width);
+    RUN_TEST(the_count_of_images_saturates);
     RUN_TEST(the_window_answers_before_the_start_only);
     RUN_TEST(an_answer_follows_the_motion_while_nothing_is_seen);
     RUN_TEST(the_covariance_of_an_old_answer_is_its_sigmas_squared);

@@ -86,6 +86,7 @@ static void reasons_have_names(void) {
     }
     TEST_ASSERT_EQUAL_STRING("unknown", goe_reason_text((goe_reason_t)(GOE_REASON_NOISE + 1)));
     TEST_ASSERT_EQUAL_STRING("unknown", goe_reason_text((goe_reason_t)99));
+    TEST_ASSERT_EQUAL_STRING("unknown", goe_reason_text((goe_reason_t)-1));
 }
 
 int main(void) {

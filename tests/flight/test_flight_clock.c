@@ -98,8 +98,9 @@ static void another_clock_is_noticed(void) {
     for (uint32_t k = 0; k < 50u; k++) {
         (void)off_us(100000u * k, jitter_us(), &sd_us);
     }
-    for (int back = 0; back < 2; back++) {
-        const uint32_t restart_us = back == 0 ? 400000000u : 0u;
+    static const uint32_t restarts_us[] = {400000000u, 0u, 300000000u};
+    for (int n = 0; n < 3; n++) {
+        const uint32_t restart_us = restarts_us[n];
         int32_t error_us = 0;
         for (uint32_t k = 0; k < 20u; k++) {
             goe_flight_frame_t frame = message(restart_us + 100000u * k, 0u);

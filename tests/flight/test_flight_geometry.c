@@ -120,6 +120,23 @@ static void the_poles_and_far_places_stay_in_range(void) {
     int32_t lon_e7;
     goe_flight_geometry_lat_lon(890000000, -1800000000, ne_m, &lat_e7, &lon_e7);
     TEST_ASSERT_TRUE(lat_e7 <= 900000000 && lon_e7 >= -1800000000 && lon_e7 <= 1800000000);
+    const float south_m[2] = {-1.0e6f, 0.0f};
+    goe_flight_geometry_lat_lon(-890000000, 0, south_m, &lat_e7, &lon_e7);
+    TEST_ASSERT_EQUAL_INT32(-900000000, lat_e7);
+}
+
+/* East of 180 degrees lies the west, and the other way round. */
+static void the_date_line_is_no_edge(void) {
+    static const float ways_m[] = {1000.0f, -1000.0f};
+    for (int i = 0; i < 2; i++) {
+        const float ne_m[2] = {0.0f, ways_m[i]};
+        const int32_t from_e7 = i == 0 ? 1799990000 : -1799990000;
+        int32_t lat_e7;
+        int32_t lon_e7;
+        goe_flight_geometry_lat_lon(0, from_e7, ne_m, &lat_e7, &lon_e7);
+        const int64_t went_e7 = (int64_t)lon_e7 - from_e7 + (i == 0 ? 3600000000LL : -3600000000LL);
+        CHECK_CLOSE(1.0, (double)ways_m[i], (double)went_e7 * 1.0e-7 / DEG_PER_RAD * EARTH_M);
+    }
 }
 
 static void close_sectors(void) {
@@ -197,6 +214,10 @@ static void the_view_turns_with_the_aircraft(void) {
     settings.mount_yaw_deg = 0.0f;
     goe_flight_geometry_camera(&camera, &settings);
     TEST_ASSERT_FALSE(goe_flight_geometry_view(&camera, up, &from_deg, &width_deg));
+    const float ahead[4] = {1.0f, 0.0f, 0.0f, 0.0f};
+    TEST_ASSERT_TRUE(goe_flight_geometry_view(&camera, ahead, &from_deg, &width_deg));
+    camera.size_px[0] = 0.0f; /* sees nothing */
+    TEST_ASSERT_FALSE(goe_flight_geometry_view(&camera, ahead, &from_deg, &width_deg));
 }
 
 int main(void) {
@@ -205,6 +226,7 @@ int main(void) {
     RUN_TEST(nothing_is_seen_behind_the_camera);
     RUN_TEST(latitude_and_longitude);
     RUN_TEST(the_poles_and_far_places_stay_in_range);
+    RUN_TEST(the_date_line_is_no_edge);
     RUN_TEST(a_circle_enters_the_sectors_that_it_touches);
     RUN_TEST(the_nearest_counts_and_what_is_far_does_not);
     RUN_TEST(the_view_turns_with_the_aircraft);

@@ -52,6 +52,27 @@ static void angles_become_positive(void) {
     TEST_ASSERT_TRUE(goe_flight_positive_deg(-1.0e-9f) < 360.0f);
 }
 
+/* GIVEN an angle that is none THEN it counts as 0: no int could count its quarters or turns. */
+static void what_is_no_angle_counts_as_none(void) {
+    static const uint32_t none[] = {0x7F7FFFFFu, 0xFF7FFFFFu, 0x7F800000u, 0xFF800000u, 0x7FC00000u};
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
+        float sine = 5.0f;
+        float cosine = 5.0f;
+        goe_flight_sincos_deg(check_from_bits(none[i]), &sine, &cosine);
+        CHECK_SAME(0.0f, sine);
+        CHECK_SAME(1.0f, cosine);
+        CHECK_SAME(0.0f, goe_flight_positive_deg(check_from_bits(none[i])));
+    }
+}
+
+static void a_counter_stays_at_its_most(void) {
+    uint16_t counter = UINT16_MAX - 1u;
+    goe_flight_count(&counter);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counter);
+    goe_flight_count(&counter);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counter);
+}
+
 static void time_wraps(void) {
     TEST_ASSERT_EQUAL_INT32(10, goe_flight_between_us(5u, 0xFFFFFFFBu));
     TEST_ASSERT_EQUAL_INT32(-10, goe_flight_between_us(0xFFFFFFFBu, 5u));
@@ -74,6 +95,8 @@ int main(void) {
     RUN_TEST(arctangents_in_every_quarter);
     RUN_TEST(sines_of_every_quarter);
     RUN_TEST(angles_become_positive);
+    RUN_TEST(what_is_no_angle_counts_as_none);
+    RUN_TEST(a_counter_stays_at_its_most);
     RUN_TEST(time_wraps);
     RUN_TEST(numbers_are_judged_by_their_bits);
     return UNITY_END();

@@ -178,10 +178,13 @@ static void a_front_without_a_length_lies_where_it_is(void) {
     }
 }
 
-/* Points work as boxes do, but for those at the border of the image. */
+/* Points work as boxes do, but for those at the border of the image: left, top or both at once. */
 static void points_at_the_border_are_not_seen(void) {
     start(&flown, 1.0);
     flown.scene.boxes = flown.scene.upright_boxes = false;
+    flown.scene.camera.border_share = 0.012f;
+    const goe_settings_t estimator = scene_settings(&flown.scene);
+    restart(&flown, &estimator);
     int taken = 0;
     for (int k = 0; k < 200; k++) {
         goe_flight_attitude_t attitude;
@@ -201,6 +204,9 @@ static void points_at_the_border_are_not_seen(void) {
         detection.top = image.top;
         if (k % 10 == 5) { /* a cut side: 2 px inside the image, hundreds from where it belongs */
             detection.left.u_px = 2.0f;
+        }
+        if (k % 20 == 15) {
+            detection.top.v_px = 1279.0f;
         }
         const goe_flight_frame_t frame = flown_frame(&flown, k, &detection, 1);
         if (k % 5 == 0) {

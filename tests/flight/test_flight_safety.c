@@ -153,7 +153,7 @@ static void fuzz_position(void) {
     }
     sample.origin_known = one_in(2);
     sample.origin_lat_e7 = (int32_t)check_random_bits(&any) / (one_in(3) ? 1 : 3);
-    sample.origin_lon_e7 = (int32_t)check_random_bits(&any) / 2;
+    sample.origin_lon_e7 = (int32_t)check_random_bits(&any) / (one_in(20) ? 1 : 2);
     sample.reset_horizontal = memory.flight.marks.horizontal + (one_in(200) ? 1u : 0u);
     sample.reset_vertical = one_in(400) ? check_random_bits(&any) : memory.flight.marks.vertical;
     sample.reset_delta_known = !one_in(4);
@@ -327,7 +327,7 @@ static void settings_out_of_range_are_named(void) {
         const char *bad = NULL;
         goe_flight_settings_default(&settings);
         memcpy(values, &settings, sizeof values);
-        values[i] = one_in(2) ? check_from_bits(0x7FC00001u) : -1.0f;
+        values[i] = one_in(2) ? (one_in(2) ? 1.0e9f : check_from_bits(0x7FC00001u)) : -1.0f;
         memcpy(&settings, values, sizeof values);
         TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_SETTINGS,
                           goe_flight_init(&memory.flight, sizeof memory.flight, &estimator, &settings, &bad));
@@ -345,7 +345,10 @@ static void settings_out_of_range_are_named(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_SETTINGS,
                       goe_flight_init(&memory.flight, sizeof memory.flight, &estimator, NULL, &bad));
     TEST_ASSERT_EQUAL_STRING("camera.fx_px", bad);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_SETTINGS,
+                      goe_flight_init(&memory.flight, sizeof memory.flight, &estimator, NULL, NULL));
     estimator = scene_settings(&scene);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT, goe_flight_init(&memory.flight, sizeof memory.flight, NULL, NULL, &bad));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT,
                       goe_flight_init(&memory.flight, sizeof memory.flight - 8u, &estimator, NULL, &bad));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&memory.flight, sizeof memory.flight, &estimator, NULL, &bad));

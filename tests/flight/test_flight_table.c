@@ -205,6 +205,8 @@ static void a_dead_detector_is_not_a_clear_sky(void) {
     TEST_ASSERT_TRUE(now.detector_alive);
     uint16_t sector_cm[GOE_FLIGHT_SECTORS];
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 20000u, sector_cm));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OUT_OF_RANGE, goe_flight_sectors(&flown.flight, 0u, sector_cm));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OUT_OF_RANGE, goe_flight_sectors(&flown.flight, UINT32_MAX, sector_cm));
     TEST_ASSERT_EQUAL_UINT16(20001u, sector_cm[3]);                     /* 15 degrees right: in view, nothing there */
     TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[36]); /* behind */
     TEST_ASSERT_TRUE(sector_cm[69] > 4000u && sector_cm[69] < 6500u);
@@ -214,6 +216,20 @@ static void a_dead_detector_is_not_a_clear_sky(void) {
     TEST_ASSERT_FALSE(now.pose_alive);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 20000u, sector_cm));
     TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[3]);
+}
+
+/* GIVEN an obstacle WHEN nothing is known of the own attitude or place any more THEN there is nowhere to tell of it from. */
+static void without_a_pose_no_obstacle_is_told(void) {
+    goe_flight_obstacle_t obstacle;
+    (void)flown_fly(&flown, 3.0);
+    const goe_flight_t kept = flown.flight;
+    flown.flight.history.position_count = 0;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NO_POSE, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+    flown.flight = kept;
+    flown.flight.history.attitude_count = 0;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NO_POSE, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+    flown.flight = kept;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
 }
 
 static void early_frames_are_kept_by_the_caller(void) {
@@ -284,6 +300,7 @@ int main(void) {
     RUN_TEST(what_is_not_seen_any_more_is_given_up);
     RUN_TEST(an_order_does_not_pass_to_the_next_in_its_slot);
     RUN_TEST(a_dead_detector_is_not_a_clear_sky);
+    RUN_TEST(without_a_pose_no_obstacle_is_told);
     RUN_TEST(early_frames_are_kept_by_the_caller);
     RUN_TEST(an_image_may_come_in_parts);
     RUN_TEST(the_autopilots_clock_may_wrap);

@@ -141,7 +141,6 @@ RUN_BY = {
     "python -m goe_tools mcap...": By("tests/python/test_mcap.py", '"mcap", str(folder), "--out"'),
     "python -m goe_tools noise...": By("tests/python/test_noise.py", '"noise", *logs'),
     "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
-    "tools/evidence.sh": By("tests/python/test_evidence_requirements.py", '"evidence.sh", "--show"'),
     "python -m goe_tools evidence ...": By("tests/python/test_evidence_requirements.py", '"evidence", how'),
     "python -m goe_tools flight_cost": By("tools/test.sh", "goe_tools flight_cost"),
     "python -m goe_tools ledger": By("tools/test.sh", "goe_tools ledger"),

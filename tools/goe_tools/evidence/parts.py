@@ -12,6 +12,7 @@ from .record import Result
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
     "targets": "the same bits on every processor and compiler, the safety tests at full length",
     "fuzz": "whatever comes in: does every answer hold what the headers promise?",
+    "coverage": "what the unit tests reach of every line, branch and condition",
     "flips": "one flipped bit anywhere in the estimator's memory",
     "programs": "what an attack found in the programs, and the tests that would fail if it came back",
     "reproducible": "whether two builds of the same sources give the same bits",
