@@ -69,7 +69,7 @@ static void see(float l, float t, float r, float b, unsigned seen) {
 
 /* ----------------------------------------------------------------------------------------------------------- sides -- */
 
-/* /* GIVEN bits beyond those of the four sides THEN they are none. */
+/* GIVEN bits beyond those of the four sides THEN they are none. */
 static void a_bit_that_is_no_side_is_none(void) {
     see(400.0f, 300.0f, 600.0f, 500.0f, 0xF0u | GOE_SEES_LEFT);
     TEST_ASSERT_EQUAL_HEX(GOE_SEES_LEFT, view.sides.usable);

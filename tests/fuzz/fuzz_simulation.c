@@ -17,8 +17,8 @@ enum { INPUTS, FLIGHTS, FLIGHTS_REFUSED, SCENARIOS, SCENARIOS_REFUSED, COUNTS };
 fuzz_count_t fuzz_counts[COUNTS + 1] = {{"inputs", 0},    {"flights", 0},           {"flights_refused", 0},
                                         {"scenarios", 0}, {"scenarios_refused", 0}, {NULL, 0}};
 
-static void check_fault(const char *fault, const char *path) {
-    FUZZ_HOLDS(memchr(fault, '\0', FAULT_SIZE) != NULL && strncmp(fault, path, strlen(path)) == 0);
+static void check_fault(const char *fault, size_t size, const char *path) {
+    FUZZ_HOLDS(memchr(fault, '\0', size) != NULL && strncmp(fault, path, strlen(path)) == 0);
 }
 
 static void check_pose(const pose_t *pose) {
@@ -41,15 +41,15 @@ static void fly(const recorded_flight_t *flight) {
 
 static void try_flight(const char *text, size_t size) {
     recorded_flight_t flight;
-    char fault[FAULT_SIZE];
+    input_error_t error;
     const char *path = fuzz_file(0, "flight.csv", text, size);
-    if (recorded_flight_read(path, &flight, fault, sizeof fault)) {
+    if (recorded_flight_read(path, &flight, &error)) {
         fuzz_counts[FLIGHTS].times++;
         fly(&flight);
         recorded_flight_free(&flight);
     } else {
         fuzz_counts[FLIGHTS_REFUSED].times++;
-        check_fault(fault, path);
+        check_fault(error.text, sizeof error.text, path);
         FUZZ_HOLDS(flight.poses == NULL && flight.count == 0);
     }
 }
@@ -70,7 +70,7 @@ static void try_scenario(const char *text, size_t size) {
         FUZZ_HOLDS(scenario.neighbours >= 0 && scenario.neighbours <= SCENARIO_NEIGHBOURS_MAX);
     } else {
         fuzz_counts[SCENARIOS_REFUSED].times++;
-        check_fault(fault, path);
+        check_fault(fault, sizeof fault, path);
     }
 }
 
