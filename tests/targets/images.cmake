@@ -6,8 +6,8 @@ set_property(CACHE GOE_TARGET_TESTS PROPERTY STRINGS all safety none)
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
 target_link_libraries(goe PUBLIC m)
-# What tools/goe_tools/cost reads.
-target_compile_options(goe PRIVATE -ffunction-sections -fstack-usage $<$<C_COMPILER_ID:GNU>:-fcallgraph-info=su>)
+# What tools/goe_tools/cost reads. Lines (-g1) leave the code as it is.
+target_compile_options(goe PRIVATE -ffunction-sections -fstack-usage $<$<C_COMPILER_ID:GNU>:-fcallgraph-info=su;-g1>)
 
 # The embedded logs and what flies them, compiled once for all images.
 add_library(replay_parts OBJECT ${replay_sources})
