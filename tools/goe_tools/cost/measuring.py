@@ -6,9 +6,10 @@ import tempfile
 from pathlib import Path
 
 from . import book
-from .book import Figures, key
+from .book import Figures, key, number
 from .building import Build, build, shown_flags
 from .instructions import PUBLIC, UPDATES, Spread, count, counted_calls
+from .longest.proving import PROVED_PRESETS, code_of, proofs
 from .modules import KINDS, external_calls, module_bytes, state_bytes
 from .parts import PARTS_PRESET, measured_parts
 from .running import LedgerError
@@ -56,6 +57,17 @@ def instruction_figures(built: Build, plugin: Path, scratch: Path) -> Figures:
     return figures
 
 
+def proved_figures(built: Build, measured: Figures) -> Figures:
+    """By the longest path; an error if a call took more."""
+    figures: Figures = {}
+    for name, proof in proofs(code_of(built, built.image("replay"))).items():
+        most = number(measured, book.INSTRUCTIONS, name, "max")
+        if most > proof.most:
+            raise LedgerError(f"{built.preset}: {name}: {most} instructions measured, {proof.most} proved")
+        figures[key(book.PROVED, name)] = proof.most
+    return figures
+
+
 def part_figures(built: Build, scratch: Path) -> Figures:
     parts = measured_parts(built, scratch)
     figures: Figures = {key(book.PART_BYTES, part.name): part.code for part in parts}
@@ -76,4 +88,6 @@ def measure(preset: str, folder: Path, plugin: Path) -> Figures:
             **stack_figures(built),
             **instruction_figures(built, plugin, scratch),
         }
+        if built.preset in PROVED_PRESETS:
+            figures |= proved_figures(built, figures)
         return figures | part_figures(built, scratch) if preset == PARTS_PRESET else figures
