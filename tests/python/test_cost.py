@@ -12,7 +12,9 @@ from goe_tools.cost import book, growth, guarantees, instructions, measuring, pa
 from goe_tools.cost import ledger as command
 from goe_tools.cost.building import Build, library_command, shown_flags
 from goe_tools.cost.instructions import PUBLIC
+from goe_tools.cost.longest.loop_bounds import Row
 from goe_tools.cost.longest.proving import Proof
+from goe_tools.cost.longest.trip_counts import Trips
 from goe_tools.cost.modules import bytes_of_object
 from goe_tools.cost.running import LedgerError
 
@@ -346,16 +348,29 @@ def test_what_is_measured_is_at_most_what_is_proved_and_that_what_is_stated() ->
         assert most <= limits.get(book.key(book.PROVED, name), most)
 
 
-def test_a_call_that_takes_more_than_is_proved_stops_the_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_contradicts_the_proof_stops_the_ledger(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     measured: book.Figures = {"instructions: goe_update: max": 11}
-    built = Build("m4f-gcc-o2", Path(), "none", "", "gcc", [], [])
+    built = Build("m4f-gcc-o2", tmp_path, "none", "", "gcc", [], [])
+    row = Row(7, "loop", "f", "#1", "", "3", "entry", "for a test")
+    trips = [Trips("f", 0x100, row, turns, 3) for turns in (3, 4)]
+    monkeypatch.setattr(Build, "image", lambda built, kind: tmp_path / kind)
     monkeypatch.setattr(measuring, "code_of", lambda built, image: None)
-    monkeypatch.setattr(measuring, "proofs", lambda code: {"goe_update": Proof(most, Counter())})
-    for most in (11, 12):
-        assert measuring.proved_figures(built, measured) == {"instructions proved: goe_update": most}
-    most = 10
-    with pytest.raises(LedgerError, match="goe_update: 11 instructions measured, 10 proved"):
-        measuring.proved_figures(built, measured)
+    for most, turned, lines, wrong in (
+        (11, 1, [], ""),
+        (10, 1, [], "goe_update: 11 instructions measured, 10 proved"),
+        (11, 2, [], "f: a loop turned 4 times, line 7 of the table says 3"),
+        (11, 1, ["line 9: loop g: #1"], "m4f-gcc-o2: line 9: loop g: #1"),
+    ):
+        proof = Proof(most, Counter())
+        monkeypatch.setattr(measuring, "proofs", lambda code, proof=proof: {"goe_update": proof})
+        monkeypatch.setattr(measuring, "unused", lambda code, lines=lines: lines)
+        monkeypatch.setattr(measuring, "turns", lambda *_, turned=turned: trips[:turned])
+        if wrong:
+            with pytest.raises(LedgerError, match=wrong):
+                measuring.proved_figures(built, measured, tmp_path)
+        else:
+            found = measuring.proved_figures(built, measured, tmp_path)
+            assert found == {"instructions proved: goe_update": 11}
 
 
 def test_parts_have_a_table_of_their_own() -> None:
