@@ -68,21 +68,31 @@ def _domain(name: str, words: str, **changed: tuple[float, float]) -> Domain:
     )  # fmt: skip
 
 
-USUAL = _domain(
-    "usual",
-    "positions within 10 km, lever arms up to 10 m, focal lengths of 300 to 3,000 px, obstacles 40 m to 2 km away, an "
-    "attitude good to 0.02 degrees at best, points to 0.3 px",
-)
+NEAR = _domain(
+    "near",
+    "positions within 1 km of the autopilot's origin, lever arms up to 3 m, focal lengths of 300 to 3,000 px, "
+    "obstacles 40 m to 2 km away, an attitude good to 0.02 degrees at best, points to 0.3 px",
+    north_m=(1.0, 1e3), east_m=(1.0, 1e3), arm_m=(1e-3, 3.0),
+)  # fmt: skip
+FAR = _domain("far", "the same, but positions within 10 km and lever arms up to 10 m")
+LIMITS = {
+    "range_m": (5.0, 1e5), "flown": (1e-3, 0.97), "step_s": (0.01, 25.0), "width": (1e-3, 0.3), "high": (1e-3, 0.4),
+    "above": (1e-3, 0.4), "focal_px": (30.0, 1e5), "bias_deg": (1e-3, 30.0), "white_deg": (1e-4, 10.0),
+    "point_px": (0.05, 50.0), "height_m": (1e-3, 1e3), "velocity_m_s": (1e-4, 50.0), "walk_m": (1e-4, 50.0),
+    "sway_deg": (1e-3, 30.0), "speed_m_s": (0.5, 100.0),
+}  # fmt: skip
+SHARP = _domain(
+    "sharp",
+    "positions within 1 km, lever arms up to 3 m; focal lengths to 100,000 px, obstacles 5 m to 100 km away, a "
+    "baseline of a thousandth of that, the least noise that the settings take, tracks of up to 4,000 s",
+    **LIMITS | {"north_m": (1.0, 1e3), "east_m": (1.0, 1e3), "arm_m": (1e-3, 3.0)},
+)  # fmt: skip
 WHOLE = _domain(
     "whole",
-    "positions to 1,000 km, lever arms to 10 km, focal lengths to 100,000 px, obstacles to 100 km away, the least "
-    "noise that the settings take, tracks of up to 4,000 s",
-    range_m=(5.0, 1e5), flown=(1e-3, 0.97), step_s=(0.01, 25.0), width=(1e-3, 0.3), high=(1e-3, 0.4), above=(1e-3, 0.4),
-    focal_px=(30.0, 1e5), north_m=(1.0, 1e6), east_m=(1.0, 1e6), arm_m=(1e-3, 1e4), bias_deg=(1e-3, 30.0),
-    white_deg=(1e-4, 10.0), point_px=(0.05, 50.0), height_m=(1e-3, 1e3), velocity_m_s=(1e-4, 50.0), walk_m=(1e-4, 50.0),
-    sway_deg=(1e-3, 30.0), speed_m_s=(0.5, 100.0),
+    "the same, but positions to 1,000 km and lever arms to 10 km, the header's ends",
+    **LIMITS | {"north_m": (1.0, 1e6), "east_m": (1.0, 1e6), "arm_m": (1e-3, 1e4)},
 )  # fmt: skip
-DOMAINS = (USUAL, WHOLE)
+DOMAINS = (NEAR, FAR, SHARP, WHOLE)
 
 
 @dataclass(frozen=True)

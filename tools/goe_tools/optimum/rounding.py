@@ -20,48 +20,58 @@ QUANTITIES: dict[str, tuple[int, float]] = {
     "velocity_north_m_s": (VELOCITY, 0.0), "velocity_east_m_s": (VELOCITY, 0.0),
 }  # fmt: skip
 DECISIONS = ("method", "model", "valid", "fresh", "suspect", "points", "nis_rows", "reason")
+MOVES = 2  # reason of an estimate that is suspect, and follows what moves
+NIS_APART = 0.05  # of 1 + NIS: what it differs by where a decision fell otherwise that no output names
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Of one track of K images."""
+    """Of one track of K images, by quantity: (K,) |float32 - float64| over the latter's sigma; NaN: not compared.
 
-    sigmas: dict[str, np.ndarray]  # by quantity: (K,) |float32 - float64| over the latter's sigma; NaN: not compared
-    sigma: dict[str, np.ndarray]  # ... of its sigma, relative
+    Until something is decided otherwise the two differ by rounding alone. Decisions that no output names (which
+    corner of a box is taken for which, an outlier's weight) show in the NIS."""
+
+    sigmas: dict[str, np.ndarray]  # while all was decided alike, and the estimate was not suspect but for a motion
+    ever: dict[str, np.ndarray]  # while all that is told was decided alike
+    sigma: dict[str, np.ndarray]  # relative difference of the sigma itself, where `sigmas` are compared
     answered: int  # images with an answer in both
     apart: int  # of these, those from which on something was decided otherwise
 
-    def worst(self, name: str) -> float:
-        column = self.sigmas[name]
-        return float(np.nanmax(column)) if np.isfinite(column).any() else 0.0
 
-    def worst_sigma(self, name: str) -> float:
-        column = self.sigma[name]
-        return float(np.nanmax(column)) if np.isfinite(column).any() else 0.0
+def most(column: np.ndarray) -> float:
+    return float(np.nanmax(column)) if np.isfinite(column).any() else 0.0
 
 
-def _alike(single: Any, double: Any) -> np.ndarray:
-    """(K,): up to this image all was decided alike."""
+def _told_alike(single: Any, double: Any) -> np.ndarray:
+    """(K,): up to this image all that is told was decided alike."""
     same = single.status == double.status
     for name in DECISIONS:
         same = same & (single.estimates[name] == double.estimates[name])
     return np.logical_and.accumulate(same)
 
 
+def _fits_alike(single: Any, double: Any) -> np.ndarray:
+    one, other = (track.estimates["nis"].astype(float) for track in (single, double))
+    near = np.abs(one - other) <= NIS_APART * (1.0 + other)
+    doubted = single.estimates["suspect"].astype(bool) & (single.estimates["reason"] != MOVES)
+    return np.logical_and.accumulate(near & ~doubted)
+
+
 def difference(images: Images, settings: dict[str, float]) -> Difference:
     given, named = to_package(images), named_settings(tuple(settings.items()))
     single, double = package().run(named, given), double_precision.run(named, given)
     both = (single.estimates["valid"] & double.estimates["valid"] & POSITION) != 0
-    alike = _alike(single, double)
-    sigmas, sigma = {}, {}
+    told = _told_alike(single, double)
+    alike = told & _fits_alike(single, double)
+    sigmas, ever, sigma = {}, {}, {}
     for name, (bit, turn) in QUANTITIES.items():
-        known = alike & ((double.estimates["valid"] & bit) != 0) & double.estimates["fresh"].astype(bool)
         off = np.abs(single.estimates[name].astype(float) - double.estimates[name].astype(float))
         if turn > 0.0:
             off = np.minimum(off, np.abs(turn - off))
         one, other = (track.estimates["sigma"][name].astype(float) for track in (single, double))
-        known = known & (other > 0.0)
+        known = ((double.estimates["valid"] & bit) != 0) & double.estimates["fresh"].astype(bool) & (other > 0.0)
         with np.errstate(invalid="ignore", divide="ignore"):
-            sigmas[name] = np.where(known, off / other, np.nan)
-            sigma[name] = np.where(known, np.abs(one / other - 1.0), np.nan)
-    return Difference(sigmas, sigma, int(both.sum()), int((both & ~alike).sum()))
+            sigmas[name] = np.where(known & alike, off / other, np.nan)
+            ever[name] = np.where(known & told, off / other, np.nan)
+            sigma[name] = np.where(known & alike, np.abs(one / other - 1.0), np.nan)
+    return Difference(sigmas, ever, sigma, int(both.sum()), int((both & ~alike).sum()))
