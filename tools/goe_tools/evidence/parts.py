@@ -12,6 +12,7 @@ from .record import Result
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
     "worst_case": "the most instructions and stack of each public call: measured, proved, stated",
     "rounding": "float32 against float64 at the ends of what the header allows, in sigmas",
+    "flips": "one flipped bit anywhere in the estimator's memory",
 }
 
 
