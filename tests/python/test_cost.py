@@ -358,7 +358,7 @@ def test_what_contradicts_the_proof_stops_the_ledger(monkeypatch: pytest.MonkeyP
     for most, turned, lines, wrong in (
         (11, 1, [], ""),
         (10, 1, [], "goe_update: 11 instructions measured, 10 proved"),
-        (11, 2, [], "f: a loop turned 4 times, line 7 of the table says 3"),
+        (11, 2, [], "f at 100: counted 4, line 7 of the table says 3"),
         (11, 1, ["line 9: loop g: #1"], "m4f-gcc-o2: line 9: loop g: #1"),
     ):
         proof = Proof(most, Counter())

@@ -362,3 +362,21 @@ def test_a_bound_that_the_logs_exceed_is_found(
     trips = trip_counts.measured(built, code_of(LOOP, loop_row(most)), tmp_path)
     assert [trip.measured for trip in trips] == [6]
     assert len(trip_counts.exceeded(trips)) == wrong
+
+
+def test_what_excludes_each_other_is_counted_together() -> None:
+    """Each statement by every call that it names; times may be negative; a block that was put in place counts alone."""
+    place = (Place("tail", "", 1), Place("leaf", "", 1))
+    rows = [
+        Row(4, "most", "all", "root > leaf | -2 =leaf > tail", "", "1", "", "for a test"),
+        Row(5, "case", "all", "leaf > tail", "", "1", "", "for a test"),
+        Row(6, "most", "another", "root > leaf", "", "0", "", "for a test"),
+    ]
+    code = code_of(LOOP, loop_row("5"), *rows, places={0x202: place})
+    found = list(trip_counts.checks_of_statements(code, Finder(code, "all")))
+    assert [check.counts for check in found] == [
+        ((0x104, 1), (0x208, -2)),
+        ((0x200, 1), (0x208, 1)),
+    ]
+    lines = trip_counts.map_of(code, found).splitlines()
+    assert lines[:4] == ["count 104 0", "less 208 0", "less 208 0", "needs 0 0"]

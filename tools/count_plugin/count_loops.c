@@ -1,9 +1,10 @@
-/* The most turns that loops take: a plugin of QEMU's code generator. SPDX-License-Identifier: MIT
+/* The most turns that loops take, and the most that sums of calls come to: a plugin of QEMU's code generator. SPDX-License-Identifier: MIT
  *
  *   qemu-system-... -plugin count_loops.so,map=FILE,out=FILE
  *
  * map: a line for each thing that happens at an address, numbers but the address decimal:
  *   "count <address> <counter>"   the counter counts one more
+ *   "less <address> <counter>"    ... one less
  *   "reset <address> <counter>"   ... begins anew; if both happen at an address, first
  *   "needs <counter> <switch>"    ... counts only while the switch is on
  *   "bars <counter> <switch>"     ... only while it is off
@@ -22,9 +23,10 @@ EXPORT int qemu_plugin_version = 1;
 #define COUNTERS_MAX 2048
 #define SWITCHES_MAX 64
 #define EVENTS_MAX 32768
+#define KINDS 5
 
 typedef struct {
-    uint64_t count, most;
+    int64_t count, most;
     uint64_t needs, bars; /* sets of switches */
 } counter_t;
 
@@ -43,13 +45,21 @@ static size_t event_count;
 static size_t counter_count;
 static FILE *out;
 
-static void on_count(unsigned int cpu, void *data) {
-    counter_t *counter = data;
-    (void)cpu;
+static void count_by(counter_t *counter, int64_t more) {
     if ((switches_on & counter->needs) == counter->needs && (switches_on & counter->bars) == 0) {
-        counter->count++;
+        counter->count += more;
         counter->most = counter->count > counter->most ? counter->count : counter->most;
     }
+}
+
+static void on_count(unsigned int cpu, void *data) {
+    (void)cpu;
+    count_by(data, 1);
+}
+
+static void on_less(unsigned int cpu, void *data) {
+    (void)cpu;
+    count_by(data, -1);
 }
 
 static void on_reset(unsigned int cpu, void *data) {
@@ -70,9 +80,9 @@ static void on_off(unsigned int cpu, void *data) {
 /* ---------------------------------------------------------------------------------------------------------- map -- */
 
 static bool add_event(const char *kind, uint64_t address, unsigned number) {
-    static const char *const kinds[] = {"off", "on", "reset", "count"};
-    static const executed_t does[] = {on_off, on_on, on_reset, on_count};
-    for (int i = 0; i < 4; i++) {
+    static const char *const kinds[] = {"off", "on", "reset", "less", "count"};
+    static const executed_t does[] = {on_off, on_on, on_reset, on_less, on_count};
+    for (int i = 0; i < KINDS; i++) {
         if (strcmp(kind, kinds[i]) == 0 && event_count < EVENTS_MAX && number < (i < 2 ? SWITCHES_MAX : COUNTERS_MAX)) {
             void *of = i < 2 ? (void *)&bit[number] : (void *)&counters[number];
             const event_t event = {address, of, does[i], i};
@@ -123,7 +133,7 @@ static void on_translated(qemu_plugin_id_t id, struct qemu_plugin_tb *block) {
     for (size_t i = 0; i < qemu_plugin_tb_n_insns(block); i++) {
         struct qemu_plugin_insn *insn = qemu_plugin_tb_get_insn(block, i);
         const uint64_t address = qemu_plugin_insn_vaddr(insn);
-        for (int order = 0; order < 4; order++) {
+        for (int order = 0; order < KINDS; order++) {
             for (size_t k = 0; k < event_count; k++) {
                 if (events[k].address == address && events[k].order == order) {
                     qemu_plugin_register_vcpu_insn_exec_cb(insn, events[k].does, QEMU_PLUGIN_CB_NO_REGS, events[k].of);
@@ -137,7 +147,7 @@ static void on_exit_of_qemu(qemu_plugin_id_t id, void *data) {
     (void)id;
     (void)data;
     for (size_t i = 0; i < counter_count; i++) {
-        fprintf(out, "%" PRIu64 "\n", counters[i].most);
+        fprintf(out, "%" PRId64 "\n", counters[i].most);
     }
     (void)fclose(out);
 }
