@@ -455,7 +455,8 @@ typedef struct {
     goe_reason_t reason;   /* of that; GOE_REASON_LATE also of an estimate that is not suspect */
     int points;            /* images behind the answer: the window, or all that were used; at most 32767; 0 if none */
     float age_s;           /* since the image of the last solution, refused images included; 0 if fresh or none; at
-                              most 4000. It stands still when goe_update is not called */
+                              most 4000. It stands still when goe_update is not called, and falls if a refused image told a
+                              time that lay ahead of the next one's */
     float x0_m, z0_m;      /* reference point at the track's first image, T axes */
     float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale */
     float width_m;         /* disc: diameter; line, box: length of the front edge */
