@@ -97,7 +97,7 @@ def worst_of(found: Sequence[Found], name: str) -> Found:
 def rows(found: Sequence[Found]) -> Iterator[Row]:
     for domain in DOMAINS:
         for method in METHODS:
-            own = [f for f in found if f.domain is domain and f.case.method == method]
+            own = [f for f in found if f.domain == domain and f.case.method == method]
             goal = GOALS.get((domain.name, method))
             if not own:
                 continue
