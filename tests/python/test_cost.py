@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.cost import book, growth, guarantees, instructions, pages, parts, stack, stated
+from goe_tools.cost import book, growth, guarantees, instructions, measuring, pages, parts, stack, stated
 from goe_tools.cost import ledger as command
 from goe_tools.cost.building import Build, library_command, shown_flags
 from goe_tools.cost.instructions import PUBLIC
+from goe_tools.cost.longest.loop_bounds import Row
+from goe_tools.cost.longest.proving import Proof
+from goe_tools.cost.longest.trip_counts import Trips
 from goe_tools.cost.modules import bytes_of_object
 from goe_tools.cost.running import LedgerError
 
@@ -282,9 +286,9 @@ def test_a_guarantee_that_the_readme_does_not_state_is_told(tmp_path: Path) -> N
     root = copy_of_pages(tmp_path)
     readme = root / "README.md"
     text = readme.read_text(encoding="utf-8")
-    assert text.count("34,300 instructions") == 2  # once in its own words, once in the table
-    readme.write_text(text.replace("34,300 instructions", "few instructions", 1), encoding="utf-8")
-    assert ["34,300 instructions" in wrong for wrong in pages.wrong_pages(root, committed())] == [True]
+    assert text.count("48,000 instructions") == 2  # once in its own words, once in the table
+    readme.write_text(text.replace("48,000 instructions", "few instructions", 1), encoding="utf-8")
+    assert ["48,000 instructions" in wrong for wrong in pages.wrong_pages(root, committed())] == [True]
 
 
 def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
@@ -292,16 +296,16 @@ def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
     ledger = committed()
     header = root / pages.HEADER
     limits = stated.stated(header.read_text(encoding="utf-8"))
-    assert limits["instructions: goe_update: max"] == 34300
-    assert limits["instructions: goe_update with lens distortion: max"] == 35400
-    assert limits["instructions: goe_update, window: max"] == 3160
+    assert limits["instructions proved: goe_update"] == 48000
+    assert limits["instructions proved: goe_update with lens distortion"] == 70000
+    assert limits["instructions proved: goe_update, window"] == 5300
     assert len(limits) == 2 * len(PUBLIC) + 2
     hazard = r"at most \d+ instructions(, \d+ bytes of stack\. No loop)"
     text = re.sub(hazard, r"at most 10 instructions\1", header.read_text(encoding="utf-8"))
     header.write_text(text, encoding="utf-8")
-    measured = ledger[stated.TARGET]["instructions: goe_hazard: max"]
+    proved = ledger[stated.TARGET]["instructions proved: goe_hazard"]
     assert pages.wrong_pages(root, ledger) == [
-        f"lib/goe.h: instructions: goe_hazard: max: at most 10, but {stated.TARGET} has {measured}"
+        f"lib/goe.h: instructions proved: goe_hazard: at most 10, but {stated.TARGET} has {proved}"
     ]
     header.write_text("nothing", encoding="utf-8")
     with pytest.raises(ValueError, match="states no cost of goe_settings_default, goe_init"):
@@ -311,12 +315,12 @@ def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
 def test_a_promise_that_is_broken_is_told() -> None:
     ledger = committed()
     assert guarantees.broken_promises(ledger) == []
-    ledger["m4f-gcc-os"]["instructions: goe_update: max"] = 34301
+    ledger["m4f-gcc-o2"]["instructions proved: goe_update"] = 48001
     ledger["m4f-clang-os"]["instructions: goe_update: max"] = 99999  # nobody promised
     ledger["rv32imac-gcc-o2"]["data bytes: total"] = 4
     ledger["m4f-gcc-o2"]["calls to other libraries"] = "memcpy malloc"
     assert guarantees.broken_promises(ledger) == [
-        "m4f-gcc-os: instructions: goe_update: max: 34301, promised 34300",
+        "m4f-gcc-o2: instructions proved: goe_update: 48001, promised 48000",
         "m4f-gcc-o2: the library calls malloc",
         "rv32imac-gcc-o2: data bytes: total: 4, promised 0",
     ]
@@ -324,14 +328,49 @@ def test_a_promise_that_is_broken_is_told() -> None:
 
 def test_the_table_of_guarantees_tells_where_they_do_not_hold() -> None:
     ledger = committed()
-    figure = "instructions: goe_update: max"
-    for preset, value in zip(guarantees.M4F, (34300, 24000, 34301, 1)):
-        ledger[preset][figure] = value
-    row = next(line for line in guarantees.rows(ledger) if "34,300 instructions" in line)
+    for preset, value in zip(guarantees.M4F, (1212, 1000, 1213, 1)):
+        ledger[preset]["stack bytes computed: goe_update"] = value
+    row = next(line for line in guarantees.rows(ledger) if "1,212 bytes of stack" in line)
     cells = [cell.strip() for cell in row.strip("|").split("|")]
     assert cells[1:] == [
-        "Cortex-M4F gcc -Os (34,300), gcc -O2 (24,000), clang -O2 (1)", "Cortex-M4F clang -Os (34,301)",
+        "Cortex-M4F gcc -Os (1,212), gcc -O2 (1,000), clang -O2 (1)", "Cortex-M4F clang -Os (1,213)",
     ]  # fmt: skip
+
+
+def test_what_is_measured_is_at_most_what_is_proved_and_that_what_is_stated() -> None:
+    figures = committed()[stated.TARGET]
+    limits = stated.stated((ROOT / pages.HEADER).read_text(encoding="utf-8"))
+    proved = book.below(figures, book.PROVED)
+    assert set(PUBLIC) < set(proved)
+    for name in proved:
+        most = book.number(figures, book.PROVED, name)
+        assert 0 < book.number(figures, book.INSTRUCTIONS, name, "max") <= most
+        assert most <= limits.get(book.key(book.PROVED, name), most)
+
+
+def test_what_contradicts_the_proof_stops_the_ledger(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    measured: book.Figures = {"instructions: goe_update: max": 11}
+    built = Build("m4f-gcc-o2", tmp_path, "none", "", "gcc", [], [])
+    row = Row(7, "loop", "f", "#1", "", "3", "entry", "for a test")
+    trips = [Trips("f", 0x100, row, turns, 3) for turns in (3, 4)]
+    monkeypatch.setattr(Build, "image", lambda built, kind: tmp_path / kind)
+    monkeypatch.setattr(measuring, "code_of", lambda built, image: None)
+    for most, turned, lines, wrong in (
+        (11, 1, [], ""),
+        (10, 1, [], "goe_update: 11 instructions measured, 10 proved"),
+        (11, 2, [], "f at 100: counted 4, line 7 of the table says 3"),
+        (11, 1, ["line 9: loop g: #1"], "m4f-gcc-o2: line 9: loop g: #1"),
+    ):
+        proof = Proof(most, Counter())
+        monkeypatch.setattr(measuring, "proofs", lambda code, proof=proof: {"goe_update": proof})
+        monkeypatch.setattr(measuring, "unused", lambda code, lines=lines: lines)
+        monkeypatch.setattr(measuring, "turns", lambda *_, turned=turned: trips[:turned])
+        if wrong:
+            with pytest.raises(LedgerError, match=wrong):
+                measuring.proved_figures(built, measured, tmp_path)
+        else:
+            found = measuring.proved_figures(built, measured, tmp_path)
+            assert found == {"instructions proved: goe_update": 11}
 
 
 def test_parts_have_a_table_of_their_own() -> None:

@@ -6,6 +6,7 @@ building      a target's build
 modules       bytes of code and constants by module, bytes of the state
 stack         worst-case stack of each public function
 instructions  instructions of each call of a public function, counted one by one under QEMU
+longest/      the most instructions that a call can take, proved by the longest path through the machine code
 parts         what a firmware pays that leaves parts of the library out
 measuring     all figures of a target
 book          the ledger's file

@@ -21,6 +21,7 @@ TOTAL = "total"
 STATE = "state bytes"  # ...: window <length>
 STACK, PAINTED = "stack bytes computed", "stack bytes painted"  # ...: <public function>
 INSTRUCTIONS = "instructions"  # ...: <public function>: min, mean, max
+PROVED = "instructions proved"  # ...: <public function>: the longest path. Of the targets that it is proved of
 OF_UPDATE = "instructions of goe_update"  # ...: <module>: min, mean, max
 WORST = "worst goe_update"  # ...: track; ...: <module>: <function>. Of one target; may shift between functions
 PART_BYTES, PART_STATE = "code and constants bytes with parts", "state bytes with parts"  # ...: <combination>. Of one

@@ -11,7 +11,7 @@ from pathlib import Path
 from .running import ROOT, emulated, output_of
 
 OBJECTS = "lib/CMakeFiles/goe.dir"  # of the library, in a build's folder
-WRITES_BESIDE = ("-fstack-usage", "-fcallgraph")  # options that change no figure
+WRITES_BESIDE = ("-fstack-usage", "-fcallgraph", "-g1")  # options that change no figure
 
 
 @dataclass

@@ -105,9 +105,9 @@ def code_of_map(text: str, modules: dict[str, str]) -> list[Code]:
     return sorted(result, key=lambda code: code.start)
 
 
-def build_plugin(folder: Path) -> Path:
-    plugin = folder / "count_calls.so"
-    source = ROOT / "tools" / "count_plugin" / "count_calls.c"
+def build_plugin(folder: Path, name: str = "count_calls") -> Path:
+    plugin = folder / f"{name}.so"
+    source = ROOT / "tools" / "count_plugin" / f"{name}.c"
     flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-shared", "-fPIC", "-fvisibility=hidden"]
     output_of(["cc", *flags, source, "-o", plugin])
     return plugin

@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.write:
         ledger = merged(book.read(arguments.ledger) if arguments.ledger.exists() else {}, now)
         book.write(arguments.ledger, ledger)
-        write_pages(ROOT, ledger)
+        write_pages(ROOT, book.read(arguments.ledger))  # in the file's order, which a new module changes
     elif arguments.check or arguments.check_pages:
         ledger = book.read(arguments.ledger)
         failures += compare(ledger, now) + wrong_pages(ROOT, ledger)

@@ -6,9 +6,12 @@ import tempfile
 from pathlib import Path
 
 from . import book
-from .book import Figures, key
+from .book import Figures, key, number
 from .building import Build, build, shown_flags
 from .instructions import PUBLIC, UPDATES, Spread, count, counted_calls
+from .longest.proving import PROVED_PRESETS, code_of, proofs, unused
+from .longest.trip_counts import exceeded
+from .longest.trip_counts import measured as turns
 from .modules import KINDS, external_calls, module_bytes, state_bytes
 from .parts import PARTS_PRESET, measured_parts
 from .running import LedgerError
@@ -56,6 +59,20 @@ def instruction_figures(built: Build, plugin: Path, scratch: Path) -> Figures:
     return figures
 
 
+def proved_figures(built: Build, measured: Figures, scratch: Path) -> Figures:
+    """By the longest path; an error if a call took more, or a loop more turns than the table of bounds has."""
+    code = code_of(built, built.image("replay"))
+    proved = {name: proof.most for name, proof in proofs(code).items()}
+    wrong = [*unused(code), *exceeded(turns(built, code, scratch))]
+    for name, most in proved.items():
+        taken = number(measured, book.INSTRUCTIONS, name, "max")
+        if taken > most:
+            wrong.append(f"{name}: {taken} instructions measured, {most} proved")
+    if wrong:
+        raise LedgerError(f"{built.preset}: " + "; ".join(wrong))
+    return {key(book.PROVED, name): most for name, most in proved.items()}
+
+
 def part_figures(built: Build, scratch: Path) -> Figures:
     parts = measured_parts(built, scratch)
     figures: Figures = {key(book.PART_BYTES, part.name): part.code for part in parts}
@@ -76,4 +93,6 @@ def measure(preset: str, folder: Path, plugin: Path) -> Figures:
             **stack_figures(built),
             **instruction_figures(built, plugin, scratch),
         }
+        if built.preset in PROVED_PRESETS:
+            figures |= proved_figures(built, figures, scratch)
         return figures | part_figures(built, scratch) if preset == PARTS_PRESET else figures

@@ -59,10 +59,15 @@ def module_table(figures: Figures) -> list[str]:
 
 
 def function_table(figures: Figures) -> list[str]:
-    lines = ["| function | stack, bytes (painted) | instructions: min / mean / max |", "|---|---|---|"]
-    for name in PUBLIC:
-        stack = f"{number(figures, book.STACK, name)} ({number(figures, book.PAINTED, name)})"
-        lines.append(f"| `{name}` | {stack} | {spread(figures, book.INSTRUCTIONS, name)} |")
+    lines = [
+        "| function | stack, bytes (painted) | instructions: min / mean / max | proved: at most |",
+        "|---|---|---|---|",
+    ]
+    for name in (*PUBLIC, *below(figures, book.PROVED)):
+        stack = f"{number(figures, book.STACK, name)} ({number(figures, book.PAINTED, name)})" if name in PUBLIC else ""
+        most = number(figures, book.PROVED, name)
+        row = f"| `{name}` | {stack} | {spread(figures, book.INSTRUCTIONS, name)} | {most} |"
+        lines += [row] if row not in lines else []
     return lines
 
 

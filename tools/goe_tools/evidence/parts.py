@@ -13,6 +13,8 @@ MODULES: dict[str, str] = {  # name: what it asks; the module of that name has r
     "targets": "the same bits on every processor and compiler, the safety tests at full length",
     "fuzz": "whatever comes in: does every answer hold what the headers promise?",
     "coverage": "what the unit tests reach of every line, branch and condition",
+    "worst_case": "the most instructions and stack of each public call: measured, proved, stated",
+    "rounding": "float32 against float64 at the ends of what the header allows, in sigmas",
     "flips": "one flipped bit anywhere in the estimator's memory",
     "programs": "what an attack found in the programs, and the tests that would fail if it came back",
     "reproducible": "whether two builds of the same sources give the same bits",

@@ -187,7 +187,7 @@ def images_of(flight: Flight) -> Images:
     )  # fmt: skip
 
 
-def _given(images: Images) -> Any:
+def to_package(images: Images) -> Any:
     """As goe.Images."""
     return package().Images(
         np.rint(images.time_s * 1e6).astype(np.int64), images.position_ned_m, images.attitude, images.height_m,
@@ -197,7 +197,7 @@ def _given(images: Images) -> Any:
 
 
 @lru_cache(maxsize=64)
-def _settings(named: tuple[tuple[str, float], ...]) -> Any:
+def named_settings(named: tuple[tuple[str, float], ...]) -> Any:
     """As goe.Settings; the tracks of a case have the same ones."""
     return package().Settings.from_names(dict(named))
 
@@ -208,7 +208,7 @@ def run(images: Images, settings: dict[str, float], *, double: bool = False) -> 
     plans = images.plans if images.velocity_m_s is not None else ()
     rules = [goe.Rule(p.margin_m, p.clearance_m, p.doubt, p.drift_m_s) for p in plans]
     run_track = double_precision.run if double else goe.run
-    told = run_track(_settings(tuple(settings.items())), _given(images), rules=rules, covariance=True)
+    told = run_track(named_settings(tuple(settings.items())), to_package(images), rules=rules, covariance=True)
     return _track(told)
 
 
