@@ -12,10 +12,9 @@
 #include "replay.h"
 #include "scene.h"
 
-#define FLIGHTS 220
+#define FLIGHTS 500
 #define IMAGES 44
-#define HOSTILE_TRACKS 40
-#define FLIPS 60
+#define HOSTILE_TRACKS 120
 #define PLANS 3
 #define FNV_PRIME 0x100000001B3u
 

@@ -8,7 +8,6 @@ again.
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import json
 import multiprocessing
@@ -24,7 +23,7 @@ from pathlib import Path
 from ..places import ROOT
 from . import survivors
 from .mutants import LIBRARY, Mutant, mutants, sources
-from .mutation_bench import BITS, Bench, library_hash, test_hash, unit_tests
+from .mutation_bench import BITS, PROBE, Bench, hash_of, library_hash, test_hash, unit_tests
 from .parts import Amount
 from .record import Result, Row
 
@@ -140,7 +139,7 @@ class Kept:
     def __init__(self, folder: Path) -> None:
         self.path = folder / "outcomes.jsonl"
         self.tests = {name: test_hash(name) for name in unit_tests()}
-        self.all_tests = hashlib.sha256(json.dumps(self.tests).encode()).hexdigest()[:16]
+        self.all_tests = hash_of([PROBE], json.dumps(self.tests))
         self.known: dict[tuple[int, int, str, str], Outcome] = {}
         for line in self.path.read_text(encoding="utf-8").splitlines() if self.path.exists() else ():
             told = json.loads(line)
