@@ -502,6 +502,19 @@ static void a_quaternion_may_be_off_by_one_percent(void) {
     }
 }
 
+/* GIVEN a number of a camera that the settings do not have THEN the image is refused whole: there is no mounting to turn it by. */
+static void an_image_of_no_camera_is_refused(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    scene_image(&scene, 12, &image, NULL);
+    image.camera = GOE_CAMERAS_MAX;
+    check_refused(GOE_OUT_OF_RANGE);
+    image.camera = UINT8_MAX;
+    check_refused(GOE_OUT_OF_RANGE);
+    image.camera = 0;
+    CHECK_STATUS(GOE_OK, update());
+}
+
 /* The order of the checks, each over the whole image. */
 static void the_first_fault_is_told(void) {
     start();
@@ -672,6 +685,7 @@ int main(void) {
     RUN_TEST(time_must_run_on);
     RUN_TEST(the_first_image_needs_a_time);
     RUN_TEST(a_quaternion_may_be_off_by_one_percent);
+    RUN_TEST(an_image_of_no_camera_is_refused);
     RUN_TEST(the_first_fault_is_told);
     RUN_TEST(counters_saturate);
     RUN_TEST(null_pointers_are_refused);

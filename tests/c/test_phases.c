@@ -209,6 +209,62 @@ static void what_does_not_fit_starts_the_filter_anew(void) {
     TEST_ASSERT_TRUE(happened[GOE_PHASE_BOX_FACE][GOE_PHASE_NONE]);
 }
 
+#if GOE_WITH_WINDOW
+/* ------------------------------------------------------------------------------------------------- beside the window -- */
+
+/* A box by its corners, whose filter has just stopped; the next image. */
+static goe_image_t stop(void) {
+    goe_image_t image;
+    make_box_beside(55.0);
+    fly(SEE_ALL, 60);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_TRUE(estimate.fresh && estimate.nis_rows > 0);
+    goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
+    scene_image(&scene, 60, &image, NULL);
+    return image;
+}
+
+/* GIVEN a filter that has stopped WHEN neither it nor the window can solve the image THEN its last answer stands, as an old one: it
+ * follows the motion, and tells no innovation, as the image gave none. */
+static void a_stopped_filters_answer_stands_while_nothing_else_is_known(void) {
+    goe_image_t image = stop();
+    const goe_estimate_t before = estimate;
+    hide_base(&image);
+    image.left.seen = image.right.seen = image.top.seen = false;
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_HEX32(before.valid, estimate.valid);
+    TEST_ASSERT_FALSE(estimate.fresh);
+    CHECK_SAME(before.z0_m, estimate.z0_m);
+    CHECK_CLOSE(0.05, (double)before.z_m - scene.speed_mps / scene.image_rate_hz, estimate.z_m);
+    TEST_ASSERT_EQUAL_INT(0, estimate.nis_rows);
+    CHECK_SAME(0.0f, estimate.nis);
+    TEST_ASSERT_EQUAL_INT(before.points, estimate.points);
+}
+
+/* GIVEN a filter that has stopped WHEN the window solves an image that the filter cannot start from, as its first guess of the range
+ * is none THEN the window's fresh answer takes the place of the old one. */
+static void the_window_answers_while_the_filter_cannot_start(void) {
+    settings.refined.typical_size_m = 0.1f;
+    goe_image_t image = stop();
+    hide_base(&image);
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_NONE, phase());
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_WINDOW, estimate.method);
+    TEST_ASSERT_TRUE(estimate.fresh);
+}
+
+/* GIVEN a filter that has stopped WHEN it starts anew THEN its older answer is not given up for one image of the window's: the
+ * position would jump there and back. */
+static void a_filter_that_starts_anew_keeps_its_older_answer(void) {
+    goe_image_t image = stop();
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
+}
+
+#endif
 /* --------------------------------------------------------------------------------------------------------- no others -- */
 
 static void make_any_scene(void) {
@@ -256,6 +312,11 @@ int main(void) {
     RUN_TEST(a_chord_learns_an_end_anew_when_a_face_comes_into_view);
     RUN_TEST(a_side_that_lies_across_takes_the_name_of_the_front);
     RUN_TEST(what_does_not_fit_starts_the_filter_anew);
+#if GOE_WITH_WINDOW
+    RUN_TEST(a_stopped_filters_answer_stands_while_nothing_else_is_known);
+    RUN_TEST(the_window_answers_while_the_filter_cannot_start);
+    RUN_TEST(a_filter_that_starts_anew_keeps_its_older_answer);
+#endif
     RUN_TEST(no_other_transition_happens);
     return UNITY_END();
 }
