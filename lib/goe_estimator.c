@@ -6,21 +6,20 @@
 #include <math.h>
 #include <string.h>
 
-#include "goe_covariance.h"
+#include "goe_guard.h"
+#include "goe_latest.h"
 #include "goe_settings.h"
 #include "image/goe_align.h"
 #include "image/goe_camera.h"
 #include "image/goe_ego_motion.h"
 #include "image/goe_intake.h"
 #include "maths/goe_scalar.h"
-#include "maths/goe_time.h"
 #include "refined/goe_ground.h"
 #include "refined/goe_refined.h"
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
 
 #define RESETS GOE_OK /* causes[0] counts tracks that an unknown filter reset ended */
-#define AGE_MAX_US 4000000000u
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -50,12 +49,12 @@ static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from)
 /* The estimate grows old while images are refused, too, as far as their times can be believed. */
 static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     estimate->age_s = 0.0f;
-    if (estimate->fresh || !(estimate->valid & GOE_HAS_POSITION)) {
+    if (goe_is_set(&estimate->fresh) || !(estimate->valid & GOE_HAS_POSITION)) {
         return;
     }
     const int64_t latest_us = estimator->motion.time_us;
     const int64_t now_us = image_us > latest_us ? image_us : latest_us;
-    estimate->age_s = goe_time_between_s(estimator->estimate_time_us, now_us, AGE_MAX_US);
+    estimate->age_s = goe_latest_since_s(estimator, now_us);
 }
 
 /* What every answer is told with, also a refused image's. */
@@ -103,14 +102,14 @@ static void grow_old(goe_estimator_t *estimator) {
     estimate->fresh = false;
     goe_motion_relate(motion, estimate);
     if (estimate->valid & GOE_HAS_VELOCITY) {
-        const float s = goe_time_between_s(estimator->estimate_time_us, motion->time_us, AGE_MAX_US);
+        const float s = goe_latest_since_s(estimator, motion->time_us);
         const float north_m = estimate->velocity_north_m_s * s;
         const float east_m = estimate->velocity_east_m_s * s;
-        const float sd_m_s = goe_larger(estimate->sigma.velocity_north_m_s, estimate->sigma.velocity_east_m_s);
+        const float grown_m2 = goe_latest_grown_m2(estimate, s);
         estimate->x_m += motion->heading_cos * east_m - motion->heading_sin * north_m;
         estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
-        estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + goe_square(sd_m_s * s));
-        estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + goe_square(sd_m_s * s));
+        estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + grown_m2);
+        estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + grown_m2);
     }
 }
 
@@ -217,7 +216,7 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 
 /* The autopilot's filter jumped: by a known amount the answer moves along, by an unknown one the track ends. */
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
-    if (!pose->reset_delta_known) {
+    if (!goe_is_set(&pose->reset_delta_known)) {
         forget_track(estimator);
         goe_count_cause(estimator->causes, RESETS);
         return;
@@ -300,7 +299,7 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
         return GOE_BAD_SETTINGS;
     }
     memset(estimator, 0, sizeof *estimator);
-    estimator->settings = *settings;
+    goe_settings_copy(&estimator->settings, settings);
     for (unsigned i = 0; i < GOE_CAMERAS_MAX; i++) {
         const goe_camera_t *camera = goe_camera_of(settings, i);
         if (camera) {
@@ -308,7 +307,7 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
         }
     }
     forget_track(estimator);
-    estimator->ready = GOE_READY;
+    goe_guard_seal(estimator);
     return GOE_OK;
 }
 
@@ -319,11 +318,25 @@ static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status,
     estimate->fresh = false;
 }
 
+/* Whether nothing but numbers leaves, and nothing but numbers is left to place what comes. */
+static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
+    const uint32_t place =
+        goe_larger_bits(goe_magnitude(estimator->motion.dx_m), goe_magnitude(estimator->motion.dz_m));
+    return goe_guard_estimate(estimate) && place < GOE_INFINITY_BITS;
+}
+
+/* The track's memory is not what the library left there. */
+static GOE_NOINLINE goe_status_t give_up(goe_estimator_t *estimator, goe_estimate_t *estimate) {
+    forget_track(estimator);
+    memset(estimate, 0, sizeof *estimate);
+    return GOE_CORRUPTED;
+}
+
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate) {
     if (!estimate) {
         return GOE_BAD_ARGUMENT;
     }
-    goe_status_t status = image ? goe_check_ready(estimator) : GOE_BAD_ARGUMENT;
+    goe_status_t status = image ? goe_guard_check(estimator) : GOE_BAD_ARGUMENT;
     if (status != GOE_OK) {
         memset(estimate, 0, sizeof *estimate);
         return status;
@@ -343,11 +356,11 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
         refuse(estimator, status, estimate);
     }
     complete(estimator, image->pose.time_us, estimate);
-    return status;
+    return is_sound(estimator, estimate) ? status : give_up(estimator, estimate);
 }
 
 goe_status_t goe_reset(goe_estimator_t *estimator) {
-    const goe_status_t status = goe_check_ready(estimator);
+    const goe_status_t status = goe_guard_check(estimator);
     if (status == GOE_OK) {
         forget_track(estimator);
     }

@@ -111,26 +111,24 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 /* The state's axes become T's, with their origin at the camera now. */
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);
 
-/* The camera since the filter's start, the state's axes, m: as an obstacle sees it that moves, and freed of what the poses are
- * late by. */
-#if GOE_BESIDE
-goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion);
-#else
-static inline goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion) {
-    const goe_xz_t since = {motion->dx_m - filter->axes.start_dx_m, motion->dz_m - filter->axes.start_dz_m};
-    return goe_xz_into(since, filter->axes.turn_cos, filter->axes.turn_sin);
-}
-#endif
-
 /* Seconds since the filter's start; at most 4000. */
 float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motion);
 
+/* goe_filter_camera(): the camera since the filter's start, the state's axes, m: as an obstacle sees it that moves, and freed of
+ * what the poses are late by. */
 #if GOE_BESIDE
+goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion);
+
 /* The own velocity less that at the filter's start, m/s, the state's axes. */
 goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion);
 
 /* Takes the own velocity at the filter's start, as soon as it is known. */
 void goe_filter_pace(goe_filter_t *filter, const goe_motion_t *motion);
+#else
+static inline goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion) {
+    const goe_xz_t since = {motion->dx_m - filter->axes.start_dx_m, motion->dz_m - filter->axes.start_dz_m};
+    return goe_xz_into(since, filter->axes.turn_cos, filter->axes.turn_sin);
+}
 #endif
 
 /* What the obstacle has moved by since the filter's start, m, T axes. */

@@ -58,12 +58,8 @@ static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, f
 /* Of what is estimated beside the state. It moves the points of an image nearly alike, and is left out of their differences. */
 static float beside_variance(const goe_filter_t *filter, const float *row, const float weight[GOE_STATES]) {
     float part[GOE_BESIDE];
-    float sum = 0.0f;
     goe_srif_beside(&filter->inverse, weight, &row[GOE_BESIDE_COLUMN], part);
-    for (size_t c = 0; c < filter->inverse.estimated; c++) {
-        sum += part[c] * part[c];
-    }
-    return sum;
+    return goe_srif_beside_dot(part, part);
 }
 #endif
 
@@ -98,7 +94,7 @@ static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size
     const float gained = turned * filter->drift_rad2 + weight[GOE_BEARING] * weight[GOE_BEARING] * filter->walk2;
     float known = goe_srif_variance(&filter->inverse, weight) + gained;
 #if GOE_BESIDE
-    if (row == middle && filter->inverse.estimated > 0) {
+    if (row == middle && goe_inverse_beside(&filter->inverse) > 0) {
         known += beside_variance(filter, a, weight);
     }
 #endif

@@ -19,6 +19,7 @@
 #define REST_CHI2 9.0f        /* something moves if a latency leaves at least this unexplained ... */
 #define REST_SHARE 0.15f      /* ... and a velocity at most this share of that */
 #define LATE_SHARE 0.3f       /* poses are late only if a velocity leaves more than this share of that */
+#define MOVING_SIGMAS2 9.0f   /* what is late moves as well if its velocity is that much more than nothing */
 #define MOVES_MIN_M_S 1.0f    /* what is slower is taken for none */
 #define MOVES_S 0.4f          /* for which it says so, image after image ... */
 #define MOVES_IMAGES 3        /* ... of which there are at least so many */
@@ -87,21 +88,28 @@ void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
 float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along) {
     const goe_inverse_t *inverse = &filter->inverse;
     float sum = 0.0f;
-    for (size_t j = GOE_BESIDE_VELOCITY_X; j < inverse->estimated; j++) {
+    const size_t estimated = goe_inverse_beside(inverse);
+    for (size_t j = GOE_BESIDE_VELOCITY_X; j < estimated; j++) {
         sum += goe_square(along.x * part_of(inverse, GOE_BESIDE_VELOCITY_X, j) +
                           along.z * part_of(inverse, GOE_BESIDE_VELOCITY_Z, j));
     }
     return sum;
 }
 
+float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s) {
+    return goe_square(navigation->velocity_bias_m_s) +
+           goe_square(navigation->position_walk_m) / goe_larger(elapsed_s, TIME_MIN_S);
+}
+
 float goe_mover_latency_sd(const goe_filter_t *filter) {
     const goe_inverse_t *inverse = &filter->inverse;
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     float variance = 0.0f;
-    for (size_t j = 0; j < inverse->estimated; j++) {
+    const size_t estimated = goe_inverse_beside(inverse);
+    for (size_t j = 0; j < estimated; j++) {
         variance += goe_square(part_of(inverse, GOE_BESIDE_LATENCY, j));
     }
-    if (inverse->estimated == 0) {
+    if (estimated == 0) {
         variance = 1.0f / goe_square(filter->root.element[goe_srif_beside_row()]);
     }
     return sqrtf(wider * variance);
@@ -121,7 +129,6 @@ typedef struct {
 } fit_t;
 
 static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs, fit_t *fit) {
-    const goe_navigation_t *navigation = &obs->settings->navigation;
     const float *r = &filter->root.element[goe_srif_beside_row()];
     const float t[GOE_BESIDE][GOE_BESIDE] = {{r[0], r[1], r[2]}, {0.0f, r[3], r[4]}, {0.0f, 0.0f, r[5]}};
     const float latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
@@ -138,8 +145,7 @@ static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs,
     if (!(determinant > 0.0f)) {
         return false;
     }
-    const float own = goe_square(navigation->velocity_bias_m_s) +
-                      goe_square(navigation->position_walk_m) / goe_larger(obs->elapsed_s, TIME_MIN_S);
+    const float own = goe_mover_own_variance(&obs->settings->navigation, obs->elapsed_s);
     const float left = filter->mover.nis - z[0] * z[0] - z[1] * z[1] - z[2] * z[2];
     fit->wider = goe_larger(left / filter->mover.rows, 1.0f);
     fit->velocity_m_s.x = (zz * to_x - xz * to_z) / determinant;
@@ -224,7 +230,7 @@ static void judge_followed(goe_filter_t *filter) {
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     const float spread = wider * goe_mover_variance(filter, v);
     m->late = late > LATE_MIN_S && late > LATE_SIGMAS * goe_mover_latency_sd(filter);
-    m->moves = !m->late || (squared > MOVES_MIN_M_S * MOVES_MIN_M_S && squared * squared > REST_CHI2 * spread);
+    m->moves = !m->late || (squared > MOVES_MIN_M_S * MOVES_MIN_M_S && squared * squared > MOVING_SIGMAS2 * spread);
 }
 
 /* An outline that is of another shape drifts, too, but fits. */

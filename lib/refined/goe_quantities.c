@@ -22,8 +22,6 @@
 #define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
 #define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
 #define PATH_MIN_M 0.1f
-#define TIME_MIN_S 0.1f
-#define TIME_MAX_US 4000000000u
 #define METRES_MAX 1.0e6f
 
 static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION && quantity <= GOE_LENGTH; }
@@ -47,7 +45,7 @@ static float path_over_ground(const goe_filter_t *filter, const goe_motion_t *mo
 
 static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
     drift_t drift;
-    const float s = goe_time_between_s(filter->axes.start_time_us, motion->time_us, TIME_MAX_US);
+    const float s = goe_filter_elapsed_s(filter, motion);
     drift.camera_m = goe_filter_camera(filter, motion);
     const float path_m = path_over_ground(filter, motion);
     drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
@@ -60,7 +58,7 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
 /* (R23), from the track's first image to the filter's start: X0 and Z0 alone count from there. */
 static float early_variance(const goe_filter_t *filter, const goe_navigation_t *navigation,
                             const goe_motion_t *motion) {
-    const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, TIME_MAX_US);
+    const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, GOE_TIME_MAX_US);
     return goe_square(navigation->velocity_bias_m_s * s) + goe_square(navigation->position_walk_m) * s;
 }
 
@@ -135,13 +133,7 @@ static void beside_of(const goe_filter_t *filter, const float by[GOE_STATES], fl
     goe_srif_beside(&filter->inverse, by, filter->mover.followed ? direct : NULL, beside->part);
 }
 
-static float beside_dot(const beside_t *a, const beside_t *b) {
-    float sum = 0.0f;
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
-        sum += a->part[i] * b->part[i];
-    }
-    return sum;
-}
+static float beside_dot(const beside_t *a, const beside_t *b) { return goe_srif_beside_dot(a->part, b->part); }
 
 static void beside_scale(beside_t *beside, float factor) {
     for (size_t i = 0; i < GOE_BESIDE; i++) {
@@ -189,7 +181,7 @@ static void beside_quantity(const goe_filter_t *filter, const float by[GOE_STATE
 /* Within a share of the value, and finite, by the bits. */
 static bool is_known(float value, float sigma, float least, float share) {
     const float size = goe_larger(goe_absolute(value), least);
-    return goe_within(value, METRES_MAX) && goe_within(size, METRES_MAX) && goe_within(sigma, share * size);
+    return goe_within(value, METRES_MAX) && goe_within(sigma, share * size);
 }
 
 static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
@@ -213,7 +205,7 @@ static bool knows_extents(const goe_filter_t *filter) {
 
 static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t *q) {
     unsigned known = 0;
-    if ((q->box || !filter->stand_in) && is_extent(q, GOE_WIDTH, 0.0f)) {
+    if ((q->box || !filter->candidate.stand_in) && is_extent(q, GOE_WIDTH, 0.0f)) {
         known |= GOE_HAS_WIDTH;
     }
     if (q->box && filter->phase != GOE_PHASE_BOX_FACE && is_extent(q, GOE_LENGTH, 0.0f)) {
@@ -296,13 +288,11 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
                          const widening_t *wider, goe_quantities_t *q) {
     q->moves = false;
 #if GOE_BESIDE
-    const goe_navigation_t *navigation = &settings->navigation;
     const float *beside = filter->mover.beside;
     const float c = motion->heading_cos;
     const float s = motion->heading_sin;
     const goe_xz_t axis[2] = {{-s, c}, {c, s}};
-    const float elapsed_s = goe_larger(goe_filter_elapsed_s(filter, motion), TIME_MIN_S);
-    const float own = goe_square(navigation->velocity_bias_m_s) + goe_square(navigation->position_walk_m) / elapsed_s;
+    const float own = goe_mover_own_variance(&settings->navigation, goe_filter_elapsed_s(filter, motion));
     q->moves = filter->mover.followed;
     for (size_t i = 0; i < 2; i++) {
         q->velocity_m_s[i] = axis[i].x * beside[GOE_BESIDE_VELOCITY_X] + axis[i].z * beside[GOE_BESIDE_VELOCITY_Z];

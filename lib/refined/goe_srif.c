@@ -132,9 +132,10 @@ static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
 
 #if GOE_BESIDE
 static void reflect_beside(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
+    const size_t count = goe_srif_beside_count(root);
     reflect_unknowns(root, matrix, GOE_STATES, GOE_UNKNOWNS, root->right);
     for (size_t j = 0; j < GOE_BESIDE; j++) {
-        const bool estimated = j < root->estimated;
+        const bool estimated = j < count;
         change[GOE_STATES + j] = estimated ? root->right[j] : 0.0f;
         root->right[j] = estimated ? 0.0f : root->right[j];
     }
@@ -225,7 +226,7 @@ static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t 
         v += j + 1;
     }
 #if GOE_BESIDE
-    inverse->estimated = root->estimated;
+    inverse->estimated = (uint8_t)goe_srif_beside_count(root);
 #endif
 }
 
@@ -296,10 +297,11 @@ float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight
 /* Written out, as above. */
 void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
                      float part[GOE_BESIDE]) {
-    for (size_t j = inverse->estimated; j < GOE_BESIDE; j++) {
+    const size_t count = goe_inverse_beside(inverse);
+    for (size_t j = count; j < GOE_BESIDE; j++) {
         part[j] = 0.0f;
     }
-    for (size_t j = 0; j < inverse->estimated; j++) {
+    for (size_t j = 0; j < count; j++) {
         const float *v = &inverse->element[goe_inverse_column(GOE_STATES + j)];
         float sum = weight[3] * v[3] + weight[4] * v[4] + weight[5] * v[5] + weight[6] * v[6] + weight[7] * v[7] +
                     weight[8] * v[8] + weight[9] * v[9];

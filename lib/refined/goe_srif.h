@@ -22,23 +22,29 @@ static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
 
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
-/* The state, and how many of what is beside it are estimated. */
-static inline size_t goe_srif_count(const goe_triangle_t *r) {
+/* How many of what is beside the state are estimated; never more than there are. */
+static inline size_t goe_srif_beside_count(const goe_triangle_t *r) {
 #if GOE_BESIDE
-    return GOE_STATES + r->estimated;
+    return r->estimated < GOE_BESIDE ? r->estimated : GOE_BESIDE;
 #else
     (void)r;
-    return GOE_STATES;
+    return 0;
 #endif
 }
 
-static inline size_t goe_inverse_count(const goe_inverse_t *inverse) {
+static inline size_t goe_inverse_beside(const goe_inverse_t *inverse) {
 #if GOE_BESIDE
-    return GOE_STATES + inverse->estimated;
+    return inverse->estimated < GOE_BESIDE ? inverse->estimated : GOE_BESIDE;
 #else
     (void)inverse;
-    return GOE_STATES;
+    return 0;
 #endif
+}
+
+/* ... and with the state. */
+static inline size_t goe_srif_count(const goe_triangle_t *r) { return GOE_STATES + goe_srif_beside_count(r); }
+static inline size_t goe_inverse_count(const goe_inverse_t *inverse) {
+    return GOE_STATES + goe_inverse_beside(inverse);
 }
 
 /* Where the rows of what is beside the state begin. */
@@ -94,6 +100,15 @@ float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight
 /* What the estimates beside the state add to the variance of w' x + direct' beside, as its squares' sum. direct may be null. */
 void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
                      float part[GOE_BESIDE]);
+
+/* Covariance of two such sums, or the variance of one. */
+static inline float goe_srif_beside_dot(const float a[GOE_BESIDE], const float b[GOE_BESIDE]) {
+    float sum = 0.0f;
+    for (size_t i = 0; i < GOE_BESIDE; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
 #endif
 
 /* The part of it that is the last state's own. */
