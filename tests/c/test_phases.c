@@ -114,6 +114,25 @@ static void make_wall_ahead(void) {
 
 /* ------------------------------------------------------------------------------------------------------- transitions -- */
 
+/* GIVEN a filter that enters a phase THEN what was counted in the one before counts no more: neither what it knew, nor what was
+ * refused, nor who agreed on a box. */
+static void a_phase_begins_with_nothing_counted(void) {
+    start();
+    goe_filter_t *filter = &estimator.filter;
+    filter->phase_images = 9;
+    filter->known = 0xFFu;
+    filter->candidate.agreeing = 2;
+    filter->health.poor = 2;
+    filter->health.recent_nis = 5.0f;
+    goe_filter_enter(filter, GOE_PHASE_CHORD);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_CHORD, phase());
+    TEST_ASSERT_EQUAL_UINT8(0, filter->phase_images);
+    TEST_ASSERT_EQUAL_UINT8(0, filter->known);
+    TEST_ASSERT_EQUAL_UINT8(0, filter->candidate.agreeing);
+    TEST_ASSERT_EQUAL_UINT8(0, filter->health.poor);
+    CHECK_SAME(GOE_NIS_NONE, filter->health.recent_nis);
+}
+
 static void a_width_starts_a_disc(void) {
     goe_image_t image;
     start();
@@ -302,6 +321,7 @@ static void no_other_transition_happens(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_phase_begins_with_nothing_counted);
     RUN_TEST(a_width_starts_a_disc);
     RUN_TEST(two_faces_make_a_box_of_a_disc);
     RUN_TEST(one_face_makes_a_box_whose_length_is_held);
