@@ -274,6 +274,43 @@ static void a_box_by_other_names_is_known_as_well(void) {
     }
 }
 
+/* GIVEN a box of which one face was seen WHEN the second comes into view THEN its length, which was held, is open by twice itself, along
+ * the side and nothing else. */
+static void a_second_face_opens_the_length_alone(void) {
+    const double sigma[GOE_STATES] = {0.01, 0.01, 0.01, 0.005, 0.01, 2.0e-4, 0.01, 0.01, 0.01, 0.01};
+    any = check_random_start("second face");
+    for (int n = 0; n < CASES; n++) {
+        covariance_t before;
+        covariance_t now;
+        double x[GOE_STATES];
+        double side_z;
+        double front_z;
+        start();
+        filter.phase = GOE_PHASE_BOX_FACE;
+        filter.state[GOE_SIDE_X] = (float)check_random_between(&any, -0.05, 0.05);
+        filter.state[GOE_FRONT_X] = (float)check_random_between(&any, 0.03, 0.1);
+        filter.state[GOE_DEPTH_DIFFERENCE] = (float)check_random_between(&any, 0.05, 0.1);
+        be_uncertain(sigma);
+        goe_filter_invert(&filter);
+        covariance_of(before);
+        read_state(x);
+        edges_of(x, &side_z, &front_z);
+        sighting.sight.point[GOE_POINT_BASE_NEAR].usable = true;
+        TEST_ASSERT_FALSE(goe_box_change(&filter, &sighting.sight)); /* without the outer corners it is none */
+        sighting.sight.base = true;
+        TEST_ASSERT_TRUE(goe_box_change(&filter, &sighting.sight));
+        TEST_ASSERT_EQUAL_INT(GOE_PHASE_BOX, filter.phase);
+        const double along[GOE_STATES] = {[GOE_SIDE_X] = 2.0 * x[GOE_SIDE_X], [GOE_DEPTH_DIFFERENCE] = 2.0 * side_z};
+        for (size_t i = 0; i < GOE_STATES; i++) {
+            for (size_t j = 0; j < GOE_STATES; j++) {
+                before[i][j] += along[i] * along[j];
+            }
+        }
+        covariance_of(now);
+        check_same(GOE_STATES, before, now);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------------- a box starts -- */
 
 /* A disc whose base corners have shown the two faces, or the one, of the same box often enough before. */
@@ -393,6 +430,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_box_by_its_outline_knows_what_the_chord_knew);
     RUN_TEST(a_box_by_other_names_is_known_as_well);
+    RUN_TEST(a_second_face_opens_the_length_alone);
     RUN_TEST(a_box_begins_with_what_the_disc_knew);
     RUN_TEST(only_images_that_agree_start_a_box);
     return UNITY_END();

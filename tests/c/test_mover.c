@@ -565,6 +565,38 @@ static void an_obstacle_that_moves_is_followed(void) {
     }
 }
 
+/* GIVEN an obstacle that is followed WHEN it is not seen for two seconds THEN it has gone on with its velocity, relative to the camera
+ * that has, too, and its place has become uncertain by what the velocity is. */
+static void what_is_followed_goes_on_unseen(void) {
+    const flight_t flight = fly(0, 3.0, -4.0);
+    const goe_estimate_t *before = &flight.estimate;
+    goe_image_t image;
+    goe_estimate_t now;
+    const int fine = 20 + STEP * (IMAGES - 1);
+    const double t = (fine + 2.0 * FINE_HZ) / FINE_HZ;
+    TEST_ASSERT_TRUE(before->valid & GOE_HAS_VELOCITY);
+    TEST_ASSERT_TRUE(before->fresh);
+    scene_image(&scene, fine + (int)(2.0 * FINE_HZ), &image, NULL);
+    image.pose.position_ned_m[0] += (float)(3.0 * t);
+    image.pose.position_ned_m[1] += (float)(-4.0 * t);
+    image.left.seen = image.right.seen = image.top.seen = false;
+    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    const double dx = (double)estimator.motion.dx_m;
+    const double dz = (double)estimator.motion.dz_m;
+    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &now));
+    const double c = (double)estimator.motion.heading_cos;
+    const double s = (double)estimator.motion.heading_sin;
+    const double north = 2.0 * (double)before->velocity_north_m_s;
+    const double east = 2.0 * (double)before->velocity_east_m_s;
+    CHECK_CLOSE(2.0e-3, (double)before->x_m + c * east - s * north - ((double)estimator.motion.dx_m - dx), now.x_m);
+    CHECK_CLOSE(2.0e-3, (double)before->z_m + c * north + s * east - ((double)estimator.motion.dz_m - dz), now.z_m);
+    const double larger = fmax((double)before->sigma.velocity_north_m_s, (double)before->sigma.velocity_east_m_s);
+    CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.x0_m, 2.0 * larger), now.sigma.x_m);
+    CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.z0_m, 2.0 * larger), now.sigma.z_m);
+    TEST_ASSERT_FALSE(now.fresh);
+    CHECK_CLOSE(1.0e-4, 2.0, now.age_s);
+}
+
 #if GOE_WITH_HAZARD
 /* GIVEN traffic on the own course, oncoming or slower WHEN it has been warned of THEN no image takes the warning back, also not when
  * it begins to be followed. */
@@ -639,6 +671,7 @@ int main(void) {
     RUN_TEST(nothing_moves_that_does_not);
     RUN_TEST(late_poses_are_told_and_taken_off);
     RUN_TEST(an_obstacle_that_moves_is_followed);
+    RUN_TEST(what_is_followed_goes_on_unseen);
 #if GOE_WITH_HAZARD
     RUN_TEST(what_begins_to_be_followed_is_warned_of);
     RUN_TEST(the_hazard_counts_with_both_velocities);

@@ -95,6 +95,29 @@ static void the_aircraft_has_flown_on_since_the_image(void) {
     CHECK_CLOSE(1.0e-2, (double)then.clearance_m, hazard.clearance_m); /* at the same place */
 }
 
+/* ... and aside: what was ahead of a course across it lies abeam when it has been flown for long enough. */
+static void the_aircraft_has_flown_aside_since_the_image(void) {
+    goe_plan_t plan = plan_of(0.0f, 10.0f);
+    estimator.estimate.x_m = estimator.estimate.x0_m = 40.0f;
+    estimator.estimate.z_m = estimator.estimate.z0_m = 30.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, 4.0, hazard.time_s);
+    CHECK_CLOSE(1.0e-3, 27.0, hazard.miss_m);
+    plan.since_image_s = 3.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, 1.0, hazard.time_s);
+    CHECK_CLOSE(1.0e-3, 27.0, hazard.miss_m);
+    CHECK_CLOSE(1.0e-3, 0.2, hazard.time_sd_s); /* also of what is a second away: 2 m by 10 m/s */
+    plan.since_image_s = 3.5f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, 0.5, hazard.time_s);
+    CHECK_CLOSE(1.0e-3, 0.2, hazard.time_sd_s);
+    plan.since_image_s = 5.0f; /* passed: nothing comes nearer, and now is certain */
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_SAME(0.0f, hazard.time_s);
+    CHECK_SAME(0.0f, hazard.time_sd_s);
+}
+
 /* GIVEN a margin and a clearance whose errors have nothing in common THEN both are violated with the product of what each is; without
  * a height, with the margin's alone. */
 static void independent_errors_multiply(void) {
@@ -121,6 +144,7 @@ int main(void) {
     RUN_TEST(what_moves_is_met_by_the_relative_velocity);
     RUN_TEST(the_velocitys_error_counts_until_it_is_met);
     RUN_TEST(the_aircraft_has_flown_on_since_the_image);
+    RUN_TEST(the_aircraft_has_flown_aside_since_the_image);
     RUN_TEST(independent_errors_multiply);
     return UNITY_END();
 }
