@@ -223,7 +223,12 @@ static void a_start_is_as_uncertain_as_one_image(void) {
     sighting.sight.point[GOE_POINT_TOP] = (goe_point_t){0.0f, -0.3f, true};
     sighting.sight.height_sd_m = 0.7f;
     sighting.settings.navigation.velocity_bias_m_s = 0.1f;
+    memset(x, 0xA5, sizeof x); /* whatever was there before */
     TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, x, &root));
+    for (size_t i = 0; i < 4; i++) {
+        CHECK_SAME(0.0f, x[i]); /* biases, ground */
+    }
+    CHECK_SAME(0.0f, x[GOE_SIDE_X]);
     const double bias = 0.5 * 0.017453292519943295;
     const double width = (double)x[GOE_FRONT_X];
     const double q = (double)x[GOE_INVERSE_RANGE];

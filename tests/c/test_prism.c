@@ -411,7 +411,13 @@ static void a_start_is_what_one_box_shows(void) {
     any = check_random_start("start");
     see_box(-0.05f, -0.1f, 0.05f, 0.25f);
     sighting.settings.navigation.velocity_bias_m_s = 0.1f;
+    memset(x, 0xA5, sizeof x); /* whatever was there before */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
+    for (size_t i = 0; i < 3; i++) {
+        CHECK_SAME(0.0f, x[i]);
+    }
+    CHECK_SAME(0.0f, x[GOE_PRISM_DEPTH]);
+    CHECK_SAME(0.0f, x[GOE_PRISM_UNSEEN]);
     const double q = 1.0 / (80.0 * 1.05);
     const double bias = 0.5 * 0.017453292519943295;
     CHECK_CLOSE(1.0e-6, q, x[GOE_INVERSE_RANGE]);
