@@ -190,6 +190,18 @@ static void make_chord(bool right) {
     }
 }
 
+/* The corner between the faces, at the end of the front from which the chord leads away, lies where the end that has left was seen. */
+static void check_corner(const double x[GOE_STATES], float seen_x) {
+    double side_z;
+    double front_z;
+    edges_of(x, &side_z, &front_z);
+    const double end = 0.5 * side_sign;
+    const double q = x[GOE_INVERSE_RANGE];
+    const double px = x[GOE_BEARING] + end * x[GOE_FRONT_X] - (double)sighting.sight.camera_m.x * q;
+    const double pz = 1.0 + end * front_z - (double)sighting.sight.camera_m.z * q;
+    CHECK_CLOSE(1.0e-4, px / pz, seen_x);
+}
+
 /* GIVEN a chord that becomes a box WHEN one face has turned away THEN what was known of its ends is known of the box's outer corners,
  * a little less well for the images in which it went unnoticed; the corner between them is somewhere on the circle over the
  * chord; and the images to come are free to correct it. */
@@ -222,6 +234,7 @@ static void a_box_by_its_outline_knows_what_the_chord_knew(void) {
         read_state(is);
         chord_of_box(is, back);
         side_sign = fabs(back[GOE_FRONT_X] - was[GOE_FRONT_X]) < 1.0e-4 ? 1.0 : -1.0;
+        check_corner(is, sighting.sight.point[n % 2 != 0 ? GOE_POINT_RIGHT : GOE_POINT_LEFT].x);
         check_state(chord_of_box, was, GOE_DEPTH_DIFFERENCE);
         check_carried(chord_of_box, before, added);
         changed++;
