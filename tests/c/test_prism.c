@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "maths/goe_scalar.h"
 #include "scene.h"
 #include "sighting.h"
 
@@ -523,6 +524,31 @@ static void a_box_goes_with_base_corners(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_PRISM, model);
 }
 
+/* GIVEN boxes image after image THEN what each side was off by is remembered, and known ever better: it is alike in the next. */
+static void sides_are_remembered_in_flight(void) {
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t boxed;
+    scene_default(&scene);
+    scene.boxes = true;
+    scene.image_rate_hz = 5.0;
+    goe_settings_t settings = scene_settings(&scene);
+    settings.detector.box_share = 0.07f;
+    settings.detector.correlation_s = 5.0f;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 20; k++) {
+        scene_image(&scene, k, &boxed, NULL);
+        (void)goe_update(&estimator, &boxed, &estimate);
+    }
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_PRISM, estimator.filter.phase);
+    const float size = (boxed.box.right_px - boxed.box.left_px) / settings.camera.fx_px;
+    for (size_t side = 0; side < GOE_BOX_SIDES; side += 2) {
+        TEST_ASSERT_TRUE(estimator.filter.side[side].variance > 0.0f);
+        TEST_ASSERT_TRUE(estimator.filter.side[side].variance < 0.9f * goe_square(0.07f * size));
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------ height -- */
 
 typedef enum { STEADY, NOISY_ALTIMETER, FILTER_JUMPS } height_t;
@@ -614,6 +640,7 @@ int main(void) {
     RUN_TEST(a_sides_error_is_a_share_of_the_box);
     RUN_TEST(a_start_is_what_one_box_shows);
     RUN_TEST(the_axes_turn_towards_the_box);
+    RUN_TEST(sides_are_remembered_in_flight);
     RUN_TEST(a_box_goes_with_base_corners);
     RUN_TEST(rows_are_those_of_the_touching_planes);
     RUN_TEST(a_lens_is_linearised_where_a_side_touches);
