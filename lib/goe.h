@@ -454,7 +454,8 @@ typedef struct {
     goe_reason_t reason;   /* of that; GOE_REASON_LATE also of an estimate that is not suspect */
     int points;            /* images behind the answer: the window, or all that were used; at most 32767; 0 if none */
     float age_s;           /* since the image of the last solution, refused images included; 0 if fresh or none; at
-                              most 4000. It stands still when goe_update is not called */
+                              most 4000. It stands still when goe_update is not called, and falls if a refused image told a
+                              time that lay ahead of the next one's */
     float x0_m, z0_m;      /* reference point at the track's first image, T axes */
     float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale */
     float width_m;         /* disc: diameter; line, box: length of the front edge */
@@ -504,7 +505,7 @@ void goe_settings_default(goe_settings_t *settings);
  *                   Set to null unless GOE_BAD_SETTINGS is returned.
  * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS (a method that was left out among these); on failure the estimator is
  * left as it was.
- * Cost: at most 7500 instructions, 160 bytes of stack. */
+ * Cost: at most 7700 instructions, 160 bytes of stack. */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 
@@ -515,7 +516,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * GOE_NOT_INITIALISED, GOE_CORRUPTED. If several faults meet in one image all are counted; a failed solution is reported rather than a
  * feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
- * Cost: at most 34000 instructions, 1212 bytes of stack; 35000 with lens distortion; window: 2580. No loop runs longer than
+ * Cost: at most 34300 instructions, 1212 bytes of stack; 35400 with lens distortion; window: 3160. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
@@ -527,7 +528,7 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  * on the diagonal.
  *   covariance  written by every call unless null; all zero on failure
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 8500 instructions, 800 bytes of stack. */
+ * Cost: at most 9000 instructions, 800 bytes of stack. */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
 /* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over the ground, or relative to an obstacle
@@ -567,14 +568,14 @@ typedef struct {
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,
  * GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 17200 instructions, 1010 bytes of stack. No loop runs longer than 10. */
+ * Cost: at most 17500 instructions, 1010 bytes of stack. No loop runs longer than 10. */
 #if GOE_WITH_HAZARD
 GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard);
 #endif
 
 /* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
  * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 1400 instructions, 64 bytes of stack. */
+ * Cost: at most 1600 instructions, 64 bytes of stack. */
 goe_status_t goe_reset(goe_estimator_t *estimator);
 
 /* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number.

@@ -18,11 +18,11 @@
 #if defined(__GNUC__)
 typedef uint32_t __attribute__((may_alias)) word_t;
 
-static inline uint32_t word_at(const unsigned char *from, size_t i) { return ((const word_t *)(const void *)from)[i]; }
+static inline uint32_t word_at(const void *from, size_t i) { return ((const word_t *)from)[i]; }
 #else
-static inline uint32_t word_at(const unsigned char *from, size_t i) {
+static inline uint32_t word_at(const void *from, size_t i) {
     uint32_t word;
-    memcpy(&word, from + i * sizeof word, sizeof word);
+    memcpy(&word, (const unsigned char *)from + i * sizeof word, sizeof word);
     return word;
 }
 #endif
@@ -71,10 +71,7 @@ void goe_guard_seal(goe_estimator_t *estimator) {
 }
 
 /* Memory that is neither ready nor sealed was never set. */
-goe_status_t goe_guard_check(const goe_estimator_t *estimator) {
-    if (!estimator) {
-        return GOE_BAD_ARGUMENT;
-    }
+goe_status_t goe_guard_judge(const goe_estimator_t *estimator) {
     const goe_seal_t seal = seal_of(estimator);
     const bool sealed = seal.sum == estimator->seal.sum && seal.turned == estimator->seal.turned;
     const bool ready = estimator->ready == READY;
