@@ -11,7 +11,7 @@
 #include "refined/goe_chord.h"
 #include "sighting.h"
 
-#define CASES 300
+#define CASES 100
 #define STEP 1.0e-6
 #define SHARE 4.0e-3 /* of a covariance's size: rounding of the root */
 
@@ -53,13 +53,20 @@ static void be_uncertain(const double sigma[GOE_STATES]) {
 
 /* J C J' of the first `count` states. */
 static void carry(size_t count, double by[GOE_STATES][GOE_STATES], covariance_t c, covariance_t to) {
+    covariance_t half;
+    for (size_t i = 0; i < count; i++) {
+        for (size_t l = 0; l < count; l++) {
+            half[i][l] = 0.0;
+            for (size_t k = 0; k < count; k++) {
+                half[i][l] += by[i][k] * c[k][l];
+            }
+        }
+    }
     for (size_t i = 0; i < count; i++) {
         for (size_t j = 0; j < count; j++) {
             to[i][j] = 0.0;
-            for (size_t k = 0; k < count; k++) {
-                for (size_t l = 0; l < count; l++) {
-                    to[i][j] += by[i][k] * c[k][l] * by[j][l];
-                }
+            for (size_t l = 0; l < count; l++) {
+                to[i][j] += half[i][l] * by[j][l];
             }
         }
     }

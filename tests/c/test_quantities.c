@@ -11,7 +11,7 @@
 #include "refined/goe_box.h"
 #include "refined/goe_disc.h"
 
-#define CASES 200
+#define CASES 100
 #define SHARE 0.02 /* differences of floats */
 #define CERTAIN 1.0e-9
 
@@ -118,6 +118,7 @@ static void values_of(double values[VALUES]) {
 static void expected_covariance(double expected[VALUES][VALUES]) {
     double c[GOE_STATES][GOE_STATES];
     double by[VALUES][GOE_STATES];
+    double half[VALUES][GOE_STATES];
     covariance_of(c);
     for (size_t k = 0; k < GOE_STATES; k++) {
         double up[VALUES];
@@ -136,12 +137,18 @@ static void expected_covariance(double expected[VALUES][VALUES]) {
         }
     }
     for (size_t i = 0; i < VALUES; i++) {
+        for (size_t l = 0; l < GOE_STATES; l++) {
+            half[i][l] = 0.0;
+            for (size_t k = 0; k < GOE_STATES; k++) {
+                half[i][l] += by[i][k] * c[k][l];
+            }
+        }
+    }
+    for (size_t i = 0; i < VALUES; i++) {
         for (size_t j = 0; j < VALUES; j++) {
             expected[i][j] = 0.0;
-            for (size_t k = 0; k < GOE_STATES; k++) {
-                for (size_t l = 0; l < GOE_STATES; l++) {
-                    expected[i][j] += by[i][k] * c[k][l] * by[j][l];
-                }
+            for (size_t l = 0; l < GOE_STATES; l++) {
+                expected[i][j] += half[i][l] * by[j][l];
             }
         }
     }
