@@ -85,6 +85,11 @@ def shared_by_tests() -> list[Path]:
     return [*own, *sorted((C_TESTS / "golden").glob("*.h"))]
 
 
+def support_of_tests() -> list[Path]:
+    """Sources that every test is linked with."""
+    return [path for path in shared_by_tests() if path.suffix == ".c"]
+
+
 def library_hash() -> str:
     return hash_of(sorted(LIBRARY.rglob("*.[ch]")), COMPILER, *FLAGS, *DEFINED)
 
@@ -126,6 +131,7 @@ class Bench:
         with ThreadPoolExecutor(jobs) as pool:
             list(pool.map(self.compile_library, (file for file in sources() if file.endswith(".c"))))
             self.link(folder, {})
+            self.shared = list(pool.map(self.compile_shared, [*support_of_tests(), self.unity / "unity.c"]))
             for failed in pool.map(self.build_program, [*self.tests, "probe"]):
                 failed and must(failed)
         self.probe_told = self.ran("probe", folder, None).told
@@ -150,6 +156,13 @@ class Bench:
             if LIBRARY in path.parents:
                 self.users.setdefault(str(path.relative_to(LIBRARY)), set()).add(file)
 
+    def compile_shared(self, source: Path) -> str:
+        """What every program is linked with, but for its own file."""
+        made = self.objects / f"shared_{source.stem}_{hash_of([source, *shared_by_tests()])}.o"
+        if not made.exists():
+            must(self.command(source, made))
+        return str(made)
+
     def link(self, folder: Path, instead: dict[str, Path]) -> None:
         parts = [str(instead.get(file) or self.object_of(file)) for file in sources() if file.endswith(".c")]
         must([COMPILER, *LINKED, *parts, "-lm", "-o", str(folder / "libgoe.so")])
@@ -159,15 +172,24 @@ class Bench:
         own = [C_TESTS / f"test_{name}.c"]
         if name == "probe":
             own = [PROBE, TARGETS / "replay.c", TARGETS / "embedded_logs.c"]
-        own += sorted(path for path in C_TESTS.glob("*.c") if not path.name.startswith("test_"))
         key = hash_of([*own, *shared_by_tests(), *sorted(LIBRARY.rglob("*.h"))])
         program = self.program(name)
         stamp = program.with_suffix(".hash")
         if program.exists() and stamp.exists() and stamp.read_text() == key:
             return None
-        texts = [str(path) for path in [*own, self.unity / "unity.c"]]
-        command = [COMPILER, "-std=c99", "-w", "-O1", "-ffp-contract=off", *DEFINED, *self.include, *texts]
-        command += [f"-L{self.folder}", "-lgoe", "-lm", "-o", str(program)]
+        command = [
+            COMPILER,
+            *FLAGS,
+            *DEFINED,
+            *self.include,
+            *map(str, own),
+            *self.shared,
+            f"-L{self.folder}",
+            "-lgoe",
+            "-lm",
+            "-o",
+            str(program),
+        ]
         if not compiled(command):
             return command
         stamp.write_text(key)
