@@ -700,6 +700,28 @@ static void a_set_heading_turns_the_trajectory_frame(void) {
 }
 
 /* A nose that points straight up has no heading: T looks north. */
+/* GIVEN a track that began before a turn WHEN something is seen for the first time THEN it begins there if all of that lies behind; one
+ * feature ahead, whichever it is, is enough to go on: it would be thrown away with the rest. */
+static void a_track_begins_at_first_sight_only_if_all_lies_behind(void) {
+    for (int ahead = -1; ahead < GOE_FEATURES; ahead++) {
+        goe_pixel_t *const features[] = {&image.left,      &image.right,     &image.top,
+                                         &image.base_left, &image.base_near, &image.base_right};
+        start();
+        scene_image(&scene, 0, &image, NULL);
+        hide_all(&image);
+        image.pose.attitude[0] = 1.0f;
+        image.pose.attitude[1] = image.pose.attitude[2] = image.pose.attitude[3] = 0.0f;
+        (void)update();
+        image.pose.time_us += 125000;
+        image.pose.attitude[0] = image.pose.attitude[3] = 0.707106781f; /* east */
+        for (int i = 0; i < GOE_FEATURES; i++) {
+            *features[i] = (goe_pixel_t){i == ahead ? 10.0f : 1270.0f, 640.0f, true};
+        }
+        (void)update();
+        CHECK_CLOSE(1.0e-3, ahead < 0 ? 90.0 : 0.0, estimate.trajectory_heading_deg);
+    }
+}
+
 static void a_vertical_nose_takes_north(void) {
     start();
     scene_image(&scene, 0, &image, NULL);
@@ -754,6 +776,7 @@ int main(void) {
     RUN_TEST(estimators_share_nothing);
     RUN_TEST(an_estimator_may_be_moved);
     RUN_TEST(a_set_heading_turns_the_trajectory_frame);
+    RUN_TEST(a_track_begins_at_first_sight_only_if_all_lies_behind);
     RUN_TEST(a_vertical_nose_takes_north);
     return UNITY_END();
 }

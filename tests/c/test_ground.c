@@ -194,6 +194,7 @@ static void the_arm_moves_the_camera_up_and_down(void) {
     settings.camera.offset_m[0] = 3.0f;
     settings.camera.offset_m[1] = -1.0f;
     settings.camera.offset_m[2] = 0.5f;
+    settings.camera.width_px = 1280.0f; /* which stands behind the arm in memory */
     view.camera_to_body = mounted;
     read_height(HEIGHT_M, 0.0f); /* level by the camera's axes: y is body's z */
     const double first_down = 0.5;
