@@ -226,6 +226,35 @@ static void what_no_image_shows_silences_nothing(void) {
     }
 }
 
+static double square_of(float a, float b) { return (double)a * (double)a + (double)b * (double)b; }
+
+/* GIVEN something that is estimated beside the state, as the latency is THEN what the state is uncertain by with it widens the place, in T
+ * as in north and east, and the extents that hang on the same states. */
+static void what_is_estimated_beside_the_state_widens(void) {
+    any = check_random_start("beside");
+    for (int n = 0; n < CASES; n++) {
+        make_any(GOE_PHASE_CHORD);
+        be_uncertain(1.0);
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        const goe_quantities_t before = quantities;
+        const double q = (double)filter.state[GOE_INVERSE_RANGE];
+        const double part = 2.0 * q; /* 2 m of the place, along the bearing */
+        filter.inverse.estimated = 1;
+        memset(&filter.inverse.element[goe_inverse_column(GOE_STATES)], 0, (GOE_STATES + 1) * sizeof(float));
+        filter.inverse.element[goe_inverse_column(GOE_STATES) + GOE_BEARING] = (float)part;
+        filter.inverse.element[goe_inverse_column(GOE_STATES) + GOE_FRONT_X] = (float)(1.5 * q);
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        CHECK_CLOSE(0.02, 4.0,
+                    square_of(quantities.sigma[GOE_X0], quantities.sigma[GOE_Z0]) -
+                        square_of(before.sigma[GOE_X0], before.sigma[GOE_Z0]));
+        CHECK_CLOSE(0.02, 4.0,
+                    square_of(quantities.center_sd_m[0], quantities.center_sd_m[1]) -
+                        square_of(before.center_sd_m[0], before.center_sd_m[1]));
+        CHECK_CLOSE(0.02, 2.25,
+                    square_of(quantities.sigma[GOE_WIDTH], 0.0f) - square_of(before.sigma[GOE_WIDTH], 0.0f));
+    }
+}
+
 /* GIVEN the same THEN the covariance that goe_covariance tells is the state's, too. */
 static void covariances_are_those_of_the_state(void) {
     any = check_random_start("covariances");
@@ -409,6 +438,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
     RUN_TEST(what_no_image_shows_silences_nothing);
+    RUN_TEST(what_is_estimated_beside_the_state_widens);
     RUN_TEST(covariances_are_those_of_the_state);
     RUN_TEST(what_the_own_motion_is_off_by_is_in_the_sigmas);
     RUN_TEST(what_the_own_motion_is_off_by_is_on_the_diagonal);
