@@ -104,6 +104,11 @@ def inline_functions(file: str) -> list[tuple[str, str]]:
     return [(found[1], part) for part in parts if (found := re.search(r"(\w+)\(", part))]
 
 
+def stem(mutant: Mutant) -> str:
+    """Of its file, as tests are named."""
+    return Path(mutant.file).stem[len("goe_") :]
+
+
 def compiled(command: list[str]) -> bool:
     return subprocess.run(command, capture_output=True, check=False).returncode == 0
 
@@ -167,6 +172,21 @@ class Bench:
         parts = [str(instead.get(file) or self.object_of(file)) for file in sources() if file.endswith(".c")]
         must([COMPILER, *LINKED, *parts, "-lm", "-o", str(folder / "libgoe.so")])
 
+    def linking(self, own: list[Path], program: Path) -> list[str]:
+        made = [str(part) for part in own] + self.shared
+        return [
+            COMPILER,
+            *FLAGS,
+            *DEFINED,
+            *self.include,
+            *made,
+            f"-L{self.folder}",
+            "-lgoe",
+            "-lm",
+            "-o",
+            str(program),
+        ]
+
     def build_program(self, name: str) -> list[str] | None:
         """The command that fails, if one does."""
         own = [C_TESTS / f"test_{name}.c"]
@@ -177,19 +197,7 @@ class Bench:
         stamp = program.with_suffix(".hash")
         if program.exists() and stamp.exists() and stamp.read_text() == key:
             return None
-        command = [
-            COMPILER,
-            *FLAGS,
-            *DEFINED,
-            *self.include,
-            *map(str, own),
-            *self.shared,
-            f"-L{self.folder}",
-            "-lgoe",
-            "-lm",
-            "-o",
-            str(program),
-        ]
+        command = self.linking(own, program)
         if not compiled(command):
             return command
         stamp.write_text(key)
@@ -237,7 +245,16 @@ class Bench:
         if same:
             return "same code"
         self.link(folder, instead)
+        if header:
+            self.rebuild_own_test(mutant, folder, tree)
         return "made"
+
+    def rebuild_own_test(self, mutant: Mutant, folder: Path, tree: Path) -> None:
+        """The test of a header calls its functions where they are compiled anew: in the test."""
+        name = stem(mutant)
+        if name in self.tests:
+            command = self.linking([C_TESTS / f"test_{name}.c"], folder / name)
+            compiled([word.replace(f"-I{LIBRARY}", f"-I{tree}") for word in command])
 
     def users_of(self, mutant: Mutant) -> list[str]:
         """Of a header's function: sources that include the header and name it, or what is made of it in a header."""
@@ -250,10 +267,10 @@ class Bench:
 
     def order(self, mutant: Mutant) -> list[str]:
         """The tests of the file's own name first, then by what they take; the hash last."""
-        stem = Path(mutant.file).stem[len("goe_") :]
+        own_name = stem(mutant)
 
         def place(name: str) -> tuple[int, float]:
-            own = 0 if name == stem else 1 if stem in name and self.seconds[name] < 0.5 else 2
+            own = 0 if name == own_name else 1 if own_name in name and self.seconds[name] < 0.5 else 2
             return (3 if name == BITS else own), self.seconds[name]
 
         wanted = [name for name in self.tests if mutant.file.startswith(ABOUT.get(name, ("",)))]
@@ -270,11 +287,12 @@ class Bench:
             if seconds is not None:
                 resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, int(seconds) + 2))
 
+        program = folder / name if (folder / name).exists() else self.program(name)
         environment = {**os.environ, **SHORTER, "LD_LIBRARY_PATH": str(folder)}
         with tempfile.TemporaryFile() as told:
             before = time.monotonic()
             process = subprocess.Popen(
-                [str(self.program(name))], stdout=told, stderr=told, cwd=ROOT, env=environment, preexec_fn=bounded
+                [str(program)], stdout=told, stderr=told, cwd=ROOT, env=environment, preexec_fn=bounded
             )
             used = 0.0
             try:
