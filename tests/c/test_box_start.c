@@ -134,6 +134,25 @@ static void the_sigma_covers_the_noise(void) {
     TEST_ASSERT_TRUE(sqrt(sum2 / draws) > 0.2 * told);
 }
 
+/* GIVEN a face and an attitude that may be off by a roll THEN the roll tilts the face's ends against each other, which looks like a
+ * depth: over the height that the camera has, by the square of the face's extent across. */
+static void a_roll_looks_like_a_depth(void) {
+    any = check_random_start("roll");
+    const place_t left = {-5.0, 60.0};
+    const place_t right = {5.0, 60.0};
+    double sigma[2];
+    for (int n = 0; n < 2; n++) {
+        show_face(left, right);
+        sighting.sight.point_px = 0.05f;
+        sighting.settings.navigation.attitude_bias_deg = n == 0 ? 0.001f : 1.0f;
+        TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
+        sigma[n] = (double)box.sigma_rad;
+    }
+    const double tilt = 60.0 / 20.0 * (1.0 * RAD_PER_DEG) * 10.0 * 10.0; /* m of depth times m of width */
+    const double added = sqrt(sigma[1] * sigma[1] - sigma[0] * sigma[0]) * 100.0;
+    CHECK_CLOSE(0.01 * tilt, tilt, added);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- two faces -- */
 
 /* In the axes of the line of sight to the near corner: the left face is left_m wide and as deep as the right one, which is
@@ -258,6 +277,7 @@ int main(void) {
     RUN_TEST(a_front_alone_is_exact);
     RUN_TEST(a_side_alone_has_its_near_end_on_the_front);
     RUN_TEST(the_sigma_covers_the_noise);
+    RUN_TEST(a_roll_looks_like_a_depth);
     RUN_TEST(two_faces_of_equal_depth_are_right_to_first_order);
     RUN_TEST(what_one_face_does_not_tell_is_refused);
     RUN_TEST(what_two_faces_do_not_tell_is_refused);

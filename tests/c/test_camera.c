@@ -94,6 +94,35 @@ static void check_round_trip(float tolerance) {
     TEST_ASSERT_TRUE(worst <= (double)tolerance);
 }
 
+/* GIVEN a lens of all five terms THEN a point goes where the definition puts it, and its derivatives are those of that place: by
+ * them a side of a box touches, and weighs. */
+static void the_lens_bends_as_its_derivatives_say(void) {
+    check_random_t random = check_random_start("derivatives of the lens");
+    const double step = 1.0e-5;
+    camera.k1 = -0.12f;
+    camera.k2 = 0.06f;
+    camera.p1 = 0.008f;
+    camera.p2 = -0.005f;
+    camera.k3 = -0.03f;
+    for (int i = 0; i < 500; i++) {
+        const double x = check_random_between(&random, -0.8, 0.8);
+        const double y = check_random_between(&random, -0.8, 0.8);
+        const goe_distorted_t to = goe_camera_distort(&camera, (float)x, (float)y);
+        double at[2];
+        double right[2];
+        double down[2];
+        scene_distort(&camera, x, y, &at[0], &at[1]);
+        scene_distort(&camera, x + step, y, &right[0], &right[1]);
+        scene_distort(&camera, x, y + step, &down[0], &down[1]);
+        CHECK_CLOSE(1.0e-6, at[0], to.x);
+        CHECK_CLOSE(1.0e-6, at[1], to.y);
+        CHECK_CLOSE(1.0e-4, (right[0] - at[0]) / step, to.xx);
+        CHECK_CLOSE(1.0e-4, (right[1] - at[1]) / step, to.xy);
+        CHECK_CLOSE(1.0e-4, (down[0] - at[0]) / step, to.xy);
+        CHECK_CLOSE(1.0e-4, (down[1] - at[1]) / step, to.yy);
+    }
+}
+
 static void a_barrel_lens_is_inverted(void) {
     camera.k1 = -0.12f;
     camera.k2 = 0.02f;
@@ -183,6 +212,7 @@ int main(void) {
     RUN_TEST(positive_roll_turns_the_image_clockwise);
     RUN_TEST(mounting_angles_apply_in_order);
     RUN_TEST(a_pinhole_camera_divides_by_its_focal_lengths);
+    RUN_TEST(the_lens_bends_as_its_derivatives_say);
     RUN_TEST(a_barrel_lens_is_inverted);
     RUN_TEST(a_pincushion_lens_is_inverted);
     RUN_TEST(a_pixel_outside_the_lens_is_refused);

@@ -204,6 +204,78 @@ static void flat_ground_tells_the_first_range(void) {
     }
 }
 
+/* A disc dead ahead with base corners at `y` below the horizon. */
+static void see_base(double y) {
+    any_disc();
+    memset(sighting.state, 0, sizeof sighting.state);
+    sighting_look(&sighting);
+    for (size_t i = 0; i < 2; i++) {
+        const float x = i == 0 ? -0.05f : 0.05f;
+        sighting.sight.point[GOE_POINT_LEFT + i] = (goe_point_t){x, 0.0f, true};
+        sighting.sight.point[i == 0 ? GOE_POINT_BASE_LEFT : GOE_POINT_BASE_RIGHT] = (goe_point_t){x, (float)y, true};
+    }
+    sighting.sight.base = true;
+    sighting.settings.refined.typical_size_m = 4.0f;
+}
+
+/* GIVEN base corners THEN the first guess of the range is that of flat ground; but the typical size's where they lie so near to the
+ * horizon that the attitude's error alone may have put them there, or where the camera is said to be below the ground. */
+static void the_ground_gives_the_first_range_where_it_can(void) {
+    goe_triangle_t root;
+    float state[GOE_STATES];
+    any = check_random_start("first range");
+    see_base(0.25); /* 20 m above it: 80 m ahead, and the track began 25 m before */
+    TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, state, &root));
+    CHECK_CLOSE(1.0e-5, 1.0 / (80.0 + 25.0), state[GOE_INVERSE_RANGE]);
+    CHECK_CLOSE(1.0e-4, 3.0 / 105.0, state[GOE_BEARING]);
+    see_base(0.25);
+    sighting.sight.height_m = -20.0f;
+    TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, state, &root));
+    CHECK_CLOSE(1.0e-5, 1.0 / (40.0 + 25.0), state[GOE_INVERSE_RANGE]); /* 4 m under 0.1 */
+    const double sigma = sqrt(pow(0.5 * 0.017453292519943295, 2.0) + pow(0.1 * 0.017453292519943295, 2.0) +
+                              pow((double)goe_observation_pixel(&sighting.sight), 2.0));
+    for (int n = 0; n < 2; n++) {
+        see_base((n == 0 ? 2.9 : 3.1) * sigma);
+        TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, state, &root));
+        const double by_ground = 20.0 / (3.1 * sigma);
+        CHECK_CLOSE(1.0e-4, 1.0 / ((n == 0 ? 40.0 : by_ground) + 25.0), state[GOE_INVERSE_RANGE]);
+    }
+}
+
+/* GIVEN a start THEN the first image says of no state more than it can: the sensors' errors as they are told, the range within a factor
+ * of three, and all extents by several times themselves, as the images to come will tell them better. */
+static void a_start_is_as_uncertain_as_one_image(void) {
+    goe_triangle_t root;
+    float x[GOE_STATES];
+    any = check_random_start("first root");
+    see_base(0.25);
+    sighting.sight.point[GOE_POINT_TOP] = (goe_point_t){0.0f, -0.3f, true};
+    sighting.sight.height_sd_m = 0.7f;
+    sighting.settings.navigation.velocity_bias_m_s = 0.1f;
+    memset(x, 0xA5, sizeof x); /* whatever was there before */
+    TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, x, &root));
+    for (size_t i = 0; i < 4; i++) {
+        CHECK_SAME(0.0f, x[i]); /* biases, ground */
+    }
+    CHECK_SAME(0.0f, x[GOE_SIDE_X]);
+    const double bias = 0.5 * 0.017453292519943295;
+    const double width = (double)x[GOE_FRONT_X];
+    const double q = (double)x[GOE_INVERSE_RANGE];
+    CHECK_CLOSE(1.0e-6, (20.0 + 0.3 * 80.0) * q, x[GOE_TOP]);
+    CHECK_CLOSE(1.0e-6, 8.0 * q, width);
+    const double sigma[GOE_STATES] = {bias,    bias,  hypot(bias, 0.008), 0.7 * q, 1.0,
+                                      2.0 * q, width, 5.0 * width,        width,   10.0 * (double)x[GOE_TOP]};
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        CHECK_CLOSE(1.0e-4, 1.0, sigma[i] * (double)*goe_srif_at(&root, i, i));
+        for (size_t j = i + 1; j < GOE_STATES; j++) {
+            CHECK_SAME(0.0f, *goe_srif_at(&root, i, j));
+        }
+    }
+    sighting.sight.point[GOE_POINT_TOP].y = 0.2499f; /* a top near the altimeter's zero */
+    TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, x, &root));
+    CHECK_CLOSE(1.0e-3, 1.0, 10.0 * (double)x[GOE_FRONT_X] * (double)*goe_srif_at(&root, GOE_TOP, GOE_TOP));
+}
+
 static void no_width_is_no_start(void) {
     goe_triangle_t root;
     float state[GOE_STATES];
@@ -224,6 +296,8 @@ int main(void) {
     RUN_TEST(shape_and_size_noise_are_shares_of_the_width);
     RUN_TEST(a_first_guess_has_the_right_direction_and_the_typical_size);
     RUN_TEST(flat_ground_tells_the_first_range);
+    RUN_TEST(the_ground_gives_the_first_range_where_it_can);
+    RUN_TEST(a_start_is_as_uncertain_as_one_image);
     RUN_TEST(no_width_is_no_start);
     return UNITY_END();
 }

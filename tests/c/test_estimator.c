@@ -485,6 +485,63 @@ static void every_number_read_is_checked(void) {
     CHECK_STATUS(GOE_OK, update()); /* none of them left a trace */
 }
 
+/* GIVEN numbers just at the ends of their ranges THEN the image is taken: the header gives them as the ends, not beyond. */
+static void the_ends_of_ranges_are_within(void) {
+    goe_image_t good;
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    scene_image(&scene, 12, &good, NULL);
+    float *const numbers[] = {&image.left.u_px, &image.top.v_px, &image.pose.height_m, &image.pose.position_ned_m[2]};
+    for (size_t i = 0; i < 8; i++) {
+        image = good;
+        image.pose.time_us += (int64_t)i;
+        *numbers[i / 2] = (i % 2 == 0 ? 1.0f : -1.0f) * (i / 2 == 3 ? 1.0e6f : 1.0e5f);
+        const goe_status_t status = update();
+        TEST_ASSERT_TRUE(status != GOE_OUT_OF_RANGE && status != GOE_NOT_FINITE);
+    }
+}
+
+/* GIVEN a box and points, one of both bad THEN the image is refused, whichever it is: the checks of the one do not stand for those of the
+ * other. */
+static void points_and_boxes_are_both_checked(void) {
+    goe_image_t good;
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    scene_image(&scene, 12, &good, NULL);
+    good.box = (goe_box_t){500.0f, 500.0f, 700.0f, 700.0f, GOE_SEES_BOX};
+    float *const numbers[] = {&image.base_near.u_px, &image.box.left_px, &image.box.top_px, &image.box.right_px,
+                              &image.box.bottom_px};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        image = good;
+        image.base_near.seen = true;
+        *numbers[i] = 2.0e5f;
+        check_refused(GOE_OUT_OF_RANGE);
+        *numbers[i] = check_from_bits(0x7F800000u);
+        check_refused(GOE_NOT_FINITE);
+        image.box.seen = (uint8_t)(i == 0 ? 0 : GOE_SEES_BOX & ~(1u << (i - 1)));
+        image.base_near.seen = i != 0;
+        TEST_ASSERT_TRUE(update() != GOE_NOT_FINITE); /* not seen: not read */
+        image.pose.time_us += 1;
+        good.pose.time_us = image.pose.time_us;
+    }
+}
+
+/* GIVEN a box whose left is not left of its right, or whose top not above its bottom THEN none of its sides counts, and that is told. */
+static void a_box_out_of_order_does_not_count(void) {
+    for (int n = 0; n < 2; n++) {
+        start();
+        CHECK_STATUS(GOE_OK, fly(0, 12));
+        const int before = estimator.window.disc.count;
+        scene_image(&scene, 12, &image, NULL);
+        image.left.seen = image.right.seen = image.top.seen = false;
+        image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+        image.box = (goe_box_t){500.0f, 500.0f, n == 0 ? 500.0f : 700.0f, n == 1 ? 500.0f : 700.0f, GOE_SEES_BOX};
+        (void)update();
+        TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_SWAPPED]);
+        TEST_ASSERT_EQUAL_INT(before, estimator.window.disc.count); /* no points were made of it */
+    }
+}
+
 static void what_is_not_seen_is_not_read(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
@@ -551,6 +608,19 @@ static void a_quaternion_may_be_off_by_one_percent(void) {
             check_refused(GOE_BAD_ATTITUDE);
         }
     }
+}
+
+/* GIVEN a number of a camera that the settings do not have THEN the image is refused whole: there is no mounting to turn it by. */
+static void an_image_of_no_camera_is_refused(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 12));
+    scene_image(&scene, 12, &image, NULL);
+    image.camera = GOE_CAMERAS_MAX;
+    check_refused(GOE_OUT_OF_RANGE);
+    image.camera = UINT8_MAX;
+    check_refused(GOE_OUT_OF_RANGE);
+    image.camera = 0;
+    CHECK_STATUS(GOE_OK, update());
 }
 
 /* The order of the checks, each over the whole image. */
@@ -704,6 +774,28 @@ static void a_set_heading_turns_the_trajectory_frame(void) {
 }
 
 /* A nose that points straight up has no heading: T looks north. */
+/* GIVEN a track that began before a turn WHEN something is seen for the first time THEN it begins there if all of that lies behind; one
+ * feature ahead, whichever it is, is enough to go on: it would be thrown away with the rest. */
+static void a_track_begins_at_first_sight_only_if_all_lies_behind(void) {
+    for (int ahead = -1; ahead < GOE_FEATURES; ahead++) {
+        goe_pixel_t *const features[] = {&image.left,      &image.right,     &image.top,
+                                         &image.base_left, &image.base_near, &image.base_right};
+        start();
+        scene_image(&scene, 0, &image, NULL);
+        hide_all(&image);
+        image.pose.attitude[0] = 1.0f;
+        image.pose.attitude[1] = image.pose.attitude[2] = image.pose.attitude[3] = 0.0f;
+        (void)update();
+        image.pose.time_us += 125000;
+        image.pose.attitude[0] = image.pose.attitude[3] = 0.707106781f; /* east */
+        for (int i = 0; i < GOE_FEATURES; i++) {
+            *features[i] = (goe_pixel_t){i == ahead ? 10.0f : 1270.0f, 640.0f, true};
+        }
+        (void)update();
+        CHECK_CLOSE(1.0e-3, ahead < 0 ? 90.0 : 0.0, estimate.trajectory_heading_deg);
+    }
+}
+
 static void a_vertical_nose_takes_north(void) {
     start();
     scene_image(&scene, 0, &image, NULL);
@@ -744,11 +836,15 @@ int main(void) {
     RUN_TEST(a_moving_obstacle_has_no_parallax);
     RUN_TEST(an_obstacle_that_is_said_to_lie_behind_is_passed);
     RUN_TEST(every_number_read_is_checked);
+    RUN_TEST(the_ends_of_ranges_are_within);
+    RUN_TEST(points_and_boxes_are_both_checked);
+    RUN_TEST(a_box_out_of_order_does_not_count);
     RUN_TEST(what_is_not_seen_is_not_read);
     RUN_TEST(time_must_run_on);
     RUN_TEST(the_settings_are_copied_and_the_counters_zeroed);
     RUN_TEST(the_first_image_needs_a_time);
     RUN_TEST(a_quaternion_may_be_off_by_one_percent);
+    RUN_TEST(an_image_of_no_camera_is_refused);
     RUN_TEST(the_first_fault_is_told);
     RUN_TEST(counters_saturate);
     RUN_TEST(null_pointers_are_refused);
@@ -758,6 +854,7 @@ int main(void) {
     RUN_TEST(estimators_share_nothing);
     RUN_TEST(an_estimator_may_be_moved);
     RUN_TEST(a_set_heading_turns_the_trajectory_frame);
+    RUN_TEST(a_track_begins_at_first_sight_only_if_all_lies_behind);
     RUN_TEST(a_vertical_nose_takes_north);
     return UNITY_END();
 }

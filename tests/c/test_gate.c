@@ -237,6 +237,69 @@ static void the_own_position_s_error_opens_the_gate(void) {
     }
 }
 
+/* Normalised residual of the left point, 3 px off, as Huber's weight tells it, if each row has an error of the image's own position
+ * in it, along one axis; the attitude's own is white_deg. */
+static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, double others_sigmas) {
+    setUp();
+    rows.white_rad = (float)(white_deg * RAD_PER_DEG);
+    rows.shifts = own_sigmas > 0.0 || others_sigmas > 0.0;
+    memset(rows.shift, 0, sizeof rows.shift);
+    rows.count = 4; /* of a box: left, right, top, foot */
+    memset(&matrix, 0, sizeof matrix);
+    for (size_t i = 0; i < rows.count; i++) {
+        rows.feature[i] = (uint8_t)i;
+        rows.variance[i] = (float)(SIGMA * SIGMA);
+        matrix.row[i][i == 0 || i == 1 ? 0 : 1] = 1.0f; /* two along x, two along y */
+        rows.shift[i][axis] = (float)(SIGMA * (i == 0 ? own_sigmas : others_sigmas));
+    }
+    settings.refined.gate_sigma = 100.0f;
+    settings.refined.huber_sigma = 0.5f;
+    *residual(0) = (float)(6.0 * SIGMA);
+    const goe_matrix_t before = matrix;
+    apply();
+    const double weight = weight_of(0, &before) * SIGMA;
+    return 0.5 / (weight * weight);
+}
+
+/* GIVEN sides of a box and an image whose own position is off THEN it widens what a side may be off by, however well the attitude is
+ * known; what it moves alike in both is not between them. */
+static void an_own_position_error_opens_the_gate(void) {
+    for (size_t n = 0; n < 6; n++) {
+        const double white_deg = n % 2 == 0 ? 1.0e-4 : 0.03;
+        const size_t axis = n / 2;
+        CHECK_CLOSE(0.02, 6.0 / sqrt(2.0),
+                    sigmas_of_left(white_deg, axis, 0.0, 0.0)); /* the difference of two points */
+        CHECK_CLOSE(0.02, 6.0 / sqrt(2.0 + 9.0), sigmas_of_left(white_deg, axis, 3.0, 0.0));
+        CHECK_CLOSE(0.02, 6.0 / sqrt(2.0), sigmas_of_left(white_deg, axis, 3.0, 3.0));
+        CHECK_CLOSE(0.02, 6.0 / sqrt(2.0 + 4.0), sigmas_of_left(white_deg, axis, 5.0, 3.0));
+    }
+}
+
+/* GIVEN a single row along an axis THEN it is judged, too, by itself. */
+static void a_row_alone_is_judged(void) {
+    rows.count = 1;
+    rows.white_rad = 1.0e-4f * GOE_RAD_PER_DEG;
+    *residual(0) = (float)(6.0 * SIGMA);
+    apply();
+    TEST_ASSERT_EQUAL_HEX32(1u << rows.feature[0], verdict.refused);
+    TEST_ASSERT_EQUAL_INT(0, verdict.rows);
+}
+
+/* GIVEN a bias of the attitude that has drifted since the state was inverted, about whichever axis THEN a point that it moves may be
+ * that much farther off. */
+static void a_drift_of_the_attitude_opens_the_gate(void) {
+    for (size_t axis = 0; axis < 3; axis++) {
+        for (int drifted = 0; drifted < 2; drifted++) {
+            setUp();
+            *residual(0) = (float)(15.0 / FOCAL_PX);
+            matrix.row[0][GOE_STATE_COLUMN + GOE_BIAS_X + axis] = -1.0f;
+            filter.drift_rad2 = drifted == 1 ? 1.0e-4f : 0.0f;
+            apply();
+            TEST_ASSERT_EQUAL_HEX32(drifted == 1 ? 0u : 1u << rows.feature[0], verdict.refused);
+        }
+    }
+}
+
 static void no_rows_are_no_verdict(void) {
     goe_rows_clear(&rows, &matrix);
     apply();
@@ -255,6 +318,9 @@ int main(void) {
     RUN_TEST(correlated_errors_count_less);
     RUN_TEST(an_unsure_state_opens_the_gate);
     RUN_TEST(the_own_position_s_error_opens_the_gate);
+    RUN_TEST(an_own_position_error_opens_the_gate);
+    RUN_TEST(a_row_alone_is_judged);
+    RUN_TEST(a_drift_of_the_attitude_opens_the_gate);
     RUN_TEST(no_rows_are_no_verdict);
     return UNITY_END();
 }

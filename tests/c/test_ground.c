@@ -207,6 +207,69 @@ static void a_height_that_is_kept_has_no_slope(void) {
     }
 }
 
+/* GIVEN ground that slopes below the altimeter WHEN the aircraft flies on THEN the height has become uncertain by the slope times the
+ * way, whatever the steps, and the top, counted from the altimeter's zero, by as much the other way: the obstacle's height has not;
+ * and nothing of that where the height is kept from the first image on. */
+static void sloping_ground_makes_the_height_uncertain(void) {
+    static const size_t steps[] = {1, 5};
+    settings.navigation.slope = 0.05f;
+    for (size_t n = 0; n < 2; n++) {
+        goe_filter_clear(&filter);
+        start(RANGE_M, CONSTANT_M);
+        for (size_t i = 0; i < steps[n]; i++) {
+            filter.flown_m += 60.0f / (float)steps[n];
+            goe_ground_climb(&filter, &settings.navigation);
+        }
+        goe_filter_invert(&filter);
+        CHECK_CLOSE(0.01, sqrt(4.0 + 9.0), ground_sd_m());
+        float over_ground[GOE_STATES] = {0.0f};
+        over_ground[GOE_GROUND] = over_ground[GOE_TOP] = 1.0f;
+        const double before = 1.0 + 4.0 / (double)(RANGE_M * RANGE_M); /* of the top, and of the ground */
+        CHECK_CLOSE(1.0e-4, before, goe_srif_variance(&filter.inverse, over_ground));
+    }
+    settings.navigation.height_white_m = 1.0f;
+    start(RANGE_M, CONSTANT_M);
+    filter.flown_m = 60.0f;
+    goe_ground_climb(&filter, &settings.navigation);
+    goe_filter_invert(&filter);
+    CHECK_CLOSE(0.01, 2.0, ground_sd_m());
+}
+
+/* GIVEN a first image that knows its own height's error THEN that is kept for the filter's start, of that image and no later one. */
+static void the_first_heights_own_error_is_kept(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    image.noise.height_m = 0.7f;
+    read_height(HEIGHT_M, 0.0f);
+    CHECK_SAME(0.7f, filter.datum.sd_m);
+    image.noise.height_m = 0.2f;
+    read_height(HEIGHT_M, 0.0f);
+    CHECK_SAME(0.7f, filter.datum.sd_m);
+}
+
+/* GIVEN a camera on an arm WHEN the aircraft pitches and rolls THEN the camera's height has moved by the arm's end, not by the
+ * vehicle's down alone. */
+static void the_arm_moves_the_camera_up_and_down(void) {
+    const float turned[9] = {0.8f, 0.0f, 0.6f, -0.36f, 0.8f, 0.48f, -0.48f, -0.6f, 0.64f};
+    const float mounted[9] = {0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}; /* looks ahead */
+    settings.navigation.height_white_m = WHITE_M;
+    settings.camera.offset_m[0] = 3.0f;
+    settings.camera.offset_m[1] = -1.0f;
+    settings.camera.offset_m[2] = 0.5f;
+    settings.camera.width_px = 1280.0f; /* which stands behind the arm in memory */
+    view.camera_to_body = mounted;
+    read_height(HEIGHT_M, 0.0f); /* level by the camera's axes: y is body's z */
+    const double first_down = 0.5;
+    memcpy(view.camera_to_trajectory, turned, sizeof turned);
+    /* the arm in the camera's axes: x is body's y, y its z, z its x; the second row turns it into down */
+    const double down = -0.36 * -1.0 + 0.8 * 0.5 + 0.48 * 3.0;
+    read_height(HEIGHT_M, 0.0f);
+    const double ground =
+        (double)HEIGHT_M + first_down; /* the mean of two heights above what moved does not matter here */
+    filter.phase = GOE_PHASE_DISC;
+    CHECK_CLOSE(1.0e-4, (double)filter.datum.ground_m - down, filter.datum.height_m);
+    CHECK_CLOSE(1.0e-4, 0.5 * (ground + (double)HEIGHT_M + down), filter.datum.ground_m);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(readings_tell_the_mean_and_no_more);
@@ -215,5 +278,8 @@ int main(void) {
     RUN_TEST(a_wrong_first_range_leaves_the_height_as_told);
     RUN_TEST(the_slope_of_the_ground_adds_up_over_the_way);
     RUN_TEST(a_height_that_is_kept_has_no_slope);
+    RUN_TEST(sloping_ground_makes_the_height_uncertain);
+    RUN_TEST(the_first_heights_own_error_is_kept);
+    RUN_TEST(the_arm_moves_the_camera_up_and_down);
     return UNITY_END();
 }

@@ -287,6 +287,240 @@ static void late_poses_end_a_motion_that_is_none(void) {
     TEST_ASSERT_TRUE(!unsure.moves && unsure.late);
 }
 
+/* --------------------------------------------------------------------------------------------------------- judgement -- */
+
+static goe_filter_t judged;
+static goe_settings_t judging;
+static goe_observation_t seen;
+static goe_sides_t seen_sides;
+static const double told[3][3] = {{30.0, 2.0, 1.0}, {0.0, 6.0, 1.5}, {0.0, 0.0, 5.0}}; /* of latency and velocity */
+
+/* A box by its corners, long in flight, of which the images say this: T (latency, velocity) = z, with residuals of twice the told
+ * variance, the latency so far being 30 ms. */
+static void hear(const double z[3]) {
+    goe_settings_default(&judging);
+    memset(&seen, 0, sizeof seen);
+    memset(&seen_sides, 0, sizeof seen_sides);
+    goe_filter_clear(&judged);
+    seen.settings = &judging;
+    seen.sides = &seen_sides;
+    seen.base = true;
+    seen.elapsed_s = 4.0f;
+    judged.phase = GOE_PHASE_BOX;
+    for (size_t i = 0; i < 3; i++) {
+        for (size_t j = i; j < 3; j++) {
+            *goe_srif_at(&judged.root, GOE_STATES + i, GOE_STATES + j) = (float)told[i][j];
+        }
+        judged.root.right[i] = (float)z[i];
+    }
+    judged.mover.beside[0] = 0.03f;
+    judged.root.right[0] -= (float)(told[0][0] * 0.03);
+    judged.mover.heard_s = 3.0f;
+    judged.mover.rows = 100.0f;
+    judged.mover.nis = (float)(200.0 + z[0] * z[0] + z[1] * z[1] + z[2] * z[2]);
+    judged.health.nis = 18.0f;
+    judged.health.nis_rows = 9;
+}
+
+static bool judge_image(void) {
+    const float change[GOE_UNKNOWNS] = {0.0f};
+    return goe_mover_judge(&judged, &seen, change, 0.3f);
+}
+
+static void by_velocity(double x, double z, double to[3]) {
+    for (size_t i = 0; i < 3; i++) {
+        to[i] = told[i][1] * x + told[i][2] * z;
+    }
+}
+
+/* GIVEN images that tell of a velocity, one after the other THEN in the third the obstacle begins to be followed with just that
+ * velocity, twice as uncertain as the residuals say and the own motion allows; the latency, which it may have been taken for, is open
+ * again. */
+static void what_begins_to_be_followed_is_what_the_images_told(void) {
+    double z[3];
+    by_velocity(4.0, -3.0, z);
+    hear(z);
+    judging.navigation.velocity_bias_m_s = 0.3f;
+    judging.navigation.position_walk_m = 0.2f;
+    TEST_ASSERT_FALSE(judge_image());
+    TEST_ASSERT_FALSE(judge_image());
+    TEST_ASSERT_FALSE(judged.mover.followed);
+    TEST_ASSERT_TRUE(judge_image());
+    TEST_ASSERT_TRUE(judged.mover.followed && judged.mover.moves && !judged.mover.late);
+    CHECK_SAME(0.0f, judged.mover.beside[0]);
+    CHECK_CLOSE(1.0e-4, 4.0, judged.mover.beside[1]);
+    CHECK_CLOSE(1.0e-4, -3.0, judged.mover.beside[2]);
+    TEST_ASSERT_EQUAL_UINT8(GOE_BESIDE, judged.root.estimated);
+    CHECK_CLOSE(1.0e-3, 20.0, *goe_srif_at(&judged.root, GOE_STATES, GOE_STATES));
+    /* the covariance of the velocity, from T'T of its two columns */
+    const double xx = told[0][1] * told[0][1] + told[1][1] * told[1][1];
+    const double xz = told[0][1] * told[0][2] + told[1][1] * told[1][2];
+    const double zz = told[0][2] * told[0][2] + told[1][2] * told[1][2] + told[2][2] * told[2][2];
+    const double d = xx * zz - xz * xz;
+    const double own = 0.09 + 0.04 / 4.0;
+    const double c[3] = {4.0 * (2.0 * zz / d + own), -4.0 * 2.0 * xz / d, 4.0 * (2.0 * xx / d + own)};
+    const double r11 = (double)*goe_srif_at(&judged.root, GOE_STATES + 1, GOE_STATES + 1);
+    const double r12 = (double)*goe_srif_at(&judged.root, GOE_STATES + 1, GOE_STATES + 2);
+    const double r22 = (double)*goe_srif_at(&judged.root, GOE_STATES + 2, GOE_STATES + 2);
+    const double information[3] = {r11 * r11, r11 * r12, r12 * r12 + r22 * r22};
+    const double determinant = information[0] * information[2] - information[1] * information[1];
+    CHECK_CLOSE(1.0e-3 * c[0], c[0], information[2] / determinant);
+    CHECK_CLOSE(1.0e-3 * c[0], c[1], -information[1] / determinant);
+    CHECK_CLOSE(1.0e-3 * c[2], c[2], information[0] / determinant);
+}
+
+/* GIVEN the same of an obstacle whose foot no image shows THEN it is not followed, as its velocity may be another range; it is told to
+ * move only if the images do not fit. */
+static void what_has_no_scale_is_not_followed(void) {
+    double z[3];
+    by_velocity(4.0, -3.0, z);
+    for (int misfit = 0; misfit < 2; misfit++) {
+        hear(z);
+        seen.base = false;
+        judged.health.mean_nis = misfit == 1 ? 3.0f : 1.0f;
+        for (int i = 0; i < 5; i++) {
+            TEST_ASSERT_FALSE(judge_image());
+        }
+        TEST_ASSERT_FALSE(judged.mover.followed);
+        TEST_ASSERT_EQUAL_INT(misfit, judged.mover.moves ? 1 : 0);
+    }
+    hear(z); /* of a box its bottom */
+    judged.phase = GOE_PHASE_PRISM;
+    seen.base = false;
+    seen_sides.usable = GOE_SEES_BOTTOM;
+    judged.mover.nis -= 100.0f; /* of which more is asked */
+    (void)judge_image();
+    (void)judge_image();
+    TEST_ASSERT_TRUE(judge_image());
+}
+
+/* GIVEN a velocity that is slow, or as large as chance makes it, or that a latency explains as well, or a track that has hardly begun
+ * THEN nothing is followed. */
+static void what_may_be_chance_is_not_followed(void) {
+    double z[3];
+    for (int n = 0; n < 4; n++) {
+        by_velocity(n == 0 ? 0.9 : 4.0, n == 0 ? 0.0 : -3.0, z);
+        if (n == 1) {
+            z[0] += 30.0; /* what no velocity explains */
+        }
+        hear(z);
+        if (n == 2) {
+            judging.navigation.velocity_bias_m_s = 1.1f; /* five of these in both together are not it */
+        } else if (n == 3) {
+            judged.mover.heard_s = 0.0f;
+        }
+        for (int i = 0; i < 4; i++) {
+            TEST_ASSERT_FALSE(judge_image());
+        }
+        TEST_ASSERT_FALSE(judged.mover.followed || judged.mover.moves);
+    }
+}
+
+/* GIVEN images that tell of a latency that no velocity explains THEN it is estimated from then on, and told; the same that a velocity
+ * explains as well is not. */
+static void a_latency_that_no_velocity_explains_is_estimated(void) {
+    double z[3];
+    const double late[3] = {30.0 * 0.4, 0.5, -0.5}; /* 0.4 s */
+    hear(late);
+    TEST_ASSERT_FALSE(judge_image());
+    TEST_ASSERT_EQUAL_UINT8(1, judged.root.estimated);
+    TEST_ASSERT_TRUE(judged.mover.late);
+    by_velocity(4.0, -3.0, z);
+    hear(z);
+    TEST_ASSERT_FALSE(judge_image());
+    TEST_ASSERT_EQUAL_UINT8(0, judged.root.estimated);
+    TEST_ASSERT_FALSE(judged.mover.late);
+    const double little[3] = {30.0 * 0.1, 0.5, -0.5}; /* 3 of 2.7 sigma, times the root of two */
+    hear(little);
+    TEST_ASSERT_FALSE(judge_image());
+    TEST_ASSERT_FALSE(judged.mover.late);
+}
+
+/* An obstacle that is followed, with a velocity and a latency of these sigmas. */
+static void be_followed(float x_m_s, float z_m_s, float sd_m_s, float latency_s, float sd_s) {
+    const double nothing[3] = {0.0, 0.0, 0.0};
+    hear(nothing);
+    judged.mover.followed = true;
+    judged.mover.moves = true;
+    judged.mover.beside[0] = latency_s;
+    judged.mover.beside[1] = x_m_s;
+    judged.mover.beside[2] = z_m_s;
+    judged.root.estimated = judged.inverse.estimated = GOE_BESIDE;
+    const float sigma[3] = {sd_s, sd_m_s, sd_m_s};
+    for (size_t i = 0; i < 3; i++) {
+        judged.inverse.element[goe_inverse_column(GOE_STATES + i) + GOE_STATES + i] = sigma[i];
+    }
+}
+
+/* GIVEN an obstacle that is followed WHEN the poses prove late THEN it moves only as far as its velocity is still more than three
+ * sigma and a metre a second; when they are in time it does. Late poses in a turn look like a motion at first. */
+static void what_is_followed_may_prove_to_be_late_poses(void) {
+    static const struct {
+        float x, z, sd, latency, sd_s;
+        bool late, moves;
+    } cases[] = {{3.0f, 4.0f, 0.5f, 0.0f, 0.01f, false, true},   {3.0f, 4.0f, 5.0f, 0.0f, 0.01f, false, true},
+                 {3.0f, 4.0f, 0.5f, 0.1f, 0.01f, true, true},    {3.0f, 4.0f, 2.0f, 0.1f, 0.01f, true, false},
+                 {0.6f, 0.7f, 0.01f, 0.1f, 0.01f, true, false},  {-3.0f, 4.0f, 1.6f, -0.1f, 0.01f, true, true},
+                 {-3.0f, -4.0f, 1.7f, 0.1f, 0.01f, true, false}, {3.0f, 4.0f, 0.5f, 0.1f, 0.05f, false, true},
+                 {3.0f, 4.0f, 5.0f, 0.019f, 0.001f, false, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        be_followed(cases[i].x, cases[i].z, cases[i].sd, cases[i].latency, cases[i].sd_s);
+        TEST_ASSERT_FALSE(judge_image());
+        TEST_ASSERT_EQUAL_INT(cases[i].late, judged.mover.late);
+        TEST_ASSERT_EQUAL_INT(cases[i].moves, judged.mover.moves);
+        TEST_ASSERT_TRUE(judged.mover.followed);
+    }
+}
+
+/* GIVEN a velocity whose two parts hang together THEN its variance along any direction is that of both. */
+static void a_velocitys_variance_is_that_of_both_parts(void) {
+    be_followed(3.0f, 4.0f, 1.0f, 0.0f, 0.01f);
+    float *v = judged.inverse.element;
+    v[goe_inverse_column(GOE_STATES + 2) + GOE_STATES + 1] = 0.5f;
+    const goe_xz_t along[] = {{1.0f, 0.0f}, {0.0f, 1.0f}, {0.6f, 0.8f}, {-0.6f, 0.8f}};
+    const double expected[] = {1.25, 1.0, 0.36 + (0.3 + 0.8) * (0.3 + 0.8), 0.36 + (-0.3 + 0.8) * (-0.3 + 0.8)};
+    for (size_t i = 0; i < 4; i++) {
+        CHECK_CLOSE(1.0e-5, expected[i], goe_mover_variance(&judged, along[i]));
+    }
+}
+
+/* GIVEN a model that proved to be another THEN what it said of a velocity is forgotten, and what it said of the latency is not; of an
+ * obstacle that is followed nothing is. */
+static void another_model_forgets_the_velocity_alone(void) {
+    for (int followed = 0; followed < 2; followed++) {
+        const double z[3] = {5.0, 6.0, 7.0};
+        hear(z);
+        judged.mover.followed = followed == 1;
+        judged.mover.unlike_s = 0.3f;
+        judged.mover.images = 2;
+        const goe_triangle_t before = judged.root;
+        goe_mover_doubt(&judged);
+        for (size_t i = 0; i < 3; i++) {
+            const bool forgotten = i > 0 && followed == 0;
+            CHECK_SAME(forgotten ? 0.0f : before.right[i], judged.root.right[i]);
+            for (size_t j = i; j < 3; j++) {
+                CHECK_SAME(forgotten ? 0.0f : (float)told[i][j],
+                           *goe_srif_at(&judged.root, GOE_STATES + i, GOE_STATES + j));
+            }
+        }
+        CHECK_SAME(0.0f, judged.mover.unlike_s);
+        TEST_ASSERT_EQUAL_UINT8(0, judged.mover.images);
+    }
+}
+
+/* GIVEN numbers that are none of a flight THEN all beside the state begins anew, and with it the filter, if its axes moved along. */
+static void what_is_none_of_a_flight_is_forgotten(void) {
+    for (int followed = 0; followed < 2; followed++) {
+        be_followed(3.0f, 4.0f, 0.5f, 0.0f, 0.01f);
+        judged.mover.followed = followed == 1;
+        judged.mover.beside[2] = 2.0e9f;
+        TEST_ASSERT_EQUAL_INT(followed, judge_image());
+        TEST_ASSERT_TRUE(judged.mover.moves && !judged.mover.followed); /* the warning stays */
+        CHECK_SAME(0.0f, judged.mover.beside[2]);
+        TEST_ASSERT_EQUAL_UINT8(0, judged.root.estimated);
+    }
+}
+
 /* ----------------------------------------------------------------------------------------------------------- flights -- */
 
 typedef struct {
@@ -449,6 +683,38 @@ static void an_outline_that_moves_is_not_followed(void) {
     check_report("images in which it is suspect", suspect);
 }
 
+/* GIVEN an obstacle that is followed WHEN it is not seen for two seconds THEN it has gone on with its velocity, relative to the camera
+ * that has, too, and its place has become uncertain by what the velocity is. */
+static void what_is_followed_goes_on_unseen(void) {
+    const flight_t flight = fly(0, 3.0, -4.0);
+    const goe_estimate_t *before = &flight.estimate;
+    goe_image_t image;
+    goe_estimate_t now;
+    const int fine = 20 + STEP * (IMAGES - 1);
+    const double t = (fine + 2.0 * FINE_HZ) / FINE_HZ;
+    TEST_ASSERT_TRUE(before->valid & GOE_HAS_VELOCITY);
+    TEST_ASSERT_TRUE(before->fresh);
+    scene_image(&scene, fine + (int)(2.0 * FINE_HZ), &image, NULL);
+    image.pose.position_ned_m[0] += (float)(3.0 * t);
+    image.pose.position_ned_m[1] += (float)(-4.0 * t);
+    image.left.seen = image.right.seen = image.top.seen = false;
+    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    const double dx = (double)estimator.motion.dx_m;
+    const double dz = (double)estimator.motion.dz_m;
+    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &now));
+    const double c = (double)estimator.motion.heading_cos;
+    const double s = (double)estimator.motion.heading_sin;
+    const double north = 2.0 * (double)before->velocity_north_m_s;
+    const double east = 2.0 * (double)before->velocity_east_m_s;
+    CHECK_CLOSE(2.0e-3, (double)before->x_m + c * east - s * north - ((double)estimator.motion.dx_m - dx), now.x_m);
+    CHECK_CLOSE(2.0e-3, (double)before->z_m + c * north + s * east - ((double)estimator.motion.dz_m - dz), now.z_m);
+    const double larger = fmax((double)before->sigma.velocity_north_m_s, (double)before->sigma.velocity_east_m_s);
+    CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.x0_m, 2.0 * larger), now.sigma.x_m);
+    CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.z0_m, 2.0 * larger), now.sigma.z_m);
+    TEST_ASSERT_FALSE(now.fresh);
+    CHECK_CLOSE(1.0e-4, 2.0, now.age_s);
+}
+
 #if GOE_WITH_HAZARD
 /* GIVEN traffic on the own course, oncoming or slower WHEN it has been warned of THEN no image takes the warning back, also not when
  * it begins to be followed. */
@@ -520,6 +786,15 @@ int main(void) {
     RUN_TEST(early_poses_are_told_as_early);
     RUN_TEST(an_old_place_moves_on);
     RUN_TEST(an_outline_that_moves_is_not_followed);
+    RUN_TEST(what_begins_to_be_followed_is_what_the_images_told);
+    RUN_TEST(what_has_no_scale_is_not_followed);
+    RUN_TEST(what_may_be_chance_is_not_followed);
+    RUN_TEST(a_latency_that_no_velocity_explains_is_estimated);
+    RUN_TEST(what_is_followed_may_prove_to_be_late_poses);
+    RUN_TEST(a_velocitys_variance_is_that_of_both_parts);
+    RUN_TEST(another_model_forgets_the_velocity_alone);
+    RUN_TEST(what_is_none_of_a_flight_is_forgotten);
+    RUN_TEST(what_is_followed_goes_on_unseen);
 #if GOE_WITH_HAZARD
     RUN_TEST(what_begins_to_be_followed_is_warned_of);
     RUN_TEST(the_hazard_counts_with_both_velocities);

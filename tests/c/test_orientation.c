@@ -186,7 +186,17 @@ static void lines_are_averaged_without_a_direction(void) {
     }
 }
 
+/* GIVEN a spread of single images THEN the mean of more is more certain by the root of how many; a memory of one has that of one. */
+static void a_mean_of_more_is_more_certain(void) {
+    orientation.variance_deg2 = 9.0f;
+    orientation.count = 1;
+    TEST_ASSERT_EQUAL_FLOAT(3.0f, goe_orientation_sigma_deg(&orientation));
+    orientation.count = 4;
+    TEST_ASSERT_EQUAL_FLOAT(1.5f, goe_orientation_sigma_deg(&orientation));
+}
+
 static void nothing_measured_has_no_spread(void) {
+    orientation.variance_deg2 = 9.0f;
     TEST_ASSERT_EQUAL_FLOAT(0.0f, goe_orientation_sigma_deg(&orientation));
 }
 
@@ -203,6 +213,7 @@ int main(void) {
     RUN_TEST(the_low_pass_follows_its_formula);
     RUN_TEST(a_memory_of_one_does_not_filter);
     RUN_TEST(lines_are_averaged_without_a_direction);
+    RUN_TEST(a_mean_of_more_is_more_certain);
     RUN_TEST(nothing_measured_has_no_spread);
     return UNITY_END();
 }

@@ -116,6 +116,25 @@ static void make_wall_ahead(void) {
 
 /* ------------------------------------------------------------------------------------------------------- transitions -- */
 
+/* GIVEN a filter that enters a phase THEN what was counted in the one before counts no more: neither what it knew, nor what was
+ * refused, nor who agreed on a box. */
+static void a_phase_begins_with_nothing_counted(void) {
+    start();
+    goe_filter_t *filter = &estimator.filter;
+    filter->phase_images = 9;
+    filter->known = 0xFFu;
+    filter->candidate.agreeing = 2;
+    filter->health.poor = 2;
+    filter->health.recent_nis = 5.0f;
+    goe_filter_enter(filter, GOE_PHASE_CHORD);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_CHORD, phase());
+    TEST_ASSERT_EQUAL_UINT8(0, filter->phase_images);
+    TEST_ASSERT_EQUAL_UINT8(0, filter->known);
+    TEST_ASSERT_EQUAL_UINT8(0, filter->candidate.agreeing);
+    TEST_ASSERT_EQUAL_UINT8(0, filter->health.poor);
+    CHECK_SAME(GOE_NIS_NONE, filter->health.recent_nis);
+}
+
 static void a_width_starts_a_disc(void) {
     goe_image_t image;
     start();
@@ -272,6 +291,62 @@ static void what_is_not_finite_starts_the_filter_anew(void) {
     }
 }
 
+#if GOE_WITH_WINDOW
+/* ------------------------------------------------------------------------------------------------- beside the window -- */
+
+/* A box by its corners, whose filter has just stopped; the next image. */
+static goe_image_t stop(void) {
+    goe_image_t image;
+    make_box_beside(55.0);
+    fly(SEE_ALL, 60);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_TRUE(estimate.fresh && estimate.nis_rows > 0);
+    goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
+    scene_image(&scene, 60, &image, NULL);
+    return image;
+}
+
+/* GIVEN a filter that has stopped WHEN neither it nor the window can solve the image THEN its last answer stands, as an old one: it
+ * follows the motion, and tells no innovation, as the image gave none. */
+static void a_stopped_filters_answer_stands_while_nothing_else_is_known(void) {
+    goe_image_t image = stop();
+    const goe_estimate_t before = estimate;
+    hide_base(&image);
+    image.left.seen = image.right.seen = image.top.seen = false;
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_HEX32(before.valid, estimate.valid);
+    TEST_ASSERT_FALSE(estimate.fresh);
+    CHECK_SAME(before.z0_m, estimate.z0_m);
+    CHECK_CLOSE(0.05, (double)before.z_m - scene.speed_mps / scene.image_rate_hz, estimate.z_m);
+    TEST_ASSERT_EQUAL_INT(0, estimate.nis_rows);
+    CHECK_SAME(0.0f, estimate.nis);
+    TEST_ASSERT_EQUAL_INT(before.points, estimate.points);
+}
+
+/* GIVEN a filter that has stopped WHEN the window solves an image that the filter cannot start from, as its first guess of the range
+ * is none THEN the window's fresh answer takes the place of the old one. */
+static void the_window_answers_while_the_filter_cannot_start(void) {
+    settings.refined.typical_size_m = 0.1f;
+    goe_image_t image = stop();
+    hide_base(&image);
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_NONE, phase());
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_WINDOW, estimate.method);
+    TEST_ASSERT_TRUE(estimate.fresh);
+}
+
+/* GIVEN a filter that has stopped WHEN it starts anew THEN its older answer is not given up for one image of the window's: the
+ * position would jump there and back. */
+static void a_filter_that_starts_anew_keeps_its_older_answer(void) {
+    goe_image_t image = stop();
+    update(&image);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
+}
+
+#endif
 /* --------------------------------------------------------------------------------------------------------- no others -- */
 
 static void make_any_scene(void) {
@@ -309,6 +384,7 @@ static void no_other_transition_happens(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_phase_begins_with_nothing_counted);
     RUN_TEST(a_width_starts_a_disc);
     RUN_TEST(base_corners_alone_start_a_disc);
     RUN_TEST(two_faces_make_a_box_of_a_disc);
@@ -323,6 +399,11 @@ int main(void) {
     RUN_TEST(what_is_no_phase_changes_nothing);
     RUN_TEST(what_is_no_phase_starts_the_filter_anew);
     RUN_TEST(what_is_not_finite_starts_the_filter_anew);
+#if GOE_WITH_WINDOW
+    RUN_TEST(a_stopped_filters_answer_stands_while_nothing_else_is_known);
+    RUN_TEST(the_window_answers_while_the_filter_cannot_start);
+    RUN_TEST(a_filter_that_starts_anew_keeps_its_older_answer);
+#endif
     RUN_TEST(no_other_transition_happens);
     return UNITY_END();
 }

@@ -5,10 +5,12 @@
 #include <string.h>
 
 #include "check.h"
+#include "maths/goe_scalar.h"
 #include "scene.h"
 #include "sighting.h"
 
 #define CASES 100
+#define FEW 5 /* brute force is slow where double precision is emulated */
 #define RIM_POINTS 60
 #define TWO_PI 6.283185307179586
 #define RESIDUAL_BOUND 3.0e-6 /* rounding, for derivatives of 1 */
@@ -223,6 +225,265 @@ static void a_missing_side_gives_no_row(void) {
     TEST_ASSERT_EQUAL_FLOAT(right, sighting.matrix.row[0][GOE_STATE_COLUMN + GOE_BEARING]);
 }
 
+/* GIVEN an image whose own position is off THEN each row is moved by it as by a camera that stands elsewhere: by the same derivatives
+ * that the place has, the other way, and in metres. */
+static void an_own_position_error_moves_all_rows(void) {
+    double truth[GOE_STATES];
+    any = check_random_start("own position");
+    for (int n = 0; n < FEW; n++) {
+        any_prism(truth);
+        measure(truth);
+        make_rows();
+        TEST_ASSERT_FALSE(sighting.rows.shifts);
+        sighting.sight.position_sd = 0.4f;
+        make_rows();
+        TEST_ASSERT_TRUE(sighting.rows.shifts);
+        for (size_t i = 0; i < sighting.rows.count; i++) {
+            const float *by = &sighting.matrix.row[i][GOE_STATE_COLUMN];
+            const double unit = 0.4 * truth[GOE_INVERSE_RANGE]; /* in units of Z0 */
+            const double gx = (double)by[GOE_BEARING];
+            const double gy = (double)by[GOE_GROUND] - (double)by[GOE_PRISM_TOP]; /* of the one that it touches */
+            const double height = (double)sighting.sight.steady_height_m;
+            const double gz = -((double)by[GOE_INVERSE_RANGE] - gy * height + gx * 3.0) / 25.0;
+            CHECK_CLOSE(1.0e-5, -unit * gx, sighting.rows.shift[i][0]);
+            CHECK_CLOSE(1.0e-5, -unit * gy, sighting.rows.shift[i][1]);
+            CHECK_CLOSE(1.0e-5, -unit * gz, sighting.rows.shift[i][2]);
+        }
+    }
+}
+
+/* GIVEN rows of unit noise that share a position error THEN what the filter takes in has none in common: whitened by the Cholesky
+ * root of their covariance. */
+static void rows_that_share_an_error_are_whitened(void) {
+    any = check_random_start("whitening");
+    for (int n = 0; n < CASES; n++) {
+        static goe_filter_t filter;
+        double root[4][4];
+        memset(&filter, 0, sizeof filter);
+        goe_rows_clear(&sighting.rows, &sighting.matrix);
+        memset(&sighting.matrix, 0, sizeof sighting.matrix);
+        sighting.rows.count = 4;
+        sighting.rows.shifts = true;
+        sighting.rows.white_rad = 1.0e-3f;
+        for (size_t i = 0; i < 4; i++) {
+            sighting.rows.feature[i] = (uint8_t)feature_of_side[i];
+            sighting.rows.variance[i] = (float)check_random_between(&any, 0.5, 2.0); /* the weight */
+            for (size_t c = 0; c < 3; c++) {
+                sighting.rows.shift[i][c] = (float)check_random_between(&any, -1.0, 1.0);
+            }
+            for (size_t c = 0; c < GOE_COLUMNS; c++) {
+                sighting.matrix.row[i][c] = (float)check_random_between(&any, -1.0, 1.0);
+            }
+        }
+        const goe_matrix_t before = sighting.matrix;
+        for (size_t i = 0; i < 4; i++) {
+            for (size_t j = 0; j <= i; j++) {
+                const float *a = sighting.rows.shift[i];
+                const float *b = sighting.rows.shift[j];
+                double sum = (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
+                sum =
+                    (i == j ? 1.0 : 0.0) + sum * (double)sighting.rows.variance[i] * (double)sighting.rows.variance[j];
+                for (size_t k = 0; k < j; k++) {
+                    sum -= root[i][k] * root[j][k];
+                }
+                root[i][j] = i == j ? sqrt(sum) : sum / root[j][j];
+            }
+        }
+        goe_prism_learn(&filter, &sighting.rows);
+        for (size_t i = 0; i < 4; i++) { /* the root times what came out is what went in */
+            for (size_t c = 0; c < GOE_COLUMNS; c++) {
+                double sum = 0.0;
+                for (size_t j = 0; j <= i; j++) {
+                    sum += root[i][j] * (double)sighting.matrix.row[j][c];
+                }
+                CHECK_CLOSE(2.0e-5, (double)before.row[i][c], sum);
+            }
+        }
+        sighting.matrix = before;
+        sighting.rows.shifts = false;
+        goe_prism_learn(&filter, &sighting.rows);
+        TEST_ASSERT_EQUAL_MEMORY(&before, &sighting.matrix, sizeof before);
+    }
+}
+
+/* GIVEN a row of a side THEN that side's memory learns of it, and no other, with what the attitude, which all sides share, leaves
+ * of the residual to it; and a change of the state is followed by all four. */
+static void each_side_has_its_own_memory(void) {
+    static goe_filter_t filter;
+    float change[GOE_UNKNOWNS] = {0.0f};
+    for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
+        memset(&filter, 0, sizeof filter);
+        goe_rows_clear(&sighting.rows, &sighting.matrix);
+        memset(&sighting.matrix, 0, sizeof sighting.matrix);
+        sighting.rows.count = 1;
+        sighting.rows.white_rad = 2.0f;
+        sighting.rows.feature[0] = (uint8_t)feature_of_side[side];
+        sighting.rows.variance[0] = 0.5f; /* the weight */
+        const float turns[3] = {0.3f, -0.4f, 1.2f};
+        memcpy(sighting.matrix.row[0], turns, sizeof turns);
+        sighting.matrix.row[0][GOE_RESIDUAL] = 3.0f;
+        sighting.matrix.row[0][GOE_STATE_COLUMN + GOE_BEARING] = 0.7f;
+        for (size_t i = 0; i < GOE_BOX_SIDES; i++) {
+            filter.side[i].variance = 1.0f;
+        }
+        goe_prism_learn(&filter, &sighting.rows);
+        const double common = 4.0 * (0.09 + 0.16 + 1.44);
+        const double gain = 1.0 * 0.25 / (1.0 + common) / 0.5;
+        for (size_t i = 0; i < GOE_BOX_SIDES; i++) {
+            CHECK_CLOSE(1.0e-6, i == side ? 3.0 * gain : 0.0, filter.side[i].value);
+            CHECK_CLOSE(1.0e-6, i == side ? 0.7 * gain : 0.0, filter.side[i].by[GOE_BEARING]);
+            filter.side[i].by[GOE_GROUND] = (float)(i + 1);
+            filter.side[i].by[GOE_BEARING] = 0.0f;
+            filter.side[i].value = 0.0f;
+        }
+        change[GOE_GROUND] = 2.0f;
+        goe_prism_follow(&filter, change);
+        for (size_t i = 0; i < GOE_BOX_SIDES; i++) {
+            CHECK_CLOSE(1.0e-6, -2.0 * (double)(i + 1), filter.side[i].value);
+        }
+    }
+    filter.state[GOE_PRISM_DEPTH] = 2.5f; /* seven times as deep as wide is no obstacle of this model */
+    goe_prism_follow(&filter, change);
+    CHECK_SAME(2.0f, filter.state[GOE_PRISM_DEPTH]);
+    filter.state[GOE_PRISM_DEPTH] = -2.5f;
+    goe_prism_follow(&filter, change);
+    CHECK_SAME(-2.0f, filter.state[GOE_PRISM_DEPTH]);
+}
+
+/* GIVEN a side whose opposite one is not seen THEN its error, a share of the box's size, is that of the box as it is predicted; and
+ * that of a box which the border cuts is larger by the setting. */
+static void a_sides_error_is_a_share_of_the_box(void) {
+    double truth[GOE_STATES];
+    any = check_random_start("size");
+    for (int n = 0; n < FEW; n++) {
+        any_prism(truth);
+        measure(truth);
+        const goe_camera_t *camera = &sighting.settings.camera;
+        const double ahead = 1.0 - 25.0 * truth[GOE_INVERSE_RANGE];
+        const double predicted[2] = {2.0 * truth[GOE_PRISM_HALF] / ahead,
+                                     (truth[GOE_PRISM_TOP] + truth[GOE_GROUND]) / ahead};
+        for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
+            const double focal = (double)((side & 1u) != 0u ? camera->fy_px : camera->fx_px);
+            const double pixel = (double)sighting.sight.side_px / focal;
+            const size_t first = side & 1u;
+            const double seen = ((double)sides.px[first + 2u] - (double)sides.px[first]) / focal;
+            for (int alone = 0; alone < 2; alone++) {
+                const double size = alone == 1 ? predicted[first] : seen;
+                sides.usable = (uint8_t)(alone == 1 ? 1u << side : GOE_SEES_BOX);
+                for (int cut = 0; cut < 2; cut++) {
+                    sides.cut = cut == 1;
+                    sighting.settings.detector.cut_noise = 0.8f;
+                    make_rows();
+                    const double expected = pixel * pixel + (1.0e-4 + (cut == 1 ? 0.64 : 0.0)) * size * size;
+                    CHECK_CLOSE(1.0e-4 * expected, expected, sighting.rows.variance[alone == 1 ? 0 : side]);
+                }
+            }
+        }
+    }
+}
+
+/* A level camera that looks along Z and is where the track began; a box of these sides, in focal lengths from the middle. */
+static void see_box(float left, float top, float right, float bottom) {
+    static const float level[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f};
+    const goe_camera_t *camera = &sighting.settings.camera;
+    const float at[GOE_BOX_SIDES] = {left, top, right, bottom};
+    sighting_start(&sighting, &any);
+    memset(sighting.state, 0, sizeof sighting.state);
+    memcpy(sighting.sight.camera_to_axes, level, sizeof level);
+    sighting.sight.camera_m.x = sighting.sight.camera_m.z = 0.0f;
+    sighting.sight.steady_height_m = 20.0f;
+    sighting.sight.height_sd_m = 0.5f;
+    sighting.sight.sides = &sides;
+    sighting.settings.camera.cx_px = 700.0f; /* not alike along x and y */
+    sighting.settings.camera.cy_px = 400.0f;
+    for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
+        sides.px[side] = at[side] * ((side & 1u) != 0u ? camera->fy_px : camera->fx_px) +
+                         ((side & 1u) != 0u ? camera->cy_px : camera->cx_px);
+    }
+    sides.usable = GOE_SEES_BOX;
+    sides.cut = false;
+}
+
+/* GIVEN a first box THEN the filter starts with the range that its foot gives over flat ground, its near side being nearer than its
+ * middle by half the width; or, where that foot is hidden or lies so near to the horizon that errors may have put it there, with
+ * the typical size's; with the size and the top that the box shows there; and no state is more certain than that. */
+static void a_start_is_what_one_box_shows(void) {
+    goe_triangle_t root;
+    float x[GOE_STATES];
+    any = check_random_start("start");
+    see_box(-0.05f, -0.1f, 0.05f, 0.25f);
+    sighting.settings.navigation.velocity_bias_m_s = 0.1f;
+    memset(x, 0xA5, sizeof x); /* whatever was there before */
+    TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
+    for (size_t i = 0; i < 3; i++) {
+        CHECK_SAME(0.0f, x[i]);
+    }
+    CHECK_SAME(0.0f, x[GOE_PRISM_DEPTH]);
+    CHECK_SAME(0.0f, x[GOE_PRISM_UNSEEN]);
+    const double q = 1.0 / (80.0 * 1.05);
+    const double bias = 0.5 * 0.017453292519943295;
+    CHECK_CLOSE(1.0e-6, q, x[GOE_INVERSE_RANGE]);
+    CHECK_CLOSE(1.0e-6, 0.0, x[GOE_BEARING]);
+    CHECK_CLOSE(1.0e-6, 0.05, x[GOE_PRISM_HALF]);
+    CHECK_CLOSE(1.0e-6, 20.0 * q + 0.1, x[GOE_PRISM_TOP]);
+    CHECK_CLOSE(1.0e-6, 0.0, x[GOE_GROUND]);
+    const double sigma[GOE_STATES] = {bias,
+                                      bias,
+                                      hypot(bias, 0.008),
+                                      sqrt(0.25 + 4.0) * q, /* of the height, and of how far the ground may lie off */
+                                      1.0,
+                                      2.0 * q,
+                                      0.3,
+                                      2.5 * 0.1,
+                                      10.0 * (20.0 * q + 0.1),
+                                      3.0};
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        CHECK_CLOSE(1.0e-4, 1.0, sigma[i] * (double)*goe_srif_at(&root, i, i));
+    }
+    sighting.settings.model = GOE_MODEL_DISC; /* which is as deep as wide */
+    TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
+    CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_DEPTH, GOE_PRISM_DEPTH));
+    CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_UNSEEN, GOE_PRISM_UNSEEN));
+    see_box(-0.05f, -0.1f, 0.05f, 0.25f);
+    sides.usable = GOE_SEES_LEFT | GOE_SEES_RIGHT; /* no foot, no head */
+    TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
+    CHECK_CLOSE(1.0e-6, 0.1 / 6.0, x[GOE_INVERSE_RANGE]); /* 6 m under 0.1 */
+    CHECK_CLOSE(1.0e-6, 20.0 * 0.1 / 6.0, x[GOE_PRISM_TOP]);
+    see_box(-0.05f, -0.1f, 0.05f, 0.02f); /* below three sigma of attitude, pixel and share */
+    TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
+    CHECK_CLOSE(1.0e-6, 0.1 / 6.0, x[GOE_INVERSE_RANGE]);
+    see_box(-0.05f, -0.1f, 0.05f, 0.25f);
+    sighting.sight.height_sd_m = 100.0f; /* no altimeter: the first box sets the ground */
+    TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
+    CHECK_CLOSE(1.0e-6, 0.25 - 20.0 * 0.1 / 6.0, x[GOE_GROUND]);
+}
+
+/* GIVEN a box off the axis THEN the state's axes are turned towards its middle, at the middle of its height, or at the horizon where
+ * that is not seen; and a box without both of its upright sides turns nothing. */
+static void the_axes_turn_towards_the_box(void) {
+    static const float rolled[9] = {0.8f, -0.6f, 0.0f, 0.6f, 0.8f, 0.0f, 0.0f, 0.0f, 1.0f};
+    goe_filter_t filter;
+    goe_view_t view;
+    memset(&filter, 0, sizeof filter);
+    memset(&view, 0, sizeof view);
+    any = check_random_start("face");
+    for (int n = 0; n < 3; n++) {
+        see_box(0.3f, -0.1f, 0.5f, 0.3f);
+        view.camera = &sighting.settings.camera;
+        memcpy(view.camera_to_trajectory, rolled, sizeof rolled);
+        view.sides = sides;
+        view.sides.usable = n == 0   ? GOE_SEES_BOX
+                            : n == 1 ? GOE_SEES_LEFT | GOE_SEES_RIGHT
+                                     : GOE_SEES_LEFT | GOE_SEES_TOP;
+        TEST_ASSERT_EQUAL_INT(n < 2, goe_prism_face(&filter, &view));
+        const double x = 0.8 * 0.4 - 0.6 * (n == 0 ? 0.1 : 0.0);
+        if (n < 2) {
+            CHECK_CLOSE(1.0e-5, x / hypot(1.0, x), filter.axes.turn_sin);
+            CHECK_CLOSE(1.0e-5, 1.0 / hypot(1.0, x), filter.axes.turn_cos);
+        }
+    }
+}
+
 /* A flight past a truck whose base corners are seen, by its box, too. Returns the error of Z0 in sigmas; model: what is told. */
 static double fly_with_corners(bool corners, double roll_deg, goe_model_t *model) {
     scene_t scene;
@@ -262,6 +523,31 @@ static void a_box_goes_with_base_corners(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, model);
     (void)fly_with_corners(false, 8.0, &model);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_PRISM, model);
+}
+
+/* GIVEN boxes image after image THEN what each side was off by is remembered, and known ever better: it is alike in the next. */
+static void sides_are_remembered_in_flight(void) {
+    scene_t scene;
+    goe_estimator_t estimator;
+    goe_estimate_t estimate;
+    goe_image_t boxed;
+    scene_default(&scene);
+    scene.boxes = true;
+    scene.image_rate_hz = 5.0;
+    goe_settings_t settings = scene_settings(&scene);
+    settings.detector.box_share = 0.07f;
+    settings.detector.correlation_s = 5.0f;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 20; k++) {
+        scene_image(&scene, k, &boxed, NULL);
+        (void)goe_update(&estimator, &boxed, &estimate);
+    }
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_PRISM, estimator.filter.phase);
+    const float size = (boxed.box.right_px - boxed.box.left_px) / settings.camera.fx_px;
+    for (size_t side = 0; side < GOE_BOX_SIDES; side += 2) {
+        TEST_ASSERT_TRUE(estimator.filter.side[side].variance > 0.0f);
+        TEST_ASSERT_TRUE(estimator.filter.side[side].variance < 0.9f * goe_square(0.07f * size));
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------------ height -- */
@@ -675,6 +961,13 @@ int main(void) {
     RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);
     RUN_TEST(a_jump_of_the_filter_moves_the_datum);
+    RUN_TEST(an_own_position_error_moves_all_rows);
+    RUN_TEST(rows_that_share_an_error_are_whitened);
+    RUN_TEST(each_side_has_its_own_memory);
+    RUN_TEST(a_sides_error_is_a_share_of_the_box);
+    RUN_TEST(a_start_is_what_one_box_shows);
+    RUN_TEST(the_axes_turn_towards_the_box);
+    RUN_TEST(sides_are_remembered_in_flight);
     RUN_TEST(a_box_goes_with_base_corners);
     RUN_TEST(rows_are_those_of_the_touching_planes);
     RUN_TEST(a_lens_is_linearised_where_a_side_touches);

@@ -208,6 +208,45 @@ static void sigmas_shrink_with_every_image(void) {
     TEST_ASSERT_TRUE(sigma[GOE_Z0] < 0.1f * first);
 }
 
+/* What the next image adds to the information on the range, with the range known to `share` of itself as far as linearising at it goes. */
+static double information_gained(const goe_estimator_t *before, double share) {
+    estimator = *before;
+    float *v = estimator.filter.inverse.element;
+    for (size_t j = GOE_INVERSE_RANGE; j < GOE_STATES; j++) {
+        v[goe_inverse_column(j) + GOE_INVERSE_RANGE] = 0.0f;
+    }
+    v[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] =
+        (float)(share * (double)estimator.filter.state[GOE_INVERSE_RANGE]);
+    double information = 0.0;
+    (void)update();
+    TEST_ASSERT_EQUAL_UINT8(before->filter.phase, estimator.filter.phase);
+    for (size_t i = 0; i <= GOE_INVERSE_RANGE; i++) {
+        const double now = (double)*goe_srif_at(&estimator.filter.root, i, GOE_INVERSE_RANGE);
+        const double then = (double)before->filter.root.element[goe_srif_row(i) + GOE_INVERSE_RANGE];
+        information += now * now - then * then;
+    }
+    return information;
+}
+
+/* GIVEN a range that is hardly known WHEN an image comes after a good part of the way THEN it tells less of it than the same image where
+ * the range is known: what the state is linearised at may be wrong by then. */
+static void an_uncertain_range_makes_an_image_count_less(void) {
+    scene_make_cylinder(&scene);
+    start();
+    settings.refined.gate_sigma = 100.0f;
+    settings.refined.huber_sigma = 100.0f;
+    settings.navigation.position_walk_m = 0.0f; /* no time takes information away */
+    start();
+    (void)fly(0, 30);
+    const goe_estimator_t before = estimator;
+    scene_image(&scene, 30, &image, NULL);
+    const double known = information_gained(&before, 1.0e-4);
+    const double less = information_gained(&before, 0.3);
+    check_report("information gained at a range known to 30 %, over that at a known one", less / known);
+    TEST_ASSERT_TRUE(known > 0.0 && less > 0.0);
+    TEST_ASSERT_TRUE(less < 0.9 * known);
+}
+
 /* GIVEN a flight WHEN it is mirrored THEN X0 and orientation change sign and nothing else changes. */
 static void left_and_right_are_alike(void) {
     for (int shape = 0; shape < 2; shape++) {
@@ -1095,6 +1134,7 @@ int main(void) {
     RUN_TEST(boxes_come_out_as_they_are);
     RUN_TEST(cylinders_come_out_as_they_are);
     RUN_TEST(sigmas_shrink_with_every_image);
+    RUN_TEST(an_uncertain_range_makes_an_image_count_less);
     RUN_TEST(left_and_right_are_alike);
     RUN_TEST(a_constant_attitude_error_is_taken_out);
     RUN_TEST(the_covariance_is_positive_and_holds_the_sigmas);

@@ -142,6 +142,32 @@ static void an_unknown_jump_leaves_no_old_answer(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate_jumped.age_s);
 }
 
+#if GOE_WITH_REFINED
+/* GIVEN an answer of the refined method WHEN the filter jumps while nothing is seen THEN the old answer's centre, told in the autopilot's
+ * north and east, moves along with them; what counts from the camera stays. */
+static void an_old_answers_centre_moves_along(void) {
+    goe_image_t image;
+    goe_settings_t settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&jumped, sizeof jumped, &settings, NULL));
+    for (int k = 0; k < 60; k++) {
+        scene_image(&scene, k, &image, NULL);
+        (void)goe_update(&jumped, &image, &estimate_jumped);
+    }
+    const goe_estimate_t before = estimate_jumped;
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, before.method);
+    TEST_ASSERT_TRUE(before.valid & GOE_HAS_CENTER);
+    image_after(59, 1, &image);
+    tell_jump(&image, 1);
+    image.pose.time_us += 100000;
+    image.left.seen = image.right.seen = image.top.seen = false;
+    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_CLOSE(1.0e-4, (double)before.center_north_m + (double)jump[0], estimate_jumped.center_north_m);
+    CHECK_CLOSE(1.0e-4, (double)before.center_east_m + (double)jump[1], estimate_jumped.center_east_m);
+    CHECK_CLOSE(1.0e-4, (double)before.z_m, estimate_jumped.z_m);
+}
+
+#endif
 /* GIVEN a camera that hovers WHEN its filter jumps by a known amount again and again THEN there is still no baseline. */
 static void jumps_are_never_motion(void) {
     goe_image_t image;
@@ -256,6 +282,9 @@ int main(void) {
     RUN_TEST(the_counter_wraps);
     RUN_TEST(an_unknown_jump_starts_a_new_track);
     RUN_TEST(an_unknown_jump_leaves_no_old_answer);
+#if GOE_WITH_REFINED
+    RUN_TEST(an_old_answers_centre_moves_along);
+#endif
     RUN_TEST(jumps_are_never_motion);
     RUN_TEST(a_refused_image_does_not_use_up_a_jump);
     RUN_TEST(a_jump_without_a_feature_is_compensated);

@@ -78,6 +78,8 @@ static void what_is_told_is_not_counted_twice(void) {
 static void doubt_widens_and_trust_does_not_shrink(void) {
     filter.health.mean_nis = 4.0f;
     CHECK_CLOSE(2.0e-3, 4.0, goe_scatter_factor(&filter, 1.0f));
+    filter.health.mean_nis = 1.1f; /* of a tenth half is chance: 0.07^2 / 0.1 */
+    CHECK_CLOSE(1.0e-4, 1.1 - 0.049, goe_scatter_factor(&filter, 1.0f));
     filter.health.mean_nis = 1.5f;
     filter.health.excess = 2.0f;
     CHECK_CLOSE(3.0e-3, 3.0, goe_scatter_factor(&filter, 1.0f));

@@ -20,6 +20,7 @@ MODULES: dict[str, str] = {  # name: what it asks; the module of that name has r
     "reproducible": "whether two builds of the same sources give the same bits",
     "sbom": "the bill of materials: what the tests and tools install, and that the library holds nothing but itself",
     "requirements": "has every promise its code and its tests, and every test its promise",
+    "mutation": "which changes of a single token of lib/ the unit tests notice",
 }
 
 

@@ -1,0 +1,457 @@
+/* Changes of the model: what is known is told in other states, and nothing of it is lost or made up. SPDX-License-Identifier: MIT
+ *
+ * The covariance after a change, less what the change adds on purpose, must be the one before, by the derivatives of the old states
+ * by the new ones, which are taken here as differences, in double. */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "refined/goe_box.h"
+#include "refined/goe_box_start.h"
+#include "refined/goe_chord.h"
+#include "sighting.h"
+
+#define CASES 100
+#define STEP 1.0e-6
+#define SHARE 4.0e-3 /* of a covariance's size: rounding of the root */
+
+typedef double covariance_t[GOE_STATES][GOE_STATES];
+typedef void (*map_t)(const double by[GOE_STATES], double to[GOE_STATES]);
+
+static check_random_t any;
+static goe_filter_t filter;
+static sighting_t sighting;
+static double side_sign; /* of a chord: front + side, or front - side */
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* --------------------------------------------------------------------------------------------------------- covariance -- */
+
+static void covariance_of(covariance_t c) {
+    const float *v = filter.inverse.element;
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        for (size_t k = 0; k < GOE_STATES; k++) {
+            c[i][k] = 0.0;
+            for (size_t j = i > k ? i : k; j < GOE_STATES; j++) {
+                c[i][k] += (double)v[goe_inverse_column(j) + i] * (double)v[goe_inverse_column(j) + k];
+            }
+        }
+    }
+}
+
+/* The states in some triangle, each about as uncertain as it is told and with something of all that follow. */
+static void be_uncertain(const double sigma[GOE_STATES]) {
+    goe_srif_clear(&filter.root);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        *goe_srif_at(&filter.root, i, i) = (float)(1.0 / sigma[i]);
+        for (size_t j = i + 1; j < GOE_STATES; j++) {
+            *goe_srif_at(&filter.root, i, j) = (float)(check_random_between(&any, -0.4, 0.4) / sigma[j]);
+        }
+    }
+}
+
+/* J C J' of the first `count` states. */
+static void carry(size_t count, double by[GOE_STATES][GOE_STATES], covariance_t c, covariance_t to) {
+    covariance_t half;
+    for (size_t i = 0; i < count; i++) {
+        for (size_t l = 0; l < count; l++) {
+            half[i][l] = 0.0;
+            for (size_t k = 0; k < count; k++) {
+                half[i][l] += by[i][k] * c[k][l];
+            }
+        }
+    }
+    for (size_t i = 0; i < count; i++) {
+        for (size_t j = 0; j < count; j++) {
+            to[i][j] = 0.0;
+            for (size_t l = 0; l < count; l++) {
+                to[i][j] += half[i][l] * by[j][l];
+            }
+        }
+    }
+}
+
+static void check_same(size_t count, covariance_t expected, covariance_t actual) {
+    for (size_t i = 0; i < count; i++) {
+        for (size_t j = 0; j < count; j++) {
+            CHECK_CLOSE(SHARE * sqrt(expected[i][i] * expected[j][j]), expected[i][j], actual[i][j]);
+        }
+    }
+}
+
+static void read_state(double x[GOE_STATES]) {
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        x[i] = (double)filter.state[i];
+    }
+}
+
+/* Derivatives of `map` where the filter is now. */
+static void differences(map_t map, double by[GOE_STATES][GOE_STATES]) {
+    double x[GOE_STATES];
+    read_state(x);
+    for (size_t k = 0; k < GOE_STATES; k++) {
+        double up[GOE_STATES];
+        double down[GOE_STATES];
+        const double at = x[k];
+        x[k] = at + STEP;
+        map(x, up);
+        x[k] = at - STEP;
+        map(x, down);
+        x[k] = at;
+        for (size_t i = 0; i < GOE_STATES; i++) {
+            by[i][k] = (up[i] - down[i]) / (2.0 * STEP);
+        }
+    }
+}
+
+/* `before` is what the covariance now, less what was added, is in the old states. */
+static void check_carried(map_t to_old, covariance_t before, const double added[GOE_STATES]) {
+    covariance_t now;
+    covariance_t carried;
+    double by[GOE_STATES][GOE_STATES];
+    covariance_of(now);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        now[i][i] -= added[i];
+    }
+    differences(to_old, by);
+    carry(GOE_STATES, by, now, carried);
+    check_same(GOE_STATES, before, carried);
+}
+
+static void check_state(map_t to_old, const double was[GOE_STATES], size_t but) {
+    double is[GOE_STATES];
+    double back[GOE_STATES];
+    read_state(is);
+    to_old(is, back);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        if (i != but) {
+            CHECK_CLOSE(2.0e-5, was[i], back[i]);
+        }
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- input -- */
+
+static void start(void) {
+    memset(&filter, 0, sizeof filter);
+    filter.axes.turn_cos = 1.0f;
+    sighting_start(&sighting, &any);
+    sighting.sight.state = filter.state;
+    sighting.sight.camera_m.x = (float)check_random_between(&any, -6.0, 6.0);
+    filter.state[GOE_GROUND] = (float)check_random_between(&any, -0.02, 0.02);
+    filter.state[GOE_BEARING] = (float)check_random_between(&any, -0.3, 0.3);
+    filter.state[GOE_INVERSE_RANGE] = (float)(1.0 / check_random_between(&any, 60.0, 120.0));
+    filter.state[GOE_TOP] = (float)check_random_between(&any, 0.02, 0.2);
+    goe_observation_linearise(&sighting.sight);
+}
+
+/* As the edges of goe_box.h are defined: square to each other, their depths the two that differ by d. */
+static void edges_of(const double x[GOE_STATES], double *side_z, double *front_z) {
+    const double d = x[GOE_DEPTH_DIFFERENCE];
+    const double sum = sqrt(d * d + 4.0 * fabs(x[GOE_SIDE_X]) * x[GOE_FRONT_X]);
+    *side_z = 0.5 * (sum + d);
+    *front_z = (x[GOE_SIDE_X] > 0.0 ? -0.5 : 0.5) * (sum - d);
+}
+
+/* ---------------------------------------------------------------------------------------------------- a face turns away -- */
+
+/* The chord of a box by its outline, and, as the state that is idle in it, twice the angle between chord and front. */
+static void chord_of_box(const double x[GOE_STATES], double chord[GOE_STATES]) {
+    double side_z;
+    double front_z;
+    edges_of(x, &side_z, &front_z);
+    const double zeta = 1.0 + 0.5 * side_z; /* of the chord's middle */
+    memcpy(chord, x, GOE_STATES * sizeof chord[0]);
+    chord[GOE_GROUND] = x[GOE_GROUND] / zeta;
+    chord[GOE_BEARING] = (x[GOE_BEARING] + 0.5 * x[GOE_SIDE_X]) / zeta;
+    chord[GOE_INVERSE_RANGE] = x[GOE_INVERSE_RANGE] / zeta;
+    chord[GOE_SIDE_X] = (front_z + side_sign * side_z) / zeta;
+    chord[GOE_FRONT_X] = (x[GOE_FRONT_X] + side_sign * x[GOE_SIDE_X]) / zeta;
+    chord[GOE_DEPTH_DIFFERENCE] = 2.0 * atan(side_z / x[GOE_FRONT_X]);
+    chord[GOE_TOP] = x[GOE_TOP] / zeta;
+}
+
+/* A chord whose left or right end has just been left by the outline. */
+static void make_chord(bool right) {
+    const double sigma[GOE_STATES] = {0.01, 0.01, 0.01, 0.005, 0.01, 2.0e-4, 0.01, 0.01, 1.0, 0.01};
+    start();
+    filter.phase = GOE_PHASE_CHORD;
+    filter.phase_images = 100;
+    filter.state[GOE_SIDE_X] = (float)check_random_between(&any, -0.1, 0.1);
+    filter.state[GOE_FRONT_X] = (float)check_random_between(&any, 0.05, 0.2);
+    be_uncertain(sigma);
+    for (size_t i = 0; i < GOE_DEPTH_DIFFERENCE; i++) { /* idle: no image told of it */
+        *goe_srif_at(&filter.root, i, GOE_DEPTH_DIFFERENCE) = 0.0f;
+    }
+    *goe_srif_at(&filter.root, GOE_DEPTH_DIFFERENCE, GOE_TOP) = 0.0f;
+    goe_filter_invert(&filter);
+    filter.leaving.outward = 3.0f;
+    filter.leaving.turning = right ? 2.0f : -2.0f;
+    sighting.sight.camera_m.x = right ? -3.0f - 25.0f : 3.0f + 25.0f; /* the bearing moves to that side */
+    const float middle = goe_observation_reference(&sighting.sight).x / goe_observation_reference(&sighting.sight).z;
+    for (int end = 0; end < 2; end++) {
+        goe_point_t *p = &sighting.sight.point[end == 0 ? GOE_POINT_LEFT : GOE_POINT_RIGHT];
+        p->usable = true;
+        p->x = middle + (end == 0 ? -0.04f : 0.04f) * (float)check_random_between(&any, 0.2, 2.0);
+    }
+}
+
+/* The corner between the faces, at the end of the front from which the chord leads away, lies where the end that has left was seen. */
+static void check_corner(const double x[GOE_STATES], float seen_x) {
+    double side_z;
+    double front_z;
+    edges_of(x, &side_z, &front_z);
+    const double end = 0.5 * side_sign;
+    const double q = x[GOE_INVERSE_RANGE];
+    const double px = x[GOE_BEARING] + end * x[GOE_FRONT_X] - (double)sighting.sight.camera_m.x * q;
+    const double pz = 1.0 + end * front_z - (double)sighting.sight.camera_m.z * q;
+    CHECK_CLOSE(1.0e-4, px / pz, seen_x);
+}
+
+/* GIVEN a chord that becomes a box WHEN one face has turned away THEN what was known of its ends is known of the box's outer corners,
+ * a little less well for the images in which it went unnoticed; the corner between them is somewhere on the circle over the
+ * chord; and the images to come are free to correct it. */
+static void a_box_by_its_outline_knows_what_the_chord_knew(void) {
+    int changed = 0;
+    any = check_random_start("a face turns away");
+    for (int n = 0; n < 20 * CASES && changed < CASES; n++) {
+        covariance_t before;
+        double was[GOE_STATES];
+        make_chord(n % 2 != 0);
+        covariance_of(before);
+        read_state(was);
+        const double length = hypot(was[GOE_SIDE_X], was[GOE_FRONT_X]);
+        const double roof = 20.0 * was[GOE_INVERSE_RANGE] - was[GOE_TOP];
+        const double top = fabs(roof / (double)goe_observation_reference(&sighting.sight).z);
+        if (!goe_chord_change(&filter, &sighting.sight) || filter.phase != GOE_PHASE_BOX_OUTLINE) {
+            continue; /* the ray does not meet the circle */
+        }
+        const double free2 = 1.0e-4 * length * length;
+        const double added[GOE_STATES] = {[GOE_SIDE_X] = free2,
+                                          [GOE_FRONT_X] = free2,
+                                          [GOE_DEPTH_DIFFERENCE] = free2,
+                                          [GOE_TOP] = 0.25 * top * top * length * length};
+        before[GOE_SIDE_X][GOE_SIDE_X] += 0.01 * length * length;
+        before[GOE_FRONT_X][GOE_FRONT_X] += 0.0025 * length * length;
+        before[GOE_DEPTH_DIFFERENCE][GOE_DEPTH_DIFFERENCE] = 0.25; /* (0.5 rad)^2 */
+        side_sign = 1.0;
+        double is[GOE_STATES];
+        double back[GOE_STATES];
+        read_state(is);
+        chord_of_box(is, back);
+        side_sign = fabs(back[GOE_FRONT_X] - was[GOE_FRONT_X]) < 1.0e-4 ? 1.0 : -1.0;
+        check_corner(is, sighting.sight.point[n % 2 != 0 ? GOE_POINT_RIGHT : GOE_POINT_LEFT].x);
+        check_state(chord_of_box, was, GOE_DEPTH_DIFFERENCE);
+        check_carried(chord_of_box, before, added);
+        changed++;
+    }
+    TEST_ASSERT_EQUAL_INT(CASES, changed);
+}
+
+/* ------------------------------------------------------------------------------------------------ front and side change names -- */
+
+/* The box with its names exchanged: the other edge is called front, from whose middle all counts then. */
+static void renamed(const double x[GOE_STATES], double to[GOE_STATES]) {
+    double side_z;
+    double front_z;
+    edges_of(x, &side_z, &front_z);
+    const double sign = x[GOE_SIDE_X] > 0.0 ? 1.0 : -1.0;
+    /* from the middle of the front half a front to the end at which the side becomes the front, and half of that */
+    const double zeta = 1.0 + 0.5 * (sign * front_z + side_z);
+    memcpy(to, x, GOE_STATES * sizeof to[0]);
+    to[GOE_GROUND] = x[GOE_GROUND] / zeta;
+    to[GOE_BEARING] = (x[GOE_BEARING] + 0.5 * (sign * x[GOE_FRONT_X] + x[GOE_SIDE_X])) / zeta;
+    to[GOE_INVERSE_RANGE] = x[GOE_INVERSE_RANGE] / zeta;
+    to[GOE_SIDE_X] = -sign * x[GOE_FRONT_X] / zeta;
+    to[GOE_FRONT_X] = fabs(x[GOE_SIDE_X]) / zeta;
+    to[GOE_DEPTH_DIFFERENCE] = (fabs(front_z) - side_z) / zeta;
+    to[GOE_TOP] = x[GOE_TOP] / zeta;
+}
+
+/* GIVEN a box that is seen from so far aside that its side lies across THEN side and front change names, and all that is known of
+ * the one is known of the other. */
+static void a_box_by_other_names_is_known_as_well(void) {
+    const double sigma[GOE_STATES] = {0.01, 0.01, 0.01, 0.005, 0.01, 2.0e-4, 0.01, 0.01, 0.01, 0.01};
+    const double nothing[GOE_STATES] = {0.0};
+    any = check_random_start("other names");
+    for (int n = 0; n < CASES; n++) {
+        covariance_t before;
+        double was[GOE_STATES];
+        start();
+        filter.phase = GOE_PHASE_BOX;
+        filter.state[GOE_SIDE_X] = (float)((n % 2 == 0 ? 1.0 : -1.0) * check_random_between(&any, 0.1, 0.2));
+        filter.state[GOE_FRONT_X] = (float)check_random_between(&any, 0.03, 0.05);
+        filter.state[GOE_DEPTH_DIFFERENCE] = (float)check_random_between(&any, -0.08, -0.02);
+        be_uncertain(sigma);
+        goe_filter_invert(&filter);
+        covariance_of(before);
+        read_state(was);
+        TEST_ASSERT_TRUE(goe_box_change(&filter, &sighting.sight));
+        TEST_ASSERT_TRUE(filter.naming.exchanged);
+        check_state(renamed, was, GOE_STATES);
+        check_carried(renamed, before, nothing);
+    }
+}
+
+/* GIVEN a box of which one face was seen WHEN the second comes into view THEN its length, which was held, is open by twice itself, along
+ * the side and nothing else. */
+static void a_second_face_opens_the_length_alone(void) {
+    const double sigma[GOE_STATES] = {0.01, 0.01, 0.01, 0.005, 0.01, 2.0e-4, 0.01, 0.01, 0.01, 0.01};
+    any = check_random_start("second face");
+    for (int n = 0; n < CASES; n++) {
+        covariance_t before;
+        covariance_t now;
+        double x[GOE_STATES];
+        double side_z;
+        double front_z;
+        start();
+        filter.phase = GOE_PHASE_BOX_FACE;
+        filter.state[GOE_SIDE_X] = (float)check_random_between(&any, -0.05, 0.05);
+        filter.state[GOE_FRONT_X] = (float)check_random_between(&any, 0.03, 0.1);
+        filter.state[GOE_DEPTH_DIFFERENCE] = (float)check_random_between(&any, 0.05, 0.1);
+        be_uncertain(sigma);
+        goe_filter_invert(&filter);
+        covariance_of(before);
+        read_state(x);
+        edges_of(x, &side_z, &front_z);
+        sighting.sight.point[GOE_POINT_BASE_NEAR].usable = true;
+        TEST_ASSERT_FALSE(goe_box_change(&filter, &sighting.sight)); /* without the outer corners it is none */
+        sighting.sight.base = true;
+        TEST_ASSERT_TRUE(goe_box_change(&filter, &sighting.sight));
+        TEST_ASSERT_EQUAL_INT(GOE_PHASE_BOX, filter.phase);
+        const double along[GOE_STATES] = {[GOE_SIDE_X] = 2.0 * x[GOE_SIDE_X], [GOE_DEPTH_DIFFERENCE] = 2.0 * side_z};
+        for (size_t i = 0; i < GOE_STATES; i++) {
+            for (size_t j = 0; j < GOE_STATES; j++) {
+                before[i][j] += along[i] * along[j];
+            }
+        }
+        covariance_of(now);
+        check_same(GOE_STATES, before, now);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- a box starts -- */
+
+/* A disc whose base corners have shown the two faces, or the one, of the same box often enough before. */
+static void make_disc(bool both, goe_footprint_t *box) {
+    const double sigma[GOE_STATES] = {0.01, 0.01, 0.01, 0.005, 0.01, 1.0e-4, 0.01, 0.01, 0.01, 0.01};
+    const double z = 1.0 / (double)filter.state[GOE_INVERSE_RANGE] - 25.0;
+    const double x = check_random_between(&any, -0.2, 0.2);
+    const double xs[3] = {x - 0.06, x + 0.01, x + 0.07};
+    const double nearer[3] = {0.04, 0.0, -0.04};
+    filter.phase = GOE_PHASE_DISC;
+    filter.state[GOE_FRONT_X] = 0.1f;
+    be_uncertain(sigma);
+    goe_filter_invert(&filter);
+    filter.drift_rad2 = 4.0e-5f;
+    filter.walk2 = 3.0e-5f;
+    for (size_t i = 0; i < 3; i++) {
+        goe_point_t *p = &sighting.sight.point[GOE_POINT_BASE_LEFT + i];
+        p->x = (float)xs[i];
+        p->y = (float)(20.0 / z * (1.0 + nearer[i]));
+        p->usable = both || i != 1;
+    }
+    sighting.sight.base = true;
+    sighting.sight.point_px = 0.1f;
+    sighting.settings.navigation.attitude_bias_deg = 0.01f;
+    memset(box, 0, sizeof *box);
+    TEST_ASSERT_TRUE(both ? goe_footprint_two_faces(&sighting.sight, box)
+                          : goe_footprint_one_face(&sighting.sight, box));
+    filter.candidate.both = both;
+    filter.candidate.agreeing = 2;
+    filter.candidate.extent[0] = both ? box->left : box->orientation_rad;
+    filter.candidate.extent[1] = both ? box->right : 0.0f;
+}
+
+static goe_footprint_t footprint; /* that the box starts from */
+static double scale;              /* of its units by the disc's */
+
+/* Ground, bearing and range about the axes of the box. */
+static void turned(const double x[GOE_STATES], double to[GOE_STATES]) {
+    const double c = (double)footprint.turn_cos;
+    const double s = (double)footprint.turn_sin;
+    const double zeta = x[GOE_BEARING] * s + c;
+    memcpy(to, x, GOE_STATES * sizeof to[0]);
+    to[GOE_GROUND] = x[GOE_GROUND] * scale;
+    to[GOE_BEARING] = (x[GOE_BEARING] * c - s) / zeta;
+    to[GOE_INVERSE_RANGE] = x[GOE_INVERSE_RANGE] / zeta;
+}
+
+/* GIVEN a disc that becomes a box THEN it keeps what it knew of attitude, ground, place and range, with what the biases and the place
+ * have gained since; the place is open again by the size of the box, as another point of it counts from now on, and the range by as
+ * much; extents are open but for the length of a single face, which nothing tells. */
+static void a_box_begins_with_what_the_disc_knew(void) {
+    any = check_random_start("a box starts");
+    for (int n = 0; n < CASES; n++) {
+        const bool both = n % 2 == 0;
+        covariance_t before;
+        covariance_t expected;
+        covariance_t now;
+        double by[GOE_STATES][GOE_STATES];
+        start();
+        memset(filter.state, 0, 3 * sizeof filter.state[0]);
+        goe_observation_linearise(&sighting.sight);
+        make_disc(both, &footprint);
+        covariance_of(before);
+        for (size_t i = 0; i < 3; i++) {
+            before[i][i] += 4.0e-5;
+        }
+        before[GOE_BEARING][GOE_BEARING] += 3.0e-5;
+        scale = (double)footprint.q / (double)filter.state[GOE_INVERSE_RANGE];
+        differences(turned, by);
+        const double top = (double)filter.state[GOE_TOP] * scale;
+        const double ground = (double)filter.state[GOE_GROUND] * scale;
+        TEST_ASSERT_TRUE(goe_box_start(&filter, &sighting.sight));
+        const double size = fmax((double)footprint.width, (double)footprint.length);
+        carry(GOE_KEPT, by, before, expected);
+        expected[GOE_BEARING][GOE_BEARING] = 4.0 * expected[GOE_BEARING][GOE_BEARING] + 16.0 * size * size + 1.0e-6;
+        expected[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] = 2.0 * expected[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] +
+                                                         size * size * (double)footprint.q * (double)footprint.q;
+        covariance_of(now);
+        check_same(GOE_KEPT, expected, now);
+        const double sigma[] = {2.0 * size, 2.0 * size, (both ? 4.0 : 0.01) * size, 2.0 * fmax(fabs(top), size)};
+        for (size_t i = 0; i < 4; i++) {
+            CHECK_CLOSE(1.0e-3 * sigma[i], sigma[i], sqrt(now[GOE_KEPT + i][GOE_KEPT + i]));
+        }
+        CHECK_CLOSE(1.0e-6, top, filter.state[GOE_TOP]);
+        CHECK_CLOSE(1.0e-6, ground, filter.state[GOE_GROUND]);
+        CHECK_SAME(0.0f, filter.drift_rad2); /* it is in the covariance now, and must not count twice */
+        CHECK_SAME(0.0f, filter.walk2);
+        TEST_ASSERT_EQUAL_INT(both ? GOE_PHASE_BOX : GOE_PHASE_BOX_FACE, filter.phase);
+    }
+}
+
+/* GIVEN one face WHEN its orientation differs from that of the image before THEN the count of images that agree begins anew with
+ * this one; nor do images of one face and of two agree. */
+static void only_images_that_agree_start_a_box(void) {
+    goe_footprint_t box;
+    any = check_random_start("agreement");
+    start();
+    memset(filter.state, 0, 3 * sizeof filter.state[0]);
+    goe_observation_linearise(&sighting.sight);
+    make_disc(false, &box);
+    filter.candidate.extent[0] = box.orientation_rad + 0.5f;
+    TEST_ASSERT_FALSE(goe_box_start(&filter, &sighting.sight));
+    TEST_ASSERT_EQUAL_UINT8(1, filter.candidate.agreeing);
+    TEST_ASSERT_FALSE(goe_box_start(&filter, &sighting.sight));
+    TEST_ASSERT_EQUAL_UINT8(2, filter.candidate.agreeing);
+    TEST_ASSERT_TRUE(goe_box_start(&filter, &sighting.sight)); /* the third */
+    start();
+    memset(filter.state, 0, 3 * sizeof filter.state[0]);
+    make_disc(true, &box);
+    filter.candidate.both = false;
+    TEST_ASSERT_FALSE(goe_box_start(&filter, &sighting.sight));
+    TEST_ASSERT_EQUAL_UINT8(1, filter.candidate.agreeing);
+    TEST_ASSERT_TRUE(goe_box_start(&filter, &sighting.sight)); /* the second */
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_box_by_its_outline_knows_what_the_chord_knew);
+    RUN_TEST(a_box_by_other_names_is_known_as_well);
+    RUN_TEST(a_second_face_opens_the_length_alone);
+    RUN_TEST(a_box_begins_with_what_the_disc_knew);
+    RUN_TEST(only_images_that_agree_start_a_box);
+    return UNITY_END();
+}

@@ -1,0 +1,182 @@
+/* What two poses tell of the own motion between them, and what a late pose makes of it. SPDX-License-Identifier: MIT */
+#include "image/goe_ego_motion.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "refined/goe_filter.h"
+
+#define HEADING 0.4 /* of the nose at the first image, rad: T's Z axis */
+
+static goe_motion_t motion;
+static goe_settings_t settings;
+static goe_view_t view;
+static goe_image_t image;
+static goe_filter_t filter;
+
+void setUp(void) {
+    static const float forward[9] = {0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f};
+    goe_settings_default(&settings);
+    memset(&motion, 0, sizeof motion);
+    memset(&view, 0, sizeof view);
+    memset(&image, 0, sizeof image);
+    memset(&filter, 0, sizeof filter);
+    motion.time_us = GOE_TIME_UNKNOWN;
+    view.image = &image;
+    view.motion = &motion;
+    view.camera = &settings.camera;
+    view.camera_to_body = forward;
+}
+void tearDown(void) {}
+
+/* The pose at t: the aircraft flies along its nose at 12 m/s and across it at 3 m/s, yawing at 0.5 rad/s, from level. */
+static void follow(double t) {
+    const double yaw = HEADING + 0.5 * t;
+    image.pose.time_us = 1000000 + (int64_t)(t * 1.0e6 + 0.5);
+    image.pose.attitude[0] = (float)cos(0.5 * yaw);
+    image.pose.attitude[3] = (float)sin(0.5 * yaw);
+    image.pose.position_ned_m[0] = (float)((12.0 * cos(HEADING) - 3.0 * sin(HEADING)) * t);
+    image.pose.position_ned_m[1] = (float)((12.0 * sin(HEADING) + 3.0 * cos(HEADING)) * t);
+    goe_motion_follow(&motion, &settings, &view);
+}
+
+/* GIVEN two poses a tenth of a second apart THEN rate and velocity are those between them, in T: about its Y axis, which points down,
+ * and along Z and X. */
+static void two_poses_tell_rate_and_velocity(void) {
+    follow(0.0);
+    TEST_ASSERT_FALSE(motion.paced);
+    follow(0.1);
+    TEST_ASSERT_TRUE(motion.paced);
+    CHECK_CLOSE(1.0e-3, 0.0, motion.rate_rad_s[0]);
+    CHECK_CLOSE(1.0e-3, 0.5, motion.rate_rad_s[1]);
+    CHECK_CLOSE(1.0e-3, 0.0, motion.rate_rad_s[2]);
+    CHECK_CLOSE(1.0e-3, 3.0, motion.velocity_m_s[0]);
+    CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
+    CHECK_SAME(0.0f, motion.rate_before_rad_s[1]);
+    follow(0.2); /* the rate before is that of the span before, in which this pose's error has no part */
+    CHECK_CLOSE(1.0e-3, 0.5, motion.rate_before_rad_s[1]);
+}
+
+/* GIVEN a nose that pitches up and a wing that drops THEN their rates are about X and Z. */
+static void pitch_and_roll_are_about_x_and_z(void) {
+    for (int n = 0; n < 2; n++) {
+        setUp();
+        image.pose.attitude[0] = 1.0f;
+        image.pose.time_us = 1000000;
+        goe_motion_follow(&motion, &settings, &view);
+        image.pose.time_us = 1100000;
+        image.pose.attitude[0] = (float)cos(0.02);
+        image.pose.attitude[n == 0 ? 2 : 1] = (float)sin(0.02);
+        goe_motion_follow(&motion, &settings, &view);
+        CHECK_CLOSE(1.0e-3, n == 0 ? 0.4 : 0.0, motion.rate_rad_s[0]);
+        CHECK_CLOSE(1.0e-3, n == 1 ? 0.4 : 0.0, motion.rate_rad_s[2]);
+    }
+}
+
+/* GIVEN a camera on an arm of an aircraft that turns THEN the velocity is the vehicle's, not that with which the arm swings: two cameras
+ * must tell the same of it. */
+static void the_velocity_is_the_vehicles(void) {
+    settings.camera.offset_m[0] = 4.0f;
+    settings.camera.offset_m[1] = -2.0f;
+    follow(0.0);
+    follow(0.1);
+    CHECK_CLOSE(1.0e-3, 3.0, motion.velocity_m_s[0]);
+    CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
+}
+
+/* GIVEN poses that lie too near to each other THEN they tell their own noise, and the ones before stand; too far apart, they tell a mean,
+ * and nothing is told; nor over a jump of the autopilot's filter. */
+static void only_poses_a_good_way_apart_tell(void) {
+    follow(0.0);
+    follow(0.04);
+    TEST_ASSERT_FALSE(motion.paced); /* nearer than 45 ms: not yet */
+    follow(0.06);
+    TEST_ASSERT_TRUE(motion.paced);
+    CHECK_CLOSE(2.0e-3, 12.0, motion.velocity_m_s[1]);
+    follow(0.10); /* the mark is still the first: the span grows to 90 ms */
+    CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
+    follow(0.71);
+    TEST_ASSERT_FALSE(motion.paced);
+    CHECK_SAME(0.0f, motion.rate_rad_s[1]);
+    CHECK_SAME(0.0f, motion.rate_before_rad_s[1]);
+    follow(0.81);
+    TEST_ASSERT_TRUE(motion.paced);
+    image.pose.reset_count = 1;
+    image.pose.reset_delta_known = true;
+    follow(0.91);
+    TEST_ASSERT_FALSE(motion.paced);
+}
+
+/* GIVEN a pose that is half turned about from the one before THEN that is a jump, not a rate. */
+static void a_jump_of_the_attitude_is_no_rate(void) {
+    follow(0.0);
+    image.pose.time_us += 100000;
+    image.pose.attitude[0] = 0.0f;
+    image.pose.attitude[3] = 1.0f;
+    goe_motion_follow(&motion, &settings, &view);
+    TEST_ASSERT_FALSE(motion.paced);
+    setUp();
+    follow(0.0);
+    for (int i = 0; i < 4; i++) { /* the same attitude by the other quaternion is no jump */
+        image.pose.attitude[i] = -image.pose.attitude[i];
+    }
+    image.pose.time_us += 100000;
+    goe_motion_follow(&motion, &settings, &view);
+    TEST_ASSERT_TRUE(motion.paced);
+    CHECK_CLOSE(1.0e-5, 0.0, motion.rate_rad_s[1]);
+}
+
+/* GIVEN a filter whose poses are late THEN the camera is where it was that much before: behind by what it has gained in velocity since
+ * the filter's start, as a constant velocity only shifts where it began; and of a velocity that is not known nothing is gained. */
+static void late_poses_are_behind_by_what_was_gained(void) {
+    follow(0.0);
+    filter.axes.turn_cos = 0.8f;
+    filter.axes.turn_sin = 0.6f;
+    filter.axes.start_velocity_m_s[0] = 1.0f;
+    filter.axes.start_velocity_m_s[1] = 2.0f;
+    filter.paced = 1;
+    goe_xz_t gained = goe_filter_gained(&filter, &motion);
+    CHECK_SAME(0.0f, gained.x); /* the motion knows of none yet */
+    CHECK_SAME(0.0f, gained.z);
+    follow(0.1);
+    filter.paced = 0;
+    gained = goe_filter_gained(&filter, &motion);
+    CHECK_SAME(0.0f, gained.x);
+    CHECK_SAME(0.0f, gained.z);
+    filter.paced = 1;
+    gained = goe_filter_gained(&filter, &motion);
+    CHECK_CLOSE(1.0e-3, 0.8 * 2.0 - 0.6 * 10.0, gained.x);
+    CHECK_CLOSE(1.0e-3, 0.6 * 2.0 + 0.8 * 10.0, gained.z);
+    filter.mover.beside[0] = 0.2f;
+    filter.axes.start_dx_m = 0.5f;
+    filter.axes.start_dz_m = 0.25f;
+    const goe_xz_t camera = goe_filter_camera(&filter, &motion);
+    const double dx = 0.3 - 0.5;
+    const double dz = 1.2 - 0.25;
+    CHECK_CLOSE(1.0e-3, 0.8 * dx - 0.6 * dz + 0.2 * (double)gained.x, camera.x);
+    CHECK_CLOSE(1.0e-3, 0.6 * dx + 0.8 * dz + 0.2 * (double)gained.z, camera.z);
+    /* of an obstacle that is followed, less by what that has moved */
+    filter.mover.followed = 1;
+    filter.mover.beside[0] = 0.0f;
+    filter.mover.beside[1] = 5.0f;
+    filter.mover.beside[2] = -7.0f;
+    filter.axes.start_time_us = motion.time_us - 2000000;
+    const goe_xz_t moved = goe_filter_moved(&filter, &motion);
+    CHECK_CLOSE(1.0e-4, 10.0, moved.x);
+    CHECK_CLOSE(1.0e-4, -14.0, moved.z);
+    const goe_xz_t behind = goe_filter_camera(&filter, &motion);
+    CHECK_CLOSE(1.0e-3, 0.8 * (dx - 10.0) - 0.6 * (dz + 14.0), behind.x);
+    CHECK_CLOSE(1.0e-3, 0.6 * (dx - 10.0) + 0.8 * (dz + 14.0), behind.z);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(two_poses_tell_rate_and_velocity);
+    RUN_TEST(pitch_and_roll_are_about_x_and_z);
+    RUN_TEST(the_velocity_is_the_vehicles);
+    RUN_TEST(only_poses_a_good_way_apart_tell);
+    RUN_TEST(a_jump_of_the_attitude_is_no_rate);
+    RUN_TEST(late_poses_are_behind_by_what_was_gained);
+    return UNITY_END();
+}

@@ -1,0 +1,449 @@
+/* What the filter's state means in metres, how certain that is, and what is told of it. SPDX-License-Identifier: MIT
+ *
+ * Each variance must be that of the state's covariance, by derivatives that are taken here as differences of the values
+ * themselves; to it comes, on purpose, what no image can show. */
+#include "refined/goe_quantities.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "refined/goe_box.h"
+#include "refined/goe_disc.h"
+
+#define CASES 100
+#define SHARE 0.02 /* differences of floats */
+#define CERTAIN 1.0e-9
+
+static check_random_t any;
+static goe_filter_t filter;
+static goe_settings_t settings;
+static goe_motion_t motion;
+static goe_quantities_t quantities;
+static double sigma_of[GOE_STATES];
+
+static const goe_phase_t phases[] = {GOE_PHASE_PRISM,    GOE_PHASE_DISC, GOE_PHASE_CHORD,
+                                     GOE_PHASE_BOX_FACE, GOE_PHASE_BOX,  GOE_PHASE_BOX_OUTLINE};
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static double between(double low, double high) { return check_random_between(&any, low, high); }
+
+static bool is_box(goe_phase_t phase) { return phase >= GOE_PHASE_BOX_FACE; }
+
+/* An obstacle some way ahead, about axes turned anyhow, some way into the track; nothing of the own motion is wrong. */
+static void make_any(goe_phase_t phase) {
+    const double turn = between(-0.5, 0.5);
+    const double heading = between(-3.1, 3.1);
+    memset(&filter, 0, sizeof filter);
+    memset(&motion, 0, sizeof motion);
+    goe_settings_default(&settings);
+    settings.navigation.velocity_bias_m_s = 0.0f;
+    settings.navigation.position_walk_m = 0.0f;
+    filter.phase = (uint8_t)phase;
+    filter.phase_images = 100;
+    filter.known = 0xFFu;
+    filter.axes.turn_cos = (float)cos(turn);
+    filter.axes.turn_sin = (float)sin(turn);
+    filter.axes.start_dx_m = (float)between(-5.0, 5.0);
+    filter.axes.start_dz_m = (float)between(0.0, 20.0);
+    filter.axes.start_time_us = 3000000;
+    motion.start_time_us = 1000000;
+    motion.time_us = 13000000;
+    motion.heading_cos = (float)cos(heading);
+    motion.heading_sin = (float)sin(heading);
+    motion.origin_ne_m[0] = (float)between(-100.0, 100.0);
+    motion.origin_ne_m[1] = (float)between(-100.0, 100.0);
+    motion.height_m = 15.0f;
+    motion.dx_m = filter.axes.start_dx_m + (float)between(-3.0, 3.0);
+    motion.dz_m = filter.axes.start_dz_m + (float)between(20.0, 40.0);
+    const bool prism = phase == GOE_PHASE_PRISM;
+    const double q = 1.0 / between(80.0, 150.0);
+    filter.state[GOE_GROUND] = (float)(between(-1.0, 1.0) * q);
+    filter.state[GOE_BEARING] = (float)between(-0.3, 0.3);
+    filter.state[GOE_INVERSE_RANGE] = (float)q;
+    filter.state[GOE_SIDE_X] = (float)(prism ? between(-0.5, 0.5) : between(3.0, 6.0) * (between(-1, 1) > 0 ? q : -q));
+    filter.state[GOE_FRONT_X] = (float)(between(8.0, 16.0) * q);
+    filter.state[GOE_DEPTH_DIFFERENCE] = (float)(between(6.0, 12.0) * q);
+    filter.state[GOE_TOP] = (float)(prism ? 0.0 : between(8.0, 20.0) * q);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        sigma_of[i] = i < GOE_GROUND ? 0.01 : i == GOE_INVERSE_RANGE ? 0.01 * q : 0.3 * q;
+    }
+    if (prism) {
+        sigma_of[GOE_PRISM_DEPTH] = 0.1;
+        sigma_of[GOE_PRISM_UNSEEN] = 1.0;
+    } else if (phase == GOE_PHASE_DISC) {
+        filter.state[GOE_SIDE_X] = 0.0f; /* a true disc: its condition moves nothing */
+    }
+}
+
+static void be_uncertain(double share) {
+    goe_srif_clear(&filter.root);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        *goe_srif_at(&filter.root, i, i) = (float)(1.0 / (share * sigma_of[i]));
+        for (size_t j = i + 1; j < GOE_STATES; j++) {
+            *goe_srif_at(&filter.root, i, j) = (float)(between(-0.3, 0.3) / (share * sigma_of[j]));
+        }
+    }
+    goe_filter_invert(&filter);
+}
+
+/* Of the states. That a disc has no skew is in its values, and so in their differences. */
+static void covariance_of(double c[GOE_STATES][GOE_STATES]) {
+    const float *v = filter.inverse.element;
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        for (size_t k = 0; k < GOE_STATES; k++) {
+            c[i][k] = 0.0;
+            for (size_t j = i > k ? i : k; j < GOE_STATES; j++) {
+                c[i][k] += (double)v[goe_inverse_column(j) + i] * (double)v[goe_inverse_column(j) + k];
+            }
+        }
+    }
+}
+
+enum { NORTH = GOE_QUANTITIES, EAST, VALUES };
+
+static void values_of(double values[VALUES]) {
+    goe_quantities_t q;
+    goe_quantities_find(&filter, &settings, &motion, &q);
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        values[i] = (double)q.value[i];
+    }
+    values[NORTH] = (double)q.center_m[0];
+    values[EAST] = (double)q.center_m[1];
+}
+
+/* J C J', J by differences. */
+static void expected_covariance(double expected[VALUES][VALUES]) {
+    double c[GOE_STATES][GOE_STATES];
+    double by[VALUES][GOE_STATES];
+    double half[VALUES][GOE_STATES];
+    covariance_of(c);
+    for (size_t k = 0; k < GOE_STATES; k++) {
+        double up[VALUES];
+        double down[VALUES];
+        const float at = filter.state[k];
+        const float step = (float)(0.1 * sigma_of[k]);
+        filter.state[k] = at + step;
+        const float above = filter.state[k];
+        values_of(up);
+        filter.state[k] = at - step;
+        const float below = filter.state[k];
+        values_of(down);
+        filter.state[k] = at;
+        for (size_t i = 0; i < VALUES; i++) {
+            by[i][k] = (up[i] - down[i]) / ((double)above - (double)below);
+        }
+    }
+    for (size_t i = 0; i < VALUES; i++) {
+        for (size_t l = 0; l < GOE_STATES; l++) {
+            half[i][l] = 0.0;
+            for (size_t k = 0; k < GOE_STATES; k++) {
+                half[i][l] += by[i][k] * c[k][l];
+            }
+        }
+    }
+    for (size_t i = 0; i < VALUES; i++) {
+        for (size_t j = 0; j < VALUES; j++) {
+            expected[i][j] = 0.0;
+            for (size_t l = 0; l < GOE_STATES; l++) {
+                expected[i][j] += half[i][l] * by[j][l];
+            }
+        }
+    }
+}
+
+/* On purpose: a box's corner by a poorly known depth counts more. */
+static double early_of(void) {
+    goe_box_edges_t edges;
+    goe_box_edges(filter.state, &edges);
+    const double sum = (double)edges.sum;
+    const double relative = (double)goe_filter_variance(&filter, GOE_DEPTH_DIFFERENCE) / (sum * sum);
+    return is_box(goe_filter_phase(&filter)) ? 1.0 + 4.0 * fmin(relative, 4.0) : 1.0;
+}
+
+/* On purpose: a chord's middle may lie beside the obstacle's. */
+static double place_of(int value) {
+    const bool place = value == GOE_X0 || value == GOE_Z0 || value >= GOE_QUANTITIES;
+    const double beside = 0.25 * (double)filter.state[GOE_FRONT_X] / (double)filter.state[GOE_INVERSE_RANGE];
+    return place && filter.phase == GOE_PHASE_CHORD ? beside * beside : 0.0;
+}
+
+static bool is_of_corner(int quantity) { return quantity >= GOE_ORIENTATION && quantity <= GOE_LENGTH; }
+
+/* -------------------------------------------------------------------------------------------------------------- tests -- */
+
+/* GIVEN any state of any phase and an own motion that is exact THEN the sigma of each quantity, of the centre in north and east, and
+ * the covariance of the two are those of the state. */
+static void sigmas_are_those_of_the_state(void) {
+    any = check_random_start("sigmas");
+    for (int n = 0; n < CASES; n++) {
+        double expected[VALUES][VALUES];
+        const goe_phase_t phase = phases[n % 5]; /* an outline adds to it, below */
+        make_any(phase);
+        be_uncertain(1.0);
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        TEST_ASSERT_TRUE(quantities.known & GOE_HAS_POSITION);
+        expected_covariance(expected);
+        for (int i = 0; i < VALUES; i++) {
+            expected[i][i] += place_of(i);
+        }
+        for (int i = 0; i < GOE_QUANTITIES; i++) {
+            const double factor = is_of_corner(i) ? early_of() : 1.0;
+            if (expected[i][i] > 0.0) {
+                CHECK_CLOSE(SHARE, 1.0, (double)quantities.sigma[i] / sqrt(expected[i][i] * factor));
+            }
+        }
+        if (quantities.known & GOE_HAS_CENTER) {
+            const double both = sqrt(expected[NORTH][NORTH] * expected[EAST][EAST]);
+            CHECK_CLOSE(SHARE, 1.0, (double)quantities.center_sd_m[0] / sqrt(expected[NORTH][NORTH]));
+            CHECK_CLOSE(SHARE, 1.0, (double)quantities.center_sd_m[1] / sqrt(expected[EAST][EAST]));
+            CHECK_CLOSE(2.0 * SHARE * both, expected[NORTH][EAST], quantities.center_ne_m2);
+        }
+        TEST_ASSERT_TRUE((quantities.known & GOE_HAS_CENTER) || phase == GOE_PHASE_BOX_FACE || is_box(phase));
+    }
+}
+
+/* GIVEN a prism, of which no image shows how deep it is THEN that widens its sigmas, and silences nothing: what is known is decided without
+ * it. Of all others what the last state adds is as good as the rest. */
+static void what_no_image_shows_silences_nothing(void) {
+    any = check_random_start("unseen");
+    for (int n = 0; n < CASES; n++) {
+        const goe_phase_t phase = phases[n % 5];
+        make_any(phase);
+        be_uncertain(1.0);
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        const goe_quantities_t with = quantities;
+        for (size_t i = 0; i < GOE_STATES; i++) { /* as if it were known */
+            filter.inverse.element[goe_inverse_column(GOE_STATES - 1) + i] = 0.0f;
+        }
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        for (int i = 0; i < GOE_QUANTITIES; i++) {
+            const double expected = (double)(phase == GOE_PHASE_PRISM ? quantities.sigma[i] : with.sigma[i]);
+            CHECK_CLOSE(2.0e-3 * expected + 1.0e-6, expected, with.worked_out[i]);
+        }
+    }
+}
+
+static double square_of(float a, float b) { return (double)a * (double)a + (double)b * (double)b; }
+
+/* GIVEN something that is estimated beside the state, as the latency is THEN what the state is uncertain by with it widens the place, in T
+ * as in north and east, and the extents that hang on the same states. */
+static void what_is_estimated_beside_the_state_widens(void) {
+    any = check_random_start("beside");
+    for (int n = 0; n < CASES; n++) {
+        make_any(GOE_PHASE_CHORD);
+        be_uncertain(1.0);
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        const goe_quantities_t before = quantities;
+        const double q = (double)filter.state[GOE_INVERSE_RANGE];
+        const double part = 2.0 * q; /* 2 m of the place, along the bearing */
+        filter.inverse.estimated = 1;
+        memset(&filter.inverse.element[goe_inverse_column(GOE_STATES)], 0, (GOE_STATES + 1) * sizeof(float));
+        filter.inverse.element[goe_inverse_column(GOE_STATES) + GOE_BEARING] = (float)part;
+        filter.inverse.element[goe_inverse_column(GOE_STATES) + GOE_FRONT_X] = (float)(1.5 * q);
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        CHECK_CLOSE(0.02, 4.0,
+                    square_of(quantities.sigma[GOE_X0], quantities.sigma[GOE_Z0]) -
+                        square_of(before.sigma[GOE_X0], before.sigma[GOE_Z0]));
+        CHECK_CLOSE(0.02, 4.0,
+                    square_of(quantities.center_sd_m[0], quantities.center_sd_m[1]) -
+                        square_of(before.center_sd_m[0], before.center_sd_m[1]));
+        CHECK_CLOSE(0.02, 2.25,
+                    square_of(quantities.sigma[GOE_WIDTH], 0.0f) - square_of(before.sigma[GOE_WIDTH], 0.0f));
+    }
+}
+
+/* GIVEN the same THEN the covariance that goe_covariance tells is the state's, too. */
+static void covariances_are_those_of_the_state(void) {
+    any = check_random_start("covariances");
+    for (int n = 0; n < CASES; n++) {
+        double expected[VALUES][VALUES];
+        float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+        make_any(phases[n % 5]);
+        be_uncertain(1.0);
+        expected_covariance(expected);
+        for (int i = 0; i < GOE_QUANTITIES; i++) {
+            expected[i][i] += place_of(i);
+        }
+        goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, covariance);
+        for (int i = 0; i < GOE_QUANTITIES; i++) {
+            for (int j = 0; j < GOE_QUANTITIES; j++) {
+                const double factor = sqrt((is_of_corner(i) ? early_of() : 1.0) * (is_of_corner(j) ? early_of() : 1.0));
+                const double size = sqrt(expected[i][i] * expected[j][j]);
+                CHECK_CLOSE(2.0 * SHARE * factor * size, factor * expected[i][j], covariance[i][j]);
+            }
+        }
+    }
+}
+
+/* GIVEN a state that is exact and an own velocity with a constant error WHEN the aircraft has flown for ten seconds THEN all lengths
+ * are off by what the error makes of the path, as no image shows it; a path that leads back on itself is not scaled, but the place is
+ * off by what has been added on the way; the walk of the own position moves the place, and from the track's first image on. */
+static void what_the_own_motion_is_off_by_is_in_the_sigmas(void) {
+    any = check_random_start("drift");
+    for (int n = 0; n < CASES; n++) {
+        const double s = 10.0;
+        make_any(phases[n % 5]);
+        be_uncertain(CERTAIN);
+        filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f; /* of a disc's condition */
+        settings.navigation.velocity_bias_m_s = 0.2f;
+        settings.navigation.position_walk_m = 0.1f;
+        const double path = hypot((double)motion.dx_m - (double)filter.axes.start_dx_m,
+                                  (double)motion.dz_m - (double)filter.axes.start_dz_m);
+        const bool turned = n % 2 != 0;
+        filter.flown_m = (float)(turned ? 2.0 * path : 0.5 * path);
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        const double share = 0.2 * s / path;
+        const double z0 = (double)quantities.value[GOE_Z0] - (double)filter.axes.start_dz_m;
+        const double back = turned ? 0.2 * 0.2 * s * s * 0.75 : 0.0;
+        const double place =
+            goe_filter_phase(&filter) == GOE_PHASE_CHORD ? pow(0.25 * (double)quantities.value[GOE_WIDTH], 2.0) : 0.0;
+        const double moved = sqrt(share * share * z0 * z0 + 0.01 * s + back + place);
+        const double height = (double)quantities.value[GOE_HEIGHT];
+        CHECK_CLOSE(SHARE * moved, moved, quantities.sigma[GOE_X0]);
+        CHECK_CLOSE(SHARE * moved, moved, quantities.sigma[GOE_Z0]);
+        CHECK_CLOSE(SHARE, share * (double)quantities.value[GOE_WIDTH], quantities.sigma[GOE_WIDTH]);
+        CHECK_CLOSE(SHARE, share * fmax(height, fabs(height - 15.0)), quantities.sigma[GOE_HEIGHT]);
+        if (quantities.box) {
+            CHECK_CLOSE(SHARE * share, share, quantities.sigma[GOE_ORIENTATION]);
+            CHECK_CLOSE(SHARE, share * (double)quantities.value[GOE_LENGTH], quantities.sigma[GOE_LENGTH]);
+        }
+        CHECK_CLOSE(1.0e-4, 0.2 * 0.2 * 2.0 * 2.0 + 0.01 * 2.0,
+                    quantities.early_m2); /* two seconds before it started */
+        if (quantities.known & GOE_HAS_CENTER) {
+            CHECK_CLOSE(2.0 * SHARE * moved, moved, quantities.center_sd_m[0]);
+            CHECK_CLOSE(2.0 * SHARE * moved, moved, quantities.center_sd_m[1]);
+        }
+    }
+}
+
+/* GIVEN the same THEN that is on the covariance's diagonal alone; with what came before the filter's start for X0 and Z0, but not
+ * where a hazard asks, as the camera now has no part in that. */
+static void what_the_own_motion_is_off_by_is_on_the_diagonal(void) {
+    any = check_random_start("drift of covariances");
+    for (int n = 0; n < CASES; n++) {
+        float now[GOE_QUANTITIES][GOE_QUANTITIES];
+        float ahead[GOE_QUANTITIES][GOE_QUANTITIES];
+        make_any(phases[n % 5]);
+        be_uncertain(CERTAIN);
+        filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
+        settings.navigation.velocity_bias_m_s = 0.2f;
+        settings.navigation.position_walk_m = 0.1f;
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, now);
+        goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
+        for (int i = 0; i < GOE_QUANTITIES; i++) {
+            const double variance = (double)quantities.sigma[i] * (double)quantities.sigma[i];
+            const double early = i <= GOE_Z0 ? (double)quantities.early_m2 : 0.0;
+            CHECK_CLOSE(SHARE * (variance + 1.0e-6), variance + early, now[i][i]);
+            CHECK_CLOSE(SHARE * (variance + 1.0e-6), variance, ahead[i][i]);
+            CHECK_CLOSE(SHARE * variance + 1.0e-4, 0.0, i > 0 ? now[i][i - 1] : 0.0f);
+        }
+    }
+}
+
+/* GIVEN a height whose error is the altimeter's alone THEN the height over the ground has it, and the height over the camera has not:
+ * it moves both alike. */
+static void the_altimeters_error_is_not_between_camera_and_top(void) {
+    float now[GOE_QUANTITIES][GOE_QUANTITIES];
+    float ahead[GOE_QUANTITIES][GOE_QUANTITIES];
+    any = check_random_start("altimeter");
+    for (int n = 0; n < 5; n++) {
+        make_any(phases[n]);
+        be_uncertain(CERTAIN);
+        filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
+        filter.inverse.element[goe_inverse_column(GOE_GROUND) + GOE_GROUND] = 0.5f * filter.state[GOE_INVERSE_RANGE];
+        goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, now);
+        goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
+        CHECK_CLOSE(2.0e-2, 0.25, now[GOE_HEIGHT][GOE_HEIGHT]);
+        CHECK_CLOSE(1.0e-3, 0.0, ahead[GOE_HEIGHT][GOE_HEIGHT]);
+        /* and the range moves the height over the altimeter's zero, which is the height less the ground's offset */
+        make_any(phases[n]);
+        be_uncertain(CERTAIN);
+        filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
+        const double q = (double)filter.state[GOE_INVERSE_RANGE];
+        filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] = (float)(0.01 * q);
+        const double top = (double)filter.state[phases[n] == GOE_PHASE_PRISM ? GOE_PRISM_TOP : (int)GOE_TOP] / q;
+        goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
+        CHECK_CLOSE(SHARE * 1.0e-4 * top * top, 1.0e-4 * top * top, ahead[GOE_HEIGHT][GOE_HEIGHT]);
+    }
+}
+
+/* GIVEN a box by its outline THEN what an outline misses is added to its edges and orientation; along the side, which is seen at a
+ * small angle, an error of the angle is one of the length. */
+static void an_outline_is_less_certain_than_its_rows_say(void) {
+    any = check_random_start("outline");
+    for (int n = 0; n < CASES; n++) {
+        make_any(GOE_PHASE_BOX_OUTLINE);
+        filter.naming.exchanged = n % 2 != 0;
+        be_uncertain(CERTAIN);
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        goe_box_edges_t e;
+        goe_box_edges(filter.state, &e);
+        const double sum = (double)quantities.value[GOE_WIDTH] + (double)quantities.value[GOE_LENGTH];
+        const int front = n % 2 != 0 ? GOE_LENGTH : GOE_WIDTH;
+        const int side = n % 2 != 0 ? GOE_WIDTH : GOE_LENGTH;
+        const double q = (double)filter.state[GOE_INVERSE_RANGE];
+        const goe_xz_t camera = goe_filter_camera(&filter, &motion);
+        const double px = (double)filter.state[GOE_BEARING] - (double)camera.x * q;
+        const double pz = 1.0 - (double)camera.z * q;
+        const double vx = (double)e.side.along.x / (double)e.side.length;
+        const double vz = (double)e.side.along.z / (double)e.side.length;
+        /* how far the camera is beside the box, square to the side; half a front is (FRONT_X / vz) / 2 long */
+        const double beside = fmax(fabs(vz * px - vx * pz) - 0.5 * (double)filter.state[GOE_FRONT_X] / vz, 0.0);
+        const double sine2 = beside * beside / (px * px + pz * pz);
+        const double length = (double)quantities.value[side];
+        const double lean = length * 0.025 / sqrt(sine2 + 1.0e-6);
+        CHECK_CLOSE(1.0e-3, 0.025, quantities.sigma[GOE_ORIENTATION]);
+        CHECK_CLOSE(SHARE * sum, 0.03 * sum, quantities.sigma[front]);
+        const double expected = hypot(0.03 * sum, lean);
+        TEST_ASSERT_TRUE(quantities.worked_out[GOE_ORIENTATION] > 0.0f);
+        /* of the orientation as the image before had it: none in the first */
+        goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f,
+                                  (float[GOE_QUANTITIES][GOE_QUANTITIES]){{0.0f}});
+        CHECK_CLOSE(SHARE * expected + 1.0e-3, expected, quantities.sigma[side]);
+    }
+}
+
+/* GIVEN an image THEN what it knows is told only if the image before knew it, too; and what is known hangs on the shares of the
+ * header: a range that is not known to its share hides everything, an extent only itself. */
+static void what_is_told_was_known_twice(void) {
+    any = check_random_start("known");
+    make_any(GOE_PHASE_BOX);
+    be_uncertain(0.1);
+    goe_quantities_find(&filter, &settings, &motion, &quantities);
+    TEST_ASSERT_EQUAL_HEX(0x3Fu, quantities.known);
+    filter.known = GOE_HAS_POSITION | GOE_HAS_HEIGHT;
+    goe_quantities_find(&filter, &settings, &motion, &quantities);
+    TEST_ASSERT_EQUAL_HEX(0x2Fu, quantities.now);
+    TEST_ASSERT_EQUAL_HEX(GOE_HAS_POSITION | GOE_HAS_HEIGHT, quantities.known);
+    filter.known = 0xFFu;
+    filter.phase = GOE_PHASE_BOX_FACE; /* whose length is held, not measured */
+    goe_quantities_find(&filter, &settings, &motion, &quantities);
+    TEST_ASSERT_EQUAL_HEX(0x2Du, quantities.known);
+    filter.phase = GOE_PHASE_BOX;
+    filter.state[GOE_INVERSE_RANGE] = -0.01f; /* behind: no metres are made of it */
+    goe_quantities_find(&filter, &settings, &motion, &quantities);
+    TEST_ASSERT_EQUAL_HEX(0u, quantities.known);
+    TEST_ASSERT_EQUAL_HEX(0u, quantities.now);
+    filter.state[GOE_INVERSE_RANGE] = 0.01f;
+    settings.refined.range_share = 1.0e-5f;
+    goe_quantities_find(&filter, &settings, &motion, &quantities);
+    TEST_ASSERT_EQUAL_HEX(0u, quantities.known);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(sigmas_are_those_of_the_state);
+    RUN_TEST(what_no_image_shows_silences_nothing);
+    RUN_TEST(what_is_estimated_beside_the_state_widens);
+    RUN_TEST(covariances_are_those_of_the_state);
+    RUN_TEST(what_the_own_motion_is_off_by_is_in_the_sigmas);
+    RUN_TEST(what_the_own_motion_is_off_by_is_on_the_diagonal);
+    RUN_TEST(the_altimeters_error_is_not_between_camera_and_top);
+    RUN_TEST(an_outline_is_less_certain_than_its_rows_say);
+    RUN_TEST(what_is_told_was_known_twice);
+    return UNITY_END();
+}

@@ -1,0 +1,122 @@
+/* What time alone does to what is known: images in which nothing is seen. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "refined/goe_filter.h"
+#include "scene.h"
+
+#define RAD_PER_DEG 0.017453292519943295
+#define DRIFT_DEG 0.2
+#define WALK_M 0.5
+
+static scene_t scene;
+static goe_estimator_t estimator;
+static goe_estimate_t estimate;
+static goe_image_t last;
+
+void setUp(void) {
+    scene_default(&scene);
+    goe_settings_t settings = scene_settings(&scene);
+    settings.navigation.attitude_drift_deg = (float)DRIFT_DEG;
+    settings.navigation.position_walk_m = (float)WALK_M;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < 40; k++) {
+        scene_image(&scene, k, &last, NULL);
+        (void)goe_update(&estimator, &last, &estimate);
+    }
+    TEST_ASSERT_TRUE(estimate.fresh && estimator.filter.phase != GOE_PHASE_NONE);
+}
+void tearDown(void) {}
+
+/* Nothing is seen from where the aircraft was, that much later. */
+static void wait_s(double s) {
+    last.left.seen = last.right.seen = last.top.seen = false;
+    last.base_left.seen = last.base_near.seen = last.base_right.seen = false;
+    last.pose.time_us += (int64_t)(s * 1.0e6);
+    (void)goe_update(&estimator, &last, &estimate);
+}
+
+static double variance(goe_state_index_t state) {
+    goe_inverse_t inverse;
+    goe_srif_invert(&estimator.filter.root, &inverse);
+    return (double)goe_inverse_variance(&inverse, state);
+}
+
+/* GIVEN an attitude whose error walks WHEN it has for four seconds THEN each axis is uncertain by twice what it is after one, not by
+ * four times; and the gate, which works by what was known before, hears of it. */
+static void the_attitude_drifts_with_the_root_of_time(void) {
+    static const goe_state_index_t axes[] = {GOE_BIAS_X, GOE_BIAS_Y, GOE_BIAS_Z};
+    double before[3];
+    for (size_t i = 0; i < 3; i++) {
+        before[i] = variance(axes[i]);
+    }
+    const double gained = (double)estimator.filter.drift_rad2;
+    wait_s(4.0);
+    const double drift = 4.0 * DRIFT_DEG * RAD_PER_DEG * DRIFT_DEG * RAD_PER_DEG;
+    for (size_t i = 0; i < 3; i++) {
+        CHECK_CLOSE(2.0e-3 * drift, before[i] + drift, variance(axes[i]));
+    }
+    CHECK_CLOSE(2.0e-3 * drift, gained + drift, estimator.filter.drift_rad2);
+}
+
+/* GIVEN an own position that walks THEN the place becomes uncertain along X and Z in turn, each time for as long as it has not, and
+ * none of the time is lost or counted twice. */
+static void the_own_position_walks_along_both_axes_in_turn(void) {
+    const double q = (double)estimator.filter.state[GOE_INVERSE_RANGE];
+    const double second = WALK_M * WALK_M * q * q; /* of walking, in units of Z0 */
+    double walked[2] = {(double)estimator.filter.walk_s[0], (double)estimator.filter.walk_s[1]};
+    for (int n = 0; n < 6; n++) {
+        const double x = variance(GOE_BEARING);
+        const double z = variance(GOE_INVERSE_RANGE);
+        const double gained = (double)estimator.filter.walk2;
+        const double a = (double)estimator.filter.state[GOE_BEARING];
+        walked[0] += 3.0;
+        walked[1] += 3.0;
+        const int axis = walked[1] > walked[0] ? 1 : 0;
+        wait_s(3.0);
+        const double added = second * walked[axis];
+        walked[axis] = 0.0;
+        if (axis == 0) {
+            CHECK_CLOSE(5.0e-3 * added, x + added, variance(GOE_BEARING));
+            CHECK_CLOSE(1.0e-3 * z, z, variance(GOE_INVERSE_RANGE));
+        } else { /* all lengths in units of Z0 */
+            CHECK_CLOSE(5.0e-3 * added * a * a + 2.0e-4 * x, x + added * a * a, variance(GOE_BEARING));
+            CHECK_CLOSE(2.0e-2 * added * q * q, z + added * q * q, variance(GOE_INVERSE_RANGE));
+        }
+        CHECK_CLOSE(1.0e-3 * second, gained + 3.0 * second, estimator.filter.walk2);
+        CHECK_CLOSE(1.0e-4, walked[0], estimator.filter.walk_s[0]);
+        CHECK_CLOSE(1.0e-4, walked[1], estimator.filter.walk_s[1]);
+    }
+}
+
+/* GIVEN a flight that turns THEN the way flown is that along the path, which is longer than the way to where it began. */
+static void the_way_is_counted_along_the_path(void) {
+    const double before = (double)estimator.filter.flown_m;
+    const double legs[3][2] = {{30.0, 0.0}, {0.0, 40.0}, {-30.0, 0.0}};
+    double way = 0.0;
+    for (int i = 0; i < 3; i++) {
+        last.pose.position_ned_m[0] += (float)legs[i][0];
+        last.pose.position_ned_m[1] += (float)legs[i][1];
+        way += hypot(legs[i][0], legs[i][1]);
+        wait_s(1.0);
+        CHECK_CLOSE(1.0e-3, before + way, estimator.filter.flown_m);
+    }
+}
+
+/* GIVEN a gap of a day THEN it counts as a thousand seconds, and all stays finite. */
+static void a_long_gap_counts_as_a_bounded_one(void) {
+    const double before = variance(GOE_BIAS_X);
+    wait_s(86400.0);
+    const double drift = 1000.0 * DRIFT_DEG * RAD_PER_DEG * DRIFT_DEG * RAD_PER_DEG;
+    CHECK_CLOSE(1.0e-2 * drift, before + drift, variance(GOE_BIAS_X));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_attitude_drifts_with_the_root_of_time);
+    RUN_TEST(the_own_position_walks_along_both_axes_in_turn);
+    RUN_TEST(the_way_is_counted_along_the_path);
+    RUN_TEST(a_long_gap_counts_as_a_bounded_one);
+    return UNITY_END();
+}

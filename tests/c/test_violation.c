@@ -1,0 +1,150 @@
+/* Obstacles that move, and how a violation is put together. SPDX-License-Identifier: MIT
+ *
+ * Estimates are written into the estimator, so that every number is known. */
+#include "hazard/goe_violation.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+
+static goe_estimator_t estimator;
+static goe_hazard_t hazard;
+
+/* A tower of 6 m straight ahead, 100 m away, 20 m high; the camera is 50 m up, and Z is north. */
+void setUp(void) {
+    goe_settings_t settings;
+    goe_settings_default(&settings);
+    settings.camera.fx_px = settings.camera.fy_px = 900.0f;
+    settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    estimator.motion.heading_cos = 1.0f;
+    estimator.motion.height_m = 50.0f;
+    estimator.motion.time_us = 1000000;
+    estimator.estimate_time_us = 1000000;
+    goe_estimate_t *e = &estimator.estimate;
+    e->model = GOE_MODEL_DISC;
+    e->method = GOE_METHOD_WINDOW;
+    e->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT;
+    e->z_m = e->z0_m = 100.0f;
+    e->width_m = 6.0f;
+    e->height_m = 20.0f;
+    e->sigma.x0_m = e->sigma.z0_m = 2.0f;
+    e->sigma.height_m = 3.0f;
+}
+void tearDown(void) {}
+
+static goe_plan_t plan_of(float north_m_s, float east_m_s) {
+    const goe_plan_t plan = {{north_m_s, east_m_s, 0.0f}, 5.0f, 10.0f, 0.0f};
+    return plan;
+}
+
+static void make_it_move(float north_m_s, float east_m_s) {
+    estimator.estimate.valid |= GOE_HAS_VELOCITY;
+    estimator.estimate.velocity_north_m_s = north_m_s;
+    estimator.estimate.velocity_east_m_s = east_m_s;
+    estimator.estimate.sigma.velocity_north_m_s = 0.5f;
+    estimator.estimate.sigma.velocity_east_m_s = 0.5f;
+}
+
+/* GIVEN an obstacle that moves THEN it is met by the velocity relative to it; of one that is not known to, by the own. */
+static void what_moves_is_met_by_the_relative_velocity(void) {
+    const goe_plan_t plan = plan_of(10.0f, 2.0f);
+    estimator.estimate.velocity_north_m_s = -7.0f; /* means nothing without its bit */
+    goe_plan_t relative = goe_violation_relative(&estimator, &plan);
+    CHECK_SAME(10.0f, relative.velocity_ned_m_s[0]);
+    CHECK_SAME(2.0f, relative.velocity_ned_m_s[1]);
+    make_it_move(-7.0f, 3.0f);
+    relative = goe_violation_relative(&estimator, &plan);
+    CHECK_SAME(17.0f, relative.velocity_ned_m_s[0]);
+    CHECK_SAME(-1.0f, relative.velocity_ned_m_s[1]);
+    CHECK_SAME(plan.margin_m, relative.margin_m);
+}
+
+/* GIVEN an obstacle that moves THEN its velocity's error counts up to the time at which it is met, but no longer than a minute, nor
+ * less than has passed since the image; of one that stands still there is no such error. */
+static void the_velocitys_error_counts_until_it_is_met(void) {
+    goe_plan_t plan = plan_of(10.0f, 0.0f);
+    CHECK_SAME(0.0f, goe_violation_ahead_s(&estimator, &plan));
+    make_it_move(0.0f, 0.0f);
+    CHECK_CLOSE(1.0e-4, 10.0, goe_violation_ahead_s(&estimator, &plan));
+    plan.velocity_ned_m_s[0] = 1.0f;
+    CHECK_SAME(60.0f, goe_violation_ahead_s(&estimator, &plan));
+    plan.velocity_ned_m_s[0] = -10.0f; /* behind */
+    plan.since_image_s = 1.5f;
+    CHECK_SAME(1.5f, goe_violation_ahead_s(&estimator, &plan));
+    plan.velocity_ned_m_s[0] = 0.0f; /* standing still has no way to it */
+    CHECK_SAME(1.5f, goe_violation_ahead_s(&estimator, &plan));
+    estimator.motion.heading_cos = 0.0f; /* Z is east */
+    estimator.motion.heading_sin = 1.0f;
+    plan.velocity_ned_m_s[1] = 20.0f;
+    CHECK_CLOSE(1.0e-4, 5.0, goe_violation_ahead_s(&estimator, &plan));
+}
+
+/* GIVEN an image of a second ago THEN the camera has flown on since, forward and up, and times count from now. */
+static void the_aircraft_has_flown_on_since_the_image(void) {
+    goe_plan_t plan = plan_of(10.0f, 0.0f);
+    plan.velocity_ned_m_s[2] = -2.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    const goe_hazard_t then = hazard;
+    CHECK_CLOSE(1.0e-3, 9.7, then.time_s);
+    CHECK_CLOSE(1.0e-2, 30.0 + 2.0 * 9.7, then.clearance_m);
+    plan.since_image_s = 1.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, 8.7, hazard.time_s);
+    CHECK_CLOSE(1.0e-2, (double)then.clearance_m, hazard.clearance_m); /* at the same place */
+}
+
+/* ... and aside: what was ahead of a course across it lies abeam when it has been flown for long enough. */
+static void the_aircraft_has_flown_aside_since_the_image(void) {
+    goe_plan_t plan = plan_of(0.0f, 10.0f);
+    estimator.estimate.x_m = estimator.estimate.x0_m = 40.0f;
+    estimator.estimate.z_m = estimator.estimate.z0_m = 30.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, 4.0, hazard.time_s);
+    CHECK_CLOSE(1.0e-3, 27.0, hazard.miss_m);
+    plan.since_image_s = 3.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, 1.0, hazard.time_s);
+    CHECK_CLOSE(1.0e-3, 27.0, hazard.miss_m);
+    CHECK_CLOSE(1.0e-3, 0.2, hazard.time_sd_s); /* also of what is a second away: 2 m by 10 m/s */
+    plan.since_image_s = 3.5f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, 0.5, hazard.time_s);
+    CHECK_CLOSE(1.0e-3, 0.2, hazard.time_sd_s);
+    plan.since_image_s = 5.0f; /* passed: nothing comes nearer, and now is certain */
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_SAME(0.0f, hazard.time_s);
+    CHECK_SAME(0.0f, hazard.time_sd_s);
+}
+
+/* GIVEN a margin and a clearance whose errors have nothing in common THEN both are violated with the product of what each is; without
+ * a height, with the margin's alone. */
+static void independent_errors_multiply(void) {
+    goe_plan_t plan = plan_of(10.0f, 0.0f);
+    plan.margin_m = 0.0f;
+    estimator.estimate.x_m = estimator.estimate.x0_m = 4.0f; /* passed a metre aside of the rim, by half a sigma */
+    plan.clearance_m = 30.0f;                                /* as likely as not */
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    TEST_ASSERT_TRUE(hazard.has_clearance);
+    CHECK_CLOSE(1.0e-3, 1.0, hazard.miss_m);
+    CHECK_CLOSE(1.0e-3, 2.0, hazard.miss_sd_m);
+    CHECK_CLOSE(1.0e-2, 3.0, hazard.clearance_sd_m);
+    const float both = hazard.violation;
+    estimator.estimate.valid &= ~(unsigned)GOE_HAS_HEIGHT;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    TEST_ASSERT_FALSE(hazard.has_clearance);
+    CHECK_SAME(0.0f, hazard.clearance_m);
+    CHECK_CLOSE(2.0e-3, 0.3085, hazard.violation); /* of a normal variable, below half a sigma under its mean */
+    CHECK_CLOSE(2.0e-3, 0.5 * (double)hazard.violation, both);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(what_moves_is_met_by_the_relative_velocity);
+    RUN_TEST(the_velocitys_error_counts_until_it_is_met);
+    RUN_TEST(the_aircraft_has_flown_on_since_the_image);
+    RUN_TEST(the_aircraft_has_flown_aside_since_the_image);
+    RUN_TEST(independent_errors_multiply);
+    return UNITY_END();
+}

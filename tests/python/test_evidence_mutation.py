@@ -1,0 +1,187 @@
+"""Single-token changes of C, which of them are chosen, how they are counted; and the list of those that survive."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+from goe_tools.evidence import mutants as made
+from goe_tools.evidence import mutation, survivors
+from goe_tools.evidence.mutants import Mutant
+from goe_tools.evidence.mutation import BY_HASH, EQUIVALENT, KILLED, NO_CODE, SURVIVED, Kept, Outcome
+from goe_tools.logs.obslog import LogError
+
+needs_clang = pytest.mark.skipif(shutil.which(made.CLANG) is None, reason=f"no {made.CLANG}")
+
+SOURCE = """/* a < b is a comment */
+#define LIMIT 3.0f
+typedef char size_is_right[sizeof(int) == 4 ? 1 : -1];
+static const float steps[] = {0.5f, 2.0e-3f};
+static float larger(float a, float b) { return a > b ? a : b; }
+float sum(const float *x, int n, float a, float b) {
+    float all = 0.0f;
+    for (int i = 0; i < n; i++) {
+        if (x[i] < LIMIT && !(x[i] == b)) {
+            all += larger(x[i], -b) * steps[1];
+        }
+    }
+    all = all / 7.0f;
+    return larger(a, b) - all;
+}
+"""
+
+
+def mutations(tmp_path: Path, source: str) -> list[Mutant]:
+    (tmp_path / "sum.c").write_text(source)
+    return made.mutants("sum.c", tmp_path)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> list[Mutant]:
+    return mutations(tmp_path_factory.mktemp("c"), SOURCE)
+
+
+@needs_clang
+@pytest.mark.parametrize(
+    ("function", "source", "mutation"),
+    [
+        ("larger", "return a > b", "return a < b"),
+        ("larger", "return a > b", "return a >= b"),
+        ("larger", "return a > b", "return !(a > b)"),
+        ("sum", "i < n", "i <= n"),
+        ("sum", "x[i] < LIMIT &&", "x[i] < LIMIT ||"),
+        ("sum", "x[i] < LIMIT", "x[i] > LIMIT"),
+        ("sum", "!(x[i] == b)", "(x[i] == b)"),
+        ("sum", "x[i] == b", "x[i] != b"),
+        ("sum", "all += larger(x[i], -b) * steps[1];", ";"),
+        ("sum", "all +=", "all -="),
+        ("sum", "larger(x[i], -b)", "larger(-b, x[i])"),
+        ("sum", "larger(x[i], -b)", "larger(x[i], b)"),
+        ("sum", "larger(x[i], -b)", "larger(x[i - 1], -b)"),
+        ("sum", "-b) * steps", "-b) / steps"),
+        ("sum", "steps[1]", "steps[0]"),
+        ("sum", "all = all / 7.0f;", ";"),
+        ("sum", "7.0f", "14.0f"),
+        ("sum", "7.0f", "7.1f"),
+        ("sum", "7.0f", "(-7.0f)"),
+        ("sum", "all = 0.0f", "all = 1.0f"),
+        ("", "{0.5f, 2.0e-3f}", "{1.0f, 2.0e-3f}"),
+        ("", "{0.5f, 2.0e-3f}", "{0.5f, 2.1e-3f}"),
+    ],
+)
+def test_a_token_is_changed(found: list[Mutant], function: str, source: str, mutation: str) -> None:
+    """Each kind of change is made, in its place, and in the text of its line."""
+    there = [m for m in found if m.function == function and source in m.source]
+    assert any(m.source.replace(source, mutation, 1) == m.mutation for m in there)
+
+
+@needs_clang
+def test_what_is_no_code_is_left_alone(found: list[Mutant]) -> None:
+    """Comments, macros, types: nothing of them is changed, and every change leaves all other lines as they are."""
+    for mutant in found:
+        changed = made.apply(mutant, SOURCE).splitlines()
+        assert changed[:3] == SOURCE.splitlines()[:3]
+        assert len(set(changed) - set(SOURCE.splitlines())) <= 1
+
+
+@needs_clang
+def test_a_change_that_a_macro_made_stands_in_no_line(tmp_path: Path) -> None:
+    text = "#define TWICE(x) ((x) + (x))\nint f(int a) { return TWICE(a) * 2; }\n"
+    assert {m.mutation for m in mutations(tmp_path, text) if m.kind.startswith("operator")} == {
+        "int f(int a) { return TWICE(a) / 2; }"
+    }
+
+
+def test_every_file_gets_its_share() -> None:
+    assert mutation.shares([10, 30, 60], 10) == [1, 3, 6]
+    assert sum(mutation.shares([1, 1, 1, 5, 7], 9)) == 9
+    assert mutation.shares([1, 1000], 5) == [0, 5]
+
+
+def some_mutant(number: int, change: int = 0) -> Mutant:
+    text = "-" * (1 + change)
+    return Mutant("box.c", "f", number, number + 1, text, "operator +", f"a{number} + b;", f"a{number} {text} b;")
+
+
+def test_the_chosen_are_spread_and_always_the_same() -> None:
+    """Over the places, not over their changes; of these now one, now another; the others if it does not compile."""
+    every = [some_mutant(i, change) for i in range(100) for change in range(1 + i % 2)]
+    groups = mutation.strided(every, 4)
+    assert [(group[0].begin, group[0].text) for group in groups] == [(12, "-"), (37, "--"), (62, "-"), (87, "--")]
+    assert all(len(group) == mutation.TRIES for group in groups)
+    assert {mutant.text for mutant in groups[1] if mutant.begin == 37} == {"-", "--"}
+
+
+def outcomes() -> list[Outcome]:
+    ends = [KILLED] * 17 + [BY_HASH] * 2 + [SURVIVED] + [EQUIVALENT] * 3 + [NO_CODE]
+    return [Outcome(some_mutant(i), end, "box" if end == KILLED else "") for i, end in enumerate(ends)]
+
+
+def test_what_changes_nothing_counts_as_nothing() -> None:
+    """19 of 20 that change something are killed, 17 without the hash; equivalent ones and those that do not compile are
+    in neither."""
+    told = {row.what: row for row in mutation.rows(outcomes(), {})}
+    assert told["single-token mutants of lib/ that compile"].figure == "23"
+    assert told["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
+    assert told["... of these, killed by the unit tests"].met is True
+    assert told["... ... without the hash over the refined method's bits"].figure == "85.0 % (17 of 20)"
+    assert told["mutants that survive: with a written reason, and without"].figure == "0 and 1"
+    assert told["mutants that survive: with a written reason, and without"].met is False
+
+
+def test_a_survivor_with_a_reason_is_explained_but_not_killed() -> None:
+    reasons = {outcomes()[19].mutant.key: "twice the same"}
+    told = {row.what: row for row in mutation.rows(outcomes(), reasons)}
+    assert told["mutants that survive: with a written reason, and without"].figure == "1 and 0"
+    assert told["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
+    assert "reason: twice the same" in mutation.report(outcomes(), reasons, 1.0)
+
+
+def test_what_was_found_holds_as_long_as_its_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A killed mutant by the test that killed it, a surviving one by all tests."""
+    hashes = {"box": "1", "disc": "1"}
+    monkeypatch.setattr(mutation, "unit_tests", lambda: sorted(hashes))
+    monkeypatch.setattr(mutation, "test_hash", lambda name: hashes[name])
+    killed, survived = Outcome(some_mutant(1), KILLED, "box"), Outcome(some_mutant(2), SURVIVED)
+    kept = Kept(tmp_path)
+    kept.keep(killed)
+    kept.keep(survived)
+    groups = [[killed.mutant], [survived.mutant], [some_mutant(3)]]
+    assert [Kept(tmp_path).of_group(group) for group in groups] == [[killed], [survived], None]
+    hashes["disc"] = "2"
+    assert [Kept(tmp_path).of_group(group) for group in groups] == [[killed], None, None]
+    hashes["box"] = "2"
+    assert [Kept(tmp_path).of_group(group) for group in groups] == [None, None, None]
+    assert json.loads((tmp_path / "outcomes.jsonl").read_text().splitlines()[0])["outcome"] == asdict(killed)
+
+
+# -------------------------------------------------------------------------------------------------------- survivors.csv
+
+
+@needs_clang
+def test_every_listed_survivor_is_a_mutant_of_the_present_sources() -> None:
+    """A line that is not there any more, or is another, is no reason."""
+    assert survivors.strangers(survivors.read()) == []
+
+
+@needs_clang
+def test_an_entry_that_fits_nothing_is_told(tmp_path: Path) -> None:
+    (tmp_path / "sum.c").write_text(SOURCE)
+    listed = tmp_path / "survivors.csv"
+    listed.write_text(
+        ",".join(survivors.COLUMNS) + "\n"
+        "sum.c,sum,all = all / 7.0f;,all = all * 7.0f;,nobody reads it\n"
+        "sum.c,sum,all = all / 8.0f;,all = all * 8.0f;,nobody reads it\n"
+        "gone.c,sum,all = all / 7.0f;,all = all * 7.0f;,nobody reads it\n"
+    )
+    assert [entry.line for entry in survivors.strangers(survivors.read(listed), tmp_path)] == [3, 4]
+
+
+def test_a_survivor_without_a_reason_is_refused(tmp_path: Path) -> None:
+    listed = tmp_path / "survivors.csv"
+    listed.write_text(",".join(survivors.COLUMNS) + "\nsum.c,sum,a + b;,a - b;,\n")
+    with pytest.raises(LogError, match="reason"):
+        survivors.read(listed)
