@@ -11,6 +11,7 @@
 #define SINCE_MAX_S 1.0e3f
 
 /* GOE_OK, or why the plan is refused. */
+/*@ requires \valid_read(plan); */
 static goe_status_t check_plan(const goe_plan_t *plan) {
     const uint32_t velocity = goe_largest_of_three(plan->velocity_ned_m_s);
     const uint32_t margin = goe_magnitude(plan->margin_m);

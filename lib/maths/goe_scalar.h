@@ -22,6 +22,7 @@ static inline uint32_t goe_magnitude(float x) { return goe_bits(x) & GOE_MAGNITU
 static inline uint32_t goe_larger_bits(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
 /* The largest magnitude of a vector's elements. */
+/*@ requires \valid_read(v + (0 .. 2)); */
 static inline uint32_t goe_largest_of_three(const float v[3]) {
     return goe_larger_bits(goe_larger_bits(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
 }
