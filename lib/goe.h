@@ -70,10 +70,15 @@
  *             bit-identical on every IEEE 754 target; goe_self_check() tells at run time whether they are.
  *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity.
  * Safety      Every output is finite. Input that is not finite is refused by its exponent bits, so also under -ffast-math.
- *             No argument leads to a trap, an endless loop or a write outside the estimator.
+ *             No argument leads to a trap, an endless loop or a write outside the estimator. A bool that is given as neither 0
+ *             nor 1 counts as 1.
+ * Bit flips   One flipped bit anywhere in goe_estimator_t, between two calls, leads to none of these either, nor to an output
+ *             that is not finite or not of its enumeration. Settings and mounting are sealed by goe_init(): GOE_CORRUPTED. In the
+ *             rest most flips are found by the images that follow (suspect, a new start, GOE_CORRUPTED); some are not, and the
+ *             answer is wrong: tests/flips counts them, field by field.
  * Failure     A call that returns a negative status changed nothing in the estimator but its counters, unless the
- *             status says "image taken" below. The last good estimate is kept and marked stale. One thing ends a track:
- *             a filter reset of unknown size (goe_pose_t) forgets it, as goe_reset does.
+ *             status says "image taken" below. The last good estimate is kept and marked stale. Two things end a track, as
+ *             goe_reset does: a filter reset of unknown size (goe_pose_t), and GOE_CORRUPTED.
  * Cost        is stated at each function: the most that a call takes on a Cortex-M4F with gcc -O2, in instructions (not
  *             cycles) and bytes of stack. tests/targets has every processor and compiler.
  */
@@ -144,7 +149,7 @@ extern "C" {
 /* What became of one image, or of a call. 0: nominal. Positive: the image was good, but gave less than a whole new
  * solution. Negative: no new solution. "Image taken": the image was stored although the status is negative, because the
  * next images build on it; otherwise it was refused whole.
- * Numbers that are free: 5 to 31 for images that were good, -14 to -31 for faults of images, from -35 on for calls. A later
+ * Numbers that are free: 5 to 31 for images that were good, -14 to -31 for faults of images, from -36 on for calls. A later
  * version may use them, and renumbers nothing. */
 typedef enum {
     GOE_OK = 0,             /* solved from this image and those before it */
@@ -176,7 +181,10 @@ typedef enum {
     /* a call */
     GOE_BAD_SETTINGS = -32, /* goe_init: a setting is outside its range; bad_field names it */
     GOE_BAD_ARGUMENT = -33, /* a null pointer, or an estimator of another size than the library's (GOE_WINDOW_MAX, parts) */
-    GOE_NOT_INITIALISED = -34 /* goe_init has not succeeded on this estimator */
+    GOE_NOT_INITIALISED = -34, /* goe_init has not succeeded on this estimator */
+    GOE_CORRUPTED = -35 /* its memory is not what the library left there. Nothing is known of the obstacle any more, which does
+                           not make it safe: keep the last warning. If goe_reset says so, too, settings or mounting have changed,
+                           and every call does until goe_init; otherwise the track has ended, and the next image begins one */
 } goe_status_t;
 
 /* goe_estimator_t.causes counts every fault, for the flight log: causes[-status] for GOE_BEHIND_CAMERA to
@@ -505,10 +513,10 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
                                     const char **bad_field);
 
 /* Takes one image and reports the estimate after it.
- *   estimate  written by every call; all zero (valid = 0) with GOE_BAD_ARGUMENT and GOE_NOT_INITIALISED. If it is null
- *             the image is not taken: GOE_BAD_ARGUMENT
+ *   estimate  written by every call; all zero (valid = 0) with GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED and GOE_CORRUPTED. If it
+ *             is null the image is not taken: GOE_BAD_ARGUMENT
  * Returns GOE_OK, a positive status, or one of GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE, GOE_BAD_ARGUMENT,
- * GOE_NOT_INITIALISED. If several faults meet in one image all are counted; a failed solution is reported rather than a
+ * GOE_NOT_INITIALISED, GOE_CORRUPTED. If several faults meet in one image all are counted; a failed solution is reported rather than a
  * feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
  * Cost: at most 34000 instructions, 1212 bytes of stack; 35000 with lens distortion; window: 2580. No loop runs longer than
@@ -525,7 +533,7 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  * and columns of a quantity that is not valid there are 0. Of the window's answer, and of a stale one: the sigmas squared
  * on the diagonal.
  *   covariance  written by every call unless null; all zero on failure
- * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED.
+ * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 8500 instructions, 800 bytes of stack. */
 /*@ requires estimator == \null || \valid_read(estimator);
     requires covariance == \null || \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
@@ -567,7 +575,7 @@ typedef struct {
  * obstacle's size. A suspect or stale estimate asks for wider margins, not for silence: README.md, "Going around, or not".
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,
- * GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED.
+ * GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 17200 instructions, 1010 bytes of stack. No loop runs longer than 10. */
 #if GOE_WITH_HAZARD
 /*@ requires estimator == \null || \valid_read(estimator);
@@ -577,7 +585,7 @@ GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const go
 #endif
 
 /* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
- * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_NOT_INITIALISED.
+ * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 1400 instructions, 64 bytes of stack. */
 /*@ requires estimator == \null || \valid(estimator); */
 goe_status_t goe_reset(goe_estimator_t *estimator);

@@ -3,14 +3,13 @@
 
 #include <string.h>
 
+#include "goe_guard.h"
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
-#include "maths/goe_time.h"
 #include "refined/goe_ground.h"
 #include "refined/goe_quantities.h"
 
-#define AGE_MAX_US 4000000000u
-
+/*@ requires \valid_read(sigma) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
     const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
                                       sigma->width_m, sigma->length_m, sigma->height_m};
@@ -19,24 +18,17 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
     }
 }
 
-/* Of an obstacle that moves, and whose place is old. */
-static void grow_old(const goe_estimate_t *estimate, float since_s, goe_covariance_t covariance) {
-    const float north = goe_square(estimate->sigma.velocity_north_m_s);
-    const float east = goe_square(estimate->sigma.velocity_east_m_s);
-    const float grown = goe_larger(north, east) * since_s * since_s;
-    covariance[GOE_X0][GOE_X0] += grown;
-    covariance[GOE_Z0][GOE_Z0] += grown;
-}
-
 #if GOE_WITH_REFINED
 /* The filter is as it was when it gave the estimate; it may be another's since. */
+/*@ requires \valid_read(estimate); */
 static bool is_of_filter(const goe_estimate_t *estimate) {
-    return estimate->method == GOE_METHOD_REFINED && estimate->fresh;
+    return estimate->method == GOE_METHOD_REFINED && goe_is_set(&estimate->fresh);
 }
 
 static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
                                                 GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
 
+/*@ requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void keep_valid(unsigned valid, goe_covariance_t covariance) {
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         for (int j = 0; j < GOE_QUANTITIES; j++) {
@@ -49,6 +41,7 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
 }
 
 /* False if the estimate is not the filter's. */
+/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
                                  goe_covariance_t covariance) {
     const goe_estimate_t *estimate = &estimator->estimate;
@@ -61,6 +54,7 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
     return true;
 }
 
+/*@ requires \valid_read(estimator); */
 static bool is_steady(const goe_estimator_t *estimator) {
     return is_of_filter(&estimator->estimate) &&
            goe_ground_is_steady(&estimator->filter, &estimator->settings.navigation);
@@ -87,6 +81,7 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
     return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
 }
 #else
+/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
                                  goe_covariance_t covariance) {
     (void)estimator;
@@ -111,23 +106,34 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
 
 goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
                                    goe_covariance_t covariance) {
-    const goe_status_t status = goe_check_ready(estimator);
     memset(covariance, 0, sizeof(goe_covariance_t));
-    if (status != GOE_OK) {
-        return status;
-    }
     const goe_estimate_t *estimate = &estimator->estimate;
     if (!(estimate->valid & GOE_HAS_POSITION)) {
         return GOE_COLLECTING;
     }
     if (!covariance_of_filter(estimator, from_datum, ahead_s, covariance)) {
-        const float age_s = goe_time_between_s(estimator->estimate_time_us, estimator->motion.time_us, AGE_MAX_US);
+        const float age_s = goe_latest_since_s(estimator, estimator->motion.time_us);
+        const float grown_m2 = goe_latest_grown_m2(estimate, age_s + ahead_s);
         covariance_of_sigmas(&estimate->sigma, covariance);
-        grow_old(estimate, age_s + ahead_s, covariance);
+        covariance[GOE_X0][GOE_X0] += grown_m2;
+        covariance[GOE_Z0][GOE_Z0] += grown_m2;
     }
     return GOE_OK;
 }
 
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
-    return covariance ? goe_latest_covariance(estimator, false, 0.0f, covariance) : GOE_BAD_ARGUMENT;
+    if (!covariance) {
+        return GOE_BAD_ARGUMENT;
+    }
+    goe_status_t status = goe_guard_check(estimator);
+    if (status == GOE_OK) {
+        status = goe_latest_covariance(estimator, false, 0.0f, covariance);
+    }
+    if (status == GOE_OK && !goe_guard_finite(&covariance[0][0], GOE_QUANTITIES * GOE_QUANTITIES)) {
+        status = GOE_CORRUPTED;
+    }
+    if (status != GOE_OK) {
+        memset(covariance, 0, sizeof(goe_covariance_t));
+    }
+    return status;
 }

@@ -6,21 +6,20 @@
 #include <math.h>
 #include <string.h>
 
-#include "goe_covariance.h"
+#include "goe_guard.h"
+#include "goe_latest.h"
 #include "goe_settings.h"
 #include "image/goe_align.h"
 #include "image/goe_camera.h"
 #include "image/goe_ego_motion.h"
 #include "image/goe_intake.h"
 #include "maths/goe_scalar.h"
-#include "maths/goe_time.h"
 #include "refined/goe_ground.h"
 #include "refined/goe_refined.h"
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
 
 #define RESETS GOE_OK /* causes[0] counts tracks that an unknown filter reset ended */
-#define AGE_MAX_US 4000000000u
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -34,6 +33,7 @@ typedef struct __attribute__((may_alias)) {
     uint32_t word[BLOCK_BYTES / 4u];
 } block_t;
 
+/*@ requires \valid(to) && \valid_read(from); */
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) {
     block_t *t = (block_t *)to;
     const block_t *f = (const block_t *)from;
@@ -44,21 +44,24 @@ static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from)
     memcpy((unsigned char *)to + copied, (const unsigned char *)from + copied, sizeof *to - copied);
 }
 #else
+/*@ requires \valid(to) && \valid_read(from); */
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) { *to = *from; }
 #endif
 
 /* The estimate grows old while images are refused, too, as far as their times can be believed. */
+/*@ requires \valid_read(estimator) && \valid(estimate); */
 static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     estimate->age_s = 0.0f;
-    if (estimate->fresh || !(estimate->valid & GOE_HAS_POSITION)) {
+    if (goe_is_set(&estimate->fresh) || !(estimate->valid & GOE_HAS_POSITION)) {
         return;
     }
     const int64_t latest_us = estimator->motion.time_us;
     const int64_t now_us = image_us > latest_us ? image_us : latest_us;
-    estimate->age_s = goe_time_between_s(estimator->estimate_time_us, now_us, AGE_MAX_US);
+    estimate->age_s = goe_latest_since_s(estimator, now_us);
 }
 
 /* What every answer is told with, also a refused image's. */
+/*@ requires \valid_read(estimator) && \valid(estimate); */
 static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     set_age(estimator, image_us, estimate);
     estimate->trajectory_heading_deg = estimator->motion.heading_deg;
@@ -69,6 +72,7 @@ static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_est
     }
 }
 
+/*@ requires \valid(estimator); */
 static void forget_track(goe_estimator_t *estimator) {
     memset(&estimator->motion, 0, sizeof estimator->motion);
     estimator->motion.time_us = GOE_TIME_UNKNOWN;
@@ -86,6 +90,7 @@ static void forget_track(goe_estimator_t *estimator) {
 
 #if GOE_WITH_WINDOW
 /* Of the window, which tells by its answer alone whether it solved. */
+/*@ requires \valid(estimator); */
 static void note_solved(goe_estimator_t *estimator) {
     if (estimator->estimate.fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
@@ -97,23 +102,25 @@ static void note_solved(goe_estimator_t *estimator) {
 
 #if GOE_WITH_REFINED
 /* No new answer: the last one grows old, and follows the motion. */
+/*@ requires \valid(estimator); */
 static void grow_old(goe_estimator_t *estimator) {
     goe_estimate_t *estimate = &estimator->estimate;
     const goe_motion_t *motion = &estimator->motion;
     estimate->fresh = false;
     goe_motion_relate(motion, estimate);
     if (estimate->valid & GOE_HAS_VELOCITY) {
-        const float s = goe_time_between_s(estimator->estimate_time_us, motion->time_us, AGE_MAX_US);
+        const float s = goe_latest_since_s(estimator, motion->time_us);
         const float north_m = estimate->velocity_north_m_s * s;
         const float east_m = estimate->velocity_east_m_s * s;
-        const float sd_m_s = goe_larger(estimate->sigma.velocity_north_m_s, estimate->sigma.velocity_east_m_s);
+        const float grown_m2 = goe_latest_grown_m2(estimate, s);
         estimate->x_m += motion->heading_cos * east_m - motion->heading_sin * north_m;
         estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
-        estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + goe_square(sd_m_s * s));
-        estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + goe_square(sd_m_s * s));
+        estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + grown_m2);
+        estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + grown_m2);
     }
 }
 
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
                                    bool measured) {
     const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
@@ -137,6 +144,7 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
 }
 
 /* North and east of an older answer are those of the autopilot's filter before its reset. */
+/*@ requires \valid(estimate) && \valid_read(delta_ned_m + (0 .. 2)); */
 static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
     if (estimate->valid & GOE_HAS_CENTER) {
         estimate->center_north_m += delta_ned_m[0];
@@ -145,6 +153,7 @@ static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
 }
 
 /* Points out of order: pairs that the refined method found, once for each. */
+/*@ requires \valid(estimator) && goe_faults_are_open(faults); */
 static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_faults_t *faults) {
     for (unsigned i = 0; i < swapped; i++) {
         goe_count_cause(estimator->causes, GOE_SWAPPED);
@@ -156,6 +165,7 @@ static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_fault
 
 #if GOE_WITH_WINDOW
 /* The window solves beside an answer of the filter's, which is worth more than none: only a fresh one takes its place. */
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static GOE_NOINLINE goe_status_t solve_beside(goe_estimator_t *estimator, const goe_view_t *view,
                                               const goe_faults_t *faults) {
     goe_estimate_t answer;
@@ -171,6 +181,7 @@ static GOE_NOINLINE goe_status_t solve_beside(goe_estimator_t *estimator, const 
     return status == GOE_COLLECTING ? GOE_HELD : status;
 }
 
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t solve_window(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults) {
     const goe_status_t status = estimator->estimate.method == GOE_METHOD_REFINED
                                     ? solve_beside(estimator, view, faults)
@@ -183,6 +194,7 @@ static goe_status_t solve_window(goe_estimator_t *estimator, const goe_view_t *v
 
 /* A filter that has not started, or has only a disc where a box was asked for, leaves the answer to the window; one that starts
  * in this image does, too, unless it has an older answer; one that stops in this image keeps its own. */
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_settings_t *settings = &estimator->settings;
     unsigned swapped;
@@ -206,6 +218,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     return report_refined(estimator, view, faults, measured && reports);
 }
 
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_status_t status = update_refined(estimator, view, faults);
     goe_report_doubt(&estimator->filter, &estimator->estimate);
@@ -216,8 +229,9 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
 /* The autopilot's filter jumped: by a known amount the answer moves along, by an unknown one the track ends. */
+/*@ requires \valid(estimator) && \valid_read(pose); */
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
-    if (!pose->reset_delta_known) {
+    if (!goe_is_set(&pose->reset_delta_known)) {
         forget_track(estimator);
         goe_count_cause(estimator->causes, RESETS);
         return;
@@ -232,6 +246,7 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 
 /* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be
  * used: the track begins here. */
+/*@ requires \valid(estimator) && \valid(view) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
     goe_motion_t *motion = &estimator->motion;
     motion->sighted = true;
@@ -247,6 +262,8 @@ static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe
     }
 }
 
+/*@ requires \valid(estimator) && \valid_read(image) && \valid_read(camera) && \valid(view);
+    requires goe_faults_are_open(faults); */
 static void open_view(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera,
                       goe_view_t *view, goe_faults_t *faults) {
     view->image = image;
@@ -260,6 +277,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     }
 }
 
+/*@ requires \valid(estimator) && \valid_read(image) && \valid_read(camera); */
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
     goe_view_t view;
     goe_faults_t faults = {estimator->causes, GOE_OK};
@@ -300,7 +318,7 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
         return GOE_BAD_SETTINGS;
     }
     memset(estimator, 0, sizeof *estimator);
-    estimator->settings = *settings;
+    goe_settings_copy(&estimator->settings, settings);
     for (unsigned i = 0; i < GOE_CAMERAS_MAX; i++) {
         const goe_camera_t *camera = goe_camera_of(settings, i);
         if (camera) {
@@ -308,22 +326,39 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
         }
     }
     forget_track(estimator);
-    estimator->ready = GOE_READY;
+    goe_guard_seal(estimator);
     return GOE_OK;
 }
 
 /* Nothing changes but a counter; the answer is the older one. */
+/*@ requires \valid(estimator) && \valid(estimate); */
 static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, goe_estimate_t *estimate) {
     goe_count_cause(estimator->causes, status);
     *estimate = estimator->estimate;
     estimate->fresh = false;
 }
 
+/* Whether nothing but numbers leaves, and nothing but numbers is left to place what comes. */
+/*@ requires \valid_read(estimator) && \valid_read(estimate); */
+static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
+    const uint32_t place =
+        goe_larger_bits(goe_magnitude(estimator->motion.dx_m), goe_magnitude(estimator->motion.dz_m));
+    return goe_guard_estimate(estimate) && place < GOE_INFINITY_BITS;
+}
+
+/* The track's memory is not what the library left there. */
+/*@ requires \valid(estimator) && \valid(estimate); */
+static GOE_NOINLINE goe_status_t give_up(goe_estimator_t *estimator, goe_estimate_t *estimate) {
+    forget_track(estimator);
+    memset(estimate, 0, sizeof *estimate);
+    return GOE_CORRUPTED;
+}
+
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate) {
     if (!estimate) {
         return GOE_BAD_ARGUMENT;
     }
-    goe_status_t status = image ? goe_check_ready(estimator) : GOE_BAD_ARGUMENT;
+    goe_status_t status = image ? goe_guard_check(estimator) : GOE_BAD_ARGUMENT;
     if (status != GOE_OK) {
         memset(estimate, 0, sizeof *estimate);
         return status;
@@ -343,11 +378,11 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
         refuse(estimator, status, estimate);
     }
     complete(estimator, image->pose.time_us, estimate);
-    return status;
+    return is_sound(estimator, estimate) ? status : give_up(estimator, estimate);
 }
 
 goe_status_t goe_reset(goe_estimator_t *estimator) {
-    const goe_status_t status = goe_check_ready(estimator);
+    const goe_status_t status = goe_guard_check(estimator);
     if (status == GOE_OK) {
         forget_track(estimator);
     }

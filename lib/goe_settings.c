@@ -83,7 +83,8 @@ void goe_settings_default(goe_settings_t *settings) {
 }
 
 /* Of the first `count` settings, at `from`. */
-/*@ requires \valid_read(from + (0 .. sizeof(goe_settings_t) - 1)) && count <= sizeof(places) / sizeof(places[0]); */
+/*@ requires \valid_read(from + (0 .. sizeof(goe_settings_t) - 1));
+    requires count <= sizeof(places) / sizeof(places[0]); */
 static const char *first_bad(const unsigned char *from, size_t count) {
     const char *name = names;
     for (size_t i = 0; i < count; i++) {
@@ -125,4 +126,18 @@ static const char *first_bad_camera(const goe_settings_t *settings) {
 const char *goe_settings_first_bad(const goe_settings_t *settings) {
     const char *bad = first_bad((const unsigned char *)settings, SETTINGS);
     return bad ? bad : first_bad_camera(settings);
+}
+
+GOE_STATIC_ASSERT(offsetof(goe_settings_t, refined) + sizeof(goe_refined_settings_t) == sizeof(goe_settings_t) &&
+                      sizeof(goe_refined_settings_t) - offsetof(goe_refined_settings_t, top_is_highest) ==
+                          sizeof(float),
+                  the_settings_end_in_a_truth_value);
+
+void goe_settings_copy(goe_settings_t *to, const goe_settings_t *from) {
+    unsigned char *bytes = (unsigned char *)to;
+    const size_t heading = offsetof(goe_settings_t, heading_auto) + sizeof(bool);
+    const size_t end = offsetof(goe_settings_t, refined.top_is_highest) + sizeof(bool);
+    *to = *from;
+    memset(bytes + heading, 0, offsetof(goe_settings_t, heading_deg) - heading);
+    memset(bytes + end, 0, sizeof *to - end);
 }

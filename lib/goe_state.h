@@ -20,6 +20,9 @@
 #define GOE_NOINLINE
 #endif
 
+/* Whether something is so: 0 is not, anything else is. A bool with a flipped bit would be undefined. */
+typedef uint8_t goe_flag_t;
+
 /* What the filter knows beside its state and takes as constant: the latency of the poses, s, and the obstacle's velocity, T
  * axes, m/s; 0 of them if that part is left out. */
 #if GOE_WITH_REFINED && GOE_WITH_MOVERS
@@ -27,6 +30,9 @@
 #else
 #define GOE_BESIDE 0
 #endif
+
+/* In this order. */
+typedef enum { GOE_BESIDE_LATENCY, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_Z } goe_beside_t;
 
 /* ----------------------------------------------------------------------------------------------------------- image -- */
 
@@ -39,11 +45,11 @@ typedef struct {
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
     float height_m;                 /* camera above ground, latest image */
-    bool started;                   /* a first image was taken; the fields above hold */
-    bool sighted;                   /* something was seen */
+    goe_flag_t started;             /* a first image was taken; the fields above hold */
+    goe_flag_t sighted;             /* something was seen */
     uint8_t reset_count;
 #if GOE_BESIDE
-    bool paced;                           /* the fields below hold */
+    goe_flag_t paced;                     /* the fields below hold */
     float rate_rad_s[3], velocity_m_s[2]; /* T axes; since the mark ... */
     float rate_before_rad_s[3];           /* ... and before it: free of the latest attitude's own error */
     float mark_attitude[4], mark_m[2];    /* attitude and place, T axes, at mark_us: where they count from */
@@ -121,16 +127,16 @@ typedef struct {
     float turn_cos, turn_sin;     /* T turned by this about the vertical, clockwise seen from above */
     float start_dx_m, start_dz_m; /* that camera in T */
 #if GOE_BESIDE
-    float start_velocity_m_s[2]; /* ... and its velocity ... */
-    bool paced;                  /* ... if this holds */
+    float start_velocity_m_s[2]; /* ... and its velocity, if goe_filter_t.paced holds */
 #endif
 } goe_axes_t;
 
 /* refined/goe_box_start.c: the box that the images before saw. */
 typedef struct {
     float extent[2]; /* of two faces: their lateral extents, focal lengths; of one: its orientation, rad, and nothing */
-    bool both;       /* of two faces */
-    uint8_t agreeing; /* images in a row */
+    goe_flag_t both; /* of two faces */
+    uint8_t agreeing;    /* images in a row */
+    goe_flag_t stand_in; /* disc: base corners were seen, so that it stands for a box */
 } goe_candidate_t;
 
 typedef struct {   /* refined/goe_chord.c: sliding means, sigmas */
@@ -138,9 +144,9 @@ typedef struct {   /* refined/goe_chord.c: sliding means, sigmas */
     float turning; /* ... to the right */
 } goe_leaving_t;
 
-typedef struct {    /* refined/goe_box.c: what the report calls the edges of a box */
-    bool exchanged; /* it calls front what the state calls side */
-    bool decided;
+typedef struct {          /* refined/goe_box.c: what the report calls the edges of a box */
+    goe_flag_t exchanged; /* it calls front what the state calls side */
+    goe_flag_t decided;
 } goe_naming_t;
 
 /* refined/goe_ground.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
@@ -183,20 +189,20 @@ typedef struct {      /* refined/goe_health.c: how the images fit */
     uint8_t refused[GOE_FEATURES]; /* images in a row in which this feature was refused */
     uint8_t poor;                  /* images in a row in which half of the points were */
     uint8_t failed;                /* times that a box proved wrong */
-    bool base_refused;             /* base corners proved to be none: they are not used */
-    bool adrift;                   /* the filter started anew twice within few images */
+    goe_flag_t base_refused;       /* base corners proved to be none: they are not used */
+    goe_flag_t adrift;             /* the filter started anew twice within few images */
     uint8_t steady;                /* images since it did, saturating */
 } goe_health_t;
 
 /* refined/goe_mover.c: what the images say of the latency and of the obstacle's velocity. */
 typedef struct {
-    float beside[3];      /* taken off: latency, s; velocity, T axes, m/s: 0 unless it is followed */
-    float nis, rows;      /* sums over the track: what no state explains, and what it would be by chance */
-    float heard_s;        /* for how long images told something, over all starts of the filter */
-    float unlike_s;       /* for how long it has been none of a static obstacle */
-    uint8_t images;       /* in a row that said so */
-    bool moves, followed; /* the obstacle moves; the filter moves with it */
-    bool late;            /* the poses are late */
+    float beside[3];            /* taken off: latency, s; velocity, T axes, m/s: 0 unless it is followed */
+    float nis, rows;            /* sums over the track: what no state explains, and what it would be by chance */
+    float heard_s;              /* for how long images told something, over all starts of the filter */
+    float unlike_s;             /* for how long it has been none of a static obstacle */
+    uint8_t images;             /* in a row that said so */
+    goe_flag_t moves, followed; /* the obstacle moves; the filter moves with it */
+    goe_flag_t late;            /* the poses are late */
 } goe_mover_t;
 
 typedef struct {
@@ -209,10 +215,12 @@ typedef struct {
     uint8_t phase;        /* goe_phase_t */
     uint8_t phase_images; /* images of the phase, saturating */
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
-    bool stand_in;        /* disc: base corners were seen, so that it stands for a box */
+#if GOE_BESIDE
+    goe_flag_t paced; /* the velocity in axes holds */
+#endif
     goe_naming_t naming;
     uint8_t camera;          /* that took the latest image */
-    bool has_datum;          /* the datum is that of the track's first image */
+    goe_flag_t has_datum;    /* the datum is that of the track's first image */
     float ground_scale;      /* 1/Z0 for which the sigma of GOE_GROUND was set, over the present one */
     float flown_m;           /* along the path since the filter's start, over ground */
     float sloped_m;          /* ... up to which the ground's slope was added */
@@ -237,10 +245,16 @@ typedef struct {
 
 /* ------------------------------------------------------------------------------------------------------- estimator -- */
 
+/* goe_guard.c: sums over mounting and settings, as goe_init() left them. */
+typedef struct {
+    uint32_t sum, turned;
+} goe_seal_t;
+
 typedef struct {
     goe_motion_t motion;
-    uint32_t ready; /* tells an initialised estimator from any other memory */
     uint32_t causes[GOE_CAUSES];
+    uint32_t ready; /* tells an initialised estimator from any other memory */
+    goe_seal_t seal;
     float camera_to_body[GOE_CAMERAS_MAX][9];
     goe_settings_t settings;
     goe_estimate_t estimate;  /* after the latest image, by whatever method */

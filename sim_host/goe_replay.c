@@ -171,7 +171,7 @@ static void print_help(poptContext context) {
 
 /* ---------------------------------------------------------------------------------------------------------- replay -- */
 
-#define STATUS_FIRST GOE_NOT_INITIALISED
+#define STATUS_FIRST GOE_CORRUPTED
 #define STATUS_LAST GOE_NOTHING_SEEN
 #define STATUSES ((int)STATUS_LAST - (int)STATUS_FIRST + 1)
 

@@ -1,6 +1,7 @@
 /* What a planned flight will meet: the public call. SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "goe_guard.h"
 #include "hazard/goe_violation.h"
 #include "maths/goe_scalar.h"
 
@@ -9,6 +10,10 @@
 #define VELOCITY_MAX_M_S 1.0e3f
 #define DISTANCE_MAX_M 1.0e4f
 #define SINCE_MAX_S 1.0e3f
+#define HAZARD_NUMBERS (offsetof(goe_hazard_t, has_clearance) / sizeof(float))
+
+GOE_STATIC_ASSERT(offsetof(goe_hazard_t, violation) + sizeof(float) == offsetof(goe_hazard_t, has_clearance),
+                  the_numbers_of_a_hazard_come_first);
 
 /* GOE_OK, or why the plan is refused. */
 /*@ requires \valid_read(plan); */
@@ -33,7 +38,7 @@ goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan
         return GOE_BAD_ARGUMENT;
     }
     memset(hazard, 0, sizeof *hazard);
-    goe_status_t status = plan ? goe_check_ready(estimator) : GOE_BAD_ARGUMENT;
+    goe_status_t status = plan ? goe_guard_check(estimator) : GOE_BAD_ARGUMENT;
     if (status == GOE_OK) {
         status = check_plan(plan);
     }
@@ -43,6 +48,10 @@ goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan
     }
     if (status == GOE_OK) {
         goe_violation_foresee(estimator, &relative, covariance, hazard);
+        if (!goe_guard_finite(&hazard->time_s, HAZARD_NUMBERS)) {
+            memset(hazard, 0, sizeof *hazard);
+            status = GOE_CORRUPTED;
+        }
     }
     return status;
 }

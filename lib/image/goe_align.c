@@ -6,6 +6,7 @@
 
 #include "image/goe_camera.h"
 #include "image/goe_sides.h"
+#include "maths/goe_scalar.h"
 
 #define FORWARD_MIN 0.05f /* third component of a unit ray in T: farther aside than 87 degrees nothing can be aligned */
 
@@ -39,7 +40,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         const goe_pixel_t *pixel = &pixels[i];
         goe_point_t *point = &view->point[i];
-        if (!pixel->seen) {
+        if (!goe_is_set(&pixel->seen)) {
             point->usable = false;
             continue;
         }
@@ -57,7 +58,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
             y = ray[1];
         }
         const float forward = zx * x + zy * y + zz;
-        if (forward <= FORWARD_MIN * sqrtf(x * x + y * y + 1.0f)) {
+        if (!(forward > FORWARD_MIN * sqrtf(x * x + y * y + 1.0f))) {
             point->usable = false;
             goe_fault_count(faults, GOE_BEHIND_CAMERA);
             continue;

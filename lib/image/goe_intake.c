@@ -17,7 +17,7 @@
 /*@ requires \valid_read(pixel); */
 static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
     const uint32_t largest = goe_larger_bits(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px));
-    return pixel->seen ? goe_larger_bits(so_far, largest) : so_far;
+    return goe_is_set(&pixel->seen) ? goe_larger_bits(so_far, largest) : so_far;
 }
 
 /* Written out: this is done for every image, by every method. */
@@ -56,7 +56,7 @@ static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, b
         pixel = goe_larger_bits(pixel, largest_side(&image->box));
     }
     uint32_t position = goe_largest_of_three(pose->position_ned_m);
-    if (reset && pose->reset_delta_known) {
+    if (reset && goe_is_set(&pose->reset_delta_known)) {
         position = goe_larger_bits(position, goe_largest_of_three(pose->reset_delta_ned_m));
     }
     if (goe_larger_bits(goe_larger_bits(height, attitude), goe_larger_bits(position, pixel)) >= GOE_INFINITY_BITS) {

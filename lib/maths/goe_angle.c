@@ -15,6 +15,7 @@
 #define COS_2 0.00138873675f
 #define COS_3 2.44384516e-05f
 
+#define DEG_MAX 1.0e6f /* an angle beyond it fits no int's quarters */
 #define QUARTER_PI_RAD 0.785398163f
 #define HALF_PI_RAD 1.57079633f
 
@@ -37,7 +38,8 @@ float goe_arctan_rad(float y, float x) {
     return y < 0.0f ? -angle : angle;
 }
 
-void goe_sincos_deg(float deg, float *sine, float *cosine) {
+void goe_sincos_deg(float angle_deg, float *sine, float *cosine) {
+    const float deg = goe_within(angle_deg, DEG_MAX) ? angle_deg : 0.0f;
     const int quarter = (int)(deg * (1.0f / 90.0f) + (deg < 0.0f ? -0.5f : 0.5f));
     const float t = (deg - (float)quarter * 90.0f) * GOE_RAD_PER_DEG; /* the difference is exact up to 720 degrees */
     const float z = t * t;

@@ -8,9 +8,9 @@
 /* Arctangent of y/x in radians, -pi/2 to pi/2, for x >= 0 and not both zero. Error at most 2e-7 rad. */
 float goe_arctan_rad(float y, float x);
 
-/* Sine and cosine of an angle in degrees, |deg| <= 1e6. Error at most 2e-7 for |deg| <= 720. */
-/*@ requires \valid(sine) && \valid(cosine) && \is_finite(deg) && -1e6 <= deg <= 1e6; */
-void goe_sincos_deg(float deg, float *sine, float *cosine);
+/* Sine and cosine of an angle in degrees; one beyond 1e6, or not finite, counts as 0. Error at most 2e-7 for |deg| <= 720. */
+/*@ requires \valid(sine) && \valid(cosine); */
+void goe_sincos_deg(float angle_deg, float *sine, float *cosine);
 
 /* The angle of the same undirected line in (-90, 90] degrees, for -270 < deg <= 270. */
 static inline float goe_fold_deg(float deg) {

@@ -1,4 +1,4 @@
-/* Magnitudes of floats, judged by their bits. SPDX-License-Identifier: MIT */
+/* Magnitudes of floats, and what is true, judged by their bits. SPDX-License-Identifier: MIT */
 #ifndef GOE_SCALAR_H
 #define GOE_SCALAR_H
 
@@ -12,6 +12,14 @@
 static inline uint32_t goe_bits(float x) {
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* The same of one that lies in memory, without a detour by a register of floats. */
+/*@ requires \valid_read(at); */
+static inline uint32_t goe_bits_at(const float *at) {
+    uint32_t bits;
+    memcpy(&bits, at, sizeof bits);
     return bits;
 }
 
@@ -43,6 +51,10 @@ static inline float goe_absolute(float x) {
 static inline bool goe_within(float x, float limit) { return goe_magnitude(x) <= goe_magnitude(limit); }
 
 static inline float goe_larger(float a, float b) { return a > b ? a : b; }
+
+/* Whether a truth value is set that others wrote. One that is neither 0 nor 1 counts as set; as a bool it would be undefined. */
+/*@ requires \valid_read(truth); */
+static inline bool goe_is_set(const bool *truth) { return *(const unsigned char *)truth != 0u; }
 
 static inline float goe_square(float x) { return x * x; }
 

@@ -142,6 +142,7 @@ static float misfit(const goe_observation_t *obs, const outline_t *o, const size
     return sum;
 }
 
+/* The near corner is seen, or both outer ones are. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid(corner + (0 .. 2)); */
 static void visible_corners(const goe_observation_t *obs, const outline_t *o, size_t corner[3]) {
     const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
@@ -149,7 +150,7 @@ static void visible_corners(const goe_observation_t *obs, const outline_t *o, si
     const size_t along = o->front ? FRONT_LEFT : BACK_RIGHT;
     const size_t across = o->right ? FRONT_RIGHT : BACK_LEFT;
     corners_from(near_seen ? of_two : o->depth_margin > o->side_margin ? along : across, near_seen, corner);
-    if (!near_seen && obs->two_faces && obs->base && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
+    if (!near_seen && obs->two_faces && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
         /* one face, or two and the detector missed the corner between them: whichever fits clearly better */
         size_t both[3];
         corners_from(of_two, true, both);

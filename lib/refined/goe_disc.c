@@ -164,8 +164,7 @@ static float first_range_m(const goe_observation_t *obs, float size) {
     return obs->settings->refined.typical_size_m / size;
 }
 
-/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1));
-    requires goe_triangle_holds(root); */
+/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 static void set_first_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
     const float bias = settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG;

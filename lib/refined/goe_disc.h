@@ -6,7 +6,7 @@
 #include "refined/goe_shape.h"
 
 /* First guess: state and root from one image. False if it shows no width, or the guess is out of range. */
-/*@ requires goe_observation_is_open(obs) && \valid(state + (0 .. GOE_STATES - 1)) && goe_triangle_holds(root); */
+/*@ requires goe_observation_is_open(obs) && \valid(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
 
 /* Appends the rows of a disc. If base corners are seen, what is taken for a disc is a box whose orientation is not known

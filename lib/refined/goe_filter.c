@@ -8,8 +8,6 @@
 
 #if GOE_WITH_REFINED
 
-#define TIME_MAX_US 4000000000u /* 4000 s, so that the difference fits 32 bits */
-
 GOE_STATIC_ASSERT(GOE_PHASE_BOX_OUTLINE <= UINT8_MAX, a_phase_fits_its_byte);
 GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_ORIENTATION | GOE_HAS_CENTER |
                    GOE_HAS_WIDTH) <= UINT8_MAX,
@@ -54,36 +52,16 @@ void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sig
 }
 
 float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motion) {
-    return goe_time_between_s(filter->axes.start_time_us, motion->time_us, TIME_MAX_US);
+    return goe_time_between_s(filter->axes.start_time_us, motion->time_us, GOE_TIME_MAX_US);
 }
-
-#if GOE_BESIDE
-goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion) {
-    const goe_axes_t *axes = &filter->axes;
-    goe_xz_t gained = {0.0f, 0.0f};
-    if (axes->paced && motion->paced) {
-        gained.x = motion->velocity_m_s[0] - axes->start_velocity_m_s[0];
-        gained.z = motion->velocity_m_s[1] - axes->start_velocity_m_s[1];
-    }
-    return goe_xz_into(gained, axes->turn_cos, axes->turn_sin);
-}
-
-void goe_filter_pace(goe_filter_t *filter, const goe_motion_t *motion) {
-    if (!filter->axes.paced && motion->paced) {
-        memcpy(filter->axes.start_velocity_m_s, motion->velocity_m_s, sizeof motion->velocity_m_s);
-        filter->axes.paced = true;
-    }
-}
-
-#endif
 
 goe_xz_t goe_filter_moved(const goe_filter_t *filter, const goe_motion_t *motion) {
     goe_xz_t moved = {0.0f, 0.0f};
 #if GOE_BESIDE
     if (filter->mover.followed) {
         const float s = goe_filter_elapsed_s(filter, motion);
-        moved.x = filter->mover.beside[1] * s;
-        moved.z = filter->mover.beside[2] * s;
+        moved.x = filter->mover.beside[GOE_BESIDE_VELOCITY_X] * s;
+        moved.z = filter->mover.beside[GOE_BESIDE_VELOCITY_Z] * s;
     }
 #else
     (void)filter;
@@ -93,6 +71,23 @@ goe_xz_t goe_filter_moved(const goe_filter_t *filter, const goe_motion_t *motion
 }
 
 #if GOE_BESIDE
+goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion) {
+    const goe_axes_t *axes = &filter->axes;
+    goe_xz_t gained = {0.0f, 0.0f};
+    if (filter->paced && motion->paced) {
+        gained.x = motion->velocity_m_s[0] - axes->start_velocity_m_s[0];
+        gained.z = motion->velocity_m_s[1] - axes->start_velocity_m_s[1];
+    }
+    return goe_xz_into(gained, axes->turn_cos, axes->turn_sin);
+}
+
+void goe_filter_pace(goe_filter_t *filter, const goe_motion_t *motion) {
+    if (!filter->paced && motion->paced) {
+        memcpy(filter->axes.start_velocity_m_s, motion->velocity_m_s, sizeof motion->velocity_m_s);
+        filter->paced = true;
+    }
+}
+
 goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion) {
     goe_xz_t since = {motion->dx_m - filter->axes.start_dx_m, motion->dz_m - filter->axes.start_dz_m};
     const goe_xz_t moved = goe_filter_moved(filter, motion);
@@ -100,8 +95,8 @@ goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motio
     since.x -= moved.x;
     since.z -= moved.z;
     since = goe_xz_into(since, filter->axes.turn_cos, filter->axes.turn_sin);
-    since.x += filter->mover.beside[0] * gained.x;
-    since.z += filter->mover.beside[0] * gained.z;
+    since.x += filter->mover.beside[GOE_BESIDE_LATENCY] * gained.x;
+    since.z += filter->mover.beside[GOE_BESIDE_LATENCY] * gained.z;
     return since;
 }
 #endif
@@ -113,7 +108,7 @@ void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->axes.start_dx_m = motion->dx_m;
     filter->axes.start_dz_m = motion->dz_m;
 #if GOE_BESIDE
-    filter->axes.paced = false;
+    filter->paced = false;
     goe_filter_pace(filter, motion);
 #endif
 }

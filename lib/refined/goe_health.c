@@ -44,7 +44,8 @@ static bool is_poor(goe_verdict_t verdict) {
 
 /*@ requires \valid(health); */
 static void average_track(goe_health_t *health, float ratio) {
-    health->images = (int16_t)(health->images < INT16_MAX ? health->images + 1 : INT16_MAX);
+    const int before = health->images > 0 ? health->images : 0;
+    health->images = (int16_t)(before < INT16_MAX ? before + 1 : INT16_MAX);
     const int heard = health->images + MEAN_SEEDS;
     average(&health->mean_nis, ratio, 1.0f / (float)(heard < MEAN_IMAGES ? heard : MEAN_IMAGES));
     average(&health->excess, ratio - 1.0f, 1.0f / (float)heard);

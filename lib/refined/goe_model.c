@@ -34,14 +34,14 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     memset(filter->side, 0, sizeof filter->side);
     goe_ground_start(filter, goe_observation_height_variance(obs, prism));
     memset(filter->walk_s, 0, sizeof filter->walk_s);
-    filter->stand_in = false;
+    filter->candidate.stand_in = false;
     goe_srif_invert_diagonal(&filter->root, &filter->inverse);
     goe_filter_settle(filter);
     return true;
 }
 
 bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
-    filter->stand_in = filter->stand_in || (obs->base && obs->settings->model != GOE_MODEL_DISC);
+    filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && obs->settings->model != GOE_MODEL_DISC);
     switch (goe_filter_phase(filter)) {
         case GOE_PHASE_DISC:
             return goe_box_start(filter, obs) || goe_chord_start(filter, obs);

@@ -19,6 +19,7 @@
 #define REST_CHI2 9.0f        /* something moves if a latency leaves at least this unexplained ... */
 #define REST_SHARE 0.15f      /* ... and a velocity at most this share of that */
 #define LATE_SHARE 0.3f       /* poses are late only if a velocity leaves more than this share of that */
+#define MOVING_SIGMAS2 9.0f   /* what is late moves as well if its velocity is that much more than nothing */
 #define MOVES_MIN_M_S 1.0f    /* what is slower is taken for none */
 #define MOVES_S 0.4f          /* for which it says so, image after image ... */
 #define MOVES_IMAGES 3        /* ... of which there are at least so many */
@@ -28,10 +29,12 @@
 #define BESIDE_MAX 1.0e9f /* of what is beside the state, and of its rows of the triangle: more is none of a flight */
 #define TIME_MIN_S 0.1f   /* keeps a walk over time finite */
 
+/*@ requires \valid(root) && i <= j < GOE_BESIDE; */
 static float *beside_at(goe_triangle_t *root, size_t i, size_t j) {
     return goe_srif_at(root, GOE_STATES + i, GOE_STATES + j);
 }
 
+/*@ requires \valid(root); */
 static void forget_beside(goe_triangle_t *root) {
     const size_t first = goe_srif_beside_row();
     memset(&root->element[first], 0, sizeof root->element - first * sizeof root->element[0]);
@@ -39,6 +42,7 @@ static void forget_beside(goe_triangle_t *root) {
 }
 
 /* Of the inverse: the part that unknown i has in independent error j. */
+/*@ requires \valid_read(inverse) && i < GOE_BESIDE && j < GOE_BESIDE; */
 static float part_of(const goe_inverse_t *inverse, size_t i, size_t j) {
     return i <= j ? inverse->element[goe_inverse_column(GOE_STATES + j) + GOE_STATES + i] : 0.0f;
 }
@@ -87,21 +91,28 @@ void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
 float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along) {
     const goe_inverse_t *inverse = &filter->inverse;
     float sum = 0.0f;
-    for (size_t j = GOE_BESIDE_VELOCITY_X; j < inverse->estimated; j++) {
+    const size_t estimated = goe_inverse_beside(inverse);
+    for (size_t j = GOE_BESIDE_VELOCITY_X; j < estimated; j++) {
         sum += goe_square(along.x * part_of(inverse, GOE_BESIDE_VELOCITY_X, j) +
                           along.z * part_of(inverse, GOE_BESIDE_VELOCITY_Z, j));
     }
     return sum;
 }
 
+float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s) {
+    return goe_square(navigation->velocity_bias_m_s) +
+           goe_square(navigation->position_walk_m) / goe_larger(elapsed_s, TIME_MIN_S);
+}
+
 float goe_mover_latency_sd(const goe_filter_t *filter) {
     const goe_inverse_t *inverse = &filter->inverse;
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     float variance = 0.0f;
-    for (size_t j = 0; j < inverse->estimated; j++) {
+    const size_t estimated = goe_inverse_beside(inverse);
+    for (size_t j = 0; j < estimated; j++) {
         variance += goe_square(part_of(inverse, GOE_BESIDE_LATENCY, j));
     }
-    if (inverse->estimated == 0) {
+    if (estimated == 0) {
         variance = 1.0f / goe_square(filter->root.element[goe_srif_beside_row()]);
     }
     return sqrtf(wider * variance);
@@ -120,8 +131,8 @@ typedef struct {
     float wider;                       /* by what the variance of the residuals is larger than told */
 } fit_t;
 
+/*@ requires \valid_read(filter) && goe_observation_is_open(obs) && \valid(fit); */
 static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs, fit_t *fit) {
-    const goe_navigation_t *navigation = &obs->settings->navigation;
     const float *r = &filter->root.element[goe_srif_beside_row()];
     const float t[GOE_BESIDE][GOE_BESIDE] = {{r[0], r[1], r[2]}, {0.0f, r[3], r[4]}, {0.0f, 0.0f, r[5]}};
     const float latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
@@ -138,8 +149,7 @@ static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs,
     if (!(determinant > 0.0f)) {
         return false;
     }
-    const float own = goe_square(navigation->velocity_bias_m_s) +
-                      goe_square(navigation->position_walk_m) / goe_larger(obs->elapsed_s, TIME_MIN_S);
+    const float own = goe_mover_own_variance(&obs->settings->navigation, obs->elapsed_s);
     const float left = filter->mover.nis - z[0] * z[0] - z[1] * z[1] - z[2] * z[2];
     fit->wider = goe_larger(left / filter->mover.rows, 1.0f);
     fit->velocity_m_s.x = (zz * to_x - xz * to_z) / determinant;
@@ -156,11 +166,13 @@ static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs,
 }
 
 /* Something in the image tells a scale that does not hang on the obstacle standing still: its foot, by the height. */
+/*@ requires \valid_read(filter) && goe_observation_is_open(obs); */
 static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
     return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SEES_BOTTOM) : obs->base;
 }
 
 /* Whether that velocity is one that no static obstacle shows, and no latency. */
+/*@ requires \valid_read(fit); */
 static bool is_unlike_static(const fit_t *fit, float least) {
     const goe_xz_t v = fit->velocity_m_s;
     const float determinant = fit->spread[0] * fit->spread[2] - fit->spread[1] * fit->spread[1];
@@ -169,6 +181,7 @@ static bool is_unlike_static(const fit_t *fit, float least) {
            fit->rest_latency > REST_CHI2 * fit->wider && fit->rest_velocity < REST_SHARE * fit->rest_latency;
 }
 
+/*@ requires \valid(filter) && \valid_read(fit); */
 static bool is_seen_to_move(goe_filter_t *filter, const fit_t *fit, float since_s) {
     goe_mover_t *m = &filter->mover;
     if (!(m->heard_s > SETTLED_S) ||
@@ -183,6 +196,7 @@ static bool is_seen_to_move(goe_filter_t *filter, const fit_t *fit, float since_
 
 /* (R37): from the velocity that the images spoke of, as uncertain as it was, and more, as it was linearised at a place that was
  * wrong; the latency is open again. */
+/*@ requires \valid(filter) && \valid_read(fit); */
 static void follow(goe_filter_t *filter, const fit_t *fit) {
     goe_mover_t *m = &filter->mover;
     goe_triangle_t *root = &filter->root;
@@ -206,6 +220,7 @@ static void follow(goe_filter_t *filter, const fit_t *fit) {
 }
 
 /* From here on it is estimated with the state. */
+/*@ requires \valid(filter) && \valid_read(fit); */
 static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
     const float least = LATE_SIGMAS * LATE_SIGMAS * fit->wider;
     const bool late = goe_absolute(fit->latency_s) > LATE_MIN_S && fit->by_latency > least;
@@ -216,6 +231,7 @@ static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
 }
 
 /* Late poses in a turn look like a motion at first; followed, what moves and what is late come apart. */
+/*@ requires \valid(filter); */
 static void judge_followed(goe_filter_t *filter) {
     goe_mover_t *m = &filter->mover;
     const goe_xz_t v = {m->beside[GOE_BESIDE_VELOCITY_X], m->beside[GOE_BESIDE_VELOCITY_Z]};
@@ -224,14 +240,16 @@ static void judge_followed(goe_filter_t *filter) {
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     const float spread = wider * goe_mover_variance(filter, v);
     m->late = late > LATE_MIN_S && late > LATE_SIGMAS * goe_mover_latency_sd(filter);
-    m->moves = !m->late || (squared > MOVES_MIN_M_S * MOVES_MIN_M_S && squared * squared > REST_CHI2 * spread);
+    m->moves = !m->late || (squared > MOVES_MIN_M_S * MOVES_MIN_M_S && squared * squared > MOVING_SIGMAS2 * spread);
 }
 
 /* An outline that is of another shape drifts, too, but fits. */
+/*@ requires \valid_read(filter) && goe_observation_is_open(obs); */
 static bool is_misfit(const goe_filter_t *filter, const goe_observation_t *obs) {
     return filter->health.mean_nis > obs->settings->refined.misfit_max;
 }
 
+/*@ requires \valid_read(filter); */
 static bool is_sound(const goe_filter_t *filter) {
     const float *corner = &filter->root.element[goe_srif_beside_row()];
     uint32_t largest = 0;

@@ -10,8 +10,6 @@
 
 #if GOE_BESIDE
 
-typedef enum { GOE_BESIDE_LATENCY, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_Z } goe_beside_t;
-
 /* A new track: the poses are in time, as far as is known, and nothing moves. */
 /*@ requires \valid(filter); */
 void goe_mover_clear(goe_filter_t *filter);
@@ -33,6 +31,10 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
 /* Variance of the velocity of an obstacle that is followed, along a unit vector in T, m2/s2; of the images alone. */
 /*@ requires \valid_read(filter); */
 float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along);
+
+/* Variance of the autopilot's own velocity over a time, each axis, m2/s2. */
+/*@ requires \valid_read(navigation); */
+float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s);
 
 /* One sigma of the latency, s. */
 /*@ requires \valid_read(filter); */

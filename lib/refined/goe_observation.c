@@ -114,7 +114,7 @@ static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const 
     obs->turn_sin = filter->axes.turn_sin;
     obs->elapsed_s = goe_filter_elapsed_s(filter, motion);
     obs->gained_m_s = goe_filter_gained(filter, motion);
-    obs->latency_s = filter->mover.beside[0];
+    obs->latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
     turn_rate(filter, motion->rate_rad_s, obs->rate_rad_s);
     turn_rate(filter, motion->rate_before_rad_s, obs->rate_before_rad_s);
 #else

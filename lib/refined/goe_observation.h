@@ -160,8 +160,8 @@ static inline void goe_rows_place(float *by, const goe_observation_t *obs, float
     by[GOE_BEARING] = by_x;
     by[GOE_INVERSE_RANGE] = -(by_x * obs->camera_m.x) - by_z * obs->camera_m.z;
 #if GOE_BESIDE
-    by[GOE_STATES + 1] = by_x; /* until goe_mover_columns() */
-    by[GOE_STATES + 2] = by_z;
+    by[GOE_STATES + GOE_BESIDE_VELOCITY_X] = by_x; /* until goe_mover_columns() */
+    by[GOE_STATES + GOE_BESIDE_VELOCITY_Z] = by_z;
 #endif
 }
 

@@ -417,8 +417,7 @@ static float first_range_m(const goe_observation_t *obs, float size, const goe_p
                     : s->refined.typical_size_m / goe_larger(size, BOX_SIZE_MIN);
 }
 
-/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1));
-    requires goe_triangle_holds(root); */
+/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;

@@ -18,7 +18,7 @@
 bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view);
 
 /* First guess: state and root from one image, in axes that face the obstacle. False if it is out of range. */
-/*@ requires goe_observation_is_open(obs) && \valid(state + (0 .. GOE_STATES - 1)) && goe_triangle_holds(root); */
+/*@ requires goe_observation_is_open(obs) && \valid(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
 
 /* Whether an image comes so soon after the one before that its errors are the same: it is not used. */

@@ -220,6 +220,9 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_observation_t obs;
     goe_health_expect(&filter->health);
     *swapped = 0;
+    if (filter->phase > GOE_PHASE_BOX_OUTLINE) {
+        goe_filter_enter(filter, GOE_PHASE_NONE); /* none that there is: it starts anew */
+    }
     goe_ground_read(filter, &settings->navigation, view);
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;

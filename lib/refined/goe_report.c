@@ -153,7 +153,7 @@ void goe_report_doubt(const goe_filter_t *filter, goe_estimate_t *estimate) {
     } else if (filter->health.base_refused && estimate->reason == GOE_REASON_NONE) {
         estimate->reason = GOE_REASON_BASE;
     }
-    estimate->suspect = estimate->suspect || moves(filter) || filter->health.base_refused;
+    estimate->suspect = goe_is_set(&estimate->suspect) || moves(filter) || filter->health.base_refused;
 }
 
 void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, goe_estimate_t *estimate) {

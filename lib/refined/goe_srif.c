@@ -109,7 +109,7 @@ static void remove_nuisances(float root, goe_matrix_t *matrix) {
 }
 
 /* Of the unknowns from first to before last. */
-/*@ requires goe_triangle_holds(root) && \valid(matrix) && \valid(right) && first <= last <= GOE_UNKNOWNS; */
+/*@ requires \valid(root) && \valid(matrix) && \valid(right) && first <= last <= GOE_UNKNOWNS; */
 static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t first, size_t last, float *right) {
     reflection_t to;
     float *r = &root->element[goe_srif_row(first) + first];
@@ -125,7 +125,7 @@ static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t 
 }
 
 /* R x = right, in place; what is not estimated is 0. */
-/*@ requires goe_triangle_holds(root) && \valid(right + (0 .. GOE_UNKNOWNS - 1)); */
+/*@ requires \valid_read(root) && \valid(right + (0 .. GOE_UNKNOWNS - 1)); */
 static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
     for (size_t i = count; i-- > 0;) {
@@ -139,19 +139,19 @@ static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
 }
 
 #if GOE_BESIDE
-/*@ requires goe_triangle_holds(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
+/*@ requires \valid(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
 static void reflect_beside(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
+    const size_t count = goe_srif_beside_count(root);
     reflect_unknowns(root, matrix, GOE_STATES, GOE_UNKNOWNS, root->right);
     for (size_t j = 0; j < GOE_BESIDE; j++) {
-        const bool estimated = j < root->estimated;
+        const bool estimated = j < count;
         change[GOE_STATES + j] = estimated ? root->right[j] : 0.0f;
         root->right[j] = estimated ? 0.0f : root->right[j];
     }
 }
 #endif
 
-/*@ requires goe_triangle_holds(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1));
-    requires states <= GOE_STATES; */
+/*@ requires \valid(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)) && states <= GOE_STATES; */
 GOE_NOINLINE static float update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t states,
                                  float change[GOE_UNKNOWNS]) {
     remove_nuisances(nuisance_root, matrix);
@@ -223,7 +223,7 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
 
 /* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column beside the state the first GOE_UNWEIGHTED elements, which
  * no quantity depends on, are left 0. */
-/*@ requires goe_triangle_holds(root) && \valid(inverse) && first <= GOE_STATES; */
+/*@ requires \valid_read(root) && \valid(inverse) && first <= GOE_STATES; */
 static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t *inverse) {
     const size_t count = goe_srif_count(root);
     float *v = &inverse->element[goe_inverse_column(first)];
@@ -238,7 +238,7 @@ static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t 
         v += j + 1;
     }
 #if GOE_BESIDE
-    inverse->estimated = root->estimated;
+    inverse->estimated = (uint8_t)goe_srif_beside_count(root);
 #endif
 }
 
@@ -309,10 +309,11 @@ float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight
 /* Written out, as above. */
 void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
                      float part[GOE_BESIDE]) {
-    for (size_t j = inverse->estimated; j < GOE_BESIDE; j++) {
+    const size_t count = goe_inverse_beside(inverse);
+    for (size_t j = count; j < GOE_BESIDE; j++) {
         part[j] = 0.0f;
     }
-    for (size_t j = 0; j < inverse->estimated; j++) {
+    for (size_t j = 0; j < count; j++) {
         const float *v = &inverse->element[goe_inverse_column(GOE_STATES + j)];
         float sum = weight[3] * v[3] + weight[4] * v[4] + weight[5] * v[5] + weight[6] * v[6] + weight[7] * v[7] +
                     weight[8] * v[8] + weight[9] * v[9];
@@ -376,7 +377,7 @@ static void factorise(float c[GOE_KEPT][GOE_KEPT], goe_inverse_t *inverse) {
 }
 
 /* The inverse of U, row by row. */
-/*@ requires \valid(u + (0 .. GOE_KEPT - 1)) && goe_triangle_holds(root); */
+/*@ requires \valid(u + (0 .. GOE_KEPT - 1)) && \valid(root); */
 static void invert_kept(float u[GOE_KEPT][GOE_KEPT], goe_triangle_t *root) {
     for (size_t j = 0; j < GOE_KEPT; j++) {
         root->element[goe_srif_row(j) + j] = 1.0f / u[j][j];

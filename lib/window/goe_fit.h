@@ -7,9 +7,9 @@
 GOE_STATIC_ASSERT(GOE_WINDOW_MAX <= INT16_MAX, a_place_in_the_ring_fits_its_type);
 
 /* Adds a row; the oldest of `length` rows leaves. */
-/*@ requires \valid(ring) && 1 <= length <= GOE_WINDOW_MAX && 0 <= ring->next < GOE_WINDOW_MAX; */
+/*@ requires \valid(ring) && 1 <= length <= GOE_WINDOW_MAX; */
 static inline void goe_fit_add(goe_fit_ring_t *ring, int length, float dx_m, float dz_m, goe_row_t row) {
-    const int at = ring->next;
+    const int at = ring->next >= 0 && ring->next < length ? ring->next : 0;
     goe_fit_point_t *point = &ring->point[at];
     point->dx_m = dx_m;
     point->dz_m = dz_m;

@@ -5,11 +5,13 @@
 
 /* Summed anew each time: a running sum would collect rounding errors over a long track. */
 goe_average_t goe_mean_add(goe_mean_t *mean, int length, float value) {
-    const int n = mean->count < length ? mean->count + 1 : length;
+    const int at = mean->next >= 0 && mean->next < length ? mean->next : 0;
+    const int before = mean->count > 0 ? mean->count : 0;
+    const int n = before < length ? before + 1 : length;
     float sum = 0.0f;
     float squares = 0.0f;
-    mean->value[mean->next] = value;
-    mean->next = (int16_t)(mean->next + 1 < length ? mean->next + 1 : 0);
+    mean->value[at] = value;
+    mean->next = (int16_t)(at + 1 < length ? at + 1 : 0);
     mean->count = (int16_t)n;
     for (int k = 0; k < n; k++) {
         sum += mean->value[k];

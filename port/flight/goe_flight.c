@@ -5,6 +5,7 @@
 
 #include "goe_clock.h"
 #include "goe_flight_maths.h"
+#include "goe_flight_seal.h"
 #include "goe_geometry.h"
 #include "goe_history.h"
 #include "goe_lookout.h"
@@ -143,6 +144,7 @@ goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t flight_size, co
     }
     flight->attitude_white_deg = estimator->navigation.attitude_white_deg;
     forget(flight);
+    goe_flight_seal(flight);
     flight->tag = TAG;
     return GOE_FLIGHT_OK;
 }
@@ -152,6 +154,12 @@ static goe_flight_status_t check_ready(const goe_flight_t *flight) {
         return GOE_FLIGHT_BAD_ARGUMENT;
     }
     return flight->tag == TAG ? GOE_FLIGHT_OK : GOE_FLIGHT_NOT_INITIALISED;
+}
+
+/* Where what is decided hangs on the settings. */
+static goe_flight_status_t check_sealed(const goe_flight_t *flight) {
+    const goe_flight_status_t ready = check_ready(flight);
+    return ready == GOE_FLIGHT_OK && !goe_flight_is_sealed(flight) ? GOE_FLIGHT_CORRUPTED : ready;
 }
 
 goe_flight_status_t goe_flight_restart(goe_flight_t *flight) {
@@ -416,7 +424,7 @@ static goe_flight_status_t find_view(goe_flight_t *flight, const goe_flight_fram
 
 goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_frame_t *frame) {
     goe_flight_slot_view_t view;
-    goe_flight_status_t status = frame ? check_ready(flight) : GOE_FLIGHT_BAD_ARGUMENT;
+    goe_flight_status_t status = frame ? check_sealed(flight) : GOE_FLIGHT_BAD_ARGUMENT;
     if (status != GOE_FLIGHT_OK) {
         return status;
     }
@@ -481,6 +489,11 @@ static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
     return alive;
 }
 
+static void copy_hazard(const goe_flight_slot_t *slot, goe_hazard_t *hazard) {
+    *hazard = slot->hazard;
+    hazard->has_clearance = goe_flight_is_set(&slot->hazard.has_clearance);
+}
+
 static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *result) {
     const goe_flight_reaction_t *reaction = &flight->reaction;
     result->action = (goe_flight_action_t)reaction->action;
@@ -503,7 +516,7 @@ static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_f
         result->obstacles = (uint8_t)(result->obstacles + (flight->slot[i].assessed ? 1 : 0));
     }
     if (worst != NOBODY) {
-        result->hazard = flight->slot[worst].hazard;
+        copy_hazard(&flight->slot[worst], &result->hazard);
         result->suspect = flight->slot[worst].suspect;
     }
     report_action(flight, result);
@@ -517,7 +530,7 @@ goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, boo
     }
     memset(result, 0, sizeof *result);
     result->worst = result->avoided = NOBODY;
-    const goe_flight_status_t status = check_ready(flight);
+    const goe_flight_status_t status = check_sealed(flight);
     if (status != GOE_FLIGHT_OK) {
         return status;
     }
@@ -595,11 +608,11 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
     const goe_flight_slot_t *one = &flight->slot[slot];
     obstacle->id = one->id;
     obstacle->valid = one->valid & TOLD;
-    obstacle->model = (goe_model_t)one->model;
+    obstacle->model = one->model <= GOE_MODEL_PRISM ? (goe_model_t)one->model : GOE_MODEL_NONE;
     obstacle->suspect = one->suspect;
     obstacle->in_view = one->in_view;
     obstacle->has_hazard = one->assessed;
-    obstacle->hazard = one->hazard;
+    copy_hazard(one, &obstacle->hazard);
     obstacle->passed = one->assessed && !(one->hazard.time_s > 0.0f);
     if (one->valid & GOE_HAS_POSITION) {
         obstacle->age_s = goe_flight_lookout_age_s(one, flight->assessed_us);
@@ -610,7 +623,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     const goe_hazard_t *hazard = &slot->hazard;
-    return slot->assessed && hazard->has_clearance && hazard->time_s > 0.0f &&
+    return slot->assessed && goe_flight_is_set(&hazard->has_clearance) && hazard->time_s > 0.0f &&
            hazard->clearance_m - 2.0f * hazard->clearance_sd_m >
                goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
 }

@@ -22,6 +22,10 @@
  * Arithmetic  float only; of the C library sqrtf, memcpy and memset. Compiled with -ffp-contract=off the results have the same
  *             bits on every IEEE 754 target.
  * Safety      Every output is finite. What is not finite is refused by its exponent bits, also under -ffast-math.
+ * Bit flips   A flipped bit in goe_flight_t leads to no write out of bounds. Settings, cameras among them, are sealed: a frame and an
+ *             assessment say GOE_FLIGHT_CORRUPTED. An estimator that says GOE_CORRUPTED begins anew, with the settings of another slot
+ *             if its own are lost; until it knows a position again the slot keeps place and hazard, suspect, so that no warning is
+ *             silenced. What else is kept here (poses, clocks, places, the order that stands) is not sealed.
  * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 42,400 for each obstacle in it, an assessment
  *             21,700 for each obstacle with a position, goe_flight_obstacle() 620, goe_flight_sectors() 6,000, goe_flight_init()
  *             11,000 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
@@ -70,7 +74,9 @@ typedef enum {
     GOE_FLIGHT_NOTHING = -7,      /* no such obstacle */
     GOE_FLIGHT_BAD_SETTINGS = -32,
     GOE_FLIGHT_BAD_ARGUMENT = -33, /* a null pointer, or a goe_flight_t of another size */
-    GOE_FLIGHT_NOT_INITIALISED = -34
+    GOE_FLIGHT_NOT_INITIALISED = -34,
+    GOE_FLIGHT_CORRUPTED = -35 /* settings, here or of all estimators, are not what goe_flight_init() left: call it again. Until then
+                                  nothing is known, which is not "clear" */
 } goe_flight_status_t;
 
 /* -------------------------------------------------------------------------------------------------------- settings -- */
@@ -262,7 +268,7 @@ typedef struct { /* goe_history.c */
 
 typedef struct { /* goe_marks.c: what the autopilot tells of its resets */
     uint32_t attitude, horizontal, vertical;
-    bool attitude_known, position_known; /* a first mark was seen */
+    goe_flag_t attitude_known, position_known; /* a first mark was seen */
     float jumps_ned_m[3];                /* sum of all known ones, modulo nothing: bounded to 1e6 */
 } goe_flight_marks_t;
 
@@ -273,7 +279,7 @@ typedef struct { /* goe_clock.c: sender's clock to autopilot's */
     float excess_us;       /* running mean of how far arrivals lie above the least */
     float synced_sd_us;
     uint8_t count, strange; /* of this filter; arrivals in a row that are off by more than a second */
-    bool has_before, synced;
+    goe_flag_t has_before, synced;
 } goe_flight_clock_t;
 
 typedef struct { /* goe_candidate.c */
@@ -296,7 +302,8 @@ typedef struct { /* goe_slot.c */
     int16_t box_px[4];
     uint8_t valid, model, reset_count;
     uint8_t camera; /* that saw it last */
-    bool used, fresh_track, suspect, in_view, assessed;
+    goe_flag_t used, fresh_track, suspect, in_view, assessed;
+    goe_flag_t remembered; /* place and hazard are from before the estimator was lost */
 } goe_flight_slot_t;
 
 typedef struct { /* goe_reaction.c: the order that stands */
@@ -305,7 +312,7 @@ typedef struct { /* goe_reaction.c: the order that stands */
     float target_ned_m[3];
     uint8_t action;
     int8_t slot; /* what it is about; -1: none, or given up */
-    bool rising, falling, late;
+    goe_flag_t rising, falling, late;
 } goe_flight_reaction_t;
 
 typedef struct { /* goe_flight.c */
@@ -316,6 +323,7 @@ typedef struct { /* goe_flight.c */
 
 typedef struct {
     uint32_t tag; /* set by goe_flight_init() */
+    goe_seal_t seal; /* of the next three */
     goe_flight_settings_t settings;
     goe_flight_camera_t camera[GOE_CAMERAS_MAX];
     float attitude_white_deg; /* setting of the estimator */
@@ -332,7 +340,7 @@ typedef struct {
     float ground_down_m; /* by the best source of the newest sample ... */
     uint8_t ground_source; /* ... which is this, GOE_FLIGHT_RANGE_FINDER, ... */
     uint8_t had_frame; /* ... bit i: one was of camera i */
-    bool origin_known;
+    goe_flag_t origin_known;
     int32_t origin_lat_e7, origin_lon_e7;
     goe_flight_candidate_t candidate[GOE_FLIGHT_CANDIDATES];
     goe_flight_slot_t slot[GOE_FLIGHT_SLOTS];
@@ -375,14 +383,15 @@ goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us
  * slot; a new one takes over the track that is not in this image and whose predicted place its box holds; any other waits until
  * it is confirmed. With the last detection of an image the other tracks of its camera are told that they were not seen. What is
  * seen by two cameras at once may have two slots until both know its place.
- * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALISED,
+ * _CORRUPTED. */
 goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_frame_t *frame);
 
 /* What is ahead from now on, at the velocity of the newest sample, and what to do about it: README.md has the rule as a table.
  *   now_us    autopilot's clock; older than the newest sample: counts as that
  *   approach  the aircraft is landing: to go around comes first
  *   result    written by every call unless null; all zero (worst, avoided -1) on failure: that is not "clear" then
- * Returns GOE_FLIGHT_OK, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * Returns GOE_FLIGHT_OK, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED, _CORRUPTED. */
 goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, bool approach,
                                       goe_flight_assessment_t *result);
 

@@ -19,6 +19,8 @@ bool goe_flight_all_within(const float *numbers, int count, float limit) {
     return within;
 }
 
+#define DEG_MAX 1.0e6f /* quarters of an angle beyond it fit no int */
+
 /* Minimax, made by `python -m goe_tools minimax`: 5e-9 rad of themselves. */
 #define TAN_PI_8 0.414213562f
 #define ATAN_3 0.333327567f /* atan t = t - t z (A3 - A5 z + A7 z^2 - A9 z^3), |t| <= tan(pi/8), z = t^2 */
@@ -46,7 +48,8 @@ float goe_flight_atan2_deg(float y, float x) {
 }
 
 /* Taylor series up to t^7 and t^8: |t| <= pi/4, where the next term is below 3.2e-7. */
-void goe_flight_sincos_deg(float deg, float *sine, float *cosine) {
+void goe_flight_sincos_deg(float angle_deg, float *sine, float *cosine) {
+    const float deg = goe_flight_within(angle_deg, DEG_MAX) ? angle_deg : 0.0f;
     const int quarter = (int)(deg * (1.0f / 90.0f) + (deg < 0.0f ? -0.5f : 0.5f));
     const float t = (deg - (float)quarter * 90.0f) * GOE_FLIGHT_RAD_PER_DEG;
     const float z = t * t;
@@ -59,7 +62,8 @@ void goe_flight_sincos_deg(float deg, float *sine, float *cosine) {
     *cosine = (((unsigned)quarter + 1u) & 2u) != 0u ? -second : second;
 }
 
-float goe_flight_positive_deg(float deg) {
+float goe_flight_positive_deg(float angle_deg) {
+    const float deg = goe_flight_within(angle_deg, DEG_MAX) ? angle_deg : 0.0f;
     const float turned = deg - 360.0f * (float)(int)(deg * (1.0f / 360.0f));
     const float positive = turned < 0.0f ? turned + 360.0f : turned;
     return positive < 360.0f ? positive : 0.0f;

@@ -47,6 +47,9 @@ static inline float goe_flight_between_s(uint32_t a, uint32_t b) {
     return (float)span_us * GOE_FLIGHT_S_PER_US;
 }
 
+/* Whether a truth value of another type's is set; one that is neither 0 nor 1 counts as set. */
+static inline bool goe_flight_is_set(const bool *truth) { return *(const unsigned char *)truth != 0u; }
+
 /* Saturating count. */
 static inline void goe_flight_count(uint16_t *counter) {
     *counter = *counter < UINT16_MAX ? (uint16_t)(*counter + 1) : *counter;
@@ -55,11 +58,11 @@ static inline void goe_flight_count(uint16_t *counter) {
 /* Angle of (y, x) in degrees, -180 to 180, 0 for (0, 0). Error at most 3e-5 degrees. */
 float goe_flight_atan2_deg(float y, float x);
 
-/* Sine and cosine of |deg| <= 1e4. Error at most 1e-6. */
-void goe_flight_sincos_deg(float deg, float *sine, float *cosine);
+/* Sine and cosine of |deg| <= 1e4. Error at most 1e-6. An angle beyond 1e6, or not finite, counts as 0; below as well. */
+void goe_flight_sincos_deg(float angle_deg, float *sine, float *cosine);
 
 /* deg, |deg| <= 1e4, in [0, 360). */
-float goe_flight_positive_deg(float deg);
+float goe_flight_positive_deg(float angle_deg);
 
 /* Body to NED, row by row, of a quaternion of norm 1. */
 void goe_flight_rotation(const float q[4], float r[9]);

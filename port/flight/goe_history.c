@@ -28,7 +28,8 @@ static int place(int next, int back) {
 }
 
 static int count_of(const goe_flight_history_t *h, int ring) {
-    return ring == ATTITUDES ? h->attitude_count : h->position_count;
+    const int count = ring == ATTITUDES ? h->attitude_count : h->position_count;
+    return count < GOE_FLIGHT_SAMPLES ? count : GOE_FLIGHT_SAMPLES;
 }
 
 static uint32_t time_of(const goe_flight_history_t *h, int ring, int back) {
@@ -47,7 +48,7 @@ static int make_place(goe_flight_history_t *h, int ring, uint32_t time_us) {
     if (*count > 1 && goe_flight_between_us(newest_us, time_of(h, ring, 1)) < THIN_US) {
         return place(*next, 0);
     }
-    const int here = *next;
+    const int here = *next % GOE_FLIGHT_SAMPLES;
     *next = (uint8_t)((here + 1) % GOE_FLIGHT_SAMPLES);
     *count = (uint8_t)(*count < GOE_FLIGHT_SAMPLES ? *count + 1 : GOE_FLIGHT_SAMPLES);
     return here;
@@ -130,7 +131,7 @@ typedef struct {
 static knot_t knot(const goe_flight_history_t *h, int back, const goe_flight_history_attitude_t *from) {
     knot_t k;
     memset(&k, 0, sizeof k);
-    if (back < 0 || back >= h->attitude_count) {
+    if (back < 0 || back >= count_of(h, ATTITUDES)) {
         return k;
     }
     const goe_flight_history_attitude_t *sample = &h->attitude[place(h->attitude_next, back)];
@@ -195,7 +196,7 @@ static float turn_square(const float a[4], const float b[4]) {
 static float rate_rms_deg_s(const goe_flight_history_t *h) {
     float turns = 0.0f; /* integral of the rate's square */
     float time_s = 0.0f;
-    for (int back = 0; back + 1 < h->attitude_count; back++) {
+    for (int back = 0; back + 1 < count_of(h, ATTITUDES); back++) {
         const goe_flight_history_attitude_t *newer = &h->attitude[place(h->attitude_next, back)];
         const goe_flight_history_attitude_t *older = &h->attitude[place(h->attitude_next, back + 1)];
         const float step_s = goe_flight_between_s(newer->time_us, older->time_us);

@@ -5,6 +5,7 @@
 #include "goe_lookout.h"
 
 #include "goe_flight_maths.h"
+#include "goe_slot.h"
 
 #define URGENCY_PER_S 0.1f /* 10 s of time halve the weight of a violation */
 #define DISTANCE_MAX_M 1.0e4f
@@ -25,8 +26,15 @@ float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_sl
     return flight->settings.drift_m_s * goe_flight_larger(old_s, 0.0f);
 }
 
+/* The hazard as it was, nearer by what has passed. */
+static void count_down(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t now_us) {
+    const float passed_s = goe_flight_larger(goe_flight_between_s(now_us, flight->assessed_us), 0.0f);
+    slot->hazard.time_s = goe_flight_larger(slot->hazard.time_s - passed_s, 0.0f);
+}
+
 static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t now_us) {
     goe_plan_t plan;
+    goe_hazard_t hazard;
     const float doubt = goe_flight_lookout_doubt(flight, slot);
     const float drift_m = goe_flight_lookout_drift_m(flight, slot, now_us);
     plan.margin_m = goe_flight_smaller(doubt * flight->settings.margin_m + drift_m, DISTANCE_MAX_M);
@@ -35,10 +43,19 @@ static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t
     for (int i = 0; i < 3; i++) {
         plan.velocity_ned_m_s[i] = goe_flight_clamped(flight->velocity_ned_m_s[i], -VELOCITY_MAX_M_S, VELOCITY_MAX_M_S);
     }
-    slot->assessed = slot->used && (slot->valid & GOE_HAS_POSITION) != 0u &&
-                     goe_hazard(&slot->estimator, &plan, &slot->hazard) == GOE_OK;
-    if (!slot->assessed) {
-        memset(&slot->hazard, 0, sizeof slot->hazard);
+    const bool placed = slot->used && (slot->valid & GOE_HAS_POSITION) != 0u;
+    const goe_status_t status = placed ? goe_hazard(&slot->estimator, &plan, &hazard) : GOE_COLLECTING;
+    if (placed && (status == GOE_CORRUPTED || status == GOE_NOT_INITIALISED)) {
+        goe_flight_slot_lose(slot);
+    }
+    if (placed && slot->remembered && status != GOE_OK) {
+        count_down(flight, slot, now_us);
+        return;
+    }
+    slot->assessed = status == GOE_OK;
+    memset(&slot->hazard, 0, sizeof slot->hazard);
+    if (slot->assessed) {
+        slot->hazard = hazard;
     }
 }
 

@@ -262,9 +262,17 @@ static void end_if_over(goe_flight_t *flight, const goe_flight_reaction_own_t *o
     }
 }
 
+/* An order that there is not, or about no slot that there is, is none: the hazard that stands brings another. */
+static void mend(goe_flight_reaction_t *r) {
+    if (r->action > GOE_FLIGHT_HOLD || r->slot < NOBODY || r->slot >= GOE_FLIGHT_SLOTS) {
+        goe_flight_reaction_clear(r);
+    }
+}
+
 float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flight_reaction_own_t *own) {
     goe_flight_reaction_t *r = &flight->reaction;
     encounter_t e;
+    mend(r);
     if (r->action != GOE_FLIGHT_NONE) {
         end_if_over(flight, own);
     }

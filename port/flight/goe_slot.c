@@ -27,9 +27,11 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
 void goe_flight_slot_reset(goe_flight_slot_t *slot) {
     slot->fresh_track = true;
     slot->valid = 0u;
-    slot->assessed = slot->suspect = false;
+    slot->assessed = slot->suspect = slot->remembered = false;
     memset(&slot->hazard, 0, sizeof slot->hazard);
 }
+
+void goe_flight_slot_lose(goe_flight_slot_t *slot) { slot->fresh_track = slot->suspect = slot->remembered = true; }
 
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot) {
     return 0.5f * sqrtf(goe_flight_square(slot->width_m) + goe_flight_square(slot->length_m));
@@ -130,11 +132,16 @@ static void note_outline(goe_flight_slot_t *slot, const goe_estimate_t *estimate
 }
 
 static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
+    const bool placed = (estimate->valid & GOE_HAS_POSITION) != 0u;
+    if (slot->remembered && !placed) {
+        return;
+    }
+    slot->remembered = false;
     slot->valid = (uint8_t)estimate->valid;
     slot->model = (uint8_t)estimate->model;
     slot->suspect = estimate->suspect;
     slot->age_s = estimate->age_s;
-    if (!(estimate->valid & GOE_HAS_POSITION)) {
+    if (!placed) {
         slot->assessed = false;
         memset(&slot->hazard, 0, sizeof slot->hazard);
         return;
@@ -157,7 +164,8 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     if (!slot->fresh_track && goe_flight_between_us(view->time_us, slot->taken_us) <= 0) {
         return;
     }
-    const uint8_t number = seen ? view->camera : slot->camera;
+    const uint8_t last = slot->camera < GOE_CAMERAS_MAX ? slot->camera : 0u;
+    const uint8_t number = seen ? view->camera : last;
     const goe_flight_camera_t *camera = &cameras[number];
     goe_flight_rotation(view->pose.q, body_to_ned);
     goe_flight_turn(body_to_ned, camera->offset_m, camera_ned_m);
@@ -167,7 +175,6 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     if (slot->fresh_track) {
         slot->ground_down_m = view->ground_down_m;
         slot->height_sd_m = view->height_sd_m;
-        (void)goe_reset(&slot->estimator);
         memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
     }
     memset(&image, 0, sizeof image);
@@ -180,6 +187,9 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     }
     const goe_status_t status = goe_update(&slot->estimator, &image, &estimate);
     slot->in_view = seen != NULL;
+    if (status == GOE_CORRUPTED || status == GOE_NOT_INITIALISED) {
+        goe_flight_slot_lose(slot);
+    }
     if (status > GOE_NOT_FINITE) {
         slot->taken_us = view->time_us;
         slot->seen_us = seen ? view->time_us : slot->seen_us;

@@ -21,13 +21,17 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
 /* An unknown reset of the autopilot's filter: the place means nothing any more, and the track begins anew. */
 void goe_flight_slot_reset(goe_flight_slot_t *slot);
 
+/* The estimator's memory was corrupted: it begins anew with the next image, and until it knows a position again the slot keeps what
+ * it knew, suspect. */
+void goe_flight_slot_lose(goe_flight_slot_t *slot);
+
 /* Of the circle about the centre that holds the outline, as far as it is known. */
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot);
 
 /* A known one. */
 void goe_flight_slot_shift(goe_flight_slot_t *slot, const float jump_ned_m[3]);
 
-/* Gives an image to the estimator: with what is seen, or nothing (null), then as if by the camera that saw it last. An image that is
+/* Gives an image to the estimator, which has been reset if the slot's track begins with it: with what is seen, or nothing (null), then as if by the camera that saw it last. An image that is
  * not newer than the slot's latest is left out. */
 void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],

@@ -3,6 +3,7 @@
 
 #include "goe_candidate.h"
 #include "goe_flight_maths.h"
+#include "goe_flight_seal.h"
 
 #define COORDINATE_MAX_PX 1.0e5f
 #define PIXEL_SD_MAX_PX 100.0f
@@ -121,8 +122,26 @@ static int room(goe_flight_t *flight, uint32_t now_us) {
 
 /* ------------------------------------------------------------------------------------------------------------- frame -- */
 
+/* An estimator whose own settings are lost takes those of another. */
+static void mend(goe_flight_t *flight, int i) {
+    goe_estimator_t *lost = &flight->slot[i].estimator;
+    for (int k = 0; k < GOE_FLIGHT_SLOTS; k++) {
+        if (k != i) {
+            memcpy(lost, &flight->slot[k].estimator, sizeof *lost);
+        }
+        if (k != i && goe_reset(lost) == GOE_OK) {
+            memset(lost->causes, 0, sizeof lost->causes);
+            return;
+        }
+    }
+    goe_flight_unseal(flight);
+}
+
 static void give(goe_flight_t *flight, int i, const goe_flight_slot_view_t *view, const goe_flight_detection_t *seen,
                  uint32_t *taken) {
+    if (flight->slot[i].fresh_track && goe_reset(&flight->slot[i].estimator) != GOE_OK) {
+        mend(flight, i);
+    }
     goe_flight_slot_take(&flight->slot[i], flight->camera, view, flight->marks.jumps_ned_m, seen);
     *taken |= 1u << i;
 }

@@ -27,6 +27,10 @@ static inline uint32_t goe_bits(double x) {
     return bits;
 }
 
+static inline uint32_t goe_bits_at(const double *at) { return goe_bits(*at); }
+
+static inline bool goe_is_set(const bool *truth) { return *(const unsigned char *)truth != 0u; }
+
 static inline uint32_t goe_magnitude(double x) { return goe_bits(x) & GOE_MAGNITUDE_BITS; }
 
 static inline uint32_t goe_larger_bits(uint32_t a, uint32_t b) { return a > b ? a : b; }

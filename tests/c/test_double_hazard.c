@@ -7,6 +7,7 @@
 
 #include "check.h"
 #include "goe_covariance.h"
+#include "goe_guard.h"
 #include "refined/goe_observation.h"
 #include "refined/goe_refined.h"
 #include "scene.h"
@@ -520,6 +521,7 @@ static void give_disc(float shared) {
     r[goe_inverse_column(GOE_TOP) + GOE_BEARING] = 0.02f * shared;
     r[goe_inverse_column(GOE_TOP) + GOE_TOP] = 0.02f;
     estimator.settings.method = GOE_METHOD_REFINED;
+    goe_guard_seal(&estimator);
     estimator.motion.time_us = estimator.filter.axes.start_time_us = 0;
 }
 
@@ -659,6 +661,8 @@ static void a_refusal_leaves_zeros(void) {
         }
     }
     estimator.ready = 0u;
+    check_refused(GOE_CORRUPTED, &estimator, &good);
+    estimator.seal.sum++;
     check_refused(GOE_NOT_INITIALISED, &estimator, &good);
 }
 

@@ -4,7 +4,7 @@
 #include "check.h"
 
 /* Images from the first number to the last, then calls. */
-static const int first[] = {GOE_BAD_ATTITUDE, GOE_NOT_INITIALISED};
+static const int first[] = {GOE_BAD_ATTITUDE, GOE_CORRUPTED};
 static const int last[] = {GOE_NOTHING_SEEN, GOE_BAD_SETTINGS};
 #define RANGES 2
 #define FREE_FROM (-31) /* for faults of images to come */
@@ -57,6 +57,7 @@ static void the_names_are_those_of_the_manual(void) {
     TEST_ASSERT_EQUAL_STRING("bad_settings", text_of(GOE_BAD_SETTINGS));
     TEST_ASSERT_EQUAL_STRING("bad_argument", text_of(GOE_BAD_ARGUMENT));
     TEST_ASSERT_EQUAL_STRING("not_initialised", text_of(GOE_NOT_INITIALISED));
+    TEST_ASSERT_EQUAL_STRING("corrupted", text_of(GOE_CORRUPTED));
 }
 
 /* Also those that are kept free: a new fault must not renumber the calls. */

@@ -21,7 +21,7 @@ FLOORS = [
     {"chain"},
 ]
 CONTRACT = {"goe.h", "goe_state.h", "goe_settings_list.h"}
-COVARIANCE = {"goe_latest.h", "goe_covariance.h", "goe_covariance.c"}
+COVARIANCE = {"goe_guard.h", "goe_guard.c", "goe_latest.h", "goe_covariance.h", "goe_covariance.c"}
 
 
 def room(file: str) -> str:

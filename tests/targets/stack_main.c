@@ -50,7 +50,7 @@ __attribute__((noinline)) static size_t depth_of_defaults(void) {
 
 __attribute__((noinline)) static size_t depth_of_text(void) {
     port_stack_paint();
-    (void)goe_status_text(GOE_NOT_INITIALISED);
+    (void)goe_status_text(GOE_CORRUPTED);
     return port_stack_used();
 }
 

@@ -93,7 +93,7 @@ impl Estimator {
         }
     }
 
-    /// Covariance of the latest estimate, by [`QUANTITIES`]; `None`: there is no position. Rows and columns of what is not valid are
+    /// Covariance of the latest estimate, by [`QUANTITIES`]; `None`: there is no position, or the memory is corrupted. Rows and columns of what is not valid are
     /// 0.
     #[must_use]
     pub fn covariance(&self) -> Option<[[f32; QUANTITIES]; QUANTITIES]> {
@@ -106,7 +106,8 @@ impl Estimator {
     /// Closest approach to the obstacle of the latest estimate, stale or not, suspect or not.
     ///
     /// # Errors
-    /// [`Error::NoPosition`], which does not mean that it is safe; [`Error::NotFinite`] and [`Error::OutOfRange`] of the plan.
+    /// [`Error::NoPosition`] and [`Error::Corrupted`], which do not mean that it is safe; [`Error::NotFinite`] and
+    /// [`Error::OutOfRange`] of the plan.
     #[cfg(feature = "hazard")]
     pub fn hazard(&self, plan: &Plan) -> Result<Hazard, Error> {
         let plan = plan.to_c();
@@ -120,13 +121,14 @@ impl Estimator {
             ffi::GOE_OK => Ok(Hazard::of(&hazard)),
             ffi::GOE_NOT_FINITE => Err(Error::NotFinite),
             ffi::GOE_OUT_OF_RANGE => Err(Error::OutOfRange),
+            ffi::GOE_CORRUPTED => Err(Error::Corrupted),
             _ => Err(Error::NoPosition),
         }
     }
 
     /// Forgets the track; keeps settings and counters. For another obstacle, or a new view of the same one.
     pub fn reset(&mut self) {
-        // SAFETY: the estimator is a started one, so that the call cannot fail.
+        // SAFETY: the estimator is a started one. If its memory is corrupted, every call says so.
         unsafe { ffi::goe_reset(&mut self.c) };
     }
 

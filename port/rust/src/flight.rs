@@ -339,6 +339,8 @@ pub enum FlightError {
     BadAttitude,
     /// No obstacle in this slot.
     Nothing,
+    /// Settings in the layer's memory have changed: make another. Nothing is known, which is not "clear".
+    Corrupted,
 }
 
 impl FlightError {
@@ -351,6 +353,7 @@ impl FlightError {
             ffi::GOE_FLIGHT_NOT_FINITE => Self::NotFinite,
             ffi::GOE_FLIGHT_BAD_ATTITUDE => Self::BadAttitude,
             ffi::GOE_FLIGHT_NOTHING => Self::Nothing,
+            ffi::GOE_FLIGHT_CORRUPTED => Self::Corrupted,
             _ => Self::OutOfRange,
         }
     }
@@ -367,6 +370,7 @@ impl FlightError {
             Self::OutOfRange => ffi::GOE_FLIGHT_OUT_OF_RANGE,
             Self::BadAttitude => ffi::GOE_FLIGHT_BAD_ATTITUDE,
             Self::Nothing => ffi::GOE_FLIGHT_NOTHING,
+            Self::Corrupted => ffi::GOE_FLIGHT_CORRUPTED,
         }
     }
 }
@@ -382,6 +386,7 @@ impl fmt::Display for FlightError {
             Self::OutOfRange => "a number is out of range",
             Self::BadAttitude => "the quaternion's norm is not 1",
             Self::Nothing => "no such obstacle",
+            Self::Corrupted => "corrupted memory",
         })
     }
 }

@@ -75,6 +75,8 @@ statuses! {
     BadTime = GOE_BAD_TIME,
     /// Image refused: the quaternion's norm is off 1 by more than 1 %.
     BadAttitude = GOE_BAD_ATTITUDE,
+    /// The estimator's memory is not what the library left there: nothing is known any more, which does not make it safe.
+    Corrupted = GOE_CORRUPTED,
 }
 
 impl Status {
@@ -123,6 +125,8 @@ pub enum Error {
     BadSetting(&'static str),
     /// There is no position yet. Nothing is known of the obstacle, which does not make it safe.
     NoPosition,
+    /// The estimator's memory is not what the library left there. Nothing is known any more, which does not make it safe.
+    Corrupted,
     /// A number of the plan is a NaN or an infinity.
     NotFinite,
     /// A number of the plan is outside its range.
@@ -134,6 +138,7 @@ impl fmt::Display for Error {
         match self {
             Self::BadSetting(field) => write!(f, "bad setting: {field}"),
             Self::NoPosition => f.write_str("no position yet"),
+            Self::Corrupted => f.write_str("corrupted memory"),
             Self::NotFinite => f.write_str("a number is not finite"),
             Self::OutOfRange => f.write_str("a number is out of range"),
         }

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from .record import Result
 
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
+    "flips": "one flipped bit anywhere in the estimator's memory",
 }
 
 

@@ -58,6 +58,8 @@ class FlightStatus(IntEnum):
     """The quaternion's norm is off 1 by more than 1 %."""
     NOTHING = -7
     """No obstacle in this slot."""
+    CORRUPTED = -35
+    """Settings in the layer's memory have changed: make another. Nothing is known, which is not "clear"."""
 
     def __str__(self) -> str:
         return self.name.lower()

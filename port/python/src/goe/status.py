@@ -46,6 +46,8 @@ class Status(IntEnum):
     """Image refused: its time is unknown, repeated or runs backwards."""
     BAD_ATTITUDE = -13
     """Image refused: the quaternion's norm is off 1 by more than 1 %."""
+    CORRUPTED = -35
+    """The estimator's memory is not what the library left there: nothing is known any more, which does not make it safe."""
 
     @property
     def is_fault(self) -> bool:

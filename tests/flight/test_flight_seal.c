@@ -1,0 +1,146 @@
+/* Flipped bits of the layer's settings and of its estimators. SPDX-License-Identifier: MIT */
+#include "goe_flight_seal.h"
+
+#include <string.h>
+
+#include "flown.h"
+
+static flown_t flown;
+
+void setUp(void) {
+    flown_start(&flown, NULL);
+    scene_make_cylinder(&flown.scene);
+    flown.scene.x0_m = 0.0; /* on the way */
+    flown.scene.z0_m = 300.0;
+}
+void tearDown(void) {}
+
+static void flip(void *at, size_t bit) { ((unsigned char *)at)[bit / 8u] ^= (unsigned char)(1u << bit % 8u); }
+
+static goe_flight_status_t assess(goe_flight_assessment_t *now) {
+    return goe_flight_assess(&flown.flight, flown_now_us(&flown), false, now);
+}
+
+/* GIVEN any one flipped bit of what is sealed THEN frames and assessments say so, and nothing is "clear". */
+static void every_flip_of_the_settings_is_told(void) {
+    const size_t first = 8u * offsetof(goe_flight_t, seal);
+    const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_deg) + sizeof(float));
+    goe_flight_assessment_t now;
+    goe_flight_frame_t frame;
+    (void)flown_fly(&flown, 3.0);
+    memset(&frame, 0, sizeof frame);
+    for (size_t bit = first; bit < end; bit++) {
+        flip(&flown.flight, bit);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, assess(&now));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, goe_flight_frame(&flown.flight, &frame));
+        TEST_ASSERT_EQUAL_INT(-1, now.worst);
+        TEST_ASSERT_FALSE(now.detector_alive || now.pose_alive);
+        flip(&flown.flight, bit);
+    }
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(&now));
+}
+
+/* One sample and a frame on, whatever becomes of them. */
+static void step_anyhow(void) {
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    flown_samples(&flown, flown.sample, &attitude, &position);
+    flown.sample++;
+    (void)goe_flight_attitude(&flown.flight, &attitude);
+    (void)goe_flight_position(&flown.flight, &position);
+    const goe_flight_detection_t detection = flown_detection(&flown, flown.sample - 6);
+    const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 6, &detection, 1);
+    (void)goe_flight_frame(&flown.flight, &frame);
+}
+
+static int seen_slot(void) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        if (flown.flight.slot[i].used) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* GIVEN an obstacle ahead WHEN a setting or what is known of the track is lost in its estimator THEN it stays the worst one, no less
+ * likely to be hit and suspect, until the estimator, begun anew with the settings of another, knows its place again. */
+static void warning_outlasts(size_t offset) {
+    const goe_flight_assessment_t before = flown_fly(&flown, 7.0);
+    const int slot = seen_slot();
+    goe_flight_slot_t *s = &flown.flight.slot[slot];
+    const goe_settings_t settings = s->estimator.settings;
+    TEST_ASSERT_TRUE(before.worst == slot && before.hazard.violation > 0.5f && !before.suspect);
+    memset((unsigned char *)&s->estimator + offset, 0xFF, sizeof(float));
+    bool remembered = false;
+    for (int k = 0; k < 20; k++) {
+        const goe_flight_assessment_t now = flown_fly(&flown, 0.2);
+        TEST_ASSERT_EQUAL_INT(slot, now.worst);
+        TEST_ASSERT_TRUE(now.hazard.violation > 0.4f);
+        TEST_ASSERT_TRUE(now.suspect || !s->remembered);
+        remembered = remembered || s->remembered;
+    }
+    TEST_ASSERT_TRUE(remembered);
+    TEST_ASSERT_FALSE(s->remembered);
+    TEST_ASSERT_EQUAL_MEMORY(&settings, &s->estimator.settings, sizeof settings);
+    goe_flight_obstacle_t obstacle;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, slot, &obstacle));
+    TEST_ASSERT_TRUE((obstacle.valid & GOE_HAS_POSITION) != 0u);
+}
+
+static void a_warning_outlasts_its_estimators_settings(void) {
+    warning_outlasts(offsetof(goe_estimator_t, settings.camera.fx_px));
+}
+
+static void a_warning_outlasts_its_track(void) { warning_outlasts(offsetof(goe_estimator_t, motion.origin_ne_m)); }
+
+/* GIVEN that the settings of every estimator are lost WHEN one of them is to begin anew THEN the layer is to be begun anew. */
+static void without_any_settings_the_layer_says_so(void) {
+    goe_flight_assessment_t now;
+    (void)flown_fly(&flown, 7.0);
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        flip(&flown.flight.slot[i].estimator, 8u * offsetof(goe_estimator_t, settings) + 40u);
+    }
+    goe_flight_status_t status = GOE_FLIGHT_OK;
+    for (int k = 0; k < 50 && status == GOE_FLIGHT_OK; k++) {
+        step_anyhow();
+        status = assess(&now);
+    }
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, status);
+    TEST_ASSERT_FALSE(goe_flight_is_sealed(&flown.flight));
+}
+
+/* GIVEN indices and counts that are out of their arrays THEN no call reads or writes there; the order that there is not is none. */
+static void indices_stay_in_their_arrays(void) {
+    goe_flight_assessment_t now;
+    (void)flown_fly(&flown, 7.0);
+    const int slot = seen_slot();
+    const goe_flight_t good = flown.flight;
+    for (int value = 0; value < 256; value++) {
+        flown.flight = good;
+        flown.flight.history.attitude_next = flown.flight.history.position_count = (uint8_t)value;
+        flown.flight.history.position_next = flown.flight.history.attitude_count = (uint8_t)(255 - value);
+        flown.flight.reaction.slot = (int8_t)(value - 128);
+        flown.flight.reaction.action = (uint8_t)value;
+        flown.flight.slot[slot].camera = (uint8_t)value;
+        flown.flight.slot[slot].model = (uint8_t)value;
+        flown.flight.had_frame = (uint8_t)value;
+        flown.flight.ground_source = (uint8_t)value;
+        step_anyhow();
+        (void)assess(&now);
+        TEST_ASSERT_TRUE((int)now.action >= GOE_FLIGHT_NONE && (int)now.action <= GOE_FLIGHT_HOLD);
+        TEST_ASSERT_TRUE(now.avoided >= -1 && now.avoided < GOE_FLIGHT_SLOTS);
+        goe_flight_obstacle_t obstacle;
+        (void)goe_flight_obstacle(&flown.flight, slot, &obstacle);
+        TEST_ASSERT_TRUE((int)obstacle.model <= GOE_MODEL_PRISM);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(every_flip_of_the_settings_is_told);
+    RUN_TEST(a_warning_outlasts_its_estimators_settings);
+    RUN_TEST(a_warning_outlasts_its_track);
+    RUN_TEST(without_any_settings_the_layer_says_so);
+    RUN_TEST(indices_stay_in_their_arrays);
+    return UNITY_END();
+}
