@@ -12,6 +12,7 @@ from .record import Result
 MODULES: dict[str, str] = {  # name: what it asks; the module of that name has run(amount)
     "flips": "one flipped bit anywhere in the estimator's memory",
     "proof": "is no call undefined, whatever bits it is given",
+    "misra": "is each violation of MISRA C:2012 one that has its reason",
 }
 
 
