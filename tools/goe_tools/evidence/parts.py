@@ -13,6 +13,7 @@ MODULES: dict[str, str] = {  # name: what it asks; the module of that name has r
     "flips": "one flipped bit anywhere in the estimator's memory",
     "proof": "is no call undefined, whatever bits it is given",
     "misra": "is each violation of MISRA C:2012 one that has its reason",
+    "analyzers": "do the compilers' analysers find nothing",
 }
 
 
