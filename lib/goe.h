@@ -454,7 +454,8 @@ typedef struct {
     goe_reason_t reason;   /* of that; GOE_REASON_LATE also of an estimate that is not suspect */
     int points;            /* images behind the answer: the window, or all that were used; at most 32767; 0 if none */
     float age_s;           /* since the image of the last solution, refused images included; 0 if fresh or none; at
-                              most 4000. It stands still when goe_update is not called */
+                              most 4000. It stands still when goe_update is not called, and falls if a refused image told a
+                              time that lay ahead of the next one's */
     float x0_m, z0_m;      /* reference point at the track's first image, T axes */
     float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale */
     float width_m;         /* disc: diameter; line, box: length of the front edge */
@@ -505,7 +506,7 @@ void goe_settings_default(goe_settings_t *settings);
  *                   Set to null unless GOE_BAD_SETTINGS is returned.
  * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS (a method that was left out among these); on failure the estimator is
  * left as it was.
- * Cost: at most 7500 instructions, 160 bytes of stack. */
+ * Cost: at most 7700 instructions, 160 bytes of stack. */
 /*@ requires estimator == \null || \valid(estimator);
     requires settings == \null || \valid_read(settings);
     requires bad_field == \null || \valid(bad_field); */
@@ -519,7 +520,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * GOE_NOT_INITIALISED, GOE_CORRUPTED. If several faults meet in one image all are counted; a failed solution is reported rather than a
  * feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
- * Cost: at most 34000 instructions, 1212 bytes of stack; 35000 with lens distortion; window: 2580. No loop runs longer than
+ * Cost: at most 34300 instructions, 1212 bytes of stack; 35400 with lens distortion; window: 3160. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */
 /*@ requires estimator == \null || \valid(estimator);
     requires image == \null || \valid_read(image);
@@ -534,7 +535,7 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  * on the diagonal.
  *   covariance  written by every call unless null; all zero on failure
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 8500 instructions, 800 bytes of stack. */
+ * Cost: at most 9000 instructions, 800 bytes of stack. */
 /*@ requires estimator == \null || \valid_read(estimator);
     requires covariance == \null || \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
@@ -576,7 +577,7 @@ typedef struct {
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,
  * GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 17200 instructions, 1010 bytes of stack. No loop runs longer than 10. */
+ * Cost: at most 17500 instructions, 1010 bytes of stack. No loop runs longer than 10. */
 #if GOE_WITH_HAZARD
 /*@ requires estimator == \null || \valid_read(estimator);
     requires plan == \null || \valid_read(plan);
@@ -586,7 +587,7 @@ GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const go
 
 /* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
  * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 1400 instructions, 64 bytes of stack. */
+ * Cost: at most 1600 instructions, 64 bytes of stack. */
 /*@ requires estimator == \null || \valid(estimator); */
 goe_status_t goe_reset(goe_estimator_t *estimator);
 

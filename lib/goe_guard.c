@@ -18,13 +18,13 @@
 #if defined(__GNUC__)
 typedef uint32_t __attribute__((may_alias)) word_t;
 
-/*@ requires \valid_read(from + (4 * i .. 4 * i + 3)); */
-static inline uint32_t word_at(const unsigned char *from, size_t i) { return ((const word_t *)(const void *)from)[i]; }
+/*@ requires \valid_read((char *)from + (4 * i .. 4 * i + 3)); */
+static inline uint32_t word_at(const void *from, size_t i) { return ((const word_t *)from)[i]; }
 #else
-/*@ requires \valid_read(from + (4 * i .. 4 * i + 3)); */
-static inline uint32_t word_at(const unsigned char *from, size_t i) {
+/*@ requires \valid_read((char *)from + (4 * i .. 4 * i + 3)); */
+static inline uint32_t word_at(const void *from, size_t i) {
     uint32_t word;
-    memcpy(&word, from + i * sizeof word, sizeof word);
+    memcpy(&word, (const unsigned char *)from + i * sizeof word, sizeof word);
     return word;
 }
 #endif
@@ -75,10 +75,7 @@ void goe_guard_seal(goe_estimator_t *estimator) {
 }
 
 /* Memory that is neither ready nor sealed was never set. */
-goe_status_t goe_guard_check(const goe_estimator_t *estimator) {
-    if (!estimator) {
-        return GOE_BAD_ARGUMENT;
-    }
+goe_status_t goe_guard_judge(const goe_estimator_t *estimator) {
     const goe_seal_t seal = seal_of(estimator);
     const bool sealed = seal.sum == estimator->seal.sum && seal.turned == estimator->seal.turned;
     const bool ready = estimator->ready == READY;

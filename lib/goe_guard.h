@@ -9,11 +9,16 @@
 /*@ requires \valid(estimator); */
 void goe_guard_seal(goe_estimator_t *estimator);
 
-/* GOE_OK; GOE_BAD_ARGUMENT of a null pointer; GOE_NOT_INITIALISED; or GOE_CORRUPTED, if mounting, settings or what tells that they
- * are set are not what goe_guard_seal() left. It finds every change of one word, and of two bits anywhere but the same bit of two words
- * that lie 32 words apart. */
+/* GOE_OK; GOE_NOT_INITIALISED; or GOE_CORRUPTED, if mounting, settings or what tells that they are set are not what goe_guard_seal()
+ * left. It finds every change of one word, and of two bits anywhere but the same bit of two words that lie 32 words apart. */
+/*@ requires \valid_read(estimator); */
+goe_status_t goe_guard_judge(const goe_estimator_t *estimator);
+
+/* The same; GOE_BAD_ARGUMENT of a null pointer. */
 /*@ requires estimator == \null || \valid_read(estimator); */
-goe_status_t goe_guard_check(const goe_estimator_t *estimator);
+static inline goe_status_t goe_guard_check(const goe_estimator_t *estimator) {
+    return estimator ? goe_guard_judge(estimator) : GOE_BAD_ARGUMENT;
+}
 
 /* Whether none of `count` floats is an infinity or a NaN. */
 /*@ requires \valid_read(floats + (0 .. count - 1)); */

@@ -235,12 +235,20 @@ static void tell_alive(companion_t *c) {
     c->pose_alive = a->pose_alive;
 }
 
+static bool begin_flight(companion_t *c, const char **bad) {
+    return goe_flight_init(&c->flight, sizeof c->flight, &c->config.estimator, &c->config.flight, bad) == GOE_FLIGHT_OK;
+}
+
 static void assess(companion_t *c, int64_t now_us) {
     const uint32_t autopilot_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
     const goe_flight_status_t status =
         goe_flight_assess(&c->flight, autopilot_us, c->autopilot.landing, &c->assessment);
     tell_alive(c);
+    if (status == GOE_FLIGHT_CORRUPTED) {
+        event("its memory was corrupted: obstacles are looked for anew");
+        (void)begin_flight(c, NULL);
+    }
     if (status == GOE_FLIGHT_OK) { /* without a pose nothing is known, and what stands stands */
         orders_follow(&c->orders, &c->assessment, &own, now_us);
     }
@@ -333,7 +341,7 @@ static bool open_all(companion_t *c, char *fault, size_t fault_size) {
             return false;
         }
     }
-    if (goe_flight_init(&c->flight, sizeof c->flight, &c->config.estimator, &c->config.flight, &bad) != GOE_FLIGHT_OK) {
+    if (!begin_flight(c, &bad)) {
         (void)snprintf(fault, fault_size, "the library refuses the setting %s", bad != NULL ? bad : "(none)");
         return false;
     }

@@ -26,9 +26,9 @@
  *             assessment say GOE_FLIGHT_CORRUPTED. An estimator that says GOE_CORRUPTED begins anew, with the settings of another slot
  *             if its own are lost; until it knows a position again the slot keeps place and hazard, suspect, so that no warning is
  *             silenced. What else is kept here (poses, clocks, places, the order that stands) is not sealed.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 42,400 for each obstacle in it, an assessment
- *             21,700 for each obstacle with a position, goe_flight_obstacle() 620, goe_flight_sectors() 6,000, goe_flight_init()
- *             11,000 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 44,000 for each obstacle in it, an assessment
+ *             22,800 for each obstacle with a position, goe_flight_obstacle() 640, goe_flight_sectors() 6,600, goe_flight_init()
+ *             12,300 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changed nothing but counters.
  */
 #ifndef GOE_FLIGHT_H

@@ -282,9 +282,9 @@ def test_a_guarantee_that_the_readme_does_not_state_is_told(tmp_path: Path) -> N
     root = copy_of_pages(tmp_path)
     readme = root / "README.md"
     text = readme.read_text(encoding="utf-8")
-    assert text.count("34,000 instructions") == 2  # once in its own words, once in the table
-    readme.write_text(text.replace("34,000 instructions", "few instructions", 1), encoding="utf-8")
-    assert ["34,000 instructions" in wrong for wrong in pages.wrong_pages(root, committed())] == [True]
+    assert text.count("34,300 instructions") == 2  # once in its own words, once in the table
+    readme.write_text(text.replace("34,300 instructions", "few instructions", 1), encoding="utf-8")
+    assert ["34,300 instructions" in wrong for wrong in pages.wrong_pages(root, committed())] == [True]
 
 
 def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
@@ -292,9 +292,9 @@ def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
     ledger = committed()
     header = root / pages.HEADER
     limits = stated.stated(header.read_text(encoding="utf-8"))
-    assert limits["instructions: goe_update: max"] == 34000
-    assert limits["instructions: goe_update with lens distortion: max"] == 35000
-    assert limits["instructions: goe_update, window: max"] == 2580
+    assert limits["instructions: goe_update: max"] == 34300
+    assert limits["instructions: goe_update with lens distortion: max"] == 35400
+    assert limits["instructions: goe_update, window: max"] == 3160
     assert len(limits) == 2 * len(PUBLIC) + 2
     hazard = r"at most \d+ instructions(, \d+ bytes of stack\. No loop)"
     text = re.sub(hazard, r"at most 10 instructions\1", header.read_text(encoding="utf-8"))
@@ -311,12 +311,12 @@ def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
 def test_a_promise_that_is_broken_is_told() -> None:
     ledger = committed()
     assert guarantees.broken_promises(ledger) == []
-    ledger["m4f-gcc-os"]["instructions: goe_update: max"] = 34001
+    ledger["m4f-gcc-os"]["instructions: goe_update: max"] = 34301
     ledger["m4f-clang-os"]["instructions: goe_update: max"] = 99999  # nobody promised
     ledger["rv32imac-gcc-o2"]["data bytes: total"] = 4
     ledger["m4f-gcc-o2"]["calls to other libraries"] = "memcpy malloc"
     assert guarantees.broken_promises(ledger) == [
-        "m4f-gcc-os: instructions: goe_update: max: 34001, promised 34000",
+        "m4f-gcc-os: instructions: goe_update: max: 34301, promised 34300",
         "m4f-gcc-o2: the library calls malloc",
         "rv32imac-gcc-o2: data bytes: total: 4, promised 0",
     ]
@@ -325,12 +325,12 @@ def test_a_promise_that_is_broken_is_told() -> None:
 def test_the_table_of_guarantees_tells_where_they_do_not_hold() -> None:
     ledger = committed()
     figure = "instructions: goe_update: max"
-    for preset, value in zip(guarantees.M4F, (34000, 24000, 34001, 1)):
+    for preset, value in zip(guarantees.M4F, (34300, 24000, 34301, 1)):
         ledger[preset][figure] = value
-    row = next(line for line in guarantees.rows(ledger) if "34,000 instructions" in line)
+    row = next(line for line in guarantees.rows(ledger) if "34,300 instructions" in line)
     cells = [cell.strip() for cell in row.strip("|").split("|")]
     assert cells[1:] == [
-        "Cortex-M4F gcc -Os (34,000), gcc -O2 (24,000), clang -O2 (1)", "Cortex-M4F clang -Os (34,001)",
+        "Cortex-M4F gcc -Os (34,300), gcc -O2 (24,000), clang -O2 (1)", "Cortex-M4F clang -Os (34,301)",
     ]  # fmt: skip
 
 

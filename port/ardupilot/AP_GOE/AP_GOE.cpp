@@ -147,7 +147,12 @@ void AP_GOE::update()
 
 void AP_GOE::assess()
 {
-    (void)goe_flight_assess(&_state->flight, AP_HAL::micros(), AP::vehicle()->is_landing(), &_state->assessment);
+    const goe_flight_status_t status =
+        goe_flight_assess(&_state->flight, AP_HAL::micros(), AP::vehicle()->is_landing(), &_state->assessment);
+    if (status == GOE_FLIGHT_CORRUPTED && _has_good) {
+        GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: memory was corrupted, begun anew");
+        (void)init_flight(_state->good, nullptr);
+    }
     put_obstacles();
     tell_changes();
     if (is_positive(_report_hz) && (AP_HAL::millis() - _reported_ms) * 0.001f * _report_hz >= 1.0f) {

@@ -277,7 +277,10 @@ void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
 void Goe::assess(uint64_t now_us) {
     goe_flight_assessment_t assessment;
     _assessed_us = now_us;
-    (void)goe_flight_assess(&_flight, goe_px4::time_us(now_us), _approach, &assessment);
+    if (goe_flight_assess(&_flight, goe_px4::time_us(now_us), _approach, &assessment) == GOE_FLIGHT_CORRUPTED) {
+        mavlink_log_critical(&_mavlink_log_pub, "goe: memory was corrupted, begun anew");
+        _in_use = goe_flight_init(&_flight, sizeof _flight, &_used.estimator, &_used.flight, nullptr) == GOE_FLIGHT_OK;
+    }
     follow_orders(assessment, now_us);
     tell_operator(assessment);
     pthread_mutex_lock(&_overview_lock);
