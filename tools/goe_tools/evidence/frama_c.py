@@ -99,7 +99,7 @@ def reached_functions(log: str) -> frozenset[str]:
 
 def plain(name: str) -> str:
     """Without the number that tells static functions of one name apart."""
-    return re.sub(r"(?<=[a-z])_\d+$", "", name)
+    return re.sub(r"_\d+$", "", name)
 
 
 FUNCTION = re.compile(  # static in a .c file or inline in a header; a prototype in a header
