@@ -503,6 +503,7 @@ typedef struct {
  * usual sensors; the paper's values for the window; no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are 0 and
  * must be set by the caller. A null pointer is ignored.
  * Cost: at most 1010 instructions, 40 bytes of stack. */
+/*@ requires settings == \null || \valid(settings); */
 void goe_settings_default(goe_settings_t *settings);
 
 /* Checks *settings, copies them and starts with an empty track and zeroed counters.
@@ -512,6 +513,9 @@ void goe_settings_default(goe_settings_t *settings);
  * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS (a method that was left out among these); on failure the estimator is
  * left as it was.
  * Cost: at most 7900 instructions, 160 bytes of stack. */
+/*@ requires estimator == \null || \valid(estimator);
+    requires settings == \null || \valid_read(settings);
+    requires bad_field == \null || \valid(bad_field); */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 
@@ -524,6 +528,9 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
  * Cost: at most 48000 instructions, 1212 bytes of stack; 70000 with lens distortion; window: 5300. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */
+/*@ requires estimator == \null || \valid(estimator);
+    requires image == \null || \valid_read(image);
+    requires estimate == \null || \valid(estimate); */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
 /* The quantities of goe_covariance, in this order. */
@@ -535,6 +542,8 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  *   covariance  written by every call unless null; all zero on failure
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 10200 instructions, 800 bytes of stack. */
+/*@ requires estimator == \null || \valid_read(estimator);
+    requires covariance == \null || \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
 /* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over the ground, or relative to an obstacle
@@ -576,12 +585,16 @@ typedef struct {
  * GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 20900 instructions, 1010 bytes of stack. No loop runs longer than 10. */
 #if GOE_WITH_HAZARD
+/*@ requires estimator == \null || \valid_read(estimator);
+    requires plan == \null || \valid_read(plan);
+    requires hazard == \null || \valid(hazard); */
 GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard);
 #endif
 
 /* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
  * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 1620 instructions, 64 bytes of stack. */
+/*@ requires estimator == \null || \valid(estimator); */
 goe_status_t goe_reset(goe_estimator_t *estimator);
 
 /* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number.

@@ -9,6 +9,7 @@
 #include "refined/goe_ground.h"
 #include "refined/goe_quantities.h"
 
+/*@ requires \valid_read(sigma) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
     const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
                                       sigma->width_m, sigma->length_m, sigma->height_m};
@@ -19,6 +20,7 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
 
 #if GOE_WITH_REFINED
 /* The filter is as it was when it gave the estimate; it may be another's since. */
+/*@ requires \valid_read(estimate); */
 static bool is_of_filter(const goe_estimate_t *estimate) {
     return estimate->method == GOE_METHOD_REFINED && goe_is_set(&estimate->fresh);
 }
@@ -26,6 +28,7 @@ static bool is_of_filter(const goe_estimate_t *estimate) {
 static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
                                                 GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
 
+/*@ requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void keep_valid(unsigned valid, goe_covariance_t covariance) {
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         for (int j = 0; j < GOE_QUANTITIES; j++) {
@@ -38,6 +41,7 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
 }
 
 /* False if the estimate is not the filter's. */
+/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
                                  goe_covariance_t covariance) {
     const goe_estimate_t *estimate = &estimator->estimate;
@@ -50,6 +54,7 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_dat
     return true;
 }
 
+/*@ requires \valid_read(estimator); */
 static bool is_steady(const goe_estimator_t *estimator) {
     return is_of_filter(&estimator->estimate) &&
            goe_ground_is_steady(&estimator->filter, &estimator->settings.navigation);
@@ -76,6 +81,7 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
     return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
 }
 #else
+/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
                                  goe_covariance_t covariance) {
     (void)estimator;

@@ -33,6 +33,7 @@ typedef struct __attribute__((may_alias)) {
     uint32_t word[BLOCK_BYTES / 4u];
 } block_t;
 
+/*@ requires \valid(to) && \valid_read(from); */
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) {
     block_t *t = (block_t *)to;
     const block_t *f = (const block_t *)from;
@@ -43,10 +44,12 @@ static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from)
     memcpy((unsigned char *)to + copied, (const unsigned char *)from + copied, sizeof *to - copied);
 }
 #else
+/*@ requires \valid(to) && \valid_read(from); */
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) { *to = *from; }
 #endif
 
 /* The estimate grows old while images are refused, too, as far as their times can be believed. */
+/*@ requires \valid_read(estimator) && \valid(estimate); */
 static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     estimate->age_s = 0.0f;
     if (goe_is_set(&estimate->fresh) || !(estimate->valid & GOE_HAS_POSITION)) {
@@ -58,6 +61,7 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
 }
 
 /* What every answer is told with, also a refused image's. */
+/*@ requires \valid_read(estimator) && \valid(estimate); */
 static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     set_age(estimator, image_us, estimate);
     estimate->trajectory_heading_deg = estimator->motion.heading_deg;
@@ -68,6 +72,7 @@ static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_est
     }
 }
 
+/*@ requires \valid(estimator); */
 static void forget_track(goe_estimator_t *estimator) {
     memset(&estimator->motion, 0, sizeof estimator->motion);
     estimator->motion.time_us = GOE_TIME_UNKNOWN;
@@ -85,6 +90,7 @@ static void forget_track(goe_estimator_t *estimator) {
 
 #if GOE_WITH_WINDOW
 /* Of the window, which tells by its answer alone whether it solved. */
+/*@ requires \valid(estimator); */
 static void note_solved(goe_estimator_t *estimator) {
     if (estimator->estimate.fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
@@ -96,6 +102,7 @@ static void note_solved(goe_estimator_t *estimator) {
 
 #if GOE_WITH_REFINED
 /* No new answer: the last one grows old, and follows the motion. */
+/*@ requires \valid(estimator); */
 static void grow_old(goe_estimator_t *estimator) {
     goe_estimate_t *estimate = &estimator->estimate;
     const goe_motion_t *motion = &estimator->motion;
@@ -113,6 +120,7 @@ static void grow_old(goe_estimator_t *estimator) {
     }
 }
 
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
                                    bool measured) {
     const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
@@ -136,6 +144,7 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
 }
 
 /* North and east of an older answer are those of the autopilot's filter before its reset. */
+/*@ requires \valid(estimate) && \valid_read(delta_ned_m + (0 .. 2)); */
 static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
     if (estimate->valid & GOE_HAS_CENTER) {
         estimate->center_north_m += delta_ned_m[0];
@@ -144,6 +153,7 @@ static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
 }
 
 /* Points out of order: pairs that the refined method found, once for each. */
+/*@ requires \valid(estimator) && goe_faults_are_open(faults); */
 static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_faults_t *faults) {
     for (unsigned i = 0; i < swapped; i++) {
         goe_count_cause(estimator->causes, GOE_SWAPPED);
@@ -155,6 +165,7 @@ static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_fault
 
 #if GOE_WITH_WINDOW
 /* The window solves beside an answer of the filter's, which is worth more than none: only a fresh one takes its place. */
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static GOE_NOINLINE goe_status_t solve_beside(goe_estimator_t *estimator, const goe_view_t *view,
                                               const goe_faults_t *faults) {
     goe_estimate_t answer;
@@ -170,6 +181,7 @@ static GOE_NOINLINE goe_status_t solve_beside(goe_estimator_t *estimator, const 
     return status == GOE_COLLECTING ? GOE_HELD : status;
 }
 
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t solve_window(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults) {
     const goe_status_t status = estimator->estimate.method == GOE_METHOD_REFINED
                                     ? solve_beside(estimator, view, faults)
@@ -182,6 +194,7 @@ static goe_status_t solve_window(goe_estimator_t *estimator, const goe_view_t *v
 
 /* A filter that has not started, or has only a disc where a box was asked for, leaves the answer to the window; one that starts
  * in this image does, too, unless it has an older answer; one that stops in this image keeps its own. */
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_settings_t *settings = &estimator->settings;
     unsigned swapped;
@@ -205,6 +218,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     return report_refined(estimator, view, faults, measured && reports);
 }
 
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_status_t status = update_refined(estimator, view, faults);
     goe_report_doubt(&estimator->filter, &estimator->estimate);
@@ -215,6 +229,7 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
 /* The autopilot's filter jumped: by a known amount the answer moves along, by an unknown one the track ends. */
+/*@ requires \valid(estimator) && \valid_read(pose); */
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
     if (!goe_is_set(&pose->reset_delta_known)) {
         forget_track(estimator);
@@ -231,6 +246,7 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 
 /* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be
  * used: the track begins here. */
+/*@ requires \valid(estimator) && \valid(view) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
     goe_motion_t *motion = &estimator->motion;
     motion->sighted = true;
@@ -246,6 +262,8 @@ static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe
     }
 }
 
+/*@ requires \valid(estimator) && \valid_read(image) && \valid_read(camera) && \valid(view);
+    requires goe_faults_are_open(faults); */
 static void open_view(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera,
                       goe_view_t *view, goe_faults_t *faults) {
     view->image = image;
@@ -259,6 +277,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     }
 }
 
+/*@ requires \valid(estimator) && \valid_read(image) && \valid_read(camera); */
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
     goe_view_t view;
     goe_faults_t faults = {estimator->causes, GOE_OK};
@@ -312,6 +331,7 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
 }
 
 /* Nothing changes but a counter; the answer is the older one. */
+/*@ requires \valid(estimator) && \valid(estimate); */
 static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, goe_estimate_t *estimate) {
     goe_count_cause(estimator->causes, status);
     *estimate = estimator->estimate;
@@ -319,6 +339,7 @@ static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status,
 }
 
 /* Whether nothing but numbers leaves, and nothing but numbers is left to place what comes. */
+/*@ requires \valid_read(estimator) && \valid_read(estimate); */
 static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
     const uint32_t place =
         goe_larger_bits(goe_magnitude(estimator->motion.dx_m), goe_magnitude(estimator->motion.dz_m));
@@ -326,6 +347,7 @@ static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *est
 }
 
 /* The track's memory is not what the library left there. */
+/*@ requires \valid(estimator) && \valid(estimate); */
 static GOE_NOINLINE goe_status_t give_up(goe_estimator_t *estimator, goe_estimate_t *estimate) {
     forget_track(estimator);
     memset(estimate, 0, sizeof *estimate);

@@ -26,6 +26,7 @@ static const struct {
 GOE_STATIC_ASSERT(sizeof(goe_settings_t) <= UINT16_MAX, a_place_fits_its_type);
 GOE_STATIC_ASSERT(sizeof(goe_method_t) == sizeof(goe_model_t), choices_are_of_one_size);
 
+/*@ requires \valid(field + (0 .. 3)); */
 static void write_field(unsigned char *field, uint8_t kind, float value) {
     const int count = (int)value;
     const goe_method_t choice = (goe_method_t)count;
@@ -46,6 +47,7 @@ static void write_field(unsigned char *field, uint8_t kind, float value) {
     }
 }
 
+/*@ requires \valid_read(field + (0 .. 3)); */
 static float read_field(const unsigned char *field, uint8_t kind) {
     float value;
     int count;
@@ -81,6 +83,8 @@ void goe_settings_default(goe_settings_t *settings) {
 }
 
 /* Of the first `count` settings, at `from`. */
+/*@ requires \valid_read(from + (0 .. sizeof(goe_settings_t) - 1));
+    requires count <= sizeof(places) / sizeof(places[0]); */
 static const char *first_bad(const unsigned char *from, size_t count) {
     const char *name = names;
     for (size_t i = 0; i < count; i++) {
@@ -100,6 +104,7 @@ static const char *first_bad(const unsigned char *from, size_t count) {
 
 GOE_STATIC_ASSERT(offsetof(goe_settings_t, camera) == 0, the_settings_of_the_camera_come_first);
 
+/*@ requires \valid_read(settings); */
 static const char *first_bad_camera(const goe_settings_t *settings) {
     const char *bad = NULL;
     for (size_t i = 0; !bad && i + 1 < GOE_CAMERAS_MAX; i++) {
@@ -111,6 +116,7 @@ static const char *first_bad_camera(const goe_settings_t *settings) {
     return bad;
 }
 #else
+/*@ requires \valid_read(settings); */
 static const char *first_bad_camera(const goe_settings_t *settings) {
     (void)settings;
     return NULL;

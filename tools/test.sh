@@ -263,6 +263,16 @@ else
     skip "comparison on recorded flights: no folder $flights (GOE_KITTI_DIR)"
 fi
 
+if has cppcheck && has gcc; then
+    tells='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m goe_tools evidence --quick --only misra --only analyzers --jobs 1
+else
+    skip "MISRA C:2012 and gcc -fanalyzer (no cppcheck or gcc)"
+fi
+if has frama-c; then
+    add "proof: quick part" "$python" -m goe_tools evidence --quick --only proof --jobs 1
+else
+    skip "proof (no frama-c)"
+fi
 tells='tests passed|Total Test time' add "ctest: targets" \
     ctest --test-dir build/tests/targets --output-on-failure -j "$jobs" # every target under QEMU
 if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then

@@ -18,6 +18,7 @@ static bool is_near(float px, float size_px, float distance_px) {
     return size_px > 0.0f && (px < distance_px || px > size_px - 1.0f - distance_px);
 }
 
+/*@ requires \valid_read(camera) && \valid_read(sides); */
 static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides, float share) {
     const float distance_px = share * camera->width_px;
     unsigned set = 0;
@@ -52,9 +53,10 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
 /* The box about its middle (x, y), focal lengths; unit vector down the obstacle's verticals there. */
 typedef struct {
     float x, y, half_width, half_height, down_x, down_y;
-} frame_t;
+} box_frame_t;
 
-static bool find_down(const goe_view_t *view, frame_t *frame) {
+/*@ requires goe_view_is_open(view) && \valid(frame); */
+static bool find_down(const goe_view_t *view, box_frame_t *frame) {
     const float *r = view->camera_to_trajectory;
     const float x = r[3] - frame->x * r[5];
     const float y = r[4] - frame->y * r[5];
@@ -68,7 +70,8 @@ static bool find_down(const goe_view_t *view, frame_t *frame) {
 }
 
 /* An upright box about a leaning rectangle: half width = w c + h s, half height = w s + h c. */
-static bool turn_back(frame_t *frame, bool has_height) {
+/*@ requires \valid(frame); */
+static bool turn_back(box_frame_t *frame, bool has_height) {
     const float c = goe_absolute(frame->down_y);
     const float s = goe_absolute(frame->down_x);
     if (s < UPRIGHT) {
@@ -84,6 +87,7 @@ static bool turn_back(frame_t *frame, bool has_height) {
     return frame->half_width > 0.0f && frame->half_height > 0.0f;
 }
 
+/*@ requires \valid_read(camera); */
 static goe_pixel_t pixel_at(const goe_camera_t *camera, float x, float y) {
     const goe_pixel_t pixel = {x * camera->fx_px + camera->cx_px, y * camera->fy_px + camera->cy_px, true};
     return pixel;
@@ -95,18 +99,20 @@ void goe_sides_points(const goe_camera_t *camera, const goe_view_t *view, goe_pi
     const float *px = sides->px;
     const bool has_top = goe_sides_see(sides, GOE_SEES_TOP);
     const bool has_height = goe_sides_see(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM);
-    left->seen = right->seen = top->seen = false;
+    top->seen = false;
+    right->seen = false;
+    left->seen = false;
     if (!goe_sides_see(sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
         return;
     }
     const float bottom_px = has_height ? px[GOE_BOX_BOTTOM] : (has_top ? px[GOE_BOX_TOP] : camera->cy_px);
     const float top_px = has_top ? px[GOE_BOX_TOP] : bottom_px;
-    frame_t frame = {(0.5f * (px[GOE_BOX_LEFT] + px[GOE_BOX_RIGHT]) - camera->cx_px) / camera->fx_px,
-                     (0.5f * (top_px + bottom_px) - camera->cy_px) / camera->fy_px,
-                     0.5f * (px[GOE_BOX_RIGHT] - px[GOE_BOX_LEFT]) / camera->fx_px,
-                     0.5f * (bottom_px - top_px) / camera->fy_px,
-                     0.0f,
-                     1.0f};
+    box_frame_t frame = {(0.5f * (px[GOE_BOX_LEFT] + px[GOE_BOX_RIGHT]) - camera->cx_px) / camera->fx_px,
+                         (0.5f * (top_px + bottom_px) - camera->cy_px) / camera->fy_px,
+                         0.5f * (px[GOE_BOX_RIGHT] - px[GOE_BOX_LEFT]) / camera->fx_px,
+                         0.5f * (bottom_px - top_px) / camera->fy_px,
+                         0.0f,
+                         1.0f};
     if (!find_down(view, &frame) || !turn_back(&frame, has_height)) {
         return;
     }

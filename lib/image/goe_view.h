@@ -34,6 +34,7 @@ typedef struct {
 } goe_sides_t;
 
 /* Whether all of these sides (GOE_SEES_...) are measured. */
+/*@ requires \valid_read(sides); */
 static inline bool goe_sides_see(const goe_sides_t *sides, unsigned set) { return (sides->usable & set) == set; }
 
 typedef struct {
@@ -47,6 +48,10 @@ typedef struct {
     float camera_to_trajectory[9];
 } goe_view_t;
 
+/*@ predicate goe_view_is_open(goe_view_t *view) =
+        \valid_read(view) && \valid_read(view->image) && \valid_read(view->motion) && \valid_read(view->camera) &&
+        \valid_read(view->camera_to_body + (0 .. 8)); */
+
 #define GOE_PIXEL_LIES_AT(field, feature)                                                                              \
     (offsetof(goe_image_t, field) == offsetof(goe_image_t, left) + (feature) * sizeof(goe_pixel_t))
 GOE_STATIC_ASSERT(GOE_PIXEL_LIES_AT(right, GOE_POINT_RIGHT) && GOE_PIXEL_LIES_AT(top, GOE_POINT_TOP) &&
@@ -56,6 +61,7 @@ GOE_STATIC_ASSERT(GOE_PIXEL_LIES_AT(right, GOE_POINT_RIGHT) && GOE_PIXEL_LIES_AT
                   the_pixels_of_an_image_follow_each_other);
 
 /* The pixels of an image, by goe_feature_t. */
+/*@ requires \valid_read(image); */
 static inline const goe_pixel_t *goe_image_pixels(const goe_image_t *image) {
     return (const goe_pixel_t *)(const void *)((const unsigned char *)image + offsetof(goe_image_t, left));
 }

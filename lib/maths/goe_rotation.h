@@ -3,6 +3,7 @@
 #define GOE_ROTATION_H
 
 /* Body -> NED of a Hamilton quaternion (w, x, y, z) of any non-zero norm. */
+/*@ requires \valid_read(q + (0 .. 3)) && \valid(r + (0 .. 8)); */
 static inline void goe_rotation_from_quaternion(const float q[4], float r[9]) {
     const float w = q[0];
     const float x = q[1];
@@ -22,9 +23,12 @@ static inline void goe_rotation_from_quaternion(const float q[4], float r[9]) {
 }
 
 /* Rotation by yaw about z, then pitch about the new y, then roll about the newest x, in degrees. */
+/*@ requires \valid(r + (0 .. 8)); */
 void goe_rotation_from_euler(float yaw_deg, float pitch_deg, float roll_deg, float r[9]);
 
 /* turned = r v; turned may not overlap v. */
+/*@ requires \valid_read(r + (0 .. 8)) && \valid_read(v + (0 .. 2)) && \valid(turned + (0 .. 2));
+    requires \separated(turned + (0 .. 2), r + (0 .. 8), v + (0 .. 2)); */
 static inline void goe_rotation_apply(const float r[9], const float v[3], float turned[3]) {
     turned[0] = r[0] * v[0] + r[1] * v[1] + r[2] * v[2];
     turned[1] = r[3] * v[0] + r[4] * v[1] + r[5] * v[2];

@@ -85,6 +85,7 @@ void goe_box_enter(goe_filter_t *filter, goe_phase_t phase) {
 
 /* ------------------------------------------------------------------------------------------------------------ outline -- */
 
+/*@ requires \valid(o); */
 static void place_corners(outline_t *o) {
     const goe_xz_t side = o->edges.side.along;
     const goe_xz_t front = o->edges.front.along;
@@ -94,6 +95,7 @@ static void place_corners(outline_t *o) {
     }
 }
 
+/*@ requires goe_observation_is_open(obs) && \valid(o); */
 static void describe(const goe_observation_t *obs, outline_t *o) {
     const float *x = obs->state;
     goe_box_edges_t *e = &o->edges;
@@ -120,6 +122,7 @@ static void describe(const goe_observation_t *obs, outline_t *o) {
 /* ---------------------------------------------------------------------------------------------------- visible corners -- */
 
 /* Corners at the left end, between and at the right end of one face, or of two faces. */
+/*@ requires \valid(corner + (0 .. 2)) && left < CORNERS; */
 static void corners_from(size_t left, bool two, size_t corner[3]) {
     corner[OUTER_LEFT] = left;
     corner[NEAR_CORNER] = (left + 3u) % CORNERS;
@@ -127,6 +130,8 @@ static void corners_from(size_t left, bool two, size_t corner[3]) {
 }
 
 /* Sum of what the outer corners are off in the image. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid_read(corner + (0 .. 2));
+    requires corner[0] < CORNERS && corner[2] < CORNERS; */
 static float misfit(const goe_observation_t *obs, const outline_t *o, const size_t corner[3]) {
     float sum = 0.0f;
     for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i += 2) {
@@ -138,6 +143,7 @@ static float misfit(const goe_observation_t *obs, const outline_t *o, const size
 }
 
 /* The near corner is seen, or both outer ones are. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid(corner + (0 .. 2)); */
 static void visible_corners(const goe_observation_t *obs, const outline_t *o, size_t corner[3]) {
     const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
     const size_t of_two = o->front ? (o->right ? FRONT_LEFT : BACK_LEFT) : (o->right ? FRONT_RIGHT : BACK_RIGHT);
@@ -156,6 +162,7 @@ static void visible_corners(const goe_observation_t *obs, const outline_t *o, si
 }
 
 /* Without base corners: those of least and greatest X/Z. */
+/*@ requires \valid_read(o) && \valid(corner + (0 .. 2)); */
 static void widest_corners(const outline_t *o, size_t corner[3]) {
     float least = 0.0f;
     float most = 0.0f;
@@ -176,6 +183,8 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
 /* Derivatives by the place and the outline of a corner, from those by (X, Z); and what their linearisation may miss. */
+/*@ requires goe_rows_hold(rows) && \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs);
+    requires \valid_read(o) && \valid_read(g) && corner < CORNERS && 1 <= rows->count <= GOE_ROWS_MAX; */
 static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const goe_observation_t *obs,
                        const outline_t *o, size_t corner, const goe_gradient_t *g) {
     const goe_box_edges_t *e = &o->edges;
@@ -191,6 +200,8 @@ static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const 
 }
 
 /* (R11): two rows, the second free of the first one's noise. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
+    requires feature < GOE_FEATURES && corner < CORNERS && rows->count + 2 <= GOE_ROWS_MAX; */
 GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature,
                                          size_t corner, goe_rows_t *rows) {
     goe_gradient_t gx;
@@ -219,16 +230,19 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
 }
 
 /* (R12): the upright edge over an outer corner, at the height at which it was measured. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
+    requires feature < GOE_FEATURES && corner < CORNERS && rows->count < GOE_ROWS_MAX; */
 static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
                            goe_rows_t *rows) {
     goe_gradient_t g;
     float *by = goe_rows_add_edge(rows, obs, o->corner[corner], feature, goe_observation_size_variance(obs), &g);
-    if (by) {
+    if (by != NULL) {
         set_corner(rows, by, obs, o, corner, &g);
     }
 }
 
 /* (R13): the corner of the roof nearest to the camera; seen from above the highest in the image is the farthest. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o); */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
     const bool highest = obs->settings->refined.top_is_highest && o->top > 0.0f;
     const bool right = o->right != highest;
@@ -236,12 +250,13 @@ static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
     return right ? (back ? BACK_RIGHT : FRONT_RIGHT) : (back ? BACK_LEFT : FRONT_LEFT);
 }
 
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows); */
 static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t *rows) {
     goe_gradient_t g;
     const size_t corner = top_corner(obs, o);
     float *by =
         goe_rows_add_level(rows, obs, o->corner[corner], o->top, GOE_POINT_TOP, goe_observation_size_variance(obs), &g);
-    if (by) {
+    if (by != NULL) {
         set_corner(rows, by, obs, o, corner, &g);
         by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
         by[GOE_TOP] = -g.y;
@@ -286,6 +301,7 @@ void goe_box_clip(goe_filter_t *filter) {
 
 /* While one face is visible the other edge's length is unobservable; if it were free, relinearisation would pull it to zero.
  * So it is held until its face comes into view. */
+/*@ requires \valid(filter); */
 static void free_length(goe_filter_t *filter, float side) {
     float direction[GOE_STATES] = {0.0f};
     direction[GOE_SIDE_X] = filter->state[GOE_SIDE_X];
@@ -296,6 +312,7 @@ static void free_length(goe_filter_t *filter, float side) {
 }
 
 /* Front and side with each other's names. Doing it again undoes it. */
+/*@ requires \valid(x + (0 .. GOE_STATES - 1)); */
 static void exchange_state(float x[GOE_STATES]) {
     const float sign = sign_of(x[GOE_SIDE_X]);
     const float scale = 1.0f / (1.0f + 0.5f * x[GOE_DEPTH_DIFFERENCE]);
@@ -310,6 +327,7 @@ static void exchange_state(float x[GOE_STATES]) {
 }
 
 /* (R21): the derivative of the old states by the new ones is that of the exchange back. */
+/*@ requires \valid(filter) && \valid_read(was + (0 .. GOE_STATES - 1)); */
 static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     goe_substitution_t old;
     const float *is = filter->state;
@@ -331,6 +349,7 @@ static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     goe_srif_substitute(&filter->root, &old, &filter->rows);
 }
 
+/*@ requires \valid(filter); */
 static void exchange_names(goe_filter_t *filter) {
     float was[GOE_STATES];
     memcpy(was, filter->state, sizeof was);
@@ -369,6 +388,7 @@ void goe_box_name(goe_filter_t *filter) {
 }
 
 /* The reference point, and across fronts and along sides from there. */
+/*@ requires \valid_read(x + (0 .. GOE_STATES - 1)) && \valid_read(e) && \valid(spot); */
 static void find_spot(const float x[GOE_STATES], const goe_box_edges_t *e, float across, float along,
                       goe_spot_t *spot) {
     spot->at.x = x[GOE_BEARING] + across * e->front.along.x + along * e->side.along.x;
@@ -382,6 +402,7 @@ static void find_spot(const float x[GOE_STATES], const goe_box_edges_t *e, float
 }
 
 /* Length of an edge, m. extent: the state that tells how far it reaches across. */
+/*@ requires \valid(length) && \valid_read(edge) && extent < GOE_STATES; */
 static void set_edge(goe_linear_t *length, const goe_box_edge_t *edge, goe_state_index_t extent, float scale_m) {
     const float by_depth = edge->along.z / edge->length * scale_m;
     length->value = scale_m * edge->length;
@@ -393,6 +414,7 @@ static void set_edge(goe_linear_t *length, const goe_box_edge_t *edge, goe_state
 }
 
 /* Both edges turn together. */
+/*@ requires \valid(orientation) && \valid_read(side); */
 static void set_orientation(goe_linear_t *orientation, const goe_box_edge_t *side, goe_xz_t length_axis) {
     const float scale = 1.0f / (side->length * side->length);
     const float by_depth = -side->along.x * scale;
@@ -403,6 +425,7 @@ static void set_orientation(goe_linear_t *orientation, const goe_box_edge_t *sid
     orientation->by[GOE_SIDE_X] += side->along.z * scale;
 }
 
+/*@ requires \valid_read(filter) && \valid_read(e); */
 static float early_factor(const goe_filter_t *filter, const goe_box_edges_t *e) {
     const float relative = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE) / goe_square(e->sum);
     return 1.0f + EARLY * (relative < EARLY_MAX ? relative : EARLY_MAX);
@@ -431,6 +454,7 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
 }
 
 /* Of the side, seen at a small angle, only the product of length and angle shows. */
+/*@ requires \valid_read(filter); */
 static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
     const float *x = filter->state;
     goe_box_edges_t e;

@@ -34,6 +34,7 @@ typedef struct {
     float sine, cosine; /* of half the angle that the disc covers */
 } circle_t;
 
+/*@ requires goe_observation_is_open(obs) && \valid(o); */
 static bool describe(const goe_observation_t *obs, circle_t *o) {
     o->center = goe_observation_reference(obs);
     if (!(o->center.z >= AHEAD_MIN)) {
@@ -49,6 +50,7 @@ static bool describe(const goe_observation_t *obs, circle_t *o) {
 }
 
 /* Which features give the width; false if none do. */
+/*@ requires goe_observation_is_open(obs) && \valid(left) && \valid(right); */
 static bool outline_features(const goe_observation_t *obs, goe_feature_t *left, goe_feature_t *right) {
     const bool silhouette = obs->point[GOE_POINT_LEFT].usable && obs->point[GOE_POINT_RIGHT].usable;
     *left = silhouette || !obs->base ? GOE_POINT_LEFT : GOE_POINT_BASE_LEFT;
@@ -57,6 +59,8 @@ static bool outline_features(const goe_observation_t *obs, goe_feature_t *left, 
 }
 
 /* (R5): the tangent's azimuth is that of the centre plus or minus asin(r/d). */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
+    requires feature < GOE_FEATURES && rows->count < GOE_ROWS_MAX; */
 static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_feature_t feature, float side, float more,
                         goe_rows_t *rows) {
     goe_gradient_t g;
@@ -83,6 +87,7 @@ static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_fea
 }
 
 /* (R6): the nearest point of the upper rim; seen from above the highest in the image is the farthest. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows); */
 static void add_top(const goe_observation_t *obs, const circle_t *o, float more, goe_rows_t *rows) {
     goe_gradient_t g;
     const float y = goe_observation_roof(obs);
@@ -104,6 +109,8 @@ static void add_top(const goe_observation_t *obs, const circle_t *o, float more,
 
 /* (R2), range over flat ground: by how much a base corner lies before or behind the centre is not known, and a whole width is
  * allowed for it. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
+    requires feature < GOE_FEATURES && rows->count < GOE_ROWS_MAX; */
 static void add_base(const goe_observation_t *obs, const circle_t *o, goe_feature_t feature, float width,
                      goe_rows_t *rows) {
     goe_gradient_t g;
@@ -143,6 +150,7 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 /* -------------------------------------------------------------------------------------------------------------- start -- */
 
 /* (R18): flat ground, if the base lies clearly below the horizon; otherwise the typical size. */
+/*@ requires goe_observation_is_open(obs); */
 static float first_range_m(const goe_observation_t *obs, float size) {
     const goe_navigation_t *navigation = &obs->settings->navigation;
     if (obs->base && obs->height_m > 0.0f) {
@@ -156,6 +164,7 @@ static float first_range_m(const goe_observation_t *obs, float size) {
     return obs->settings->refined.typical_size_m / size;
 }
 
+/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 static void set_first_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
     const float bias = settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG;
@@ -214,6 +223,7 @@ bool goe_disc_is_skewed(const goe_filter_t *filter) {
 }
 
 /* (R7): conditions the state on zero skew, which is what a disc has. */
+/*@ requires \valid_read(filter) && \valid(x + (0 .. GOE_STATES - 1)); */
 static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
     const float *v = filter->inverse.element;
     const float share = filter->state[GOE_SIDE_X] / goe_disc_skew_variance(filter);

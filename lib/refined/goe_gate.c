@@ -17,13 +17,16 @@ typedef struct {
     size_t middle; /* row */
 } group_t;
 
+/*@ requires goe_rows_hold(rows) && row < rows->count; */
 static float residual_of(const goe_rows_t *rows, size_t row) { return rows->matrix->row[row][GOE_RESIDUAL]; }
 
 /* A row along x is moved more by the attitude's error about Y than about X. */
+/*@ requires goe_rows_hold(rows) && row < rows->count; */
 static bool is_along_x(const goe_rows_t *rows, size_t row) {
     return goe_absolute(rows->matrix->row[row][0]) > goe_absolute(rows->matrix->row[row][1]);
 }
 
+/*@ requires goe_rows_hold(rows) && \valid(group); */
 static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
     group->count = 0;
     for (size_t i = 0; i < rows->count; i++) {
@@ -46,6 +49,7 @@ static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
 }
 
 /* Of the image's own position error in a row, or in the difference of two. */
+/*@ requires goe_rows_hold(rows) && row < rows->count && middle < rows->count && rows->count <= GOE_BOX_SIDES; */
 static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, float other) {
     float sum = 0.0f;
     for (size_t c = 0; c < 3; c++) {
@@ -56,6 +60,7 @@ static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, f
 
 #if GOE_BESIDE
 /* Of what is estimated beside the state. It moves the points of an image nearly alike, and is left out of their differences. */
+/*@ requires \valid_read(filter) && \valid_read(row) && \valid_read(weight + (0 .. GOE_STATES - 1)); */
 static float beside_variance(const goe_filter_t *filter, const float *row, const float weight[GOE_STATES]) {
     float part[GOE_BESIDE];
     goe_srif_beside(&filter->inverse, weight, &row[GOE_BESIDE_COLUMN], part);
@@ -66,6 +71,7 @@ static float beside_variance(const goe_filter_t *filter, const float *row, const
 GOE_STATIC_ASSERT(GOE_STATES % 5 == 0, a_difference_of_rows_is_taken_by_five_states_at_a_time);
 
 /* (R16): normalised square of a row's residual, or of the difference of two rows'. */
+/*@ requires \valid_read(filter) && goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
 static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size_t row, size_t middle) {
     float weight[GOE_STATES];
     const float white = rows->white_rad;
@@ -107,6 +113,8 @@ typedef struct {
 } belief_t;
 
 /* Of two rows along x, the one that is not the middle. */
+/*@ requires goe_rows_hold(rows) && \valid_read(group) && \valid(verdict);
+    requires row < rows->count && group->middle < rows->count; */
 static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, float squared, goe_verdict_t *verdict) {
     const bool more = residual_of(rows, row) > residual_of(rows, group->middle);
     verdict->odd = rows->feature[row];
@@ -114,6 +122,7 @@ static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, f
     verdict->odd_outward = more == (verdict->odd == GOE_POINT_RIGHT);
 }
 
+/*@ requires \valid_read(settings) && \valid_read(filter) && goe_rows_hold(rows) && \valid(belief); */
 static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
                   belief_t *belief) {
     group_t group;
@@ -141,6 +150,7 @@ static void judge(const goe_settings_t *settings, const goe_filter_t *filter, co
 GOE_STATIC_ASSERT((GOE_COLUMNS - GOE_BESIDE) % 7 == 0, a_row_is_scaled_by_seven_columns_at_a_time);
 
 /* Partly written out: done for every row of every image, counting costs as much as multiplying. */
+/*@ requires \valid(row + (0 .. GOE_COLUMNS - 1)); */
 static void scale_row(float row[GOE_COLUMNS], float weight) {
     for (float *c = row; c < row + (GOE_COLUMNS - GOE_BESIDE); c += 7) {
         c[0] *= weight;

@@ -13,6 +13,7 @@
 #if GOE_WITH_REFINED
 
 /* Base corners tell more than a box: with them it starts as a disc that stands in for one. */
+/*@ requires \valid_read(settings) && goe_view_is_open(view); */
 static bool shows_prism(const goe_settings_t *settings, const goe_view_t *view) {
     const goe_point_t *p = view->point;
     return view->sides.usable != 0 && settings->model != GOE_MODEL_LINE &&

@@ -17,6 +17,7 @@
 #define FORWARD_MIN 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
+/*@ requires \valid(left) && \valid(right); */
 static bool in_order(goe_point_t *left, goe_point_t *right) {
     if (left->usable && right->usable && !(left->x < right->x)) {
         left->usable = false;
@@ -26,6 +27,7 @@ static bool in_order(goe_point_t *left, goe_point_t *right) {
     return true;
 }
 
+/*@ requires \valid(obs); */
 static unsigned put_in_order(goe_observation_t *obs) {
     goe_point_t *p = obs->point;
     const bool silhouette = in_order(&p[GOE_POINT_LEFT], &p[GOE_POINT_RIGHT]);
@@ -38,6 +40,7 @@ static unsigned put_in_order(goe_observation_t *obs) {
 }
 
 /* The view's points about the vertical. Base corners that proved to be none are left out. */
+/*@ requires \valid(obs) && \valid_read(filter) && goe_view_is_open(view); */
 static void turn_points(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
     const float c = filter->axes.turn_cos;
     const float s = filter->axes.turn_sin;
@@ -53,6 +56,7 @@ static void turn_points(goe_observation_t *obs, const goe_filter_t *filter, cons
     }
 }
 
+/*@ requires \valid_read(from + (0 .. 8)) && \valid(to + (0 .. 8)); */
 static void turn_rotation(const float from[9], float c, float s, float to[9]) {
     for (size_t j = 0; j < 3; j++) {
         to[j] = c * from[j] - s * from[6 + j];
@@ -62,6 +66,7 @@ static void turn_rotation(const float from[9], float c, float s, float to[9]) {
 }
 
 /* body -> axes = (camera -> axes)(camera -> body)' */
+/*@ requires \valid(obs) && \valid_read(camera_to_body + (0 .. 8)); */
 static void find_body(goe_observation_t *obs, const float camera_to_body[9]) {
     const float *t = obs->camera_to_axes;
     for (size_t j = 0; j < 3; j++) {
@@ -76,6 +81,7 @@ static float given_or(float given, float least, float setting) {
     return given > 0.0f ? goe_larger(given, least) : setting;
 }
 
+/*@ requires \valid(obs) && \valid_read(obs->settings) && \valid_read(filter) && \valid_read(noise); */
 static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const goe_image_noise_t *noise) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;
@@ -91,6 +97,7 @@ static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const
 }
 
 #if GOE_BESIDE
+/*@ requires \valid_read(filter) && \valid_read(rate + (0 .. 2)) && \valid(turned + (0 .. 2)); */
 static void turn_rate(const goe_filter_t *filter, const float rate[3], float turned[3]) {
     const goe_xz_t level = {rate[0], rate[2]};
     const goe_xz_t into = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
@@ -100,6 +107,7 @@ static void turn_rate(const goe_filter_t *filter, const float rate[3], float tur
 }
 #endif
 
+/*@ requires \valid(obs) && \valid_read(filter) && \valid_read(motion); */
 static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const goe_motion_t *motion) {
 #if GOE_BESIDE
     obs->turn_cos = filter->axes.turn_cos;
@@ -154,6 +162,7 @@ void goe_observation_linearise(goe_observation_t *obs) {
 }
 
 /* 1/Z of the point as the given attitude shows it. */
+/*@ requires goe_observation_is_open(obs); */
 static float nearness(const goe_observation_t *obs, float x, float y, float z) {
     const float turned_z = z + obs->ex * y - obs->ey * x;
     return 1.0f / (turned_z < FORWARD_MIN ? FORWARD_MIN : turned_z);
@@ -242,10 +251,12 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, flo
 
 /* Y/Z at which the edge was measured, with the attitude bias taken off, and what its derivatives by the bias add to those
  * of x. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(p); */
 static float edge_height(const goe_observation_t *obs, const goe_point_t *p) {
     return p->y + obs->ex * (1.0f + p->y * p->y) - obs->ez * p->x - obs->ey * p->x * p->y;
 }
 
+/*@ requires \valid_read(p) && \valid(of_x); */
 static void add_height_of_edge(const goe_point_t *p, float z, goe_gradient_t *of_x) {
     const float by_height = of_x->y * z;
     of_x->ex += by_height * (1.0f + p->y * p->y);
@@ -276,6 +287,7 @@ float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz
 
 GOE_STATIC_ASSERT(GOE_NUISANCES == 3, the_nuisances_are_the_attitude_about_y_x_z);
 
+/*@ requires \valid(row + (0 .. GOE_COLUMNS - 1)) && \valid_read(body_to_axes + (0 .. 8)); */
 static void turn_attitude(float *row, const float body_to_axes[9]) {
     const float *m = body_to_axes;
     const float ey = row[0];

@@ -38,6 +38,10 @@ typedef struct {
 #endif
 } goe_observation_t;
 
+/*@ predicate goe_observation_is_open(goe_observation_t *obs) =
+        \valid_read(obs) && \valid_read(obs->settings) && \valid_read(obs->camera) && \valid_read(obs->sides) &&
+        \valid_read(obs->state + (0 .. GOE_STATES - 1)); */
+
 /* The rows of an image. Until they are weighted each holds the derivatives of a predicted image coordinate by the image's own
  * attitude error and by the states, the residual, and beside them the variance of its own noise. */
 typedef struct {
@@ -49,6 +53,9 @@ typedef struct {
     float white_rad;               /* one sigma of the nuisances */
     bool shifts;                   /* there are such errors */
 } goe_rows_t;
+
+/*@ predicate goe_rows_hold(goe_rows_t *rows) =
+        \valid_read(rows) && \valid(rows->matrix) && rows->count <= GOE_ROWS_MAX; */
 
 /* An image coordinate that is predicted, and its derivatives by the point (X, Y, Z) and by the attitude's error about the
  * axes. */
@@ -64,24 +71,31 @@ typedef struct {
 
 /* Turns the view into the state's axes. goe_observation_linearise() then, after time has passed, sets the attitude bias from
  * the state. Pairs that are out of their order, left to right, do not count; returns how many. */
+/*@ requires \valid(obs) && \valid_read(settings) && \valid_read(filter) && goe_view_is_open(view); */
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view);
+/*@ requires \valid(obs) && goe_observation_is_open(obs); */
 void goe_observation_linearise(goe_observation_t *obs);
 
 /* (R3): where the point (X, Y, Z), in units of Z0 or any other, is seen along x, and along y. */
+/*@ requires goe_observation_is_open(obs) && \valid(of_x); */
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x);
+/*@ requires goe_observation_is_open(obs) && \valid(of_y); */
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
 /* Variance of the height above the obstacle's ground, m2; of a prism that ground may lie off. */
+/*@ requires goe_observation_is_open(obs); */
 static inline float goe_observation_height_variance(const goe_observation_t *obs, bool prism) {
     const float ground_m = prism ? obs->settings->navigation.ground_m : 0.0f;
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
 
 /* One sigma of a pixel, focal lengths. */
+/*@ requires goe_observation_is_open(obs); */
 static inline float goe_observation_pixel(const goe_observation_t *obs) { return obs->point_px / obs->camera->fx_px; }
 
 /* (R1): the state's reference point relative to the camera now, units of Z0. */
+/*@ requires goe_observation_is_open(obs); */
 static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {
     const float q = obs->state[GOE_INVERSE_RANGE];
     const goe_xz_t reference = {obs->state[GOE_BEARING] - obs->camera_m.x * q, 1.0f - obs->camera_m.z * q};
@@ -89,21 +103,26 @@ static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {
 }
 
 /* (R2): Y of the roof, units of Z0. */
+/*@ requires goe_observation_is_open(obs); */
 static inline float goe_observation_roof(const goe_observation_t *obs) {
     return obs->height_m * obs->state[GOE_INVERSE_RANGE] - obs->state[GOE_TOP];
 }
 
 /* A measured point with the attitude bias taken off, to first order. */
+/*@ requires goe_observation_is_open(obs) && feature < GOE_FEATURES; */
 goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t feature);
 
+/*@ requires goe_observation_is_open(obs) && feature < GOE_FEATURES; */
 goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature);
 
 /* Variance of left, right or top beyond the pixel noise: outline_share. */
+/*@ requires goe_observation_is_open(obs); */
 float goe_observation_size_variance(const goe_observation_t *obs);
 
 /* ------------------------------------------------------------------------------------------------------------ rows -- */
 
 /* Starts an empty set of rows. */
+/*@ requires \valid(rows) && \valid(matrix); */
 void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
 
 /* Each adds a row and returns its derivatives by the states, all 0 so far, with the residual behind them
@@ -111,24 +130,32 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
  * last row.
  *
  * Any row: measured coordinate minus gradient->at. */
+/*@ requires goe_rows_hold(rows) && \valid_read(gradient);
+    requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
                     const goe_gradient_t *gradient);
 
 /* An upright edge at the place (X, Z), seen along x at the height at which it was measured, freed of the attitude bias.
  * Null if the feature is not usable. more: variance beyond the pixel noise. */
+/*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs) && \valid(of_x);
+    requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
                          float more, goe_gradient_t *of_x);
 
 /* A point at the place (X, Z) and the height y, seen along y. */
+/*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs) && \valid(of_y);
+    requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, float y,
                           goe_feature_t feature, float more, goe_gradient_t *of_y);
 
 #define GOE_BEHIND_STATES (GOE_RESIDUAL - GOE_STATE_COLUMN)
 
+/*@ requires goe_rows_hold(rows) && 1 <= rows->count <= GOE_ROWS_MAX; */
 static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->variance[rows->count - 1u]; }
 
 /* The derivatives of a coordinate whose point moves with the reference point, by whose X and Z it changes by by_x and by_z: by
  * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's way tells it. */
+/*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs); */
 static inline void goe_rows_place(float *by, const goe_observation_t *obs, float by_x, float by_z) {
     by[GOE_BEARING] = by_x;
     by[GOE_INVERSE_RANGE] = -(by_x * obs->camera_m.x) - by_z * obs->camera_m.z;
@@ -140,6 +167,7 @@ static inline void goe_rows_place(float *by, const goe_observation_t *obs, float
 
 /* After the last row: the columns of the attitude bias follow from those of the image's own attitude error; unused rows become
  * 0. */
+/*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs); */
 void goe_rows_end(goe_rows_t *rows, const goe_observation_t *obs);
 
 #endif

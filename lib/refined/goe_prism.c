@@ -53,11 +53,13 @@ static size_t side_of(uint8_t feature) {
 
 static bool is_level(size_t side) { return (side & 1u) != 0u; } /* top, bottom */
 
+/*@ requires \valid_read(camera) && side < GOE_BOX_SIDES; */
 static float focal_px(const goe_camera_t *camera, size_t side) {
     return is_level(side) ? camera->fy_px : camera->fx_px;
 }
 
 /* The raw coordinate of a side, focal lengths. */
+/*@ requires \valid_read(camera) && \valid_read(sides) && side < GOE_BOX_SIDES; */
 static float coordinate(const goe_camera_t *camera, const goe_sides_t *sides, size_t side) {
     const float center_px = is_level(side) ? camera->cy_px : camera->cx_px;
     return (sides->px[side] - center_px) / focal_px(camera, side);
@@ -80,6 +82,7 @@ typedef struct {
     bool foot;   /* at the foot, not at the head */
 } touch_t;
 
+/*@ requires goe_observation_is_open(obs) && \valid(o); */
 static void describe(const goe_observation_t *obs, ellipse_t *o) {
     const float *x = obs->state;
     o->center = goe_observation_reference(obs);
@@ -89,6 +92,7 @@ static void describe(const goe_observation_t *obs, ellipse_t *o) {
     o->roof = obs->steady_height_m * x[GOE_INVERSE_RANGE] - x[GOE_PRISM_TOP];
 }
 
+/*@ requires \valid_read(a + (0 .. 2)) && \valid_read(b + (0 .. 2)) && \valid(c + (0 .. 2)); */
 static void cross(const float a[3], const float b[3], float c[3]) {
     c[0] = a[1] * b[2] - a[2] * b[1];
     c[1] = a[2] * b[0] - a[0] * b[2];
@@ -96,6 +100,7 @@ static void cross(const float a[3], const float b[3], float c[3]) {
 }
 
 /* Out of the camera's axes into the state's, by the given attitude. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(v + (0 .. 2)) && \valid(to + (0 .. 2)); */
 static void into_axes(const goe_observation_t *obs, const float v[3], float to[3]) {
     const float *r = obs->camera_to_axes;
     for (size_t i = 0; i < 3; i++) {
@@ -107,6 +112,7 @@ typedef enum { FOOT, HEAD, EITHER } end_t;
 
 /* The touching point on the side of the outward normal, which is given in the camera's axes. (R26), (R27). False if it is not
  * ahead. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid_read(normal + (0 .. 2)) && \valid(t); */
 static bool touch(const goe_observation_t *obs, const ellipse_t *o, const float normal[3], end_t end, touch_t *t) {
     const float e[3] = {obs->ex, obs->ey, obs->ez};
     const float *r = obs->camera_to_axes;
@@ -150,6 +156,7 @@ typedef struct {
     float at, by_x, by_y;
 } line_t;
 
+/*@ requires \valid_read(camera) && side < GOE_BOX_SIDES; */
 static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y) {
     line_t line = {is_level(side) ? y : x, is_level(side) ? 0.0f : 1.0f, is_level(side) ? 1.0f : 0.0f};
     if (goe_camera_distorts(camera)) {
@@ -164,6 +171,8 @@ static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y)
 static float sign_of(size_t side) { return side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f; }
 
 /* By the line as it lies where it touches, which the first call tells about, (R28). */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid_read(straight + (0 .. 2)) && \valid(t);
+    requires side < GOE_BOX_SIDES; */
 static bool touch_bent(const goe_observation_t *obs, const ellipse_t *o, size_t side, const float straight[3],
                        end_t end, touch_t *t) {
     if (!touch(obs, o, straight, end, t)) {
@@ -177,6 +186,7 @@ static bool touch_bent(const goe_observation_t *obs, const ellipse_t *o, size_t 
 
 /* Touches by the plane through the raw coordinate `at`. With a lens foot and head are tried, as the line is not straight between
  * them. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid(t) && side < GOE_BOX_SIDES; */
 static bool touch_side(const goe_observation_t *obs, const ellipse_t *o, size_t side, float at, touch_t *t) {
     const goe_camera_t *camera = obs->camera;
     const float sign = sign_of(side);
@@ -195,6 +205,7 @@ static bool touch_side(const goe_observation_t *obs, const ellipse_t *o, size_t 
 }
 
 /* Derivatives by the touching point and by the attitude's error, from the line's. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(t) && \valid_read(line); */
 static goe_gradient_t gradient_of(const goe_observation_t *obs, const touch_t *t, const line_t *line) {
     const float e[3] = {obs->ex, obs->ey, obs->ez};
     const float in_camera[3] = {line->by_x * t->nearness, line->by_y * t->nearness,
@@ -216,6 +227,8 @@ static goe_gradient_t gradient_of(const goe_observation_t *obs, const touch_t *t
 }
 
 /* (R29). */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
+    requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX; */
 static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t side, float variance, goe_rows_t *rows) {
     touch_t t;
     const goe_camera_t *camera = obs->camera;
@@ -243,6 +256,7 @@ static void add_side(const goe_observation_t *obs, const ellipse_t *o, size_t si
 }
 
 /* The box's size along a side's coordinate, focal lengths: as measured, or as predicted. */
+/*@ requires goe_observation_is_open(obs); */
 static float size_of(const goe_observation_t *obs, bool level) {
     const goe_camera_t *camera = obs->camera;
     const goe_sides_t *sides = obs->sides;
@@ -255,6 +269,7 @@ static float size_of(const goe_observation_t *obs, bool level) {
     return goe_larger(level ? x[GOE_PRISM_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_PRISM_HALF], 0.0f) / ahead;
 }
 
+/*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 static float white_variance(const goe_observation_t *obs, size_t side) {
     const goe_detector_t *detector = &obs->settings->detector;
     const float size = size_of(obs, is_level(side));
@@ -292,6 +307,7 @@ void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_ro
     }
 }
 
+/*@ requires goe_rows_hold(rows) && a < GOE_BOX_SIDES && b < GOE_BOX_SIDES; */
 static float shared_shift(const goe_rows_t *rows, size_t a, size_t b) {
     const float *v = rows->shift[a];
     const float *w = rows->shift[b];
@@ -299,6 +315,7 @@ static float shared_shift(const goe_rows_t *rows, size_t a, size_t b) {
 }
 
 /* Rows of unit noise that share a shift: their covariance is I + N; times the inverse of its Cholesky root they share none. */
+/*@ requires goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
 static void free_of_shift(goe_rows_t *rows) {
     float root[GOE_BOX_SIDES][GOE_BOX_SIDES];
     for (size_t i = 0; i < rows->count; i++) {
@@ -344,6 +361,7 @@ void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]) {
 /* -------------------------------------------------------------------------------------------------------------- start -- */
 
 /* Aligned ray, in the state's axes, of the raw point (x, y) focal lengths. False if it does not point ahead. */
+/*@ requires \valid_read(camera) && \valid_read(camera_to_axes + (0 .. 8)) && \valid(ray); */
 static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], float x, float y, goe_point_t *ray) {
     float undistorted[2] = {x, y};
     if (goe_camera_distorts(camera) && !goe_camera_undistort(camera, &undistorted[0], &undistorted[1])) {
@@ -358,6 +376,7 @@ static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], fl
 }
 
 /* Of the box, as far as it is seen. */
+/*@ requires \valid_read(camera) && \valid_read(sides) && \valid(x) && \valid(y); */
 static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
     *x = 0.5f * (coordinate(camera, sides, GOE_BOX_LEFT) + coordinate(camera, sides, GOE_BOX_RIGHT));
     *y = goe_sides_see(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM)
@@ -382,9 +401,11 @@ bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view) {
     return true;
 }
 
+/*@ requires goe_observation_is_open(obs); */
 static float height_sd_m(const goe_observation_t *obs) { return sqrtf(goe_observation_height_variance(obs, true)); }
 
 /* From flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. size: angular. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(foot); */
 static float first_range_m(const goe_observation_t *obs, float size, const goe_point_t *foot) {
     const goe_settings_t *s = obs->settings;
     const float attitude = goe_square(s->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
@@ -396,6 +417,7 @@ static float first_range_m(const goe_observation_t *obs, float size, const goe_p
                     : s->refined.typical_size_m / goe_larger(size, BOX_SIZE_MIN);
 }
 
+/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;

@@ -14,28 +14,37 @@
 #include "refined/goe_shape.h"
 
 /* Turns the filter's axes so that Z points at the obstacle. False if left and right are not measured. */
+/*@ requires \valid(filter) && goe_view_is_open(view); */
 bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view);
 
 /* First guess: state and root from one image, in axes that face the obstacle. False if it is out of range. */
+/*@ requires goe_observation_is_open(obs) && \valid(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
 
 /* Whether an image comes so soon after the one before that its errors are the same: it is not used. */
+/*@ requires \valid_read(filter) && \valid_read(settings) && \valid_read(motion); */
 bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion);
 
 /* Appends the rows of a box. */
+/*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows) && rows->count == 0; */
 void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After goe_rows_end(): takes what is known of the sides' errors out of the rows. */
+/*@ requires \valid(filter) && goe_observation_is_open(obs) && goe_rows_hold(rows);
+    requires rows->count <= GOE_BOX_SIDES; */
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After the gate: keeps what the rows tell of these errors, and frees the rows of the image's position noise, which they
  * share. */
+/*@ requires \valid(filter) && goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
 void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows);
 
 /* After the update. */
+/*@ requires \valid(filter) && \valid_read(change + (0 .. GOE_UNKNOWNS - 1)); */
 void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 
 /* Quantities. */
+/*@ requires \valid_read(filter) && \valid(shape); */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 #endif

@@ -31,6 +31,7 @@
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
 /* (R14). A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
+/*@ requires \valid(filter); */
 static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     float direction[GOE_STATES];
     memcpy(direction, filter->state, sizeof direction);
@@ -42,6 +43,7 @@ static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
 }
 
 /* Along X and Z in turn, image by image: each time for as long as it has not been. */
+/*@ requires \valid(filter); */
 static void walk(goe_filter_t *filter, float walk_m, float since_s) {
     const float q = filter->state[GOE_INVERSE_RANGE];
     filter->walk_s[0] += since_s;
@@ -61,6 +63,7 @@ static void walk(goe_filter_t *filter, float walk_m, float since_s) {
 }
 
 /* Along the path, which in a turn is longer than the way to where it began. */
+/*@ requires \valid(filter) && \valid_read(motion); */
 static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     const float dx_m = motion->dx_m - filter->last.dx_m;
     const float dz_m = motion->dz_m - filter->last.dz_m;
@@ -73,6 +76,7 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 }
 
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
+/*@ requires \valid(filter) && \valid_read(navigation); */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s, int64_t time_us) {
     const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
     filter->time_us = time_us;
@@ -89,6 +93,7 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
 /* ------------------------------------------------------------------------------------------------------------- update -- */
 
 /* (R15): what linearising at an uncertain range may miss, the second order of 1/Z. */
+/*@ requires \valid_read(filter) && goe_observation_is_open(obs) && goe_rows_hold(rows); */
 static void allow_for_curvature(const goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
     const float missed = obs->camera_m.z * goe_filter_variance(filter, GOE_INVERSE_RANGE) / ahead;
@@ -97,6 +102,8 @@ static void allow_for_curvature(const goe_filter_t *filter, const goe_observatio
     }
 }
 
+/*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs) && \valid(verdict);
+    requires \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict, float change[GOE_UNKNOWNS]) {
     goe_rows_t rows;
     goe_ground_widen(filter);
@@ -128,6 +135,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
 
 /* Points that stand for the sides of a box have its errors; as they are not remembered, the variance counts
  * (1 + fade)/(1 - fade) times, which for a first-order process is that of a long mean. */
+/*@ requires \valid_read(detector); */
 static float outline_share(const goe_detector_t *detector, float fade) {
     const float kept = fade < FADE_MAX ? fade : FADE_MAX;
     return detector->box_share * sqrtf((1.0f + kept) / (1.0f - kept));
@@ -135,6 +143,7 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
  * the uncertain range adds. */
+/*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs); */
 static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     const float relative2 =
@@ -149,6 +158,8 @@ static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *ob
 }
 
 /* False if the image does not start the filter. */
+/*@ requires \valid(filter) && \valid_read(settings) && goe_view_is_open(view) && \valid(obs);
+    requires \valid(swapped); */
 static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                        goe_observation_t *obs, unsigned *swapped) {
     const bool running = filter->phase != GOE_PHASE_NONE;
@@ -166,6 +177,7 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
 }
 
 /* Whether the obstacle has just been found to move. */
+/*@ requires \valid(filter) && goe_observation_is_open(obs) && \valid_read(change + (0 .. GOE_UNKNOWNS - 1)); */
 static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
                            float since_s) {
 #if GOE_BESIDE
@@ -179,6 +191,7 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
+/*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs); */
 GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs, float since_s) {
     goe_verdict_t verdict;
     float change[GOE_UNKNOWNS];

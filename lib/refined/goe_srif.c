@@ -23,6 +23,7 @@ typedef struct {
     float v0, v1, v2, v3, v4, v5, v6, v7, v8;
 } column_t;
 
+/*@ requires \valid_read(v + (0 .. (GOE_ROWS_MAX - 1) * STEP)); */
 static inline column_t load(const float *v) {
     const column_t c = {v[0],        v[STEP],     v[2 * STEP], v[3 * STEP], v[4 * STEP],
                         v[5 * STEP], v[6 * STEP], v[7 * STEP], v[8 * STEP]};
@@ -42,6 +43,7 @@ static inline float dot(column_t p, column_t c, float sum) {
 }
 
 /* at = c + g p */
+/*@ requires \valid(at + (0 .. (GOE_ROWS_MAX - 1) * STEP)); */
 static inline void store_sum(float *at, column_t c, float g, column_t p) {
     at[0] = c.v0 + g * p.v0;
     at[STEP] = c.v1 + g * p.v1;
@@ -60,6 +62,7 @@ typedef struct {
 } reflection_t;
 
 /* False if the column is 0 already. r: the element of the triangle above it. */
+/*@ requires \valid_read(matrix) && \valid(to) && j < GOE_COLUMNS; */
 static inline bool reflect(const goe_matrix_t *matrix, size_t j, float r, reflection_t *to) {
     const column_t p = load(&matrix->row[0][j]);
     const float s = dot(p, p, 0.0f);
@@ -75,6 +78,8 @@ static inline bool reflect(const goe_matrix_t *matrix, size_t j, float r, reflec
 
 /* The reflection by column j of the columns from first to before last; above: what the triangle has above the first of these,
  * and with each further column `step` elements farther. */
+/*@ requires \valid(matrix) && \valid_read(to) && \valid(above);
+    requires j < GOE_COLUMNS && first <= last <= GOE_COLUMNS; */
 static inline void apply(goe_matrix_t *matrix, size_t j, const reflection_t *to, size_t first, size_t last,
                          float *above, size_t step) {
     const column_t p = load(&matrix->row[0][j]);
@@ -91,6 +96,7 @@ static inline void apply(goe_matrix_t *matrix, size_t j, const reflection_t *to,
 
 /* Nothing is known of the nuisances beforehand but their sigma: their rows of the triangle are 0 until they are reached, and
  * are not needed afterwards. */
+/*@ requires \valid(matrix); */
 static void remove_nuisances(float root, goe_matrix_t *matrix) {
     reflection_t to;
     float none = 0.0f;
@@ -103,6 +109,7 @@ static void remove_nuisances(float root, goe_matrix_t *matrix) {
 }
 
 /* Of the unknowns from first to before last. */
+/*@ requires \valid(root) && \valid(matrix) && \valid(right) && first <= last <= GOE_UNKNOWNS; */
 static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t first, size_t last, float *right) {
     reflection_t to;
     float *r = &root->element[goe_srif_row(first) + first];
@@ -118,6 +125,7 @@ static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t 
 }
 
 /* R x = right, in place; what is not estimated is 0. */
+/*@ requires \valid_read(root) && \valid(right + (0 .. GOE_UNKNOWNS - 1)); */
 static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
     for (size_t i = count; i-- > 0;) {
@@ -131,6 +139,7 @@ static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
 }
 
 #if GOE_BESIDE
+/*@ requires \valid(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
 static void reflect_beside(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_beside_count(root);
     reflect_unknowns(root, matrix, GOE_STATES, GOE_UNKNOWNS, root->right);
@@ -142,6 +151,7 @@ static void reflect_beside(goe_triangle_t *root, goe_matrix_t *matrix, float cha
 }
 #endif
 
+/*@ requires \valid(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)) && states <= GOE_STATES; */
 GOE_NOINLINE static float update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t states,
                                  float change[GOE_UNKNOWNS]) {
     remove_nuisances(nuisance_root, matrix);
@@ -192,6 +202,7 @@ void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], si
 
 /* ------------------------------------------------------------------------------------------------ inverse, covariance -- */
 
+/*@ requires \valid_read(a + (0 .. count - 1)) && \valid_read(b + (0 .. count - 1)); */
 static float dot_run(const float *a, const float *b, size_t count) {
     float sum = 0.0f;
     for (size_t i = 0; i < count; i++) {
@@ -212,6 +223,7 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
 
 /* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column beside the state the first GOE_UNWEIGHTED elements, which
  * no quantity depends on, are left 0. */
+/*@ requires \valid_read(root) && \valid(inverse) && first <= GOE_STATES; */
 static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t *inverse) {
     const size_t count = goe_srif_count(root);
     float *v = &inverse->element[goe_inverse_column(first)];
@@ -341,6 +353,7 @@ void goe_srif_marginal(const goe_inverse_t *inverse, float covariance[GOE_KEPT][
 }
 
 /* Cholesky from the last column, C = U U' with U upper triangular: U is the inverse of R. */
+/*@ requires \valid(c + (0 .. GOE_KEPT - 1)) && \valid(inverse); */
 static void factorise(float c[GOE_KEPT][GOE_KEPT], goe_inverse_t *inverse) {
     for (size_t j = GOE_KEPT; j-- > 0;) {
         float pivot = c[j][j];
@@ -364,6 +377,7 @@ static void factorise(float c[GOE_KEPT][GOE_KEPT], goe_inverse_t *inverse) {
 }
 
 /* The inverse of U, row by row. */
+/*@ requires \valid(u + (0 .. GOE_KEPT - 1)) && \valid(root); */
 static void invert_kept(float u[GOE_KEPT][GOE_KEPT], goe_triangle_t *root) {
     for (size_t j = 0; j < GOE_KEPT; j++) {
         root->element[goe_srif_row(j) + j] = 1.0f / u[j][j];

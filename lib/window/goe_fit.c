@@ -22,6 +22,7 @@ typedef struct {
     float largest_dz_m;
 } moments_t;
 
+/*@ requires \valid_read(points + (0 .. length - 1)) && \valid(m) && 1 <= length <= GOE_WINDOW_MAX; */
 static void sum_means(const goe_fit_point_t *points, int length, moments_t *m) {
     float dx_m = 0.0f;
     float dz_m = 0.0f;
@@ -44,6 +45,7 @@ static void sum_means(const goe_fit_point_t *points, int length, moments_t *m) {
     m->largest_dz_m = largest_dz_m;
 }
 
+/*@ requires \valid_read(points + (0 .. length - 1)) && \valid(m) && 1 <= length <= GOE_WINDOW_MAX; */
 static void sum_products(const goe_fit_point_t *points, int length, moments_t *m) {
     const goe_fit_point_t *end = points + length;
     const moments_t mean = *m; /* a copy, so that the compiler may keep it in registers */
@@ -59,6 +61,7 @@ static void sum_products(const goe_fit_point_t *points, int length, moments_t *m
     m->mixed_m = mixed_m;
 }
 
+/*@ requires \valid_read(points + (0 .. length - 1)) && \valid_read(m) && 1 <= length <= GOE_WINDOW_MAX; */
 static float squared_residuals(const goe_fit_point_t *points, int length, const moments_t *m, float inverse_width) {
     const goe_fit_point_t *end = points + length;
     float sum = 0.0f;
@@ -73,6 +76,7 @@ static float squared_residuals(const goe_fit_point_t *points, int length, const 
 static float bounded(float sigma_m) { return sigma_m < SIGMA_MAX_M ? sigma_m : SIGMA_MAX_M; }
 
 /* From the covariance of the fit: 1/W has s2/D, the window means have s2/N, and they are independent. */
+/*@ requires \valid_read(m) && \valid(fit) && 2 <= length <= GOE_WINDOW_MAX; */
 static void set_sigmas(const moments_t *m, int length, float squares, goe_estimate_t *fit) {
     const float s2 = squares / (float)(2 * length - 3);
     const float mean = s2 / (float)length;

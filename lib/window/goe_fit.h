@@ -7,6 +7,7 @@
 GOE_STATIC_ASSERT(GOE_WINDOW_MAX <= INT16_MAX, a_place_in_the_ring_fits_its_type);
 
 /* Adds a row; the oldest of `length` rows leaves. */
+/*@ requires \valid(ring) && 1 <= length <= GOE_WINDOW_MAX; */
 static inline void goe_fit_add(goe_fit_ring_t *ring, int length, float dx_m, float dz_m, goe_row_t row) {
     const int at = ring->next >= 0 && ring->next < length ? ring->next : 0;
     goe_fit_point_t *point = &ring->point[at];
@@ -21,6 +22,7 @@ static inline void goe_fit_add(goe_fit_ring_t *ring, int length, float dx_m, flo
 /* Solves (5) over the newest `length` rows, which must be there. GOE_OK with x0, z0, width, residual,
  * baseline and their sigmas set, or with *fit untouched GOE_NO_BASELINE,
  * GOE_NO_PARALLAX or GOE_PASSED. */
+/*@ requires \valid_read(ring) && \valid(fit) && 3 <= length <= GOE_WINDOW_MAX; */
 goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_baseline_m, goe_estimate_t *fit);
 
 #endif

@@ -10,6 +10,7 @@ typedef struct {
 } goe_average_t;
 
 /* Adds a value, of which the newest `length` count, and returns the mean of those. */
+/*@ requires \valid(mean) && 1 <= length <= GOE_WINDOW_MAX; */
 goe_average_t goe_mean_add(goe_mean_t *mean, int length, float value);
 
 #endif

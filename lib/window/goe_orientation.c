@@ -14,6 +14,9 @@
 #define FOLDED_MAX_DEG 90.0f
 
 /* Orientation if `side` is the side edge and `front` the front edge, either of which may be missing. */
+/*@ requires side == \null || \valid_read(side);
+    requires front == \null || \valid_read(front);
+    requires side != \null || front != \null; */
 static float hypothesis_deg(const goe_edge_t *side, const goe_edge_t *front) {
     if (side && side->has_heading) {
         return side->heading_deg;
@@ -23,6 +26,7 @@ static float hypothesis_deg(const goe_edge_t *side, const goe_edge_t *front) {
 
 static float distance_deg(float a_deg, float b_deg) { return goe_absolute(goe_fold_deg(a_deg - b_deg)); }
 
+/*@ requires \valid_read(orientation); */
 static bool prefers_first(const goe_orientation_t *orientation, float first_deg, float second_deg) {
     const float first = goe_absolute(first_deg);
     const float second = goe_absolute(second_deg);
@@ -34,6 +38,7 @@ static bool prefers_first(const goe_orientation_t *orientation, float first_deg,
 }
 
 /* b <- b + (g - b)/min(k, memory), angles of undirected lines. */
+/*@ requires \valid(orientation) && 1 <= memory <= 1000 && 0 <= orientation->count <= 1000; */
 static void low_pass(goe_orientation_t *orientation, float measured_deg, int memory) {
     const float step = orientation->count > 0 ? goe_fold_deg(measured_deg - orientation->filtered_deg) : 0.0f;
     const float before = orientation->count > 0 ? orientation->filtered_deg : measured_deg;
@@ -45,6 +50,7 @@ static void low_pass(goe_orientation_t *orientation, float measured_deg, int mem
 }
 
 /* What no image can have left begins anew. */
+/*@ requires \valid(orientation); */
 static void mend(goe_orientation_t *orientation, int memory) {
     if (orientation->count < 0 || orientation->count > memory ||
         !goe_within(orientation->filtered_deg, FOLDED_MAX_DEG)) {

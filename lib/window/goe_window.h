@@ -11,10 +11,13 @@ typedef enum {
 } goe_window_task_t;
 
 /* Forgets the track. */
+/*@ requires \valid(window); */
 void goe_window_clear(goe_window_t *window);
 
 /* Takes one image and, if it solves, brings *estimate, the window's own or an empty one, up to date. Returns what to say of the
  * image. faults: those met so far; more are counted. */
+/*@ requires \valid(window) && \valid_read(settings) && goe_view_is_open(view) && goe_faults_are_open(faults);
+    requires estimate == \null || \valid(estimate); */
 goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *settings, const goe_view_t *view,
                                goe_window_task_t task, const goe_faults_t *faults, goe_estimate_t *estimate);
 

@@ -1,0 +1,91 @@
+/* One entry for each public call: any arguments, any estimator. SPDX-License-Identifier: MIT */
+#include "any.h"
+
+static void update(int method) {
+    goe_estimator_t estimator;
+    goe_image_t image;
+    goe_estimate_t estimate;
+    any_estimator(&estimator, method);
+    ANY_BITS(image);
+    image.camera = 0; /* any other is refused: update_refuses() */
+    (void)goe_update(&estimator, &image, &estimate);
+}
+
+void proof_update_window(void) { update(GOE_METHOD_WINDOW); }
+void proof_update_refined(void) { update(GOE_METHOD_REFINED); }
+
+/* Null pointers, memory that was never initialised, an image of a camera that there is none of. */
+static void update_refuses(void) {
+    goe_estimator_t estimator;
+    goe_image_t image;
+    goe_estimate_t estimate;
+    any_estimator(&estimator, 0);
+    ANY_BITS(image);
+    image.camera = (uint8_t)ANY(1, UINT8_MAX);
+    (void)goe_update(&estimator, &image, &estimate);
+    ANY_BITS(estimator);
+    ANY_BITS(image);
+    estimator.ready = 0;
+    estimator.seal.sum = 0;
+    (void)goe_update(NULL, &image, &estimate);
+    (void)goe_update(&estimator, NULL, &estimate);
+    (void)goe_update(&estimator, &image, NULL);
+}
+
+static void init(void) {
+    goe_estimator_t estimator;
+    goe_settings_t settings;
+    const char *bad;
+    goe_settings_default(NULL);
+    goe_settings_default(&settings);
+    ANY_BITS(settings);
+    (void)goe_init(NULL, sizeof estimator, &settings, &bad);
+    (void)goe_init(&estimator, sizeof estimator, NULL, NULL);
+    (void)goe_init(&estimator, (size_t)ANY(0, INT32_MAX), &settings, ANY_TRUTH() ? &bad : NULL);
+}
+
+static void reset(void) {
+    goe_estimator_t estimator;
+    any_estimator(&estimator, 0);
+    (void)goe_reset(NULL);
+    (void)goe_reset(&estimator);
+}
+
+void proof_covariance(void) {
+    goe_estimator_t estimator;
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    any_estimator(&estimator, 0);
+    (void)goe_covariance(&estimator, NULL);
+    (void)goe_covariance(NULL, covariance);
+    (void)goe_covariance(&estimator, covariance);
+}
+
+void proof_hazard(void) {
+    goe_estimator_t estimator;
+    goe_plan_t plan;
+    goe_hazard_t hazard;
+    any_estimator(&estimator, 0);
+    ANY_BITS(plan);
+    (void)goe_hazard(NULL, &plan, &hazard);
+    (void)goe_hazard(&estimator, NULL, &hazard);
+    (void)goe_hazard(&estimator, &plan, NULL);
+    (void)goe_hazard(&estimator, &plan, &hazard);
+}
+
+static void texts(void) {
+    int number;
+    ANY_BITS(number);
+    (void)goe_status_text((goe_status_t)number);
+    (void)goe_reason_text((goe_reason_t)number);
+}
+
+static void self_check(void) { (void)goe_self_check(); }
+
+/* What is analysed in a moment. */
+void proof_short_calls(void) {
+    update_refuses();
+    init();
+    reset();
+    texts();
+    self_check();
+}

@@ -1,0 +1,97 @@
+"""What the proof's part of the evidence makes of Frama-C's answers; the table of explained alarms."""
+
+from __future__ import annotations
+
+import csv
+import re
+from pathlib import Path
+
+import pytest
+from goe_tools.evidence import frama_c, proof
+from goe_tools.evidence.frama_c import Property, Run
+from goe_tools.places import ROOT
+
+HEAD = "directory\tfile\tline\tfunction\tproperty kind\tstatus\tproperty\n"
+
+
+def test_properties_are_those_of_the_library_and_the_drivers(tmp_path: Path) -> None:
+    table = tmp_path / "report.csv"
+    table.write_text(
+        HEAD
+        + "lib/window\tgoe_mean.c\t12\tgoe_mean_add\tindex_bound\tUnknown\tmean->next  < 8\n"
+        + "lib/window\tgoe_mean.c\t13\tgoe_mean_add\tindex_bound\tUnknown\tmean->next < 8\n"
+        + "FRAMAC_SHARE/libc\tstring.h\t1\tmemcpy\tprecondition\tUnknown\tvalid_dest\n"
+        + "tests/proof\tany.c\t9\tcheck_window\tuser assertion\tValid\t0 <= 1\n"
+    )
+    assert frama_c.read_properties(table) == (
+        Property("lib/window/goe_mean.c", "goe_mean_add", "index_bound", "Unknown", "mean->next < 8"),
+        Property("proof/any.c", "check_window", "user assertion", "Valid", "0 <= 1"),
+    )
+
+
+def test_functions_are_read_from_the_logs() -> None:
+    told = (
+        "[eva] computing for function goe_reset <- proof_reset.\n  Called from tests/proof/calls.c:60.\n"
+        "[eva] computing for function average_0 <- goe_health_take <- \n              proof_x.\n"
+        "  Called from lib/refined/goe_health.c:55.\n[eva] Done for function average_0\n"
+    )
+    reached = frama_c.reached_functions(told)
+    assert {"goe_reset", "lib/refined/goe_health.c:average"} <= reached
+    assert not any(name.endswith("_0") for name in reached)
+
+
+def test_functions_of_the_library_are_told_by_their_file_or_by_their_name(tmp_path: Path) -> None:
+    (tmp_path / "a.h").write_text("/* int no(void); */\nint one(int x);\nstatic inline int two(void) { return 1; }\n")
+    (tmp_path / "a.c").write_text("int one(int x) { return x; }\n")
+    assert frama_c.library_functions(tmp_path) == {"one", "two"}
+    assert "lib/refined/goe_health.c:average" in frama_c.library_functions()
+
+
+def made(driver: str, *entries: Property) -> Run:
+    return Run(driver, "gcc_x86_64", 1.0, entries, frozenset({driver}))
+
+
+def alarm(text: str, status: str = "Unknown") -> Property:
+    return Property("lib/goe_x.c", "goe_x", "index_bound", status, text)
+
+
+def test_new_alarms_gone_ones_and_those_without_a_reason_are_told_apart() -> None:
+    found = proof.alarms_of([made("proof_a", alarm("old"), alarm("new"), alarm("proved", "Valid"), alarm("silent"))])
+    explained = {
+        ("proof_a", *alarm("old").key): "a reason",
+        ("proof_a", *alarm("silent").key): " ",
+        ("proof_a", *alarm("gone").key): "a reason",
+        ("proof_b", *alarm("not run").key): "a reason",
+    }
+    new, gone, silent = proof.compare(found, explained, {"proof_a"})
+    assert [key[-1] for key in new] == ["new"]
+    assert [key[-1] for key in gone] == ["gone"]
+    assert [key[-1] for key in silent] == ["silent"]
+
+
+def test_a_precondition_counts_as_proved_only_if_every_call_meets_it() -> None:
+    def requires(status: str, text: str) -> Property:
+        return Property("lib/goe_x.h", "goe_x", "precondition", status, text)
+
+    runs = [
+        made("proof_a", requires("Valid", "valid(x)"), requires("Valid", "i < 3")),
+        made("proof_b", requires("Unknown", "i < 3")),
+    ]
+    assert proof.preconditions(runs) == (1, 2)
+
+
+def test_the_table_of_alarms_names_drivers_and_functions_that_exist_and_gives_each_a_reason() -> None:
+    drivers = {driver.name for driver in proof.ALL}
+    with proof.ALARMS.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        assert set(row["drivers"].split()) <= drivers
+        assert len(row["reason"].split()) > 3, row
+        source = (ROOT / row["file"] if row["file"].startswith("lib/") else ROOT / "tests" / row["file"]).read_text()
+        assert re.search(rf"\b{re.sub(r'_[0-9]+$', '', row['function'])}\b", source), row
+
+
+@pytest.mark.parametrize("name", sorted({driver.name for driver in proof.ALL}))
+def test_every_driver_is_defined(name: str) -> None:
+    code = "".join(path.read_text() for path in sorted(frama_c.DRIVERS.glob("*.c")))
+    assert re.search(rf"^void {name}\(void\)", code, re.MULTILINE)
