@@ -47,7 +47,7 @@ class Status(IntEnum):
     BAD_ATTITUDE = -13
     """Image refused: the quaternion's norm is off 1 by more than 1 %."""
     CORRUPTED = -35
-    """The estimator's memory is not what the library left there: nothing is known any more, which does not make it safe."""
+    """The estimator's memory is not what the library left there: nothing is known, which does not make it safe."""
 
     @property
     def is_fault(self) -> bool:

@@ -52,7 +52,7 @@ def sentences_in(body: str, offset: int, line: int) -> list[Sentence]:
 
 def text_of_code(source: str) -> Text:
     plain, sentences, at = "", [], 0
-    for match in re.finditer(r"/\*(.*?)\*/", source, re.DOTALL):
+    for match in re.finditer(r"/\*(?!@)(.*?)\*/", source, re.DOTALL):
         plain += squeezed(source[at : match.start()]) + " "
         body = squeezed(comment_body(match[1]))
         if not ("--" in match[1] and RULE.fullmatch(match[1])):
