@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from ...places import ROOT
 from ..running import LedgerError
 
 
@@ -34,7 +35,8 @@ def lines_of(file: str) -> list[str]:
     """The lines of a source without what leads them and without a comment behind them; of the second and further
     loops that read alike the number is added: " #2"."""
     try:
-        plain = [re.sub(r"\s*/\*.*$", "", line).strip() for line in Path(file).read_text("utf-8").splitlines()]
+        source = ROOT / file.rsplit("/./", 1)[-1]  # builds name the library's by where it lies in the project
+        plain = [re.sub(r"\s*/\*.*$", "", line).strip() for line in source.read_text("utf-8").splitlines()]
     except OSError:
         return []
     seen: dict[str, int] = {}
