@@ -267,7 +267,7 @@ static void what_is_no_phase_starts_the_filter_anew(void) {
         scene_image(&scene, 20, &image, NULL);
         (void)goe_update(&estimator, &image, &estimate);
         TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
-        TEST_ASSERT_EQUAL_INT64(image.pose.time_us, estimator.filter.axes.start_time_us);
+        TEST_ASSERT_TRUE(image.pose.time_us == estimator.filter.axes.start_time_us);
     }
 }
 
