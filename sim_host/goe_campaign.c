@@ -78,13 +78,15 @@ static bool check_studies(options_t *options) {
 }
 
 static bool check_part(options_t *options) {
-    char more;
-    options->part = options->parts = 1;
-    if (options->part_text != NULL &&
-        (sscanf(options->part_text, "%5d/%5d%c", &options->part, &options->parts, &more) != 2 || options->part < 1 ||
-         options->part > options->parts || options->parts > PARTS_MAX)) {
+    const char *text = options->part_text != NULL ? options->part_text : "1/1";
+    char *slash = NULL, *end = NULL;
+    const long part = strtol(text, &slash, 10);
+    const long parts = *slash == '/' ? strtol(slash + 1, &end, 10) : 0;
+    if (part < 1 || part > parts || parts > PARTS_MAX || *end != '\0') {
         return complain("--part", "must be K/N, as 2/8: K from 1 to N, N up to 10000");
     }
+    options->part = (int)part;
+    options->parts = (int)parts;
     return true;
 }
 
