@@ -380,12 +380,3 @@ def test_parts_have_a_table_of_their_own() -> None:
         book.key(book.PART_STATE, "window"): 500,
     }
     assert "| window | 7000 | 500 |" in pages.ledger_tables(ledger).splitlines()
-
-
-def test_tables_go_between_the_markers(tmp_path: Path) -> None:
-    readme = tmp_path / "README.md"
-    readme.write_text(f"before\n{pages.BEGIN}\nold\n{pages.END}\nafter\n", encoding="utf-8")
-    assert pages.with_tables(readme, "new\n") == f"before\n{pages.BEGIN}\nnew\n{pages.END}\nafter\n"
-    readme.write_text("no markers\n", encoding="utf-8")
-    with pytest.raises(ValueError, match=r"README\.md: needs the lines"):
-        pages.with_tables(readme, "new\n")

@@ -210,18 +210,14 @@ def test_a_broken_line_is_noticed_or_told(tmp_path: Path, monkeypatch: pytest.Mo
 def test_a_page_that_is_stale_is_told(tmp_path: Path) -> None:
     kept = {"fuzz": Kept("fuzz", "long", "2026-01-01", "0", 1.0, "", [Row("updates", "10", "9", True)])}
     page = tmp_path / "page.md"
-    page.write_text(f"before\n{testing_page.BEGIN}\n{testing_page.END}\nbehind\n")
+    page.write_text(f"before\n{testing_page.FIGURES.begin}\n{testing_page.FIGURES.end}\nbehind\n")
     assert main(["evidence", "--page", str(page), "--record", str(tmp_path / "none.json")]) == 0
     assert "Not on record yet: " in page.read_text()
     testing_page.write(page, kept)
-    before, block, behind = testing_page.parts(page.read_text(), "page")
-    assert (before, behind) == ("before\n", "\nbehind\n")
-    assert "| fuzz | updates | 10 | 9 | met | long, 2026-01-01 |" in block
+    block = testing_page.FIGURES.of(page)
+    assert "| fuzz | updates | 10 | 9 | met | long, 2026-01-01, 0 |" in block
     assert list(testing_page.stale(block, kept)) == []
     assert list(testing_page.stale(block, {})) == ["its figures are not those of the record"]
     (lines,) = [numbers for what, _, numbers in testing_page.counts() if what == "the library"]
     few = block.replace(f"{lines[0]:,} lines", f"{lines[0] // 2:,} lines")
     assert "now it is the library" in next(testing_page.stale(few, kept))
-    page.write_text("no marks\n")
-    with pytest.raises(ValueError, match="there is no"):
-        testing_page.write(page, kept)

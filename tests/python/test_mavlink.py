@@ -226,9 +226,7 @@ def echoed(echo: Path, sent: list[bytes]) -> list[bytes]:
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)
-def test_what_python_packs_comes_back_from_c_byte_by_byte(
-    modules: dict[str, ModuleType], echo: Path, row: Row
-) -> None:
+def test_what_python_packs_comes_back_from_c_byte_by_byte(modules: dict[str, ModuleType], echo: Path, row: Row) -> None:
     frames = [sent.frame for sent in sent_by_python(modules, row)]
     assert len({len(frame) for frame in frames}) > 1  # ends of several lengths were cut
     assert echoed(echo, frames) == frames

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..logs.marked_block import MarkedBlock
 from . import book, guarantees, stated
 from .book import Figures, Ledger, below, number
 from .instructions import PUBLIC, UPDATES, WITH_LENS
@@ -12,7 +13,7 @@ from .modules import WINDOWS
 from .parts import PARTS_PRESET
 from .targets import compiler_title, processor_title
 
-BEGIN, END = "<!-- ledger: begin -->", "<!-- ledger: end -->"
+TABLES = MarkedBlock("ledger")
 README_PRESETS = ("m4f-gcc-os", "m4f-gcc-o2", "m0plus-gcc-os")
 TARGET_HEAD = [
     "| target | compiler | code + constants, bytes | stack of `goe_update`, bytes (painted) | "
@@ -115,23 +116,14 @@ HEADER = Path("lib/goe.h")
 PAGES = {Path("README.md"): readme_tables, Path("tests/targets/LEDGER.md"): ledger_tables}
 
 
-def with_tables(path: Path, tables: str) -> str:
-    """The text of a file with the tables between its two markers."""
-    text = path.read_text(encoding="utf-8")
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        raise ValueError(f"{path}: needs the lines {BEGIN} and {END} once")
-    return text[: text.index(BEGIN) + len(BEGIN)] + "\n" + tables + text[text.index(END) :]
-
-
 def wrong_pages(root: Path, ledger: Ledger) -> list[str]:
     """Pages that do not show this ledger, guarantees that README.md does not state, costs that goe.h understates."""
     wrong = [
         f"{page}: its tables are not those of the ledger: run python -m goe_tools ledger --write"
         for page, tables in PAGES.items()
-        if with_tables(root / page, tables(ledger)) != (root / page).read_text(encoding="utf-8")
+        if TABLES.of(root / page) != tables(ledger).strip()
     ]
-    own_words = with_tables(root / "README.md", "")
-    wrong += guarantees.not_stated(own_words)
+    wrong += guarantees.not_stated(TABLES.around(root / "README.md"))
     if stated.TARGET in ledger:
         wrong += stated.understated((root / HEADER).read_text(encoding="utf-8"), ledger[stated.TARGET])
     return wrong
@@ -139,5 +131,4 @@ def wrong_pages(root: Path, ledger: Ledger) -> list[str]:
 
 def write_pages(root: Path, ledger: Ledger) -> None:
     for page, tables in PAGES.items():
-        text = with_tables(root / page, tables(ledger))
-        (root / page).write_text(text, encoding="utf-8")
+        TABLES.write(root / page, tables(ledger))

@@ -66,8 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if arguments.check_page:
         page = arguments.check_page
-        _, told, _ = testing_page.parts(page.read_text(encoding="utf-8"), str(page))
-        wrong = list(testing_page.stale(told, kept))
+        wrong = list(testing_page.stale(testing_page.FIGURES.of(page), kept))
         print(*(f"{page}: {what}: python -m goe_tools evidence --page {page}" for what in wrong), sep="\n")
         return 1 if wrong else 0
     amount = Amount(arguments.long, arguments.jobs, arguments.updates)

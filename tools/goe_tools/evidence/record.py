@@ -56,7 +56,6 @@ def read(path: Path) -> dict[str, Kept]:
 
 def write(path: Path, kept: Iterable[Kept]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, json.dumps([asdict(entry) for entry in kept], indent=1) + "\n")
 
 
@@ -64,8 +63,8 @@ def table(kept: Iterable[Kept]) -> str:
     """Markdown: a line for each row."""
     lines = ["| part | what | figure | goal | | run |", "|---|---|---|---|---|---|"]
     for entry in kept:
+        run = f"{entry.amount}, {entry.date}, {entry.golden_hash[:8]}"
         for row in entry.rows:
             word = {True: "met", False: "MISSED", None: ""}[row.met]
-            run = f"{entry.amount}, {entry.date}, {entry.golden_hash[:8]}"
             lines.append(f"| {entry.part} | {row.what} | {row.figure} | {row.goal} | {word} | {run} |")
     return "\n".join(lines)

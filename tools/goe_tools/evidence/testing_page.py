@@ -10,12 +10,13 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from ..logs.marked_block import MarkedBlock
 from ..places import ROOT
 from .parts import MODULES
-from .record import Kept
+from .record import Kept, table
 from .requirements import names, rows
 
-BEGIN, END = "<!-- testing: begin -->", "<!-- testing: end -->"
+FIGURES = MarkedBlock("testing")
 TOLERANCE = 0.03
 ASSERTION = re.compile(r"\b(?:TEST_ASSERT|CHECK)_\w+\(|\bTEST_ASSERT\(")
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
@@ -80,15 +81,7 @@ def count_table(root: Path = ROOT) -> str:
 
 def record_table(kept: dict[str, Kept]) -> str:
     """The record's figures, and which parts have none yet."""
-    lines: list[str] = []
-    if kept:
-        lines = ["| part | what | figure | goal | | run |", "|---|---|---|---|---|---|"]
-    for entry in kept.values():
-        for row in entry.rows:
-            word = {True: "met", False: "**missed**", None: ""}[row.met]
-            lines.append(
-                f"| {entry.part} | {row.what} | {row.figure} | {row.goal} | {word} | {entry.amount}, {entry.date} |"
-            )
+    lines = [table(kept.values())] if kept else []
     missing = [name for name in MODULES if name not in kept]
     if missing:
         lines += ["", f"Not on record yet: {', '.join(missing)}."]
@@ -99,18 +92,8 @@ def block(kept: dict[str, Kept], root: Path = ROOT) -> str:
     return f"{count_table(root)}\n\n{record_table(kept)}".strip()
 
 
-def parts(page: str, name: str) -> tuple[str, str, str]:
-    """What stands before, between and behind the marks."""
-    if BEGIN not in page or END not in page:
-        raise ValueError(f"{name}: there is no {BEGIN} ... {END}")
-    before, rest = page.split(BEGIN, 1)
-    between, behind = rest.split(END, 1)
-    return before, between.strip(), behind
-
-
 def write(path: Path, kept: dict[str, Kept]) -> None:
-    before, _, behind = parts(path.read_text(encoding="utf-8"), str(path))
-    path.write_text(f"{before}{BEGIN}\n{block(kept)}\n{END}{behind}", encoding="utf-8")
+    FIGURES.write(path, block(kept))
 
 
 def numbers_of(text: str) -> list[int]:

@@ -13,10 +13,10 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..logs.whole_file import write_whole
+from ..logs.marked_block import MarkedBlock
 from ..places import ROOT
 
-BEGIN, END = "<!-- settings: begin -->", "<!-- settings: end -->"
+TABLE = MarkedBlock("settings")
 MANUAL = ROOT / "lib" / "README.md"
 
 
@@ -57,15 +57,6 @@ def table(rows: list[Setting]) -> str:
     return "\n".join([*head, *body])
 
 
-def parts(page: str, name: str) -> tuple[str, str, str]:
-    """What stands before, between and behind the marks."""
-    if BEGIN not in page or END not in page:
-        raise ValueError(f"{name}: there is no {BEGIN} ... {END}")
-    before, rest = page.split(BEGIN, 1)
-    between, behind = rest.split(END, 1)
-    return before, between.strip(), behind
-
-
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--check", type=Path, metavar="FILE", help="fail if FILE has another table")
@@ -78,10 +69,9 @@ def run(arguments: argparse.Namespace) -> int:
     if file is None:
         print(text)
         return 0
-    before, between, behind = parts(file.read_text(encoding="utf-8"), str(file))
     if arguments.write:
-        write_whole(file, f"{before}{BEGIN}\n{text}\n{END}{behind}")
-    elif between != text:
+        TABLE.write(file, text)
+    elif TABLE.of(file) != text:
         print(f"{file}: its table of settings is not the library's; python -m goe_tools settings --write {file}")
         return 1
     return 0

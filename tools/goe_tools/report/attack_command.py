@@ -7,13 +7,13 @@ import math
 from pathlib import Path
 
 from ..attack import approach, rows
-from ..logs.whole_file import write_whole
+from ..logs.marked_block import MarkedBlock
 from ..places import ROOT
 from .attacks import Attack, attacks, warnings
 from .goals_file import QUANTITIES, Goals, read_goals
 
 PAGE = ROOT / "tools" / "goe_tools" / "attack" / "README.md"
-BEGIN, END = "<!-- attack: begin -->", "<!-- attack: end -->"
+TABLES = MarkedBlock("attack")
 VERDICT = {True: "met", False: "missed", None: ""}
 HEADS = {
     "movers": ("mover", "moves within 4 s/8 s/ever", "velocity in 2 sigma"),
@@ -92,7 +92,5 @@ def run(arguments: argparse.Namespace) -> int:
     if not arguments.write:
         print(text)
         return 0
-    page = PAGE.read_text(encoding="utf-8")
-    before, rest = page.split(BEGIN)
-    write_whole(PAGE, f"{before}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}")
+    TABLES.write(PAGE, text)
     return 0
