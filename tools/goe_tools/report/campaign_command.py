@@ -18,6 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ..logs.whole_file import replacing_all
 from ..places import ROOT
 from ..spread import Workers, each, workers_of
 from ..spread import add_arguments as add_workers
@@ -58,21 +59,18 @@ def joined(parts: list[Flown]) -> Flown:
 
 
 def write(folder: Path, flown: Flown) -> None:
-    """The folder's files change only once all are written beside them; only series of an earlier campaign go."""
-    folder.mkdir(exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder, prefix=".campaign-") as staged:
-        fresh = {f"{SERIES}/{name}": content for name, content in flown.series.items()}
-        fresh[CASES] = flown.cases
-        fresh[FACTS] = (json.dumps(flown.facts, indent=2) + "\n").encode()
-        (Path(staged) / SERIES).mkdir()
-        for name, content in fresh.items():
-            (Path(staged) / name).write_bytes(content)
-        (folder / SERIES).mkdir(exist_ok=True)
-        for path in (folder / SERIES).iterdir():
-            if path.name.endswith(SERIES_ENDINGS) and path.name.split("_")[0].isdigit():
-                path.unlink()
-        for name in fresh:
-            (Path(staged) / name).replace(folder / name)
+    """The folder's files change only once all are written, cases.csv last; then series of an earlier campaign go."""
+    facts = (json.dumps(flown.facts, indent=2) + "\n").encode()
+    fresh = {folder / CASES: flown.cases, folder / FACTS: facts}
+    fresh.update({folder / SERIES / name: content for name, content in flown.series.items()})
+    (folder / SERIES).mkdir(parents=True, exist_ok=True)
+    with replacing_all(fresh) as places:
+        for place, content in zip(places, fresh.values()):
+            place.write_bytes(content)
+    for path in (folder / SERIES).iterdir():
+        earlier = path.name.endswith(SERIES_ENDINGS) and path.name.split("_")[0].isdigit()
+        if earlier and path not in fresh:
+            path.unlink()
 
 
 def check_out(folder: Path) -> None:
