@@ -34,12 +34,7 @@ typedef struct {
 
 /* The first fault of a file ends the reading. */
 #define FAIL(reader, ...)                                                                                              \
-    do {                                                                                                               \
-        if (!(reader)->failed) {                                                                                       \
-            (reader)->failed = true;                                                                                   \
-            input_error_set((reader)->error, (reader)->path, (reader)->line, __VA_ARGS__);                             \
-        }                                                                                                              \
-    } while (0)
+    input_error_first(&(reader)->failed, (reader)->error, (reader)->path, (reader)->line, __VA_ARGS__)
 
 /* Quaternions are held by their norm. */
 static double limit_of(int column) {

@@ -22,13 +22,7 @@ struct frame_reader {
 };
 
 /* The first fault of a file ends the reading. */
-#define FAIL(reader, ...)                                                                                              \
-    do {                                                                                                               \
-        if (!(reader)->failed) {                                                                                       \
-            (reader)->failed = true;                                                                                   \
-            input_error_set(&(reader)->error, (reader)->path, __VA_ARGS__);                                            \
-        }                                                                                                              \
-    } while (0)
+#define FAIL(reader, ...) input_error_first(&(reader)->failed, &(reader)->error, (reader)->path, __VA_ARGS__)
 
 /* ---------------------------------------------------------------------------------------------------------- header -- */
 

@@ -7,13 +7,10 @@
 
 #define ELLIPSIS "..."
 
-void input_error_set(input_error_t *error, const char *file, unsigned long line, const char *column, const char *format,
-                     ...) {
+static void set(input_error_t *error, const char *file, unsigned long line, const char *column, const char *format,
+                va_list arguments) {
     char reason[256];
-    va_list arguments;
-    va_start(arguments, format);
     (void)vsnprintf(reason, sizeof reason, format, arguments);
-    va_end(arguments);
     if (line == 0) {
         (void)snprintf(error->text, sizeof error->text, "%s: %s", file, reason);
     } else if (column == NULL) {
@@ -22,6 +19,26 @@ void input_error_set(input_error_t *error, const char *file, unsigned long line,
         const excerpt_t name = excerpt_of(column, strlen(column));
         (void)snprintf(error->text, sizeof error->text, "%s:%lu: %s: %s", file, line, name.text, reason);
     }
+}
+
+void input_error_set(input_error_t *error, const char *file, unsigned long line, const char *column, const char *format,
+                     ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    set(error, file, line, column, format, arguments);
+    va_end(arguments);
+}
+
+void input_error_first(bool *failed, input_error_t *error, const char *file, unsigned long line, const char *column,
+                       const char *format, ...) {
+    if (*failed) {
+        return;
+    }
+    *failed = true;
+    va_list arguments;
+    va_start(arguments, format);
+    set(error, file, line, column, format, arguments);
+    va_end(arguments);
 }
 
 excerpt_t excerpt_of(const char *text, size_t length) {

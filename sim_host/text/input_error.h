@@ -2,6 +2,7 @@
 #ifndef INPUT_ERROR_H
 #define INPUT_ERROR_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct {
@@ -9,16 +10,20 @@ typedef struct {
 } input_error_t;
 
 #if defined(__GNUC__) || defined(__clang__)
-#define INPUT_ERROR_FORMAT __attribute__((format(printf, 5, 6)))
+#define INPUT_ERROR_FORMAT(format_at) __attribute__((format(printf, format_at, format_at + 1)))
 #else
-#define INPUT_ERROR_FORMAT
+#define INPUT_ERROR_FORMAT(format_at)
 #endif
 
 /* Writes "file:line: column: reason".
  *   line    1 for the first line; 0 when the fault has no line (the file cannot be opened): line and column are left out
  *   column  name of the column or key; null when the fault has none: left out */
 void input_error_set(input_error_t *error, const char *file, unsigned long line, const char *column, const char *format,
-                     ...) INPUT_ERROR_FORMAT;
+                     ...) INPUT_ERROR_FORMAT(5);
+
+/* The same for a reader that goes on: of its faults the first is told. Nothing happens if *failed; else it becomes true. */
+void input_error_first(bool *failed, input_error_t *error, const char *file, unsigned long line, const char *column,
+                       const char *format, ...) INPUT_ERROR_FORMAT(6);
 
 /* A short printable copy of text from a file, to be quoted in a message; text need not end in a NUL. */
 typedef struct {
