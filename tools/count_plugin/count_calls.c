@@ -14,9 +14,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "plugin_files.h"
 #include "qemu_interface.h"
 
 EXPORT int qemu_plugin_version = 1;
@@ -129,16 +128,10 @@ static void on_exit_of_qemu(qemu_plugin_id_t id, void *data) {
 }
 
 int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info, int argc, char **argv) {
-    const char *map = NULL;
+    const plugin_files_t files = plugin_files(argc, argv);
     (void)info;
-    for (int i = 0; i < argc; i++) {
-        if (strncmp(argv[i], "map=", 4) == 0) {
-            map = argv[i] + 4;
-        } else if (strncmp(argv[i], "out=", 4) == 0) {
-            out = fopen(argv[i] + 4, "w");
-        }
-    }
-    if (!map || !out || !read_map(map)) {
+    out = files.out;
+    if (!files.map || !out || !read_map(files.map)) {
         (void)fprintf(stderr, "count_calls: needs map=FILE (functions) and out=FILE (to write)\n");
         return -1;
     }

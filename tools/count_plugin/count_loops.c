@@ -1,4 +1,5 @@
-/* The most turns that loops take, and the most that sums of calls come to: a plugin of QEMU's code generator. SPDX-License-Identifier: MIT
+/* The most turns that loops take, and the most that sums of calls come to: a plugin of QEMU's code generator.
+ * SPDX-License-Identifier: MIT
  *
  *   qemu-system-... -plugin count_loops.so,map=FILE,out=FILE
  *
@@ -16,6 +17,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "plugin_files.h"
 #include "qemu_interface.h"
 
 EXPORT int qemu_plugin_version = 1;
@@ -153,19 +155,13 @@ static void on_exit_of_qemu(qemu_plugin_id_t id, void *data) {
 }
 
 int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info, int argc, char **argv) {
-    const char *map = NULL;
+    const plugin_files_t files = plugin_files(argc, argv);
     (void)info;
     for (unsigned i = 0; i < SWITCHES_MAX; i++) {
         bit[i] = (uint64_t)1 << i;
     }
-    for (int i = 0; i < argc; i++) {
-        if (strncmp(argv[i], "map=", 4) == 0) {
-            map = argv[i] + 4;
-        } else if (strncmp(argv[i], "out=", 4) == 0) {
-            out = fopen(argv[i] + 4, "w");
-        }
-    }
-    if (!map || !out || !read_map(map)) {
+    out = files.out;
+    if (!files.map || !out || !read_map(files.map)) {
         (void)fprintf(stderr, "count_loops: needs map=FILE (what happens where) and out=FILE (to write)\n");
         return -1;
     }
