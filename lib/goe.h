@@ -522,9 +522,9 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
 /* Takes one image and reports the estimate after it.
  *   estimate  written by every call; all zero (valid = 0) with GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED and GOE_CORRUPTED. If it
  *             is null the image is not taken: GOE_BAD_ARGUMENT
- * Returns GOE_OK, a positive status, or one of GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE, GOE_BAD_ARGUMENT,
- * GOE_NOT_INITIALISED, GOE_CORRUPTED. If several faults meet in one image all are counted; a failed solution is reported rather than a
- * feature's fault, and of the features the first.
+ * Returns GOE_OK, a positive status, or one of GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE (GOE_BAD_HEIGHT is never returned, only
+ * counted: GOE_PARTIAL is), GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED, GOE_CORRUPTED. If several faults meet in one image all are
+ * counted; a failed solution is reported rather than a feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
  * Cost: at most 48000 instructions, 1212 bytes of stack; 70000 with lens distortion; window: 5300. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */

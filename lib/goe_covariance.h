@@ -6,8 +6,9 @@
 
 typedef float goe_covariance_t[GOE_QUANTITIES][GOE_QUANTITIES];
 
-/* goe_covariance() of an estimator that is ready. from_datum: the top's height is counted from the altimeter's zero. ahead_s: the place of an obstacle that
- * moves counts that long after the latest image. */
+/* goe_covariance() of an estimator that is ready.
+ *   from_datum  the top's height is counted from the altimeter's zero
+ *   ahead_s     the place of an obstacle that moves counts that long after the latest image */
 /*@ requires estimator == \null || \valid_read(estimator);
     requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, float ahead_s,

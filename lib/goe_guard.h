@@ -9,8 +9,9 @@
 /*@ requires \valid(estimator); */
 void goe_guard_seal(goe_estimator_t *estimator);
 
-/* GOE_OK; GOE_NOT_INITIALISED; or GOE_CORRUPTED, if mounting, settings or what tells that they are set are not what goe_guard_seal()
- * left. It finds every change of one word, and of two bits anywhere but the same bit of two words that lie 32 words apart. */
+/* GOE_OK; GOE_NOT_INITIALISED; or GOE_CORRUPTED, if mounting, settings or what tells that they are set are not what
+ * goe_guard_seal() left. It finds every change of one word, and of two bits anywhere but the same bit of two words that lie 32
+ * words apart. */
 /*@ requires \valid_read(estimator); */
 goe_status_t goe_guard_judge(const goe_estimator_t *estimator);
 
