@@ -14,11 +14,10 @@
 #include "fuzz.h"
 #include "fuzz_image.h"
 #include "fuzz_settings.h"
+#include "fuzz_twice.h"
+#include "guarded_estimator.h"
 
-#define GUARD_BYTES 64
-#define GUARD 0xC3
 #define UPDATES_MAX 6000 /* of one input */
-#define TWICE_IN 32u     /* inputs that run twice */
 #define COVARIANCE_IN 4u
 #define HAZARD_IN 8u
 
@@ -96,9 +95,7 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"status_bad_attitude", 0},
                                         {NULL, 0}};
 
-static bool is_repeat; /* the same input once more: not counted again */
-
-static void count(int what) { fuzz_counts[what].times += is_repeat ? 0u : 1u; }
+static void count(int what) { fuzz_count_once(what); }
 
 static void count_update(const goe_settings_t *settings, goe_status_t status, const goe_estimate_t *e) {
     const bool refined = settings->method == GOE_METHOD_REFINED;
@@ -123,22 +120,7 @@ static void count_update(const goe_settings_t *settings, goe_status_t status, co
 
 /* -------------------------------------------------------------------------------------------------------------- memory -- */
 
-static struct {
-    unsigned char before[GUARD_BYTES];
-    goe_estimator_t estimator;
-    unsigned char between[GUARD_BYTES];
-    goe_estimate_t estimate;
-    unsigned char behind[GUARD_BYTES];
-} memory;
-
-static unsigned char guard[GUARD_BYTES];
 static goe_estimator_t kept;
-
-static void check_guards(void) {
-    FUZZ_HOLDS(fuzz_same(memory.before, guard, GUARD_BYTES));
-    FUZZ_HOLDS(fuzz_same(memory.between, guard, GUARD_BYTES));
-    FUZZ_HOLDS(fuzz_same(memory.behind, guard, GUARD_BYTES));
-}
 
 static void keep(void) { memcpy(&kept, &memory.estimator, sizeof kept); }
 
@@ -231,7 +213,7 @@ static goe_status_t update(run_t *run, const goe_image_t *image) {
         check_kept();
     }
     check_estimate(&run->settings, status, e);
-    check_guards();
+    guard_check();
     if (memory.estimator.causes[-(int)GOE_BAD_HEIGHT] != kept.causes[-(int)GOE_BAD_HEIGHT]) {
         count(STATUSES + (int)GOE_NOTHING_SEEN - (int)GOE_BAD_HEIGHT); /* told by its counter alone */
     }
@@ -248,7 +230,7 @@ static goe_status_t update(run_t *run, const goe_image_t *image) {
 
 static void forget(run_t *run) {
     FUZZ_HOLDS(goe_reset(&memory.estimator) == GOE_OK);
-    check_guards();
+    guard_check();
     run->has_solved = false;
     run->model = GOE_MODEL_NONE;
     count(RESETS);
@@ -259,7 +241,7 @@ static bool start(run_t *run, const goe_settings_t *settings) {
     const char *bad = "";
     keep();
     const goe_status_t status = goe_init(&memory.estimator, sizeof memory.estimator, settings, &bad);
-    check_guards();
+    guard_check();
     if (status == GOE_OK) {
         FUZZ_HOLDS(bad == NULL);
         run->settings = *settings;
@@ -294,7 +276,7 @@ static void misuse(run_t *run) {
     FUZZ_HOLDS(goe_hazard(estimator, &plan, NULL) == GOE_BAD_ARGUMENT);
     goe_settings_default(NULL);
     check_kept();
-    check_guards();
+    guard_check();
 }
 
 static void texts(fuzz_input_t *in) {
@@ -397,9 +379,7 @@ static void check_not_ready(void) {
 static uint64_t fly(const uint8_t *data, size_t size, int fill) {
     run_t run;
     memset(&run, 0, sizeof run);
-    memset(guard, GUARD, sizeof guard);
-    memset(&memory, GUARD, sizeof memory);
-    memset(&memory.estimator, fill, sizeof memory.estimator);
+    guard_begin(fill);
     run.in.next = data;
     run.in.left = size;
     check_not_ready();
@@ -410,12 +390,6 @@ static uint64_t fly(const uint8_t *data, size_t size, int fill) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    is_repeat = false;
-    const uint64_t hash = fly(data, size, 0);
-    if ((hash >> 32) % TWICE_IN == 0) {
-        count(TWICE);
-        is_repeat = true;
-        FUZZ_HOLDS(fly(data, size, 0xA5) == hash);
-    }
+    fuzz_twice(fly, data, size, TWICE);
     return 0;
 }

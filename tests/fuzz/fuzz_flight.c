@@ -13,6 +13,7 @@
 #include "fuzz.h"
 #include "fuzz_scene.h"
 #include "fuzz_settings.h"
+#include "fuzz_twice.h"
 #include "goe_flight.h"
 
 #define GUARD_BYTES 64
@@ -21,7 +22,6 @@
 #define SAMPLE_US 20000u
 #define SAMPLE_S 0.02f
 #define SAMPLES_MAX 6000u /* of one input */
-#define TWICE_IN 32u
 #define ASSESS_EVERY 5u
 #define READ_EVERY 7u
 
@@ -56,9 +56,7 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {
     {"resets_known", 0},   {"resets_unknown", 0}, {"restarts", 0},         {"starts", 0},
     {"starts_refused", 0}, {"refused", 0},        {"inputs_run_twice", 0}, {NULL, 0}};
 
-static bool is_repeat;
-
-static void count(int what) { fuzz_counts[what].times += is_repeat ? 0u : 1u; }
+static void count(int what) { fuzz_count_once(what); }
 
 /* -------------------------------------------------------------------------------------------------------------- memory -- */
 
@@ -573,12 +571,6 @@ static uint64_t fly(const uint8_t *data, size_t size, int fill) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    is_repeat = false;
-    const uint64_t hash = fly(data, size, 0);
-    if ((hash >> 32) % TWICE_IN == 0) {
-        count(TWICE);
-        is_repeat = true;
-        FUZZ_HOLDS(fly(data, size, 0xA5) == hash);
-    }
+    fuzz_twice(fly, data, size, TWICE);
     return 0;
 }

@@ -10,9 +10,8 @@
 #include "fuzz.h"
 #include "fuzz_image.h"
 #include "fuzz_settings.h"
+#include "guarded_estimator.h"
 
-#define GUARD_BYTES 64
-#define GUARD 0xC3
 #define UPDATES_MAX 6000u
 #define VALID_BITS 0x7Fu
 
@@ -26,21 +25,6 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"fresh_after", 0},
                                         {"suspect_after", 0},
                                         {NULL, 0}};
-
-static struct {
-    unsigned char before[GUARD_BYTES];
-    goe_estimator_t estimator;
-    unsigned char between[GUARD_BYTES];
-    goe_estimate_t estimate;
-    unsigned char behind[GUARD_BYTES];
-} memory;
-
-static unsigned char guard[GUARD_BYTES];
-
-static void check_guards(void) {
-    FUZZ_HOLDS(fuzz_same(memory.before, guard, GUARD_BYTES) && fuzz_same(memory.between, guard, GUARD_BYTES));
-    FUZZ_HOLDS(fuzz_same(memory.behind, guard, GUARD_BYTES));
-}
 
 static void check_finite(const void *from, size_t size) {
     for (size_t i = 0; i + sizeof(float) <= size; i += sizeof(float)) {
@@ -59,7 +43,7 @@ static void check_truth(const bool *truth) {
 
 static void check_answer(goe_status_t status) {
     const goe_estimate_t *e = &memory.estimate;
-    check_guards();
+    guard_check();
     check_finite(&e->age_s, sizeof *e - offsetof(goe_estimate_t, age_s));
     check_truth(&e->fresh);
     check_truth(&e->suspect);
@@ -88,7 +72,7 @@ static void ask(const fuzz_view_t *view) {
     check_finite(&hazard, offsetof(goe_hazard_t, has_clearance));
     check_truth(&hazard.has_clearance);
     FUZZ_HOLDS(hazard.violation >= 0.0f && hazard.violation <= 1.0f);
-    check_guards();
+    guard_check();
 }
 
 static void flip(fuzz_input_t *in) {
@@ -147,8 +131,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_view_t view;
     uint32_t updates = 0;
     memset(&view, 0, sizeof view);
-    memset(guard, GUARD, sizeof guard);
-    memset(&memory, GUARD, sizeof memory);
+    guard_begin(GUARD);
     do {
         updates += section(&in, &view);
     } while (in.left > 0 && updates < UPDATES_MAX);
