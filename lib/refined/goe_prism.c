@@ -18,6 +18,7 @@
 #define REACH_MIN 1.0e-9f      /* of the footprint, units of Z0 */
 #define DEPTH_MAX 2.0f         /* |s|: 7 times as deep as wide, or as flat */
 #define SCATTER_SHARE 0.01f    /* white part of a side's error, of the box's size */
+#define SHIFT_RATIO_MAX 300.0f /* of a shift that rows share, over a row's own noise */
 #define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearisation's */
 #define GAP_MAX_US 1000000000u /* as the filter's: a longer gap counts as this one */
 #define GROUND_SIGMAS 3.0f     /* by which the foot must lie below the horizon to give the range */
@@ -314,10 +315,27 @@ static float shared_shift(const goe_rows_t *rows, size_t a, size_t b) {
     return rows->shifts ? v[0] * w[0] + v[1] * w[1] + v[2] * w[2] : 0.0f;
 }
 
+/* I + N has lost the 1, a row's own noise, among float's 24 bits where the shift is thousands of times that noise: rows would come
+ * out far too certain, or infinite. Such a row counts as if its noise were larger. */
+/*@ requires goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
+static void bound_shifts(goe_rows_t *rows) {
+    for (size_t i = 0; i < rows->count; i++) {
+        const float shift = goe_square(rows->variance[i]) * shared_shift(rows, i, i);
+        if (shift > SHIFT_RATIO_MAX * SHIFT_RATIO_MAX) {
+            const float share = SHIFT_RATIO_MAX / sqrtf(shift);
+            rows->variance[i] *= share;
+            for (size_t c = 0; c < GOE_COLUMNS; c++) {
+                rows->matrix->row[i][c] *= share;
+            }
+        }
+    }
+}
+
 /* Rows of unit noise that share a shift: their covariance is I + N; times the inverse of its Cholesky root they share none. */
 /*@ requires goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
 static void free_of_shift(goe_rows_t *rows) {
     float root[GOE_BOX_SIDES][GOE_BOX_SIDES];
+    bound_shifts(rows);
     for (size_t i = 0; i < rows->count; i++) {
         float *row = rows->matrix->row[i];
         for (size_t j = 0; j <= i; j++) {

@@ -767,6 +767,52 @@ static void rows_are_freed_of_what_they_share(void) {
     }
 }
 
+/* GIVEN an image's own position error that is thousands and millions of times its rows' noise, along one direction, two or three
+ * WHEN they are freed of it THEN no direction is known better by them than it was: a common error takes, it never gives. */
+static void a_shift_far_above_the_noise_makes_no_row_certain(void) {
+    any = check_random_start("shifts far above the noise");
+    for (int n = 0; n < CASES; n++) {
+        goe_filter_t filter;
+        float direction[3][3];
+        const int directions = 1 + n % 3;
+        const double ratio = pow(10.0, check_random_between(&any, 0.0, 8.0));
+        goe_filter_clear(&filter);
+        goe_rows_clear(&sighting.rows, &sighting.matrix);
+        sighting.rows.white_rad = 1.0e-3f;
+        sighting.rows.shifts = true;
+        sighting.rows.count = GOE_BOX_SIDES;
+        for (int k = 0; k < 9; k++) {
+            direction[k / 3][k % 3] = (float)check_random_normal(&any);
+        }
+        for (size_t i = 0; i < GOE_BOX_SIDES; i++) {
+            sighting.rows.feature[i] = (uint8_t)feature_of_side[i];
+            sighting.rows.variance[i] = 1000.0f; /* by then the weight */
+            memset(sighting.rows.shift[i], 0, sizeof sighting.rows.shift[i]);
+            for (int d = 0; d < directions; d++) {
+                const float along = (float)(1.0e-3 * ratio * check_random_normal(&any));
+                for (int k = 0; k < 3; k++) {
+                    sighting.rows.shift[i][k] += along * direction[d][k];
+                }
+            }
+            for (size_t c = 0; c < GOE_COLUMNS; c++) {
+                sighting.matrix.row[i][c] = (float)check_random_normal(&any);
+            }
+        }
+        const goe_matrix_t before = sighting.matrix;
+        goe_prism_learn(&filter, &sighting.rows);
+        for (size_t c = 0; c < GOE_COLUMNS; c++) {
+            double was = 0.0;
+            double is = 0.0;
+            for (size_t i = 0; i < GOE_BOX_SIDES; i++) {
+                TEST_ASSERT_TRUE(check_is_finite(sighting.matrix.row[i][c]));
+                was += (double)before.row[i][c] * (double)before.row[i][c];
+                is += (double)sighting.matrix.row[i][c] * (double)sighting.matrix.row[i][c];
+            }
+            TEST_ASSERT_TRUE(is <= 1.02 * was);
+        }
+    }
+}
+
 /* GIVEN a depth that an update throws far off THEN it stays what a body can have, flat or deep, and can come back. */
 static void the_depth_of_a_body_is_bounded(void) {
     goe_filter_t filter;
@@ -957,6 +1003,7 @@ int main(void) {
     RUN_TEST(without_an_altimeter_the_foot_tells_the_height);
     RUN_TEST(a_disc_by_force_has_no_depth_of_its_own);
     RUN_TEST(rows_are_freed_of_what_they_share);
+    RUN_TEST(a_shift_far_above_the_noise_makes_no_row_certain);
     RUN_TEST(the_depth_of_a_body_is_bounded);
     RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);

@@ -83,5 +83,6 @@ def build(preset: str, folder: Path) -> Build:
 
 
 def shown_flags(command: Iterable[str]) -> str:
-    """The flags that matter for the figures."""
-    return " ".join(w for w in command if re.match(r"-(O|m|f|std=)", w) and not w.startswith(WRITES_BESIDE))
+    """The flags that matter for the figures: not what is written beside the code, nor the folders of a machine."""
+    shown = (w for w in command if re.match(r"-(O|m|f|std=)", w) and not w.startswith(WRITES_BESIDE))
+    return " ".join(w for w in shown if not re.match(r"-f\w+-prefix-map=", w))
