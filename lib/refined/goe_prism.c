@@ -387,9 +387,10 @@ static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], fl
     }
     const float *r = camera_to_axes;
     const float z = r[6] * undistorted[0] + r[7] * undistorted[1] + r[8];
-    ray->x = (r[0] * undistorted[0] + r[1] * undistorted[1] + r[2]) / z;
-    ray->y = (r[3] * undistorted[0] + r[4] * undistorted[1] + r[5]) / z;
     ray->usable = z > AHEAD_MIN;
+    const float ahead = ray->usable ? z : 1.0f;
+    ray->x = (r[0] * undistorted[0] + r[1] * undistorted[1] + r[2]) / ahead;
+    ray->y = (r[3] * undistorted[0] + r[4] * undistorted[1] + r[5]) / ahead;
     return ray->usable;
 }
 

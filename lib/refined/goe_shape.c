@@ -17,7 +17,8 @@ void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], cons
                      goe_shape_t *shape) {
     const float c = filter->axes.turn_cos;
     const float s = filter->axes.turn_sin;
-    const float scale_m = 1.0f / x[GOE_INVERSE_RANGE];
+    const float q = x[GOE_INVERSE_RANGE];
+    const float scale_m = q > 0.0f ? 1.0f / q : 0.0f; /* conditioned on no skew, a disc may lie behind or nowhere */
     const goe_xz_t place = goe_filter_into_trajectory(filter, reference->at);
     goe_linear_t *height = &shape->quantity[GOE_HEIGHT];
     memset(shape, 0, sizeof *shape);

@@ -434,6 +434,23 @@ static void what_is_told_was_known_twice(void) {
     TEST_ASSERT_EQUAL_HEX(0u, quantities.known);
 }
 
+/* GIVEN a range that there is none, or one behind, of any model, THEN no metres are made of it: nothing is known, and nothing was
+ * divided by it. */
+static void without_a_range_nothing_is_known(void) {
+    static const float none[] = {0.0f, -0.0f, -1.0e-30f, -0.5f};
+    any = check_random_start("no range");
+    for (size_t p = 0; p < sizeof phases / sizeof phases[0]; p++) {
+        for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
+            make_any(phases[p]);
+            be_uncertain(1.0e-2);
+            filter.state[GOE_INVERSE_RANGE] = none[i];
+            goe_quantities_find(&filter, &settings, &motion, &quantities);
+            TEST_ASSERT_EQUAL_HEX(0u, quantities.known);
+            TEST_ASSERT_EQUAL_HEX(0u, quantities.now);
+        }
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
@@ -445,5 +462,6 @@ int main(void) {
     RUN_TEST(the_altimeters_error_is_not_between_camera_and_top);
     RUN_TEST(an_outline_is_less_certain_than_its_rows_say);
     RUN_TEST(what_is_told_was_known_twice);
+    RUN_TEST(without_a_range_nothing_is_known);
     return UNITY_END();
 }

@@ -10,7 +10,7 @@ HEADS = ("of", "times", "95 % interval")
 COURSE_NAMES = {"collision": "collision course", "pass": "pass at twice the margin"}
 EVENT_NAMES = {
     "unwarned": f"no order {WARNED_S:g} s ahead of a collision",
-    "collided": "a collision, the orders carried out",
+    "collided": "the obstacle or the ground met, the orders carried out",
     "false_order": "an order that nothing asked for",
     "confident": "five sigmas off, five times in a row, not suspect",
 }
