@@ -150,8 +150,7 @@ static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m,
 }
 
 bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box) {
-    face_t face;
-    face.range_m = range_of(obs);
+    face_t face = {{0.0f, 0.0f}, {0.0f, 0.0f}, range_of(obs), 0.0f};
     face.height_m = obs->height_m + obs->state[GOE_GROUND] / obs->state[GOE_INVERSE_RANGE];
     if (!obs->base || !(face.range_m >= RANGE_MIN_M) || !(obs->height_m >= HEIGHT_MIN_M) ||
         !(face.height_m >= HEIGHT_MIN_M) || !place_face(obs, &face)) {
@@ -273,10 +272,10 @@ static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool bot
         BEARING_GROWTH * c[GOE_BEARING][GOE_BEARING] + goe_square(BEARING_FREEDOM * size) + BEARING_FLOOR2;
     c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] =
         RANGE_GROWTH * c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] + goe_square(size * box->q);
-    const float scale = box->q / x[GOE_INVERSE_RANGE];
-    x[GOE_TOP] *= scale;
-    x[GOE_GROUND] *= scale;
-    scale_ground(scale, c);
+    const float nearer = box->q / x[GOE_INVERSE_RANGE];
+    x[GOE_TOP] *= nearer;
+    x[GOE_GROUND] *= nearer;
+    scale_ground(nearer, c);
     x[GOE_BEARING] = box->a;
     x[GOE_INVERSE_RANGE] = box->q;
     x[GOE_SIDE_X] = box->length * box->sine;

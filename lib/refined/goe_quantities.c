@@ -287,7 +287,8 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
     goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m + gone.x,
                      place.z * shape->scale_m + filter->axes.start_dz_m + gone.z, &q->center_m[0], &q->center_m[1]);
     const float drifted = drift_variance(motion, drift, shape, q->box, GOE_Z0);
-    float variance[3], moved[3]; /* along north, east, and (1, 1), which tells how the two go together */
+    float variance[3] = {0.0f, 0.0f, 0.0f}; /* along north, east, and (1, 1), which tells how the two go together */
+    float moved[3] = {0.0f, 0.0f, 0.0f};
     float by[3][GOE_STATES] = {{0.0f}};
     const bool disc = filter->phase == GOE_PHASE_DISC; /* its derivatives tell by themselves */
     for (int i = 0; i < (disc ? 2 : 3); i++) {
@@ -295,9 +296,8 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
         const goe_xz_t in_trajectory = goe_filter_into_trajectory(filter, along);
         goe_shape_place(&shape->middle, shape->scale_m, along.x, along.z, by[i]);
         beside_of(filter, by[i], in_trajectory.x, in_trajectory.z, elapsed_s, &beside[i]);
-        variance[i] =
-            wider->scatter * (variance_of(filter, wider, by[i], &moved[i]) + beside_dot(&beside[i], &beside[i])) +
-            moved[i] * moved[i];
+        const float found = variance_of(filter, wider, by[i], &moved[i]) + beside_dot(&beside[i], &beside[i]);
+        variance[i] = wider->scatter * found + moved[i] * moved[i];
     }
     q->center_sd_m[0] = sqrtf(variance[0] + drifted);
     q->center_sd_m[1] = sqrtf(variance[1] + drifted);

@@ -120,7 +120,9 @@ def run(amount: Amount) -> Result:
         if not shutil.which("clang-tidy-19"):
             raise NotHereError("no clang-tidy-19")
         found["clang-tidy, bugprone, cert, clang-analyzer"] = find_tidy(amount.jobs)
-        found["cppcheck"] = find_cppcheck(amount.jobs)
+    if not shutil.which("cppcheck"):
+        raise NotHereError("no cppcheck")
+    found["cppcheck"] = find_cppcheck(amount.jobs)
     number = len(sources())
     rows = [Row(f"{name} over {number} files", f"{len(told)} warnings", "0", not told) for name, told in found.items()]
     rows.append(Row("false alarms, each with its reason, that no longer come", str(len(gone)), "0", not gone))
