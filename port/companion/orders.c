@@ -134,6 +134,7 @@ static void watch_mode(orders_t *orders) {
     orders->judged_at = autopilot->heartbeats;
     const bool may_be_old = orders->command != 0 || autopilot->heartbeats - orders->answered_at <= BEATS_TO_LEAD;
     if (mode != PX4_AUTO_LOITER && !(may_be_old && mode == orders->mode_before)) {
+        orders->overruled = true;
         silence(orders);
         event("another mode was chosen: the order is left to whoever did");
     }
@@ -228,9 +229,10 @@ static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
     const bool may_be_old = orders->resumed_at != 0 && beats - orders->resumed_at < BEATS_TO_RESUME;
     if (orders->action == GOE_FLIGHT_NONE) {
         orders->mode_before = may_be_old ? orders->mode_before : orders->autopilot->custom_mode;
-        orders->silenced = false;
+        orders->overruled = false;
         orders->judged_at = orders->answered_at = beats;
     }
+    orders->silenced = orders->overruled; /* a side that the mode forbids says nothing of a go-around */
     orders->resumes_left = 0;
     orders->orders++;
     event("order: %s; on this course %.0f m beside it in %.1f s%s", goe_flight_action_text(assessment->action),

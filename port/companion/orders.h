@@ -21,7 +21,8 @@ typedef struct {
 
     goe_flight_action_t action; /* that stands */
     int slot;                   /* what it is about, as last known; -1: none */
-    bool silenced;              /* nothing is sent for this order: the autopilot's mode, kind or answer forbids it */
+    bool overruled;             /* a pilot chose another mode: nothing is sent until all orders have ended */
+    bool silenced; /* nothing is sent for this action: that, or the autopilot's mode, kind or answer forbids it */
     int32_t target_lat_e7, target_lon_e7; /* as it was sent last ... */
     float target_alt_m;
     int64_t sent_us;

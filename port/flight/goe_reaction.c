@@ -262,6 +262,21 @@ static void end_if_over(goe_flight_t *flight, const goe_flight_reaction_own_t *o
     }
 }
 
+/* Of an approach that was left to a side, as no climb seemed to come in time: once one does, it is broken off. Whoever lands beside an
+ * obstacle lands beside the runway. */
+static void break_off(goe_flight_t *flight, const goe_flight_reaction_own_t *own) {
+    const goe_flight_reaction_t *r = &flight->reaction;
+    encounter_t e;
+    if (!own->approach || r->action == GOE_FLIGHT_NONE || r->action == GOE_FLIGHT_GO_AROUND || r->slot == NOBODY ||
+        !meet(flight, &flight->slot[r->slot], own, &e)) {
+        return;
+    }
+    const option_t option = {GOE_FLIGHT_GO_AROUND, climb_time_s(flight, &e), 0.0f};
+    if (option.needed_s <= e.soonest_s) {
+        order(flight, r->slot, &e, &option, own);
+    }
+}
+
 /* An order that there is not, or about no slot that there is, is none: the hazard that stands brings another. */
 static void mend(goe_flight_reaction_t *r) {
     if (r->action > GOE_FLIGHT_HOLD || r->slot < NOBODY || r->slot >= GOE_FLIGHT_SLOTS) {
@@ -275,6 +290,7 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
     mend(r);
     if (r->action != GOE_FLIGHT_NONE) {
         end_if_over(flight, own);
+        break_off(flight, own);
     }
     if (worst == NOBODY || !meet(flight, &flight->slot[worst], own, &e)) {
         r->rising = false;

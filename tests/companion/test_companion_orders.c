@@ -12,6 +12,7 @@
 #define SYSTEM 1
 #define MISSION (4u << 16 | 4u << 24)
 #define LOITER (4u << 16 | 3u << 24)
+#define LAND (4u << 16 | 6u << 24)
 #define POSITION (3u << 16)
 #define STEP_US 100000 /* between assessments */
 
@@ -208,6 +209,27 @@ static void nothing_goes_out_to_whom_it_is_not_for(void) {
     }
 }
 
+/* GIVEN a landing, in whose mode no side is flown, WHEN the order to a side becomes one to go around THEN that is sent; a pilot who
+ * took over meanwhile is left alone. */
+static void a_side_that_was_not_sent_does_not_silence_a_go_around(void) {
+    autopilot.custom_mode = LAND;
+    decide(GOE_FLIGHT_LEFT);
+    go_on(5, LAND);
+    TEST_ASSERT_TRUE(orders.silenced);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+    decide(GOE_FLIGHT_GO_AROUND);
+    go_on(1, LAND);
+    TEST_ASSERT_FALSE(orders.silenced);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, MISSION);
+    ordered_anew();
+    go_on(20, POSITION);
+    decide(GOE_FLIGHT_GO_AROUND);
+    go_on(20, POSITION);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
+}
+
 /* Also where the target moves, and for the mode afterwards. */
 static void a_pilot_is_not_fought(void) {
     know_obstacle(true);
@@ -303,6 +325,7 @@ int main(void) {
     RUN_TEST(a_target_that_moves_is_sent_once_a_second_at_most);
     RUN_TEST(what_is_denied_is_not_asked_for_again);
     RUN_TEST(nothing_goes_out_to_whom_it_is_not_for);
+    RUN_TEST(a_side_that_was_not_sent_does_not_silence_a_go_around);
     RUN_TEST(a_pilot_is_not_fought);
     RUN_TEST(the_mode_before_comes_back_once_the_obstacle_is_passed);
     RUN_TEST(the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed);

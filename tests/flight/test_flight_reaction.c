@@ -139,6 +139,30 @@ static void an_approach_is_broken_off(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
 }
 
+/* GIVEN an approach to a low obstacle whose range looks far too short, so that a side is ordered, WHEN the range is known and a climb
+ * comes in time THEN the approach is broken off, about the same obstacle and on the line of the first order; not before, and not
+ * where nobody lands. */
+static void an_approach_left_to_a_side_is_broken_off_once_there_is_time(void) {
+    for (int landing = 0; landing < 2; landing++) {
+        goe_flight_reaction_clear(&flight.reaction);
+        own.approach = landing != 0;
+        put(0, 40.0f, 0.5f);
+        flight.slot[0].top_m = 12.0f;
+        flight.slot[0].hazard.time_s = 2.0f;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.0));
+        TEST_ASSERT_TRUE(flight.reaction.late);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.1));
+        put(0, 110.0f, 0.5f);
+        flight.slot[0].top_m = 12.0f;
+        TEST_ASSERT_EQUAL(landing ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_LEFT, decide(0.1));
+        TEST_ASSERT_EQUAL(0, flight.reaction.slot);
+        if (landing) {
+            TEST_ASSERT_FALSE(flight.reaction.late);
+            CHECK_CLOSE(0.01, -22.0, flight.reaction.target_ned_m[2]);
+        }
+    }
+}
+
 static void a_wait_for_confirmation_is_not_afforded_when_it_is_late(void) {
     put(0, 63.0f, 0.5f); /* 3 s */
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.0));
@@ -253,6 +277,7 @@ int main(void) {
     RUN_TEST(a_top_that_is_not_known_is_not_climbed_over);
     RUN_TEST(an_unsure_top_is_taken_for_higher);
     RUN_TEST(an_approach_is_broken_off);
+    RUN_TEST(an_approach_left_to_a_side_is_broken_off_once_there_is_time);
     RUN_TEST(a_wait_for_confirmation_is_not_afforded_when_it_is_late);
     RUN_TEST(an_unlikely_hazard_is_no_reason_when_it_is_late);
     RUN_TEST(no_hazard_is_no_reason);
