@@ -215,7 +215,8 @@ def test_a_page_that_is_stale_is_told(tmp_path: Path) -> None:
     assert "Not on record yet: " in page.read_text()
     testing_page.write(page, kept)
     block = testing_page.FIGURES.of(page)
-    assert "| fuzz | updates | 10 | 9 | met | long, 2026-01-01, 0 |" in block
+    assert "<b>fuzz</b>: 1 of 1 goals met (long, 2026-01-01, 0)</summary>\n\n" in block
+    assert "| updates | 10 | 9 | met |" in block
     assert list(testing_page.stale(block, kept)) == []
     assert list(testing_page.stale(block, {})) == ["its figures are not those of the record"]
     (lines,) = [numbers for what, _, numbers in testing_page.counts() if what == "the library"]

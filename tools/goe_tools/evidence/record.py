@@ -59,12 +59,20 @@ def write(path: Path, kept: Iterable[Kept]) -> None:
     write_whole(path, json.dumps([asdict(entry) for entry in kept], indent=1) + "\n")
 
 
+WORDS = {True: "met", False: "MISSED", None: ""}
+
+
+def run_of(entry: Kept) -> str:
+    return f"{entry.amount}, {entry.date}, {entry.golden_hash[:8]}"
+
+
+def cells(row: Row) -> str:
+    """What, figure, goal, verdict: the columns of Markdown that any table of rows has."""
+    return f"{row.what} | {row.figure} | {row.goal} | {WORDS[row.met]}"
+
+
 def table(kept: Iterable[Kept]) -> str:
     """Markdown: a line for each row."""
     lines = ["| part | what | figure | goal | | run |", "|---|---|---|---|---|---|"]
-    for entry in kept:
-        run = f"{entry.amount}, {entry.date}, {entry.golden_hash[:8]}"
-        for row in entry.rows:
-            word = {True: "met", False: "MISSED", None: ""}[row.met]
-            lines.append(f"| {entry.part} | {row.what} | {row.figure} | {row.goal} | {word} | {run} |")
+    lines += [f"| {entry.part} | {cells(row)} | {run_of(entry)} |" for entry in kept for row in entry.rows]
     return "\n".join(lines)

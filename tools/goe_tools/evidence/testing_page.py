@@ -13,7 +13,7 @@ from pathlib import Path
 from ..logs.marked_block import MarkedBlock
 from ..places import ROOT
 from .parts import MODULES
-from .record import Kept, table
+from .record import Kept, cells, run_of
 from .requirements import names, rows
 
 FIGURES = MarkedBlock("testing")
@@ -79,12 +79,22 @@ def count_table(root: Path = ROOT) -> str:
     return "\n".join(lines)
 
 
+def part_table(entry: Kept) -> list[str]:
+    """A line that tells how a part stands, which opens its rows where pages can."""
+    asked = [row for row in entry.rows if row.met is not None]
+    missed = [row.what for row in asked if not row.met]
+    goals = f"{len(asked) - len(missed)} of {len(asked)} goals met" if asked else "no goals"
+    told = f"{goals} ({run_of(entry)})" + (f"; missed: {'; '.join(missed)}" if missed else "")
+    lines = ["| what | figure | goal | |", "|---|---|---|---|", *(f"| {cells(row)} |" for row in entry.rows)]
+    return [f"<details><summary><b>{entry.part}</b>: {told}</summary>", "", *lines, "", "</details>", ""]
+
+
 def record_table(kept: dict[str, Kept]) -> str:
     """The record's figures, and which parts have none yet."""
-    lines = [table(kept.values())] if kept else []
+    lines = [line for name in MODULES if name in kept for line in part_table(kept[name])]
     missing = [name for name in MODULES if name not in kept]
     if missing:
-        lines += ["", f"Not on record yet: {', '.join(missing)}."]
+        lines += [f"Not on record yet: {', '.join(missing)}."]
     return "\n".join(lines).strip()
 
 
