@@ -69,11 +69,12 @@
  *             asks: goe_self_check() tries it. Compiled with the library's own flags (-ffp-contract=off) the results are
  *             bit-identical on every IEEE 754 target; goe_self_check() tells at run time whether they are.
  *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity.
- *             What float rounds, against double precision, stays below half a sigma of any quantity of the refined method with
- *             positions within 1 km of their origin, and below one within 10 km, for lever arms of metres, 300 to 3000 px of focal
- *             length and sensors' usual noise, until a decision falls otherwise: the worst that a search found. The window's sigmas
- *             are of its residuals alone, and rounding may be several of them. At the ends of the ranges stated below, all at once,
- *             it is hundreds: choose an origin near the flight, and give no less noise than the sensors have.
+ *             What float rounds, against double precision, stays below one and a half sigma of any quantity of the refined method
+ *             with positions within 10 km of their origin, for lever arms of metres, 300 to 3000 px of focal length and sensors'
+ *             usual noise, until a decision falls otherwise: the worst that a search found is 1.1, of an obstacle that moves. The
+ *             window's sigmas are of its residuals alone, and rounding may be several of them. At the ends of the ranges stated
+ *             below, all at once, it is hundreds to thousands: choose an origin near the flight, and give no less noise than the
+ *             sensors have.
  * Safety      Every output is finite. Input that is not finite is refused by its exponent bits, so also under -ffast-math.
  *             No argument leads to a trap, an endless loop or a write outside the estimator. A bool that is given as neither 0
  *             nor 1 counts as 1.

@@ -207,10 +207,10 @@ static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
            is_known(q->value[quantity], q->worked_out[quantity], least, EXTENT_SHARE);
 }
 
-/*@ requires \valid_read(filter) && \valid_read(q); */
-static bool is_position(const goe_filter_t *filter, const goe_quantities_t *q, float share) {
-    return goe_within(q->value[GOE_X0] + filter->axes.start_dx_m, METRES_MAX) &&
-           goe_within(q->value[GOE_Z0] + filter->axes.start_dz_m, METRES_MAX) &&
+/* from: where the values count from, in T. */
+/*@ requires \valid_read(q); */
+static bool is_position(const goe_quantities_t *q, goe_xz_t from, float share) {
+    return goe_within(q->value[GOE_X0] + from.x, METRES_MAX) && goe_within(q->value[GOE_Z0] + from.z, METRES_MAX) &&
            goe_within(q->sigma[GOE_X0], METRES_MAX) && goe_within(q->sigma[GOE_Z0], METRES_MAX) &&
            goe_within(q->worked_out[GOE_X0], share * q->value[GOE_Z0]) &&
            is_known(q->value[GOE_Z0], q->worked_out[GOE_Z0], 0.0f, share);
@@ -238,10 +238,10 @@ static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t
     return known;
 }
 
-/* Which of the quantities this image knows well enough; values count from the filter's start. */
+/* Which of the quantities this image knows well enough; values count from the filter's start, which lies at `from`. */
 /*@ requires \valid_read(filter) && \valid_read(q); */
-static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q, float range_share) {
-    if (!is_position(filter, q, range_share)) {
+static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q, goe_xz_t from, float range_share) {
+    if (!is_position(q, from, range_share)) {
         return 0;
     }
     return GOE_HAS_POSITION | (is_extent(q, GOE_HEIGHT, HEIGHT_MIN_M) ? GOE_HAS_HEIGHT : 0u) |
@@ -359,11 +359,12 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     q->prism = filter->phase == GOE_PHASE_PRISM;
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, &wider, q);
-    q->now = known_now(filter, q, settings->refined.range_share);
-    q->known = q->now & filter->known;
     const goe_xz_t gone = goe_filter_moved(filter, motion);
-    q->value[GOE_X0] += filter->axes.start_dx_m + gone.x;
-    q->value[GOE_Z0] += filter->axes.start_dz_m + gone.z;
+    const goe_xz_t from = {filter->axes.start_dx_m + gone.x, filter->axes.start_dz_m + gone.z};
+    q->now = known_now(filter, q, from, settings->refined.range_share);
+    q->known = q->now & filter->known;
+    q->value[GOE_X0] += from.x;
+    q->value[GOE_Z0] += from.z;
     set_velocity(filter, settings, motion, &wider, q);
     if ((q->known & GOE_HAS_POSITION) && (!q->box || (q->known & GOE_HAS_LENGTH))) {
         set_center(filter, motion, &shape, drift, &wider, q);

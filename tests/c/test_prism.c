@@ -813,6 +813,29 @@ static void a_shift_far_above_the_noise_makes_no_row_certain(void) {
     }
 }
 
+/* GIVEN one row and a shift that is a thousand times its noise THEN it counts as if that were 300 times a larger noise, in every
+ * column. */
+static void a_row_far_below_its_shift_counts_less(void) {
+    goe_filter_t filter;
+    goe_filter_clear(&filter);
+    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    sighting.rows.white_rad = 1.0e-3f;
+    sighting.rows.shifts = true;
+    sighting.rows.count = 1;
+    sighting.rows.feature[0] = (uint8_t)feature_of_side[0];
+    sighting.rows.variance[0] = 500.0f; /* by then the weight */
+    sighting.rows.shift[0][0] = 1.2f;
+    sighting.rows.shift[0][1] = 0.0f;
+    sighting.rows.shift[0][2] = -1.6f;
+    for (size_t c = 0; c < GOE_COLUMNS; c++) {
+        sighting.matrix.row[0][c] = (float)(c + 1);
+    }
+    goe_prism_learn(&filter, &sighting.rows);
+    for (size_t c = 0; c < GOE_COLUMNS; c++) {
+        CHECK_CLOSE(1.0e-6 * (double)(c + 1), (double)(c + 1) * 0.3 / sqrt(1.0 + 9.0e4), sighting.matrix.row[0][c]);
+    }
+}
+
 /* GIVEN a depth that an update throws far off THEN it stays what a body can have, flat or deep, and can come back. */
 static void the_depth_of_a_body_is_bounded(void) {
     goe_filter_t filter;
@@ -1004,6 +1027,7 @@ int main(void) {
     RUN_TEST(a_disc_by_force_has_no_depth_of_its_own);
     RUN_TEST(rows_are_freed_of_what_they_share);
     RUN_TEST(a_shift_far_above_the_noise_makes_no_row_certain);
+    RUN_TEST(a_row_far_below_its_shift_counts_less);
     RUN_TEST(the_depth_of_a_body_is_bounded);
     RUN_TEST(errors_of_an_image_are_checked);
     RUN_TEST(an_altimeter_s_noise_is_in_one_image_only);

@@ -451,6 +451,22 @@ static void without_a_range_nothing_is_known(void) {
     }
 }
 
+/* GIVEN an obstacle that is followed WHEN its velocity has carried it farther than any obstacle lies, either way, THEN nothing is told
+ * of it. */
+static void what_has_moved_beyond_all_bounds_is_not_told(void) {
+    static const float far_m_s[] = {0.0f, 2.0e5f, -2.0e5f};
+    any = check_random_start("carried off");
+    for (size_t i = 0; i < 9; i++) {
+        make_any(GOE_PHASE_CHORD);
+        be_uncertain(1.0e-2);
+        filter.mover.followed = true;
+        filter.mover.beside[GOE_BESIDE_VELOCITY_X] = far_m_s[i % 3];
+        filter.mover.beside[GOE_BESIDE_VELOCITY_Z] = far_m_s[i / 3];
+        goe_quantities_find(&filter, &settings, &motion, &quantities); /* 10 s after the start */
+        TEST_ASSERT_EQUAL(i == 0, (quantities.known & GOE_HAS_POSITION) != 0);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
@@ -463,5 +479,6 @@ int main(void) {
     RUN_TEST(an_outline_is_less_certain_than_its_rows_say);
     RUN_TEST(what_is_told_was_known_twice);
     RUN_TEST(without_a_range_nothing_is_known);
+    RUN_TEST(what_has_moved_beyond_all_bounds_is_not_told);
     return UNITY_END();
 }
