@@ -28,6 +28,7 @@
 #define COLUMN_MAX 1.0e3f     /* focal lengths per second, or per m/s: beyond that no flight is */
 #define BESIDE_MAX 1.0e9f /* of what is beside the state, and of its rows of the triangle: more is none of a flight */
 #define TIME_MIN_S 0.1f   /* keeps a walk over time finite */
+#define DETERMINANT_MIN 1.0e-5f /* of a covariance of two, over the product of the variances */
 
 /*@ requires \valid(root) && i <= j < GOE_BESIDE; */
 static float *beside_at(goe_triangle_t *root, size_t i, size_t j) {
@@ -171,11 +172,16 @@ static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) 
     return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SEES_BOTTOM) : obs->base;
 }
 
+/* Of the covariance (x, both; both, z). One that is nearer to singular than float can tell is taken for as wide as it may be. */
+static float determinant_of(float x, float both, float z) {
+    return goe_larger(x * z - both * both, DETERMINANT_MIN * (x * z));
+}
+
 /* Whether that velocity is one that no static obstacle shows, and no latency. */
 /*@ requires \valid_read(fit); */
 static bool is_unlike_static(const fit_t *fit, float least) {
     const goe_xz_t v = fit->velocity_m_s;
-    const float determinant = fit->spread[0] * fit->spread[2] - fit->spread[1] * fit->spread[1];
+    const float determinant = determinant_of(fit->spread[0], fit->spread[1], fit->spread[2]);
     const float squared = v.x * v.x * fit->spread[2] - 2.0f * v.x * v.z * fit->spread[1] + v.z * v.z * fit->spread[0];
     return goe_xz_dot(v, v) > MOVES_MIN_M_S * MOVES_MIN_M_S && squared > least * determinant &&
            fit->rest_latency > REST_CHI2 * fit->wider && fit->rest_velocity < REST_SHARE * fit->rest_latency;
@@ -203,7 +209,7 @@ static void follow(goe_filter_t *filter, const fit_t *fit) {
     const float x = SPREAD_GROWN * fit->spread[0];
     const float both = SPREAD_GROWN * fit->spread[1];
     const float z = SPREAD_GROWN * fit->spread[2];
-    const float determinant = x * z - both * both;
+    const float determinant = determinant_of(x, both, z);
     const float root_x = sqrtf(z / determinant); /* the triangle of the inverse of (x, both; both, z) */
     m->moves = true;
     m->followed = true;
