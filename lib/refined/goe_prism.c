@@ -315,29 +315,22 @@ static float shared_shift(const goe_rows_t *rows, size_t a, size_t b) {
     return rows->shifts ? v[0] * w[0] + v[1] * w[1] + v[2] * w[2] : 0.0f;
 }
 
-/* I + N has lost the 1, a row's own noise, among float's 24 bits where the shift is thousands of times that noise: rows would come
- * out far too certain, or infinite. Such a row counts as if its noise were larger. */
-/*@ requires goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
-static void bound_shifts(goe_rows_t *rows) {
-    for (size_t i = 0; i < rows->count; i++) {
-        const float shift = goe_square(rows->variance[i]) * shared_shift(rows, i, i);
-        if (shift > SHIFT_RATIO_MAX * SHIFT_RATIO_MAX) {
-            const float share = SHIFT_RATIO_MAX / sqrtf(shift);
-            rows->variance[i] *= share;
-            for (size_t c = 0; c < GOE_COLUMNS; c++) {
-                rows->matrix->row[i][c] *= share;
-            }
-        }
-    }
+/* What a row counts: I + N has lost the 1, a row's own noise, among float's 24 bits where the shift is thousands of times that noise,
+ * and rows would come out far too certain, or infinite. Such a row counts as if its noise were larger. */
+/*@ requires goe_rows_hold(rows) && i < GOE_BOX_SIDES; */
+static float share_of(const goe_rows_t *rows, size_t i) {
+    const float shift = goe_square(rows->variance[i]) * shared_shift(rows, i, i);
+    return shift > SHIFT_RATIO_MAX * SHIFT_RATIO_MAX ? SHIFT_RATIO_MAX / sqrtf(shift) : 1.0f;
 }
 
 /* Rows of unit noise that share a shift: their covariance is I + N; times the inverse of its Cholesky root they share none. */
 /*@ requires goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
 static void free_of_shift(goe_rows_t *rows) {
     float root[GOE_BOX_SIDES][GOE_BOX_SIDES];
-    bound_shifts(rows);
     for (size_t i = 0; i < rows->count; i++) {
         float *row = rows->matrix->row[i];
+        const float share = share_of(rows, i);
+        rows->variance[i] *= share;
         for (size_t j = 0; j <= i; j++) {
             float sum = (i == j ? 1.0f : 0.0f) + rows->variance[i] * rows->variance[j] * shared_shift(rows, i, j);
             for (size_t k = 0; k < j; k++) {
@@ -346,6 +339,7 @@ static void free_of_shift(goe_rows_t *rows) {
             root[i][j] = i == j ? sqrtf(sum) : sum / root[j][j];
         }
         for (size_t c = 0; c < GOE_COLUMNS; c++) {
+            row[c] *= share;
             for (size_t j = 0; j < i; j++) {
                 row[c] -= root[i][j] * rows->matrix->row[j][c];
             }
