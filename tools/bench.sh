@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Rows per second of goe_replay on one core, over a long log made of a recorded flight repeated.
+# Speeds on one core of this machine, which no test holds: rows per second of goe_replay, over a long log made of a recorded
+# flight repeated, and through a pipe with every column filled; the share of a core that goe_companion takes in flight.
 #
 #   tools/bench.sh [rows]   default 1000000
 set -euo pipefail
@@ -9,6 +10,7 @@ rows=${1:-1000000}
 flight=tests/data/corner
 runs=3
 
+python=.venv/bin/python
 cmake --build build --target goe_replay >/dev/null
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -42,12 +44,29 @@ best() {
     echo $best
 }
 
+# filled: rows per second of the processor, best of the runs
+filled() { GOE_REPLAY=build/sim_host/goe_replay "$python" tests/host/bench_replay.py "$rows"; }
+
+# in_flight: seconds of the processor for each second of a flight, least of the runs
+in_flight() { GOE_COMPANION=build/port/companion/goe_companion "$python" tests/companion/bench_companion.py; }
+
 cached() { sed -n "s/^$1:[A-Z]*=//p" build/CMakeCache.txt; }
 compiler=$(cached CMAKE_C_COMPILER)
 refined=$(best refined)
 window=$(best window)
 echo "goe_replay --method refined: $refined rows/s, best of $runs runs over $rows rows"
 echo "goe_replay --method window:  $window rows/s, $((100 * window / refined)) % of refined"
+if [ -x $python ]; then
+    filled=$(filled)
+    echo "goe_replay, every column filled, through a pipe: $filled rows/s of processor time, $((100 * filled / refined)) % of refined"
+    if cmake --build build --target goe_companion >/dev/null 2>&1; then
+        echo "goe_companion, 200 poses and 30 images of 8 obstacles a second: $(in_flight) of a core, flown in simulated time"
+    else
+        echo "left out, as it cannot be built: goe_companion"
+    fi
+else
+    echo "left out, as tools/setup.sh has not run: every column filled, goe_companion"
+fi
 echo "machine:  $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
 echo "compiler: $("$compiler" --version | head -n 1)"
 echo "flags:    $(cached CMAKE_C_FLAGS) $(cached CMAKE_C_FLAGS_RELEASE) -std=c99 -ffp-contract=off -fno-math-errno"

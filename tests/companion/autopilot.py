@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections import Counter
 from dataclasses import dataclass, field
 from types import ModuleType
@@ -74,7 +73,7 @@ class Aircraft:
     roll_deg: float = 3.0
     roll_hz: float = 0.4
     goal: tuple[float, float] | None = None
-    time_s: float = field(default_factory=time.monotonic)
+    time_s: float = 0.0
     begin_s: float = field(init=False)
     bank: float = field(init=False, default=0.0)
     bank_rate: float = field(init=False, default=0.0)
@@ -123,10 +122,10 @@ class Aircraft:
 
 
 class Clock:
-    """Time since boot, in seconds of the host's time.monotonic()."""
+    """Time since boot, in seconds of the loop's time."""
 
-    def __init__(self, boot_s: float, drift: float = 0.0) -> None:
-        self.begin_s, self.boot_s, self.drift = time.monotonic(), boot_s, drift
+    def __init__(self, loop: Loop, boot_s: float, drift: float = 0.0) -> None:
+        self.loop, self.begin_s, self.boot_s, self.drift = loop, loop.now_s, boot_s, drift
 
     def at(self, time_s: float) -> float:
         return self.boot_s + (time_s - self.begin_s) * (1.0 + self.drift)
@@ -135,7 +134,7 @@ class Clock:
         self.boot_s += by_s
 
     def restart(self) -> None:
-        self.begin_s, self.boot_s = time.monotonic(), 0.0
+        self.begin_s, self.boot_s = self.loop.now_s, 0.0
 
 
 @dataclass(frozen=True)
@@ -173,8 +172,8 @@ class Autopilot:
         landing: bool = False,
     ) -> None:
         self.loop, self.dialect, self.make = loop, dialect, make
-        self.aircraft = aircraft or Aircraft()
-        self.clock = Clock(boot_s, drift)
+        self.aircraft = aircraft or Aircraft(time_s=loop.now_s)
+        self.clock = Clock(loop, boot_s, drift)
         self.wire = wire(loop, self._receive, faults)
         self.heard: list[Heard] = []
         self.answers = Counter[int]()  # to own TIMESYNC questions, by the time that was asked with
@@ -201,10 +200,10 @@ class Autopilot:
         self.wire.send(numbered(message, mavlink or self.mavlink))
 
     def boot_s(self) -> float:
-        return self.clock.at(time.monotonic())
+        return self.clock.at(self.loop.now_s)
 
     def _pose(self) -> None:
-        now = time.monotonic()
+        now = self.loop.now_s
         pose = self.aircraft.advance(now)
         if self.silent or not self.posing:
             return
@@ -248,7 +247,7 @@ class Autopilot:
         if self.silent:
             return
         for message in self.parser.parse_buffer(data) or []:
-            self.heard.append(Heard(time.monotonic(), message, self.aircraft.place()))
+            self.heard.append(Heard(self.loop.now_s, message, self.aircraft.place()))
             handle: Callable[[Any], None] | None = getattr(self, f"_on_{message.get_type().lower()}", None)
             if handle:
                 handle(message)

@@ -8,7 +8,6 @@ import math
 import os
 import random
 import socket
-import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from types import ModuleType
@@ -123,9 +122,7 @@ class Image:
     unix_s: float
     boot_s: float
     boxes: tuple[Box, ...]
-
-    def age_s(self) -> float:
-        return time.monotonic() - self.monotonic_s
+    age_s: float = 0.0  # when it is told
 
 
 # ------------------------------------------------------------------------------------------------------ lines of JSON
@@ -133,7 +130,7 @@ class Image:
 
 def plain_line(image: Image, clock: str | None) -> str:
     """As the README has it; `clock` None: no time at all."""
-    times = {"unix": image.unix_s, "monotonic": image.monotonic_s, "autopilot": image.boot_s, "age": image.age_s()}
+    times = {"unix": image.unix_s, "monotonic": image.monotonic_s, "autopilot": image.boot_s, "age": image.age_s}
     line: dict[str, Any] = {"detections": [detection(box) for box in image.boxes]}
     if clock:
         line.update(time=times[clock], clock=clock)
@@ -270,20 +267,11 @@ class PipeLines:
 # ----------------------------------------------------------------------------------------------------------- detectors
 
 
-def both_clocks() -> tuple[float, float]:
-    """Monotonic and UNIX time of one moment: read anew if the process lost the processor in between."""
-    while True:
-        begin, unix, end = time.monotonic(), time.time(), time.monotonic()
-        if end - begin < 5e-4:
-            return begin, unix
-
-
 @dataclass
 class Detector:
     """Takes an image `hz` times a second, and gives what it sees to `tell` `delay_s` later.
 
-    `delays` holds the real delays, as a busy machine is late, and `poses` the truth of every exposure
-    by the autopilot's clock.
+    `delays` holds the delays, and `poses` the truth of every exposure by the autopilot's clock.
     """
 
     loop: Loop
@@ -304,7 +292,7 @@ class Detector:
         self.loop.every(1.0 / self.hz, self._expose, first_s=0.013)
 
     def _expose(self) -> None:
-        now, unix = both_clocks()
+        now, unix = self.loop.now_s, self.loop.unix_s
         if self.blind:
             return
         pose = self.autopilot.aircraft.advance(now)
@@ -324,8 +312,9 @@ class Detector:
         return replace(box, **moved)
 
     def _tell(self, image: Image) -> None:
-        self.tell(image)
-        self.delays.append(image.age_s())
+        age_s = self.loop.now_s - image.monotonic_s
+        self.tell(replace(image, age_s=age_s))
+        self.delays.append(age_s)
 
 
 class FeaturesSender:
@@ -334,7 +323,7 @@ class FeaturesSender:
     def __init__(self, autopilot: Autopilot, camera: Camera, time_base: int) -> None:
         self.autopilot, self.camera, self.time_base = autopilot, camera, time_base
         self.mavlink = autopilot.dialect.MAVLink(None, srcSystem=1, srcComponent=100)
-        self.own_begin_s = time.monotonic() - 77.7
+        self.own_begin_s = autopilot.loop.now_s - 77.7
 
     def __call__(self, image: Image) -> None:
         for box in image.boxes or (None,):
@@ -344,7 +333,7 @@ class FeaturesSender:
     def _times(self, image: Image) -> dict[str, int]:
         own = image.monotonic_s - self.own_begin_s
         seconds = {AUTOPILOT: image.boot_s, SENDER: own, AGE: 0.0}[self.time_base]
-        age = 0 if self.time_base == AUTOPILOT else int(image.age_s() * 1e6)
+        age = 0 if self.time_base == AUTOPILOT else int(image.age_s * 1e6)
         return {"time_usec": int(seconds * 1e6), "age_usec": age, "time_base": self.time_base}
 
 

@@ -1,24 +1,29 @@
-"""The program under test: its configuration, its process, what it said and what it used."""
+"""The program under test: its configuration, its process in simulated time, what it said and what it used."""
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import functools
 import os
 import re
 import signal
+import socket
+import struct
 import subprocess
-import time
-from collections.abc import Mapping, Sequence
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
+from loop import HANG_S, UNIX_AHEAD_US, Loop
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("GOE_COMPANION", str(ROOT / "build" / "port" / "companion" / "goe_companion"))
 REPLAY = os.environ.get("GOE_REPLAY", str(ROOT / "build" / "sim_host" / "goe_replay"))
-TICKS_S = os.sysconf("SC_CLK_TCK")
+IDLE = struct.Struct("=qqq")  # idle_t of stepped_time.c
 SANITIZED_KIB = 12000  # resident; without a sanitizer it is a third of this
 Settings = Mapping[str, Mapping[str, Any]]
 
@@ -39,7 +44,7 @@ def ini(settings: Settings) -> str:
 def call(*arguments: str | Path, stdin: int = subprocess.DEVNULL) -> subprocess.CompletedProcess[str]:
     """A call that ends by itself."""
     return subprocess.run(
-        [PROGRAM, *map(str, arguments)], stdin=stdin, capture_output=True, text=True, timeout=20, check=False
+        [PROGRAM, *map(str, arguments)], stdin=stdin, capture_output=True, text=True, timeout=HANG_S, check=False
     )
 
 
@@ -47,9 +52,23 @@ def replay(log: Path) -> list[dict[str, str]]:
     """A log as goe_replay reads it; skipped where that is not built."""
     if "GOE_REPLAY" not in os.environ and not Path(REPLAY).exists():
         pytest.skip(f"{REPLAY} is not built")
-    done = subprocess.run([REPLAY, str(log)], capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run([REPLAY, str(log)], capture_output=True, text=True, timeout=HANG_S, check=False)
     assert done.returncode == 0, done.stderr
     return list(csv.DictReader(done.stdout.splitlines()))
+
+
+@functools.lru_cache(maxsize=1)
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory(prefix="goe_companion")
+
+
+@functools.lru_cache(maxsize=1)
+def stepped_time() -> Path:
+    """The library that gives a program the time of a loop, compiled once."""
+    made = Path(_folder().name) / "stepped_time.so"
+    source = Path(__file__).with_name("stepped_time.c")
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-Wall", "-Wextra", source, "-o", made, "-ldl"], check=True)
+    return made
 
 
 @dataclass(frozen=True)
@@ -72,20 +91,67 @@ class Ended:
 
 
 class Companion:
-    """One process at a time; start() again after an end is a restart."""
+    """One process at a time, in the loop's time; start() again after an end is a restart.
 
-    def __init__(self, folder: Path, settings: Settings, camera: str) -> None:
+    `waits` counts how often the process waited for something to come.
+    """
+
+    def __init__(self, loop: Loop, folder: Path, settings: Settings, camera: str) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        self.folder, self.configuration = folder, folder / "companion.ini"
+        self.loop, self.folder, self.configuration = loop, folder, folder / "companion.ini"
+        self.until_us = self.waits = 0
+        self.control: socket.socket | None = None
+        self.on_written: Callable[[int], None] | None = None  # called with all bytes so far that it wrote to terminals
         self.configuration.write_text(ini(settings), encoding="utf-8")
         (folder / "camera.ini").write_text(camera, encoding="utf-8")
         self.process: subprocess.Popen[bytes] | None = None
         self.ends: list[Ended] = []
 
     def start(self, stdin: int = subprocess.DEVNULL, arguments: Sequence[str] = ()) -> None:
-        with self._output("out", "wb") as out, self._output("err", "wb") as err:
-            command = [PROGRAM, *arguments, str(self.configuration)]
-            self.process = subprocess.Popen(command, stdin=stdin, stdout=out, stderr=err)
+        """Returns once it waits for something to come, or has ended."""
+        self.control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.control.settimeout(HANG_S)
+        environment = {
+            **os.environ,
+            "LD_PRELOAD": str(stepped_time()),
+            "ASAN_OPTIONS": f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0",
+            "GOE_STEPPED_TIME": f"{theirs.fileno()} {self.loop.now_us} {UNIX_AHEAD_US}",
+        }
+        command = [PROGRAM, *arguments, str(self.configuration)]
+        with theirs, self._output("out", "wb") as out, self._output("err", "wb") as err:
+            self.process = subprocess.Popen(
+                command, stdin=stdin, stdout=out, stderr=err, env=environment, pass_fds=[theirs.fileno()]
+            )
+        self.wait_until_idle()
+        if self.control:
+            self.loop.join(self)
+
+    def go_on(self, now_us: int) -> None:
+        if self.control:
+            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                self.control.send(struct.pack("=q", now_us))
+
+    def wait_until_idle(self) -> None:
+        try:
+            told = self.control.recv(IDLE.size) if self.control else b""
+        except ConnectionResetError:
+            told = b""
+        if not told:  # it ends
+            self._let_go()
+            if self.process:
+                self.process.wait(timeout=HANG_S)
+            return
+        self.until_us, self.waits, written = IDLE.unpack(told)
+        assert self.until_us > self.loop.now_us, "it does not wait: a busy loop"
+        if self.on_written:
+            self.on_written(written)
+
+    def _let_go(self) -> None:
+        """Of a process that has ended, or is to."""
+        self.loop.leave(self)
+        if self.control:
+            self.control.close()
+            self.control = None
 
     def _output(self, name: str, mode: str) -> Any:
         return open(self.folder / f"{name}.{len(self.ends)}", mode)
@@ -98,14 +164,23 @@ class Companion:
     def alive(self) -> bool:
         return self.process is not None and self.process.poll() is None
 
-    def stop(self, number: int = signal.SIGINT) -> Ended:
-        """Interrupts it, and waits for what it has to say."""
+    def interrupt(self, number: int) -> int:
+        """Sends this signal, and waits for the end; its exit status."""
         assert self.process
         if self.alive():
             self.process.send_signal(number)
+            self.go_on(self.loop.now_us)  # the signal may have come just before it began to wait
+        status = self.process.wait(timeout=HANG_S)
+        self._let_go()
+        return status
+
+    def stop(self, number: int = signal.SIGINT) -> Ended:
+        """Interrupts it, and waits for what it has to say."""
+        assert self.process
         try:
-            status = self.process.wait(timeout=5)
+            status = self.interrupt(number)
         except subprocess.TimeoutExpired:
+            self._let_go()
             self.process.kill()
             self.process.wait()
             status = -999  # it did not end
@@ -127,15 +202,8 @@ class Companion:
 
     def processor_s(self) -> float:
         """Processor time so far, user's and system's."""
-        fields = Path(f"/proc/{self.pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
-        return (int(fields[11]) + int(fields[12])) / TICKS_S
+        fields = Path(f"/proc/{self.pid}/schedstat").read_text(encoding="ascii").split()
+        return int(fields[0]) * 1e-9
 
     def files(self) -> int:
         return len(os.listdir(f"/proc/{self.pid}/fd"))
-
-
-def wait_until_ready(companions: Sequence[Companion], seconds: float = 0.5) -> None:
-    """Lets the processes get to their loops."""
-    time.sleep(seconds)
-    for companion in companions:
-        assert companion.alive(), companion.stop()

@@ -67,15 +67,19 @@ def generate(folder: Path) -> Path:
     return module
 
 
-@pytest.fixture(scope="session")
-def dialect(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
-    path = generate(tmp_path_factory.mktemp("dialect"))
+def load_dialect(folder: Path) -> ModuleType:
+    path = generate(folder)
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="session")
+def dialect(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    return load_dialect(tmp_path_factory.mktemp("dialect"))
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import gc
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +9,6 @@ from types import ModuleType
 from typing import Any, Union
 
 import numpy as np
-import pytest
 from autopilot import Aircraft, Autopilot, Heard
 from camera import (
     MAST,
@@ -26,12 +23,11 @@ from camera import (
     UdpLines,
     plain_line,
 )
-from companion import Companion, Ended, Settings, wait_until_ready
-from links import WIRES, Faults
+from companion import Companion, Ended, Settings
+from links import WIRES, Faults, SerialWire
 from loop import Loop
 
 Lines = Union[UdpLines, FifoLines, PipeLines]
-LATE_S = 0.15
 FAR_M = 3.44  # two-dimensional sigmas that hold 99.7 %
 
 
@@ -73,14 +69,16 @@ class Flight:
             dialect,
             wire=WIRES[plan.link],
             faults=plan.faults,
-            aircraft=Aircraft(**plan.aircraft),
+            aircraft=Aircraft(time_s=loop.now_s, **plan.aircraft),
             **plan.autopilot,
         )
         camera = Camera()
         self.lines = self._lines(folder, plan.source)
         self.log = folder / "log"
         cameras = camera.ini() + (camera.ini("camera2") if plan.cameras > 1 else "")
-        self.companion = Companion(folder, self._settings(), cameras)
+        self.companion = Companion(loop, folder, self._settings(), cameras)
+        if isinstance(self.autopilot.wire, SerialWire):
+            self.companion.on_written = self.autopilot.wire.wait_for_written
         tell = FeaturesSender(self.autopilot, camera, plan.source) if isinstance(plan.source, int) else self._tell
         self.detector = Detector(loop, self.autopilot, tell, plan.obstacles, camera, **plan.detector)
         self.ended: Ended | None = None
@@ -191,30 +189,18 @@ class Fleet:
         return self.flights[name]
 
     def start(self) -> None:
-        """Until the end no garbage is collected: that would stop everything for a good part of a second."""
-        gc.collect()
-        gc.disable()
         for flight in self.flights.values():
             flight.start()
-        wait_until_ready([flight.companion for flight in self.flights.values()])
-        for flight in self.flights.values():  # what was built first has not flown away by now
-            flight.autopilot.aircraft.time_s = time.monotonic()
+            assert flight.companion.alive(), flight.companion.stop()
 
     def run(self, seconds: float) -> None:
         self.loop.run(seconds)
 
-    def need_calm(self) -> None:
-        """For tests of times: skips them where the machine was too busy to fly in real time."""
-        if self.loop.late_s > LATE_S:
-            pytest.skip(f"the machine was {self.loop.late_s:.1f} s behind")
-
     def stop(self) -> None:
-        gc.enable()
         for flight in self.flights.values():
             flight.stop()
 
     def close(self) -> None:
-        gc.enable()
         for flight in self.flights.values():
             flight.close()
         self.loop.close()

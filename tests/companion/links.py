@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import itertools
 import os
 import pty
 import random
 import socket
+import struct
+import termios
 import time
 import tty
 from dataclasses import dataclass, field
 from typing import Callable
 
-from loop import Loop
+from loop import HANG_S, Loop
 
 HOST = "127.0.0.1"
 Receive = Callable[[bytes], None]
@@ -72,7 +75,7 @@ class Wire:
         copies = self.faults.copies() if self.faults else [0.0]
         for delay_s in copies:
             if delay_s > 0.0:
-                self.loop.at(time.monotonic() + delay_s, lambda: put(data))
+                self.loop.after(delay_s, lambda: put(data))
             else:
                 put(data)
         return len(copies)
@@ -172,6 +175,7 @@ class TcpWire(Wire):
         self.reopen()
         self.peer = self.listener.accept()[0]
         self.peer.setblocking(False)
+        self.peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # an acknowledgement would come in real time
         self.calls += 1
         self.loop.watch(self.peer, self._read)
 
@@ -207,6 +211,21 @@ class TcpWire(Wire):
         self.listener.close()
 
 
+def unread(terminal: int) -> int:
+    """Bytes that have arrived there."""
+    return struct.unpack("i", fcntl.ioctl(terminal, termios.FIONREAD, bytes(4)))[0]
+
+
+def wait_for_bytes(terminal: int, number: int) -> None:
+    """The system hands over what was written to a terminal only after the write has ended. No more than 4 KiB arrive
+    before some are read."""
+    end_s = time.monotonic() + HANG_S
+    while unread(terminal) < min(number, 4000):
+        if time.monotonic() > end_s:
+            raise TimeoutError(f"{unread(terminal)} of {number} bytes")
+        time.sleep(1e-4)
+
+
 class SerialWire(Wire):
     """The master's side of a pseudo terminal."""
 
@@ -216,15 +235,23 @@ class SerialWire(Wire):
         tty.setraw(self.master)
         os.set_blocking(self.master, False)
         self.setting = f"serial:{os.ttyname(self.slave)}:115200"
+        self.got = 0  # bytes
         loop.watch(self.master, self._read)
 
     def _read(self) -> None:
         with contextlib.suppress(OSError):
-            self._got(os.read(self.master, 65536))
+            data = os.read(self.master, 65536)
+            self.got += len(data)
+            self._got(data)
 
     def _put(self, data: bytes) -> None:
+        before = unread(self.slave)
         with contextlib.suppress(BlockingIOError):
-            os.write(self.master, data)
+            wait_for_bytes(self.slave, before + os.write(self.master, data))
+
+    def wait_for_written(self, written: int) -> None:
+        """Until all that the companion has written so far is here."""
+        wait_for_bytes(self.master, written - self.got)
 
     def close(self) -> None:
         self.loop.forget(self.master)

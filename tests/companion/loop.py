@@ -1,47 +1,69 @@
-"""One thread for a whole fleet: what is due at a time, and what a socket brings, in real time."""
+"""One thread for a whole fleet, in simulated time: what is due at a time, what a socket brings, processes that wait.
+
+Time stands still until everything of one moment is done, however long the machine takes for it: no result depends on
+the speed of the machine, or on its load.
+"""
 
 from __future__ import annotations
 
 import heapq
 import itertools
 import selectors
-import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 Action = Callable[[], None]
+US_PER_S = 1_000_000
+HANG_S = 300  # of real time: only a guard against what hangs
+BEGIN_US = 5_000 * US_PER_S  # of the monotonic clock
+UNIX_AHEAD_US = 1_790_000_000 * US_PER_S + 123_456  # UNIX time minus monotonic time
+
+
+class Process(Protocol):
+    """A process whose clocks are those of the loop."""
+
+    until_us: int  # it waits until then, at the longest
+
+    def go_on(self, now_us: int) -> None:
+        """Ends its wait."""
+
+    def wait_until_idle(self) -> None:
+        """Returns once it waits again, and has read and written all that it can."""
 
 
 class Loop:
-    """Calls what is due, and what has something to read, until a time. Times are time.monotonic().
-
-    `late_s` is by how much it was behind at most: a machine that is too busy for real time.
-    """
+    """Calls what is due, and what has something to read, until a time. `now_s` is the time of the monotonic clock."""
 
     def __init__(self) -> None:
-        self.late_s = 0.0
-        self._due: list[tuple[float, int, Action]] = []
+        self.now_us = BEGIN_US
+        self._due: list[tuple[int, int, Action]] = []
         self._number = itertools.count()
         self._selector = selectors.DefaultSelector()
+        self._processes: list[Process] = []
+
+    @property
+    def now_s(self) -> float:
+        return self.now_us / US_PER_S
+
+    @property
+    def unix_s(self) -> float:
+        return (self.now_us + UNIX_AHEAD_US) / US_PER_S
 
     def at(self, due_s: float, action: Action) -> None:
-        heapq.heappush(self._due, (due_s, next(self._number), action))
+        """At that time; at once, after what is under way, if it is past."""
+        heapq.heappush(self._due, (max(round(due_s * US_PER_S), self.now_us), next(self._number), action))
 
     def after(self, delay_s: float, action: Action) -> None:
-        self.at(time.monotonic() + delay_s, action)
+        self.at(self.now_s + delay_s, action)
 
     def every(self, period_s: float, action: Action, first_s: float = 0.0) -> None:
-        """What a busy machine misses is left out, not made up for: no two samples of one moment."""
-        begin = time.monotonic() + first_s
+        begin_s = self.now_s + first_s
 
-        def again(due_s: float) -> None:
+        def again(number: int) -> None:
             action()
-            now = time.monotonic()
-            following = due_s + period_s * (int((now - due_s) / period_s) + 1)
-            following += period_s if following - now < 0.3 * period_s else 0.0
-            self.at(following, lambda: again(following))
+            self.at(begin_s + (number + 1) * period_s, lambda: again(number + 1))
 
-        self.at(begin, lambda: again(begin))
+        self.at(begin_s, lambda: again(0))
 
     def watch(self, file: Any, action: Action) -> None:
         self._selector.register(file, selectors.EVENT_READ, action)
@@ -49,20 +71,48 @@ class Loop:
     def forget(self, file: Any) -> None:
         self._selector.unregister(file)
 
-    def run(self, seconds: float) -> None:
-        begin = time.monotonic()
-        end = begin + seconds
-        while (now := time.monotonic()) < end:
-            due = min(self._due[0][0] if self._due else end, end)
-            for key, _ in self._selector.select(max(due - now, 0.0)):
-                key.data()
-            self._call_what_is_due(begin, end)
+    def join(self, process: Process) -> None:
+        """One that waits already."""
+        self._processes.append(process)
 
-    def _call_what_is_due(self, begin_s: float, end_s: float) -> None:
-        while self._due and self._due[0][0] <= min(now := time.monotonic(), end_s):
-            due, _, action = heapq.heappop(self._due)
-            self.late_s = max(self.late_s, now - max(due, begin_s))
-            action()
+    def leave(self, process: Process) -> None:
+        if process in self._processes:
+            self._processes.remove(process)
+
+    def run(self, seconds: float) -> None:
+        end_us = self.now_us + round(seconds * US_PER_S)
+        while True:
+            self._finish_this_moment()
+            following = [self._due[0][0]] if self._due else []
+            following += [process.until_us for process in self._processes]
+            self.now_us = min([end_us, *following])
+            if self.now_us == end_us and all(time_us > end_us for time_us in following):
+                return
+
+    def _finish_this_moment(self) -> None:
+        """Until nothing is due, nothing is to be read and all processes wait for a later time."""
+        while True:
+            acted = self._call_what_is_due() + self._read()
+            awake = [process for process in self._processes if acted or process.until_us <= self.now_us]
+            if not awake and not acted:
+                return
+            for process in awake:
+                process.go_on(self.now_us)
+            for process in awake:
+                process.wait_until_idle()
+
+    def _call_what_is_due(self) -> int:
+        called = 0
+        while self._due and self._due[0][0] <= self.now_us:
+            heapq.heappop(self._due)[2]()
+            called += 1
+        return called
+
+    def _read(self) -> int:
+        ready = self._selector.select(0)
+        for key, _ in ready:
+            key.data()
+        return len(ready)
 
     def close(self) -> None:
         self._selector.close()

@@ -227,7 +227,6 @@ def test_poison_is_counted(fleet: Fleet) -> None:
 
 def test_a_stranger_changes_nothing(fleet: Fleet) -> None:
     """Neither pose nor clock, origin, system or where answers go to."""
-    fleet.need_calm()
     flight = fleet[STRANGER]
     last = flight.statuses()[-1]
     assert (last.lost, last.resets) == (0, 0)

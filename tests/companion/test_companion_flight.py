@@ -100,7 +100,6 @@ def test_the_hazard_rises(fleet: Fleet, name: str) -> None:
 
 @pytest.mark.parametrize("name", [*NAMES, *(plan.name for plan in OTHERS)])
 def test_the_status_comes_once_a_second(fleet: Fleet, name: str) -> None:
-    fleet.need_calm()
     flight = fleet[name]
     times = [heard.time_s for heard in flight.autopilot.heard_of("GOE_STATUS")]
     waited = 2.0 if flight.plan.link in ("udpout", "tcp") else 0.0
@@ -141,7 +140,6 @@ def test_no_command_is_sent_unless_allowed(fleet: Fleet, name: str) -> None:
 )
 def test_the_delay_is_the_real_one(fleet: Fleet, name: str) -> None:
     """The autopilot's clock is found: exposures turned into it are as old as they are."""
-    fleet.need_calm()
     flight = fleet[name]
     told = [status.delay_mean for status in flight.statuses()[3:] if status.delay_mean != 65535]
     assert len(told) >= 5
@@ -220,7 +218,6 @@ def test_what_an_obstacle_tells(plain: Flight) -> None:
 
 def test_times_are_of_the_autopilots_clock(fleet: Fleet) -> None:
     """Not wrapping in 64 bits, where 32 do."""
-    fleet.need_calm()
     for name in ("unix", "drift and wrap"):
         flight = fleet[name]
         clock = flight.autopilot.clock
@@ -345,13 +342,11 @@ def status_line(flight: Flight) -> str:
 
 def test_images_are_counted_and_not_their_messages(fleet: Fleet) -> None:
     """Two obstacles are two GOE_FEATURES of one image: 10 Hz."""
-    fleet.need_calm()
     assert re.search(r"images (9|10|11) Hz", status_line(fleet["features with their age"]))
 
 
 def test_the_status_line(fleet: Fleet) -> None:
     """Every ten seconds where there is no terminal."""
-    fleet.need_calm()
     for name in ("unix", "stdin"):
         line = status_line(fleet[name])
         for told in (

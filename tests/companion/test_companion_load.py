@@ -1,8 +1,7 @@
-"""What the companion costs: 200 Hz of poses and eight obstacles at 30 Hz."""
+"""200 Hz of poses, eight obstacles at 30 Hz: nothing is lost and nothing grows. bench_companion.py reports the cost."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,16 +13,23 @@ from flights import FAR_M, Fleet, Flight, MakeFleet, Plan
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 
 WARM_S, LOAD_S = 3.0, 5.0
-SHARE = 0.10
 GROWTH_KIB = 128
 FOREST = tuple(Obstacle(380.0 + 40.0 * (k % 2), -140.0 + 40.0 * k) for k in range(8))
+
+PLAN = Plan(
+    "forest",
+    obstacles=FOREST,
+    autopilot={"pose_hz": 200.0},
+    detector={"hz": 30.0},
+    settings={"link": {"attitude_hz": 200, "position_hz": 200}},
+    recorded=True,
+)
 
 
 @dataclass
 class Load:
     fleet: Fleet
     flight: Flight
-    share: float = 0.0
     before_kib: int = 0
     after_kib: int = 0
     files_before: int = 0
@@ -32,22 +38,12 @@ class Load:
 
 @pytest.fixture(scope="module", name="load")
 def flown(make_fleet: MakeFleet) -> Iterator[Load]:
-    plan = Plan(
-        "forest",
-        obstacles=FOREST,
-        autopilot={"pose_hz": 200.0},
-        detector={"hz": 30.0},
-        settings={"link": {"attitude_hz": 200, "position_hz": 200}},
-        recorded=True,
-    )
-    fleet = make_fleet([plan])
-    flight, companion = fleet["forest"], fleet["forest"].companion
+    fleet = make_fleet([PLAN])
+    flight, companion = fleet[PLAN.name], fleet[PLAN.name].companion
     fleet.start()
     fleet.run(WARM_S)
-    begin_s, used_s = time.monotonic(), companion.processor_s()
     load = Load(fleet, flight, before_kib=companion.rss_kib(), files_before=companion.files())
     fleet.run(LOAD_S)
-    load.share = (companion.processor_s() - used_s) / (time.monotonic() - begin_s)
     load.after_kib, load.files_after = companion.rss_kib(), companion.files()
     fleet.stop()
     yield load
@@ -55,15 +51,9 @@ def flown(make_fleet: MakeFleet) -> Iterator[Load]:
 
 def test_it_was_loaded(load: Load) -> None:
     """What the figures are of: as many poses as they say, and every image taken."""
-    load.fleet.need_calm()
-    if load.flight.autopilot.wire.sent < 0.8 * 400 * (WARM_S + LOAD_S):
-        pytest.skip("the machine was too busy to send 200 poses a second")
+    assert load.flight.autopilot.wire.sent > 0.8 * 400 * (WARM_S + LOAD_S)
     assert len(load.flight.detector.delays) > 0.8 * 30 * (WARM_S + LOAD_S)
     assert load.flight.statuses()[-1].taken > 0.95 * len(load.flight.detector.delays) - 40
-
-
-def test_it_takes_less_than_a_tenth_of_a_core(load: Load) -> None:
-    assert load.share < SHARE
 
 
 def test_it_does_not_grow(load: Load) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import pty
 import re
+import select
 import shutil
 import signal
 import socket
 import subprocess
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -17,11 +17,13 @@ import pytest
 from camera import Camera
 from companion import PROGRAM, ROOT, Companion, Settings, call, is_missing
 from links import HOST, free_port
+from loop import HANG_S, Loop
 
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 
 EXAMPLE = ROOT / "port" / "companion" / "companion.ini"
 Make = Callable[[Settings], Companion]
+WAIT_S = 0.01  # the companion waits so long for something to come
 
 
 def usual() -> dict[str, dict[str, object]]:
@@ -41,9 +43,10 @@ def configured_folder(tmp_path: Path) -> Path:
 def companions(tmp_path: Path) -> Iterator[Make]:
     """Processes that end with the test, whatever happened."""
     made: list[Companion] = []
+    loop = Loop()
 
     def one(settings: Settings) -> Companion:
-        made.append(Companion(tmp_path / f"{len(made)}", settings, Camera().ini()))
+        made.append(Companion(loop, tmp_path / f"{len(made)}", settings, Camera().ini()))
         return made[-1]
 
     yield one
@@ -256,7 +259,7 @@ def test_a_signal_ends_it_with_a_summary(make: Make, number: int) -> None:
     """Also where nobody was heard at all."""
     companion = make(usual())
     companion.start()
-    time.sleep(0.5)
+    companion.loop.run(0.5)
     assert companion.alive()
     ended = companion.stop(number)
     assert ended.status == 0
@@ -269,10 +272,10 @@ def test_nothing_moves_it_to_use_the_processor(make: Make) -> None:
     idle = [make({**usual(), "link": {"autopilot": link}}) for link in links]
     for companion in idle:
         companion.start()
-    time.sleep(2.0)
+    idle[0].loop.run(2.0)
     for companion in idle:
         assert companion.alive(), companion.stop()
-        assert companion.processor_s() < 0.1
+        assert companion.waits <= 2.0 / WAIT_S + 1
         assert companion.stop().status == 0
 
 
@@ -280,8 +283,8 @@ def test_end_of_standard_input_is_no_end(make: Make) -> None:
     """The autopilot is still told that the detector is silent."""
     companion = make({**usual(), "detections": {"from": "stdin"}})
     companion.start()
-    time.sleep(0.7)
-    assert companion.alive() and companion.processor_s() < 0.1
+    companion.loop.run(0.7)
+    assert companion.alive() and companion.waits <= 0.7 / WAIT_S + 2
     assert companion.stop().status == 0
 
 
@@ -304,7 +307,7 @@ def test_a_log_that_cannot_be_written_is_told(make: Make, tmp_path: Path) -> Non
     (tmp_path / "file").write_text("", encoding="utf-8")
     companion = make({**usual(), "record": {"folder": tmp_path / "file"}})
     companion.start()
-    time.sleep(0.5)
+    companion.loop.run(0.5)
     assert companion.alive()
     ended = companion.stop()
     assert ended.status == 0 and str(tmp_path / "file") in ended.said
@@ -316,7 +319,7 @@ def test_an_old_log_is_not_overwritten(make: Make, tmp_path: Path) -> None:
         (tmp_path / "log" / name).write_text("a flight of yesterday\n", encoding="utf-8")
     companion = make({**usual(), "record": {"folder": tmp_path / "log"}})
     companion.start()
-    time.sleep(0.3)
+    companion.loop.run(0.3)
     companion.stop()
     for name in ("frames.csv", "camera.ini"):
         assert (tmp_path / "log" / name).read_text(encoding="utf-8") == "a flight of yesterday\n"
@@ -327,10 +330,11 @@ def test_on_a_terminal_one_line_is_renewed(make: Make) -> None:
     child, master = pty.fork()
     if child == 0:
         os.execv(PROGRAM, [PROGRAM, str(companion.configuration)])
-    time.sleep(2.5)
+    said = ""
+    while said.count("\r") < 2:
+        assert select.select([master], [], [], HANG_S)[0], said
+        said += os.read(master, 65536).decode()
     os.kill(child, signal.SIGINT)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-    said = os.read(master, 65536).decode()
     os.close(master)
-    line = said.split("\r\n")[0]
-    assert line.count("\r") >= 2 and "no autopilot" in line
+    assert "\n" not in said and "no autopilot" in said

@@ -20,7 +20,7 @@ PLACES = {
     "goe_companion": ("GOE_COMPANION", "port/companion"),
 }
 MEMORY_KIB = {"goe_replay": 400_000, "goe_sim": 400_000, "goe_companion": 100_000}  # of addresses, all in all
-SECONDS = 60
+SECONDS = 600  # only a guard against what hangs
 FRAMES = "t_s,id,n_m,e_m,d_m,qw,qx,qy,qz"
 RECORDING = "t_s," + ",".join(
     f"{kind}_{axis}" for kind in ("true", "est") for axis in ("n_m", "e_m", "d_m", "qw", "qx", "qy", "qz")

@@ -52,6 +52,7 @@ camera.cy = 540
 """
 ALTITUDE_M = 50.0
 Row = dict[str, Any]
+HANG_S = 600  # only a guard against what hangs
 
 # ------------------------------------------------------------------------------------------------------------- logs
 
@@ -121,7 +122,7 @@ def write_log(folder: Path, frames: "str | bytes", camera: "str | bytes" = CAMER
 
 
 def call(*arguments: "str | Path", check: Optional[int] = 0) -> "subprocess.CompletedProcess[str]":
-    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=HANG_S, check=False)
     if check is not None:
         assert done.returncode == check, (done.returncode, done.stderr)
     return done
@@ -507,7 +508,7 @@ def test_each_side_is_seen_if_it_is_given(tmp_path: Path, side: str) -> None:
     rows = [{**row, **{name: "" for name in SIDES if name != side}} for row in boxes(4)]
     rows[1][side], rows[2][side], rows[3][side] = "nan", "", "2e5"
     out = replay(write_log(tmp_path, table(rows, COLUMNS + SIDES)), check=1)
-    assert [row["status"] for row in out] == ["collecting", "not_finite", "nothing_seen", "out_of_range"]
+    assert [row["status"] for row in out] == ["box_incomplete", "not_finite", "nothing_seen", "out_of_range"]
 
 
 @pytest.mark.parametrize(
@@ -677,6 +678,23 @@ def test_bad_time(tmp_path: Path, text: str) -> None:
     out = replay(write_log(tmp_path, table(rows)))
     assert (out[15]["t_s"], out[15]["status"]) == (text, "bad_time")
     assert out[16]["status"] == "ok"
+
+
+def test_boxes_of_one_side_alone(tmp_path: Path) -> None:
+    rows = [{**row, **{name: "" for name in SIDES[1:]}} for row in boxes(6)]
+    done = call(write_log(tmp_path, table(rows, COLUMNS + SIDES)), check=1)
+    assert "no row gave an estimate (box_incomplete: 6)" in done.stderr
+
+
+def test_a_height_of_zero_with_a_box_is_none(tmp_path: Path) -> None:
+    """It is reported, and the height counts as unknown: the bottom of the box measures no range."""
+    rows = boxes(20)
+    plain = replay(write_log(tmp_path / "plain", table(rows, COLUMNS + SIDES)))
+    bare = [{**row, "agl_m": 0} for row in rows]
+    out = replay(write_log(tmp_path / "bare", table(bare, COLUMNS + SIDES)))
+    assert out[0]["status"] == "no_height" and {row["status"] for row in out[1:]} <= {"no_height", "partial"}
+    assert "partial" not in {row["status"] for row in plain[5:]}
+    assert number(out[-1], "z_sd_m") > number(plain[-1], "z_sd_m")
 
 
 @pytest.mark.parametrize("q", ["0.98", "0", "1.02"])
@@ -1060,20 +1078,21 @@ def test_interrupt_leaves_nothing(tmp_path: Path, log: Path, number_of_signal: s
         assert running.stdin is not None
         running.stdin.write(table(chimney()))
         running.stdin.flush()
-        until = time.monotonic() + 20.0
+        until = time.monotonic() + HANG_S
         while len(list(tmp_path.iterdir())) < 2:  # the temporary file is there
-            assert time.monotonic() < until and running.poll() is None
+            if time.monotonic() > until:
+                raise TimeoutError
+            assert running.poll() is None
             time.sleep(0.01)
         assert not out.exists()
         running.send_signal(number_of_signal)
-        assert running.wait(timeout=20) == -number_of_signal
+        assert running.wait(timeout=HANG_S) == -number_of_signal
     assert [path.name for path in tmp_path.iterdir()] == ["log"]
 
 
-# -------------------------------------------------------------------------------------------------- size and speed
+# -------------------------------------------------------------------------------------------------------------- size
 
 ROWS = 1_000_000
-ROWS_PER_SECOND_MIN = 50_000
 
 
 def full_rows() -> list[str]:
@@ -1113,11 +1132,8 @@ def stream(folder: Path, rows: int) -> tuple[int, float]:
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs /proc to measure memory")
-def test_a_million_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Memory does not grow with the number of rows; the speed (processor time, one core) holds its bound."""
+def test_a_million_rows(tmp_path: Path) -> None:
+    """Memory does not grow with the number of rows. How many there are in a second, bench_replay.py tells."""
     little, _ = stream(tmp_path, ROWS // 20)
-    much, seconds = stream(tmp_path, ROWS)
-    with capsys.disabled():
-        print(f"\ngoe_replay: {ROWS / seconds:.0f} rows/s with all columns filled, peak memory {much} KiB")
+    much, _ = stream(tmp_path, ROWS)
     assert much < little + 1024
-    assert ROWS / seconds >= ROWS_PER_SECOND_MIN

@@ -12,6 +12,7 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shuti
 CHROMEDRIVER = shutil.which("chromedriver")
 MISSING = CHROMIUM is None or CHROMEDRIVER is None
 WHY_MISSING = "the browser test needs chromium and chromium-driver"
+HANG_S = 300  # only a guard against what hangs
 LEAST_INK = 0.005  # share of a screenshot's or print's bytes that a blank page has not
 
 
@@ -29,7 +30,29 @@ def start(profile: Path) -> Any:
     ):  # fmt: skip
         options.add_argument(f"--{argument}")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    return webdriver.Chrome(options=options, service=Service(str(CHROMEDRIVER)))
+    driver = webdriver.Chrome(options=options, service=Service(str(CHROMEDRIVER)))
+    driver.set_script_timeout(HANG_S)
+    return driver
+
+
+# What plays by performance.now() and by the times of frames plays by the test's time, which stands still by itself.
+HELD_TIME = """
+  let now_ms = 1000;
+  const frame = window.requestAnimationFrame.bind(window);
+  performance.now = () => now_ms;
+  window.requestAnimationFrame = (call) => frame(() => call(now_ms));
+  window.stepTime = (seconds, done) => { now_ms += 1000 * seconds; frame(() => frame(done)); };
+"""
+
+
+def hold_time(browser: Any) -> None:
+    """In all pages that are opened from now on."""
+    browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": f"{{ {HELD_TIME} }}"})
+
+
+def step_time(browser: Any, seconds: float) -> None:
+    """The page has drawn what is then when this returns."""
+    browser.execute_async_script("stepTime(...arguments)", seconds)
 
 
 def set_size(browser: Any, size: tuple[int, int]) -> None:

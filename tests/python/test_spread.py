@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -19,19 +21,39 @@ from goe_tools.__main__ import main
 from goe_tools.optimum.flights.noise import NOISES
 from goe_tools.optimum.flights.simulated import random_scenes
 from goe_tools.optimum.goals.outcome import Outcome, Task, perform
-from goe_tools.spread import Workers, each, spread
+from goe_tools.spread import Workers, _client, each, spread
 
 cloudpickle.register_pickle_by_value(sys.modules[__name__])  # no worker could import it
 ROOT = Path(__file__).resolve().parents[2]
+HANG_S = 600  # only a guard against what hangs
+KILLED = "killed"
 CAMPAIGN = "conditioning"  # the quickest of its studies with all obstacles in it
 
 
-def cube(mark: Path | None, number: int) -> int:
-    """Slow once the file is there, and says that it was asked."""
-    if mark is not None:
-        (mark / f"{number}-{os.getpid()}").touch()
-        time.sleep(0.05)
+def cube(number: int) -> int:
     return number**3
+
+
+def late_cube(folder: Path, number: int) -> int:
+    """Marks that it was asked, and by whom. All but the first wait until somebody was killed."""
+    (folder / f"{number}-{os.getpid()}").touch()
+    while number > 0 and not (folder / KILLED).exists():
+        time.sleep(0.01)
+    return cube(number)
+
+
+def asked(folder: Path) -> set[str]:
+    """The processes that were."""
+    return {path.name.split("-")[1] for path in folder.iterdir() if "-" in path.name}
+
+
+def wait_for(what: Callable[[], bool]) -> None:
+    """What does not come within HANG_S never comes."""
+    end_s = time.monotonic() + HANG_S
+    while not what():
+        if time.monotonic() > end_s:
+            raise TimeoutError
+        time.sleep(0.05)
 
 
 def flights(count: int) -> list[Task]:
@@ -94,7 +116,7 @@ def test_flights_are_those_of_one_process(built: None) -> None:
 
 
 def test_the_order_is_that_of_the_tasks() -> None:
-    assert list(spread(partial(cube, None), range(200), Workers(2))) == [number**3 for number in range(200)]
+    assert list(spread(cube, range(200), Workers(2))) == [number**3 for number in range(200)]
 
 
 def test_a_killed_process_is_told() -> None:
@@ -107,25 +129,29 @@ def test_a_killed_process_is_told() -> None:
         list(spread(die, range(20), Workers(2)))
 
 
-def test_a_cluster_that_loses_a_worker(conditioning: Path, tmp_path: Path) -> None:
+def test_a_cluster_that_loses_a_worker(conditioning: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two workers; one of them dies in the middle, and the other one does its work again. Flights come back as they are
     here."""
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
+    distributed, dask = pytest.importorskip("distributed"), pytest.importorskip("dask")
+    monkeypatch.setattr("goe_tools.spread.CONNECT_S", HANG_S)
+    with dask.config.set({"distributed.comm.timeouts.connect": f"{HANG_S}s"}), distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
     ) as cluster:
-        results = spread(partial(cube, tmp_path), range(40), Workers(scheduler=cluster.scheduler_address))
+        results = spread(partial(late_cube, tmp_path), range(40), Workers(scheduler=cluster.scheduler_address))
         first = next(results)
+        wait_for(lambda: len(asked(tmp_path)) == 2)
         worker = next(iter(cluster.workers.values()))
         os.kill(worker.process.pid, signal.SIGKILL)
+        (tmp_path / KILLED).touch()
         assert [first, *results] == [number**3 for number in range(40)]
         flown = each(perform, flights(4), Workers(scheduler=cluster.scheduler_address), "flights")
         assert_same(flown, each(perform, flights(4), Workers(), "flights"))
         words = ["--studies", CAMPAIGN, "--out", str(tmp_path / "campaign")]
         assert main(["campaign", *words, "--scheduler", cluster.scheduler_address]) == 0
+        _client(cluster.scheduler_address).close()
     assert_same_campaign(tmp_path / "campaign", conditioning)
     shutil.rmtree(tmp_path / "campaign")
-    assert len({path.name.split("-")[1] for path in tmp_path.iterdir()}) >= 2
+    assert len(asked(tmp_path)) >= 2
 
 
 def test_no_scheduler_there(built: None, capsys) -> None:
@@ -139,20 +165,20 @@ def children(parent: int) -> list[int]:
     return [int(word) for word in listed.stdout.split()]
 
 
+def catches_ctrl_c(process: int) -> bool:
+    """Which it ignores while processes are born."""
+    (caught,) = re.findall(r"^SigCgt:\s+(\w+)$", Path(f"/proc/{process}/status").read_text(), re.MULTILINE)
+    return int(caught, 16) >> (signal.SIGINT - 1) & 1 == 1
+
+
 def test_ctrl_c_ends_all_processes(built: None) -> None:
     command = [sys.executable, "-m", "goe_tools", "goals", "--only", "gauss1", "--jobs", "2"]
     with subprocess.Popen(command, cwd=ROOT, start_new_session=True, stderr=subprocess.PIPE, text=True) as program:
-        deadline = time.monotonic() + 60
-        while len(children(program.pid)) < 2 and time.monotonic() < deadline:
-            time.sleep(0.2)
+        wait_for(lambda: len(children(program.pid)) >= 2 and catches_ctrl_c(program.pid))
         born = children(program.pid)
-        time.sleep(1.0)
         os.killpg(program.pid, signal.SIGINT)
-        _, told = program.communicate(timeout=60)
+        _, told = program.communicate(timeout=HANG_S)
         assert program.returncode == 130
         assert told.strip().splitlines()[-1] == "goe_tools goals: interrupted" and "Traceback" not in told
     assert len(born) >= 2
-    deadline = time.monotonic() + 20
-    while any(Path(f"/proc/{pid}").exists() for pid in born) and time.monotonic() < deadline:
-        time.sleep(0.2)
-    assert not any(Path(f"/proc/{pid}").exists() for pid in born)
+    wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in born))

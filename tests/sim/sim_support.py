@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+HANG_S = 600  # only a guard against what hangs
 FEATURES = ("left", "right", "top", "base_left", "base_near", "base_right")
 
 

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+from sim_support import HANG_S
 
 RUNS = 60
 FALSE_SHARE_MAX = 0.02
@@ -124,9 +125,7 @@ def test_the_file_appears_whole_or_not_at_all(goe_avoid: Path, tmp_path: Path) -
     file = tmp_path / "runs.csv"
     file.write_text("as it was")
     flying = subprocess.Popen([str(goe_avoid), "-n", "100000", "--csv", str(file)], stdout=subprocess.DEVNULL)
-    for _ in range(500):
-        if len(os.listdir(tmp_path)) == 2:  # the part of it that is written
-            break
+    while flying.poll() is None and len(os.listdir(tmp_path)) < 2:  # the part of it that is written
         time.sleep(0.01)
     assert len(os.listdir(tmp_path)) == 2
     flying.terminate()
@@ -139,6 +138,6 @@ def test_a_place_that_cannot_be_written_is_told_before_anything_is_flown(
     goe_avoid: Path, tmp_path: Path, place: str
 ) -> None:
     wrong = ["-n", "100000", "--csv", str(tmp_path / place)]
-    done = subprocess.run([str(goe_avoid), *wrong], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([str(goe_avoid), *wrong], capture_output=True, text=True, timeout=HANG_S)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(f"goe_avoid: {tmp_path / place}: ")

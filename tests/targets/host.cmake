@@ -17,14 +17,14 @@ goe_check_flight_hash(flight_replay flight_replay)
 find_program(BASH bash)
 set(target_tests ${CMAKE_CURRENT_SOURCE_DIR})
 
-# goe_target_test(<name> <seconds> <script> <argument>...): status 77 of a script means that something is not installed
-function(goe_target_test name seconds script)
+# goe_target_test(<name> <script> <argument>...): status 77 of a script means that something is not installed
+function(goe_target_test name script)
     add_test(NAME ${name} COMMAND ${BASH} ${target_tests}/${script} ${ARGN})
-    set_tests_properties(${name} PROPERTIES LABELS targets SKIP_RETURN_CODE 77 TIMEOUT ${seconds})
+    set_tests_properties(${name} PROPERTIES LABELS targets SKIP_RETURN_CODE 77 TIMEOUT ${goe_build_hang_s})
 endfunction()
 
-goe_target_test(replay_every_host_build 900 host_builds.sh ${golden} ${flight_golden})
-goe_target_test(self_check_host 900 host_self_check.sh ${golden})
+goe_target_test(replay_every_host_build host_builds.sh ${golden} ${flight_golden})
+goe_target_test(self_check_host host_self_check.sh ${golden})
 
 # ------------------------------------------------------------------------------------------------- one test each target
 
@@ -49,7 +49,7 @@ foreach(processor m0plus m4f m7-sp m7-dp m33 m55 rv32imac rv32imafc)
             else()
                 set(tests safety)
             endif()
-            goe_target_test(target_${preset} 1800 build_target.sh
+            goe_target_test(target_${preset} build_target.sh
                 ${preset} ${CMAKE_CURRENT_BINARY_DIR} ${tests} "${unity_dir}")
             if(tests STREQUAL all)
                 set_tests_properties(target_${preset} PROPERTIES COST 100)

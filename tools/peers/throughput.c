@@ -20,7 +20,7 @@
 
 typedef enum { WINDOW, REFINED, REFINED_AND_HAZARD, KINDS } kind_t;
 
-static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f};
+static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
 static const logged_track_t *const track = &logged_tracks[0];
 static goe_image_t images[IMAGES_MAX];
 
