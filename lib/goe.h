@@ -11,8 +11,8 @@
  *            the sensors (goe_navigation_t, goe_detector_t) are its weights and nuisance states, so that its sigmas are of the
  *            true error. lib/refined/README.md holds its theory.
  *   window   the paper: P. Bauer, "Position, Size and Orientation Estimation of Ground Obstacles in Sense and Avoid", IFAC
- *            ACA 2019, equation by equation (lib/window/README.md). Where both methods are compiled in it runs beside the
- *            refined one and answers until that has started.
+ *            ACA 2019, equation by equation (lib/window/README.md). Where both methods are compiled in it answers while the
+ *            refined one cannot start, until that first answers.
  * "(1)" to "(8)" below and in the .c files are the equations of that paper.
  *
  * THIS HEADER IS THE MANUAL. The .c files hold reasons and equation numbers only; lib/README.md shows the rooms.
@@ -51,9 +51,11 @@
  *   6 m diameter stands at north 200, east -30. Then Z0 = 200 m, X0 = -30 m, width = 6 m.
  *   After 50 m of flight: Z = 150 m, X = -30 m, and X0, Z0 stay as they were.
  *
- *   The track's first image fixes T and its origin, whether or not anything is seen in it. What lies more than 87 degrees from Z
- *   cannot be used: if that is so of all that is seen when first something is, the track begins there (heading_auto). After a
- *   later turn call goe_reset.
+ *   The track begins with the first image that shows a feature: that image fixes T and its origin. Images without a feature fix
+ *   nothing. What lies more than 87 degrees from Z cannot be used. With heading_auto the track begins again, by itself, while no
+ *   position is known and the nose has turned by more than 45 degrees: if every feature then lies more than 60 degrees from Z.
+ *   Once a position is known T stays: after a turn of more than 60 degrees call goe_reset when the obstacle is in view again. Until
+ *   then the last answer, stale, follows the motion.
  *
  *   Jumps: x0, z0, x and z move by half the obstacle's size when a disc becomes a line or box. Refined: front and side keep
  *   their names until the side lies more than 52 degrees (tan b = 1.3) from Z; then width and length, their sigmas,
@@ -156,7 +158,7 @@ extern "C" {
 /* What became of one image, or of a call. 0: nominal. Positive: the image was good, but gave less than a whole new
  * solution. Negative: no new solution. "Image taken": the image was stored although the status is negative, because the
  * next images build on it; otherwise it was refused whole.
- * Numbers that are free: 5 to 31 for images that were good, -14 to -31 for faults of images, from -36 on for calls. A later
+ * Numbers that are free: 5 to 31 for images that were good, -16 to -31 for faults of images, from -36 on for calls. A later
  * version may use them, and renumbers nothing. */
 typedef enum {
     GOE_OK = 0,             /* solved from this image and those before it */
@@ -185,6 +187,11 @@ typedef enum {
     GOE_OUT_OF_RANGE = -11, /* a number outside the range stated at its field */
     GOE_BAD_TIME = -12,     /* time unknown, repeated or running backwards; after a wild jump ahead: goe_reset */
     GOE_BAD_ATTITUDE = -13, /* the quaternion's norm is off 1 by more than 1 % (a zero quaternion among them) */
+    /* a box of an image that was taken; no new solution. With one: GOE_PARTIAL */
+    GOE_BOX_INCOMPLETE = -14, /* fewer than two sides of the box can be used: not marked in box.seen, which is a mask (true marks
+                                 the left side alone), cut by the image's border, or out of order */
+    GOE_NO_HEIGHT = -15,    /* height_m is exactly 0 with a box: taken as not set. The height counts as unknown to 1000 m, and
+                               the bottom of the box measures no range. Refined */
     /* a call */
     GOE_BAD_SETTINGS = -32, /* goe_init: a setting is outside its range; bad_field names it */
     GOE_BAD_ARGUMENT = -33, /* a null pointer, or an estimator of another size than the library's (GOE_WINDOW_MAX, parts) */
@@ -194,9 +201,15 @@ typedef enum {
                            and every call does until goe_init; otherwise the track has ended, and the next image begins one */
 } goe_status_t;
 
+/* Whether goe_update() took the image with this status. Of an image that it refused nothing is kept: a reset's delta must be given
+ * again. */
+#define GOE_IMAGE_TAKEN(status)                                                                                        \
+    (((int)(status) > (int)GOE_NOT_FINITE) |                                                                           \
+     (((int)(status) < (int)GOE_BAD_ATTITUDE) & ((int)(status) > (int)GOE_BAD_SETTINGS)))
+
 /* goe_estimator_t.causes counts every fault, for the flight log: causes[-status] for GOE_BEHIND_CAMERA to
- * GOE_BAD_ATTITUDE; causes[0] the tracks that a filter reset of unknown size ended. Counters saturate. */
-#define GOE_CAUSES 14
+ * GOE_NO_HEIGHT; causes[0] the tracks that a filter reset of unknown size ended. Counters saturate. */
+#define GOE_CAUSES 16
 
 /* -------------------------------------------------------------------------------------------------------- settings -- */
 
@@ -211,8 +224,8 @@ typedef enum {
                            and no disc before it */
     GOE_MODEL_BOX = 4,  /* estimate only: a box with an upright, level outline. Refined method */
     GOE_MODEL_PRISM = 5 /* estimate only: something upright by its bounding boxes, whose depth along the line of sight is not
-                           known: the sigmas hold for a mast as for a house. Width: across the line of sight of the first
-                           image. Refined method */
+                           known: the sigmas hold for a mast as for a house. Width: across the line of sight of the image
+                           that the filter started with; its sigma grows as that turns. Refined method */
 } goe_model_t;
 
 typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2 } goe_method_t;
@@ -234,7 +247,8 @@ typedef struct {
     float p1;              /* lens distortion, tangential; -100 to 100; default 0 */
     float p2;              /* lens distortion, tangential; -100 to 100; default 0 */
     float k3;              /* lens distortion, radial; -100 to 100; default 0 */
-    float mount_yaw_deg;   /* mounting, degrees; -360 to 360; default 0 */
+    float mount_yaw_deg;   /* mounting, degrees; -360 to 360; default 0. A camera that looks more than 45 degrees aside of the nose
+                              needs heading_auto false and heading_deg, where it looks */
     float mount_pitch_deg; /* mounting, degrees; -360 to 360; default 0 */
     float mount_roll_deg;  /* mounting, degrees; -360 to 360; default 0 */
     float offset_m[3];     /* camera relative to the pose's reference point, body FRD, m; -1e4 to 1e4; default 0 */
@@ -308,8 +322,8 @@ typedef struct {
                              shape_share or box_share stand for what is the same in every image */
     float range_share;    /* a position is reported once its sigma is below this share of the range, without what no image can
                              show (GOE_MODEL_PRISM); 0.01 to 10; default 0.25 */
-    bool top_is_highest;  /* `top` is the highest point in the image also when seen from above the roof: see goe_image_t.top;
-                             default false */
+    bool top_is_highest;  /* `top`, as a point, is the highest one in the image also when seen from above the roof: see
+                             goe_image_t.top; a box's top always is the highest, whatever is set here; default false */
 } goe_refined_settings_t;
 
 typedef struct {
@@ -338,18 +352,26 @@ typedef struct {
  * position it jumped by, when it is known: new minus old, summed over all resets since the last image that was taken,
  * that is, not refused whole (GOE_NOT_FINITE to GOE_BAD_ATTITUDE): after a refusal the same delta must be given again.
  * Known: compensated, the track goes on. Unknown, and also when heading or attitude jumped: reset_delta_known = false,
- * the track starts anew with this image. */
+ * the track starts anew with this image.
+ * A known jump of down is compensated in the height, too. A height_m of the same filter jumps by minus that delta; a range finder's
+ * does not jump. goe compares the step of position_ned_m and height_m with both in the first image after the jump, and takes the
+ * nearer one. If height_m jumped, goe takes the jump off every height_m of the rest of the track. So the camera's height, the
+ * obstacle's height and the clearance go on above the ground as it was known before the jump. If the errors of height_m in that image
+ * and in the one before differ by more than half the delta, goe may take the wrong one: the heights of the rest of the track are
+ * then off by the delta. */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* vehicle's reference point, each +-1e6, in steps of 6 cm out there and of 1 mm within 1e4;
-                                with points, down is checked only; with boxes it changes the height */
-    float height_m;          /* of the camera itself above the ground at the obstacle, +-1e5; window: no obstacle height
-                                if it is <= 0. Boxes: that of the first image with a box counts, from then on the changes of down;
-                                with navigation.height_white_m the mean of all, boxes and points */
+                                with points, down counts at a jump of the filter only; with boxes it changes the height */
+    float height_m;          /* of the camera itself above the ground at the obstacle, +-1e5; exactly 0 with a box: not set
+                                (GOE_NO_HEIGHT); window: no obstacle height if it is <= 0. Boxes: that of the first image with a
+                                box counts, from then on the changes of down; with navigation.height_white_m the mean of all,
+                                boxes and points. A known jump of the filter is taken off it: see above */
     float attitude[4];       /* w, x, y, z; body FRD to NED; normalised here, refused if its norm is off by over 1 % */
     uint8_t reset_count;     /* the filter's reset counter, any start, wraps */
     bool reset_delta_known;  /* read only when reset_count changed */
-    float reset_delta_ned_m[3]; /* each +-1e6; read only when reset_count changed and reset_delta_known */
+    float reset_delta_ned_m[3]; /* each +-1e6; read only when reset_count changed and reset_delta_known. Down: give it as
+                                   position_ned_m jumped, whether height_m jumped along or not */
 } goe_pose_t;
 
 /* An image point. u_px and v_px are read only if seen; each +-1e5. */
@@ -362,7 +384,8 @@ typedef struct {
  * a tracker's smoothed boxes: smoothing lags, and shrinks boxes that grow, which no sigma knows of. */
 typedef struct {
     float left_px, top_px, right_px, bottom_px; /* read only if seen; each +-1e5; left < right, top < bottom */
-    uint8_t seen;                               /* GOE_SEES_...; 0: no box. Without the bit: cut, hidden or not believed */
+    uint8_t seen;                               /* mask of GOE_SEES_..., GOE_SEES_BOX for a whole box; 0: no box. Without the bit: cut,
+                                                   hidden or not believed */
 } goe_box_t;
 
 #define GOE_SEES_LEFT 0x01u
@@ -383,10 +406,14 @@ typedef struct {
 
 /* One image of one obstacle: a box, or points, or both. Any subset of the features may be seen.
  * Box: what detectors give. It is exact at any attitude, as every side is a plane through the camera that touches the obstacle
- * at its roof or at its foot. A box stands for left, right and top, which are not read then; base corners are.
+ * at its roof or at its foot. A box stands for left, right and top, which are not read then; base corners are. Beside base
+ * corners, too, left, right and top of the box touch roof or foot, wherever the solid ends in the raw image: the top is the
+ * highest point of the roof in it, not the one over the nearest corner. The box's bottom is not used then.
  * Disc: left and right. Line and box: two or three base corners; refined also finds a box by left and right alone when one of
  * its faces turns away in flight: before that it is reported as a disc about its middle, whose width is the lateral extent of
- * what is seen of it. Height: top, and a solution of any model.
+ * what has been seen of it, which changes on the way. The sigmas of such a disc hold that it may be something else, and are
+ * wider for that, until the images show that it is none; those of goe_settings_t.model disc are a disc's alone. Height: top,
+ * and a solution of any model.
  * Do not give the middles of a box's sides as points: when the camera rolls, the sides touch the top and the foot of a tall
  * obstacle, and the width comes out too large (a mast of 6 m by 30 m: 11 m at 10 degrees of roll). */
 typedef struct {
@@ -464,7 +491,8 @@ typedef struct {
                               most 4000. It stands still when goe_update is not called, and falls if a refused image told a
                               time that lay ahead of the next one's */
     float x0_m, z0_m;      /* reference point at the track's first image, T axes */
-    float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale */
+    float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale, and
+                              its sigma grows with the age by velocity_bias_m_s and position_walk_m (refined) */
     float width_m;         /* disc: diameter; line, box: length of the front edge */
     float length_m;        /* of the side edge */
     float height_m;        /* top above ground */
@@ -527,7 +555,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * counted: GOE_PARTIAL is), GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED, GOE_CORRUPTED. If several faults meet in one image all are
  * counted; a failed solution is reported rather than a feature's fault, and of the features the first.
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
- * Cost: at most 48000 instructions, 1212 bytes of stack; 70000 with lens distortion; window: 5300. No loop runs longer than
+ * Cost: at most 48000 instructions, 1408 bytes of stack; 70000 with lens distortion; window: 5500. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */
 /*@ requires estimator == \null || \valid(estimator);
     requires image == \null || \valid_read(image);
@@ -538,11 +566,12 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
 enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_QUANTITIES };
 
 /* Covariance of x0_m, z0_m, orientation_deg, width_m, length_m, height_m of the latest estimate: metres and degrees. Rows
- * and columns of a quantity that is not valid there are 0. Of the window's answer, and of a stale one: the sigmas squared
- * on the diagonal.
+ * and columns of a quantity that is not valid there are 0. The diagonal holds the sigmas squared, whatever the method and the
+ * model. Of a stale answer x0 and z0 include what its age adds to x_m and z_m, and no variance is below its sigma squared. Of the
+ * window's answer, and once the filter has started again or changed its model, there is nothing off the diagonal.
  *   covariance  written by every call unless null; all zero on failure
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 10200 instructions, 800 bytes of stack. */
+ * Cost: at most 10600 instructions, 880 bytes of stack. */
 /*@ requires estimator == \null || \valid_read(estimator);
     requires covariance == \null || \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
@@ -555,9 +584,10 @@ typedef struct {
     float clearance_m;         /* ... or its top must lie deeper than this below the aircraft; 0 to 1e4 */
     float since_image_s;       /* how long ago the latest image was taken: the detector's latency, or its silence. It has flown at
                                   that velocity since, and times count from now; 0 to 1e3; 0: from that image */
+    float velocity_sd_m_s;     /* one sigma of velocity_ned_m_s, each axis; 0 to 100; 0: navigation.velocity_bias_m_s */
 } goe_plan_t;
 
-/* What will become of it. Sigmas are to first order, from the covariance of the estimate; goe_plan_t is taken as exact.
+/* What will become of it. Sigmas are to first order, from the covariance of the estimate and the error of the plan's velocity.
  * Refined: a constant error of goe_pose_t.height_m moves the camera and the top alike, and is not in the clearance. */
 typedef struct {
     float time_s;      /* until the horizontal distance to the obstacle's outline is smallest for the first time; if the
@@ -579,27 +609,71 @@ typedef struct {
 
 /* Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. The outline is the disc, or the box
  * as far as it is known: without orientation or length the circle of its width about the reference point, refined also while
- * the width is not known well enough to be told; window, without width: that point alone, so that margin_m has to cover the
- * obstacle's size. A suspect or stale estimate asks for wider margins, not for silence: README.md, "Going around, or not".
+ * the width is not valid yet; window, without width: that point alone, so that margin_m has to cover the obstacle's size. An image
+ * without a detection changes nothing but the time, and a new start of the filter keeps position and size until a new answer
+ * replaces them: uncertainty only grows. A suspect or stale estimate needs wider margins, not silence: goe_decide().
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,
  * GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 20900 instructions, 1010 bytes of stack. No loop runs longer than 10. */
+ * Cost: at most 21300 instructions, 1110 bytes of stack. No loop runs longer than 10. */
 #if GOE_WITH_HAZARD
 /*@ requires estimator == \null || \valid_read(estimator);
     requires plan == \null || \valid_read(plan);
     requires hazard == \null || \valid(hazard); */
 GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard);
+
+/* When to act. goe_plan_t holds margin and clearance. */
+typedef struct {
+    float violation_max; /* act from this probability on; 0 to 1; default 0.1 */
+    float act_s;         /* ... if the obstacle may be reached within this time, which is what the manoeuvre takes and some
+                            seconds to decide; 0 to 1e4; default 12 */
+    float doubt;         /* factor on margin and clearance while the estimate is suspect; 1 to 100; default 1.5 */
+    float drift_m_s;     /* margin and clearance grow by this for each second without a new answer; 0 to 100; default 1 */
+} goe_rule_t;
+
+typedef enum {
+    GOE_DECISION_UNKNOWN = 0, /* no position, or one so uncertain that neither distance is kept by one sigma although the
+                                 probability is small, or that the obstacle may be reached within act_s at two sigma of the time, or
+                                 one without a new answer for two seconds of detections: this does not make it safe; keep the
+                                 previous decision */
+    GOE_DECISION_CLEAR = 1,   /* no reason to act now */
+    GOE_DECISION_ACT = 2,     /* go around, or avoid */
+    GOE_DECISION_KEEP = 3     /* the call failed: keep the previous decision */
+} goe_decision_t;
+
+/* Sets *rule to its defaults. A null pointer is ignored.
+ * Cost: at most 40 instructions, 16 bytes of stack. */
+/*@ requires rule == \null || \valid(rule); */
+void goe_rule_default(goe_rule_t *rule);
+
+/* The decision rule: goe_hazard() with the plan's margin and clearance widened by doubt and age, and the rule's thresholds. Only
+ * GOE_DECISION_CLEAR ends an action; no failure returns it.
+ *   rule    null: the defaults
+ *   hazard  the hazard with the widened distances, all zero without one; null if not wanted
+ * Returns GOE_DECISION_KEEP for a bad argument, a plan or rule that is not finite or out of range, and an estimator that is not
+ * initialised or corrupted.
+ * Cost: at most 21800 instructions, 1200 bytes of stack. */
+/*@ requires estimator == \null || \valid_read(estimator);
+    requires plan == \null || \valid_read(plan);
+    requires rule == \null || \valid_read(rule);
+    requires hazard == \null || \valid(hazard); */
+GOE_NODISCARD goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_plan_t *plan, const goe_rule_t *rule,
+                                        goe_hazard_t *hazard);
+
+/* The earliest time of the closest approach at two sigma, s: time^2 / (time + 2 sigma). 0 if *hazard is null or not finite.
+ * Cost: at most 30 instructions, 16 bytes of stack. */
+/*@ requires hazard == \null || \valid_read(hazard); */
+float goe_soonest_s(const goe_hazard_t *hazard);
 #endif
 
 /* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
  * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
- * Cost: at most 1620 instructions, 64 bytes of stack. */
+ * Cost: at most 1640 instructions, 64 bytes of stack. */
 /*@ requires estimator == \null || \valid(estimator); */
 goe_status_t goe_reset(goe_estimator_t *estimator);
 
 /* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number.
- * Cost: at most 910 instructions, 32 bytes of stack. */
+ * Cost: at most 1030 instructions, 32 bytes of stack. */
 const char *goe_status_text(goe_status_t status);
 
 /* The same for a reason: "moves", "late", ...; "none" for GOE_REASON_NONE.

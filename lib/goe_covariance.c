@@ -6,8 +6,9 @@
 #include "goe_guard.h"
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
-#include "refined/goe_ground.h"
 #include "refined/goe_quantities.h"
+
+#define LOST_CORRELATION 2.0f
 
 /*@ requires \valid_read(sigma) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
@@ -19,10 +20,9 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
 }
 
 #if GOE_WITH_REFINED
-/* The filter is as it was when it gave the estimate; it may be another's since. */
-/*@ requires \valid_read(estimate); */
-static bool is_of_filter(const goe_estimate_t *estimate) {
-    return estimate->method == GOE_METHOD_REFINED && goe_is_set(&estimate->fresh);
+/*@ requires \valid_read(estimator); */
+static bool is_refined_answer(const goe_estimator_t *estimator) {
+    return estimator->estimate.method == GOE_METHOD_REFINED;
 }
 
 static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
@@ -40,52 +40,52 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
     }
 }
 
-/* False if the estimate is not the filter's. */
+/* Of a stale answer: no variance below the one that was reported, whatever path was flown since. */
 /*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
-static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
+static void keep_at_least(const goe_estimator_t *estimator, goe_covariance_t covariance) {
+    const goe_sigma_t *sigma = &estimator->estimate.sigma;
+    const float least[GOE_QUANTITIES] = {sigma->x_m,     sigma->z_m,      sigma->orientation_deg,
+                                         sigma->width_m, sigma->length_m, sigma->height_m};
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        covariance[i][i] = goe_larger(covariance[i][i], least[i] * least[i]);
+    }
+}
+
+/* False if the estimate is not the filter's, or the filter has learned something else since. An image without a detection
+ * changes nothing but the time. */
+/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
+static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
-    const goe_estimate_t *estimate = &estimator->estimate;
-    if (!is_of_filter(estimate)) {
+    if (!is_refined_answer(estimator) || estimator->filter.answer.outdated) {
         return false;
     }
-    goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, from_datum, ahead_s,
+    goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, for_hazard, ahead_s,
                               covariance);
-    keep_valid(estimate->valid, covariance);
+    keep_valid(estimator->estimate.valid, covariance);
+    if (!for_hazard && !goe_is_set(&estimator->estimate.fresh)) {
+        keep_at_least(estimator, covariance);
+    }
     return true;
 }
 
-/*@ requires \valid_read(estimator); */
-static bool is_steady(const goe_estimator_t *estimator) {
-    return is_of_filter(&estimator->estimate) &&
-           goe_ground_is_steady(&estimator->filter, &estimator->settings.navigation);
-}
-
 float goe_latest_camera_height(const goe_estimator_t *estimator) {
-    return is_steady(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
+    const bool steady = is_refined_answer(estimator) && estimator->filter.answer.steady;
+    return steady ? estimator->filter.datum.height_m : estimator->motion.height_m;
 }
 
 float goe_latest_height_bias(const goe_estimator_t *estimator) {
-    const float *state = estimator->filter.state;
-    return is_of_filter(&estimator->estimate) ? state[GOE_GROUND] / state[GOE_INVERSE_RANGE] : 0.0f;
+    return is_refined_answer(estimator) ? estimator->filter.answer.height_bias_m : 0.0f;
 }
+
 float goe_latest_reach(const goe_estimator_t *estimator) {
-    const goe_filter_t *filter = &estimator->filter;
-    const float *x = filter->state;
-    if (!is_of_filter(&estimator->estimate)) {
-        return 0.0f;
-    }
-    if (filter->phase == GOE_PHASE_PRISM) {
-        return x[GOE_PRISM_HALF] / x[GOE_INVERSE_RANGE];
-    }
-    const float side = goe_filter_is_box(filter) ? goe_absolute(x[GOE_SIDE_X]) : 0.0f;
-    return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
+    return is_refined_answer(estimator) ? estimator->filter.answer.reach_m : 0.0f;
 }
 #else
 /*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
-static bool covariance_of_filter(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
+static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
     (void)estimator;
-    (void)from_datum;
+    (void)for_hazard;
     (void)ahead_s;
     (void)covariance;
     return false;
@@ -104,19 +104,31 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
 }
 #endif
 
-goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
+/* Of an answer that the filter has left: the sigmas, and what the age adds. How the errors go together is lost; twice the variance
+ * covers any two that add up, which is for a hazard to know. */
+/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
+static void covariance_of_answer(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
+                                 goe_covariance_t covariance) {
+    const bool lost = for_hazard && estimator->estimate.method == GOE_METHOD_REFINED;
+    const float age_s = goe_latest_since_s(estimator, estimator->motion.time_us);
+    const float moving_s = (estimator->estimate.valid & GOE_HAS_VELOCITY) != 0u ? ahead_s : 0.0f;
+    const float grown_m2 = goe_latest_grown_m2(estimator, age_s + moving_s);
+    covariance_of_sigmas(&estimator->estimate.sigma, covariance);
+    for (int i = 0; lost && i < GOE_QUANTITIES; i++) {
+        covariance[i][i] *= LOST_CORRELATION;
+    }
+    covariance[GOE_X0][GOE_X0] += grown_m2;
+    covariance[GOE_Z0][GOE_Z0] += grown_m2;
+}
+
+goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                    goe_covariance_t covariance) {
     memset(covariance, 0, sizeof(goe_covariance_t));
-    const goe_estimate_t *estimate = &estimator->estimate;
-    if (!(estimate->valid & GOE_HAS_POSITION)) {
+    if (!(estimator->estimate.valid & GOE_HAS_POSITION)) {
         return GOE_COLLECTING;
     }
-    if (!covariance_of_filter(estimator, from_datum, ahead_s, covariance)) {
-        const float age_s = goe_latest_since_s(estimator, estimator->motion.time_us);
-        const float grown_m2 = goe_latest_grown_m2(estimate, age_s + ahead_s);
-        covariance_of_sigmas(&estimate->sigma, covariance);
-        covariance[GOE_X0][GOE_X0] += grown_m2;
-        covariance[GOE_Z0][GOE_Z0] += grown_m2;
+    if (!covariance_of_filter(estimator, for_hazard, ahead_s, covariance)) {
+        covariance_of_answer(estimator, for_hazard, ahead_s, covariance);
     }
     return GOE_OK;
 }

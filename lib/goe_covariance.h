@@ -7,11 +7,11 @@
 typedef float goe_covariance_t[GOE_QUANTITIES][GOE_QUANTITIES];
 
 /* goe_covariance() of an estimator that is ready.
- *   from_datum  the top's height is counted from the altimeter's zero
+ *   for_hazard  the top's height is counted from the altimeter's zero, and correlations that are lost are allowed for
  *   ahead_s     the place of an obstacle that moves counts that long after the latest image */
 /*@ requires estimator == \null || \valid_read(estimator);
     requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
-goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool from_datum, float ahead_s,
+goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                    goe_covariance_t covariance);
 
 /* Height of the camera at the latest image, m, that the latest estimate's own height is counted with, and the constant
@@ -21,8 +21,8 @@ float goe_latest_camera_height(const goe_estimator_t *estimator);
 /*@ requires \valid_read(estimator); */
 float goe_latest_height_bias(const goe_estimator_t *estimator);
 
-/* Half of the obstacle's extent about its reference point as far as it is seen, m, also while no width can be told; 0: not
- * known. */
+/* Half of the obstacle's extent about its reference point as far as it is seen, m, also while the width is not valid; 0: not
+ * known. An image without a detection, or a new start of the filter, does not make it less. */
 /*@ requires \valid_read(estimator); */
 float goe_latest_reach(const goe_estimator_t *estimator);
 

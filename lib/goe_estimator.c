@@ -20,6 +20,8 @@
 #include "window/goe_window.h"
 
 #define RESETS GOE_OK /* causes[0] counts tracks that an unknown filter reset ended */
+#define SURE_SIGMA 2.0f
+#define ASIDE_MIN 1.7320508f /* tangent of 60 degrees */
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -64,7 +66,7 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
 /*@ requires \valid_read(estimator) && \valid(estimate); */
 static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     set_age(estimator, image_us, estimate);
-    estimate->trajectory_heading_deg = estimator->motion.heading_deg;
+    estimate->trajectory_heading_deg = goe_motion_heading_deg(&estimator->motion);
     if (estimate->valid & GOE_HAS_ORIENTATION) {
         goe_motion_turn(&estimator->motion, estimate->length_axis, estimate->length_axis_ne);
         estimate->width_axis_ne[0] = -estimate->length_axis_ne[1]; /* to its right */
@@ -106,17 +108,33 @@ static void note_solved(goe_estimator_t *estimator) {
 static void grow_old(goe_estimator_t *estimator) {
     goe_estimate_t *estimate = &estimator->estimate;
     const goe_motion_t *motion = &estimator->motion;
+    const float s = goe_latest_since_s(estimator, motion->time_us);
     estimate->fresh = false;
     goe_motion_relate(motion, estimate);
-    if (estimate->valid & GOE_HAS_VELOCITY) {
-        const float s = goe_latest_since_s(estimator, motion->time_us);
-        const float north_m = estimate->velocity_north_m_s * s;
-        const float east_m = estimate->velocity_east_m_s * s;
-        const float grown_m2 = goe_latest_grown_m2(estimate, s);
-        estimate->x_m += motion->heading_cos * east_m - motion->heading_sin * north_m;
-        estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
-        estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + grown_m2);
-        estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + grown_m2);
+    if (!(estimate->valid & GOE_HAS_POSITION)) {
+        return;
+    }
+    const float grown_m2 = goe_latest_grown_m2(estimator, s);
+    const float north_m = estimate->velocity_north_m_s * s; /* 0 of an obstacle that stands still */
+    const float east_m = estimate->velocity_east_m_s * s;
+    estimate->x_m += motion->heading_cos * east_m - motion->heading_sin * north_m;
+    estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
+    estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + grown_m2);
+    estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + grown_m2);
+}
+
+/* An old answer that lies behind, with all of its extent, while the image shows the obstacle ahead is wrong. */
+/*@ requires \valid(estimator) && \valid_read(view); */
+static void drop_contradicted(goe_estimator_t *estimator, const goe_view_t *view) {
+    goe_estimate_t *estimate = &estimator->estimate;
+    const float reach_m = estimator->filter.answer.reach_m + estimate->length_m;
+    bool ahead = false;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        ahead = ahead || view->point[i].usable;
+    }
+    if (ahead && (estimate->valid & GOE_HAS_POSITION) != 0u &&
+        estimate->z_m < -reach_m - SURE_SIGMA * estimate->sigma.z_m) {
+        memset(estimate, 0, sizeof *estimate);
     }
 }
 
@@ -129,6 +147,7 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
         estimator->estimate_time_us = estimator->motion.time_us;
     } else {
         grow_old(estimator);
+        drop_contradicted(estimator, view);
     }
     goe_report_fit(&estimator->filter, &estimator->settings, &estimator->estimate);
     if (fresh) {
@@ -164,36 +183,16 @@ static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_fault
 }
 
 #if GOE_WITH_WINDOW
-/* The window solves beside an answer of the filter's, which is worth more than none: only a fresh one takes its place. */
-/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
-static GOE_NOINLINE goe_status_t solve_beside(goe_estimator_t *estimator, const goe_view_t *view,
-                                              const goe_faults_t *faults) {
-    goe_estimate_t answer;
-    memset(&answer, 0, sizeof answer);
-    const goe_status_t status =
-        goe_window_update(&estimator->window, &estimator->settings, view, GOE_WINDOW_SOLVES, faults, &answer);
-    if (answer.fresh || !(estimator->estimate.valid & GOE_HAS_POSITION)) {
-        estimator->estimate = answer;
-        return status;
-    }
-    grow_old(estimator);
-    goe_report_fit(&estimator->filter, &estimator->settings, &estimator->estimate);
-    return status == GOE_COLLECTING ? GOE_HELD : status;
-}
-
-/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
-static goe_status_t solve_window(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults) {
-    const goe_status_t status = estimator->estimate.method == GOE_METHOD_REFINED
-                                    ? solve_beside(estimator, view, faults)
-                                    : goe_window_update(&estimator->window, &estimator->settings, view,
-                                                        GOE_WINDOW_SOLVES, faults, &estimator->estimate);
-    note_solved(estimator);
-    return status;
+/* The window answers until the filter first has: a filter that stops keeps its answer, and one that starts in this image takes over
+ * an older answer. */
+/*@ requires \valid_read(estimator); */
+static bool window_answers(const goe_estimator_t *estimator, bool reported, bool reports) {
+    const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
+    const bool refined = known && estimator->estimate.method == GOE_METHOD_REFINED;
+    return !reported && !refined && !(reports && known);
 }
 #endif
 
-/* A filter that has not started, or has only a disc where a box was asked for, leaves the answer to the window; one that starts
- * in this image does, too, unless it has an older answer; one that stops in this image keeps its own. */
 /*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_settings_t *settings = &estimator->settings;
@@ -202,13 +201,19 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
     const bool reports = goe_filter_reports(&estimator->filter, settings);
 #if GOE_WITH_WINDOW
-    if (!reported && !(reports && (estimator->estimate.valid & GOE_HAS_POSITION))) {
-        const goe_status_t status = solve_window(estimator, view, faults);
+    const bool by_window = window_answers(estimator, reported, reports);
+    if (by_window && estimator->estimate.method == GOE_METHOD_REFINED) { /* a filter that started, and never answered */
+        memset(&estimator->estimate, 0, sizeof estimator->estimate);
+    }
+    const goe_status_t status =
+        goe_window_update(&estimator->window, settings, view, by_window ? GOE_WINDOW_SOLVES : GOE_WINDOW_COLLECTS,
+                          faults, by_window ? &estimator->estimate : NULL);
+    if (by_window) {
+        note_solved(estimator);
         if (!reports || estimator->estimate.fresh) {
             return status;
         }
     } else {
-        (void)goe_window_update(&estimator->window, settings, view, GOE_WINDOW_COLLECTS, faults, NULL);
         note_swapped(estimator, swapped, faults); /* a window that solves has counted them */
     }
 #else
@@ -220,6 +225,9 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
 
 /*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
+    if (goe_ground_lacks_height(view->image)) {
+        goe_fault_count(faults, GOE_NO_HEIGHT);
+    }
     const goe_status_t status = update_refined(estimator, view, faults);
     goe_report_doubt(&estimator->filter, &estimator->estimate);
     return status;
@@ -244,20 +252,40 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #endif
 }
 
-/* Something is seen for the first time. What lies behind T's Z axis then, as the track began before a turn, would never be
- * used: the track begins here. */
-/*@ requires \valid(estimator) && \valid(view) && goe_view_is_open(view) && goe_faults_are_open(faults); */
-static GOE_NOINLINE void sight(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
-    goe_motion_t *motion = &estimator->motion;
-    motion->sighted = true;
-    bool ahead = !estimator->settings.heading_auto;
+/* Whether the track may begin again: it began with an earlier image, T's heading is the nose's, no position is known, and the nose
+ * has turned by more than 45 degrees from Z. */
+/*@ requires \valid_read(estimator) && \valid_read(view) && goe_view_is_open(view); */
+static bool may_begin_again(const goe_estimator_t *estimator, const goe_view_t *view) {
+    const float *to_trajectory = view->camera_to_trajectory;
+    const float *nose = view->camera_to_body; /* its first row: the nose in the camera's axes */
+    const float x = to_trajectory[0] * nose[0] + to_trajectory[1] * nose[1] + to_trajectory[2] * nose[2];
+    const float z = to_trajectory[6] * nose[0] + to_trajectory[7] * nose[1] + to_trajectory[8] * nose[2];
+    const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
+    return goe_is_set(&estimator->settings.heading_auto) && estimator->motion.sighted && !known && goe_absolute(x) > z;
+}
+
+/* Whether something is seen, and all of it more than 60 degrees from Z. */
+/*@ requires \valid_read(view); */
+static bool lies_aside(const goe_view_t *view) {
+    bool aside = view->seen;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
-        ahead = ahead || view->point[i].usable;
+        aside = aside && !(view->point[i].usable && goe_within(view->point[i].x, ASIDE_MIN));
     }
-    if (!ahead) {
-        motion->started = false;
+    return aside;
+}
+
+/* After a turn: what lies aside of T's Z axis would give little or nothing, and of the obstacle nothing is known yet that the track
+ * could lose. It begins here, and the faults of this image are counted once. */
+/*@ requires \valid(estimator) && \valid(view) && goe_view_is_open(view) && goe_faults_are_open(faults); */
+static GOE_NOINLINE void align_after_turn(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
+    uint32_t causes[GOE_CAUSES];
+    memcpy(causes, faults->causes, sizeof causes);
+    goe_align_points(view->camera, view, faults);
+    if (lies_aside(view)) {
+        memcpy(faults->causes, causes, sizeof causes);
         faults->first = GOE_OK;
-        goe_motion_follow(motion, &estimator->settings, view);
+        forget_track(estimator);
+        goe_motion_follow(&estimator->motion, &estimator->settings, view);
         goe_align_points(view->camera, view, faults);
     }
 }
@@ -271,10 +299,12 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     view->camera = camera;
     view->camera_to_body = estimator->camera_to_body[image->camera];
     goe_motion_follow(&estimator->motion, &estimator->settings, view);
-    goe_align_points(camera, view, faults);
-    if (!estimator->motion.sighted && view->seen) {
-        sight(estimator, view, faults);
+    if (may_begin_again(estimator, view)) {
+        align_after_turn(estimator, view, faults);
+    } else {
+        goe_align_points(camera, view, faults);
     }
+    estimator->motion.sighted = estimator->motion.sighted || view->seen;
 }
 
 /*@ requires \valid(estimator) && \valid_read(image) && \valid_read(camera); */

@@ -22,12 +22,22 @@ static inline float goe_latest_since_s(const goe_estimator_t *estimator, int64_t
     return goe_time_between_s(estimator->estimate_time_us, now_us, GOE_TIME_MAX_US);
 }
 
-/* What the place of an obstacle that moves has gained in variance since then, m2, along X as along Z; 0 of any other. */
-/*@ requires \valid_read(estimate); */
-static inline float goe_latest_grown_m2(const goe_estimate_t *estimate, float since_s) {
-    const float north = goe_square(estimate->sigma.velocity_north_m_s);
-    const float east = goe_square(estimate->sigma.velocity_east_m_s);
-    return goe_larger(north, east) * since_s * since_s;
+/* Variance that the place relative to the camera gains in a time without a new answer, m2, along X as along Z: by the velocity
+ * of an obstacle that moves and, refined, by the errors of the own motion. */
+/*@ requires \valid_read(estimator); */
+static inline float goe_latest_grown_m2(const goe_estimator_t *estimator, float since_s) {
+    const goe_sigma_t *sigma = &estimator->estimate.sigma;
+    const float north = goe_square(sigma->velocity_north_m_s);
+    const float east = goe_square(sigma->velocity_east_m_s);
+    float velocity_m2_s2 = goe_larger(north, east);
+    float walk_m2_s = 0.0f;
+#if GOE_WITH_REFINED
+    if (estimator->estimate.method == GOE_METHOD_REFINED) {
+        velocity_m2_s2 += goe_square(estimator->settings.navigation.velocity_bias_m_s);
+        walk_m2_s = goe_square(estimator->settings.navigation.position_walk_m);
+    }
+#endif
+    return velocity_m2_s2 * since_s * since_s + walk_m2_s * since_s;
 }
 
 #endif

@@ -41,12 +41,13 @@ typedef struct {
     int64_t time_us;                /* latest image of the track */
     int64_t start_time_us;          /* its first one */
     float heading_cos, heading_sin; /* of T's Z axis, from north */
-    float heading_deg;              /* the same, -180 to 180 */
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
     float dx_m, dz_m;               /* camera since then, T axes */
-    float height_m;                 /* camera above ground, latest image */
+    float height_m;                 /* camera above ground, latest image: as given, plus the next one */
+    float height_jump_m;            /* sum of the jumps of down that the given height followed */
+    float ground_m;                 /* down of the ground, by the latest image's height as given */
     goe_flag_t started;             /* a first image was taken; the fields above hold */
-    goe_flag_t sighted;             /* something was seen */
+    goe_flag_t sighted;             /* a feature was seen: T and its origin stay */
     uint8_t reset_count;
 #if GOE_BESIDE
     goe_flag_t paced;                     /* the fields below hold */
@@ -209,6 +210,15 @@ typedef struct {
     float dx_m, dz_m;
 } goe_place_t;
 
+typedef struct {         /* refined/goe_refined.c: what of the latest answer outlives the state that gave it */
+    float reach_m;       /* half of the extent about the reference point, m */
+    float least_m;       /* the same before the filter started again; 0 once the new filter knows a width */
+    float height_bias_m; /* constant error of the camera's height that the answer is freed of, m */
+    goe_flag_t outdated; /* the state has changed since, other than by time */
+    goe_flag_t previous; /* the answer is of the filter before it started again */
+    goe_flag_t steady;   /* the answer's height counts from the datum's */
+} goe_answer_t;
+
 /* What is small comes first: instructions reach the beginning of an object by shorter forms. */
 typedef struct {
     int64_t time_us;      /* of the latest image that the filter took */
@@ -225,11 +235,13 @@ typedef struct {
     float flown_m;           /* along the path since the filter's start, over ground */
     float sloped_m;          /* ... up to which the ground's slope was added */
     goe_place_t last;        /* camera in the image before, T axes */
+    goe_place_t measured;    /* ... in the latest image that gave rows, the state's axes */
     float walk_s[2];         /* time since the walk of the own position was last added along X, and along Z */
     float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since `inverse` was taken */
     goe_candidate_t candidate;
     goe_leaving_t leaving;
     goe_health_t health;
+    goe_answer_t answer;
     goe_axes_t axes;
     goe_datum_t datum;
     goe_scatter_t scatter;

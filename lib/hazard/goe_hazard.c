@@ -10,6 +10,7 @@
 #define VELOCITY_MAX_M_S 1.0e3f
 #define DISTANCE_MAX_M 1.0e4f
 #define SINCE_MAX_S 1.0e3f
+#define VELOCITY_SD_MAX_M_S 100.0f
 #define HAZARD_NUMBERS (offsetof(goe_hazard_t, has_clearance) / sizeof(float))
 
 GOE_STATIC_ASSERT(offsetof(goe_hazard_t, violation) + sizeof(float) == offsetof(goe_hazard_t, has_clearance),
@@ -22,18 +23,23 @@ static goe_status_t check_plan(const goe_plan_t *plan) {
     const uint32_t margin = goe_magnitude(plan->margin_m);
     const uint32_t clearance = goe_magnitude(plan->clearance_m);
     const uint32_t since = goe_magnitude(plan->since_image_s);
-    if (goe_larger_bits(goe_larger_bits(velocity, since), goe_larger_bits(margin, clearance)) >= GOE_INFINITY_BITS) {
+    const uint32_t sd = goe_magnitude(plan->velocity_sd_m_s);
+    const uint32_t most = goe_larger_bits(goe_larger_bits(velocity, since), goe_larger_bits(margin, clearance));
+    if (goe_larger_bits(most, sd) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
     const bool within = velocity <= goe_magnitude(VELOCITY_MAX_M_S) && margin <= goe_magnitude(DISTANCE_MAX_M) &&
-                        clearance <= goe_magnitude(DISTANCE_MAX_M) && since <= goe_magnitude(SINCE_MAX_S);
-    const bool negative = plan->margin_m < 0.0f || plan->clearance_m < 0.0f || plan->since_image_s < 0.0f;
+                        clearance <= goe_magnitude(DISTANCE_MAX_M) && since <= goe_magnitude(SINCE_MAX_S) &&
+                        sd <= goe_magnitude(VELOCITY_SD_MAX_M_S);
+    const bool negative =
+        plan->margin_m < 0.0f || plan->clearance_m < 0.0f || plan->since_image_s < 0.0f || plan->velocity_sd_m_s < 0.0f;
     return within && !negative ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
 goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard) {
     goe_covariance_t covariance;
     goe_plan_t relative;
+    float ahead_s = 0.0f;
     if (!hazard) {
         return GOE_BAD_ARGUMENT;
     }
@@ -44,9 +50,11 @@ goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan
     }
     if (status == GOE_OK) {
         relative = goe_violation_relative(estimator, plan);
-        status = goe_latest_covariance(estimator, true, goe_violation_ahead_s(estimator, &relative), covariance);
+        ahead_s = goe_violation_ahead_s(estimator, &relative);
+        status = goe_latest_covariance(estimator, true, ahead_s, covariance);
     }
     if (status == GOE_OK) {
+        goe_violation_add_plan(estimator, plan, ahead_s, covariance);
         goe_violation_foresee(estimator, &relative, covariance, hazard);
         if (!goe_guard_finite(&hazard->time_s, HAZARD_NUMBERS)) {
             memset(hazard, 0, sizeof *hazard);

@@ -8,7 +8,7 @@
 
 #define SIGMA_MIN 1.0e-6f
 #define SPEED_MIN_M_S 0.1f
-#define AHEAD_MAX_S 60.0f /* for which an obstacle's velocity is taken to last */
+#define AHEAD_MAX_S 60.0f /* for which a velocity is taken to last */
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
 
@@ -89,13 +89,28 @@ goe_plan_t goe_violation_relative(const goe_estimator_t *estimator, const goe_pl
 float goe_violation_ahead_s(const goe_estimator_t *estimator, const goe_plan_t *relative) {
     goe_course_t course;
     const goe_estimate_t *estimate = &estimator->estimate;
-    if (!(estimate->valid & GOE_HAS_VELOCITY)) {
-        return 0.0f;
-    }
     goe_approach_course(&estimator->motion, relative, &course);
     const float ahead_m = estimate->x_m * course.ahead.x + estimate->z_m * course.ahead.z;
     const float ahead_s = ahead_m / goe_larger(course.speed_m_s, SPEED_MIN_M_S);
     return goe_larger(ahead_s < AHEAD_MAX_S ? ahead_s : AHEAD_MAX_S, relative->since_image_s);
+}
+
+/*@ requires \valid_read(estimator) && \valid_read(plan); */
+static float velocity_sd_m_s(const goe_estimator_t *estimator, const goe_plan_t *plan) {
+#if GOE_WITH_REFINED
+    return plan->velocity_sd_m_s > 0.0f ? plan->velocity_sd_m_s : estimator->settings.navigation.velocity_bias_m_s;
+#else
+    (void)estimator;
+    return plan->velocity_sd_m_s;
+#endif
+}
+
+void goe_violation_add_plan(const goe_estimator_t *estimator, const goe_plan_t *plan, float ahead_s,
+                            goe_covariance_t covariance) {
+    const float sd_m = velocity_sd_m_s(estimator, plan) * ahead_s;
+    covariance[GOE_X0][GOE_X0] += sd_m * sd_m;
+    covariance[GOE_Z0][GOE_Z0] += sd_m * sd_m;
+    covariance[GOE_HEIGHT][GOE_HEIGHT] += sd_m * sd_m;
 }
 
 /* The obstacle from where the camera is now. */

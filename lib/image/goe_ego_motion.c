@@ -32,8 +32,12 @@ static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, co
     }
 }
 
-/* -180 to 180. */
-static float heading_of(float c, float s) {
+float goe_motion_heading_deg(const goe_motion_t *motion) {
+    const float c = motion->heading_cos;
+    const float s = motion->heading_sin;
+    if (!motion->started) {
+        return 0.0f;
+    }
     const float half_deg = goe_arctan_rad(s, c < 0.0f ? -c : c) * GOE_DEG_PER_RAD;
     if (c >= 0.0f) {
         return half_deg;
@@ -42,13 +46,40 @@ static float heading_of(float c, float s) {
 }
 
 /*@ requires \valid_read(camera) && \valid_read(pose) && \valid_read(body_to_ned + (0 .. 8));
-    requires \valid(position + (0 .. 1)); */
+    requires \valid(position + (0 .. 2)); */
 static void camera_position(const goe_camera_t *camera, const goe_pose_t *pose, const float body_to_ned[9],
-                            float position[2]) {
+                            float position[3]) {
     float arm[3];
     goe_rotation_apply(body_to_ned, camera->offset_m, arm);
     position[0] = pose->position_ned_m[0] + arm[0];
     position[1] = pose->position_ned_m[1] + arm[1];
+    position[2] = pose->position_ned_m[2] + arm[2];
+}
+
+/* An image that shows a feature fixes T and its origin; until one comes every image does, for as long. */
+/*@ requires \valid(motion) && \valid_read(settings) && \valid_read(body_to_ned + (0 .. 8));
+    requires \valid_read(position + (0 .. 2)); */
+static void begin_track(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9],
+                        const float position[3]) {
+    fix_heading(motion, settings, body_to_ned);
+    motion->start_time_us = motion->time_us;
+    motion->origin_ne_m[0] = position[0];
+    motion->origin_ne_m[1] = position[1];
+    motion->started = true;
+}
+
+/* jump_m: known jump of the autopilot's down, 0 if there is none. The given height and down place the ground. If the ground
+ * stays, the height jumped with down, and the jump is taken off it from now on. If the ground jumps with down, the height did
+ * not jump: it is a range finder's. The nearer of both counts. */
+/*@ requires \valid(motion) && \valid_read(pose); */
+static void follow_height(goe_motion_t *motion, const goe_pose_t *pose, float camera_down_m, float jump_m) {
+    const float ground_m = pose->height_m + camera_down_m;
+    const float step_m = ground_m - motion->ground_m;
+    if (goe_absolute(step_m) < goe_absolute(step_m - jump_m)) {
+        motion->height_jump_m += jump_m;
+    }
+    motion->ground_m = ground_m;
+    motion->height_m = pose->height_m + motion->height_jump_m;
 }
 
 /* (NED -> T) (body -> NED) (camera -> body), column by column. Rows of NED -> T: X = (-sin, cos, 0), Y = (0, 0, 1),
@@ -104,17 +135,17 @@ static void set_mark(goe_motion_t *motion, const float attitude[4], const float 
     motion->mark_us = motion->time_us;
 }
 
-/* What the poses since the mark tell of the motion; body_m: of the vehicle, T axes, as the arms of two cameras differ. broken:
- * nothing, as it is the first one, or the autopilot's filter jumped. */
+/* What the poses since the mark tell of the motion; body_m: of the vehicle, T axes, as the arms of two cameras differ. A known
+ * jump of the autopilot's filter is not in them. first: no image before it fixed T. */
 /*@ requires \valid(motion) && \valid_read(attitude + (0 .. 3)) && \valid_read(body_m + (0 .. 1)); */
-static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2], bool broken) {
+static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2], bool first) {
     float half[3];
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
-    if (!broken && since_s < PACE_SPAN_MIN_S) {
+    if (!first && since_s < PACE_SPAN_MIN_S) {
         return;
     }
     motion->paced =
-        !broken && since_s < (float)PACE_SPAN_MAX_US * GOE_S_PER_US && half_turn(attitude, motion->mark_attitude, half);
+        !first && since_s < (float)PACE_SPAN_MAX_US * GOE_S_PER_US && half_turn(attitude, motion->mark_attitude, half);
     if (motion->paced) {
         turn_rate(motion, half, since_s);
         motion->velocity_m_s[0] = (body_m[0] - motion->mark_m[0]) / since_s;
@@ -132,29 +163,26 @@ static void find_pace(goe_motion_t *motion, const float attitude[4], const float
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view) {
     const goe_pose_t *pose = &view->image->pose;
     float body_to_ned[9];
-    float position[2];
+    float position[3];
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
     camera_position(view->camera, pose, body_to_ned, position);
 #if GOE_BESIDE
-    const bool broken = !motion->started || goe_motion_reset(motion, pose);
+    const bool first = !motion->sighted;
     if (motion->mark_us == motion->time_us) { /* a span ended before: its rate has no part of this image's own error */
         memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
     }
 #endif
-    if (!motion->started) {
-        fix_heading(motion, settings, body_to_ned);
-        motion->start_time_us = pose->time_us;
-        motion->heading_deg = heading_of(motion->heading_cos, motion->heading_sin);
-        memcpy(motion->origin_ne_m, position, sizeof position);
-        motion->started = true;
-    } else if (goe_motion_reset(motion, pose)) {
+    const bool jumped = goe_motion_reset(motion, pose);
+    motion->reset_count = pose->reset_count;
+    motion->time_us = pose->time_us;
+    if (!motion->sighted) {
+        begin_track(motion, settings, body_to_ned, position);
+    } else if (jumped) {
         for (int i = 0; i < 2; i++) {
             motion->origin_ne_m[i] += pose->reset_delta_ned_m[i];
         }
     }
-    motion->reset_count = pose->reset_count;
-    motion->time_us = pose->time_us;
-    motion->height_m = pose->height_m;
+    follow_height(motion, pose, position[2], jumped ? pose->reset_delta_ned_m[2] : 0.0f);
     const float north = position[0] - motion->origin_ne_m[0];
     const float east = position[1] - motion->origin_ne_m[1];
     motion->dx_m = motion->heading_cos * east - motion->heading_sin * north;
@@ -168,6 +196,6 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     const float arm_e = position[1] - pose->position_ned_m[1];
     const float body_m[2] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
                              motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e)};
-    find_pace(motion, pose->attitude, body_m, broken);
+    find_pace(motion, pose->attitude, body_m, first);
 #endif
 }

@@ -4,11 +4,15 @@
 
 #include "image/goe_view.h"
 
-/* Takes the pose of view->image: fixes T and its origin at the track's first image, compensates a reset of known delta, and
- * sets dx_m, dz_m (displacement of the camera since the first image, T axes). view->camera and its rotation must be set;
+/* Takes the pose of view->image: fixes T and its origin up to the first image that shows a feature, compensates a reset of known
+ * delta, and sets dx_m, dz_m (displacement of the camera since that image, T axes). view->camera and its rotation must be set;
  * view->camera_to_trajectory is set: the rotation of this image's rays into T. */
 /*@ requires \valid(motion) && \valid_read(settings) && \valid(view) && goe_view_is_open(view); */
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
+
+/* Of T's Z axis, clockwise from north, -180 to 180 degrees; 0 before the track's first image. */
+/*@ requires \valid_read(motion); */
+float goe_motion_heading_deg(const goe_motion_t *motion);
 
 /* Whether the autopilot's filter jumped since the image before. */
 /*@ requires \valid_read(motion) && \valid_read(pose); */

@@ -12,17 +12,17 @@ typedef struct {
 /*@ predicate goe_faults_are_open(goe_faults_t *faults) =
         \valid_read(faults) && \valid(faults->causes + (0 .. GOE_CAUSES - 1)); */
 
-GOE_STATIC_ASSERT(GOE_CAUSES == 1 - (int)GOE_BAD_ATTITUDE, every_fault_has_a_counter);
+GOE_STATIC_ASSERT(GOE_CAUSES == 1 - (int)GOE_NO_HEIGHT, every_fault_has_a_counter);
 
 /* Counters saturate. */
-/*@ requires \valid(causes + (0 .. GOE_CAUSES - 1)) && GOE_BAD_ATTITUDE <= fault <= GOE_OK; */
+/*@ requires \valid(causes + (0 .. GOE_CAUSES - 1)) && GOE_NO_HEIGHT <= fault <= GOE_OK; */
 void goe_count_cause(uint32_t causes[GOE_CAUSES], goe_status_t fault);
 
-/* fault: GOE_BEHIND_CAMERA to GOE_BAD_ATTITUDE; GOE_OK is ignored. */
-/*@ requires goe_faults_are_open(faults) && GOE_BAD_ATTITUDE <= fault <= GOE_OK; */
+/* fault: GOE_BEHIND_CAMERA to GOE_NO_HEIGHT; GOE_OK is ignored. */
+/*@ requires goe_faults_are_open(faults) && GOE_NO_HEIGHT <= fault <= GOE_OK; */
 void goe_fault_count(goe_faults_t *faults, goe_status_t fault);
 
-/*@ requires goe_faults_are_open(faults) && GOE_BAD_ATTITUDE <= fault <= GOE_OK; */
+/*@ requires goe_faults_are_open(faults) && GOE_NO_HEIGHT <= fault <= GOE_OK; */
 static inline void goe_fault_note(goe_faults_t *faults, goe_status_t fault) {
     if (fault != GOE_OK) {
         goe_fault_count(faults, fault);

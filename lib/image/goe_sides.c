@@ -44,6 +44,9 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
         sides->usable = 0;
     }
     sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_share));
+    if (!swapped && (sides->usable & (sides->usable - 1u)) == 0u) { /* none or one */
+        goe_fault_count(faults, GOE_BOX_INCOMPLETE);
+    }
     const unsigned wide = GOE_SEES_LEFT | GOE_SEES_RIGHT;
     sides->cut = !goe_sides_see(sides, wide) || (near_border(camera, sides, camera->cut_share) & wide) != 0u;
 }

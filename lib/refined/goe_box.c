@@ -13,6 +13,7 @@
 
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
+#include "refined/goe_touch.h"
 
 #if GOE_WITH_REFINED
 
@@ -26,7 +27,7 @@
 #define LENGTH_FREED 2.0f   /* one sigma of the length, relative, when its face comes into view */
 #define EARLY 4.0f
 #define EARLY_MAX 4.0f
-#define OUTLINE_RAD 0.025f  /* one sigma of what a box by its outline misses: orientation */
+#define OUTLINE_RAD 0.04f   /* one sigma of what a box by its outline misses: orientation */
 #define OUTLINE_SHARE 0.03f /* ... extents, of width and length together */
 #define SINE2_MIN 1.0e-6f
 #define CLEARLY_PX 4.0f /* sigmas of a pixel by which one reading of the outline must fit better */
@@ -263,6 +264,41 @@ static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t
     }
 }
 
+/* (R29): what a side of an upright bounding box touches, not the point that stands for it. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
+    requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX; */
+static void add_side(const goe_observation_t *obs, const outline_t *o, const goe_solid_t *solid, size_t side,
+                     float variance, goe_rows_t *rows) {
+    goe_touch_t touch;
+    goe_gradient_t g;
+    if (!goe_sides_see(obs->sides, 1u << side)) {
+        return;
+    }
+    float *by = goe_touch_add(rows, obs, solid, side, variance, &touch, &g);
+    if (by != NULL) {
+        set_corner(rows, by, obs, o, touch.corner, &g);
+        by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
+        by[GOE_TOP] = touch.foot ? 0.0f : -g.y;
+    }
+}
+
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
+    requires rows->count + 3 <= GOE_ROWS_MAX; */
+static void add_sides(const goe_observation_t *obs, const outline_t *o, goe_rows_t *rows) {
+    goe_solid_t solid;
+    const float width = o->edges.front.along.x + goe_absolute(o->edges.side.along.x);
+    goe_touch_open(obs, &solid);
+    solid.corner = o->corner;
+    solid.corners = CORNERS;
+    solid.ground = o->ground;
+    solid.roof = o->top;
+    const float wide = goe_touch_variance(obs, GOE_BOX_LEFT, goe_touch_size(obs, GOE_BOX_LEFT, width));
+    const float high = goe_touch_variance(obs, GOE_BOX_TOP, goe_touch_size(obs, GOE_BOX_TOP, o->ground - o->top));
+    add_side(obs, o, &solid, GOE_BOX_LEFT, wide, rows);
+    add_side(obs, o, &solid, GOE_BOX_RIGHT, wide, rows);
+    add_side(obs, o, &solid, GOE_BOX_TOP, high, rows);
+}
+
 void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     outline_t outline;
     size_t corner[3] = {FRONT_LEFT, FRONT_LEFT, FRONT_LEFT};
@@ -276,6 +312,10 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
         }
     } else {
         widest_corners(&outline, corner);
+    }
+    if (obs->sides->usable != 0) {
+        add_sides(obs, &outline, rows);
+        return;
     }
     add_silhouette(obs, &outline, GOE_POINT_LEFT, corner[OUTER_LEFT], rows);
     add_silhouette(obs, &outline, GOE_POINT_RIGHT, corner[OUTER_RIGHT], rows);
@@ -469,7 +509,8 @@ static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
 }
 
 float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *shape, goe_xz_t camera_m, int quantity,
-                               float orientation_rad2) {
+                               float *by_orientation) {
+    *by_orientation = 0.0f;
     if (filter->phase != GOE_PHASE_BOX_OUTLINE || quantity < GOE_ORIENTATION || quantity > GOE_LENGTH) {
         return 0.0f;
     }
@@ -481,8 +522,8 @@ float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *sh
     if ((quantity == GOE_LENGTH) == filter->naming.exchanged) { /* the front of the state */
         return size2;
     }
-    const float sine2 = side_share2(filter, camera_m);
-    return size2 + goe_square(shape->quantity[quantity].value) * orientation_rad2 / (sine2 + SINE2_MIN);
+    *by_orientation = goe_square(shape->quantity[quantity].value) / (side_share2(filter, camera_m) + SINE2_MIN);
+    return size2;
 }
 
 #endif

@@ -8,6 +8,7 @@
 #include "refined/goe_box.h"
 #include "refined/goe_disc.h"
 #include "refined/goe_mover.h"
+#include "refined/goe_touch.h"
 
 #if GOE_WITH_REFINED
 
@@ -15,7 +16,7 @@
 #define DISC_FREEDOM 0.05f  /* what the disc's tangents left behind in the chord, of its width */
 #define AHEAD_MIN 1.0e-3f   /* of an end, units of Z0 */
 #define AHEAD_TINY 0.02f    /* of the chord's middle */
-#define PLACE_SHARE 0.25f   /* of the width by which the middle may lie beside the centre of the obstacle */
+#define WIDTH_SHARE 0.15f   /* of the width by which corners that change unnoticed move its ends */
 #define TOP_NOISE 0.3f      /* of the nearest corner's place, over the chord */
 #define TOP_FREEDOM 0.1f    /* the same from image to image */
 #define TOP_MOVED 0.5f      /* ... and at the box's start */
@@ -102,7 +103,48 @@ static void add_top(const goe_observation_t *obs, goe_rows_t *rows) {
     by[GOE_TOP] = -g.y;
 }
 
+/* (R29): what a side of an upright bounding box touches. */
+/*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
+    requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX; */
+static void add_side(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, float size, float moved,
+                     goe_rows_t *rows) {
+    goe_touch_t touch;
+    goe_gradient_t g;
+    if (!goe_sides_see(obs->sides, 1u << side)) {
+        return;
+    }
+    float *by = goe_touch_add(rows, obs, solid, side, goe_touch_variance(obs, side, size), &touch, &g);
+    if (by == NULL) {
+        return;
+    }
+    set_end(by, obs, touch.corner == 0 ? -0.5f : 0.5f, &g);
+    by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
+    by[GOE_TOP] = touch.foot ? 0.0f : -g.y;
+    *goe_rows_last_variance(rows) += goe_square(moved * g.y * touch.point[1]);
+}
+
+/*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows) && rows->count + 3 <= GOE_ROWS_MAX; */
+static void add_sides(const goe_observation_t *obs, goe_rows_t *rows) {
+    const float *x = obs->state;
+    const goe_xz_t end[2] = {end_of(obs, -0.5f), end_of(obs, 0.5f)};
+    goe_solid_t solid;
+    goe_touch_open(obs, &solid);
+    solid.corner = end;
+    solid.corners = 2;
+    solid.roof = goe_observation_roof(obs);
+    solid.ground = obs->height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
+    const float width = goe_touch_size(obs, GOE_BOX_LEFT, x[GOE_FRONT_X]);
+    const float height = goe_touch_size(obs, GOE_BOX_TOP, solid.ground - solid.roof);
+    add_side(obs, &solid, GOE_BOX_LEFT, width, 0.0f, rows);
+    add_side(obs, &solid, GOE_BOX_RIGHT, width, 0.0f, rows);
+    add_side(obs, &solid, GOE_BOX_TOP, height, TOP_NOISE * width, rows);
+}
+
 void goe_chord_rows(const goe_observation_t *obs, goe_rows_t *rows) {
+    if (obs->sides->usable != 0) {
+        add_sides(obs, rows);
+        return;
+    }
     add_end(obs, GOE_POINT_LEFT, -0.5f, rows);
     add_end(obs, GOE_POINT_RIGHT, 0.5f, rows);
     add_top(obs, rows);
@@ -313,7 +355,10 @@ bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *obs) {
 
 void goe_chord_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     goe_shape_line(filter, filter->state, shape);
-    shape->place_m2 = goe_square(PLACE_SHARE * shape->quantity[GOE_WIDTH].value);
+    const float width_m = shape->quantity[GOE_WIDTH].value;
+    shape->place_m2 = goe_square(GOE_PLACE_SHARE * width_m);
+    shape->roof_m2 = shape->place_m2;
+    shape->width_m2 = goe_square(WIDTH_SHARE * width_m);
 }
 
 #endif

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "maths/goe_angle.h"
+#include "maths/goe_exp.h"
 #include "maths/goe_scalar.h"
+#include "refined/goe_touch.h"
 
 #if GOE_WITH_REFINED
 
@@ -23,9 +25,13 @@
 #define TOP_FREEDOM 10.0f    /* ... of the top */
 #define SKEWED_SIGMAS2 18.0f /* twice the log-likelihood ratio of chord against disc; cylinders stay below 14 */
 #define VARIANCE_MIN 1.0e-30f
-#define CHANCE_SHARE 0.5f /* of the skew's variance that is taken for a true disc's chance when it is answered for */
-#define HEADING_ARM 0.08f /* s/m: a yaw bias this large per m/s looks like a velocity bias */
-#define BASE_NOISE 2.0f   /* variance of a base corner's y as range of the centre, over its own */
+#define CHANCE_SHARE 0.5f  /* of the skew's variance that is taken for a true disc's chance, where one was asked for */
+#define SKEW_SHARE 0.5f    /* one sigma of the skew of what is no disc, of its width */
+#define TURNED_SIGMAS 6.0f /* of the skew by which the line of sight must turn for what is no disc to show it */
+#define KINK_SHARE 0.4f    /* ... and of what it changes by as other corners come into view */
+#define WIDTH_SHARE 0.05f  /* of the width by which corners that change unnoticed move what is seen */
+#define HEADING_ARM 0.08f  /* s/m: a yaw bias this large per m/s looks like a velocity bias */
+#define BASE_NOISE 2.0f    /* variance of a base corner's y as range of the centre, over its own */
 
 typedef struct {
     goe_xz_t center; /* relative to the camera now, units of Z0 */
@@ -127,6 +133,61 @@ static void add_base(const goe_observation_t *obs, const circle_t *o, goe_featur
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
 }
 
+/* (R29): what a side of an upright bounding box touches. */
+/*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
+    requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX; */
+static void add_side(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, float variance,
+                     goe_rows_t *rows) {
+    goe_touch_t touch;
+    goe_gradient_t g;
+    if (!goe_sides_see(obs->sides, 1u << side)) {
+        return;
+    }
+    float *by = goe_touch_add(rows, obs, solid, side, variance, &touch, &g);
+    if (!by) {
+        return;
+    }
+    /* without base corners: half the skew deeper, as of a tangent */
+    const float end = side == GOE_BOX_LEFT ? -0.5f : 0.5f;
+    const float by_skew = obs->base || goe_touch_is_level(side) ? 0.0f : end * g.z;
+    goe_rows_place(by, obs, g.x, g.z);
+    by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
+    by[GOE_SIDE_X] = by_skew;
+    by[GOE_FRONT_X] = 0.5f * (g.x * touch.outward.x + g.z * touch.outward.z);
+    by[GOE_TOP] = touch.foot ? 0.0f : -g.y;
+    by[GOE_BEHIND_STATES] -= by_skew * obs->state[GOE_SIDE_X];
+}
+
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
+    requires rows->count + 3 <= GOE_ROWS_MAX; */
+static void add_sides(const goe_observation_t *obs, const circle_t *o, float shape, goe_rows_t *rows) {
+    goe_solid_t solid;
+    goe_touch_open(obs, &solid);
+    solid.center = o->center;
+    solid.half = 0.5f * obs->state[GOE_FRONT_X];
+    solid.depth = solid.half;
+    solid.corners = 0;
+    solid.roof = goe_observation_roof(obs);
+    solid.ground = obs->height_m * obs->state[GOE_INVERSE_RANGE] + obs->state[GOE_GROUND];
+    const float width = goe_touch_size(obs, GOE_BOX_LEFT, obs->state[GOE_FRONT_X]);
+    const float height = goe_touch_size(obs, GOE_BOX_TOP, solid.ground - solid.roof);
+    const float more = goe_square(shape * width);
+    const float wide = goe_touch_variance(obs, GOE_BOX_LEFT, width) + more;
+    add_side(obs, &solid, GOE_BOX_LEFT, wide, rows);
+    add_side(obs, &solid, GOE_BOX_RIGHT, wide, rows);
+    add_side(obs, &solid, GOE_BOX_TOP, goe_touch_variance(obs, GOE_BOX_TOP, height) + more, rows);
+}
+
+/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
+    requires rows->count + 3 <= GOE_ROWS_MAX; */
+static void add_points(const goe_observation_t *obs, const circle_t *o, float shape, goe_feature_t left,
+                       goe_feature_t right, float width, goe_rows_t *rows) {
+    const float extra = goe_square(shape * width) + goe_square(obs->outline_share * width);
+    add_tangent(obs, o, left, -1.0f, extra, rows);
+    add_tangent(obs, o, right, 1.0f, extra, rows);
+    add_top(obs, o, extra, rows);
+}
+
 void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     circle_t circle;
     goe_feature_t left;
@@ -137,10 +198,11 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     const bool wide = outline_features(obs, &left, &right);
     const float width = wide ? obs->point[right].x - obs->point[left].x : 0.0f;
     const float shape = obs->settings->detector.shape_share + (obs->base ? STAND_IN_SHAPE : 0.0f);
-    const float extra = goe_square(shape * width) + goe_square(obs->outline_share * width);
-    add_tangent(obs, &circle, left, -1.0f, extra, rows);
-    add_tangent(obs, &circle, right, 1.0f, extra, rows);
-    add_top(obs, &circle, extra, rows);
+    if (goe_sides_see(obs->sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+        add_sides(obs, &circle, shape, rows);
+    } else {
+        add_points(obs, &circle, shape, left, right, width, rows);
+    }
     if (obs->base) {
         add_base(obs, &circle, GOE_POINT_BASE_LEFT, width, rows);
         add_base(obs, &circle, GOE_POINT_BASE_RIGHT, width, rows);
@@ -214,7 +276,9 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-float goe_disc_skew_variance(const goe_filter_t *filter) {
+/* Of the skew, on which the condition is. */
+/*@ requires \valid_read(filter); */
+static float skew_variance_of(const goe_filter_t *filter) {
     return goe_larger(goe_filter_variance(filter, GOE_SIDE_X), VARIANCE_MIN);
 }
 
@@ -226,7 +290,7 @@ bool goe_disc_is_skewed(const goe_filter_t *filter) {
 /*@ requires \valid_read(filter) && \valid(x + (0 .. GOE_STATES - 1)); */
 static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
     const float *v = filter->inverse.element;
-    const float share = filter->state[GOE_SIDE_X] / goe_disc_skew_variance(filter);
+    const float share = filter->state[GOE_SIDE_X] / skew_variance_of(filter);
     for (size_t i = 0; i < GOE_STATES; i++) {
         float with_skew = 0.0f;
         for (size_t j = i > GOE_SIDE_X ? i : GOE_SIDE_X; j < GOE_STATES; j++) {
@@ -236,19 +300,49 @@ static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
     }
 }
 
-float goe_disc_condition(const goe_filter_t *filter, float skew_variance, float projected[GOE_STATES]) {
+/* (R39): the probability that it is no disc, by the skew, which a disc has none of, and which anything else shows sooner or later
+ * as the line of sight turns. */
+/*@ requires \valid_read(filter); */
+static float unlikeness(const goe_filter_t *filter, float variance, float turned) {
+    const float width2 = goe_square(filter->state[GOE_FRONT_X]);
+    const float chance = variance / (variance + goe_square(SKEW_SHARE) * width2);
+    const float sigmas2 = goe_square(filter->state[GOE_SIDE_X]) / variance;
+    const float shown2 = goe_square(turned / TURNED_SIGMAS) * width2 / variance;
+    const float odds = sqrtf(chance) * goe_exp(0.5f * ((1.0f - chance) * sigmas2 - shown2));
+    return odds / (1.0f + odds);
+}
+
+goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t camera_m, goe_shape_t *shape) {
+    goe_disc_doubt_t doubt;
+    const float variance = skew_variance_of(filter);
+    const float skew2 = goe_square(filter->state[GOE_SIDE_X]);
+    doubt.skew_variance = variance;
+    if (asked) {
+        doubt.spread = sqrtf(goe_larger(skew2 - CHANCE_SHARE * variance, 0.0f));
+        return doubt;
+    }
+    const float unlike = unlikeness(filter, variance, goe_shape_turned(filter, camera_m));
+    const float width_m = shape->quantity[GOE_WIDTH].value;
+    doubt.spread = sqrtf(unlike * (skew2 + variance + goe_square(KINK_SHARE * filter->state[GOE_FRONT_X])));
+    if (!filter->candidate.stand_in) {
+        shape->place_m2 = unlike * goe_square(GOE_PLACE_SHARE * width_m);
+        shape->roof_m2 = shape->place_m2;
+        shape->width_m2 = unlike * goe_square(WIDTH_SHARE * width_m);
+    }
+    return doubt;
+}
+
+float goe_disc_condition(const goe_filter_t *filter, const goe_disc_doubt_t *doubt, float projected[GOE_STATES]) {
     const float *v = filter->inverse.element;
     float along = 0.0f;
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
         along += projected[j] * v[goe_inverse_column(j) + GOE_SIDE_X];
     }
-    along = along / skew_variance;
+    along = along / doubt->skew_variance;
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
         projected[j] -= along * v[goe_inverse_column(j) + GOE_SIDE_X];
     }
-    const float by_chance = CHANCE_SHARE * skew_variance;
-    const float beyond2 = goe_square(filter->state[GOE_SIDE_X]) - by_chance;
-    return beyond2 > 0.0f ? along * sqrtf(beyond2) : 0.0f;
+    return along * doubt->spread;
 }
 
 void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape) {

@@ -22,13 +22,19 @@ bool goe_disc_is_skewed(const goe_filter_t *filter);
 /*@ requires \valid_read(filter) && \valid(shape); */
 void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
-/* The same condition on a derivative in terms of independent unit errors (goe_srif_project). Returns by how much it moves the
- * quantity, which is in error by as much if the obstacle is no disc. */
-/*@ requires \valid_read(filter) && \valid(projected + (0 .. GOE_STATES - 1)); */
-float goe_disc_condition(const goe_filter_t *filter, float skew_variance, float projected[GOE_STATES]);
+/* What the condition leaves open: the obstacle may be no disc. */
+typedef struct {
+    float skew_variance;
+    float spread; /* one sigma of the skew that is left out, by how likely it is that it is no disc */
+} goe_disc_doubt_t;
 
-/* Of the skew, on which the condition is. */
-/*@ requires \valid_read(filter); */
-float goe_disc_skew_variance(const goe_filter_t *filter);
+/* (R40), of the latest image; the shape's place and width learn of it. asked: the settings ask for a disc, and it is one. */
+/*@ requires \valid_read(filter) && \valid(shape); */
+goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t camera_m, goe_shape_t *shape);
+
+/* The same condition on a derivative in terms of independent unit errors (goe_srif_project). Returns what it moves the quantity
+ * by, one sigma, if the obstacle is no disc. */
+/*@ requires \valid_read(filter) && \valid_read(doubt) && \valid(projected + (0 .. GOE_STATES - 1)); */
+float goe_disc_condition(const goe_filter_t *filter, const goe_disc_doubt_t *doubt, float projected[GOE_STATES]);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 #include "refined/goe_mover.h"
 
@@ -27,6 +28,12 @@ void goe_filter_clear(goe_filter_t *filter) {
 }
 
 void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase) {
+    goe_answer_t *answer = &filter->answer;
+    if (phase == GOE_PHASE_NONE) { /* a filter that starts again knows no size at first; the answer before it did */
+        answer->least_m = goe_larger(answer->least_m, answer->reach_m);
+        answer->previous = true;
+    }
+    answer->outdated = true;
     filter->phase = (uint8_t)phase;
     filter->phase_images = 0;
     filter->known = 0;

@@ -122,6 +122,14 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 /*@ requires \valid(filter) && \valid_read(motion); */
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);
 
+/* The camera since the filter's start in the latest image that gave rows, the state's axes, m: what images have shown, they have shown
+ * up to there. */
+/*@ requires \valid_read(filter); */
+static inline goe_xz_t goe_filter_measured(const goe_filter_t *filter) {
+    const goe_xz_t camera_m = {filter->measured.dx_m, filter->measured.dz_m};
+    return camera_m;
+}
+
 /* Seconds since the filter's start; at most 4000. */
 /*@ requires \valid_read(filter) && \valid_read(motion); */
 float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motion);

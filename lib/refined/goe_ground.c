@@ -7,10 +7,11 @@
 
 #if GOE_WITH_REFINED
 
-#define GROWN 1.0e-3f   /* of the information of the heights: less waits for more */
-#define NARROW 0.95f    /* of ground_scale: told too well */
-#define WIDE 1.05f      /* ... not well enough */
-#define SCALE_MIN 0.05f /* a smaller one counts as this */
+#define UNKNOWN_SD_M 1.0e3f /* of a height that was not set */
+#define GROWN 1.0e-3f       /* of the information of the heights: less waits for more */
+#define NARROW 0.95f        /* of ground_scale: told too well */
+#define WIDE 1.05f          /* ... not well enough */
+#define SCALE_MIN 0.05f     /* a smaller one counts as this */
 
 /* ----------------------------------------------------------------------------------------------------------- readings -- */
 
@@ -46,12 +47,13 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
         return; /* points alone take each image's height as it is */
     }
     const float down_m = camera_down_m(view);
+    const bool lacks_height = goe_ground_lacks_height(view->image);
     if (!filter->has_datum) {
         datum->ground_m = view->motion->height_m + down_m;
-        datum->sd_m = view->image->noise.height_m;
+        datum->sd_m = lacks_height ? UNKNOWN_SD_M : view->image->noise.height_m;
         filter->has_datum = true;
     }
-    if (white) {
+    if (white && !lacks_height) {
         average(datum, filter->phase != GOE_PHASE_NONE, down_m, view->motion->height_m);
     }
     datum->height_m = datum->ground_m - down_m;

@@ -2,12 +2,19 @@
 #ifndef GOE_GROUND_H
 #define GOE_GROUND_H
 
+#include "maths/goe_scalar.h"
 #include "refined/goe_filter.h"
 #include "refined/goe_observation.h"
 
 /* Takes an image's height, and what down has changed by. Upright boxes count by it, and heights with a white error do. */
 /*@ requires \valid(filter) && \valid_read(navigation) && goe_view_is_open(view); */
 void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view);
+
+/* Whether an image with a box comes without a height: nobody flies at exactly 0, and a field that was not set is 0. */
+/*@ requires \valid_read(image); */
+static inline bool goe_ground_lacks_height(const goe_image_t *image) {
+    return image->box.seen != 0 && goe_magnitude(image->pose.height_m) == 0u;
+}
 
 /* Whether the height moves by the changes of down. */
 /*@ requires \valid_read(filter) && \valid_read(navigation); */

@@ -90,7 +90,8 @@ static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const
     obs->side_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.box_px);
     obs->height_sd_m = given_or(obs->height_sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_m);
     if (navigation->height_white_m > 0.0f) {
-        const float readings = (float)filter->datum.readings;
+        const float readings =
+            filter->datum.readings > 0 ? (float)filter->datum.readings : 1.0f; /* none without a height */
         obs->height_m = filter->datum.height_m;
         obs->height_sd_m = sqrtf(goe_square(obs->height_sd_m) + goe_square(navigation->height_white_m) / readings);
     }
@@ -302,7 +303,9 @@ void goe_rows_end(goe_rows_t *rows, const goe_observation_t *obs) {
     for (size_t i = 0; i < rows->count; i++) {
         turn_attitude(rows->matrix->row[i], obs->body_to_axes);
     }
-    memset(rows->matrix->row[rows->count], 0, (GOE_ROWS_MAX - rows->count) * sizeof rows->matrix->row[0]);
+    for (size_t i = rows->count; i < GOE_ROWS_MAX; i++) {
+        memset(rows->matrix->row[i], 0, sizeof rows->matrix->row[i]);
+    }
 }
 
 #endif

@@ -23,6 +23,7 @@ typedef struct {
     float point_px, side_px; /* ... of a point, and of a box's side */
     float outline_share;     /* one sigma of left, right and top beyond the pixel noise, of their width */
     float position_sd; /* prism: one sigma of the image's own position error, m, with what the uncertain range adds */
+    float range_variance; /* of GOE_INVERSE_RANGE */
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;       /* box: both were seen, its length is estimated */
     bool base;            /* both outer base corners are seen */

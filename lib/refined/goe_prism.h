@@ -47,4 +47,9 @@ void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 /*@ requires \valid_read(filter) && \valid(shape); */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
+/* What the width and the height are uncertain by as the footprint is no ellipse across the first line of sight, (R41): unless a disc
+ * was asked for. camera_m: since the filter's start. */
+/*@ requires \valid_read(filter) && \valid(shape); */
+void goe_prism_doubt(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape);
+
 #endif

@@ -12,6 +12,7 @@
 #include "refined/goe_gate.h"
 #include "refined/goe_model.h"
 #include "refined/goe_mover.h"
+#include "refined/goe_prism.h"
 #include "refined/goe_scatter.h"
 
 #if GOE_WITH_REFINED
@@ -22,6 +23,7 @@
 #define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
 #define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
 #define PATH_MIN_M 0.1f
+#define RANGE_MIN_M 1.0f
 #define METRES_MAX 1.0e6f
 
 static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION && quantity <= GOE_LENGTH; }
@@ -65,6 +67,16 @@ static float early_variance(const goe_filter_t *filter, const goe_navigation_t *
     return goe_square(navigation->velocity_bias_m_s * s) + goe_square(navigation->position_walk_m) * s;
 }
 
+/* The roof's corner that the top is over stands beside the middle; seen from above or from below it seems lower or higher, by the
+ * tangent of that angle, which from nearby is taken as its sine. */
+/*@ requires \valid_read(motion) && \valid_read(shape); */
+static float top_variance(const goe_motion_t *motion, drift_t drift, const goe_shape_t *shape) {
+    const float x_m = shape->middle.at.x * shape->scale_m - drift.camera_m.x;
+    const float z_m = shape->middle.at.z * shape->scale_m - drift.camera_m.z;
+    const float below2_m2 = goe_square(motion->height_m - shape->quantity[GOE_HEIGHT].value);
+    return shape->roof_m2 * below2_m2 / goe_larger(x_m * x_m + z_m * z_m + below2_m2, goe_square(RANGE_MIN_M));
+}
+
 /*@ requires \valid_read(motion) && \valid_read(shape) && 0 <= quantity < GOE_QUANTITIES; */
 static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe_shape_t *shape, bool box,
                             int quantity) {
@@ -78,7 +90,9 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
         case GOE_ORIENTATION:
             return box ? share2 : 0.0f;
         case GOE_HEIGHT:
-            return share2 * goe_larger(goe_square(value), goe_square(value - motion->height_m));
+            return share2 * goe_larger(goe_square(value), goe_square(value - motion->height_m)) + shape->top_m2;
+        case GOE_WIDTH:
+            return share2 * goe_square(value) + shape->width_m2;
         default:
             return share2 * goe_square(value);
     }
@@ -88,8 +102,8 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 
 /* What an answer is less certain by than the filter. */
 typedef struct {
-    float scatter;       /* factor on the variance of what it found, (R34) */
-    float skew_variance; /* of a disc: its condition's */
+    float scatter; /* factor on the variance of what it found, (R34) */
+    goe_disc_doubt_t doubt;
 } widening_t;
 
 /* Derivatives become those in terms of independent unit errors: their squared norm is the variance. Returns what the condition
@@ -97,7 +111,7 @@ typedef struct {
 /*@ requires \valid_read(filter) && \valid_read(wider) && \valid(by + (0 .. GOE_STATES - 1)); */
 static float project(const goe_filter_t *filter, const widening_t *wider, float by[GOE_STATES]) {
     goe_srif_project(&filter->inverse, by);
-    return filter->phase == GOE_PHASE_DISC ? goe_disc_condition(filter, wider->skew_variance, by) : 0.0f;
+    return filter->phase == GOE_PHASE_DISC ? goe_disc_condition(filter, &wider->doubt, by) : 0.0f;
 }
 
 /*@ requires \valid_read(a + (0 .. GOE_STATES - 1)) && \valid_read(b + (0 .. GOE_STATES - 1)); */
@@ -250,6 +264,12 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
+/* What is no ellipse adds to a prism's sigmas. */
+/*@ requires \valid_read(shape); */
+static float doubt_of(const goe_shape_t *shape, int quantity) {
+    return quantity == GOE_WIDTH ? shape->width_m2 : (quantity == GOE_HEIGHT ? shape->top_m2 : 0.0f);
+}
+
 /* What the scatter adds widens the sigmas; what is known is decided without it, as doubt must
  * not silence an answer. */
 /*@ requires \valid_read(filter) && \valid_read(motion) && \valid(shape) && \valid_read(wider) && \valid(q); */
@@ -263,12 +283,15 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
         float moved;
         const float found = (variance_of(filter, wider, shape->quantity[i].by, &moved) + beside_dot(&beside, &beside)) *
                             (depends_on_corner(i) ? shape->early : 1.0f);
-        const float told =
-            drift_variance(motion, drift, shape, q->box, i) +
-            goe_box_outline_variance(filter, shape, drift.camera_m, i, goe_square(q->worked_out[GOE_ORIENTATION]));
+        float turns; /* with the orientation, whose own sigma comes first */
+        const float told = drift_variance(motion, drift, shape, q->box, i) +
+                           goe_box_outline_variance(filter, shape, drift.camera_m, i, &turns);
         q->value[i] = shape->quantity[i].value;
-        q->sigma[i] = sqrtf(wider->scatter * found + told + moved * moved);
-        q->worked_out[i] = sqrtf((q->prism ? goe_larger(found - unseen, 0.0f) : found) + told);
+        q->sigma[i] =
+            sqrtf(wider->scatter * found + told + turns * goe_square(q->sigma[GOE_ORIENTATION]) + moved * moved);
+        const float unasked = q->prism ? unseen + doubt_of(shape, i) : 0.0f;
+        q->worked_out[i] =
+            sqrtf(goe_larger(found + told + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - unasked, 0.0f));
     }
 }
 
@@ -333,11 +356,21 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 #endif
 }
 
-/*@ requires \valid_read(filter) && \valid_read(settings); */
-static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *settings) {
+/* What the answer is less certain by; of a disc its shape learns of it, too. */
+/*@ requires \valid_read(filter) && \valid_read(settings) && \valid_read(motion) && \valid(shape); */
+static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                              drift_t drift, goe_shape_t *shape) {
     widening_t wider;
     wider.scatter = goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
-    wider.skew_variance = filter->phase == GOE_PHASE_DISC ? goe_disc_skew_variance(filter) : 0.0f;
+    wider.doubt.skew_variance = 0.0f;
+    wider.doubt.spread = 0.0f;
+    if (filter->phase == GOE_PHASE_DISC) {
+        wider.doubt = goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape);
+    }
+    if (filter->phase == GOE_PHASE_PRISM && settings->model != GOE_MODEL_DISC) {
+        goe_prism_doubt(filter, goe_filter_measured(filter), shape);
+    }
+    shape->top_m2 = shape->roof_m2 > 0.0f ? top_variance(motion, drift, shape) : 0.0f;
     return wider;
 }
 
@@ -347,13 +380,14 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     goe_shape_t shape;
     q->now = 0;
     q->known = 0;
+    q->sigma[GOE_ORIENTATION] = 0.0f;
     q->worked_out[GOE_ORIENTATION] = 0.0f;
     goe_model_shape(filter, &shape);
     if (!(filter->state[GOE_INVERSE_RANGE] > 0.0f) || !(shape.scale_m > 0.0f)) {
         return;
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
-    const widening_t wider = widening_of(filter, settings);
+    const widening_t wider = widening_of(filter, settings, motion, drift, &shape);
     q->early_m2 = early_variance(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
     q->prism = filter->phase == GOE_PHASE_PRISM;
@@ -382,7 +416,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         shape.quantity[GOE_HEIGHT].by[GOE_GROUND] = 0.0f;
         shape.quantity[GOE_HEIGHT].by[GOE_INVERSE_RANGE] += shape.datum_by_range;
     }
-    const widening_t wider = widening_of(filter, settings);
+    const widening_t wider = widening_of(filter, settings, motion, drift, &shape);
     const float scatter = sqrtf(wider.scatter);
     const float early = sqrtf(shape.early) * scatter;
     const float elapsed_s = since_start_s(filter, motion) + ahead_s;
@@ -407,8 +441,9 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         if (i <= GOE_Z0 && !from_datum) { /* the camera now has no part in it */
             covariance[i][i] += early_variance(filter, &settings->navigation, motion);
         }
-        covariance[i][i] +=
-            goe_box_outline_variance(filter, &shape, drift.camera_m, i, covariance[GOE_ORIENTATION][GOE_ORIENTATION]);
+        float turns;
+        covariance[i][i] += goe_box_outline_variance(filter, &shape, drift.camera_m, i, &turns);
+        covariance[i][i] += turns > 0.0f ? turns * covariance[GOE_ORIENTATION][GOE_ORIENTATION] : 0.0f;
     }
 }
 

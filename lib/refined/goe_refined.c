@@ -27,6 +27,9 @@
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
+#define AGREE_SIGMA 3.0f       /* within which two answers say the same */
+#define STANDS_S 3.0f          /* since the new start, for which the answer before it may stand */
+#define REACH_MAX_M 1.0e6f     /* as all positions */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
@@ -93,10 +96,10 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
 /* ------------------------------------------------------------------------------------------------------------- update -- */
 
 /* (R15): what linearising at an uncertain range may miss, the second order of 1/Z. */
-/*@ requires \valid_read(filter) && goe_observation_is_open(obs) && goe_rows_hold(rows); */
-static void allow_for_curvature(const goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+/*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows); */
+static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) {
     const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
-    const float missed = obs->camera_m.z * goe_filter_variance(filter, GOE_INVERSE_RANGE) / ahead;
+    const float missed = obs->camera_m.z * obs->range_variance / ahead;
     for (size_t i = 0; i < rows->count; i++) {
         rows->variance[i] += goe_square(rows->matrix->row[i][GOE_STATE_COLUMN + GOE_INVERSE_RANGE] * missed);
     }
@@ -114,7 +117,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
 #if GOE_BESIDE
     goe_mover_columns(obs, &rows);
 #endif
-    allow_for_curvature(filter, obs, &rows);
+    allow_for_curvature(obs, &rows);
     goe_model_recall(filter, obs, &rows);
     *verdict = goe_gate_apply(obs->settings, filter, &rows);
     goe_scatter_take(&filter->scatter, &rows);
@@ -123,6 +126,9 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
         goe_health_take_refused(&filter->health, *verdict);
         return false;
     }
+    filter->answer.outdated = true;
+    filter->measured.dx_m = obs->camera_m.x;
+    filter->measured.dz_m = obs->camera_m.z;
     verdict->rows += goe_ground_tell(filter, obs, &rows);
     const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
@@ -146,8 +152,8 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 /*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs); */
 static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
-    const float relative2 =
-        goe_filter_variance(filter, GOE_INVERSE_RANGE) / goe_square(filter->state[GOE_INVERSE_RANGE]);
+    obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
+    const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
         const bool same = filter->camera == obs->number; /* what was alike in one camera says nothing of another */
         obs->fade = same && detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
@@ -232,7 +238,74 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     note_time(filter, since_s, &obs);
     let_time_pass(filter, &settings->navigation, since_s, view->motion->time_us);
     goe_observation_linearise(&obs);
-    return !goe_model_change(filter, &obs) && use_image(filter, &obs, since_s);
+    if (view->seen && goe_model_change(filter, &obs)) { /* an image without a feature changes nothing but the time */
+        filter->answer.outdated = true;
+        return false;
+    }
+    return use_image(filter, &obs, since_s);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- answer -- */
+
+/* Half of the extent about the reference point as far as it is seen, m, also while the width is not valid. */
+/*@ requires \valid_read(filter); */
+static float reach_of(const goe_filter_t *filter) {
+    const float *x = filter->state;
+    if (filter->phase == GOE_PHASE_PRISM) {
+        return x[GOE_PRISM_HALF] / x[GOE_INVERSE_RANGE];
+    }
+    const float side = goe_filter_is_box(filter) ? goe_absolute(x[GOE_SIDE_X]) : 0.0f;
+    return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
+}
+
+/* One coordinate of the place. */
+typedef struct {
+    float value, sigma;
+} place_t;
+
+/*@ requires \valid_read(now) && \valid_read(before); */
+static bool agrees(const place_t *now, const place_t *before, float reach_m) {
+    const float sigma = sqrtf(goe_square(now->sigma) + goe_square(before->sigma));
+    return goe_absolute(now->value - before->value) <= AGREE_SIGMA * sigma + reach_m;
+}
+
+/* Whether the answer from before a new start of the filter stands: the new one says the same, and knows it less well. One that
+ * disagrees, or that is of an obstacle that moves, takes over; after some seconds any does. */
+/*@ requires \valid_read(filter) && \valid_read(motion) && \valid_read(quantities) && \valid_read(estimate); */
+static bool previous_stands(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
+                            const goe_estimate_t *estimate) {
+    const place_t now[2] = {{quantities->value[GOE_X0], quantities->sigma[GOE_X0]},
+                            {quantities->value[GOE_Z0], quantities->sigma[GOE_Z0]}};
+    const place_t before[2] = {{estimate->x0_m, estimate->sigma.x_m}, {estimate->z0_m, estimate->sigma.z_m}};
+    const bool answered = (estimate->valid & GOE_HAS_POSITION) != 0u && !quantities->moves && estimate->z_m > 0.0f &&
+                          goe_filter_elapsed_s(filter, motion) < STANDS_S;
+    const float reach_m = filter->answer.reach_m;
+    return answered && (filter->answer.previous != 0u) &&
+           goe_square(now[0].sigma) + goe_square(now[1].sigma) >
+               goe_square(before[0].sigma) + goe_square(before[1].sigma) &&
+           agrees(&now[0], &before[0], reach_m) && agrees(&now[1], &before[1], reach_m);
+}
+
+/* Keeps what goe_hazard() needs of an answer when no new one follows. */
+/*@ requires \valid(filter) && \valid_read(navigation); */
+static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation, unsigned valid) {
+    goe_answer_t *answer = &filter->answer;
+    const float reach_m = reach_of(filter);
+    answer->least_m = (valid & GOE_HAS_WIDTH) != 0u ? 0.0f : answer->least_m;
+    if (goe_within(reach_m, REACH_MAX_M)) {
+        answer->reach_m = goe_larger(reach_m, answer->least_m);
+    }
+    answer->height_bias_m = filter->state[GOE_GROUND] / filter->state[GOE_INVERSE_RANGE];
+    answer->steady = goe_ground_is_steady(filter, navigation);
+    answer->outdated = false;
+    answer->previous = false;
+}
+
+/* Whether a position lies behind the camera, with all of its extent, in an image that shows the obstacle ahead. */
+/*@ requires \valid_read(filter) && \valid_read(quantities) && \valid_read(motion); */
+static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quantities, const goe_motion_t *motion) {
+    const float reach_m = reach_of(filter) + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f);
+    return quantities->value[GOE_Z0] - motion->dz_m < -reach_m;
 }
 
 bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
@@ -240,7 +313,19 @@ bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_quantities_t quantities;
     goe_quantities_find(filter, settings, motion, &quantities);
     filter->known = (uint8_t)quantities.now;
-    return goe_report_quantities(&quantities, motion, estimate);
+    const bool placed = (quantities.now & GOE_HAS_POSITION) != 0u; /* otherwise nothing else of them need be set */
+    if (placed && lies_behind(filter, &quantities, motion)) {
+        goe_filter_enter(filter, GOE_PHASE_NONE);
+        return false;
+    }
+    if (placed && previous_stands(filter, motion, &quantities, estimate)) {
+        return false;
+    }
+    const bool fresh = goe_report_quantities(&quantities, motion, estimate);
+    if (fresh) {
+        keep_answer(filter, &settings->navigation, estimate->valid);
+    }
+    return fresh;
 }
 
 #endif

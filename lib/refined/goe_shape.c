@@ -1,9 +1,14 @@
 /* What all models' quantities have alike. SPDX-License-Identifier: MIT */
 #include "refined/goe_shape.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "maths/goe_scalar.h"
+
 #if GOE_WITH_REFINED
+
+#define RANGE_MIN 1.0e-3f /* units of Z0 */
 
 void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]) {
     by[GOE_BEARING] = by_x * scale_m;
@@ -34,6 +39,14 @@ void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], cons
     height->by[GOE_GROUND] = scale_m;
     height->by[GOE_TOP] = scale_m;
     shape->datum_by_range = x[GOE_GROUND] * scale_m * scale_m;
+}
+
+float goe_shape_turned(const goe_filter_t *filter, goe_xz_t camera_m) {
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float a = filter->state[GOE_BEARING];
+    const float x = a - camera_m.x * q;
+    const float z = 1.0f - camera_m.z * q;
+    return (x - a * z) / (goe_larger(sqrtf(x * x + z * z), RANGE_MIN) * sqrtf(1.0f + a * a));
 }
 
 void goe_shape_line(const goe_filter_t *filter, const float x[GOE_STATES], goe_shape_t *shape) {

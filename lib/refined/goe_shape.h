@@ -5,6 +5,9 @@
 
 #include "refined/goe_filter.h"
 
+/* Of the width by which the middle of what is no disc may lie beside the centre of the obstacle. */
+#define GOE_PLACE_SHARE 0.4f
+
 /* A quantity and its derivatives by the states. */
 typedef struct {
     float value;
@@ -28,7 +31,10 @@ typedef struct {
     goe_spot_t middle;    /* of the base */
     goe_xz_t length_axis; /* unit vector, T axes; along the edge that is reported as side */
     float scale_m;        /* Z0: the unit of the state */
-    float place_m2;       /* variance of the centre beyond that of the state */
+    float place_m2;       /* variance of the centre beyond that of the state, along X as along Z ... */
+    float width_m2;       /* ... of the width ... */
+    float roof_m2;        /* ... of the place of the roof's point that the top is over ... */
+    float top_m2;         /* ... and, for that, of the height */
     float
         datum_by_range; /* what the height above the altimeter's zero changes by with 1/Z0, beyond the height itself */
     float early;        /* factor on the variance of orientation, width and length, see goe_box_shape() */
@@ -44,6 +50,10 @@ void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by
     requires \valid(shape); */
 void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], const goe_spot_t *reference,
                      goe_shape_t *shape);
+
+/* Sine of what the line of sight has turned by since the filter's start. camera_m: the camera since then (goe_filter_camera). */
+/*@ requires \valid_read(filter); */
+float goe_shape_turned(const goe_filter_t *filter, goe_xz_t camera_m);
 
 /* ... and of a disc or a chord: the width, and the middle, which is the reference point. */
 /*@ requires \valid_read(filter) && \valid_read(x + (0 .. GOE_STATES - 1)) && \valid(shape); */

@@ -221,6 +221,8 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
     return sum;
 }
 
+GOE_STATIC_ASSERT(GOE_UNWEIGHTED == 3, as_many_elements_of_a_column_are_left_0);
+
 /* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column beside the state the first GOE_UNWEIGHTED elements, which
  * no quantity depends on, are left 0. */
 /*@ requires \valid_read(root) && \valid(inverse) && first <= GOE_STATES; */
@@ -229,7 +231,11 @@ static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t 
     float *v = &inverse->element[goe_inverse_column(first)];
     for (size_t j = first; j < count; j++) {
         const size_t top = j < GOE_STATES ? 0 : GOE_UNWEIGHTED;
-        memset(v, 0, top * sizeof v[0]);
+        if (top > 0) { /* written out: the compiler would call memset() for every column */
+            v[0] = 0.0f;
+            v[1] = 0.0f;
+            v[2] = 0.0f;
+        }
         v[j] = 1.0f / root->element[goe_srif_row(j) + j];
         for (size_t i = j; i-- > top;) {
             const float *r = &root->element[goe_srif_row(i)];
@@ -306,13 +312,15 @@ float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight
 }
 
 #if GOE_BESIDE
+GOE_STATIC_ASSERT(GOE_BESIDE == 3, what_is_added_beside_the_state_is_cleared_by_three_writes);
+
 /* Written out, as above. */
 void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
                      float part[GOE_BESIDE]) {
     const size_t count = goe_inverse_beside(inverse);
-    for (size_t j = count; j < GOE_BESIDE; j++) {
-        part[j] = 0.0f;
-    }
+    part[0] = 0.0f;
+    part[1] = 0.0f;
+    part[2] = 0.0f;
     for (size_t j = 0; j < count; j++) {
         const float *v = &inverse->element[goe_inverse_column(GOE_STATES + j)];
         float sum = weight[3] * v[3] + weight[4] * v[4] + weight[5] * v[5] + weight[6] * v[6] + weight[7] * v[7] +

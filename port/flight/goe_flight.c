@@ -199,7 +199,7 @@ static void advance(goe_flight_t *flight, uint32_t time_us) {
 static void lose_everything(goe_flight_t *flight) {
     goe_flight_history_clear(&flight->history);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        goe_flight_slot_reset(&flight->slot[i]);
+        goe_flight_slot_lose(&flight->slot[i]);
     }
     goe_flight_count(&flight->counters.lost);
 }
@@ -272,18 +272,34 @@ static bool has_bad_delta(const goe_flight_t *flight, const goe_flight_position_
     return changed && p->reset_delta_known && !goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M);
 }
 
+/* How far the position lies from where the velocity would have led it: an unknown jump, as near as that can be known. What is kept of
+ * the obstacles moves along. */
+static void guess_jump(const goe_flight_t *flight, const goe_flight_position_t *sample, float jump_ned_m[3]) {
+    const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
+    for (int i = 0; newest && i < 3; i++) {
+        const float s = goe_flight_between_s(sample->time_us, newest->time_us);
+        jump_ned_m[i] = sample->position_ned_m[i] - newest->ned_m[i] - s * flight->velocity_ned_m_s[i];
+    }
+}
+
+static void move_places(goe_flight_t *flight, const float jump_ned_m[3]) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        goe_flight_slot_shift(&flight->slot[i], jump_ned_m);
+    }
+    goe_flight_reaction_shift(&flight->reaction, jump_ned_m);
+}
+
 static void follow_reset(goe_flight_t *flight, const goe_flight_position_t *sample) {
     float jump_ned_m[3] = {0.0f, 0.0f, 0.0f};
     const bool counters = !(flight->settings.resets > 0.5f);
     const goe_flight_marks_change_t change = goe_flight_marks_position(&flight->marks, sample, counters, jump_ned_m);
     if (change == GOE_FLIGHT_MARKS_UNKNOWN) {
+        guess_jump(flight, sample, jump_ned_m);
+        move_places(flight, jump_ned_m);
         lose_everything(flight);
     } else if (change == GOE_FLIGHT_MARKS_JUMP) {
         goe_flight_history_shift(&flight->history, jump_ned_m);
-        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-            goe_flight_slot_shift(&flight->slot[i], jump_ned_m);
-        }
-        goe_flight_reaction_shift(&flight->reaction, jump_ned_m);
+        move_places(flight, jump_ned_m);
         goe_flight_count(&flight->counters.resets);
     }
 }
@@ -439,10 +455,11 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
         return status;
     }
     flight->clock = clock;
-    flight->had_frame = (uint8_t)(flight->had_frame | 1u << frame->camera);
-    flight->frame_us[frame->camera] = (uint32_t)flight->base_us;
     flight->capture_us = view.time_us;
-    goe_flight_table_take(flight, &view, frame);
+    if (goe_flight_table_take(flight, &view, frame)) {
+        flight->had_frame = (uint8_t)(flight->had_frame | 1u << frame->camera);
+        flight->frame_us[frame->camera] = (uint32_t)flight->base_us;
+    }
     goe_flight_count(&flight->counters.taken);
     return GOE_FLIGHT_OK;
 }
@@ -487,6 +504,15 @@ static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
         alive = alive && (camera_alive(flight, i, now_us) || !has_camera(flight, i));
     }
     return alive;
+}
+
+/* What was dead once stays so until it gives a sign again: times of half an hour ago would look like times to come. */
+static void bury(goe_flight_t *flight, uint32_t now_us) {
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        if (!camera_alive(flight, i, now_us)) {
+            flight->had_frame = (uint8_t)(flight->had_frame & ~(1u << i));
+        }
+    }
 }
 
 static void copy_hazard(const goe_flight_slot_t *slot, goe_hazard_t *hazard) {
@@ -542,6 +568,7 @@ goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, boo
     const uint32_t now = past ? (uint32_t)flight->base_us : now_us;
     find_own(flight, now, &own);
     own.approach = approach;
+    bury(flight, now);
     catch_up(flight, now);
     const int worst = goe_flight_lookout_assess(flight, now);
     flight->assessed_us = now;

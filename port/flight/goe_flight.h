@@ -26,9 +26,9 @@
  *             assessment say GOE_FLIGHT_CORRUPTED. An estimator that says GOE_CORRUPTED begins anew, with the settings of another slot
  *             if its own are lost; until it knows a position again the slot keeps place and hazard, suspect, so that no warning is
  *             silenced. What else is kept here (poses, clocks, places, the order that stands) is not sealed.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 44,000 for each obstacle in it, an assessment
- *             22,800 for each obstacle with a position, goe_flight_obstacle() 640, goe_flight_sectors() 6,600, goe_flight_init()
- *             12,300 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 44,700 for each obstacle in it, an assessment
+ *             23,200 for each obstacle with a position, goe_flight_obstacle() 640, goe_flight_sectors() 6,600, goe_flight_init()
+ *             12,350 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changed nothing but counters.
  */
 #ifndef GOE_FLIGHT_H
@@ -96,7 +96,8 @@ typedef struct {
     float score_min;      /* a detection of less is not looked at; 0 to 1; 0.3 */
     float confirm_images; /* images, at most 1 s apart, that a new obstacle must be seen in before it gets a slot; 1 to 20; 3 */
     float alive_s;        /* without a frame for this long the detector counts as dead; 0.05 to 60; 1 */
-    float forget_s;       /* an obstacle that was not seen for this long is given up; 1 to 600; 10 */
+    float forget_s;       /* an obstacle that was not seen for this long is given up, unless it stands ahead on the course or an order
+                             is about it; 1 to 600; 10 */
     /* time */
     float delay_s;     /* least time from sending to arrival, which no one-way clock can see; 0 to 0.5; 0.005 */
     float delay_sd_s;  /* its one-sigma, and that of any capture time whose sender tells none; 0 to 0.5; 0.005 */
@@ -130,7 +131,8 @@ typedef struct {
 typedef struct {
     uint32_t time_us; /* of the sample itself (PX4: timestamp_sample), not of its arrival; increasing */
     float q[4];       /* w, x, y, z; norm 1 within 1 % */
-    uint32_t reset;   /* mark: changes with every reset of attitude or heading. Any such reset ends all tracks */
+    uint32_t reset;   /* mark: changes with every reset of attitude or heading. Any such reset ends all tracks, as an unknown
+                         reset of the position does: obstacles are kept, suspect, until an image places them again */
 } goe_flight_attitude_t;
 
 typedef struct {
@@ -144,8 +146,11 @@ typedef struct {
     bool origin_known;                  /* the origin of NED, for latitude and longitude */
     int32_t origin_lat_e7, origin_lon_e7; /* degrees times 1e7; +-89e7, +-180e7 */
     uint32_t reset_horizontal, reset_vertical; /* marks of resets, see goe_flight_settings_t.resets */
-    bool reset_delta_known;             /* else any reset is an unknown one: ends all tracks, empties the history */
-    float reset_delta_ned_m[3];         /* new minus old of the latest reset of each; read when a mark changed */
+    bool reset_delta_known;             /* else any reset is an unknown one: ends all tracks, empties the history. What is kept of the
+                                           obstacles moves along as far as the velocity shows the jump */
+    float reset_delta_ned_m[3];         /* new minus old of the latest reset of each; read when a mark changed. Down: the
+                                           ground of every track moves along, whether height_m jumped or not, so that no height
+                                           above ground changes. A track that begins later has the ground of its own sample */
 } goe_flight_position_t;
 
 /* Clock of goe_flight_frame_t.capture_us. */
@@ -197,7 +202,8 @@ typedef struct {
     goe_flight_action_t action;
     bool late;             /* the action needs longer than there is: it may not suffice */
     bool suspect;          /* the worst obstacle's estimate is: margins were widened */
-    bool detector_alive;   /* a frame came within alive_s, of every camera */
+    bool detector_alive;   /* within alive_s, of every camera, a frame came that can be read: without detections, or with one of good
+                              numbers. Once false, false until the next such frame */
     bool pose_alive;       /* samples of attitude and position came within 0.5 s */
     int8_t worst;          /* slot, for goe_flight_obstacle(); -1: no hazard is known, which is "clear" only if both are alive */
     int8_t avoided;        /* slot of the obstacle that the action is about; -1: none, or it was given up */

@@ -8,7 +8,7 @@
 #include "goe_slot.h"
 
 #define URGENCY_PER_S 0.1f /* 10 s of time halve the weight of a violation */
-#define DISTANCE_MAX_M 1.0e4f
+#define ANY_TIME_S 1.0e4f
 #define VELOCITY_MAX_M_S 1.0e3f
 #define SINCE_MAX_S 1.0e3f
 
@@ -20,10 +20,8 @@ float goe_flight_lookout_age_s(const goe_flight_slot_t *slot, uint32_t now_us) {
     return slot->age_s + goe_flight_larger(goe_flight_between_s(now_us, slot->taken_us), 0.0f);
 }
 
-/* What is older than an image that comes in time. */
 float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us) {
-    const float old_s = goe_flight_lookout_age_s(slot, now_us) - flight->settings.delay_max_s;
-    return flight->settings.drift_m_s * goe_flight_larger(old_s, 0.0f);
+    return flight->settings.drift_m_s * goe_flight_lookout_age_s(slot, now_us);
 }
 
 /* The hazard as it was, nearer by what has passed. */
@@ -32,31 +30,39 @@ static void count_down(const goe_flight_t *flight, goe_flight_slot_t *slot, uint
     slot->hazard.time_s = goe_flight_larger(slot->hazard.time_s - passed_s, 0.0f);
 }
 
-static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t now_us) {
+static goe_decision_t decide(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us,
+                             goe_hazard_t *hazard) {
+    const goe_flight_settings_t *settings = &flight->settings;
+    const goe_rule_t rule = {settings->violation_max, ANY_TIME_S, settings->doubt, settings->drift_m_s};
     goe_plan_t plan;
-    goe_hazard_t hazard;
-    const float doubt = goe_flight_lookout_doubt(flight, slot);
-    const float drift_m = goe_flight_lookout_drift_m(flight, slot, now_us);
-    plan.margin_m = goe_flight_smaller(doubt * flight->settings.margin_m + drift_m, DISTANCE_MAX_M);
-    plan.clearance_m = goe_flight_smaller(doubt * flight->settings.clearance_m + drift_m, DISTANCE_MAX_M);
+    memset(&plan, 0, sizeof plan);
+    plan.margin_m = settings->margin_m;
+    plan.clearance_m = settings->clearance_m;
     plan.since_image_s = goe_flight_clamped(goe_flight_between_s(now_us, slot->taken_us), 0.0f, SINCE_MAX_S);
     for (int i = 0; i < 3; i++) {
         plan.velocity_ned_m_s[i] = goe_flight_clamped(flight->velocity_ned_m_s[i], -VELOCITY_MAX_M_S, VELOCITY_MAX_M_S);
     }
-    const bool placed = slot->used && (slot->valid & GOE_HAS_POSITION) != 0u;
-    const goe_status_t status = placed ? goe_hazard(&slot->estimator, &plan, &hazard) : GOE_COLLECTING;
-    if (placed && (status == GOE_CORRUPTED || status == GOE_NOT_INITIALISED)) {
+    return goe_decide(&slot->estimator, &plan, &rule, hazard);
+}
+
+/* The time that an action takes is for the reaction to know; here the rule's distances and probability count. */
+static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t now_us) {
+    goe_hazard_t hazard;
+    if (!slot->used || !(slot->valid & GOE_HAS_POSITION)) {
+        slot->assessed = false;
+        memset(&slot->hazard, 0, sizeof slot->hazard);
+        return;
+    }
+    const goe_decision_t decision = decide(flight, slot, now_us, &hazard);
+    if (decision == GOE_DECISION_KEEP) { /* the estimator's memory is lost */
         goe_flight_slot_lose(slot);
     }
-    if (placed && slot->remembered && status != GOE_OK) {
+    if (slot->remembered) {
         count_down(flight, slot, now_us);
         return;
     }
-    slot->assessed = status == GOE_OK;
-    memset(&slot->hazard, 0, sizeof slot->hazard);
-    if (slot->assessed) {
-        slot->hazard = hazard;
-    }
+    slot->hazard = hazard;
+    slot->assessed = true;
 }
 
 int goe_flight_lookout_assess(goe_flight_t *flight, uint32_t now_us) {

@@ -65,13 +65,6 @@ static float aside_sd_m(const goe_flight_slot_t *slot, const float course_ne[2])
     return sqrtf(goe_flight_larger(variance, 0.0f));
 }
 
-/* By two sigmas too early. What an image tells is the inverse of the time, and to that the sigma belongs: for a small one this is the
- * time less two of it, for one of half the time it is half of the time and not none. */
-static float soonest_s(const goe_hazard_t *hazard) {
-    const float most = hazard->time_s + SURE_SIGMA * hazard->time_sd_s;
-    return most > 0.0f ? hazard->time_s * (hazard->time_s / most) : 0.0f;
-}
-
 /* False: no course to speak of. */
 static bool find_course(const goe_flight_t *flight, encounter_t *e) {
     const float north = flight->velocity_ned_m_s[0];
@@ -104,7 +97,7 @@ static bool meet(const goe_flight_t *flight, const goe_flight_slot_t *slot, cons
     e->has_top = (slot->valid & GOE_HAS_HEIGHT) != 0u;
     e->top_down_m = slot->ground_down_m - slot->top_m - SURE_SIGMA * slot->top_sd_m - doubt * settings->clearance_m;
     e->rise_m = goe_flight_larger(own->ned_m[2] - e->top_down_m, 0.0f);
-    e->soonest_s = soonest_s(&slot->hazard);
+    e->soonest_s = goe_soonest_s(&slot->hazard);
     return true;
 }
 

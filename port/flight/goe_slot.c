@@ -24,13 +24,6 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
     slot->used = slot->fresh_track = true;
 }
 
-void goe_flight_slot_reset(goe_flight_slot_t *slot) {
-    slot->fresh_track = true;
-    slot->valid = 0u;
-    slot->assessed = slot->suspect = slot->remembered = false;
-    memset(&slot->hazard, 0, sizeof slot->hazard);
-}
-
 void goe_flight_slot_lose(goe_flight_slot_t *slot) { slot->fresh_track = slot->suspect = slot->remembered = true; }
 
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot) {
@@ -190,7 +183,8 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     if (status == GOE_CORRUPTED || status == GOE_NOT_INITIALISED) {
         goe_flight_slot_lose(slot);
     }
-    if (status > GOE_NOT_FINITE) {
+    const bool taken = GOE_IMAGE_TAKEN(status) != 0;
+    if (taken) {
         slot->taken_us = view->time_us;
         slot->seen_us = seen ? view->time_us : slot->seen_us;
         slot->reset_count = image.pose.reset_count;

@@ -18,11 +18,8 @@ typedef struct {
 /* A new track begins with the next image. */
 void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_us);
 
-/* An unknown reset of the autopilot's filter: the place means nothing any more, and the track begins anew. */
-void goe_flight_slot_reset(goe_flight_slot_t *slot);
-
-/* The estimator's memory was corrupted: it begins anew with the next image, and until it knows a position again the slot keeps what
- * it knew, suspect. */
+/* An unknown reset of the autopilot's filter, or corrupted memory of the estimator: the track begins again with the next image. Until the
+ * estimator knows a position again the slot keeps place and hazard, suspect. */
 void goe_flight_slot_lose(goe_flight_slot_t *slot);
 
 /* Of the circle about the centre that holds the outline, as far as it is known. */

@@ -38,16 +38,19 @@ static bool is_good(const goe_flight_detection_t *d) {
            is_good_pixel(&d->base_right);
 }
 
-/* What is to be looked at, as bits; the others are counted. */
-static uint32_t usable(goe_flight_t *flight, const goe_flight_frame_t *frame) {
+/* What is to be looked at, as bits; the others are counted. *readable: there is a detection that can be read, or the image has none. */
+static uint32_t usable(goe_flight_t *flight, const goe_flight_frame_t *frame, bool *readable) {
     uint32_t bits = 0u;
+    *readable = frame->number == 0u && frame->count == 0u;
     for (int k = 0; k < frame->count; k++) {
         if (!is_good(&frame->detection[k])) {
             goe_flight_count(&flight->counters.refused);
         } else if (frame->detection[k].score < flight->settings.score_min) {
             goe_flight_count(&flight->counters.weak);
+            *readable = true;
         } else {
             bits |= 1u << k;
+            *readable = true;
         }
     }
     return bits;
@@ -207,8 +210,9 @@ static void give_nothing(goe_flight_t *flight, const goe_flight_slot_view_t *vie
     }
 }
 
-void goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame) {
-    uint32_t waiting = usable(flight, frame);
+bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame) {
+    bool readable;
+    uint32_t waiting = usable(flight, frame, &readable);
     uint32_t taken = 0u;
     give_known(flight, view, frame, &waiting, &taken);
     give_renumbered(flight, view, frame, &waiting, &taken);
@@ -216,6 +220,12 @@ void goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *v
     if (frame->count >= frame->number) {
         give_nothing(flight, view, taken);
     }
+    return readable;
+}
+
+/* An obstacle that stands ahead on the course is not given up, however long it was not seen. */
+static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
+    return slot->assessed && slot->hazard.time_s > 0.0f && slot->hazard.violation >= flight->settings.violation_max;
 }
 
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
@@ -224,7 +234,7 @@ void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
         const float unseen_s = goe_flight_between_s(now_us, slot->seen_us);
         const float most_s = i == flight->reaction.slot ? goe_flight_larger(ORDERED_S, flight->settings.forget_s)
                                                         : flight->settings.forget_s;
-        slot->used = slot->used && unseen_s <= most_s;
+        slot->used = slot->used && (unseen_s <= most_s || is_ahead(flight, slot));
         if (!slot->used && i == flight->reaction.slot) {
             flight->reaction.slot = NOBODY; /* whoever gets the slot next is not what the order is about */
         }

@@ -25,7 +25,8 @@ OWN_BUILD = "CMakeLists.txt"  # ... of the package itself
 TYPES = {
     "goe.h": (
         "goe_status_t", "goe_model_t", "goe_method_t", "goe_pose_t", "goe_pixel_t", "goe_box_t", "goe_image_noise_t",
-        "goe_image_t", "goe_sigma_t", "goe_reason_t", "goe_estimate_t", "goe_plan_t", "goe_hazard_t",
+        "goe_image_t", "goe_sigma_t", "goe_reason_t", "goe_estimate_t", "goe_plan_t", "goe_hazard_t", "goe_rule_t",
+        "goe_decision_t",
     ),
     "goe_python.h": ("goe_python_setting_t", "goe_python_rule_t"),
     "goe_flight.h": (
@@ -37,11 +38,12 @@ TYPES = {
 }  # fmt: skip
 FUNCTIONS = {
     "goe.h": (
-        "goe_update", "goe_covariance", "goe_hazard", "goe_reset", "goe_status_text", "goe_reason_text",
-        "goe_self_check",
+        "goe_update", "goe_covariance", "goe_hazard", "goe_rule_default", "goe_decide", "goe_soonest_s", "goe_reset",
+        "goe_status_text", "goe_reason_text", "goe_self_check",
     ),
     "goe_python.h": (
         "goe_python_setting", "goe_python_camera_settings", "goe_python_init", "goe_python_update",
+        "goe_python_image_taken",
     ),
     "goe_flight.h": (
         "goe_flight_attitude", "goe_flight_position", "goe_flight_pose", "goe_flight_timesync", "goe_flight_frame",

@@ -46,6 +46,7 @@ const CHECKED: &str = "#include \"goe.h\"\n#ifdef GOE_RUST_FLIGHT\n#include \"go
 fn condition(line: &str) -> Option<&'static str> {
     match line {
         "layout! {" => Some("1"),
+        "layout_hazard! {" => Some("GOE_WITH_HAZARD"),
         "layout_flight! {" => Some("defined GOE_RUST_FLIGHT"),
         "layout_flight_32! {" => Some("defined GOE_RUST_FLIGHT && UINTPTR_MAX == 0xFFFFFFFF"),
         "layout_flight_64! {" => Some("defined GOE_RUST_FLIGHT && UINTPTR_MAX > 0xFFFFFFFF"),
@@ -107,6 +108,8 @@ fn constant_assertions(ffi: &str) -> String {
             let name = name.rsplit(' ').next().expect("a name");
             let part = if name.starts_with("GOE_FLIGHT_") {
                 "defined GOE_RUST_FLIGHT"
+            } else if name.starts_with("GOE_DECISION_") {
+                "GOE_WITH_HAZARD"
             } else {
                 "1"
             };
@@ -124,11 +127,11 @@ fn constant_assertions(ffi: &str) -> String {
 /// Bytes of the estimator with these parts. The C compiler says so if they are others.
 fn estimator_bytes() -> usize {
     match (has("window"), has("refined"), has("movers")) {
-        (_, false, _) => 936,
-        (true, true, false) => 2336,
-        (false, true, false) => 1984,
-        (true, true, true) => 2904,
-        (false, true, true) => 2552,
+        (_, false, _) => 944,
+        (true, true, false) => 2368,
+        (false, true, false) => 2016,
+        (true, true, true) => 2936,
+        (false, true, true) => 2584,
     }
 }
 

@@ -5,12 +5,9 @@
 
 #include "approach.h"
 
-/* The rule for going around of the project's README.md. */
+/* The distances of the project's README.md; the rest of the rule is the library's. */
 #define MARGIN_M 15.0f
 #define CLEARANCE_M 10.0f
-#define VIOLATION_MAX 0.1f
-#define CLIMB_S 12.0f
-#define DRIFT_M_S 2.0f
 
 #define NAME(name) #name "\0"
 #define CONTROL(name) CONTROL_##name,
@@ -18,7 +15,7 @@
 enum { LIVE_CONTROLS(CONTROL) CONTROLS };
 enum { LIVE_FIELDS(FIELD) FIELDS };
 
-enum { ORDER_NOTHING_KNOWN, ORDER_CLEAR, ORDER_IN_DOUBT, ORDER_GO_AROUND };
+enum { ORDER_NOTHING_KNOWN, ORDER_CLEAR, ORDER_IN_DOUBT, ORDER_GO_AROUND, ORDER_UNCERTAIN };
 
 #define TEXT_OF(number) #number
 #define TEXT(number) TEXT_OF(number)
@@ -175,23 +172,26 @@ static void report_estimate(void) {
 
 /* ------------------------------------------------------------------------------------------------------------- hazard -- */
 
-static int order_of(const goe_hazard_t *hazard) {
-    if (hazard->violation <= VIOLATION_MAX) {
-        return ORDER_CLEAR;
+/* Only "clear" ends an order to go around. */
+static int order_of(goe_decision_t decision, const goe_rule_t *rule, const goe_hazard_t *hazard) {
+    const int before = (int)fields[FIELD_order];
+    if (decision == GOE_DECISION_ACT) {
+        return ORDER_GO_AROUND;
     }
-    return hazard->time_s - 2.0f * hazard->time_sd_s < CLIMB_S ? ORDER_GO_AROUND : ORDER_IN_DOUBT;
+    if (decision == GOE_DECISION_CLEAR) {
+        return hazard->violation >= rule->violation_max ? ORDER_IN_DOUBT : ORDER_CLEAR;
+    }
+    const bool known = decision == GOE_DECISION_UNKNOWN && (estimate.valid & GOE_HAS_POSITION) != 0u;
+    return known && before != ORDER_GO_AROUND ? ORDER_UNCERTAIN : before;
 }
 
 static void report_hazard(void) {
-    const float doubt = estimate.suspect ? 2.0f : 1.0f;
-    const float old_m = DRIFT_M_S * estimate.age_s;
-    const goe_plan_t plan = {{(float)APPROACH_SPEED_M_S, 0.0f, (float)APPROACH_DESCENT_M_S},
-                             doubt * MARGIN_M + old_m,
-                             doubt * CLEARANCE_M + old_m,
-                             0.0f};
+    static const goe_plan_t plan = {
+        {(float)APPROACH_SPEED_M_S, 0.0f, (float)APPROACH_DESCENT_M_S}, MARGIN_M, CLEARANCE_M, 0.0f, 0.0f};
+    goe_rule_t rule;
     goe_hazard_t hazard;
-    const bool known = goe_hazard(&estimator, &plan, &hazard) == GOE_OK;
-    fields[FIELD_order] = (float)(known ? order_of(&hazard) : ORDER_NOTHING_KNOWN);
+    goe_rule_default(&rule);
+    fields[FIELD_order] = (float)order_of(goe_decide(&estimator, &plan, &rule, &hazard), &rule, &hazard);
     fields[FIELD_violation] = hazard.violation;
     fields[FIELD_hazard_s] = hazard.time_s;
     fields[FIELD_hazard_sd_s] = hazard.time_sd_s;

@@ -24,8 +24,9 @@
  *   ahead_m, right_m   the middle of the estimate's outline, relative to the aircraft; of a face alone the middle of that
  *   ahead_ahead_m2, ahead_right_m2, right_right_m2   the covariance of these two
  *   across_.., along_..   unit vectors (north, east) of width and length; 0 of what is round
- *   order      0 nothing known, 1 clear, 2 the margin is in doubt but there is time, 3 go around
- *   the rest of goe_hazard_t, as it is there */
+ *   order      0 nothing known yet, 1 clear, 2 the margin is in doubt but there is time, 3 go around, 4 too uncertain to say; by
+ *              goe_decide: only "clear" ends 3
+ *   the rest of goe_hazard_t, by the margins of goe_decide */
 #define LIVE_FIELDS(X) \
     X(time_s) X(true_north_m) X(true_height_m) X(true_roll_deg) X(true_ahead_m) X(true_right_m) \
     X(true_width_m) X(true_length_m) X(true_width_in_view_m) X(true_obstacle_height_m) X(true_orientation_deg) X(true_round) \

@@ -297,6 +297,24 @@ static void expose(const flight_case_t *setup, const flight_log_t *log, sensors_
 }
 
 /* Truth in T's axes, from where the first frame was taken. */
+static bool shows_a_feature(const flight_frame_t *frame, log_features_t logged) {
+    bool seen = logged == LOG_BOXES && frame->measured_box.seen;
+    for (int i = 0; i < features_logged(logged); i++) {
+        seen = seen || frame->measured.feature[i].seen;
+    }
+    return seen;
+}
+
+/* The image that the track begins with: the first one that shows a feature; the first of all if none does. */
+static const flight_frame_t *track_begin(const flight_case_t *setup, const flight_log_t *log) {
+    for (size_t k = 0; k < log->count; k++) {
+        if (shows_a_feature(&log->frames[k], setup->features)) {
+            return &log->frames[k];
+        }
+    }
+    return log->frames;
+}
+
 static void settle_truth(const flight_case_t *setup, double alpha_deg, flight_log_t *log) {
     const obstacle_t *o = &log->obstacle;
     const double c = cos(log->course_rad), s = sin(log->course_rad);
@@ -305,7 +323,7 @@ static void settle_truth(const flight_case_t *setup, double alpha_deg, flight_lo
         folded += SIM_PI;
     }
     log->orientation_deg = degrees(folded);
-    const flight_frame_t *first = log->frames;
+    const flight_frame_t *first = track_begin(setup, log);
     const vec3_t eye = log->count > 0 ? camera_view(&setup->camera[first->camera], &first->truth).eye_ned_m
                                       : to_ned(log->course_rad, 0.0, 0.0, 0.0);
     const double n = o->center_n_m - eye.x, e = o->center_e_m - eye.y;

@@ -11,6 +11,7 @@
 #include "refined/goe_observation.h"
 #include "refined/goe_prism.h"
 #include "refined/goe_quantities.h"
+#include "scene.h"
 
 static goe_estimator_t estimator;
 static goe_covariance_t covariance;
@@ -30,11 +31,12 @@ void setUp(void) {
         estimator.filter.state[i] = 0.01f * (float)(i + 1);
     }
     estimator.filter.state[GOE_INVERSE_RANGE] = 0.005f;
+    estimator.filter.answer.outdated = true; /* the filter has gone on since the answer */
 }
 void tearDown(void) {}
 
-/* GIVEN an answer that is not the filter's at hand THEN its covariance is that of its sigmas, squared, and nothing beside the
- * diagonal: what the quantities had in common is not kept with them. */
+/* GIVEN an answer that the filter has left THEN its covariance is that of its sigmas, squared, and nothing off the diagonal: the
+ * correlations are not kept with it. A hazard allows for them by twice the variance. */
 static void an_old_answer_has_its_sigmas_alone(void) {
     const float of[GOE_QUANTITIES] = {2.0f, 3.0f, 5.0f, 7.0f, 11.0f, 13.0f};
     goe_sigma_t *sigma = &estimator.estimate.sigma;
@@ -50,6 +52,31 @@ static void an_old_answer_has_its_sigmas_alone(void) {
             CHECK_SAME(i == j ? of[i] * of[i] : 0.0f, covariance[i][j]);
         }
     }
+    CHECK_STATUS(GOE_OK, goe_latest_covariance(&estimator, true, 0.0f, covariance));
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        CHECK_SAME(2.0f * of[i] * of[i], covariance[i][i]);
+    }
+    estimator.estimate.method = GOE_METHOD_WINDOW; /* whose sigmas are all there ever was */
+    CHECK_STATUS(GOE_OK, goe_latest_covariance(&estimator, true, 0.0f, covariance));
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        CHECK_SAME(of[i] * of[i], covariance[i][i]);
+    }
+}
+
+/* GIVEN an answer four seconds old of an obstacle that stands still THEN its place relative to the camera is less certain by what the
+ * own velocity may be off, and by the walk of the own position; an answer of the window's is not. */
+static void the_place_grows_uncertain_by_the_own_motion(void) {
+    const double bias = 0.05;
+    const double walk = 0.05;
+    estimator.motion.time_us = 9000000;
+    estimator.estimate.sigma.x0_m = 2.0f;
+    estimator.estimate.sigma.z0_m = 3.0f;
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    CHECK_CLOSE(1.0e-5, 4.0 + 16.0 * bias * bias + 4.0 * walk * walk, covariance[GOE_X0][GOE_X0]);
+    CHECK_CLOSE(1.0e-5, 9.0 + 16.0 * bias * bias + 4.0 * walk * walk, covariance[GOE_Z0][GOE_Z0]);
+    estimator.estimate.method = GOE_METHOD_WINDOW;
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    CHECK_SAME(4.0f, covariance[GOE_X0][GOE_X0]);
 }
 
 /* GIVEN an obstacle that moves, last seen four seconds ago THEN its place has become uncertain by four times the larger sigma of
@@ -57,6 +84,9 @@ static void an_old_answer_has_its_sigmas_alone(void) {
 static void the_place_of_what_moves_grows_uncertain(void) {
     for (int larger = 0; larger < 2; larger++) {
         goe_sigma_t *sigma = &estimator.estimate.sigma;
+        const double own_m2 = 16.0 * 0.05 * 0.05 + 4.0 * 0.05 * 0.05; /* of the own motion in four seconds */
+        const double more_m2 = 36.0 * 0.05 * 0.05 + 6.0 * 0.05 * 0.05;
+        estimator.estimate.valid = GOE_HAS_POSITION | GOE_HAS_VELOCITY;
         estimator.motion.time_us = 9000000;
         sigma->x0_m = 2.0f;
         sigma->z0_m = 3.0f;
@@ -64,55 +94,35 @@ static void the_place_of_what_moves_grows_uncertain(void) {
         sigma->velocity_north_m_s = larger == 0 ? 1.5f : 0.5f;
         sigma->velocity_east_m_s = larger == 0 ? 0.5f : 1.5f;
         CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
-        CHECK_CLOSE(1.0e-4, 4.0 + 36.0, covariance[GOE_X0][GOE_X0]);
-        CHECK_CLOSE(1.0e-4, 9.0 + 36.0, covariance[GOE_Z0][GOE_Z0]);
+        CHECK_CLOSE(1.0e-4, 4.0 + 36.0 + own_m2, covariance[GOE_X0][GOE_X0]);
+        CHECK_CLOSE(1.0e-4, 9.0 + 36.0 + own_m2, covariance[GOE_Z0][GOE_Z0]);
         CHECK_SAME(49.0f, covariance[GOE_WIDTH][GOE_WIDTH]);
         CHECK_SAME(0.0f, covariance[GOE_X0][GOE_Z0]);
         CHECK_STATUS(GOE_OK, goe_latest_covariance(&estimator, true, 2.0f, covariance)); /* asked two seconds ahead */
-        CHECK_CLOSE(1.0e-4, 4.0 + 81.0, covariance[GOE_X0][GOE_X0]);
+        CHECK_CLOSE(1.0e-4, 2.0 * 4.0 + 81.0 + more_m2, covariance[GOE_X0][GOE_X0]);
     }
 }
 
-/* GIVEN an answer whose width is not known well enough to be told THEN the hazard's circle reaches as far as the filter's own guess
- * of it: a warning must not wait for a figure. */
-static void what_is_not_told_still_reaches(void) {
-    const float *x = estimator.filter.state;
-    estimator.estimate.fresh = true;
-    estimator.filter.state[GOE_SIDE_X] = -0.03f;
-    estimator.filter.phase = GOE_PHASE_PRISM;
-    CHECK_CLOSE(1.0e-4, (double)x[GOE_PRISM_HALF] / 0.005, goe_latest_reach(&estimator));
-    estimator.filter.phase = GOE_PHASE_DISC;
-    CHECK_CLOSE(1.0e-4, 0.5 * (double)x[GOE_FRONT_X] / 0.005, goe_latest_reach(&estimator));
-    estimator.filter.phase = GOE_PHASE_BOX;
-    CHECK_CLOSE(1.0e-4, 0.5 * ((double)x[GOE_FRONT_X] + 0.03) / 0.005, goe_latest_reach(&estimator));
-}
-
-/* GIVEN an answer of the window's, or an old one THEN the filter's state has no part in it: it may be another's by now. */
-static void an_answer_that_is_not_the_filters_takes_nothing_of_it(void) {
-    estimator.estimate.fresh = false;
-    CHECK_SAME(0.0f, goe_latest_reach(&estimator));
-    CHECK_SAME(0.0f, goe_latest_height_bias(&estimator));
-    estimator.estimate.fresh = true;
+/* GIVEN an answer of the filter's, fresh or not THEN reach, height and what its height is freed of are as they were with it; of an
+ * answer of the window's the filter has no part. */
+static void what_a_hazard_needs_is_kept_with_the_answer(void) {
+    goe_answer_t *answer = &estimator.filter.answer;
+    answer->reach_m = 7.0f;
+    answer->height_bias_m = 0.5f;
+    estimator.filter.datum.height_m = 35.0f;
+    for (int fresh = 0; fresh < 2; fresh++) {
+        estimator.estimate.fresh = fresh == 1;
+        CHECK_SAME(7.0f, goe_latest_reach(&estimator));
+        CHECK_SAME(0.5f, goe_latest_height_bias(&estimator));
+        answer->steady = false;
+        CHECK_SAME(40.0f, goe_latest_camera_height(&estimator));
+        answer->steady = true;
+        CHECK_SAME(35.0f, goe_latest_camera_height(&estimator));
+    }
     estimator.estimate.method = GOE_METHOD_WINDOW;
     CHECK_SAME(0.0f, goe_latest_reach(&estimator));
     CHECK_SAME(0.0f, goe_latest_height_bias(&estimator));
     CHECK_SAME(40.0f, goe_latest_camera_height(&estimator));
-    estimator.estimate.method = GOE_METHOD_REFINED;
-    CHECK_CLOSE(1.0e-4, (double)estimator.filter.state[GOE_GROUND] / 0.005, goe_latest_height_bias(&estimator));
-}
-
-/* GIVEN a height that is kept over the track THEN the camera's is that one, and not the latest image's, whose noise the obstacle's
- * height has no part in. */
-static void the_camera_is_as_high_as_the_filter_took_it(void) {
-    estimator.estimate.fresh = true;
-    estimator.filter.datum.height_m = 35.0f;
-    estimator.filter.phase = GOE_PHASE_DISC;
-    CHECK_SAME(40.0f, goe_latest_camera_height(&estimator));
-    estimator.filter.phase = GOE_PHASE_PRISM;
-    CHECK_SAME(35.0f, goe_latest_camera_height(&estimator));
-    estimator.filter.phase = GOE_PHASE_DISC;
-    estimator.settings.navigation.height_white_m = 1.0f;
-    CHECK_SAME(35.0f, goe_latest_camera_height(&estimator));
 }
 
 /* A filter of independent states, each uncertain, seeing a box. */
@@ -125,6 +135,7 @@ static void make_box(void) {
     estimator.filter.phase = GOE_PHASE_BOX;
     estimator.filter.axes.turn_cos = 1.0f;
     estimator.estimate.fresh = true;
+    estimator.filter.answer.outdated = false;
     estimator.estimate.valid = GOE_HAS_POSITION | GOE_HAS_ORIENTATION | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_HEIGHT;
     estimator.filter.state[GOE_DEPTH_DIFFERENCE] = 0.02f;
 }
@@ -162,13 +173,110 @@ static void what_is_not_told_has_no_covariance(void) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------------ flights -- */
+
+typedef enum { CORNERS, OUTLINE, CHIMNEY, BOXES, BOXES_AND_CORNERS, FLIGHTS } flight_t;
+
+static scene_t scene;
+
+static void start(flight_t flight) {
+    scene_default(&scene);
+    scene.wobble_deg = 1.0;
+    scene.top_nearest = true;
+    if (flight == CHIMNEY) {
+        scene_make_cylinder(&scene);
+    } else if (flight == OUTLINE) { /* whose front turns away on the way: a box comes out of it */
+        scene.width_m = 5.0;
+        scene.length_m = 9.0;
+        scene.height_m = 6.0;
+        scene.alpha_deg = 40.0;
+        scene.x0_m = -16.0;
+        scene.speed_mps = 10.0;
+        scene.image_rate_hz = 20.0;
+    }
+    goe_settings_t settings = scene_settings(&scene);
+    if (flight == OUTLINE) {
+        scene_tell_no_noise(&settings);
+    }
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+}
+
+static void see(flight_t flight, int k, check_random_t *any, goe_image_t *image) {
+    scene.boxes = flight == BOXES || flight == BOXES_AND_CORNERS;
+    scene_image(&scene, k, image, NULL);
+    if (flight == BOXES_AND_CORNERS) {
+        const goe_box_t box = image->box;
+        scene.boxes = false;
+        scene_image(&scene, k, image, NULL);
+        image->box = box;
+    }
+    scene_add_noise(image, any, flight == OUTLINE ? 0.0 : 1.5); /* more than the settings say: the track scatters */
+    if (flight == OUTLINE) {
+        image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    }
+}
+
+/* How many quantities are valid. Each sigma squared is its variance, to rounding. */
+static int check_diagonal(const goe_estimate_t *e) {
+    static const unsigned bits[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
+                                                  GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
+    const goe_sigma_t *s = &e->sigma;
+    const float sigma[GOE_QUANTITIES] = {s->x0_m, s->z0_m, s->orientation_deg, s->width_m, s->length_m, s->height_m};
+    int valid = 0;
+    CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        if (e->valid & bits[i]) {
+            const double expected = (double)sigma[i] * (double)sigma[i];
+            if (e->fresh) {
+                CHECK_CLOSE(2.0e-4 * expected, expected, covariance[i][i]);
+            } else { /* with what its age adds, to the place at most what the sigmas of x and z hold */
+                TEST_ASSERT_TRUE((double)covariance[i][i] >= expected * (1.0 - 2.0e-4));
+                CHECK_CLOSE(0.02 * expected + 0.01, expected, covariance[i][i]);
+            }
+            valid++;
+        }
+    }
+    return valid;
+}
+
+/* GIVEN flights that go through all models, and scatter THEN sigma and covariance tell the same of every quantity, in images that
+ * show the obstacle and in those that do not. */
+static void sigmas_and_covariance_agree_in_flight(void) {
+    unsigned models = 0;
+    unsigned phases = 0;
+    check_random_t any = check_random_start("diagonals");
+    for (flight_t flight = CORNERS; flight < FLIGHTS; flight++) {
+        int valid = 0;
+        start(flight);
+        for (int k = 0; k < (flight == OUTLINE ? 188 : 40); k++) {
+            goe_image_t image;
+            goe_estimate_t estimate;
+            see(flight, k, &any, &image);
+            if (k % 7 == 6) {
+                image.left.seen = image.right.seen = image.top.seen = false;
+                image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+                image.box.seen = 0;
+            }
+            (void)goe_update(&estimator, &image, &estimate);
+            if (estimate.method == GOE_METHOD_REFINED && (estimate.valid & GOE_HAS_POSITION)) {
+                valid += check_diagonal(&estimate);
+                models |= 1u << estimate.model;
+                phases |= 1u << estimator.filter.phase;
+            }
+        }
+        TEST_ASSERT_TRUE(valid > 60);
+    }
+    TEST_ASSERT_EQUAL_HEX(1u << GOE_MODEL_DISC | 1u << GOE_MODEL_BOX | 1u << GOE_MODEL_PRISM, models);
+    TEST_ASSERT_TRUE(phases & 1u << GOE_PHASE_CHORD && phases & 1u << GOE_PHASE_BOX_OUTLINE);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_old_answer_has_its_sigmas_alone);
     RUN_TEST(the_place_of_what_moves_grows_uncertain);
-    RUN_TEST(what_is_not_told_still_reaches);
-    RUN_TEST(an_answer_that_is_not_the_filters_takes_nothing_of_it);
-    RUN_TEST(the_camera_is_as_high_as_the_filter_took_it);
+    RUN_TEST(the_place_grows_uncertain_by_the_own_motion);
+    RUN_TEST(what_a_hazard_needs_is_kept_with_the_answer);
     RUN_TEST(what_is_not_told_has_no_covariance);
+    RUN_TEST(sigmas_and_covariance_agree_in_flight);
     return UNITY_END();
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "maths/goe_scalar.h"
 #include "refined/goe_filter.h"
 
 #define HEADING 0.4 /* of the nose at the first image, rad: T's Z axis */
@@ -14,10 +15,13 @@ static goe_settings_t settings;
 static goe_view_t view;
 static goe_image_t image;
 static goe_filter_t filter;
+static const float jump_m[3] = {20.0f, -7.0f, 3.0f};
+static bool jumped;
 
 void setUp(void) {
     static const float forward[9] = {0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f};
     goe_settings_default(&settings);
+    jumped = false;
     memset(&motion, 0, sizeof motion);
     memset(&view, 0, sizeof view);
     memset(&image, 0, sizeof image);
@@ -38,7 +42,11 @@ static void follow(double t) {
     image.pose.attitude[3] = (float)sin(0.5 * yaw);
     image.pose.position_ned_m[0] = (float)((12.0 * cos(HEADING) - 3.0 * sin(HEADING)) * t);
     image.pose.position_ned_m[1] = (float)((12.0 * sin(HEADING) + 3.0 * cos(HEADING)) * t);
+    for (int i = 0; i < 2 && jumped; i++) {
+        image.pose.position_ned_m[i] += jump_m[i];
+    }
     goe_motion_follow(&motion, &settings, &view);
+    motion.sighted = true; /* each image shows a feature */
 }
 
 /* GIVEN two poses a tenth of a second apart THEN rate and velocity are those between them, in T: about its Y axis, which points down,
@@ -65,6 +73,7 @@ static void pitch_and_roll_are_about_x_and_z(void) {
         image.pose.attitude[0] = 1.0f;
         image.pose.time_us = 1000000;
         goe_motion_follow(&motion, &settings, &view);
+        motion.sighted = true;
         image.pose.time_us = 1100000;
         image.pose.attitude[0] = (float)cos(0.02);
         image.pose.attitude[n == 0 ? 2 : 1] = (float)sin(0.02);
@@ -102,10 +111,37 @@ static void only_poses_a_good_way_apart_tell(void) {
     CHECK_SAME(0.0f, motion.rate_before_rad_s[1]);
     follow(0.81);
     TEST_ASSERT_TRUE(motion.paced);
+}
+
+/* GIVEN a known jump of the autopilot's filter THEN it is in neither velocity nor rate: what is late is taken off in that image,
+ * too. */
+static void a_known_jump_is_in_no_velocity(void) {
+    follow(0.0);
+    follow(0.1);
+    for (int i = 0; i < 3; i++) {
+        image.pose.reset_delta_ned_m[i] = jump_m[i];
+    }
     image.pose.reset_count = 1;
     image.pose.reset_delta_known = true;
-    follow(0.91);
+    jumped = true;
+    follow(0.2);
+    TEST_ASSERT_TRUE(motion.paced);
+    CHECK_CLOSE(1.0e-3, 0.5, motion.rate_rad_s[1]);
+    CHECK_CLOSE(1.0e-3, 3.0, motion.velocity_m_s[0]);
+    CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
+}
+
+/* GIVEN a track that begins anew with the jump THEN there is no velocity yet. */
+static void a_new_track_has_no_velocity(void) {
+    follow(0.0);
+    follow(0.1);
+    memset(&motion, 0, sizeof motion); /* as goe_estimator.c does */
+    motion.time_us = GOE_TIME_UNKNOWN;
+    image.pose.reset_count = 1;
+    jumped = true;
+    follow(0.2);
     TEST_ASSERT_FALSE(motion.paced);
+    CHECK_SAME(0.0f, motion.rate_rad_s[1]);
 }
 
 /* GIVEN a pose that is half turned about from the one before THEN that is a jump, not a rate. */
@@ -170,13 +206,81 @@ static void late_poses_are_behind_by_what_was_gained(void) {
     CHECK_CLOSE(1.0e-3, 0.6 * (dx - 10.0) + 0.8 * (dz + 14.0), behind.z);
 }
 
+/* -------------------------------------------------------------------------------------------------------------- height -- */
+
+/* The next image, a tenth of a second later: down and height as given, after a known jump of down. */
+static void climb(float down_m, float height_m, float down_jump_m) {
+    image.pose.time_us += 100000;
+    image.pose.position_ned_m[2] = down_m;
+    image.pose.height_m = height_m;
+    if (goe_magnitude(down_jump_m) != 0u) {
+        image.pose.reset_count++;
+        image.pose.reset_delta_known = true;
+    }
+    image.pose.reset_delta_ned_m[2] = down_jump_m; /* read with a reset only */
+    goe_motion_follow(&motion, &settings, &view);
+}
+
+/* GIVEN a height that jumps with down THEN it goes on as if neither had, and jumps add up; GIVEN one that does not THEN it is as
+ * given. */
+static void a_height_goes_on_over_a_jump_of_down(void) {
+    image.pose.attitude[0] = 1.0f;
+    climb(-50.0f, 30.0f, 0.0f);
+    CHECK_SAME(30.0f, motion.height_m);
+    climb(-46.0f, 29.0f, 3.0f); /* 1 m of descent; the height of a range finder */
+    CHECK_SAME(29.0f, motion.height_m);
+    climb(-42.0f, 25.0f, 4.0f); /* jumps along */
+    CHECK_SAME(29.0f, motion.height_m);
+    climb(-43.0f, 26.0f, 0.0f);
+    CHECK_SAME(30.0f, motion.height_m);
+    climb(-45.5f, 28.5f, -2.5f);
+    CHECK_SAME(30.0f, motion.height_m);
+    climb(-55.5f, 28.5f, -10.0f);
+    CHECK_SAME(30.0f, motion.height_m);
+    climb(-55.5f, 20.0f, 0.0f); /* what the height does without a jump is its own */
+    CHECK_SAME(21.5f, motion.height_m);
+}
+
+/* GIVEN a step of the height that lies between both THEN the nearer counts, and in the middle the height as given. */
+static void the_nearer_step_counts(void) {
+    static const float given_m[] = {28.1f, 28.0f, 27.9f, 26.0f, 20.0f, 33.0f};
+    static const float taken_m[] = {28.1f, 28.0f, 31.9f, 30.0f, 24.0f, 33.0f};
+    for (int i = 0; i < 6; i++) {
+        setUp();
+        image.pose.attitude[0] = 1.0f;
+        climb(-50.0f, 30.0f, 0.0f);
+        climb(-46.0f, given_m[i], 4.0f);
+        CHECK_CLOSE(1.0e-5, taken_m[i], motion.height_m);
+    }
+}
+
+/* GIVEN a camera far ahead of the vehicle's reference WHEN the nose pitches up as down jumps THEN the camera's own climb is no
+ * part of the jump. */
+static void the_height_is_the_cameras(void) {
+    for (int follows = 0; follows < 2; follows++) {
+        setUp();
+        settings.camera.offset_m[0] = 10.0f;
+        image.pose.attitude[0] = 1.0f;
+        climb(-50.0f, 30.0f, 0.0f);
+        image.pose.attitude[0] = 0.96f;
+        image.pose.attitude[2] = 0.28f; /* sin = 2 0.96 0.28: up by 5.376 m */
+        climb(-48.0f, follows ? 33.376f : 35.376f, 2.0f);
+        CHECK_CLOSE(1.0e-4, 35.376, motion.height_m);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(two_poses_tell_rate_and_velocity);
     RUN_TEST(pitch_and_roll_are_about_x_and_z);
     RUN_TEST(the_velocity_is_the_vehicles);
     RUN_TEST(only_poses_a_good_way_apart_tell);
+    RUN_TEST(a_known_jump_is_in_no_velocity);
+    RUN_TEST(a_new_track_has_no_velocity);
     RUN_TEST(a_jump_of_the_attitude_is_no_rate);
     RUN_TEST(late_poses_are_behind_by_what_was_gained);
+    RUN_TEST(a_height_goes_on_over_a_jump_of_down);
+    RUN_TEST(the_nearer_step_counts);
+    RUN_TEST(the_height_is_the_cameras);
     return UNITY_END();
 }

@@ -773,29 +773,70 @@ static void a_set_heading_turns_the_trajectory_frame(void) {
     TEST_ASSERT_FLOAT_WITHIN(0.05f, -10.0f, estimate.orientation_deg);
 }
 
-/* A nose that points straight up has no heading: T looks north. */
-/* GIVEN a track that began before a turn WHEN something is seen for the first time THEN it begins there if all of that lies behind; one
- * feature ahead, whichever it is, is enough to go on: it would be thrown away with the rest. */
-static void a_track_begins_at_first_sight_only_if_all_lies_behind(void) {
-    for (int ahead = -1; ahead < GOE_FEATURES; ahead++) {
-        goe_pixel_t *const features[] = {&image.left,      &image.right,     &image.top,
-                                         &image.base_left, &image.base_near, &image.base_right};
-        start();
-        scene_image(&scene, 0, &image, NULL);
-        hide_all(&image);
-        image.pose.attitude[0] = 1.0f;
-        image.pose.attitude[1] = image.pose.attitude[2] = image.pose.attitude[3] = 0.0f;
-        (void)update();
-        image.pose.time_us += 125000;
-        image.pose.attitude[0] = image.pose.attitude[3] = 0.707106781f; /* east */
-        for (int i = 0; i < GOE_FEATURES; i++) {
-            *features[i] = (goe_pixel_t){i == ahead ? 10.0f : 1270.0f, 640.0f, true};
+/* GIVEN images without a feature, on another heading WHEN something is seen for the first time THEN the track begins there, with
+ * heading, origin and time of that image. */
+static void a_track_begins_at_first_sight(void) {
+    start();
+    for (int k = 0; k < 8; k++) {
+        scene_image(&scene, k, &image, NULL);
+        if (k < 5) {
+            hide_all(&image);
+            image.pose.attitude[0] = image.pose.attitude[3] = 0.707106781f; /* east */
+            image.pose.attitude[1] = image.pose.attitude[2] = 0.0f;
         }
         (void)update();
-        CHECK_CLOSE(1.0e-3, ahead < 0 ? 90.0 : 0.0, estimate.trajectory_heading_deg);
+        CHECK_CLOSE(1.0e-3, k < 5 ? 90.0 : 0.0, estimate.trajectory_heading_deg);
+    }
+    CHECK_CLOSE(1.0e-3, 2.0 * scene.speed_mps / scene.image_rate_hz, estimator.motion.dz_m);
+    CHECK_CLOSE(1.0e-3, 0.0, estimator.motion.dx_m);
+    TEST_ASSERT_TRUE(estimator.motion.start_time_us == 1000000 + 5 * 125000);
+}
+
+/* GIVEN a track that began before a turn, and no position yet WHEN everything that is seen lies more than 60 degrees from Z and the nose
+ * has turned by more than 45 THEN the track begins again; one feature nearer to Z is enough to go on. The image's faults count once. */
+static void a_track_begins_again_after_a_turn(void) {
+    goe_pixel_t *const features[] = {&image.left,      &image.right,     &image.top,
+                                     &image.base_left, &image.base_near, &image.base_right};
+    for (int ahead = -1; ahead < GOE_FEATURES; ahead++) {
+        for (int turned = 0; turned < 2; turned++) {
+            start();
+            scene_image(&scene, 0, &image, NULL);
+            image.pose.attitude[0] = 1.0f;
+            image.pose.attitude[1] = image.pose.attitude[2] = image.pose.attitude[3] = 0.0f;
+            (void)update();
+            image.pose.time_us += 125000;
+            image.pose.attitude[0] = turned == 1 ? 0.793353340f : 0.965925826f; /* 75 degrees, or 30 */
+            image.pose.attitude[3] = turned == 1 ? 0.608761429f : 0.258819045f;
+            for (int i = 0; i < GOE_FEATURES; i++) {
+                *features[i] = (goe_pixel_t){i == ahead ? 10.0f : 1270.0f, 640.0f, true};
+            }
+            image.right.u_px = 5.0f; /* out of order with left */
+            image.right.seen = ahead == -1 ? false : image.right.seen;
+            const uint32_t before = estimator.causes[-GOE_SWAPPED] + estimator.causes[-GOE_BEHIND_CAMERA];
+            (void)update();
+            const bool again = turned == 1 && ahead == -1;
+            CHECK_CLOSE(1.0e-3, again ? 75.0 : 0.0, estimate.trajectory_heading_deg);
+            if (again) {
+                TEST_ASSERT_EQUAL_UINT32(before, estimator.causes[-GOE_SWAPPED] + estimator.causes[-GOE_BEHIND_CAMERA]);
+            }
+        }
     }
 }
 
+/* GIVEN a position that is known WHEN the nose turns THEN T stays. */
+static void a_turn_leaves_a_known_track_alone(void) {
+    start();
+    CHECK_STATUS(GOE_OK, fly(0, 20));
+    scene_image(&scene, 20, &image, NULL);
+    image.pose.attitude[0] = image.pose.attitude[3] = 0.707106781f;
+    image.pose.attitude[1] = image.pose.attitude[2] = 0.0f;
+    const float heading_deg = estimate.trajectory_heading_deg;
+    (void)update();
+    CHECK_SAME(heading_deg, estimate.trajectory_heading_deg);
+    TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
+}
+
+/* A nose that points straight up has no heading: T looks north. */
 static void a_vertical_nose_takes_north(void) {
     start();
     scene_image(&scene, 0, &image, NULL);
@@ -854,7 +895,9 @@ int main(void) {
     RUN_TEST(estimators_share_nothing);
     RUN_TEST(an_estimator_may_be_moved);
     RUN_TEST(a_set_heading_turns_the_trajectory_frame);
-    RUN_TEST(a_track_begins_at_first_sight_only_if_all_lies_behind);
+    RUN_TEST(a_track_begins_at_first_sight);
+    RUN_TEST(a_track_begins_again_after_a_turn);
+    RUN_TEST(a_turn_leaves_a_known_track_alone);
     RUN_TEST(a_vertical_nose_takes_north);
     return UNITY_END();
 }

@@ -40,7 +40,7 @@ static void flip(void *at, size_t bit) { ((unsigned char *)at)[bit / 8u] ^= (uns
 
 static void check_corrupted(void) {
     static const goe_estimate_t nothing;
-    static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f};
+    static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
     const goe_estimator_t before = estimator;
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
@@ -204,7 +204,7 @@ static void a_track_that_is_nowhere_and_knows_nothing_begins_anew(void) {
 
 /* GIVEN covariance and hazard of an answer that is no number THEN they are none, either. */
 static void no_call_hands_out_what_is_no_number(void) {
-    static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f};
+    static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
     start();

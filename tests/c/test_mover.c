@@ -709,8 +709,11 @@ static void what_is_followed_goes_on_unseen(void) {
     CHECK_CLOSE(2.0e-3, (double)before->x_m + c * east - s * north - ((double)estimator.motion.dx_m - dx), now.x_m);
     CHECK_CLOSE(2.0e-3, (double)before->z_m + c * north + s * east - ((double)estimator.motion.dz_m - dz), now.z_m);
     const double larger = fmax((double)before->sigma.velocity_north_m_s, (double)before->sigma.velocity_east_m_s);
-    CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.x0_m, 2.0 * larger), now.sigma.x_m);
-    CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.z0_m, 2.0 * larger), now.sigma.z_m);
+    const goe_navigation_t *own = &estimator.settings.navigation;
+    const double own_m2 = 4.0 * pow((double)own->velocity_bias_m_s, 2.0) + 2.0 * pow((double)own->position_walk_m, 2.0);
+    const double grown_m = sqrt(4.0 * larger * larger + own_m2);
+    CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.x0_m, grown_m), now.sigma.x_m);
+    CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.z0_m, grown_m), now.sigma.z_m);
     TEST_ASSERT_FALSE(now.fresh);
     CHECK_CLOSE(1.0e-4, 2.0, now.age_s);
 }

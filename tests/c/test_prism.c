@@ -10,6 +10,7 @@
 #include "sighting.h"
 
 #define CASES 100
+#define SLENDER 400
 #define FEW 5 /* brute force is slow where double precision is emulated */
 #define RIM_POINTS 60
 #define TWO_PI 6.283185307179586
@@ -938,6 +939,62 @@ static float height_sigma_with(float first_m, float later_m, goe_model_t model, 
     return estimate->sigma.height_m;
 }
 
+/* A thing 7 to 14 times as long as wide, some 3 to 40 m beside a straight flight. Returns the images of the pass. */
+static int any_slender(scene_t *scene) {
+    scene_default(scene);
+    scene->boxes = true;
+    scene->width_m = check_random_between(&any, 1.0, 6.0);
+    scene->length_m = scene->width_m * check_random_between(&any, 7.0, 14.0);
+    scene->height_m = check_random_between(&any, 3.0, 15.0);
+    scene->alpha_deg = check_random_between(&any, -80.0, 80.0);
+    scene->altitude_m = check_random_between(&any, 15.0, 60.0);
+    scene->speed_mps = check_random_between(&any, 12.0, 30.0);
+    const double reach_s = check_random_between(&any, 10.0, 20.0);
+    const double half = 0.5 * hypot(scene->width_m, scene->length_m);
+    const double aside = half + check_random_between(&any, 3.0, 40.0);
+    const double alpha = scene->alpha_deg * TWO_PI / 360.0;
+    scene->z0_m = scene->speed_mps * reach_s - 0.5 * scene->length_m * cos(alpha); /* the middle of the front */
+    scene->x0_m = (check_random_bits(&any) % 2u != 0u ? aside : -aside) - 0.5 * scene->length_m * sin(alpha);
+    return (int)(scene->image_rate_hz * (reach_s - 1.0 - half / scene->speed_mps));
+}
+
+/* Across the line of sight to the middle, when the filter started. */
+static double width_across(const scene_t *scene, const goe_estimator_t *estimator) {
+    const double alpha = scene->alpha_deg * TWO_PI / 360.0;
+    const double x = scene->x0_m + 0.5 * scene->length_m * sin(alpha);
+    const double z = scene->z0_m + 0.5 * scene->length_m * cos(alpha) - (double)estimator->filter.axes.start_dz_m;
+    const double turn = atan2(x, z) - alpha;
+    return scene->width_m * fabs(cos(turn)) + scene->length_m * fabs(sin(turn));
+}
+
+/* GIVEN exact boxes of slender things, whose width changes as the line of sight turns, and of which no image shows how deep they are,
+ * THEN none is told with a width that is wrong by six sigma, suspect or not. */
+static void the_width_of_slender_things_is_not_confidently_wrong(void) {
+    int wrong = 0;
+    any = check_random_start("slender");
+    for (int n = 0; n < SLENDER; n++) {
+        scene_t scene;
+        goe_estimator_t estimator;
+        goe_estimate_t estimate;
+        double worst = 0.0;
+        const int images = any_slender(&scene);
+        const goe_settings_t settings = scene_settings(&scene);
+        CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+        for (int k = 0; k < images; k++) {
+            goe_image_t image;
+            scene_image(&scene, k, &image, NULL);
+            (void)goe_update(&estimator, &image, &estimate);
+            if (estimate.fresh && (estimate.valid & GOE_HAS_WIDTH) != 0u) {
+                const double off = (double)estimate.width_m - width_across(&scene, &estimator);
+                check_worst(&worst, off / (double)estimate.sigma.width_m);
+            }
+        }
+        wrong += worst > 6.0 ? 1 : 0;
+    }
+    check_report("slender things told wrong by six sigma, of 400", wrong);
+    TEST_ASSERT_EQUAL_INT(0, wrong);
+}
+
 /* GIVEN an image that knows the error of its height THEN it counts in the first image with a box, and in no other. */
 static void a_height_s_own_error_counts_in_the_first_image(void) {
     goe_estimate_t estimate;
@@ -1016,6 +1073,7 @@ static void boxes_that_come_too_soon_are_not_used(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_side_that_is_seen_is_checked);
+    RUN_TEST(the_width_of_slender_things_is_not_confidently_wrong);
     RUN_TEST(a_height_s_own_error_counts_in_the_first_image);
     RUN_TEST(a_prism_is_told_with_what_no_image_shows);
     RUN_TEST(what_no_image_shows_keeps_no_answer_back);

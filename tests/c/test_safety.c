@@ -237,6 +237,7 @@ static goe_plan_t any_plan(bool *legal) {
     plan.margin_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
     plan.clearance_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
     plan.since_image_s = bits ? any_bits() : fabsf(any_within(1.0e3f));
+    plan.velocity_sd_m_s = bits ? any_bits() : fabsf(any_within(1.0e2f));
     *legal = !bits;
     return plan;
 }
@@ -315,9 +316,9 @@ static void update_and_check(const goe_image_t *image) {
     memcpy(&before, &memory.estimator, sizeof before);
     memset(&memory.estimate, 0xFF, sizeof memory.estimate); /* NaN, if it were left so */
     const int status = (int)goe_update(&memory.estimator, image, &memory.estimate);
-    TEST_ASSERT_TRUE(status >= GOE_BAD_ATTITUDE && status <= GOE_NOTHING_SEEN);
+    TEST_ASSERT_TRUE(status >= GOE_NO_HEIGHT && status <= GOE_NOTHING_SEEN);
     statuses[status + 16]++;
-    if (status <= GOE_NOT_FINITE) {
+    if (!GOE_IMAGE_TAKEN(status)) {
         before.causes[-status]++;
         TEST_ASSERT_EQUAL_MEMORY(&before, &memory.estimator, sizeof before);
     }

@@ -102,8 +102,11 @@ static int calls(void) {
 
 static void any_answer_and_plan_give_finite_numbers(void) {
     for (int i = 0; i < calls(); i++) {
-        const goe_plan_t plan = {
-            {up_to(1e3), up_to(1e3), up_to(1e3)}, magnitude_up_to(1e4), magnitude_up_to(1e4), magnitude_up_to(1e3)};
+        const goe_plan_t plan = {{up_to(1e3), up_to(1e3), up_to(1e3)},
+                                 magnitude_up_to(1e4),
+                                 magnitude_up_to(1e4),
+                                 magnitude_up_to(1e3),
+                                 magnitude_up_to(1e2)};
         goe_hazard_t hazard;
         give_any_answer();
         const goe_estimator_t before = estimator;

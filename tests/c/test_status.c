@@ -4,7 +4,7 @@
 #include "check.h"
 
 /* Images from the first number to the last, then calls. */
-static const int first[] = {GOE_BAD_ATTITUDE, GOE_CORRUPTED};
+static const int first[] = {GOE_NO_HEIGHT, GOE_CORRUPTED};
 static const int last[] = {GOE_NOTHING_SEEN, GOE_BAD_SETTINGS};
 #define RANGES 2
 #define FREE_FROM (-31) /* for faults of images to come */
@@ -54,6 +54,8 @@ static void the_names_are_those_of_the_manual(void) {
     TEST_ASSERT_EQUAL_STRING("behind_camera", text_of(GOE_BEHIND_CAMERA));
     TEST_ASSERT_EQUAL_STRING("bad_height", text_of(GOE_BAD_HEIGHT));
     TEST_ASSERT_EQUAL_STRING("bad_attitude", text_of(GOE_BAD_ATTITUDE));
+    TEST_ASSERT_EQUAL_STRING("box_incomplete", text_of(GOE_BOX_INCOMPLETE));
+    TEST_ASSERT_EQUAL_STRING("no_height", text_of(GOE_NO_HEIGHT));
     TEST_ASSERT_EQUAL_STRING("bad_settings", text_of(GOE_BAD_SETTINGS));
     TEST_ASSERT_EQUAL_STRING("bad_argument", text_of(GOE_BAD_ARGUMENT));
     TEST_ASSERT_EQUAL_STRING("not_initialised", text_of(GOE_NOT_INITIALISED));
@@ -69,13 +71,24 @@ static void any_other_number_is_unknown(void) {
         }
         TEST_ASSERT_EQUAL_INT(!known, strcmp("unknown", text_of(status)) == 0);
     }
-    TEST_ASSERT_TRUE(GOE_BAD_SETTINGS < FREE_FROM && FREE_FROM < GOE_BAD_ATTITUDE);
+    TEST_ASSERT_TRUE(GOE_BAD_SETTINGS < FREE_FROM && FREE_FROM < GOE_NO_HEIGHT);
 }
 
 static void the_sign_is_the_grade(void) {
     TEST_ASSERT_TRUE(GOE_OK == 0);
     TEST_ASSERT_TRUE(GOE_PARTIAL > 0 && GOE_COLLECTING > 0 && GOE_HELD > 0 && GOE_NOTHING_SEEN > 0);
-    TEST_ASSERT_TRUE(GOE_BEHIND_CAMERA == -1 && GOE_BAD_ATTITUDE == -(GOE_CAUSES - 1)); /* index the counters */
+    TEST_ASSERT_TRUE(GOE_BEHIND_CAMERA == -1 && GOE_NO_HEIGHT == -(GOE_CAUSES - 1)); /* index the counters */
+}
+
+/* GIVEN the statuses of images THEN those of a refusal took nothing, all others took the image; a call's failure took none. */
+static void what_took_the_image(void) {
+    const int count = collect();
+    for (int k = 0; k < count; k++) {
+        const int status = all[k];
+        const bool refused = status == GOE_NOT_FINITE || status == GOE_OUT_OF_RANGE || status == GOE_BAD_TIME ||
+                             status == GOE_BAD_ATTITUDE || status <= GOE_BAD_SETTINGS;
+        TEST_ASSERT_EQUAL_INT(!refused, GOE_IMAGE_TAKEN(status));
+    }
 }
 
 /* GIVEN any number THEN a reason has a name of its own, and what is none is unknown. */
@@ -96,6 +109,7 @@ int main(void) {
     RUN_TEST(the_names_are_those_of_the_manual);
     RUN_TEST(any_other_number_is_unknown);
     RUN_TEST(the_sign_is_the_grade);
+    RUN_TEST(what_took_the_image);
     RUN_TEST(reasons_have_names);
     return UNITY_END();
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "goe_guard.h"
 
 static goe_estimator_t estimator;
 static goe_hazard_t hazard;
@@ -17,6 +18,7 @@ void setUp(void) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.navigation.velocity_bias_m_s = 0.0f; /* plans are exact, but where a test says otherwise */
     TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     estimator.motion.heading_cos = 1.0f;
     estimator.motion.height_m = 50.0f;
@@ -35,7 +37,7 @@ void setUp(void) {
 void tearDown(void) {}
 
 static goe_plan_t plan_of(float north_m_s, float east_m_s) {
-    const goe_plan_t plan = {{north_m_s, east_m_s, 0.0f}, 5.0f, 10.0f, 0.0f};
+    const goe_plan_t plan = {{north_m_s, east_m_s, 0.0f}, 5.0f, 10.0f, 0.0f, 0.0f};
     return plan;
 }
 
@@ -61,11 +63,11 @@ static void what_moves_is_met_by_the_relative_velocity(void) {
     CHECK_SAME(plan.margin_m, relative.margin_m);
 }
 
-/* GIVEN an obstacle that moves THEN its velocity's error counts up to the time at which it is met, but no longer than a minute, nor
- * less than has passed since the image; of one that stands still there is no such error. */
-static void the_velocitys_error_counts_until_it_is_met(void) {
+/* GIVEN an obstacle, standing or moving THEN errors of velocity count up to the time at which it is met, but no longer than a minute,
+ * nor less than has passed since the image. */
+static void a_velocitys_error_counts_until_it_is_met(void) {
     goe_plan_t plan = plan_of(10.0f, 0.0f);
-    CHECK_SAME(0.0f, goe_violation_ahead_s(&estimator, &plan));
+    CHECK_CLOSE(1.0e-4, 10.0, goe_violation_ahead_s(&estimator, &plan));
     make_it_move(0.0f, 0.0f);
     CHECK_CLOSE(1.0e-4, 10.0, goe_violation_ahead_s(&estimator, &plan));
     plan.velocity_ned_m_s[0] = 1.0f;
@@ -79,6 +81,35 @@ static void the_velocitys_error_counts_until_it_is_met(void) {
     estimator.motion.heading_sin = 1.0f;
     plan.velocity_ned_m_s[1] = 20.0f;
     CHECK_CLOSE(1.0e-4, 5.0, goe_violation_ahead_s(&estimator, &plan));
+}
+
+/* GIVEN a plan whose velocity is uncertain THEN distance and clearance are, by that over the time until then; a plan that does not
+ * say takes the setting. */
+static void the_plans_velocity_may_be_wrong(void) {
+    goe_plan_t plan = plan_of(10.0f, 0.0f);
+    estimator.estimate.x_m = estimator.estimate.x0_m = 40.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, 2.0, hazard.miss_sd_m);
+    CHECK_CLOSE(1.0e-3, 3.0, hazard.clearance_sd_m);
+    plan.velocity_sd_m_s = 0.3f; /* ten seconds away */
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, sqrt(4.0 + 9.0), hazard.miss_sd_m);
+    CHECK_CLOSE(1.0e-3, sqrt(9.0 + 9.0), hazard.clearance_sd_m);
+    CHECK_CLOSE(1.0e-3, sqrt(4.0 + 9.0) / 10.0, hazard.time_sd_s);
+#if GOE_WITH_REFINED
+    plan.velocity_sd_m_s = 0.0f;
+    estimator.settings.navigation.velocity_bias_m_s = 0.4f;
+    goe_guard_seal(&estimator);
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    CHECK_CLOSE(1.0e-3, sqrt(4.0 + 16.0), hazard.miss_sd_m);
+#endif
+    static const float refused[] = {-0.1f, 101.0f};
+    for (int i = 0; i < 2; i++) {
+        plan.velocity_sd_m_s = refused[i];
+        CHECK_STATUS(GOE_OUT_OF_RANGE, goe_hazard(&estimator, &plan, &hazard));
+    }
+    plan.velocity_sd_m_s = NAN;
+    CHECK_STATUS(GOE_NOT_FINITE, goe_hazard(&estimator, &plan, &hazard));
 }
 
 /* GIVEN an image of a second ago THEN the camera has flown on since, forward and up, and times count from now. */
@@ -142,7 +173,8 @@ static void independent_errors_multiply(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_moves_is_met_by_the_relative_velocity);
-    RUN_TEST(the_velocitys_error_counts_until_it_is_met);
+    RUN_TEST(a_velocitys_error_counts_until_it_is_met);
+    RUN_TEST(the_plans_velocity_may_be_wrong);
     RUN_TEST(the_aircraft_has_flown_on_since_the_image);
     RUN_TEST(the_aircraft_has_flown_aside_since_the_image);
     RUN_TEST(independent_errors_multiply);

@@ -38,12 +38,15 @@ void flown_samples(const flown_t *flown, int k, goe_flight_attitude_t *attitude,
     memcpy(attitude->q, image.pose.attitude, sizeof attitude->q);
     for (int i = 0; i < 3; i++) {
         const float step_m = next.pose.position_ned_m[i] - image.pose.position_ned_m[i];
-        position->position_ned_m[i] = image.pose.position_ned_m[i] + flown->jump_ned_m[i];
+        position->position_ned_m[i] = image.pose.position_ned_m[i] + flown->jump_ned_m[i] + flown->jumped_ned_m[i];
         position->velocity_ned_m_s[i] = step_m * (float)FLOWN_POSE_HZ;
     }
     position->height_m[GOE_FLIGHT_TERRAIN] = (float)flown->scene.ground_d_m - image.pose.position_ned_m[2];
+    position->height_m[GOE_FLIGHT_TERRAIN] -=
+        flown->height_follows ? flown->jump_ned_m[2] + flown->jumped_ned_m[2] : 0.0f;
     position->height_valid = 1u << GOE_FLIGHT_TERRAIN;
     position->reset_horizontal = flown->reset_horizontal;
+    position->reset_vertical = flown->reset_vertical;
     position->reset_delta_known = flown->jump_known;
     memcpy(position->reset_delta_ned_m, flown->jump_ned_m, sizeof position->reset_delta_ned_m);
 }
@@ -51,11 +54,19 @@ void flown_samples(const flown_t *flown, int k, goe_flight_attitude_t *attitude,
 goe_flight_detection_t flown_detection(const flown_t *flown, int k) {
     goe_flight_detection_t detection;
     goe_image_t image;
+    scene_t scene = flown->scene;
     memset(&detection, 0, sizeof detection);
-    scene_image(&flown->scene, k, &image, NULL);
+    scene.upright_boxes = scene.boxes = !flown->points;
+    scene_image(&scene, k, &image, NULL);
     detection.id = flown->id;
     detection.score = flown->score;
     detection.box = image.box;
+    detection.left = image.left;
+    detection.right = image.right;
+    detection.top = image.top;
+    detection.base_left = image.base_left;
+    detection.base_near = image.base_near;
+    detection.base_right = image.base_right;
     return detection;
 }
 
@@ -82,7 +93,8 @@ bool flown_step(flown_t *flown) {
         return false;
     }
     const goe_flight_detection_t detection = flown_detection(flown, exposed);
-    const bool sees = flown->sees && detection.box.seen == GOE_SEES_BOX;
+    const bool seen = flown->points ? detection.left.seen && detection.right.seen : detection.box.seen == GOE_SEES_BOX;
+    const bool sees = flown->sees && seen;
     const goe_flight_frame_t frame = flown_frame(flown, exposed, &detection, sees ? 1 : 0);
     const goe_flight_status_t status = goe_flight_frame(&flown->flight, &frame);
     /* the poses before an unknown reset are gone */

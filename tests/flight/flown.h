@@ -19,9 +19,13 @@ typedef struct {
     uint32_t id;       /* of the detection */
     float score;
     bool sees;                 /* the detector sees the obstacle */
-    uint32_t reset_horizontal; /* told by samples from now on, and added to their positions */
-    float jump_ned_m[3];
+    bool points;               /* it gives points and base corners, no box */
+    uint32_t reset_horizontal; /* told by samples from now on ... */
+    uint32_t reset_vertical;
+    float jump_ned_m[3];   /* of the latest reset, and added to their positions ... */
+    float jumped_ned_m[3]; /* ... as is what the resets before it came to */
     bool jump_known;
+    bool height_follows; /* the height jumps along with down */
 } flown_t;
 
 /* The scene by upright boxes, its image of 1280 x 1280 px, and a flight layer with default settings. */

@@ -59,19 +59,165 @@ static void a_known_jump_moves_the_place_before_the_next_image(void) {
     CHECK_CLOSE(1e-3, before.center_ned_m[1] - 3.0f, after.center_ned_m[1]);
 }
 
-static void an_unknown_jump_ends_the_tracks(void) {
-    (void)flown_fly(&flown, 3.0);
+/* GIVEN a warning WHEN the autopilot's filter jumps by an unknown amount THEN the track ends, and the obstacle is kept where it was
+ * relative to the aircraft, suspect, with its hazard, until images place it again. */
+static void an_unknown_jump_takes_no_warning_back(void) {
+    const goe_flight_assessment_t before = flown_fly(&flown, 3.0);
+    const goe_flight_obstacle_t at = obstacle_of(&flown);
     flown.jump_known = false;
-    jump(&flown, 5.0f, -3.0f);
+    jump(&flown, 50.0f, -30.0f);
     goe_flight_assessment_t now = flown_fly(&flown, 0.1);
-    TEST_ASSERT_EQUAL(0, now.obstacles);
-    TEST_ASSERT_EQUAL(-1, now.worst);
     TEST_ASSERT_EQUAL(1, flown.flight.counters.lost);
-    now = flown_fly(&flown, 1.9); /* and the obstacle is found anew */
     TEST_ASSERT_EQUAL(1, now.obstacles);
+    TEST_ASSERT_EQUAL(0, now.worst);
+    TEST_ASSERT_TRUE(now.suspect);
+    CHECK_CLOSE(1.0e-6, before.hazard.violation, now.hazard.violation);
+    CHECK_CLOSE(0.03, (double)before.hazard.time_s - 0.1, now.hazard.time_s);
+    const goe_flight_obstacle_t kept = obstacle_of(&flown);
+    CHECK_CLOSE(1.0, at.center_ned_m[0] + 50.0f, kept.center_ned_m[0]);
+    CHECK_CLOSE(1.0, at.center_ned_m[1] - 30.0f, kept.center_ned_m[1]);
+    now = flown_fly(&flown, 1.9); /* and the obstacle is found again */
+    TEST_ASSERT_EQUAL(1, now.obstacles);
+    TEST_ASSERT_FALSE(flown.flight.slot[0].remembered);
     const goe_flight_obstacle_t again = obstacle_of(&flown);
     TEST_ASSERT_EQUAL_UINT32(7u, again.id);
 }
+
+/* ------------------------------------------------------------------------------------------------------------- down -- */
+
+static void jump_down(flown_t *of, float down_m, bool height_follows) {
+    for (int i = 0; i < 3; i++) {
+        of->jumped_ned_m[i] += of->jump_ned_m[i];
+        of->jump_ned_m[i] = 0.0f;
+    }
+    of->jump_ned_m[2] = down_m;
+    of->height_follows = height_follows;
+    of->reset_vertical++;
+}
+
+static void check_same_but_for_down(double down_m) {
+    const goe_flight_obstacle_t moved = obstacle_of(&flown);
+    const goe_flight_obstacle_t still = obstacle_of(&other);
+    for (int i = 0; i < 3; i++) {
+        const double jumped_m = i == 2 ? down_m : 0.0;
+        CHECK_CLOSE(0.01, (double)still.center_ned_m[i] + jumped_m, moved.center_ned_m[i]);
+        CHECK_CLOSE(0.01, (double)still.nearest_ned_m[i] + jumped_m, moved.nearest_ned_m[i]);
+        CHECK_CLOSE(0.01, still.nearest_body_m[i], moved.nearest_body_m[i]);
+    }
+    TEST_ASSERT_EQUAL_HEX(still.valid, moved.valid);
+    TEST_ASSERT_TRUE((moved.valid & GOE_HAS_HEIGHT) != 0u);
+    TEST_ASSERT_EQUAL(still.suspect, moved.suspect);
+    CHECK_CLOSE(0.01, still.height_m, moved.height_m);
+    CHECK_CLOSE(0.01, still.width_m, moved.width_m);
+    CHECK_CLOSE(0.01, still.hazard.clearance_m, moved.hazard.clearance_m);
+    CHECK_CLOSE(0.01, still.hazard.violation, moved.hazard.violation);
+}
+
+/* GIVEN a descent, by boxes or by points WHEN down jumps by a known amount, the height that the autopilot gives with it or not
+ * THEN the track's ground moves along, and neither place, height nor hazard move, as the aircraft sees them. */
+static void a_known_jump_of_down_moves_the_ground_along(void) {
+    for (int run = 0; run < 8; run++) {
+        setUp();
+        flown.scene.glide_deg = other.scene.glide_deg = 3.0;
+        flown.points = other.points = run % 2 != 0;
+        (void)flown_fly(&flown, 2.5);
+        (void)flown_fly(&other, 2.5);
+        jump_down(&flown, run / 4 != 0 ? -3.5f : 6.0f, run / 2 % 2 != 0);
+        (void)flown_fly(&flown, 0.5);
+        (void)flown_fly(&other, 0.5);
+        check_same_but_for_down(run / 4 != 0 ? -3.5 : 6.0);
+        jump_down(&flown, 2.0f, flown.height_follows);
+        (void)flown_fly(&flown, 1.5);
+        (void)flown_fly(&other, 1.5);
+        check_same_but_for_down(run / 4 != 0 ? -1.5 : 8.0);
+        TEST_ASSERT_EQUAL(2, flown.flight.counters.resets);
+        TEST_ASSERT_EQUAL(0, flown.flight.counters.lost);
+    }
+}
+
+/* GIVEN a descent, and jumps of down in it THEN boxes count by the height that is left, which the changes of down tell. */
+static void boxes_count_by_the_height_that_is_left(void) {
+    goe_image_t image;
+    scene_truth_t truth;
+    flown.scene.glide_deg = 6.0;
+    flown.scene.altitude_m = 40.0;
+    for (int k = 0; k < 3; k++) {
+        (void)flown_fly(&flown, 1.5);
+        const int shown = (flown.sample - 1 - FLOWN_DELAY) / FLOWN_IMAGE_EVERY * FLOWN_IMAGE_EVERY;
+        scene_image(&flown.scene, shown, &image, &truth);
+        const goe_estimator_t *estimator = &flown.flight.slot[0].estimator;
+        CHECK_CLOSE(0.01, truth.height_above_ground_m, estimator->motion.height_m);
+        CHECK_CLOSE(0.01, truth.height_above_ground_m, estimator->filter.datum.height_m);
+        jump_down(&flown, k == 0 ? 5.0f : -3.0f, k == 1);
+    }
+    TEST_ASSERT_TRUE(truth.height_above_ground_m < 34.0);
+}
+
+/* At once, also before the next image. */
+static void a_known_jump_of_down_moves_the_ground_before_the_next_image(void) {
+    (void)flown_fly(&flown, 3.04); /* an image came with sample 150 */
+    const goe_flight_obstacle_t before = obstacle_of(&flown);
+    jump_down(&flown, 4.0f, false);
+    (void)flown_fly(&flown, 0.021); /* one sample */
+    const goe_flight_obstacle_t after = obstacle_of(&flown);
+    CHECK_CLOSE(1e-3, before.center_ned_m[2] + 4.0f, after.center_ned_m[2]);
+    CHECK_CLOSE(1e-3, before.center_ned_m[0], after.center_ned_m[0]);
+    CHECK_CLOSE(1e-3, before.height_m, after.height_m);
+}
+
+/* Between images that saw nothing, and after them: the jump is told with the next one. */
+static void a_jump_of_down_between_lost_images_counts(void) {
+    flown.scene.glide_deg = other.scene.glide_deg = 3.0;
+    (void)flown_fly(&flown, 2.5);
+    (void)flown_fly(&other, 2.5);
+    flown.sees = other.sees = false;
+    jump_down(&flown, -5.0f, true);
+    (void)flown_fly(&flown, 0.5);
+    (void)flown_fly(&other, 0.5);
+    flown.sees = other.sees = true;
+    (void)flown_fly(&flown, 1.0);
+    (void)flown_fly(&other, 1.0);
+    check_same_but_for_down(-5.0);
+}
+
+/* GIVEN marks of which one changes THEN the delta of the other axes is not read. */
+static void a_mark_tells_of_its_own_axes_alone(void) {
+    (void)flown_fly(&flown, 3.04);
+    const goe_flight_obstacle_t before = obstacle_of(&flown);
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    flown_samples(&flown, flown.sample, &attitude, &position);
+    for (int i = 0; i < 3; i++) {
+        position.reset_delta_ned_m[i] = 10.0f;
+    }
+    position.reset_vertical = 1u;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    goe_flight_obstacle_t after = obstacle_of(&flown);
+    CHECK_CLOSE(1e-3, before.center_ned_m[0], after.center_ned_m[0]);
+    CHECK_CLOSE(1e-3, before.center_ned_m[2] + 10.0f, after.center_ned_m[2]);
+    position.reset_horizontal = 1u;
+    position.time_us += 20000u;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    after = obstacle_of(&flown);
+    CHECK_CLOSE(1e-3, before.center_ned_m[0] + 10.0f, after.center_ned_m[0]);
+    CHECK_CLOSE(1e-3, before.center_ned_m[2] + 10.0f, after.center_ned_m[2]);
+}
+
+/* A track that begins after the jump has the ground of the newest sample. */
+static void a_track_after_the_jump_has_the_ground_of_its_own_time(void) {
+    for (int follows = 0; follows < 2; follows++) {
+        setUp();
+        flown.sees = false;
+        (void)flown_fly(&flown, 1.0);
+        jump_down(&flown, 5.0f, follows != 0);
+        (void)flown_fly(&flown, 0.5);
+        flown.sees = true;
+        (void)flown_fly(&flown, 2.5);
+        CHECK_CLOSE(1e-3, flown.scene.ground_d_m + (follows != 0 ? 0.0 : 5.0), obstacle_of(&flown).center_ned_m[2]);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- unknown, skipped -- */
 
 /* A counter that rose by two hides a jump that nobody told. */
 static void a_counter_that_skips_is_an_unknown_jump(void) {
@@ -151,7 +297,13 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_known_jump_changes_nothing_but_the_place);
     RUN_TEST(a_known_jump_moves_the_place_before_the_next_image);
-    RUN_TEST(an_unknown_jump_ends_the_tracks);
+    RUN_TEST(a_known_jump_of_down_moves_the_ground_along);
+    RUN_TEST(boxes_count_by_the_height_that_is_left);
+    RUN_TEST(a_known_jump_of_down_moves_the_ground_before_the_next_image);
+    RUN_TEST(a_jump_of_down_between_lost_images_counts);
+    RUN_TEST(a_mark_tells_of_its_own_axes_alone);
+    RUN_TEST(a_track_after_the_jump_has_the_ground_of_its_own_time);
+    RUN_TEST(an_unknown_jump_takes_no_warning_back);
     RUN_TEST(a_counter_that_skips_is_an_unknown_jump);
     RUN_TEST(a_time_of_reset_may_change_by_any_step);
     RUN_TEST(a_reset_of_the_heading_ends_the_tracks);

@@ -62,6 +62,126 @@ static void valid_says_what_an_obstacle_tells(void) {
     }
 }
 
+/* GIVEN images that do not tell a position yet THEN that makes nothing suspect. */
+static void a_track_without_a_position_is_not_suspect(void) {
+    goe_flight_obstacle_t obstacle;
+    int images = 0;
+    while (slots_used() == 0) {
+        (void)flown_step(&flown);
+    }
+    for (int i = 0; i < 3 * FLOWN_IMAGE_EVERY; i++) {
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+        images += (obstacle.valid & GOE_HAS_POSITION) == 0u ? 1 : 0;
+        TEST_ASSERT_FALSE(obstacle.suspect);
+        (void)flown_step(&flown);
+    }
+    TEST_ASSERT_TRUE(images > 0);
+}
+
+/* Assessments at 10 Hz without a sample or a frame more; whether the detector was alive in any after the first two seconds. */
+static bool revives(double seconds) {
+    goe_flight_assessment_t now;
+    bool alive = false;
+    const uint32_t from_us = flown_now_us(&flown);
+    for (int k = 1; k <= (int)(10.0 * seconds); k++) {
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t position;
+        flown_samples(&flown, 0, &attitude, &position);
+        attitude.time_us = position.time_us = from_us + (uint32_t)k * 100000u;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, position.time_us, false, &now));
+        alive = alive || (k > 20 && now.detector_alive);
+    }
+    return alive;
+}
+
+/* GIVEN a detector that has died WHEN the clock wraps the difference of its times, after 36 minutes THEN it is as dead as before. */
+static void a_dead_detector_stays_dead(void) {
+    (void)flown_fly(&flown, 1.0);
+    TEST_ASSERT_FALSE(revives(80.0 * 60.0));
+}
+
+typedef enum { FRAME_EMPTY, FRAME_WEAK, FRAME_NOT_A_NUMBER, FRAME_PROMISED, FRAMES } frame_kind_t;
+
+/* Whether two seconds of such frames alone let the detector count as alive. */
+static bool lives_by(frame_kind_t kind) {
+    goe_flight_assessment_t now;
+    flown_start(&flown, NULL);
+    for (int k = 0; k < 2 * FLOWN_POSE_HZ; k++) {
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t position;
+        flown_samples(&flown, k, &attitude, &position);
+        flown.sample = k + 1;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+        goe_flight_detection_t detection = flown_detection(&flown, k);
+        detection.score = kind == FRAME_NOT_A_NUMBER ? check_from_bits(0x7FC00000u) : 0.1f;
+        const bool given = kind == FRAME_WEAK || kind == FRAME_NOT_A_NUMBER;
+        goe_flight_frame_t frame = flown_frame(&flown, k, &detection, given ? 1 : 0);
+        frame.number = (uint8_t)(kind == FRAME_EMPTY ? 0 : 1);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+    }
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, flown_now_us(&flown), false, &now));
+    return now.detector_alive;
+}
+
+/* GIVEN frames of which nothing can be read, or that announce detections and bring none THEN the detector is not alive; by empty ones, or
+ * weak detections, it is. */
+static void what_cannot_be_read_is_no_sign_of_life(void) {
+    TEST_ASSERT_TRUE(lives_by(FRAME_EMPTY));
+    TEST_ASSERT_TRUE(lives_by(FRAME_WEAK));
+    TEST_ASSERT_FALSE(lives_by(FRAME_NOT_A_NUMBER));
+    TEST_ASSERT_FALSE(lives_by(FRAME_PROMISED));
+}
+
+/* GIVEN an obstacle ahead on the course WHEN it is not seen for longer than forget_s THEN it is kept, and so is its warning, until it is
+ * passed. */
+static void what_stands_ahead_is_not_forgotten(void) {
+    goe_flight_settings_t settings;
+    goe_flight_settings_default(&settings);
+    settings.forget_s = 1.0f;
+    flown_start(&flown, &settings);
+    flown.scene.x0_m = 0.0;
+    flown.scene.z0_m = 200.0;
+    flown.scene.height_m = 40.0;
+    const goe_flight_assessment_t before = flown_fly(&flown, 4.0);
+    TEST_ASSERT_TRUE(before.hazard.violation > 0.5f && before.hazard.time_s > 3.0f);
+    flown.sees = false;
+    const double left_s = (double)before.hazard.time_s;
+    for (int k = 1; k < (int)(5.0 * left_s) - 3; k++) {
+        const goe_flight_assessment_t now = flown_fly(&flown, 0.2);
+        TEST_ASSERT_EQUAL(1, now.obstacles);
+        TEST_ASSERT_TRUE(now.hazard.violation > 0.5f);
+    }
+    for (int k = 0; k < 30; k++) {
+        (void)flown_fly(&flown, 0.5);
+    }
+    TEST_ASSERT_EQUAL(0, flown_fly(&flown, 0.2).obstacles);
+}
+
+/* GIVEN a height that is not valid THEN any number may stand there; GIVEN one that is THEN it must be one, and in its range. */
+static void a_height_counts_as_far_as_it_is_valid(void) {
+    const float bad[] = {check_from_bits(0x7FC00000u), check_from_bits(0x7F800000u), 1.1e5f, -1.1e5f};
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    flown_samples(&flown, 0, &attitude, &position);
+    for (int i = 0; i < GOE_FLIGHT_HEIGHTS; i++) {
+        for (int k = 0; k < 4; k++) {
+            for (int j = 0; j < GOE_FLIGHT_HEIGHTS; j++) {
+                position.height_m[j] = j == i ? bad[k] : 20.0f;
+            }
+            position.height_valid = (uint8_t)(1u << i);
+            TEST_ASSERT_EQUAL(k < 2 ? GOE_FLIGHT_NOT_FINITE : GOE_FLIGHT_OUT_OF_RANGE,
+                              goe_flight_position(&flown.flight, &position));
+            position.height_valid = (uint8_t)(7u & ~(1u << i));
+            position.time_us += 20000u;
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+        }
+    }
+    TEST_ASSERT_EQUAL(4 * GOE_FLIGHT_HEIGHTS, flown.flight.counters.refused);
+}
+
 /* The hazard counts from now, not from the image that came 100 ms late. */
 static void the_hazard_counts_from_now(void) {
     flown.scene.x0_m = 0.0;
@@ -74,7 +194,7 @@ static void the_hazard_counts_from_now(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us, false, &first));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us + 100000u, false, &later));
     CHECK_CLOSE(1e-4, first.hazard.time_s - 0.1f, later.hazard.time_s);
-    goe_plan_t plan = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f};
+    goe_plan_t plan = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
     goe_hazard_t hazard;
     TEST_ASSERT_EQUAL(GOE_OK, goe_hazard(&flown.flight.slot[0].estimator, &plan, &hazard));
     /* the newest sample is number 149, the latest frame that has arrived shows number 140 */
@@ -289,6 +409,11 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_obstacle_is_found_where_it_is);
     RUN_TEST(valid_says_what_an_obstacle_tells);
+    RUN_TEST(a_track_without_a_position_is_not_suspect);
+    RUN_TEST(a_dead_detector_stays_dead);
+    RUN_TEST(what_cannot_be_read_is_no_sign_of_life);
+    RUN_TEST(what_stands_ahead_is_not_forgotten);
+    RUN_TEST(a_height_counts_as_far_as_it_is_valid);
     RUN_TEST(the_hazard_counts_from_now);
     RUN_TEST(a_new_obstacle_waits_for_its_confirmation);
     RUN_TEST(a_low_score_is_not_looked_at);

@@ -10,8 +10,8 @@
 /* clang-format off */
 const field_t fields[] = {
     NUMBER(motion.time_us) NUMBER(motion.start_time_us) NUMBER(motion.heading_cos) NUMBER(motion.heading_sin)
-    NUMBER(motion.heading_deg) NUMBER(motion.origin_ne_m) NUMBER(motion.dx_m) NUMBER(motion.dz_m)
-    NUMBER(motion.height_m) DECIDES(motion.started) DECIDES(motion.sighted) DECIDES(motion.reset_count)
+    NUMBER(motion.origin_ne_m) NUMBER(motion.dx_m) NUMBER(motion.dz_m)
+    NUMBER(motion.height_m) NUMBER(motion.height_jump_m) NUMBER(motion.ground_m) DECIDES(motion.started) DECIDES(motion.sighted) DECIDES(motion.reset_count)
     DECIDES(motion.paced) NUMBER(motion.rate_rad_s) NUMBER(motion.velocity_m_s) NUMBER(motion.rate_before_rad_s)
     NUMBER(motion.mark_attitude) NUMBER(motion.mark_m) NUMBER(motion.mark_us)
     NUMBER(causes) DECIDES(ready) DECIDES(seal) DECIDES(camera_to_body) DECIDES(settings)

@@ -83,7 +83,7 @@ bool flights_make(int which, flipped_flight_t *flight) {
     set_scene(kind, &scene);
     flight->name = kind->name;
     set_settings(kind, &scene, &flight->settings);
-    flight->plan = (goe_plan_t){{16.0f, 0.0f, 0.0f}, 15.0f, 10.0f, 0.1f};
+    flight->plan = (goe_plan_t){{16.0f, 0.0f, 0.0f}, 15.0f, 10.0f, 0.1f, 0.0f};
     for (int k = 0; k < FLIGHT_IMAGES; k++) {
         goe_image_t *image = &flight->image[k];
         scene_t seen_by = scene;

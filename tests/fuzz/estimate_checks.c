@@ -21,7 +21,7 @@ static bool is_not_negative(float x) { return x >= 0.0f; }
 static bool is_within(float x, float limit) { return x <= limit && x >= -limit; }
 
 bool check_is_image_status(goe_status_t status) {
-    return (int)status >= (int)GOE_BAD_ATTITUDE && (int)status <= (int)GOE_NOTHING_SEEN;
+    return (int)status >= (int)GOE_NO_HEIGHT && (int)status <= (int)GOE_NOTHING_SEEN;
 }
 
 bool check_is_refusal(goe_status_t status) {
@@ -147,7 +147,7 @@ static void check_correlations(float covariance[GOE_QUANTITIES][GOE_QUANTITIES])
     }
 }
 
-/* The diagonal is the sigmas squared: to the bit if stale or the window's and the obstacle stands, else but for rounding. Of a box it
+/* The diagonal is the sigmas squared: to the bit if the window's, else but for rounding. Of a stale answer it is no less. Of a box it
  * may be more: what stands for its outline is widened by the track's scatter there, and in the sigma is not. */
 static void check_diagonal(const goe_estimate_t *e, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
     const goe_sigma_t *s = &e->sigma;
@@ -165,6 +165,8 @@ static void check_diagonal(const goe_estimate_t *e, float covariance[GOE_QUANTIT
             const double told = sqrt((double)covariance[i][i]);
             const double most = e->model == GOE_MODEL_BOX ? WIDENING_MAX : 1.0 + ROUNDING;
             FUZZ_HOLDS(told >= (double)sigma[i] * (1.0 - ROUNDING) && told <= (double)sigma[i] * most);
+        } else if (e->method == GOE_METHOD_REFINED) {
+            FUZZ_HOLDS(sqrt((double)covariance[i][i]) >= (double)sigma[i] * (1.0 - ROUNDING));
         } else if (stands || i > GOE_Z0) {
             FUZZ_HOLDS(fuzz_bits_of(covariance[i][i]) == fuzz_bits_of(sigma[i] * sigma[i]));
         }

@@ -163,6 +163,8 @@ static goe_plan_t any_plan(fuzz_input_t *in) {
     plan.margin_m = fuzz_any(in, 0.0f, 1.0e4f);
     plan.clearance_m = fuzz_any(in, 0.0f, 1.0e4f);
     plan.since_image_s = fuzz_any(in, 0.0f, 1.0e3f);
+    plan.velocity_sd_m_s =
+        plan.margin_m > 5.0e3f ? 1.0e-2f * plan.clearance_m : 0.0f; /* the corpus has no bytes for it */
     return plan;
 }
 

@@ -1,4 +1,4 @@
-/* The README's rule for going around, flown. SPDX-License-Identifier: MIT
+/* The decision rule as in the README, flown. SPDX-License-Identifier: MIT
  *
  * Collision courses: an aircraft flies level towards an obstacle that is higher than its path, and rolls. The features are what a
  * detector gives: upright bounding boxes whose errors stay alike for a second; or, as they should not be given, the middles of
@@ -16,7 +16,8 @@
 #define SPEED_M_S 20.0
 #define RATE_HZ 8.0
 #define FIRST_RANGE_M 500.0
-#define AHEAD_S 8.0 /* the least that an order must come before the obstacle is reached */
+#define MARGIN_M 15.0 /* of the README's plan */
+#define AHEAD_S 8.0   /* the least that an order must come before the obstacle is reached */
 #define BOX_PX 0.5
 #define BOX_SHARE 0.04   /* of a side's error that stays alike, of the box's size */
 #define BOX_ALIKE_S 1.0  /* ... for so long */
@@ -78,6 +79,7 @@ static void spoil_box(goe_image_t *image, double error[4]) {
 static outcome_t fly(bool (*seen)(int k)) {
     static const float velocity_ned_m_s[3] = {(float)SPEED_M_S, 0.0f, 0.0f};
     outcome_t outcome = {-1.0, 0, 0};
+    bool go_around = false;
     double error[4];
     for (int i = 0; i < 4; i++) {
         error[i] = check_random_normal(&any);
@@ -104,9 +106,8 @@ static outcome_t fly(bool (*seen)(int k)) {
         (void)goe_update(&estimator, &image, &estimate);
         outcome.suspect += estimate.suspect ? 1 : 0;
         outcome.images++;
-        if (must_go_around(&estimator, &estimate, velocity_ned_m_s)) {
-            outcome.ordered_s = left_s;
-        }
+        decide(&estimator, velocity_ned_m_s, &go_around);
+        outcome.ordered_s = go_around ? left_s : -1.0;
     }
     return outcome;
 }
@@ -172,7 +173,7 @@ static void a_pass_at_twice_the_margin_by_boxes(void) {
             const double reach_m =
                 scene.shape == SCENE_CYLINDER ? 0.5 * scene.width_m : 0.5 * hypot(scene.width_m, scene.length_m);
             const double middle_m = scene.shape == SCENE_CYLINDER ? 0.0 : 0.5 * scene.length_m;
-            scene.x0_m = 2.0 * (double)MARGIN_M + reach_m - middle_m * sin(scene.alpha_deg * 0.017453292519943295);
+            scene.x0_m = 2.0 * MARGIN_M + reach_m - middle_m * sin(scene.alpha_deg * 0.017453292519943295);
             ordered += fly(always).ordered_s > 0.0 ? 1 : 0;
         }
         check_report("boxes, orders on passes at twice the margin, share", (double)ordered / BOX_RUNS);
@@ -188,9 +189,18 @@ static void the_order_comes_through_gaps_of_the_detector(void) {
     TEST_ASSERT_TRUE(least_s >= AHEAD_S);
 }
 
-/* An estimate that is suspect or old asks for more room, so it warns at least as early. */
-static void doubt_warns_no_later(void) {
+/* Whether the rule orders a first time. */
+static bool orders(const goe_estimator_t *of) {
     static const float velocity_ned_m_s[3] = {(float)SPEED_M_S, 0.0f, 0.0f};
+    bool go_around = false;
+    decide(of, velocity_ned_m_s, &go_around);
+    return go_around;
+}
+
+/* GIVEN an estimate for which the rule orders WHEN the same is suspect, or three seconds old THEN the rule orders, too. */
+static void doubt_warns_no_later(void) {
+    static goe_estimator_t doubtful;
+    static goe_estimator_t old;
     int warned = 0;
     for (int run = 0; run < RUNS; run++) {
         make_course(check_random_between(&any, -40.0, 40.0), 0.0);
@@ -198,22 +208,48 @@ static void doubt_warns_no_later(void) {
         CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
         for (int k = 0; k < 120; k++) {
             goe_image_t image;
-            goe_estimate_t sure;
+            goe_estimate_t estimate;
             scene_image(&scene, k, &image, NULL);
-            (void)goe_update(&estimator, &image, &sure);
-            goe_estimate_t doubtful = sure;
-            goe_estimate_t old = sure;
-            sure.suspect = false;
-            doubtful.suspect = true;
-            old.age_s = 3.0f;
-            if (must_go_around(&estimator, &sure, velocity_ned_m_s)) {
-                TEST_ASSERT_TRUE(must_go_around(&estimator, &doubtful, velocity_ned_m_s));
-                TEST_ASSERT_TRUE(must_go_around(&estimator, &old, velocity_ned_m_s));
+            (void)goe_update(&estimator, &image, &estimate);
+            estimator.estimate.suspect = false;
+            doubtful = old = estimator;
+            doubtful.estimate.suspect = true;
+            old.estimate.fresh = false;
+            old.estimate_time_us -= 3000000;
+            if (orders(&estimator)) {
+                TEST_ASSERT_TRUE(orders(&doubtful));
+                TEST_ASSERT_TRUE(orders(&old));
                 warned++;
             }
         }
     }
     TEST_ASSERT_TRUE(warned > RUNS);
+}
+
+/* GIVEN an order that stands WHEN the rule cannot be asked: a velocity that is no number, flipped settings, an estimator that was
+ * never set, no position THEN the order stands; and none is given out of nothing. */
+static void no_failure_means_clear(void) {
+    static goe_estimator_t broken;
+    const float ahead[3] = {(float)SPEED_M_S, 0.0f, 0.0f};
+    const float no_number[3] = {NAN, 0.0f, 0.0f};
+    const float too_fast[3] = {0.0f, 2.0e3f, 0.0f};
+    make_course(0.0, 0.0);
+    (void)fly(always);
+    for (int stands = 0; stands < 2; stands++) {
+        bool go_around = stands == 1;
+        decide(&estimator, no_number, &go_around);
+        decide(&estimator, too_fast, &go_around);
+        broken = estimator;
+        ((unsigned char *)&broken.settings)[176] ^= 4u;
+        decide(&broken, ahead, &go_around);
+        memset(&broken, 0, sizeof broken);
+        decide(&broken, ahead, &go_around);
+        broken = estimator;
+        CHECK_STATUS(GOE_OK, goe_reset(&broken));
+        decide(&broken, ahead, &go_around);
+        decide(NULL, ahead, &go_around);
+        TEST_ASSERT_EQUAL_INT(stands, go_around);
+    }
 }
 
 /* ... and one that flies past at a distance is left alone. */
@@ -234,6 +270,7 @@ int main(void) {
     RUN_TEST(a_pass_at_twice_the_margin_by_boxes);
     RUN_TEST(the_order_comes_through_gaps_of_the_detector);
     RUN_TEST(doubt_warns_no_later);
+    RUN_TEST(no_failure_means_clear);
     RUN_TEST(a_wide_pass_is_no_reason);
     return UNITY_END();
 }

@@ -72,7 +72,8 @@ static void add_answers(void) {
         const goe_plan_t plan = {{(float)between(-20.0, 25.0), (float)between(-20.0, 20.0), (float)between(-3.0, 3.0)},
                                  (float)between(0.0, 30.0),
                                  (float)between(0.0, 20.0),
-                                 one_in(3) ? (float)between(0.0, 2.0) : 0.0f};
+                                 one_in(3) ? (float)between(0.0, 2.0) : 0.0f,
+                                 one_in(3) ? (float)between(0.0, 1.0) : 0.0f};
         add_number((int)goe_hazard(&estimator, &plan, &hazard));
         add_bytes(&hazard, offsetof(goe_hazard_t, has_clearance));
         add_number(hazard.has_clearance ? 1 : 0);
@@ -325,7 +326,7 @@ static void calls(void) {
     goe_estimate_t estimate;
     goe_image_t image;
     goe_hazard_t hazard;
-    const goe_plan_t plan = {{1.0f, 0.0f, 0.0f}, 1.0f, 1.0f, 0.0f};
+    const goe_plan_t plan = {{1.0f, 0.0f, 0.0f}, 1.0f, 1.0f, 0.0f, 0.0f};
     begin(2);
     for (int i = -40; i < 40; i++) {
         add_text(goe_status_text((goe_status_t)i));

@@ -72,6 +72,25 @@ void proof_hazard(void) {
     (void)goe_hazard(&estimator, &plan, &hazard);
 }
 
+void proof_decide(void) {
+    goe_estimator_t estimator;
+    goe_plan_t plan;
+    goe_rule_t rule;
+    goe_hazard_t hazard;
+    any_estimator(&estimator, 0);
+    ANY_BITS(plan);
+    ANY_BITS(rule);
+    ANY_BITS(hazard);
+    goe_rule_default(NULL);
+    (void)goe_soonest_s(NULL);
+    (void)goe_soonest_s(&hazard);
+    (void)goe_decide(NULL, &plan, &rule, &hazard);
+    (void)goe_decide(&estimator, NULL, &rule, &hazard);
+    (void)goe_decide(&estimator, &plan, &rule, ANY_TRUTH() ? &hazard : NULL);
+    goe_rule_default(&rule);
+    (void)goe_decide(&estimator, &plan, NULL, NULL);
+}
+
 static void texts(void) {
     int number;
     ANY_BITS(number);

@@ -388,8 +388,8 @@ static void the_answer_to_a_ground_station_is_none_to_the_module() {
     flight.end();
 }
 
-/* A reset of the heading ends the track; the order stands for GOE_HOLD after that, and so long settings wait. Where the obstacle is
- * is not known then: no way back into the mission. */
+/* A reset of the heading ends the track; the obstacle is kept where it was, and the order stands until it is passed. So long settings
+ * wait; then the mission goes on. */
 static void an_order_outlives_its_track() {
     start_towards_one(MISSION, false, ALL);
     standin::set("GOE_RESUME", 1);
@@ -397,17 +397,17 @@ static void an_order_outlives_its_track() {
     flight.flown.sees = false;
     flight.quat_reset_counter++;
     (void)fly_on(0.2);
-    TEST_ASSERT_EQUAL(0, flight.status().obstacles);
+    TEST_ASSERT_EQUAL(1, flight.status().obstacles);
     TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
     standin::set("GOE_MARGIN", 40.f);
-    (void)fly_on(1.2);
+    (void)fly_on(3.2);
     TEST_ASSERT_TRUE(flight.status().settings_waiting);
     TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
     flight.follows = false;
-    (void)fly_on(2.0);
+    (void)fly_on(16.0);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
     TEST_ASSERT_FALSE(flight.status().settings_waiting);
-    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, last.command);
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, last.command); /* past it, the mission goes on */
     flight.end();
 }
 

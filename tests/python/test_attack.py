@@ -17,7 +17,7 @@ from goe_tools.attack.solids import Solid
 from goe_tools.optimum.goals import attack, hazard
 from goe_tools.optimum.goals.goal import NAMES, Goal
 from goe_tools.optimum.goals.work import QUICK
-from goe_tools.optimum.library import METHODS, Track
+from goe_tools.optimum.library import METHODS, Track, named_settings, package, run, to_package
 from goe_tools.places import ROOT
 from goe_tools.report import attack_command
 
@@ -357,8 +357,8 @@ def run_of(told: float, violates: bool, soonest_s: float = 30.0, miss_m: float =
     level, to_go = np.full(20, told), 25.0 - time
     there = np.ones(20)
     warnings = approach.Warnings(
-        time, there > 0, to_go, there, np.full(20, 3.0), there, np.full(20, 1.0), there, level, level,
-        soonest_s - time,
+        time, there > 0, to_go, there, np.full(20, 3.0), there, np.full(20, 1.0), there, level,
+        (level >= 0.1) & (soonest_s - time < 12.0),
     )  # fmt: skip
     happened = approach.Approach(25.0, 0.0 if violates else miss_m, 0.0)
     return approach.Run(warnings, happened)
@@ -380,13 +380,23 @@ def test_probabilities_warnings_and_coverage_of_known_figures() -> None:
     )
 
 
-def test_the_rule_is_the_readmes() -> None:
+def test_the_margins_are_the_readmes() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    figures = {"MARGIN_M": approach.MARGIN_M, "CLEARANCE_M": approach.CLEARANCE_M, "CLIMB_S": approach.CLIMB_S,
-               "VIOLATION_MAX": approach.VIOLATION_MAX, "DRIFT_M_S": approach.DRIFT_M_S}  # fmt: skip
-    for name, value in figures.items():
-        assert f"#define {name} {value}f" in readme
-    assert f"now->suspect ? {approach.DOUBT}f : 1.0f" in readme
+    assert f"{approach.MARGIN_M}f, {approach.CLEARANCE_M}f, 0.0f, 0.0f}}; /* margin, clearance, m */" in readme
+
+
+def test_who_is_warned_is_decided_by_the_library(built: None) -> None:
+    """By the decision rule, with margins that grow; the hazard is that of plain margins."""
+    row = approach.ROWS[0]
+    told = scenario.fly(row.scenario, 3)
+    track = run(attack.images_of(told, attack.PLANS), told.settings)
+    flown = hazard.perform(row, 3)
+    goe = package()
+    by_rule = goe.run(named_settings(tuple(told.settings.items())), to_package(attack.images_of(told, attack.PLANS)),
+                      rules=[goe.Rule(approach.MARGIN_M, approach.CLEARANCE_M)])  # fmt: skip
+    assert np.array_equal(flown.warnings.acts, by_rule.decision[:, 0] == goe.Decision.ACT)
+    there = track.hazard["status"][:, 0] == 0
+    assert np.array_equal(flown.warnings.violation[there], track.hazard["violation"][there, 0]) and there.any()
 
 
 # ------------------------------------------------------------------------------------------------------------ the goals

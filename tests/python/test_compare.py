@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.logs.obslog import ObservationLog, read_log, write_log
+from goe_tools.logs.obslog import FEATURES, ObservationLog, read_log, write_log
+from goe_tools.logs.projection import quaternion_of, yaw_pitch_roll
 from goe_tools.logs.scene import Scene, make_log
 from goe_tools.reference import compare
 from goe_tools.reference.settings import Settings
@@ -117,6 +118,37 @@ def test_the_built_program_on_the_committed_logs(replay: Path) -> None:
     assert folders
     for model in ("auto", "disc", "line"):
         assert run(replay, "--model", model, *folders) == 0
+
+
+def turning_log(blind: int, seen: int, turn_deg: float, camera) -> ObservationLog:
+    """A box, whose first images, some of them without a feature, were taken with the nose turned aside."""
+    scene = Scene(
+        width_m=12.0, length_m=20.0, height_m=25.0, x0_m=-30.0, z0_m=180.0, alpha_deg=20.0, course_deg=40.0,
+        altitude_m=20.0, wobble_deg=2.0, run_s=5.0, rounding="pixel", clip=True, camera=camera,
+    )  # fmt: skip
+    log = make_log(scene)
+    for k, frame in enumerate(log.frames[: blind + seen]):
+        turn = yaw_pitch_roll(scene.course_deg - turn_deg - k, 0.0, 0.0)
+        frame.attitude = tuple(float(number) for number in quaternion_of(turn))
+        if k < blind:
+            for name in FEATURES:
+                setattr(frame, name, None)
+    return log
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 50.0, 65.0, 85.0, 130.0, 179.0])
+@pytest.mark.parametrize(("blind", "seen"), [(5, 0), (1, 1), (0, 4), (4, 9)])
+def test_the_built_program_on_tracks_that_begin_with_a_turn(
+    blind: int, seen: int, turn_deg: float, replay: Path, tmp_path: Path, real_camera
+) -> None:
+    """The first image that shows a feature fixes T; while nothing is known the track begins again after a turn."""
+    write_log(tmp_path, turning_log(blind, seen, turn_deg, real_camera))
+    log, settings = read_log(tmp_path), Settings()
+    result = compare.compare_rows(log, compare.run_replay(replay, tmp_path, settings), settings)
+    assert result.failures() == [] and result.mirror.total == 0
+    assert all(max(column.ulp_mirror, default=0) == 0 for column in result.columns.values())
+    if seen == 0 or (seen < 8 and turn_deg >= 65.0):  # T is that of the flight
+        assert result.conditioned > 10
 
 
 def test_the_built_program_on_random_flights(replay: Path, tmp_path: Path, real_camera) -> None:

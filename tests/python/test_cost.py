@@ -19,7 +19,7 @@ from goe_tools.cost.modules import bytes_of_object
 from goe_tools.cost.running import LedgerError
 
 ROOT = Path(__file__).resolve().parents[2]
-ROWS_MOST = 400  # of the ledger: a change of cost is to be read as a change of a few rows
+ROWS_MOST = 440  # of the ledger: some 11 for a public function, of which there are three more
 
 # -------------------------------------------------------------------------------------------------------------- stack
 
@@ -298,7 +298,7 @@ def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
     limits = stated.stated(header.read_text(encoding="utf-8"))
     assert limits["instructions proved: goe_update"] == 48000
     assert limits["instructions proved: goe_update with lens distortion"] == 70000
-    assert limits["instructions proved: goe_update, window"] == 5300
+    assert limits["instructions proved: goe_update, window"] == 5500
     assert len(limits) == 2 * len(PUBLIC) + 2
     hazard = r"at most \d+ instructions(, \d+ bytes of stack\. No loop)"
     text = re.sub(hazard, r"at most 10 instructions\1", header.read_text(encoding="utf-8"))
@@ -328,12 +328,12 @@ def test_a_promise_that_is_broken_is_told() -> None:
 
 def test_the_table_of_guarantees_tells_where_they_do_not_hold() -> None:
     ledger = committed()
-    for preset, value in zip(guarantees.M4F, (1212, 1000, 1213, 1)):
+    for preset, value in zip(guarantees.M4F, (1408, 1000, 1409, 1)):
         ledger[preset]["stack bytes computed: goe_update"] = value
-    row = next(line for line in guarantees.rows(ledger) if "1,212 bytes of stack" in line)
+    row = next(line for line in guarantees.rows(ledger) if "1,408 bytes of stack" in line)
     cells = [cell.strip() for cell in row.strip("|").split("|")]
     assert cells[1:] == [
-        "Cortex-M4F gcc -Os (1,212), gcc -O2 (1,000), clang -O2 (1)", "Cortex-M4F clang -Os (1,213)",
+        "Cortex-M4F gcc -Os (1,408), gcc -O2 (1,000), clang -O2 (1)", "Cortex-M4F clang -Os (1,409)",
     ]  # fmt: skip
 
 

@@ -6,8 +6,7 @@ import base64
 import json
 import os
 import struct
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,7 +18,6 @@ from goe_tools.live import modules, page
 
 ROOT = Path(__file__).resolve().parents[2]
 WIDE, PHONE = (1280, 800), (400, 860)  # px
-PATIENCE_S = 10.0
 
 selenium = pytest.importorskip("selenium", reason="the browser test needs selenium (pip)")
 pytestmark = [
@@ -53,22 +51,15 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     driver = chromium.start(tmp_path_factory.mktemp("profile"))
+    chromium.hold_time(driver)
     yield driver
     driver.quit()
 
 
-def wait_for(what: Callable[[], Any], told: str) -> Any:
-    end = time.monotonic() + PATIENCE_S
-    while time.monotonic() < end:
-        found = what()
-        if found:
-            return found
-        time.sleep(0.02)
-    raise AssertionError(f"not within {PATIENCE_S} s: {told}")
-
-
 def open_page(browser: Any, file: Path, fragment: str, size: tuple[int, int] = WIDE, scheme: str = "light") -> None:
     """Waits until the page has proved its module, or failed to."""
+    from selenium.webdriver.support.ui import WebDriverWait
+
     browser.get("about:blank")
     browser.get_log("performance"), browser.get_log("browser")  # what came before is not this page's
     browser.execute_cdp_cmd(
@@ -76,7 +67,8 @@ def open_page(browser: Any, file: Path, fragment: str, size: tuple[int, int] = W
     )
     chromium.set_size(browser, size)
     browser.get(f"{file.as_uri()}#{fragment}")
-    wait_for(lambda: browser.execute_script("return document.documentElement.dataset.ready"), "ready")
+    wait = WebDriverWait(browser, chromium.HANG_S, poll_frequency=0.02)
+    wait.until(lambda b: b.execute_script("return document.documentElement.dataset.ready"))
 
 
 def state(browser: Any) -> dict[str, Any]:
@@ -237,12 +229,13 @@ def test_keys(browser: Any, live: Path) -> None:
     assert state(browser)["at"] == 51
     press(browser, " ")
     assert "Pause" in state(browser)["play"]
-    wait_for(lambda: state(browser)["at"] > 52, "playing")
+    chromium.step_time(browser, 0.25)
+    assert state(browser)["at"] == 53
     press(browser, "k")
-    at = state(browser)["at"]
-    assert "Play" in state(browser)["play"]
+    chromium.step_time(browser, 1.0)
+    assert "Play" in state(browser)["play"] and state(browser)["at"] == 53
     press(browser, "r")
-    assert "Pause" in state(browser)["play"] and state(browser)["at"] < at
+    assert "Pause" in state(browser)["play"] and state(browser)["at"] == 0
     press(browser, " ", "\ue011")  # pause, Home
     assert state(browser)["at"] == 0
     press(browser, "\ue010")
@@ -268,7 +261,8 @@ def test_focused_controls_keep_their_keys(browser: Any, live: Path) -> None:
 
 def test_it_plays_by_itself(browser: Any, live: Path) -> None:
     open_page(browser, live, "")
-    wait_for(lambda: state(browser)["at"] > 3, "playing")
+    chromium.step_time(browser, 0.45)
+    assert state(browser)["at"] == 4
 
 
 @pytest.mark.parametrize("spoiled", ["constant", "logs", "code"])

@@ -19,7 +19,7 @@ FACTS = Facts()
 CONSUMER = ROOT / "tests" / "consumer_package" / "main.c"
 STARTS = ROOT / "port" / "conan" / "test_package" / "main.c"  # exits with 0 if header and library agree
 ARM = ("arm-none-eabi-gcc", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
-SECONDS = 300
+SECONDS = 1800  # only a guard against what hangs
 MAINTAINER = "NAME <maintainer@goe.invalid>"
 
 # What Arduino.h brings into a sketch that may collide with a library's names: the project's own words for them.
@@ -118,7 +118,7 @@ def test_arduino_part_left_out_by_the_header(staged: Path, tmp_path: Path) -> No
     compile_all(tmp_path / "goe", tmp_path / "objects", ("cc",))
     objects = sorted((tmp_path / "objects").glob("*.o"))
     passed("cc", f"-I{config.parent}", STARTS, *objects, "-lm", "-o", tmp_path / "starts")
-    assert ": ok, 1984 bytes," in passed(tmp_path / "starts")
+    assert ": ok, 2016 bytes," in passed(tmp_path / "starts")
 
 
 def test_platformio_libraries_and_flags(staged: Path, tmp_path: Path) -> None:
@@ -128,7 +128,7 @@ def test_platformio_libraries_and_flags(staged: Path, tmp_path: Path) -> None:
     objects = sorted((tmp_path / "goe").glob("*.o"))
     include = f"-I{staged / 'platformio' / 'goe' / 'src'}"
     passed("cc", include, *flags[:2], STARTS, *objects, "-lm", "-o", tmp_path / "starts")
-    assert ": ok, 3224 bytes," in passed(tmp_path / "starts")
+    assert ": ok, 3256 bytes," in passed(tmp_path / "starts")
     compile_all(staged / "platformio" / "goe_flight", tmp_path / "flight", ("cc",), "-fsyntax-only")
 
 
@@ -182,7 +182,7 @@ def test_esp_idf_parts(staged: Path, tmp_path: Path) -> None:
     """What is off is not in sdkconfig at all."""
     config = {"GOE_WITH_REFINED": "y", "GOE_WINDOW_MAX": "8", "GOE_CAMERAS_MAX": "1"}
     build = build_component(tmp_path / "idf", staged / "esp-idf" / "goe", str(STARTS), config)
-    assert ": ok, 1984 bytes," in passed(build / "consumer")
+    assert ": ok, 2016 bytes," in passed(build / "consumer")
     names = passed("nm", build / "component" / "libcomponent.a")
     assert "goe_flight_init" not in names and " T goe_hazard" not in names
 
@@ -248,7 +248,7 @@ def consume(prefix: Path, out: Path, source: Path, package: str, **environment: 
 def test_pkg_config(built: tuple[str, Path], tmp_path: Path) -> None:
     name, build = built
     passed("cmake", "--install", build, "--prefix", tmp_path / "stage")
-    bytes_of_estimator = {"whole": 2904, "parts": 1984}[name]
+    bytes_of_estimator = {"whole": 2936, "parts": 2016}[name]
     text = consume(tmp_path / "stage", tmp_path / "starts", STARTS, "goe")
     assert text.startswith(f"goe {FACTS.version}: ok, {bytes_of_estimator} bytes, self check 0x00")
     if name == "whole":
@@ -343,7 +343,7 @@ def test_conan_create(staged: Path, tmp_path: Path) -> None:
     need("conan")
     home = str(tmp_path / "home")
     passed("conan", "profile", "detect", CONAN_HOME=home)
-    for create, size in (("conan create .", 2904), ("conan create . -o '&:with_movers=False'", 2328)):
+    for create, size in (("conan create .", 2936), ("conan create . -o '&:with_movers=False'", 2368)):
         text = passed("sh", "-c", f"{create} 2>&1", folder=staged / "conan" / "goe", CONAN_HOME=home)
         assert f"goe {FACTS.version}: ok, {size} bytes, self check 0x00, GOE_STATUS" in text
     for wrong in ("window_max=65", "cameras_max=two"):

@@ -16,7 +16,7 @@ BAREMETAL = ROOT / "port" / "baremetal"
 TARGET = "thumbv7em-none-eabihf"
 CORTEX_M4F = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
 MEMORY = ("ROM_ORIGIN=0", "ROM_LENGTH=0x400000", "RAM_ORIGIN=0x20000000", "RAM_LENGTH=0x400000", "STACK_LENGTH=0x8000")
-SECONDS = 600
+SECONDS = 1800  # only a guard against what hangs
 
 
 def run(

@@ -9,8 +9,8 @@ import importlib
 import pickle
 import re
 import runpy
+import sys
 import threading
-from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -44,7 +44,8 @@ def approach(images: int = 60, **change: object) -> goe.Images:
 
 def image(k: int, images: goe.Images) -> goe.Image:
     pose = goe.Pose(int(images.time_us[k]), images.position_ned_m[k], 15.0, images.attitude[k])
-    return goe.Image(pose, bounding_box=goe.BoundingBox(*images.box_px[k]))
+    sides = (None if np.isnan(side) else side for side in images.box_px[k])
+    return goe.Image(pose, bounding_box=goe.BoundingBox(*sides))
 
 
 # ------------------------------------------------------------------------------------------------------------- sources
@@ -207,6 +208,7 @@ def test_what_is_sent_to_other_processes() -> None:
         (goe.Reason, "GOE_REASON_", {"NONE"}, "lib/goe.h"),
         (flight.FlightStatus, "GOE_FLIGHT_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALISED"},
          "port/flight/goe_flight.h"),
+        (goe.Decision, "GOE_DECISION_", set(), "lib/goe.h"),
         (flight.Action, "GOE_FLIGHT_", set(), "port/flight/goe_flight.h"),
     ],
 )  # fmt: skip
@@ -223,7 +225,7 @@ def test_enumerations_are_those_of_c(kind: type, prefix: str, left_out: set[str]
         following += 1
     assert {member.name: int(member) for member in kind} == {n: v for n, v in numbers.items() if n not in left_out}
     names = {str(member) for member in kind}
-    assert len(names) == len(kind) and "unknown" not in names
+    assert len(names) == len(kind) and ("unknown" not in names or kind is goe.Decision)
 
 
 def test_arrays_have_the_fields_of_c() -> None:
@@ -264,10 +266,10 @@ def test_quantities_and_their_sigmas() -> None:
 
 
 def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
-    """Against a plan of the same margins; the last images are refused, so that the estimate grows old."""
+    """Against a plan of the same margins; at last nothing is seen, so that the estimate grows old."""
     images = approach()
-    images.attitude[-20:] = 0.0
-    rules = [goe.Rule(15.0, 10.0, doubt=2.0, drift_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0)]
+    images.box_px[-20:] = NAN
+    rules = [goe.Rule(15.0, 10.0, doubt=2.0, drift_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)]
     track = goe.run(settings(), images, rules=rules)
     estimator = goe.Estimator(settings())
     ages = set()
@@ -275,8 +277,9 @@ def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
         estimate = estimator.update(image(k, images))
         for number, rule in enumerate(rules):
             doubt = rule.doubt if estimate.suspect else 1.0
+            old_s = np.float32(estimate.age_s) + np.float32(rule.since_image_s)
             margin, clearance = (
-                float(np.float32(doubt * m) + np.float32(rule.drift_m_s) * np.float32(estimate.age_s))
+                float(np.float32(doubt * m) + np.float32(rule.drift_m_s) * old_s)
                 for m in (rule.margin_m, rule.clearance_m)
             )
             plan = goe.Plan((16.0, 0.0, 0.0), margin, clearance, rule.since_image_s)
@@ -285,6 +288,92 @@ def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
     assert ages == {False, True}
     with pytest.raises(ValueError, match="velocity_ned_m_s: not given"):
         goe.run(settings(), approach(velocity_ned_m_s=None), rules=rules)
+
+
+def collision() -> goe.Images:
+    """Head-on, a plate of 6 m by 30 m."""
+    k = np.arange(60)
+    box = 640.0 + 914.0 * np.array([-3.0, -15.0, 3.0, 15.0]) / (200.0 - 2.0 * k)[:, None]
+    return approach(box_px=box)
+
+
+def expected_decision(rule: goe.Rule, hazard: goe.Hazard, estimate: goe.Estimate) -> goe.Decision:
+    """By the definition of goe_decide, from the hazard with the widened margins."""
+    old_m = rule.drift_m_s * estimate.age_s
+    doubt = rule.doubt if estimate.suspect else 1.0
+    if hazard.violation >= rule.violation_max:
+        if hazard.soonest_s <= rule.act_s:
+            return goe.Decision.ACT
+        later = hazard.time_s - 2.0 * hazard.time_sd_s > rule.act_s
+        return goe.Decision.CLEAR if later else goe.Decision.UNKNOWN
+    aside = hazard.miss.m - hazard.miss.sd_m >= doubt * rule.margin_m + old_m
+    over = hazard.clearance
+    above = over is not None and over.m - over.sd_m >= doubt * rule.clearance_m + old_m
+    return goe.Decision.CLEAR if aside or above else goe.Decision.UNKNOWN
+
+
+def test_decisions_are_those_of_the_rule() -> None:
+    """Probability, distances and times of the hazard with the widened margins."""
+    images = collision()
+    images.box_px[30:40] = NAN
+    rules = [goe.Rule(15.0, 10.0), goe.Rule(15.0, 10.0, violation_max=0.9, act_s=6.0, doubt=3.0, drift_m_s=0.5)]
+    track = goe.run(settings(), images, rules=rules)
+    estimator = goe.Estimator(settings())
+    for k in range(len(images)):
+        estimate = estimator.update(image(k, images))
+        for number, rule in enumerate(rules):
+            own = goe.DecisionRule(rule.violation_max, rule.act_s, rule.doubt, rule.drift_m_s)
+            decision, hazard = estimator.decide(goe.Plan((16.0, 0.0, 0.0), rule.margin_m, rule.clearance_m), own)
+            assert (decision, hazard) == (track.decision[k, number], track.hazard(k, number))
+            if hazard is None:
+                assert decision == goe.Decision.UNKNOWN and track.hazard_status[k, number] == goe.Status.COLLECTING
+                continue
+            soonest_s = hazard.time_s**2 / (hazard.time_s + 2.0 * hazard.time_sd_s)
+            assert hazard.soonest_s == pytest.approx(soonest_s, rel=1e-6)
+            assert decision == expected_decision(rule, hazard, estimate)
+    assert set(track.decision.flat) == {goe.Decision.UNKNOWN, goe.Decision.CLEAR, goe.Decision.ACT}
+    assert str(goe.Decision.ACT) == "act"
+    last = estimator.decide(goe.Plan((16.0, 0.0, 0.0), 15.0, 10.0))
+    assert last == (track.decision[-1, 0], track.hazard(-1, 0))  # the defaults are those of C
+    defaults = goe.DecisionRule()
+    assert (defaults.violation_max, defaults.act_s, defaults.doubt, defaults.drift_m_s) == (0.1, 12.0, 1.5, 1.0)
+    assert goe.Rule(1.0, 1.0)[2:4] == (1.5, 1.0) and goe.Rule(1.0, 1.0)[5:7] == (0.1, 12.0)
+
+
+def test_a_velocity_that_is_no_number_keeps_the_decision() -> None:
+    images = collision()
+    images.velocity_ned_m_s[50:, 1] = NAN
+    track = goe.run(settings(), images, rules=[goe.Rule(15.0, 10.0)])
+    assert set(track.decision[50:, 0]) == {goe.Decision.KEEP}
+    assert set(track.hazard_status[50:, 0]) == {goe.Status.NOT_FINITE} and track.hazard(55) is None
+    assert track.decision[49, 0] == goe.Decision.ACT
+
+
+def test_an_uncertain_velocity_makes_the_hazard_uncertain() -> None:
+    estimator = goe.Estimator(settings())
+    estimator.run(approach())
+    sure, unsure = (estimator.hazard(goe.Plan((16.0, 0.0, 0.0), 15.0, 10.0, 0.0, sd)) for sd in (0.0, 3.0))
+    assert unsure.miss.sd_m > 2.0 * sure.miss.sd_m
+    track = goe.run(settings(), approach(), rules=[goe.Rule(15.0, 10.0, velocity_sd_m_s=3.0)])
+    assert track.hazard(-1).miss.sd_m == unsure.miss.sd_m
+
+
+def test_a_box_without_sides_and_one_without_a_height() -> None:
+    images = approach()
+    images.box_px[10, 1:] = NAN
+    images.height_m[0] = 0.0
+    estimator = goe.Estimator(settings())
+    track = estimator.run(images)
+    assert estimator.causes[-int(goe.Status.BOX_INCOMPLETE)] == 1
+    assert estimator.causes[-int(goe.Status.NO_HEIGHT)] == 1 and len(estimator.causes) == 16
+    alone = goe.run(settings(), approach(1, box_px=np.array([[500.0, NAN, NAN, NAN]])))
+    assert goe.Status(alone.status[0]) == goe.Status.BOX_INCOMPLETE and track.status[-1] == goe.Status.OK
+
+
+def test_which_images_are_taken() -> None:
+    refused = {goe.Status.NOT_FINITE, goe.Status.OUT_OF_RANGE, goe.Status.BAD_TIME, goe.Status.BAD_ATTITUDE,
+               goe.Status.CORRUPTED}  # fmt: skip
+    assert {status for status in goe.Status if not status.is_image_taken} == refused
 
 
 @pytest.mark.parametrize(
@@ -332,9 +421,19 @@ def test_vectors_and_plans_that_c_would_misread() -> None:
         estimator.update(goe.Image(goe.Pose(position_ned_m=(1.0, 0.0))))
     for plan, words in (((1e4, 0.0, 0.0), 1.0, 1.0), "velocity_ned_m_s"), (((0.0, 0.0, 0.0), -1.0, 1.0), "margin_m"), (
         ((0.0, 0.0, 0.0), 1.0, NAN), "clearance_m"
-    ), (((0.0, 0.0, 0.0), 1.0, 1.0, 1e4), "since_image_s"):  # fmt: skip
-        with pytest.raises(ValueError, match=f"^{words} = .*: not within"):
-            estimator.hazard(goe.Plan(*plan))
+    ), (((0.0, 0.0, 0.0), 1.0, 1.0, 1e4), "since_image_s"), (
+        ((0.0, 0.0, 0.0), 1.0, 1.0, 0.0, 101.0), "velocity_sd_m_s"
+    ):  # fmt: skip
+        for ask in (estimator.hazard, estimator.decide):
+            with pytest.raises(ValueError, match=f"^{words} = .*: not within"):
+                ask(goe.Plan(*plan))
+    for change in ({"violation_max": 1.1}, {"act_s": NAN}, {"doubt": 0.5}, {"drift_m_s": 101.0}):
+        words = rf"^{next(iter(change))} = .*: not within"
+        with pytest.raises(ValueError, match=words):
+            estimator.decide(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0), goe.DecisionRule(**change))
+        with pytest.raises(ValueError, match=words):
+            goe.run(settings(), approach(), rules=[goe.Rule(1.0, 1.0, **change)])
+    assert estimator.decide(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) == (goe.Decision.UNKNOWN, None)
     assert estimator.hazard(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) is None  # nothing is known
     assert estimator.covariance() is None
 
@@ -358,17 +457,23 @@ def test_calls_release_python_s_lock() -> None:
     c = approach(98).to_c()
     c = np.tile(c, 200)
     c["pose"]["time_us"] = 125_000 * np.arange(len(c))
-    estimator, done = goe.Estimator(settings()), threading.Event()
+    estimator, told = goe.Estimator(settings()), []
 
     def work() -> None:
+        told.append("begun")
         estimator.run(c)
-        done.set()
+        told.append("ended")
 
     thread = threading.Thread(target=work)
-    thread.start()
-    turns = next(n for n in count() if done.is_set())
+    interval_s = sys.getswitchinterval()
+    sys.setswitchinterval(1e3)  # no thread takes the lock from another one: it has to be released
+    try:
+        thread.start()
+        seen = list(told)
+    finally:
+        sys.setswitchinterval(interval_s)
     thread.join()
-    assert turns > 1000
+    assert (seen, told) == (["begun"], ["begun", "ended"])
 
 
 def test_threads_do_not_mix_tracks_up() -> None:

@@ -137,7 +137,7 @@ def test_estimates_have_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
 def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int) -> None:
     """All in one call; also in threads, of more than there are processors."""
     runs = list(runs_of(tracks))
-    rules = [goe.Rule(PLAN.margin_m, PLAN.clearance_m)]
+    rules = [goe.Rule(PLAN.margin_m, PLAN.clearance_m, doubt=1.0, drift_m_s=0.0)]
     jobs = {"rules": rules, "covariance": True, "threads": threads}
     answers = goe.run_parallel([settings for _, settings in runs], [images_of(track) for track, _ in runs], **jobs)
     h = Hash()

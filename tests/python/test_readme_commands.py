@@ -20,7 +20,7 @@ from synthetic_campaign import write_campaign
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("lib", "port", "sim_host", "tests", "tools")
 PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "goe_avoid", "goe_companion", "cmake", "ctest")
-SECONDS = 300
+SECONDS = 1800  # only a guard against what hangs
 
 # ------------------------------------------------------------------------------------------------ what the READMEs say
 
@@ -139,6 +139,7 @@ RUN_BY = {
     "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
     "python -m goe_tools convert...": By("tests/python/test_convert.py", '"convert", f"--{kind}"'),
     "python -m goe_tools mcap...": By("tests/python/test_mcap.py", '"mcap", str(folder), "--out"'),
+    "python -m goe_tools lies...": By("tests/python/test_lies.py", '"lies", "--flights"'),
     "python -m goe_tools noise...": By("tests/python/test_noise.py", '"noise", *logs'),
     "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
     "python -m goe_tools evidence ...": By("tests/python/test_evidence_requirements.py", '"evidence", how'),
@@ -243,10 +244,16 @@ def test_sizes() -> None:
     assert re.fullmatch(r"\| x86-64 gcc -Os \(\d+\) \| [1-9]\d{4} \| 0 \|", code)
 
 
-def test_bench(built: Path) -> None:
-    rates = re.findall(r"^goe_replay --method (\w+): +(\d+) rows/s", output_of("tools/bench.sh", "1000"), re.MULTILINE)
+def test_bench(built: Path, set_up: None) -> None:
+    text = output_of("tools/bench.sh", "1000")
+    rates = re.findall(r"^goe_replay --method (\w+): +(\d+) rows/s", text, re.MULTILINE)
     assert [method for method, _ in rates] == ["refined", "window"]
-    assert all(int(rate) > 0 for _, rate in rates)
+    rates += re.findall(r"^goe_replay, (every column) filled.*: (\d+) rows/s", text, re.MULTILINE)
+    assert len(rates) == 3 and all(int(rate) > 0 for _, rate in rates)
+    if (built / "port" / "companion" / "goe_companion").exists():
+        (share,) = re.findall(r"^goe_companion, .*: (\d\.\d+) of a core", text, re.MULTILINE)
+        assert float(share) > 0.0
+    assert re.search(r"^machine: +\S.*\ncompiler: +\S.*\nflags: +\S", text, re.MULTILINE)
 
 
 def test_bench_campaign(built: Path) -> None:

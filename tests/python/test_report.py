@@ -323,7 +323,7 @@ def test_page_shows_where_the_sigma_holds(campaign: Campaign, written: Path, tmp
         "Of 2 attacks with a goal, 1 meets all that is asked.",
         "Of 1 row of warnings with a goal, 0 meet all that is asked.",
         "Positions confidently wrong, and not suspect, in most tracks: slope 3 % (36 %).",
-        "Violators without a warning 5 s ahead, by the README's rule: none.",
+        "Violators without a warning 5 s ahead, by the decision rule: none.",
     ]
     others = section_of(page.render_page(hostile, []), "goals")
     assert "slope 3 %" not in others and "4 of 6 goals are met" in others

@@ -10,9 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.logs.obslog import Camera, Frame, ObservationLog, read_log
+from goe_tools.logs.obslog import FEATURES, Camera, Frame, ObservationLog, read_log, write_log
 from goe_tools.logs.projection import distort, quaternion_of, yaw_pitch_roll
 from goe_tools.logs.scene import Scene, make_log
+from goe_tools.optimum.flights.logged import from_log
+from goe_tools.reference.mirror32 import Mirror32
+from goe_tools.reference.settings import Settings as SettingsOfWindow
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -212,6 +215,30 @@ def test_quaternion_is_the_rotation() -> None:
         expected = hamilton(hamilton(parts[0], parts[1]), parts[2])
         expected *= 1.0 if expected[0] >= 0.0 else -1.0
         assert q == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize("shape", ["cylinder", "box"])
+def test_the_track_begins_with_the_first_image_that_shows_a_feature(shape: str, tmp_path: Path) -> None:
+    """A camera that looks aside, on an arc: what truth and flight say of T is what an estimator finds."""
+    scene = Scene(
+        shape, 8.0, 14.0, 15.0, x0_m=60.0, z0_m=200.0, alpha_deg=40.0, path="arc", arc_radius_m=-900.0, run_s=10.0,
+        clip=True, camera=replace(PINHOLE, mount_yaw_deg=60.0),
+    )  # fmt: skip
+    log = make_log(scene)
+    shown = [any(getattr(frame, name) is not None for name in FEATURES) for frame in log.frames]
+    assert 5 < shown.index(True) < 40
+    told = {name: float(log.truth[1].extra[name]) for name in ("x0_m", "z0_m", "track_heading_deg")}
+    assert told["track_heading_deg"] < -2.0
+    mirror = Mirror32(log.camera, SettingsOfWindow(model="disc" if shape == "cylinder" else "line"))
+    values = [mirror.update(frame).values for frame in log.frames][-20]
+    assert values["x0_m"] == pytest.approx(told["x0_m"], abs=0.5)
+    assert values["z0_m"] == pytest.approx(told["z0_m"], abs=1.0)
+    if shape == "box":
+        assert values["orientation_deg"] == pytest.approx(float(log.truth[1].extra["orientation_deg"]), abs=1.0)
+    write_log(tmp_path, log)
+    (flight,) = from_log(tmp_path)
+    assert (flight.truth.x0_m, flight.truth.z0_m) == (told["x0_m"], told["z0_m"])
+    assert len(flight.time_s) == len(log.frames) - shown.index(True) and flight.seen[0].any()
 
 
 def test_a_path_into_the_ground_is_refused() -> None:

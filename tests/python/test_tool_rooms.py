@@ -16,7 +16,7 @@ PACKAGE = Path(__file__).resolve().parents[2] / "tools" / "goe_tools"
 FLOORS = (
     ("__init__", "places", "spread"),
     ("logs",),
-    ("attack",),
+    ("attack", "lies"),
     ("reference", "optimum", "cost", "packages"),
     ("view",),
     ("report", "live", "exchange", "noise", "evidence"),

@@ -89,6 +89,29 @@ def test_answers_are_those_of_goe_replay(name: str, replay: Path, tmp_path: Path
     assert_same(replayed(replay, folder, *words_), story(read_log(folder), **options))
 
 
+def test_when_to_act_is_the_decision_rules() -> None:
+    """By its definition: from 10 % on, if it may be reached within 12 s."""
+    seen = set()
+    for make in (view_logs.boxes, view_logs.several, view_logs.spoiled):
+        for track in story(make()).tracks:
+            column = track.answers.column
+            with np.errstate(invalid="ignore"):
+                soonest_s = column["time_s"] * np.divide(
+                    column["time_s"], column["time_s"] + 2.0 * column["time_sd_s"],
+                    out=np.zeros(len(track.answers)), where=column["time_s"] > 0.0,
+                )  # fmt: skip
+                sure = (np.abs(soonest_s - 12.0) > 1e-3) & (np.abs(column["violation"] - 0.1) > 1e-6)
+                acts = (column["violation"] >= 0.1) & (soonest_s <= 12.0)
+            assert np.array_equal(track.answers.act[sure], acts[sure])
+            seen |= set(track.answers.act[sure].tolist())
+    assert seen == {False, True}
+
+
+def test_every_status_has_words() -> None:
+    told = {str(status) for status in library.package().Status}
+    assert told - set(words.STATUS) == {"ok", "partial", "corrupted"}
+
+
 def test_two_cameras_with_lenses(replay: Path, tmp_path: Path, real_camera: Camera) -> None:
     folder = view_logs.written(view_logs.two_cameras(real_camera), tmp_path / "two")
     told = story(read_log(folder))

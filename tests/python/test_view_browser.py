@@ -16,13 +16,14 @@ import chromium
 import numpy as np
 import pytest
 import view_logs
-from chromium import open_page, screenshot, set_size
+from chromium import HANG_S, hold_time, open_page, screenshot, set_size, step_time
 from goe_tools.__main__ import main
 from goe_tools.logs.obslog import ObservationLog, read_log, write_truth
 from goe_tools.optimum import library
+from goe_tools.view.answers import Options
+from goe_tools.view.story import story_of
 
 WIDE, PHONE = (1280, 900), (400, 844)  # px
-WAIT_S = 20.0
 
 selenium = pytest.importorskip("selenium", reason="the browser test needs selenium (pip)")
 pytestmark = pytest.mark.skipif(chromium.MISSING, reason=chromium.WHY_MISSING)
@@ -33,6 +34,7 @@ Row = dict[str, str]
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     driver = chromium.start(tmp_path_factory.mktemp("profile"))
+    hold_time(driver)
     yield driver
     driver.quit()
 
@@ -61,7 +63,7 @@ def waited(browser: Any, script: str, *arguments: Any) -> Any:
     """What a script answers, once that is true."""
     from selenium.webdriver.support.ui import WebDriverWait
 
-    return WebDriverWait(browser, WAIT_S, poll_frequency=0.02).until(lambda b: b.execute_script(script, *arguments))
+    return WebDriverWait(browser, HANG_S, poll_frequency=0.02).until(lambda b: b.execute_script(script, *arguments))
 
 
 def opened(browser: Any, page: Path, size: tuple[int, int] = WIDE, dark: bool = False) -> None:
@@ -214,6 +216,19 @@ def test_what_it_draws_is_goe_replays(make_page: Callable[..., Path], browser: A
     assert math.dist((x[1], y[1]), (x[2], y[2])) == pytest.approx(float(rows[last]["length_m"]), rel=1e-4)
 
 
+def test_when_to_act_is_told(make_page: Callable[..., Path], browser: Any) -> None:
+    act = story_of("boxes", view_logs.boxes(), Options()).tracks[0].answers.act
+    opened(browser, make_page("boxes", view_logs.boxes))
+    for moment in (int(np.argmin(act)), int(np.argmax(act))):
+        moved(browser, moment)
+        warned = browser.execute_script(
+            "return document.getElementById('approach').parentElement.classList.contains('too-close')"
+        )
+        assert warned == ("act now" in said(browser)["approach"]) == bool(act[moment]), moment
+    assert 0 < act.sum() < len(act)
+    assert_quiet(browser)
+
+
 def test_both_maps_have_one_scale(make_page: Callable[..., Path], browser: Any) -> None:
     opened(browser, make_page("corner", corner))
     for view in ("whole", "ahead"):
@@ -304,13 +319,14 @@ def test_by_keyboard(make_page: Callable[..., Path], browser: Any) -> None:
     )
     pressed(browser, Keys.SPACE)
     waited(browser, "return document.getElementById('play').getAttribute('aria-pressed') === 'true'")
-    waited(browser, "return Number(document.documentElement.dataset.shown) > 3")
+    step_time(browser, 0.4)
+    assert 3 < shown(browser) < last
     assert browser.execute_script("return document.getElementById('now').getAttribute('aria-live')") == "off"
     pressed(browser, Keys.SPACE)
     waited(browser, "return document.getElementById('play').getAttribute('aria-pressed') === 'false'")
     stopped = shown(browser)
     assert 3 < stopped < last
-    browser.execute_async_script("setTimeout(arguments[0], 250)")
+    step_time(browser, 0.4)
     assert shown(browser) == stopped
 
 

@@ -187,7 +187,7 @@ static void hash_covariance(replay_t *replay, const goe_estimator_t *estimator) 
 
 #if GOE_WITH_HAZARD
 static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f};
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
     goe_hazard_t hazard;
     hash_status(replay, goe_hazard(estimator, &plan, &hazard));
     const float numbers[] = {hazard.time_s,    hazard.miss_m,    hazard.clearance_m,   hazard.violation,
@@ -195,11 +195,23 @@ static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
     hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
     hash_word(replay, hazard.has_clearance ? 1u : 0u);
 }
+
+/* For the cost ledger. What it decides hangs on bits that are in the hash. */
+static void decide(const goe_estimator_t *estimator) {
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.5f, 0.2f};
+    goe_rule_t rule;
+    goe_hazard_t hazard;
+    goe_rule_default(&rule);
+    (void)!goe_decide(estimator, &plan, &rule, &hazard);
+    (void)goe_soonest_s(&hazard);
+}
 #else
 static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
     (void)replay;
     (void)estimator;
 }
+
+static void decide(const goe_estimator_t *estimator) { (void)estimator; }
 #endif
 
 static void replay_images(replay_t *replay, goe_estimator_t *estimator, const logged_track_t *track) {
@@ -212,6 +224,7 @@ static void replay_images(replay_t *replay, goe_estimator_t *estimator, const lo
         hash_estimate(replay, &estimate);
         hash_covariance(replay, estimator);
         hash_hazard(replay, estimator);
+        decide(estimator);
         replay->images++;
     }
     for (int i = 0; i < GOE_CAUSES; i++) {
@@ -249,6 +262,7 @@ static void replay_own(replay_parts_t *parts, goe_estimator_t *estimator, const 
             hash_estimate(own, &estimate);
             hash_covariance(own, estimator);
             hash_hazard(hazard, estimator);
+            decide(estimator);
             hazard->images++;
             own->images++;
         }

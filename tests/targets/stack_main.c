@@ -8,7 +8,7 @@
 #include "stack.h"
 
 typedef struct {
-    size_t update[REPLAY_METHODS], covariance, hazard, init, reset, defaults, text, self_check;
+    size_t update[REPLAY_METHODS], covariance, hazard, rule, decide, soonest, init, reset, defaults, text, self_check;
 } depth_t;
 
 static goe_estimator_t estimator;
@@ -74,11 +74,33 @@ __attribute__((noinline)) static size_t depth_of_covariance(void) {
 }
 
 __attribute__((noinline)) static size_t depth_of_hazard(void) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f};
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
     static goe_hazard_t hazard;
     port_stack_paint();
     const goe_status_t status = goe_hazard(&estimator, &plan, &hazard);
     return status == GOE_OK ? port_stack_used() : 0u;
+}
+
+__attribute__((noinline)) static size_t depth_of_rule(void) {
+    static goe_rule_t rule;
+    port_stack_paint();
+    goe_rule_default(&rule);
+    return port_stack_used();
+}
+
+__attribute__((noinline)) static size_t depth_of_decide(void) {
+    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
+    static goe_hazard_t hazard;
+    port_stack_paint();
+    const goe_decision_t decision = goe_decide(&estimator, &plan, NULL, &hazard);
+    return decision != GOE_DECISION_KEEP ? port_stack_used() : 0u;
+}
+
+__attribute__((noinline)) static size_t depth_of_soonest(void) {
+    static const goe_hazard_t hazard = {.time_s = 10.0f, .time_sd_s = 1.0f};
+    port_stack_paint();
+    (void)goe_soonest_s(&hazard);
+    return port_stack_used();
 }
 
 static void measure_track(const logged_track_t *track, int method) {
@@ -90,7 +112,10 @@ static void measure_track(const logged_track_t *track, int method) {
         keep_larger(&deepest.update[method], depth_of_update());
         keep_larger(&deepest.covariance, depth_of_covariance());
         keep_larger(&deepest.hazard, depth_of_hazard());
+        keep_larger(&deepest.decide, depth_of_decide());
     }
+    keep_larger(&deepest.rule, depth_of_rule());
+    keep_larger(&deepest.soonest, depth_of_soonest());
     keep_larger(&deepest.reset, depth_of_reset());
 }
 
@@ -112,6 +137,9 @@ int main(void) {
     tell("goe_update", deepest.update[1]);
     tell("goe_covariance", deepest.covariance);
     tell("goe_hazard", deepest.hazard);
+    tell("goe_rule_default", deepest.rule);
+    tell("goe_decide", deepest.decide);
+    tell("goe_soonest_s", deepest.soonest);
     tell("goe_reset", deepest.reset);
     tell("goe_status_text", depth_of_text());
     tell("goe_reason_text", depth_of_reason());

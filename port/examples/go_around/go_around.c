@@ -18,13 +18,9 @@
 #define BUILDING_RIGHT_M 10.0f
 #define BUILDING_TOP_M 12.0f
 
-#define MARGIN_M 15.0f     /* aside */
-#define CLEARANCE_M 10.0f  /* over the top */
-#define VIOLATION_MAX 0.1f /* probability that both are violated */
-#define CLIMB_S 12.0f      /* what a climb over the obstacle takes, and some seconds to decide */
-#define DOUBT 2.0f         /* factor on both while the estimate is suspect */
-#define LATENCY_S 0.1f     /* from the exposure to this decision */
-#define DRIFT_M_S 2.0f     /* by which an answer that is not renewed goes wrong */
+#define MARGIN_M 15.0f    /* aside */
+#define CLEARANCE_M 10.0f /* over the top */
+#define LATENCY_S 0.1f    /* from the exposure to this decision */
 
 static goe_estimator_t building;
 
@@ -44,21 +40,6 @@ static void take_image(int k, goe_image_t *image) {
     image->box.seen = GOE_SEES_BOX;
 }
 
-/* Doubt widens what is asked for; it never silences. */
-static bool must_go_around(const goe_estimate_t *now, goe_hazard_t *hazard) {
-    const float doubt = now->suspect ? DOUBT : 1.0f;
-    const float old_m = DRIFT_M_S * now->age_s;
-    const goe_plan_t plan = {.velocity_ned_m_s = {SPEED_M_S, 0.0f, SINK_M_S},
-                             .margin_m = doubt * MARGIN_M + old_m,
-                             .clearance_m = doubt * CLEARANCE_M + old_m,
-                             .since_image_s = LATENCY_S};
-    if (goe_hazard(&building, &plan, hazard) != GOE_OK) {
-        return false; /* nothing is known yet, which does not make it safe */
-    }
-    const float soonest_s = hazard->time_s - 2.0f * hazard->time_sd_s;
-    return hazard->violation > VIOLATION_MAX && soonest_s < CLIMB_S;
-}
-
 int main(void) {
     goe_settings_t settings;
     goe_settings_default(&settings);
@@ -70,14 +51,19 @@ int main(void) {
     if (goe_init(&building, sizeof building, &settings, NULL) != GOE_OK) {
         return 1;
     }
+    const goe_plan_t plan = {.velocity_ned_m_s = {SPEED_M_S, 0.0f, SINK_M_S},
+                             .margin_m = MARGIN_M,
+                             .clearance_m = CLEARANCE_M,
+                             .since_image_s = LATENCY_S};
+    bool order = false;
     for (int k = 0; k < IMAGES; k++) {
         goe_image_t image = {0};
         goe_estimate_t now;
-        goe_hazard_t hazard = {0};
+        goe_hazard_t hazard;
         take_image(k, &image);
-        (void)goe_update(&building, &image,
-                         &now); /* a fault leaves the last good estimate, which hazard goes on from */
-        const bool order = must_go_around(&now, &hazard);
+        (void)goe_update(&building, &image, &now); /* a fault leaves the last good estimate */
+        const goe_decision_t decision = goe_decide(&building, &plan, NULL, &hazard);
+        order = decision == GOE_DECISION_ACT || (order && decision != GOE_DECISION_CLEAR);
         if ((order || k % 8 == 0) && (now.valid & GOE_HAS_POSITION) != 0u) {
             printf(
                 "%4.1f s: in %4.1f +- %3.1f s %3.0f m beside it, %3.0f m over its top; margins violated: %3.0f %%%s\n",

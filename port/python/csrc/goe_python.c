@@ -77,22 +77,40 @@ void goe_python_sizes(size_t sizes[3]) {
 
 /* ---------------------------------------------------------------------------------------------------------- tracks -- */
 
-static goe_status_t ask(const goe_estimator_t *estimator, const goe_estimate_t *estimate, const float velocity[3],
-                        const goe_python_rule_t *rule, goe_hazard_t *hazard) {
-    const float doubt = estimate->suspect ? rule->doubt : 1.0f;
-    const float old_m = rule->drift_m_s * estimate->age_s;
-    goe_plan_t plan;
-    memcpy(plan.velocity_ned_m_s, velocity, sizeof plan.velocity_ned_m_s);
-    plan.margin_m = doubt * rule->margin_m + old_m;
-    plan.clearance_m = doubt * rule->clearance_m + old_m;
-    plan.since_image_s = rule->since_image_s;
-    return goe_hazard(estimator, &plan, hazard);
+/* Why there is no hazard, or GOE_OK. */
+static goe_status_t status_of(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_decision_t decision) {
+    goe_hazard_t unused;
+    if (decision == GOE_DECISION_ACT || decision == GOE_DECISION_CLEAR) {
+        return GOE_OK;
+    }
+    const goe_status_t status = goe_hazard(estimator, plan, &unused);
+    return status == GOE_OK && decision == GOE_DECISION_KEEP ? GOE_OUT_OF_RANGE : status; /* of the rule */
 }
+
+static goe_decision_t decide(const goe_estimator_t *estimator, const float velocity[3], const goe_python_rule_t *given,
+                             int32_t *hazard_status, goe_hazard_t *hazard) {
+    goe_plan_t plan;
+    goe_rule_t rule;
+    memcpy(plan.velocity_ned_m_s, velocity, sizeof plan.velocity_ned_m_s);
+    plan.margin_m = given->margin_m;
+    plan.clearance_m = given->clearance_m;
+    plan.since_image_s = given->since_image_s;
+    plan.velocity_sd_m_s = given->velocity_sd_m_s;
+    rule.violation_max = given->violation_max;
+    rule.act_s = given->act_s;
+    rule.doubt = given->doubt;
+    rule.drift_m_s = given->drift_m_s;
+    const goe_decision_t decision = goe_decide(estimator, &plan, &rule, hazard);
+    *hazard_status = (int32_t)status_of(estimator, &plan, decision);
+    return decision;
+}
+
+bool goe_python_image_taken(int status) { return GOE_IMAGE_TAKEN(status); }
 
 void goe_python_update(goe_estimator_t *estimator, size_t images, const goe_image_t *image, int32_t *status,
                        goe_estimate_t *estimate, float (*covariance)[GOE_QUANTITIES][GOE_QUANTITIES], size_t rules,
-                       const goe_python_rule_t *rule, const float (*velocity_ned_m_s)[3], int32_t *hazard_status,
-                       goe_hazard_t *hazard) {
+                       const goe_python_rule_t *rule, const float (*velocity_ned_m_s)[3], int32_t *decision,
+                       int32_t *hazard_status, goe_hazard_t *hazard) {
     for (size_t k = 0; k < images; k++) {
         status[k] = (int32_t)goe_update(estimator, &image[k], &estimate[k]);
         if (covariance != NULL) {
@@ -100,7 +118,8 @@ void goe_python_update(goe_estimator_t *estimator, size_t images, const goe_imag
         }
         for (size_t i = 0; i < rules; i++) {
             const size_t place = k * rules + i;
-            hazard_status[place] = (int32_t)ask(estimator, &estimate[k], velocity_ned_m_s[k], &rule[i], &hazard[place]);
+            decision[place] =
+                (int32_t)decide(estimator, velocity_ned_m_s[k], &rule[i], &hazard_status[place], &hazard[place]);
         }
     }
 }

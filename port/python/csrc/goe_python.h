@@ -30,21 +30,27 @@ size_t goe_python_estimator_size(void);
 /* Bytes of goe_image_t, goe_estimate_t and goe_hazard_t, for callers that lay them out by themselves. */
 void goe_python_sizes(size_t sizes[3]);
 
-/* What goe_hazard() is asked after each image, by the project's rule: margin and clearance grow with doubt and age. */
+/* What goe_decide() gets after each image: of goe_plan_t all but the velocity, and goe_rule_t. */
 typedef struct {
     float margin_m, clearance_m;
-    float doubt;         /* times both while the estimate is suspect; 1: as they are */
-    float drift_m_s;     /* times the estimate's age, added to both; 0: as they are */
-    float since_image_s; /* as in goe_plan_t */
+    float doubt;     /* 1: both as they are, also while the estimate is suspect */
+    float drift_m_s; /* 0: both as they are, also if it is old */
+    float since_image_s;
+    float violation_max, act_s;
+    float velocity_sd_m_s;
 } goe_python_rule_t;
 
 /* Images go in, one after the other, and what is known after each comes out.
  *   velocity_ned_m_s  [images] planned; read if there are rules
  *   covariance        [images]; null: not wanted
- *   hazard_status, hazard  [images][rules]; written if there are rules */
+ *   decision, hazard_status, hazard  [images][rules]; written if there are rules. hazard_status: GOE_OK with a hazard, otherwise
+ *                     why there is none: that of goe_hazard(), or GOE_OUT_OF_RANGE of a rule that goe_decide() refuses */
 void goe_python_update(goe_estimator_t *estimator, size_t images, const goe_image_t *image, int32_t *status,
                        goe_estimate_t *estimate, float (*covariance)[GOE_QUANTITIES][GOE_QUANTITIES], size_t rules,
-                       const goe_python_rule_t *rule, const float (*velocity_ned_m_s)[3], int32_t *hazard_status,
-                       goe_hazard_t *hazard);
+                       const goe_python_rule_t *rule, const float (*velocity_ned_m_s)[3], int32_t *decision,
+                       int32_t *hazard_status, goe_hazard_t *hazard);
+
+/* GOE_IMAGE_TAKEN of a status. */
+bool goe_python_image_taken(int status);
 
 #endif /* GOE_PYTHON_H */

@@ -54,15 +54,17 @@ images = approach(MAST_EAST_M, seed=1)
 # %% [markdown]
 # ## What is known after each image
 #
-# The settings say how wrong the sensors are: the sigmas are only as good as that. One call takes the whole track. A
-# rule asks after each image what becomes of flying straight on, with margins that grow while the estimate is in doubt.
+# The settings say how wrong the sensors are: the sigmas are only as good as that. One call takes the whole track. The
+# decision rule is asked after each image what becomes of flying straight on, with margins that grow while the estimate
+# is in doubt or old.
 
 # %%
 settings = goe.Settings.for_camera(FOCAL_PX, FOCAL_PX, CENTER_PX, CENTER_PX, width_px=1280, height_px=1280)
 settings.detector.box_px = 1.0
 settings.detector.box_share = 0.03
-margins = goe.Rule(margin_m=15.0, clearance_m=10.0, doubt=2.0, drift_m_s=2.0)
-track = goe.run(settings, images, rules=[margins], covariance=True)
+CLIMB_S = 8.0  # what a climb takes, and some seconds to decide
+rule = goe.Rule(margin_m=15.0, clearance_m=10.0, act_s=CLIMB_S)
+track = goe.run(settings, images, rules=[rule], covariance=True)
 
 true_m = MAST_NORTH_M - SPEED_M_S * np.arange(IMAGES) / RATE_HZ
 for k in range(0, IMAGES, 10):
@@ -80,17 +82,15 @@ for k in range(0, IMAGES, 10):
 # %% [markdown]
 # ## Going around
 #
-# The first image in which both margins will probably be violated, and sooner than a climb takes.
+# The first image after which the rule says so: both margins will be violated, with a probability of 10 %, sooner than a
+# climb takes.
 
 # %%
-CLIMB_S = 8.0
-told = track.hazards[:, 0]
-soonest_s = told["time_s"] - 2.0 * told["time_sd_s"]
-ordered = (track.hazard_status[:, 0] == 0) & (told["violation"] > 0.1) & (soonest_s < CLIMB_S)
-order = int(np.argmax(ordered)) if ordered.any() else None
+act = track.decision[:, 0] == goe.Decision.ACT
+order = int(np.argmax(act)) if act.any() else None
 if order is not None:
-    left_m = true_m[order]
-    print(f"go around at {order / RATE_HZ:.2f} s: {told['time_s'][order]:.1f} s to go, {left_m:.0f} m before the mast")
+    left_s, left_m = track.hazards["time_s"][order, 0], true_m[order]
+    print(f"go around at {order / RATE_HZ:.2f} s: {left_s:.1f} s to go, {left_m:.0f} m before the mast")
 
 # %% [markdown]
 # ## Is the sigma honest?
@@ -100,7 +100,7 @@ if order is not None:
 
 # %%
 flights = [approach(MAST_EAST_M, seed) for seed in range(40)]
-answers = goe.run_parallel(settings, flights, rules=[margins])
+answers = goe.run_parallel(settings, flights, rules=[rule])
 errors = np.array([answer.estimates["z_m"] - true_m for answer in answers])
 sigmas = np.array([np.where(answer.valid[:, 1], answer.estimates["sigma"]["z_m"], np.nan) for answer in answers])
 known = np.isfinite(sigmas)
@@ -110,14 +110,18 @@ print(f"{len(flights)} flights: the true range lies within two sigma in {100 * s
 # %% [markdown]
 # ## In flight
 #
-# One image at a time, as it comes: the same answers.
+# One image at a time, as it comes: the same answers. Only a decision for "clear" ends an action.
 
 # %%
 mast = goe.Estimator(settings)
+straight_on = goe.Plan((SPEED_M_S, 0.0, 0.0), margin_m=15.0, clearance_m=10.0)
+go_around = False
 for k in range(IMAGES):
     pose = goe.Pose(int(images.time_us[k]), images.position_ned_m[k], HEIGHT_M, images.attitude[k])
     latest = mast.update(goe.Image(pose, bounding_box=goe.BoundingBox(*images.box_px[k])))
-assert latest == track[-1]
-hazard = mast.hazard(goe.Plan((SPEED_M_S, 0.0, 0.0), margin_m=15.0, clearance_m=10.0, since_image_s=0.1))
+    decision, hazard = mast.decide(straight_on, goe.DecisionRule(act_s=CLIMB_S))
+    assert decision == track.decision[k, 0]
+    go_around = decision == goe.Decision.ACT or (go_around and decision != goe.Decision.CLEAR)
+assert latest == track[-1] and go_around
 if hazard is not None:
     print(f"at the end: {hazard.time_s:.1f} +- {hazard.time_sd_s:.1f} s to go, misses by {hazard.miss.m:.1f} m")

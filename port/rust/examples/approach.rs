@@ -1,6 +1,6 @@
 //! Flies towards a mast of 6 m by 30 m and prints what is known of it, and when to go around it.
 
-use goe::{BoundingBox, Error, Estimator, Fault, Image, Plan, Pose, Settings};
+use goe::{BoundingBox, DecisionRule, Error, Estimator, Fault, Image, Plan, Pose, Settings};
 
 const FOCAL_PX: f32 = 914.0;
 const CENTER_PX: f32 = 640.0;
@@ -23,8 +23,13 @@ fn main() -> Result<(), Error> {
         velocity_ned_m_s: [SPEED_M_S, 0.0, 0.0],
         margin_m: 15.0,
         clearance_m: 10.0,
-        since_image_s: 0.0,
+        ..Plan::default()
     };
+    let rule = DecisionRule {
+        act_s: 5.0, // what a climb takes here
+        ..DecisionRule::default()
+    };
+    let mut go_around = false;
     for k in 0..80_i16 {
         let flown_m = 2.0 * f32::from(k);
         let image = Image {
@@ -38,11 +43,12 @@ fn main() -> Result<(), Error> {
             ..Image::default()
         };
         let estimate = mast.update(&image).unwrap_or_else(|fault: Fault| fault.estimate);
-        let Some(position) = estimate.position else {
+        let (decision, hazard) = mast.decide(&plan, &rule);
+        go_around = decision.acts(go_around);
+        let (Some(position), Some(hazard)) = (estimate.position, hazard) else {
             println!("{:4.1} s  {}", f32::from(k) / 8.0, estimate.status);
             continue;
         };
-        let hazard = mast.hazard(&plan)?;
         if k % 8 == 0 {
             println!(
                 "{:4.1} s  {:5.1} +- {:4.1} m ahead, {:4.1} s to go, violation {:.2}",
@@ -53,7 +59,7 @@ fn main() -> Result<(), Error> {
                 hazard.violation
             );
         }
-        if hazard.violation > 0.1 && hazard.time_s - 2.0 * hazard.time_sd_s < 5.0 {
+        if go_around {
             println!("{:4.1} s  go around: {:.1} s to go", f32::from(k) / 8.0, hazard.time_s);
             break;
         }

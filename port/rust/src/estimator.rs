@@ -9,10 +9,10 @@ use crate::settings::bad_setting;
 #[cfg(not(feature = "hazard"))]
 use crate::Error;
 #[cfg(feature = "hazard")]
-use crate::{Error, Hazard, Plan};
+use crate::{Decision, DecisionRule, Error, Hazard, Plan};
 use crate::{Estimate, Fault, Image, Settings};
 
-/// Follows one obstacle. It is all the memory there is (at most 2,904 bytes), may lie anywhere and be moved, copied or handed to
+/// Follows one obstacle. It is all the memory there is (at most 2,936 bytes), may lie anywhere and be moved, copied or handed to
 /// another thread.
 #[derive(Clone)]
 #[repr(transparent)]
@@ -126,13 +126,39 @@ impl Estimator {
         }
     }
 
+    /// The decision rule: whether to act now, and the hazard with the plan's margin and clearance widened by doubt and age. To be
+    /// asked after each image, also after one without a detection. `None`: there is no hazard, which does not mean that it is safe.
+    ///
+    /// ```
+    /// # use goe::{DecisionRule, Estimator, Plan, Settings};
+    /// # let tower = Estimator::new(&Settings::for_camera(914.0, 914.0, 640.0, 640.0))?;
+    /// # let mut go_around = false;
+    /// let plan = Plan { velocity_ned_m_s: [16.0, 0.0, 0.0], margin_m: 15.0, clearance_m: 10.0, ..Plan::default() };
+    /// let (decision, hazard) = tower.decide(&plan, &DecisionRule::default());
+    /// go_around = decision.acts(go_around);
+    /// # assert!(!go_around && hazard.is_none());
+    /// # Ok::<(), goe::Error>(())
+    /// ```
+    #[cfg(feature = "hazard")]
+    pub fn decide(&self, plan: &Plan, rule: &DecisionRule) -> (Decision, Option<Hazard>) {
+        let (plan, rule) = (plan.to_c(), rule.to_c());
+        let mut hazard = MaybeUninit::<ffi::goe_hazard_t>::zeroed();
+        // SAFETY: zeros are a goe_hazard_t, which the call writes whole; the estimator is a started one.
+        let (decision, hazard) = unsafe {
+            let decision = ffi::goe_decide(&self.c, &plan, &rule, hazard.as_mut_ptr());
+            (Decision::of(decision), hazard.assume_init())
+        };
+        let known = hazard.miss_sd_m > 0.0; // all zero without one
+        (decision, known.then(|| Hazard::of(&hazard)))
+    }
+
     /// Forgets the track; keeps settings and counters. For another obstacle, or a new view of the same one.
     pub fn reset(&mut self) {
         // SAFETY: the estimator is a started one. If its memory is corrupted, every call says so.
         unsafe { ffi::goe_reset(&mut self.c) };
     }
 
-    /// Faults so far, for the flight log: `[-code]` of each [`Status`](crate::Status) from -1 to -13, `[0]` the tracks that a filter
+    /// Faults so far, for the flight log: `[-code]` of each [`Status`](crate::Status) from -1 to -15, `[0]` the tracks that a filter
     /// reset of unknown size ended. They saturate.
     #[must_use]
     pub fn causes(&self) -> [u32; ffi::GOE_CAUSES] {

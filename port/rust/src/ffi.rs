@@ -23,6 +23,8 @@ pub type goe_model_t = c_uint;
 pub type goe_method_t = c_uint;
 /// Why an estimate is suspect.
 pub type goe_reason_t = c_uint;
+/// What the decision rule says.
+pub type goe_decision_t = c_uint;
 
 macro_rules! constants {
     ($($type:ty: $($name:ident = $value:expr),+ $(,)?;)+) => {
@@ -34,17 +36,19 @@ constants! {
     goe_status_t: GOE_OK = 0, GOE_PARTIAL = 1, GOE_COLLECTING = 2, GOE_HELD = 3, GOE_NOTHING_SEEN = 4,
         GOE_BEHIND_CAMERA = -1, GOE_LENS_FAILED = -2, GOE_SWAPPED = -3, GOE_EDGE_ON = -4, GOE_NO_EDGE = -5,
         GOE_BAD_HEIGHT = -6, GOE_NO_BASELINE = -7, GOE_NO_PARALLAX = -8, GOE_PASSED = -9, GOE_NOT_FINITE = -10,
-        GOE_OUT_OF_RANGE = -11, GOE_BAD_TIME = -12, GOE_BAD_ATTITUDE = -13, GOE_BAD_SETTINGS = -32,
-        GOE_BAD_ARGUMENT = -33, GOE_NOT_INITIALISED = -34, GOE_CORRUPTED = -35;
+        GOE_OUT_OF_RANGE = -11, GOE_BAD_TIME = -12, GOE_BAD_ATTITUDE = -13, GOE_BOX_INCOMPLETE = -14,
+        GOE_NO_HEIGHT = -15, GOE_BAD_SETTINGS = -32, GOE_BAD_ARGUMENT = -33, GOE_NOT_INITIALISED = -34,
+        GOE_CORRUPTED = -35;
     goe_model_t: GOE_MODEL_NONE = 0, GOE_MODEL_AUTO = 1, GOE_MODEL_DISC = 2, GOE_MODEL_LINE = 3, GOE_MODEL_BOX = 4,
         GOE_MODEL_PRISM = 5;
     goe_method_t: GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2;
     goe_reason_t: GOE_REASON_NONE = 0, GOE_REASON_CONVENTION = 1, GOE_REASON_MOVES = 2, GOE_REASON_BASE = 3,
         GOE_REASON_SHAPE = 4, GOE_REASON_LATE = 5, GOE_REASON_NOISE = 6;
+    goe_decision_t: GOE_DECISION_UNKNOWN = 0, GOE_DECISION_CLEAR = 1, GOE_DECISION_ACT = 2, GOE_DECISION_KEEP = 3;
     u8: GOE_SEES_LEFT = 1, GOE_SEES_TOP = 2, GOE_SEES_RIGHT = 4, GOE_SEES_BOTTOM = 8;
     c_uint: GOE_HAS_POSITION = 0x01, GOE_HAS_LENGTH = 0x02, GOE_HAS_HEIGHT = 0x04, GOE_HAS_ORIENTATION = 0x08,
         GOE_HAS_CENTER = 0x10, GOE_HAS_WIDTH = 0x20, GOE_HAS_VELOCITY = 0x40;
-    usize: GOE_CAUSES = 14, GOE_QUANTITIES = 6;
+    usize: GOE_CAUSES = 16, GOE_QUANTITIES = 6;
 }
 
 macro_rules! c_struct {
@@ -133,7 +137,14 @@ c_struct! {
         misfit: f32,
         sigma: goe_sigma_t,
     }
-    goe_plan_t { velocity_ned_m_s: [f32; 3], margin_m: f32, clearance_m: f32, since_image_s: f32 }
+    goe_plan_t {
+        velocity_ned_m_s: [f32; 3],
+        margin_m: f32,
+        clearance_m: f32,
+        since_image_s: f32,
+        velocity_sd_m_s: f32,
+    }
+    goe_rule_t { violation_max: f32, act_s: f32, doubt: f32, drift_m_s: f32 }
     goe_hazard_t {
         time_s: f32,
         miss_m: f32,
@@ -183,6 +194,20 @@ extern "C" {
         plan: *const goe_plan_t,
         hazard: *mut goe_hazard_t,
     ) -> goe_status_t;
+    /// Sets a rule to its defaults.
+    #[cfg(feature = "hazard")]
+    pub fn goe_rule_default(rule: *mut goe_rule_t);
+    /// Whether to act now.
+    #[cfg(feature = "hazard")]
+    pub fn goe_decide(
+        estimator: *const goe_estimator_t,
+        plan: *const goe_plan_t,
+        rule: *const goe_rule_t,
+        hazard: *mut goe_hazard_t,
+    ) -> goe_decision_t;
+    /// The earliest time of the closest approach at two sigma.
+    #[cfg(feature = "hazard")]
+    pub fn goe_soonest_s(hazard: *const goe_hazard_t) -> f32;
     /// Forgets the track.
     pub fn goe_reset(estimator: *mut goe_estimator_t) -> goe_status_t;
     /// A short name for a status.

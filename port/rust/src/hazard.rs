@@ -1,4 +1,6 @@
-//! What a planned flight will meet.
+//! What a planned flight will meet, and whether to act.
+
+use core::mem::MaybeUninit;
 
 use crate::ffi;
 use crate::Length;
@@ -14,6 +16,81 @@ pub struct Plan {
     pub clearance_m: f32,
     /// How long ago the latest image was taken, s; 0 to 1e3. Times count from now.
     pub since_image_s: f32,
+    /// One sigma of the velocity, each axis, m/s; 0 to 100; 0: that of [`Navigation`](crate::Navigation).
+    pub velocity_sd_m_s: f32,
+}
+
+/// When to act.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DecisionRule {
+    /// Act from this probability on that margin and clearance are both violated; 0 to 1; default 0.1.
+    pub violation_max: f32,
+    /// ... if the obstacle may be reached within this time, s; 0 to 1e4; default 12.
+    pub act_s: f32,
+    /// Times margin and clearance while the estimate is suspect; 1 to 100; default 1.5.
+    pub doubt: f32,
+    /// Margin and clearance grow by this for each second without a new answer, m/s; 0 to 100; default 1.
+    pub drift_m_s: f32,
+}
+
+impl Default for DecisionRule {
+    /// Those of the library.
+    fn default() -> Self {
+        let mut c = MaybeUninit::<ffi::goe_rule_t>::zeroed();
+        // SAFETY: zeros are a goe_rule_t, which the call writes whole.
+        let c = unsafe {
+            ffi::goe_rule_default(c.as_mut_ptr());
+            c.assume_init()
+        };
+        Self {
+            violation_max: c.violation_max,
+            act_s: c.act_s,
+            doubt: c.doubt,
+            drift_m_s: c.drift_m_s,
+        }
+    }
+}
+
+impl DecisionRule {
+    pub(crate) fn to_c(self) -> ffi::goe_rule_t {
+        ffi::goe_rule_t {
+            violation_max: self.violation_max,
+            act_s: self.act_s,
+            doubt: self.doubt,
+            drift_m_s: self.drift_m_s,
+        }
+    }
+}
+
+/// What the decision rule says. Only [`Decision::Clear`] ends an action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[must_use]
+pub enum Decision {
+    /// There is no position, or too little is known to say, which does not make it safe: keep the previous decision.
+    Unknown,
+    /// No reason to act now.
+    Clear,
+    /// Go around, or avoid.
+    Act,
+    /// The plan or the rule was refused, or the memory is corrupted: keep the previous decision.
+    Keep,
+}
+
+impl Decision {
+    pub(crate) fn of(c: ffi::goe_decision_t) -> Self {
+        match c {
+            ffi::GOE_DECISION_UNKNOWN => Self::Unknown,
+            ffi::GOE_DECISION_CLEAR => Self::Clear,
+            ffi::GOE_DECISION_ACT => Self::Act,
+            _ => Self::Keep,
+        }
+    }
+
+    /// Whether to act after this decision, if `before` says whether that was so before it.
+    #[must_use]
+    pub fn acts(self, before: bool) -> bool {
+        self == Self::Act || (before && self != Self::Clear)
+    }
 }
 
 /// What will become of it. Sigmas are to first order.
@@ -38,11 +115,29 @@ impl Plan {
             margin_m: self.margin_m,
             clearance_m: self.clearance_m,
             since_image_s: self.since_image_s,
+            velocity_sd_m_s: self.velocity_sd_m_s,
         }
     }
 }
 
 impl Hazard {
+    /// The earliest time of the closest approach at two sigma, s.
+    #[must_use]
+    pub fn soonest_s(&self) -> f32 {
+        let c = ffi::goe_hazard_t {
+            time_s: self.time_s,
+            miss_m: 0.0,
+            clearance_m: 0.0,
+            time_sd_s: self.time_sd_s,
+            miss_sd_m: 0.0,
+            clearance_sd_m: 0.0,
+            violation: 0.0,
+            has_clearance: false,
+        };
+        // SAFETY: the call reads a hazard.
+        unsafe { ffi::goe_soonest_s(&c) }
+    }
+
     pub(crate) fn of(c: &ffi::goe_hazard_t) -> Self {
         Self {
             time_s: c.time_s,

@@ -13,6 +13,14 @@ macro_rules! layout {
         )+
     };
 }
+#[cfg(feature = "hazard")]
+macro_rules! layout_hazard {
+    ($($list:tt)+) => { layout! { $($list)+ } };
+}
+#[cfg(not(feature = "hazard"))]
+macro_rules! layout_hazard {
+    ($($list:tt)+) => {};
+}
 #[cfg(feature = "flight")]
 macro_rules! layout_flight {
     ($($list:tt)+) => { layout! { $($list)+ } };
@@ -157,11 +165,12 @@ layout! {
         v_px: 4,
         seen: 8,
     }
-    goe_plan_t: 24 {
+    goe_plan_t: 28 {
         velocity_ned_m_s: 0,
         margin_m: 12,
         clearance_m: 16,
         since_image_s: 20,
+        velocity_sd_m_s: 24,
     }
     goe_pose_t: 56 {
         time_us: 0,
@@ -214,6 +223,15 @@ layout! {
         side_min_px: 16,
         orientation_memory: 20,
         min_baseline_m: 24,
+    }
+}
+
+layout_hazard! {
+    goe_rule_t: 16 {
+        violation_max: 0,
+        act_s: 4,
+        doubt: 8,
+        drift_m_s: 12,
     }
 }
 

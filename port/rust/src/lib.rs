@@ -59,7 +59,7 @@ mod status;
 pub use estimate::{Center, Estimate, Length, Model, Orientation, Position, Reason, Velocity};
 pub use estimator::{Estimator, QUANTITIES};
 #[cfg(feature = "hazard")]
-pub use hazard::{Hazard, Plan};
+pub use hazard::{Decision, DecisionRule, Hazard, Plan};
 pub use image::{BoundingBox, Image, ImageNoise, Pixel, Pose};
 pub use settings::{Camera, Detector, Method, Navigation, RefinedSettings, Settings, Shape, WindowSettings};
 pub use status::{Error, Fault, Status};

@@ -204,7 +204,7 @@ pub struct Settings {
     /// The shapes; default all.
     pub shape: Shape,
     /// Where Z of the trajectory's axes points: clockwise from north, degrees, ±360; `None`, the default: where the nose does at the
-    /// track's first image.
+    /// track's first image, which is the first one that shows a feature.
     pub heading_deg: Option<f32>,
     /// Errors of the pose.
     pub navigation: Navigation,

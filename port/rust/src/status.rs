@@ -75,6 +75,10 @@ statuses! {
     BadTime = GOE_BAD_TIME,
     /// Image refused: the quaternion's norm is off 1 by more than 1 %.
     BadAttitude = GOE_BAD_ATTITUDE,
+    /// Image taken; fewer than two sides of the box can be used.
+    BoxIncomplete = GOE_BOX_INCOMPLETE,
+    /// Image taken; the height is exactly 0 with a box, as if it was not set.
+    NoHeight = GOE_NO_HEIGHT,
     /// The estimator's memory is not what the library left there: nothing is known any more, which does not make it safe.
     Corrupted = GOE_CORRUPTED,
 }
@@ -90,6 +94,7 @@ impl Status {
     #[must_use]
     pub fn is_image_taken(self) -> bool {
         self.code() > ffi::GOE_NOT_FINITE
+            || (self.code() < ffi::GOE_BAD_ATTITUDE && self.code() > ffi::GOE_BAD_SETTINGS)
     }
 }
 
@@ -168,7 +173,9 @@ mod tests {
         assert!(!Status::NothingSeen.is_fault());
         assert!(Status::NoBaseline.is_fault() && Status::NoBaseline.is_image_taken());
         assert!(Status::BadTime.is_fault() && !Status::BadTime.is_image_taken());
-        assert!(!Status::NotFinite.is_image_taken());
+        assert!(Status::BoxIncomplete.is_fault() && Status::BoxIncomplete.is_image_taken());
+        assert!(Status::NoHeight.is_image_taken() && !Status::BadAttitude.is_image_taken());
+        assert!(!Status::NotFinite.is_image_taken() && !Status::Corrupted.is_image_taken());
         assert!(Status::Ok.is_image_taken());
     }
 }

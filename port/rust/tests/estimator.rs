@@ -148,7 +148,7 @@ fn hazards() {
         velocity_ned_m_s: [16.0, 0.0, 0.0],
         margin_m: 40.0,
         clearance_m: 10.0,
-        since_image_s: 0.0,
+        ..Plan::default()
     };
     let mut estimator = Estimator::new(&settings()).expect("good settings");
     assert_eq!(estimator.hazard(&plan), Err(Error::NoPosition));
@@ -172,4 +172,82 @@ fn hazards() {
         estimator.hazard(&Plan { margin_m: -1.0, ..plan }),
         Err(Error::OutOfRange)
     );
+    let unsure = Plan {
+        velocity_sd_m_s: 3.0,
+        ..plan
+    };
+    let unsure = estimator.hazard(&unsure).expect("a position");
+    assert!(unsure.miss.sd_m > 2.0 * hazard.miss.sd_m, "{unsure:?} {hazard:?}");
+    let most = hazard.time_s + 2.0 * hazard.time_sd_s;
+    assert!((hazard.soonest_s() - hazard.time_s * hazard.time_s / most).abs() < 1e-4);
+}
+
+#[cfg(feature = "hazard")]
+#[test]
+fn decisions() {
+    use goe::{Decision, DecisionRule, Plan};
+    let rule = DecisionRule::default();
+    assert_eq!(
+        (rule.violation_max, rule.act_s, rule.doubt, rule.drift_m_s),
+        (0.1, 12.0, 1.5, 1.0)
+    );
+    let plan = Plan {
+        velocity_ned_m_s: [16.0, 0.0, 0.0],
+        margin_m: 40.0,
+        clearance_m: 10.0,
+        ..Plan::default()
+    };
+    let mut estimator = Estimator::new(&settings()).expect("good settings");
+    assert_eq!(estimator.decide(&plan, &rule), (Decision::Unknown, None));
+    fly(&mut estimator, 12);
+    let (decision, hazard) = estimator.decide(&plan, &rule);
+    let hazard = hazard.expect("a position");
+    assert_eq!(
+        (decision, hazard),
+        (Decision::Act, estimator.hazard(&plan).expect("a position"))
+    );
+    let late = DecisionRule {
+        act_s: 0.5 * hazard.soonest_s(),
+        ..rule
+    };
+    assert_eq!(estimator.decide(&plan, &late), (Decision::Clear, Some(hazard)));
+    let away = Plan {
+        velocity_ned_m_s: [-16.0, 0.0, 0.0],
+        margin_m: 5.0,
+        ..plan
+    };
+    assert_eq!(estimator.decide(&away, &rule).0, Decision::Clear);
+    let bad_plan = Plan {
+        margin_m: f32::NAN,
+        ..plan
+    };
+    let bad_rule = DecisionRule { doubt: 0.5, ..rule };
+    assert_eq!(estimator.decide(&bad_plan, &rule), (Decision::Keep, None));
+    assert_eq!(estimator.decide(&plan, &bad_rule), (Decision::Keep, None));
+    assert!(Decision::Act.acts(false) && Decision::Keep.acts(true) && Decision::Unknown.acts(true));
+    assert!(!Decision::Clear.acts(true) && !Decision::Keep.acts(false));
+    let mut unseen = image(12);
+    unseen.bounding_box = None;
+    unseen.pose.time_us += 1_000_000;
+    estimator.update(&unseen).expect("no fault");
+    assert_ne!(estimator.decide(&plan, &rule).1, estimator.hazard(&plan).ok());
+}
+
+#[cfg(feature = "refined")]
+#[test]
+fn a_box_without_sides_and_one_without_a_height() {
+    let mut estimator = Estimator::new(&settings()).expect("good settings");
+    let mut bare = image(0);
+    bare.pose.height_m = 0.0;
+    let _ = estimator.update(&bare);
+    let mut narrow = image(1);
+    narrow.bounding_box = Some(BoundingBox {
+        left_px: Some(500.0),
+        ..BoundingBox::default()
+    });
+    let Err(Fault { estimate }) = estimator.update(&narrow) else {
+        panic!("a box of one side")
+    };
+    assert_eq!(estimate.status, Status::BoxIncomplete);
+    assert_eq!((estimator.causes()[14], estimator.causes()[15]), (1, 1));
 }

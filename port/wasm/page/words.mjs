@@ -1,7 +1,7 @@
 // What a report says to a pilot. SPDX-License-Identifier: MIT
 
 export const HAS = { position: 1, length: 2, height: 4, orientation: 8, center: 16, width: 32 };
-export const ORDER = { nothing: 0, clear: 1, doubt: 2, goAround: 3 };
+export const ORDER = { nothing: 0, clear: 1, doubt: 2, goAround: 3, uncertain: 4 };
 
 const REASONS = {
   convention: "what is given does not belong together",
@@ -16,6 +16,8 @@ const REASONS = {
 const STATUS = {
   collecting: "collecting images",
   nothing_seen: "nothing is seen",
+  box_incomplete: "only a part of the box is seen",
+  no_height: "the height above ground is not set",
 };
 
 /** Metres or degrees as one reads them: 3.2, 18, 182. */
@@ -43,7 +45,7 @@ function when(r) {
 /** What the answer is worth: why it is suspect, how old it is; empty if neither. */
 export function doubts(r) {
   const found = [];
-  if (r.suspect) found.push(`Suspect: ${REASONS[r.reason] ?? r.reason}. Margins are doubled.`);
+  if (r.suspect) found.push(`Suspect: ${REASONS[r.reason] ?? r.reason}. Margins are wider.`);
   if (r.valid && r.age_s > 0.25) found.push(`Not measured for ${r.age_s.toFixed(1)} s: an older answer, carried on.`);
   return found.join(" ");
 }
@@ -56,6 +58,8 @@ export function order(r) {
       return { name: "go-around", head: "Go around", line: words };
     case ORDER.doubt:
       return { name: "doubt", head: "Keep watching", line: `perhaps too close: ${words}; there is time to look longer` };
+    case ORDER.uncertain:
+      return { name: "doubt", head: "Keep watching", line: `too uncertain to say: ${words}` };
     case ORDER.clear:
       return { name: "clear", head: "Clear", line: `passes ${words}` };
     default:

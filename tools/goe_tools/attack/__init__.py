@@ -5,8 +5,8 @@ A generator of its own: it shares no code with goe_sim, with the simulator in op
 that an error in one shows. float64; an image is a row of an array. Nothing here knows the library: the goals run it.
 
 Axes: NED earth, FRD body, camera (right, down, ahead), T (X right, Y down, Z forward, level) with its origin at the
-camera of a track's first image. Flights are drawn in "course" axes (forward, right, down), level, turned against north
-by a random heading.
+camera of the first image that shows the obstacle. Flights are drawn in "course" axes (forward, right, down), level,
+turned against north by a random heading.
 
 turns      rotation matrices and quaternions
 motion     where the aircraft is

@@ -12,12 +12,7 @@ import numpy as np
 
 from .scenario import Scenario, Truth
 
-# README.md, "Going around, or not".
-MARGIN_M, CLEARANCE_M = 15.0, 10.0
-VIOLATION_MAX = 0.1
-CLIMB_S = 12.0
-DRIFT_M_S = 2.0
-DOUBT = 2.0
+MARGIN_M, CLEARANCE_M = 15.0, 10.0  # README.md, "Going around, or not"
 
 STEP_S = 0.01  # in which the closest approach is looked for
 INSIDE_M = 1e-9
@@ -73,7 +68,7 @@ ROWS = tuple(_rows())
 
 @dataclass
 class Approach:
-    """What happens if it is flown on: times from the track's first image; clearance at the closest approach."""
+    """What happens if it is flown on: times from the flight's first image; clearance at the closest approach."""
 
     time_s: float
     miss_m: float
@@ -86,8 +81,8 @@ class Approach:
 
 @dataclass
 class Warnings:
-    """Answers of goe_hazard over K images: with the plain margins, and the probability and time by the rule's. NaN
-    where there is none."""
+    """Answers of goe_hazard over K images, with the plain margins, and what goe_decide decides. NaN where there is
+    none."""
 
     time_s: np.ndarray
     refined: np.ndarray  # (K,) by the refined method: the window's sigmas are not judged
@@ -98,8 +93,7 @@ class Warnings:
     clearance_m: np.ndarray
     clearance_sd_m: np.ndarray
     violation: np.ndarray
-    rule_violation: np.ndarray
-    rule_soonest_s: np.ndarray  # time to go less two sigma
+    acts: np.ndarray  # (K,) bool
 
 
 @dataclass
@@ -136,10 +130,8 @@ def closest(truth: Truth, image: int = 0, velocity_m_s: np.ndarray | None = None
 
 
 def first_warning_s(warnings: Warnings) -> float:
-    """By the README's rule; infinite without one."""
-    with np.errstate(invalid="ignore"):
-        ordered = (warnings.rule_violation > VIOLATION_MAX) & (warnings.rule_soonest_s < CLIMB_S)
-    return float(warnings.time_s[np.argmax(ordered)]) if ordered.any() else math.inf
+    """By the decision rule; infinite without one."""
+    return float(warnings.time_s[np.argmax(warnings.acts)]) if warnings.acts.any() else math.inf
 
 
 # --------------------------------------------------------------------------------------------------------- many runs

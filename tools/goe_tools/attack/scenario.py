@@ -161,7 +161,7 @@ def _seen(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[
 
 
 def _is_behind(world: _World, start: int, first_seen: int) -> bool:
-    """Whether the obstacle, when it is first seen, lies behind the Z axis of a track that began before."""
+    """Whether the obstacle, when it is first seen, lies behind the path's own Z axis: then the nose sets T's."""
     away = world.middle_m[first_seen] - world.place_m[first_seen, :2]
     axis = world.path.axis_rad
     return start != first_seen and float(away @ [math.cos(axis), math.sin(axis)]) < BEHIND_COS * float(np.hypot(*away))
@@ -200,14 +200,14 @@ def _one(scenario: Scenario, number: int, attempt: int) -> Told | None:
     )
     steps = np.diff(jumped, axis=0, prepend=jumped[:1])
     seen = np.isfinite(pixel[part]).all(-1)
-    first_seen, axis, origin_at = int(np.argmax(shown)), world.path.axis_rad, part.start
-    begins_anew = _is_behind(world, part.start, first_seen)
-    if begins_anew:  # then T is fixed there, by the nose as it is told
+    first_seen, axis = int(np.argmax(shown)), world.path.axis_rad  # that image fixes T and its origin
+    by_nose = _is_behind(world, part.start, first_seen)
+    if by_nose:
         nose = pose.attitude[first_seen - part.start, :, 0]
-        axis, origin_at = math.atan2(nose[1], nose[0]) - world.axis_rad + world.path.axis_rad, first_seen
-    truth = _truth(world, part, origin_at, axis)
+        axis = math.atan2(nose[1], nose[0]) - world.axis_rad + world.path.axis_rad
+    truth = _truth(world, part, first_seen, axis)
     settings = _settings(world.stand.camera, scenario.wrong, math.degrees(truth.axis_rad), noise)
-    if begins_anew:
+    if by_nose:
         settings |= {"heading_auto": 1.0, "heading_deg": 0.0}
     return Told(
         number, time - time[0], pose.position_m, pose.quaternion, pose.height_m,

@@ -49,6 +49,11 @@ FALSE_ALARMS = {  # analyser, file, what it says: why it is false
         "dereference of NULL 'front'",
     ): "hypothesis_deg() is called only if"
     " one of two edges has a heading: where the side has none, the front has it, so that it is there",
+    (
+        "cppcheck",
+        "lib/refined/goe_touch.c",
+        "Using argument solid that points at uninitialized variable solid",
+    ): "goe_touch_open() is what initialises it: it writes the rotation, and reads nothing of it",
 }
 
 
@@ -122,7 +127,8 @@ def run(amount: Amount) -> Result:
         found["clang-tidy, bugprone, cert, clang-analyzer"] = find_tidy(amount.jobs)
     if not shutil.which("cppcheck"):
         raise NotHereError("no cppcheck")
-    found["cppcheck"] = find_cppcheck(amount.jobs)
+    found["cppcheck"], no_longer = split_false("cppcheck", find_cppcheck(amount.jobs))
+    gone += no_longer
     number = len(sources())
     rows = [Row(f"{name} over {number} files", f"{len(told)} warnings", "0", not told) for name, told in found.items()]
     rows.append(Row("false alarms, each with its reason, that no longer come", str(len(gone)), "0", not gone))

@@ -32,6 +32,7 @@ LONG = (
     "update_refined",
     "covariance",
     "hazard",
+    "decide",
     "intake_image",
     "settings_camera",
     "settings_general",

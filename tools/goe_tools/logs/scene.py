@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .obslog import Camera, Frame, ObservationLog, Pixel, Truth
+from .obslog import FEATURES, Camera, Frame, ObservationLog, Pixel, Truth
 from .projection import CAMERA_AXES_IN_BODY, Pose, project, quaternion_of, yaw_pitch_roll
 
 GRAVITY_MPS2 = 9.80665
@@ -199,6 +199,23 @@ def feature_points(scene: Scene, pose: Pose, placed: Placed) -> dict[str, np.nda
     return result
 
 
+def _in_track(scene: Scene, placed: Placed, frames: list[Frame]) -> tuple[float, float, float]:
+    """X0, Z0 and the heading of T's Z axis, deg: T begins with the first image that shows a feature."""
+    heading_deg = math.degrees(placed.heading_rad)
+    shown = [any(getattr(frame, name) is not None for name in FEATURES) for frame in frames]
+    if shown[0] or not any(shown):
+        return scene.x0_m, scene.z0_m, heading_deg
+    begin = pose_at(scene, shown.index(True) / scene.fps_hz)
+    if scene.camera.heading_deg is None:
+        heading_deg = math.degrees(math.atan2(begin.ned_from_body[1, 0], begin.ned_from_body[0, 0]))
+    reference = placed.center_ne_m
+    if placed.corners_ne_m is not None:
+        reference = 0.5 * (placed.corners_ne_m[0] + placed.corners_ne_m[3])  # the middle of the front edge
+    north, east = reference - begin.camera_ned_m[:2]
+    c, s = math.cos(math.radians(heading_deg)), math.sin(math.radians(heading_deg))
+    return float(c * east - s * north), float(c * north + s * east), heading_deg
+
+
 def make_log(scene: Scene) -> ObservationLog:
     """Flies the scene and returns its log, truth included."""
     if scene.rounding not in ("none", "pixel"):
@@ -233,8 +250,9 @@ def make_log(scene: Scene) -> ObservationLog:
             )
         )
     is_box = placed.corners_ne_m is not None
-    heading_deg = math.degrees(placed.heading_rad)
-    length_heading = math.remainder(heading_deg + scene.alpha_deg, 360.0)
+    length_heading = math.remainder(math.degrees(placed.heading_rad) + scene.alpha_deg, 360.0)
+    x0_m, z0_m, heading_deg = _in_track(scene, placed, frames)
+    turned_deg = math.remainder(heading_deg - math.degrees(placed.heading_rad), 360.0)
     truth = Truth(
         id=scene.id,
         static=True,
@@ -247,9 +265,9 @@ def make_log(scene: Scene) -> ObservationLog:
         heading_deg=length_heading if is_box else None,
         extra={
             "shape": scene.shape,
-            "x0_m": repr(float(scene.x0_m)),
-            "z0_m": repr(float(scene.z0_m)),
-            "orientation_deg": repr(float(scene.alpha_deg)) if is_box else "",
+            "x0_m": repr(float(x0_m)),
+            "z0_m": repr(float(z0_m)),
+            "orientation_deg": repr(float(scene.alpha_deg - turned_deg)) if is_box else "",
             "track_heading_deg": repr(heading_deg),
         },
     )

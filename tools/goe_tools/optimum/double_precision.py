@@ -55,7 +55,7 @@ def library() -> tuple[ctypes.CDLL, tuple[np.dtype[Any], ...]]:
     found.goe_python_init.argtypes = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p)
     pointers, size = ctypes.c_void_p, ctypes.c_size_t
     found.goe_python_update.argtypes = (
-        pointers, size, pointers, pointers, pointers, pointers, size, pointers, pointers, pointers, pointers,
+        pointers, size, pointers, pointers, pointers, pointers, size, pointers, pointers, pointers, pointers, pointers,
     )  # fmt: skip
     found.goe_python_update.restype = None
     types = tuple(widened(dtype) for dtype in (goe.IMAGE, goe.ESTIMATE, goe.HAZARD))
@@ -92,10 +92,10 @@ def run(
     found.goe_python_update(
         estimator, len(image), image.ctypes.data, single.status.ctypes.data, estimates.ctypes.data,
         _pointer(covariances), len(rules), table.ctypes.data, velocity.ctypes.data,
-        single.hazard_status.ctypes.data, hazards.ctypes.data,
+        single.decision.ctypes.data, single.hazard_status.ctypes.data, hazards.ctypes.data,
     )  # fmt: skip
     return Track(
         single.status, estimates.astype(single.estimates.dtype),
-        None if covariances is None else covariances.astype(np.float32), single.hazard_status,
+        None if covariances is None else covariances.astype(np.float32), single.decision, single.hazard_status,
         hazards.astype(single.hazards.dtype),
     )  # fmt: skip

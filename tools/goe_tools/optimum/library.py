@@ -49,13 +49,12 @@ SMALLEST = {  # that the library takes
 
 @dataclass(frozen=True)
 class Plan:
-    """What goe_hazard is asked after each image: the README's margins, which grow while the estimate is suspect
-    (times ``doubt``) and with its age (``drift_m_s``)."""
+    """What goe_decide is asked after each image. ``grows``: margins grow with doubt and age, by the library's own rule;
+    otherwise they are as they are, and the hazard is that of goe_hazard."""
 
     margin_m: float
     clearance_m: float
-    doubt: float = 1.0
-    drift_m_s: float = 0.0
+    grows: bool = False
 
 
 @dataclass
@@ -93,7 +92,7 @@ class Track:
     nis_rows: np.ndarray  # (K,)
     misfit: np.ndarray  # (K,)
     points: np.ndarray | None = None  # (K,) images behind the answer
-    hazard: dict[str, np.ndarray] = field(default_factory=dict)  # columns of ``HAZARD``, (K, plans)
+    hazard: dict[str, np.ndarray] = field(default_factory=dict)  # "status", "act", columns of ``HAZARD``: (K, plans)
     more: dict[str, np.ndarray] = field(default_factory=dict)  # columns that not every version has, (K,)
 
     @property
@@ -206,15 +205,24 @@ def run(images: Images, settings: dict[str, float], *, double: bool = False) -> 
     """Runs the library over a track."""
     goe = package()
     plans = images.plans if images.velocity_m_s is not None else ()
-    rules = [goe.Rule(p.margin_m, p.clearance_m, p.doubt, p.drift_m_s) for p in plans]
+    fixed = {"doubt": 1.0, "drift_m_s": 0.0}
+    rules = [goe.Rule(p.margin_m, p.clearance_m, **({} if p.grows else fixed)) for p in plans]
     run_track = double_precision.run if double else goe.run
     told = run_track(named_settings(tuple(settings.items())), to_package(images), rules=rules, covariance=True)
     return _track(told)
 
 
+def _hazard(told: Any) -> dict[str, np.ndarray]:
+    """Of a goe.Track; nothing without rules."""
+    if not told.hazards.shape[1]:
+        return {}
+    columns = {name: told.hazards[name].astype(float) for name in HAZARD}
+    return {"status": told.hazard_status.astype(float), "act": told.decision == package().Decision.ACT, **columns}
+
+
 def _track(told: Any) -> Track:
     """Of a goe.Track."""
-    column, sigma, hazard = told.estimates, told.estimates["sigma"], told.hazards
+    column, sigma = told.estimates, told.estimates["sigma"]
     values, sigmas = (np.stack([of[name] for name in QUANTITIES], 1) * TO_RADIANS for of in (column, sigma))
     valid = told.valid
     more = {name: column[name] for name in ("reason", "age_s", "trajectory_heading_deg")}
@@ -227,8 +235,5 @@ def _track(told: Any) -> Track:
         np.where(valid, values, np.nan), np.where(valid, sigmas, np.nan),
         told.covariance * TO_RADIANS[:, None] * TO_RADIANS,
         column["nis"].astype(float), column["nis_rows"], column["misfit"].astype(float), column["points"],
-        {"status": told.hazard_status.astype(float)} | {name: hazard[name].astype(float) for name in HAZARD}
-        if hazard.shape[1]
-        else {},
-        more,
+        _hazard(told), more,
     )  # fmt: skip

@@ -70,6 +70,9 @@ PATH_MIN_M = 0.1
 DEPTH_SD = 0.3  # of s
 UNSEEN_SD = 3.0  # of c
 DISC_SD = 1e-3  # of both where a disc is asked for
+# Of the width, by which it changes while the line of sight turns by a radian, up to an angle; and of the depth beyond
+# the width, where the point of the roof may lie that the top is over.
+TURNED_SHARE, TURNED_MAX, ROOF_SHARE = (float(np.float32(share)) for share in (1.3, 0.15, 0.15))
 
 SCATTER_KEPT, ALIKE_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as the library holds them
 SCATTER_CLIP, SCATTER_SEED = 10.0, 10.0
@@ -409,8 +412,22 @@ class PrismFilter:
         straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # a path that leads back is not scaled
         variance[:2] += (told.velocity_bias_m_s * span_s) ** 2 * (1 - straight**2)
         variance[:2] += told.position_walk_m**2 * (span_s + before_s) + (told.velocity_bias_m_s * before_s) ** 2
+        variance += self._no_ellipse(values, in_t)
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)
+
+    def _no_ellipse(self, values: np.ndarray, in_t: Sight) -> np.ndarray:
+        """(4,) variances, m^2: what an ellipse across the first line of sight misses of anything else than a disc."""
+        variance = np.zeros(4)
+        if not self.told.disc:
+            first, now = values[:2], values[:2] - (in_t.moved_m - self.origin_m)[[0, 2]]
+            range_m = float(np.linalg.norm(now))
+            turned = abs(first[0] * now[1] - first[1] * now[0]) / (float(np.linalg.norm(first)) * range_m)
+            below_m = in_t.given_height_m - values[3]
+            deeper_m = max(values[2] * (np.exp(self.state[S]) - 1.0), 0.0)
+            variance[2] = (TURNED_SHARE * values[2] * min(turned, TURNED_MAX)) ** 2
+            variance[3] = (ROOF_SHARE * deeper_m * below_m) ** 2 / (range_m**2 + below_m**2)
+        return variance
 
 
 def follow(flight: Flight, told: Told) -> PrismTrack:

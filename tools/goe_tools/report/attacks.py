@@ -139,7 +139,7 @@ def sentences(goals: Goals) -> list[str]:
     lacking = [f"{title} ({_percent(share)} %)" for share, title in unwarned if share > 0.0]
     if unwarned:
         said.append(
-            f"Violators without a warning {approach.AHEAD_S:g} s ahead, by the README's rule: "
+            f"Violators without a warning {approach.AHEAD_S:g} s ahead, by the decision rule: "
             + ("; ".join(lacking) if lacking else "none")
             + "."
         )

@@ -1,4 +1,4 @@
-"""What the library says of each obstacle of a log, image by image, and what ``goe_hazard`` says of flying on as now.
+"""What the library says of each obstacle of a log, image by image, and what ``goe_decide`` says of flying on as now.
 
 The library runs through the Python package, bit for bit as in goe_replay. NaN: not valid, not known.
 """
@@ -16,17 +16,10 @@ from ..logs.obslog import FEATURES, TIME_LIMIT_US, Camera, Frame, ObservationLog
 from ..optimum import library
 from .motion import Motion
 
-STATUS_NAMES = {
-    0: "ok", 1: "partial", 2: "collecting", 3: "held", 4: "nothing_seen", -1: "behind_camera", -2: "lens_failed",
-    -3: "swapped", -4: "edge_on", -5: "no_edge", -6: "bad_height", -7: "no_baseline", -8: "no_parallax", -9: "passed",
-    -10: "not_finite", -11: "out_of_range", -12: "bad_time", -13: "bad_attitude",
-}  # fmt: skip
-REFUSED_WHOLE = (-10, -11, -12, -13)  # the camera stands where it stood at the image before
 MODEL_NAMES = {0: "none", 2: "disc", 3: "line", 4: "box", 5: "prism"}
 MODEL_SETTINGS = {"auto": 1, "disc": 2, "line": 3}
 SETTING_GROUPS = ("navigation", "detector", "refined", "window")  # that --set may change, as in goe_replay
 TIME_UNKNOWN_S = -(2.0**63) * 1e-6  # the library's microseconds of it are GOE_TIME_UNKNOWN
-DOUBT, DRIFT_M_S = 2.0, 2.0  # the README's rule: margins are doubled while suspect, and grow with age
 MISFIT_MAX = 1.9  # default of refined.misfit_max
 QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m")
 OF_POSITION = ("x_m", "z_m", "x_sd_m", "z_sd_m")
@@ -63,6 +56,7 @@ class Answers:
     camera_ne_m: np.ndarray  # (K, 2) where the camera took the latest image that was not refused whole
     column: dict[str, np.ndarray]
     covariance: np.ndarray
+    act: np.ndarray  # (K,) the decision rule says: act now
 
     def __len__(self) -> int:
         return len(self.moment)
@@ -128,7 +122,7 @@ def _images(frames: Sequence[Frame], velocity_m_s: np.ndarray, options: Options)
         np.array(boxes, float),
         np.array([frame.reset_count & 0xFF for frame in frames]),
         np.array([frame.reset_delta_m or unknown for frame in frames], float),
-        velocity_m_s, (library.Plan(options.margin_m, options.clearance_m, DOUBT, DRIFT_M_S),),
+        velocity_m_s, (library.Plan(options.margin_m, options.clearance_m, grows=True),),
         np.array([frame.camera for frame in frames]),
     )  # fmt: skip
 
@@ -170,7 +164,8 @@ def _covariance(track: library.Track, column: dict[str, np.ndarray]) -> np.ndarr
 
 def _taken_cameras(motion: Motion, moment: np.ndarray, status: np.ndarray) -> np.ndarray:
     """(K, 2): the camera at the latest image that was not refused whole."""
-    taken = ~np.isin(status, REFUSED_WHOLE)
+    refused = [int(number) for number in library.package().Status if not number.is_image_taken]
+    taken = ~np.isin(status, refused)
     latest = np.maximum.accumulate(np.where(taken, np.arange(len(moment)), 0))
     return motion.camera_ne_m[moment[latest]]
 
@@ -178,6 +173,7 @@ def _taken_cameras(motion: Motion, moment: np.ndarray, status: np.ndarray) -> np
 def answers_of(log: ObservationLog, motion: Motion, options: Options) -> list[Answers]:
     """One for each id, in the log's order."""
     settings, reasons = settings_of(log, options), library.reason_names()
+    statuses = {int(status): str(status) for status in library.package().Status}
     rows: dict[int, list[int]] = {}
     for i, frame in enumerate(log.frames):
         rows.setdefault(frame.id, []).append(i)
@@ -188,9 +184,10 @@ def answers_of(log: ObservationLog, motion: Motion, options: Options) -> list[An
             track = library.run(_images(frames, motion.velocity_m_s[moment], options), settings)
         column = _columns(track)
         result.append(Answers(
-            key, moment, [STATUS_NAMES.get(int(s), "unknown") for s in track.status],
+            key, moment, [statuses[int(s)] for s in track.status],
             [MODEL_NAMES.get(int(m), "none") for m in track.model], [reasons[r] for r in track.more["reason"]],
             track.suspect, track.fresh, track.more["age_s"], np.radians(track.more["trajectory_heading_deg"]),
             _taken_cameras(motion, moment, track.status), column, _covariance(track, column),
+            track.hazard["act"][:, 0],
         ))  # fmt: skip
     return result

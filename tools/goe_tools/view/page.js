@@ -355,8 +355,9 @@
     $("place").textContent = place;
     $("approach").textContent = row < 0 ? "" : track.approach[row];
     const odds = row < 0 ? NaN : (track.columns.violation ?? [])[row];
-    if (odds >= 1) $("approach").textContent += `. Too close: ${odds.toFixed(0)} %`;
-    $("approach").parentElement.classList.toggle("too-close", odds > 10);
+    const act = row >= 0 && track.columns.act[row] > 0;
+    if (odds >= 1) $("approach").textContent += `. Too close: ${odds.toFixed(0)} %${act ? ": act now" : ""}`;
+    $("approach").parentElement.classList.toggle("too-close", act);
     const late = age > 0.05 ? `No image of it for ${age.toFixed(1)} s. ` : "";
     $("state").textContent = row < 0 ? "" : late + track.state[row];
     $("model").textContent = row < 0 || track.model[row] === "none" ? "–" : track.model[row];

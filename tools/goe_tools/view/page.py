@@ -19,6 +19,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from ..optimum.library import package
 from . import words
 from .charts import Chart, axis_range, charts_of, text
 from .story import Story, Track, map_bounds
@@ -52,7 +53,7 @@ def _track_data(story: Story, track: Track, described: tuple[Chart, ...], number
     answers, rows = track.answers, range(len(track.answers))
     columns = {"time": track.time_s, "rowAt": track.row_at, "suspect": answers.suspect, "fresh": answers.fresh}
     columns |= {"circle": track.circle, "corner": track.corner, "region": track.region, "closest": track.closest}
-    columns |= {"nearest": track.nearest, "moved": track.moved}
+    columns |= {"nearest": track.nearest, "moved": track.moved, "act": answers.act}
     charts = []
     for chart in described:
         limits = axis_range(chart, answers, track.truth)
@@ -124,9 +125,12 @@ def _facts(story: Story) -> list[str]:
     facts.append(
         f"Replayed by the method {options.method}, model {options.model}{', with ' + changed if changed else ''}."
     )
+    rule = package().DecisionRule()
     facts.append(
-        f"Too close: within {options.margin_m:g} m aside and {options.clearance_m:g} m over the top, both doubled "
-        "while the answer is suspect and grown by 2 m for each second of its age."
+        f"Too close: within {options.margin_m:g} m aside and {options.clearance_m:g} m over the top, both times "
+        f"{rule.doubt:g} while the answer is suspect and grown by {rule.drift_m_s:g} m for each second of its age. "
+        f"Act now: the library's decision rule, from {100.0 * rule.violation_max:g} % on, if it may be reached within "
+        f"{rule.act_s:g} s."
     )
     return facts
 

@@ -31,6 +31,8 @@ STATUS = {
     "out_of_range": "the image was refused: a number out of range",
     "bad_time": "the image was refused: its time",
     "bad_attitude": "the image was refused: its attitude",
+    "box_incomplete": "fewer than two sides of the box can be used",
+    "no_height": "the height above ground is not set",
 }
 REASONS = {
     "convention": "what is given does not belong together: axes, signs, mounting, or a pose half a second late",

@@ -14,7 +14,8 @@ bits.
 
 Frames      earth: north, east, down (NED), m, local. Body: forward, right, down; attitude: Hamilton quaternion
             (w, x, y, z) that turns body into NED. Camera: pixel (u, v) = (right, down) from the top left corner.
-            Trajectory: X right, Z ahead, level; its origin is where the camera was at the track's first image.
+            Trajectory: X right, Z ahead, level; its origin is where the camera was at the track's first image, which is
+            the first one that shows a feature.
 Units       stand in the names: _m, _deg, _px, _s, _us, _m_s.
 Not known   is None, or NaN in an array. "No position" does not mean "safe".
 Faults      of an image are told by ``Estimate.status``; a bad setting raises ``SettingError`` with field and range.
@@ -31,7 +32,7 @@ from ._layout import ESTIMATE, HAZARD, IMAGE
 from .estimate import Center, Estimate, Length, Orientation, Position, Velocity
 from .estimator import Estimator, run, run_parallel
 from .flight import Flight
-from .hazard import Hazard, Plan, Rule
+from .hazard import Decision, DecisionRule, Hazard, Plan, Rule
 from .image import POINTS, SIDES, TIME_UNKNOWN, BoundingBox, Image, ImageNoise, Pixel, Pose
 from .settings import (
     CAMERAS_MAX,
@@ -54,8 +55,9 @@ __version__: str = "{}.{}.{}".format(*(getattr(_lib, f"GOE_VERSION_{part}") for 
 
 __all__ = [
     "CAMERAS_MAX", "ESTIMATE", "FINGERPRINT", "HAZARD", "IMAGE", "POINTS", "QUANTITIES", "SIDES", "TIME_UNKNOWN",
-    "BoundingBox", "Camera", "Center", "Detector", "Estimate", "Estimator", "Flight", "FlightSettings", "Hazard",
-    "Image", "ImageNoise", "Images", "Length", "Method", "Model", "Navigation", "Orientation", "Pixel", "Plan", "Pose",
-    "Position", "Reason", "RefinedSettings", "Rule", "SettingError", "Settings", "Shape", "Status", "Track", "Velocity",
-    "WindowSettings", "flight", "run", "run_parallel", "self_check", "setting_rows",
+    "BoundingBox", "Camera", "Center", "Decision", "DecisionRule", "Detector", "Estimate", "Estimator", "Flight",
+    "FlightSettings", "Hazard", "Image", "ImageNoise", "Images", "Length", "Method", "Model", "Navigation",
+    "Orientation", "Pixel", "Plan", "Pose", "Position", "Reason", "RefinedSettings", "Rule", "SettingError", "Settings",
+    "Shape", "Status", "Track", "Velocity", "WindowSettings", "flight", "run", "run_parallel", "self_check",
+    "setting_rows",
 ]  # fmt: skip

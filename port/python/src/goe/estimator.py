@@ -13,8 +13,8 @@ import numpy.typing as npt
 
 from ._goe import ffi, lib
 from .estimate import Estimate, estimate_of
-from .hazard import Hazard, Plan, Rule, hazard_of
-from .image import Image, fill_image, vector
+from .hazard import Decision, DecisionRule, Hazard, Plan, Rule, hazard_of
+from .image import Image, fill_image
 from .settings import Settings
 from .status import SettingError, Status
 from .tracks import QUANTITIES, ImagesOrC, Track, empty_track, images_to_c, velocities
@@ -57,14 +57,17 @@ class Estimator:
         """Takes K images in one call, as ``update`` would one by one, with the same bits; Python's lock is released.
 
         images            ``Images``, or (K,) of goe_image_t (``goe.IMAGE``)
-        rules             R rules by which ``hazard`` is asked after each image
+        rules             R rules by which ``decide`` is asked after each image
         velocity_ned_m_s  (K, 3) planned, m/s; None: that of ``images``. Needed if there are rules
         covariance        whether it is wanted after each image
 
-        ValueError names a column of another shape, or of numbers that are not whole.
+        ValueError names a column of another shape, or of numbers that are not whole, and a number of a rule outside its
+        range.
         """
         c = images_to_c(images)
         velocity = velocities(images, velocity_ned_m_s, rules)
+        for rule in rules:
+            rule._check()
         track = empty_track(len(c), len(rules), covariance)
         table = ffi.new("goe_python_rule_t[]", [tuple(rule) for rule in rules])
         square = len(QUANTITIES)
@@ -76,7 +79,8 @@ class Estimator:
                 if track.covariance is None
                 else ffi.from_buffer(f"float[][{square}][{square}]", track.covariance),
                 len(rules), table, ffi.from_buffer("float[][3]", velocity),
-                ffi.from_buffer("int32_t[]", track.hazard_status), ffi.from_buffer("goe_hazard_t[]", track.hazards),
+                ffi.from_buffer("int32_t[]", track.decision), ffi.from_buffer("int32_t[]", track.hazard_status),
+                ffi.from_buffer("goe_hazard_t[]", track.hazards),
             )  # fmt: skip
         return track
 
@@ -91,13 +95,22 @@ class Estimator:
     def hazard(self, plan: Plan) -> Hazard | None:
         """Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. None: there is no
         position, which does not mean that it is safe. ValueError names a number of the plan outside its range."""
-        plan._check()
-        velocity = vector(plan.velocity_ned_m_s, 3, "velocity_ned_m_s")
-        c = ffi.new("goe_plan_t *", (velocity, plan.margin_m, plan.clearance_m, plan.since_image_s))
-        result = ffi.new("goe_hazard_t *")
+        c, result = plan._to_c(), ffi.new("goe_hazard_t *")
         with self._lock:
             status = lib.goe_hazard(self._c, c, result)
         return hazard_of(result) if status == Status.OK else None
+
+    def decide(self, plan: Plan, rule: DecisionRule | None = None) -> tuple[Decision, Hazard | None]:
+        """The decision rule: whether to act now, and the hazard with the plan's margin and clearance widened by doubt
+        and age. Ask it after each image, also after one without a detection. None: there is no hazard, which does not
+        mean that it is safe. ``rule``: None: the defaults. ValueError names a number of plan or rule outside its
+        range."""
+        c, result = plan._to_c(), ffi.new("goe_hazard_t *")
+        by = ffi.NULL if rule is None else rule._to_c()
+        with self._lock:
+            decision = Decision(lib.goe_decide(self._c, c, by, result))
+        known = result.miss_sd_m > 0.0  # all zero without one
+        return decision, hazard_of(result) if known else None
 
     def reset(self) -> None:
         """Forgets the track; keeps settings and counters. For another obstacle, or a new view of the same one."""
@@ -106,7 +119,7 @@ class Estimator:
 
     @property
     def causes(self) -> tuple[int, ...]:
-        """Faults so far: [-status] of each Status from -1 to -13, [0] the tracks that a filter reset of unknown size
+        """Faults so far: [-status] of each Status from -1 to -15, [0] the tracks that a filter reset of unknown size
         ended. They saturate."""
         return tuple(self._c.causes)
 

@@ -57,7 +57,8 @@ class Pose:
     position_ned_m: Sequence[float] = (0.0, 0.0, 0.0)
     """The vehicle's reference point in north, east, down, m; each within 1e6."""
     height_m: float = 0.0
-    """Of the camera itself above the ground at the obstacle, m; within 1e5."""
+    """Of the camera itself above the ground at the obstacle, m; within 1e5. Exactly 0 with a box: not set
+    (``Status.NO_HEIGHT``)."""
     attitude: Sequence[float] = (1.0, 0.0, 0.0, 0.0)
     """Quaternion w, x, y, z that turns body (forward, right, down) into north, east, down; refused if its norm is off 1
     by over 1 %."""

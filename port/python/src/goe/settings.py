@@ -194,7 +194,7 @@ class Settings(_Group):
     """Which shapes it may take the obstacle for; ``model`` in C."""
     heading_deg: float | None = None
     """Where Z of the trajectory's axes points: clockwise from north, degrees; None: where the nose does at the track's
-    first image (``heading_auto`` in C)."""
+    first image, which is the first one that shows a feature (``heading_auto`` in C)."""
     navigation: Navigation = field(default_factory=Navigation)
     """Errors of the pose."""
     detector: Detector = field(default_factory=Detector)

@@ -46,6 +46,10 @@ class Status(IntEnum):
     """Image refused: its time is unknown, repeated or runs backwards."""
     BAD_ATTITUDE = -13
     """Image refused: the quaternion's norm is off 1 by more than 1 %."""
+    BOX_INCOMPLETE = -14
+    """Image taken; fewer than two sides of the box can be used."""
+    NO_HEIGHT = -15
+    """Image taken; the height is exactly 0 with a box, as if it was not set."""
     CORRUPTED = -35
     """The estimator's memory is not what the library left there: nothing is known, which does not make it safe."""
 
@@ -57,7 +61,7 @@ class Status(IntEnum):
     @property
     def is_image_taken(self) -> bool:
         """The next images build on this one, whether or not it gave a solution."""
-        return self > Status.NOT_FINITE
+        return bool(lib.goe_python_image_taken(int(self)))
 
     def __str__(self) -> str:
         return ffi.string(lib.goe_status_text(int(self))).decode()

@@ -90,7 +90,7 @@ class Images:
     camera: Any = None
     """(K,) number of the camera that took it. None: the first."""
     velocity_ned_m_s: Any = None
-    """(K, 3) planned, for the hazards; None: no hazard is asked for."""
+    """(K, 3) planned, for the decisions; None: no decision is asked for."""
 
     def __len__(self) -> int:
         return len(self.time_us)
@@ -176,10 +176,12 @@ class Track:
     """(K,) of goe_estimate_t: float32, int32, bool."""
     covariance: Array | None
     """(K, 6, 6) float32 of ``QUANTITIES``, m and degrees; 0 where not valid. None: not asked for."""
+    decision: Array
+    """(K, R) int32 for R rules, of ``Decision``."""
     hazard_status: Array
-    """(K, R) int32 for R rules: 0 where there is a hazard."""
+    """(K, R) int32: 0 where there is a hazard, otherwise why there is none."""
     hazards: Array
-    """(K, R) of goe_hazard_t."""
+    """(K, R) of goe_hazard_t, by margins that have grown as ``Rule`` says."""
 
     def __len__(self) -> int:
         return len(self.status)
@@ -224,7 +226,7 @@ def empty_track(count: int, rules: int, covariance: bool) -> Track:
     return Track(
         np.zeros(count, np.int32), np.zeros(count, ESTIMATE),
         np.zeros((count, len(QUANTITIES), len(QUANTITIES)), np.float32) if covariance else None,
-        np.zeros((count, rules), np.int32), np.zeros((count, rules), HAZARD),
+        np.zeros((count, rules), np.int32), np.zeros((count, rules), np.int32), np.zeros((count, rules), HAZARD),
     )  # fmt: skip
 
 

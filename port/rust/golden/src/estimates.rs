@@ -93,7 +93,7 @@ fn hash_after(hash: &mut Hash, estimator: &Estimator) {
         velocity_ned_m_s: [15.0, 1.0, -0.5],
         margin_m: 10.0,
         clearance_m: 5.0,
-        since_image_s: 0.0,
+        ..Plan::default()
     };
     match estimator.hazard(&plan) {
         Ok(hazard) => {

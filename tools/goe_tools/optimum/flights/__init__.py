@@ -1,8 +1,8 @@
 """Flights past obstacles as arrays over the images of one track.
 
 Frames: NED earth (north, east, down), FRD body, camera (right, down, ahead), T = (right, down, forward) level, with its
-origin at the camera of the track's first image. Metres, seconds, radians, pixels; attitudes are Hamilton quaternions
-(w, x, y, z) body -> NED. Features in the order of ``FEATURES``.
+origin at the camera of the first image, which shows a feature: with that a track begins. Metres, seconds, radians,
+pixels; attitudes are Hamilton quaternions (w, x, y, z) body -> NED. Features in the order of ``FEATURES``.
 
 A ``Scene`` is what is true, a ``Flight`` what an estimator is told, and the truth of the obstacle. ``measure`` makes a
 flight of a scene and of a noise; the same seed gives the same flight.

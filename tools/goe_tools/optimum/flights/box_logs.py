@@ -72,12 +72,15 @@ def _table(path: Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
 
 
 def _tracks(folder: Path) -> Iterator[tuple[int, Flight]]:
-    """Each id and its flight, without the truth; images with a bad pose are left out."""
+    """Each id and its flight, without the truth; images with a bad pose are left out, and those before the first box,
+    with which the track begins."""
     camera = read_camera(folder / "camera.ini")
     table = _table(folder / "frames.csv", FRAME_COLUMNS)
     pose_known = np.isfinite([table[name] for name in ("t_s", "agl_m", *POSE_COLUMNS)]).all(0)
     for key in np.unique(table["id"][pose_known]):
-        rows = {name: values[pose_known & (table["id"] == key)] for name, values in table.items()}
+        own = np.flatnonzero(pose_known & (table["id"] == key))
+        shown = np.isfinite([table[name][own] for name in SIDE_COLUMNS]).any(0)
+        rows = {name: values[own[np.argmax(shown) :]] for name, values in table.items()}
         yield int(key), _flight_of(camera, rows, f"{folder.name}/{key:.0f}")
 
 

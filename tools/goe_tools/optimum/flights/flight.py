@@ -16,7 +16,7 @@ QUANTITIES = ("x0_m", "z0_m", "orientation_rad", "width_m", "length_m", "height_
 
 @dataclass(frozen=True)
 class Obstacle:
-    """Truth, in T of the track's first image. Disc: (x0, z0) is the centre, the width the diameter, the length ditto;
+    """Truth, in T of the first image. Disc: (x0, z0) is the centre, the width the diameter, the length ditto;
     box: (x0, z0) is the middle of the front edge and the orientation that of the side edge from Z, clockwise."""
 
     kind: str  # box or disc

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import dropwhile
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ def _value(number: float | None) -> float:
 
 
 def _heading_of(log: ObservationLog, frames: Sequence[Frame], truth: Truth) -> float:
-    """Heading of T's Z axis, rad: the setting, the simulator's word, or the yaw at the track's first image."""
+    """Heading of T's Z axis, rad: the setting, the simulator's word, or the yaw at the first image."""
     if log.camera.heading_deg is not None:
         return math.radians(log.camera.heading_deg)
     if truth.extra.get("track_heading_deg"):
@@ -70,9 +71,15 @@ def _flight_of(log: ObservationLog, frames: Sequence[Frame], truth: Truth, name:
     )  # fmt: skip
 
 
+def _shows(frame: Frame) -> bool:
+    """A feature: the track begins with the first image that does."""
+    box = frame.box_px or ()
+    return any(side is not None for side in box) or any(getattr(frame, name) is not None for name in FEATURES)
+
+
 def from_log(folder: Path, kind: str | None = None) -> list[Flight]:
-    """A flight for each track with truth of a log folder; images with a bad pose are left out; a reset is an
-    error, and so is a second camera.
+    """A flight for each track with truth of a log folder; images with a bad pose are left out, and those before the
+    first one that shows a feature; a reset is an error, and so is a second camera.
 
     kind: None: box if the truth has a length, otherwise disc; or one of the two (disc: (x0, z0) is the centre)."""
     folder = Path(folder)
@@ -86,6 +93,7 @@ def from_log(folder: Path, kind: str | None = None) -> list[Flight]:
     result = []
     for key, frames in log.tracks().items():
         good = [f for f in frames if np.isfinite([f.t_s, *f.position_m, *f.attitude, f.height_m]).all()]
+        good = list(dropwhile(lambda frame: not _shows(frame), good))
         if key in log.truth and good:
             result.append(_flight_of(log, good, log.truth[key], f"{folder.name}/{key}", kind))
     return result

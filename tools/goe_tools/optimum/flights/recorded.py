@@ -92,7 +92,10 @@ def _beside(recording: Recording, rng: np.random.Generator) -> Scene | None:
     )  # fmt: skip
     look(scene, ground_d)
     in_view = scene.seen[:, [LEFT, RIGHT]].all(1)
-    return scene if in_view.sum() >= MIN_IMAGES and in_view[:10].any() else None
+    if in_view.sum() < MIN_IMAGES or not in_view[:10].any():
+        return None
+    begin = int(np.argmax(scene.seen.any(1)))
+    return scene.trimmed(begin) if begin else scene
 
 
 def recorded_scenes(count: int, folder: Path = RECORDED_FOLDER, seed: int = 1, tries: int = 5000) -> list[Scene]:

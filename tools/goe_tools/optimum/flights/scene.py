@@ -42,6 +42,8 @@ class Scene:
         )
         truth = replace(self.truth, x0_m=self.truth.x0_m - moved[0], z0_m=self.truth.z0_m - moved[2])
         result = replace(self, **{name: getattr(self, name)[start:] for name in names}, truth=truth)
+        if self.believed is not None:
+            result.believed = tuple(values[start:] for values in self.believed)  # type: ignore[assignment]
         result.time_s = result.time_s - t0
         result.reach_s = self.reach_s - float(t0)
         return result

@@ -37,7 +37,7 @@ from .work import Amount
 VELOCITY = ("velocity_north_m_s", "velocity_east_m_s", "velocity_north_sd_m_s", "velocity_east_sd_m_s")
 PLANS = (
     Plan(approach.MARGIN_M, approach.CLEARANCE_M),
-    Plan(approach.MARGIN_M, approach.CLEARANCE_M, approach.DOUBT, approach.DRIFT_M_S),
+    Plan(approach.MARGIN_M, approach.CLEARANCE_M, grows=True),
 )
 TIME_LEAST_S = 2.0  # left, for a told time to go to be judged
 TIMED_S = 60.0  # of a mover's path, in which its closest approach is looked for

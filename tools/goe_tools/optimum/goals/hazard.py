@@ -1,4 +1,4 @@
-"""Warnings by the README's rule, over thousands of straight passes, near misses and collision courses."""
+"""Warnings by the library's decision rule, over thousands of straight passes, near misses and collision courses."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def perform(row: HazardRow, number: int) -> Run:
     told = scenario.fly(row.scenario, number)
     track = run(images_of(told, PLANS), {**told.settings, **known(row.if_known)})
     there = track.hazard["status"] == 0
-    plain, rule = ({n: np.where(there[:, i], v[:, i], np.nan) for n, v in track.hazard.items()} for i in (0, 1))
+    plain = {name: np.where(there[:, 0], values[:, 0], np.nan) for name, values in track.hazard.items()}
     height = plain["has_clearance"] == 1.0
     warnings = Warnings(
         told.time_s, track.method == METHODS["refined"], plain["time_s"], plain["time_sd_s"], plain["miss_m"],
         plain["miss_sd_m"], np.where(height, plain["clearance_m"], np.nan), plain["clearance_sd_m"], plain["violation"],
-        rule["violation"], rule["time_s"] - 2.0 * rule["time_sd_s"],
+        track.hazard["act"][:, 1],
     )  # fmt: skip
     return Run(warnings, approach.closest(told.truth))
 

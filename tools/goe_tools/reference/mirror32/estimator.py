@@ -14,12 +14,16 @@ from .camera import Point, align, camera_of
 from .intake import Pose, intake_check
 from .projection import WIDTH_MIN, Edge, heading_deg, projection_disc, projection_turn
 from .rotation import Matrix, rotation_apply, rotation_from_quaternion, rotation_multiply
-from .single import HALF, ONE, ZERO, Decisions, F
+from .single import HALF, ONE, ZERO, Decisions, F, within
 from .window import Mean, Window, window_solve
 
 LEVEL_NOSE_MIN = F(1.0e-3)
+ASIDE_MIN = F(1.7320508)  # tangent of 60 degrees
+BEFORE = "before:"  # the decisions of a view that is thrown away when the track begins again
 AMBIGUOUS_DEG = F(30.0)
 QUARTER = F(0.25)
+
+Pixels = dict[str, tuple[np.float32, np.float32]]
 
 
 @dataclass
@@ -58,8 +62,12 @@ class Mirror32:
         self.settings = settings or Settings()
         self.camera = camera_of(camera)
         self.heading_setting = None if camera.heading_deg is None else F(camera.heading_deg)
+        self.taken: Decisions = {}
+        self._forget_track()
+
+    def _forget_track(self) -> None:
         window = self.settings.window
-        self.started = False
+        self.sighted = False
         self.heading_cos = self.heading_sin = ZERO
         self.origin_ned_m = [ZERO] * 3
         self.dx_m = self.dz_m = ZERO
@@ -69,7 +77,6 @@ class Mirror32:
         self.filtered_deg = self.variance_deg2 = ZERO
         self.angles = 0
         self.told = Told()
-        self.taken: Decisions = {}
 
     # -- ego motion
 
@@ -77,10 +84,9 @@ class Mirror32:
         body_to_ned = rotation_from_quaternion(pose.attitude)
         arm = rotation_apply(body_to_ned, self.camera.offset_m)
         position = [pose.position_ned_m[i] + arm[i] for i in range(3)]
-        if not self.started:
+        if not self.sighted:
             self._fix_heading(body_to_ned)
             self.origin_ned_m = position
-            self.started = True
         self.time_us = pose.time_us
         north = position[0] - self.origin_ned_m[0]
         east = position[1] - self.origin_ned_m[1]
@@ -110,16 +116,41 @@ class Mirror32:
 
     # -- aligned points and rows
 
-    def _align_view(self, turn: Matrix, pixels: dict[str, tuple[np.float32, np.float32]], view: View) -> None:
+    def _align_view(self, turn: Matrix, pixels: Pixels, when: str = "") -> View:
+        """``when``: before the names of its decisions."""
+        view = View()
         for feature, (u_px, v_px) in pixels.items():
             fault, point = align(self.camera, turn, u_px, v_px)
-            self.taken[f"lens:{feature}"] = fault != "lens_failed"
+            self.taken[f"{when}lens:{feature}"] = fault != "lens_failed"
             if fault != "lens_failed":
-                self.taken[f"behind:{feature}"] = fault == "behind_camera"
+                self.taken[f"{when}behind:{feature}"] = fault == "behind_camera"
             if point is None:
                 view.faults.append(fault)
             else:
                 view.points[feature] = point
+        return view
+
+    def _may_begin_again(self, turn: Matrix) -> bool:
+        if self.heading_setting is not None or "x0_m" in self.told.values:
+            return False
+        nose = self.camera.camera_to_body
+        x = turn[0] * nose[0] + turn[1] * nose[1] + turn[2] * nose[2]
+        z = turn[6] * nose[0] + turn[7] * nose[1] + turn[8] * nose[2]
+        self.taken["turned"] = bool(np.abs(x) > z)
+        return self.taken["turned"]
+
+    def _lies_aside(self, view: View) -> bool:
+        for feature, point in view.points.items():
+            self.taken[f"aside:{feature}"] = not within(point.x, ASIDE_MIN)
+        return all(self.taken[f"aside:{feature}"] for feature in view.points)
+
+    def _open_view(self, pose: Pose, pixels: Pixels) -> View:
+        turn = self._follow(pose)
+        if self._may_begin_again(turn) and pixels and self._lies_aside(self._align_view(turn, pixels, BEFORE)):
+            self._forget_track()
+            turn = self._follow(pose)
+        self.sighted = self.sighted or bool(pixels)
+        return self._align_view(turn, pixels)
 
     def _add_disc_row(self, view: View) -> None:
         if self.settings.model == "line" or "left" not in view.points or "right" not in view.points:
@@ -354,9 +385,8 @@ class Mirror32:
             return "no_edge"
         return solving
 
-    def _take_image(self, pose: Pose, pixels: dict[str, tuple[np.float32, np.float32]]) -> str:
-        view = View()
-        self._align_view(self._follow(pose), pixels, view)
+    def _take_image(self, pose: Pose, pixels: Pixels) -> str:
+        view = self._open_view(pose, pixels)
         self._add_disc_row(view)
         if self.settings.model != "disc":
             self._find_edges(view)

@@ -20,6 +20,8 @@ PIXEL_LIMIT_PX = 1e5
 NORM_TOLERANCE = 0.01
 NOSE_MIN = 1e-3
 WIDTH_MIN = 1e-4
+ASIDE_DEG = 60.0  # from Z
+BEFORE = "before:"  # the decisions of a view that is thrown away when the track begins again
 AMBIGUOUS_DEG = 30.0
 POINT_ROUNDOFF = UNIT_ROUNDOFF  # of an aligned coordinate in float32, relative to 1 + |coordinate|
 
@@ -59,7 +61,7 @@ class Reference64:
         ned_from_body = quaternion_rotation(frame.attitude)
         lever = np.array([camera.offset_x_m, camera.offset_y_m, camera.offset_z_m])
         position = np.asarray(frame.position_m) + ned_from_body @ lever
-        if track.origin_m is None:
+        if not track.sighted:
             track.origin_m = position
             nose = ned_from_body[:2, 0]
             level = float(np.hypot(*nose))
@@ -80,7 +82,10 @@ class Reference64:
 
     # -- aligned points
 
-    def _align(self, t_from_camera: np.ndarray, frame: Frame, gates: Gates, faults: list[str]) -> View:
+    def _align(
+        self, t_from_camera: np.ndarray, frame: Frame, gates: Gates, faults: list[str], when: str = ""
+    ) -> View:
+        """``when``: before the names of its decisions."""
         camera, view = self.camera, View()
         for feature in FEATURES:
             pixel: Pixel | None = getattr(frame, feature)
@@ -88,17 +93,45 @@ class Reference64:
                 continue
             x, y = (pixel[0] - camera.cx) / camera.fx, (pixel[1] - camera.cy) / camera.fy
             x, y, converged, near = undistort(camera, x, y)
-            if not gates.decide(f"lens:{feature}", converged, near, 1.0 + abs(x) + abs(y)):
+            if not gates.decide(f"{when}lens:{feature}", converged, near, 1.0 + abs(x) + abs(y)):
                 faults.append("lens_failed")
                 continue
             ray = np.array([x, y, 1.0])
             ray /= np.linalg.norm(ray)
             ray = t_from_camera @ ray
-            if gates.decide(f"behind:{feature}", ray[2] <= FORWARD_MIN, ray[2] - FORWARD_MIN, 2.0):
+            away = ray[2] - FORWARD_MIN
+            if gates.decide(f"{when}behind:{feature}", away <= 0.0, away, 2.0):
                 faults.append("behind_camera")
                 continue
             view.points[feature] = float(ray[0] / ray[2]), float(ray[1] / ray[2])
         return view
+
+    def _may_begin_again(self, t_from_camera: np.ndarray, gates: Gates) -> bool:
+        """Z is where the nose pointed, nothing is known, and the nose has turned by more than 45 degrees."""
+        if self.camera.heading_deg is not None or self.track.fit is not None:
+            return False
+        nose = t_from_camera @ self.mount[0]
+        beyond = float(abs(nose[0]) - nose[2])
+        return gates.decide("turned", beyond > 0.0, beyond, 2.0)
+
+    def _lies_aside(self, view: View, gates: Gates) -> bool:
+        """All that can be used."""
+        least = math.tan(math.radians(ASIDE_DEG))
+        aside = [
+            gates.decide(f"aside:{feature}", abs(x) > least, abs(x) - least, 2.0 * (1.0 + x * x))
+            for feature, (x, _) in view.points.items()
+        ]
+        return all(aside)
+
+    def _open_view(self, frame: Frame, gates: Gates, faults: list[str]) -> View:
+        t_from_camera = self._follow(frame, gates)
+        seen = any(getattr(frame, feature) is not None for feature in FEATURES)
+        turned = self._may_begin_again(t_from_camera, gates) and seen
+        if turned and self._lies_aside(self._align(t_from_camera, frame, gates, [], BEFORE), gates):
+            self.track = Track(self.settings)
+            t_from_camera = self._follow(frame, gates)
+        self.track.sighted = self.track.sighted or seen
+        return self._align(t_from_camera, frame, gates, faults)
 
     # -- rows
 
@@ -387,7 +420,7 @@ class Reference64:
 
     def _take(self, frame: Frame, gates: Gates) -> str:
         faults: list[str] = []
-        view = self._align(self._follow(frame, gates), frame, gates, faults)
+        view = self._open_view(frame, gates, faults)
         added = {"disc": self._add_disc_row(view, gates, faults), "line": False}
         if self.settings.model != "disc":
             self._find_edges(frame, view, gates, faults)

@@ -59,7 +59,8 @@ class Track:
 
     settings: Settings
     heading: tuple[float, float] = (1.0, 0.0)  # cosine and sine of the heading of T's Z axis
-    origin_m: np.ndarray | None = None
+    origin_m: np.ndarray | None = None  # with the heading that of the latest image, until one has shown a feature
+    sighted: bool = False
     dx_m: float = 0.0
     dz_m: float = 0.0
     roundoff_m: float = 0.0  # of dX, dZ in float32: that of the NED positions they are differences of

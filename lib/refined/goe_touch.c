@@ -1,0 +1,227 @@
+/* Planes through the sides of a box. SPDX-License-Identifier: MIT */
+#include "refined/goe_touch.h"
+
+#include <math.h>
+
+#include "image/goe_camera.h"
+#include "maths/goe_scalar.h"
+
+#if GOE_WITH_REFINED
+
+#define AHEAD_MIN 0.02f     /* of a touching point, and of the reference point, units of Z0 */
+#define LEVEL_MIN 1.0e-6f   /* horizontal part of a side's normal: without one the nearest point touches */
+#define REACH_MIN 1.0e-9f   /* of the footprint, units of Z0 */
+#define SCATTER_SHARE 0.01f /* white part of a side's error, of the box's size */
+
+GOE_STATIC_ASSERT(GOE_BOX_RIGHT == GOE_BOX_LEFT + 2 && GOE_BOX_BOTTOM == GOE_BOX_TOP + 2 && GOE_BOX_TOP == 1,
+                  level_sides_are_odd_and_opposite_ones_two_apart);
+
+static const uint8_t feature_of[GOE_BOX_SIDES] = {GOE_POINT_LEFT, GOE_POINT_TOP, GOE_POINT_RIGHT, GOE_POINT_BASE_NEAR};
+
+size_t goe_touch_side(uint8_t feature) {
+    return feature == GOE_POINT_LEFT    ? GOE_BOX_LEFT
+           : feature == GOE_POINT_TOP   ? GOE_BOX_TOP
+           : feature == GOE_POINT_RIGHT ? GOE_BOX_RIGHT
+                                        : GOE_BOX_BOTTOM;
+}
+
+/*@ requires \valid_read(camera) && side < GOE_BOX_SIDES; */
+static float focal_px(const goe_camera_t *camera, size_t side) {
+    return goe_touch_is_level(side) ? camera->fy_px : camera->fx_px;
+}
+
+float goe_touch_coordinate(const goe_camera_t *camera, const goe_sides_t *sides, size_t side) {
+    const float center_px = goe_touch_is_level(side) ? camera->cy_px : camera->cx_px;
+    return (sides->px[side] - center_px) / focal_px(camera, side);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- noise -- */
+
+float goe_touch_size(const goe_observation_t *obs, size_t side, float extent) {
+    const goe_sides_t *sides = obs->sides;
+    const size_t first = goe_touch_is_level(side) ? GOE_BOX_TOP : GOE_BOX_LEFT;
+    if (goe_sides_see(sides, (1u | 1u << 2u) << first)) {
+        return (sides->px[first + 2u] - sides->px[first]) / focal_px(obs->camera, first);
+    }
+    return goe_larger(extent, 0.0f) / goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
+}
+
+float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size) {
+    const float pixel = obs->side_px / focal_px(obs->camera, side);
+    return goe_square(pixel) + goe_square(SCATTER_SHARE * size) +
+           (obs->sides->cut ? goe_square(obs->settings->detector.cut_noise * size) : 0.0f);
+}
+
+float goe_touch_variance(const goe_observation_t *obs, size_t side, float size) {
+    return goe_touch_white_variance(obs, side, size) + goe_square(obs->outline_share * size);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- touch -- */
+
+/* n - e x n of the camera's axes, by the given attitude. */
+void goe_touch_open(const goe_observation_t *obs, goe_solid_t *solid) {
+    const float *r = obs->camera_to_axes;
+    float *to = solid->unbiased_from_camera;
+    for (size_t i = 0; i < 3; i++) {
+        to[i] = r[i] - obs->ey * r[6 + i] + obs->ez * r[3 + i];
+        to[3 + i] = r[3 + i] - obs->ez * r[i] + obs->ex * r[6 + i];
+        to[6 + i] = r[6 + i] - obs->ex * r[3 + i] + obs->ey * r[i];
+    }
+}
+
+/* A vector of the camera's axes in those of a rotation. */
+/*@ requires \valid_read(r + (0 .. 8)) && \valid_read(v + (0 .. 2)) && \valid(to + (0 .. 2)); */
+static inline void turn(const float r[9], const float v[3], float to[3]) {
+    to[0] = r[0] * v[0] + r[1] * v[1] + r[2] * v[2];
+    to[1] = r[3] * v[0] + r[4] * v[1] + r[5] * v[2];
+    to[2] = r[6] * v[0] + r[7] * v[1] + r[8] * v[2];
+}
+
+/* (R27): the corner of a hull that lies farthest along the plane's normal. */
+/*@ requires goe_solid_is_closed(solid) && solid->corners > 0 && \valid(t) && \valid_read(n + (0 .. 2)); */
+static void reach_corner(const goe_solid_t *solid, const float n[3], goe_touch_t *t) {
+    const goe_xz_t *corner = solid->corner;
+    float farthest = n[0] * corner[0].x + n[2] * corner[0].z;
+    t->corner = 0;
+    for (size_t i = 1; i < solid->corners; i++) {
+        const float far = n[0] * corner[i].x + n[2] * corner[i].z;
+        if (far > farthest) {
+            farthest = far;
+            t->corner = i;
+        }
+    }
+    t->point[0] = corner[t->corner].x;
+    t->point[2] = corner[t->corner].z;
+}
+
+/* ... and the point of an ellipse that does. */
+/*@ requires goe_solid_is_closed(solid) && \valid(t) && \valid_read(n + (0 .. 2)); */
+static void reach_rim(const goe_solid_t *solid, const float n[3], goe_touch_t *t) {
+    const float level = sqrtf(n[0] * n[0] + n[2] * n[2]);
+    const bool tilts = level > LEVEL_MIN;
+    t->outward.x = tilts ? n[0] / level : 0.0f;
+    t->outward.z = tilts ? n[2] / level : -1.0f;
+    const float across = solid->half * t->outward.x;
+    const float along = solid->depth * t->outward.z;
+    t->reach = goe_larger(sqrtf(across * across + along * along), REACH_MIN);
+    t->point[0] = solid->center.x + solid->half * across / t->reach;
+    t->point[2] = solid->center.z + solid->depth * along / t->reach;
+}
+
+typedef enum { FOOT, HEAD, EITHER } end_t;
+
+/* The touching point on the side of the outward normal, which is given in the camera's axes. (R26), (R27). False if it is not
+ * ahead. */
+/*@ requires goe_solid_is_closed(solid) && \valid_read(normal + (0 .. 2)) && \valid(t); */
+static bool touch(const goe_solid_t *solid, const float normal[3], end_t end, goe_touch_t *t) {
+    const float *r = solid->unbiased_from_camera;
+    float n[3];
+    turn(r, normal, n);
+    t->foot = end == EITHER ? n[1] > 0.0f : end == FOOT;
+    if (solid->corners > 0) {
+        reach_corner(solid, n, t);
+    } else {
+        reach_rim(solid, n, t);
+    }
+    const float *p = t->point;
+    t->point[1] = t->foot ? solid->ground : solid->roof;
+    const float z = r[2] * p[0] + r[5] * p[1] + r[8] * p[2];
+    if (!(z >= AHEAD_MIN)) {
+        return false;
+    }
+    t->nearness = 1.0f / z;
+    t->x = (r[0] * p[0] + r[3] * p[1] + r[6] * p[2]) * t->nearness;
+    t->y = (r[1] * p[0] + r[4] * p[1] + r[7] * p[2]) * t->nearness;
+    return true;
+}
+
+/* The line of a side near a point: raw coordinate there, and its derivatives by the undistorted (x, y). */
+typedef struct {
+    float at, by_x, by_y;
+} line_t;
+
+/*@ requires \valid_read(camera) && side < GOE_BOX_SIDES; */
+static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y) {
+    const bool level = goe_touch_is_level(side);
+    line_t line = {level ? y : x, level ? 0.0f : 1.0f, level ? 1.0f : 0.0f};
+    if (goe_camera_distorts(camera)) {
+        const goe_distorted_t to = goe_camera_distort(camera, x, y);
+        line.at = level ? to.y : to.x;
+        line.by_x = level ? to.xy : to.xx;
+        line.by_y = level ? to.yy : to.xy;
+    }
+    return line;
+}
+
+static float sign_of(size_t side) { return side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f; }
+
+/* By the line as it lies where it touches, which the first call tells about, (R28). */
+/*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && \valid_read(straight + (0 .. 2));
+    requires \valid(t) && side < GOE_BOX_SIDES; */
+static bool touch_bent(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, const float straight[3],
+                       end_t end, goe_touch_t *t) {
+    if (!touch(solid, straight, end, t)) {
+        return false;
+    }
+    const float sign = sign_of(side);
+    const line_t line = line_at(obs->camera, side, t->x, t->y);
+    const float bent[3] = {sign * line.by_x, sign * line.by_y, -sign * (line.by_x * t->x + line.by_y * t->y)};
+    return touch(solid, bent, end, t);
+}
+
+/* Touches by the plane through the raw coordinate `at`. With a lens foot and head are tried, as the line is not straight between
+ * them. */
+/*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && \valid(t) && side < GOE_BOX_SIDES; */
+static bool touch_side(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, float at, goe_touch_t *t) {
+    const goe_camera_t *camera = obs->camera;
+    const float sign = sign_of(side);
+    const bool level = goe_touch_is_level(side);
+    const float straight[3] = {level ? 0.0f : sign, level ? sign : 0.0f, -sign * at};
+    if (!goe_camera_distorts(camera)) {
+        return touch(solid, straight, EITHER, t);
+    }
+    goe_touch_t head;
+    if (!touch_bent(obs, solid, side, straight, FOOT, t) || !touch_bent(obs, solid, side, straight, HEAD, &head)) {
+        return false;
+    }
+    if (sign * line_at(camera, side, head.x, head.y).at > sign * line_at(camera, side, t->x, t->y).at) {
+        *t = head;
+    }
+    return true;
+}
+
+/* --------------------------------------------------------------------------------------------------------------- row -- */
+
+/* Derivatives by the touching point and by the attitude's error, from the line's. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(solid) && \valid_read(t) && \valid_read(line) && \valid(to); */
+static void find_gradient(const goe_observation_t *obs, const goe_solid_t *solid, const goe_touch_t *t,
+                          const line_t *line, goe_gradient_t *to) {
+    const float *p = t->point;
+    const float in_camera[3] = {line->by_x * t->nearness, line->by_y * t->nearness,
+                                -(line->by_x * t->x + line->by_y * t->y) * t->nearness};
+    float g[3];
+    turn(obs->camera_to_axes, in_camera, g);
+    to->at = line->at;
+    to->ex = p[1] * g[2] - p[2] * g[1];
+    to->ey = p[2] * g[0] - p[0] * g[2];
+    to->ez = p[0] * g[1] - p[1] * g[0];
+    turn(solid->unbiased_from_camera, in_camera, g);
+    to->x = g[0];
+    to->y = g[1];
+    to->z = g[2];
+}
+
+GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
+                                  float variance, goe_touch_t *touch, goe_gradient_t *gradient) {
+    const float measured = goe_touch_coordinate(obs->camera, obs->sides, side);
+    if (!touch_side(obs, solid, side, measured, touch)) {
+        return NULL;
+    }
+    const line_t line = line_at(obs->camera, side, touch->x, touch->y);
+    find_gradient(obs, solid, touch, &line, gradient);
+    float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], measured, variance, gradient);
+    by[GOE_GROUND] = touch->foot ? gradient->y : 0.0f;
+    return by;
+}
+
+#endif

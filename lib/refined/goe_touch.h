@@ -1,0 +1,69 @@
+/* Where the sides of an upright bounding box touch an upright solid, and their rows. SPDX-License-Identifier: MIT
+ *
+ * A side of the box is a line of the raw image, and the plane through that line and the camera touches the solid: at its foot
+ * or at its head, at the point of the footprint that lies farthest along the plane's normal. This is exact at any roll and
+ * from above the roof as from below. (R26) to (R29). */
+#ifndef GOE_TOUCH_H
+#define GOE_TOUCH_H
+
+#include "refined/goe_observation.h"
+
+/* An upright solid relative to the camera now, in the state's axes and units of Z0. Its footprint is the convex hull of its
+ * corners or, without corners, an ellipse. */
+typedef struct {
+    goe_xz_t center;
+    float half, depth; /* of the ellipse, across and along Z */
+    const goe_xz_t *corner;
+    size_t corners;
+    float ground, roof;            /* Y */
+    float unbiased_from_camera[9]; /* rotation, row by row: goe_touch_open() */
+} goe_solid_t;
+
+/* Where a plane through the camera touches a solid. */
+typedef struct {
+    float point[3];       /* from the camera, the state's axes */
+    float x, y, nearness; /* the point in the image, focal lengths, no lens; 1/(range along the optical axis) */
+    goe_xz_t outward;     /* unit normal of the plane, horizontal part */
+    float reach;          /* of the ellipse along it: the support function */
+    size_t corner;        /* of a hull: the one that is touched */
+    bool foot;            /* at the foot, not at the head */
+} goe_touch_t;
+
+/*@ predicate goe_solid_is_closed(goe_solid_t *solid) =
+        \valid_read(solid) && (solid->corners == 0 || \valid_read(solid->corner + (0 .. solid->corners - 1))); */
+
+/* Top and bottom; they are measured along y. */
+static inline bool goe_touch_is_level(size_t side) { return (side & 1u) != 0u; }
+
+/* The side whose row a feature's is. */
+size_t goe_touch_side(uint8_t feature);
+
+/* Raw coordinate of a side, focal lengths. */
+/*@ requires \valid_read(camera) && \valid_read(sides) && side < GOE_BOX_SIDES; */
+float goe_touch_coordinate(const goe_camera_t *camera, const goe_sides_t *sides, size_t side);
+
+/* Size of the box along the coordinate of a side, focal lengths: as measured if both of its ends are, otherwise that of an
+ * extent, units of Z0, at the reference point. */
+/*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
+float goe_touch_size(const goe_observation_t *obs, size_t side, float extent);
+
+/* Variance of a side's error that is new in each image; size: that of the box along the side's coordinate. */
+/*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
+float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size);
+
+/* ... and of the error that stays alike, for models that do not remember it. */
+/*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
+float goe_touch_variance(const goe_observation_t *obs, size_t side, float size);
+
+/* Sets what all sides of an image have alike: the camera's axes in the state's, freed of the attitude bias. */
+/*@ requires goe_observation_is_open(obs) && \valid(solid); */
+void goe_touch_open(const goe_observation_t *obs, goe_solid_t *solid);
+
+/* Adds the row of a side that is seen, (R29), and returns its derivatives by the states as goe_rows_add() does: those by
+ * GOE_GROUND are set, the others are the model's. Null if the touching point does not lie ahead. */
+/*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
+    requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX && \valid(touch) && \valid(gradient); */
+float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
+                     float variance, goe_touch_t *touch, goe_gradient_t *gradient);
+
+#endif

@@ -1,0 +1,251 @@
+/* The decision rule. SPDX-License-Identifier: MIT
+ *
+ * Answers are written into the estimator, so that every number is known. */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "goe_guard.h"
+
+static goe_estimator_t estimator;
+static goe_plan_t plan;
+static goe_rule_t rule;
+static goe_hazard_t hazard;
+
+/* A mast 6 m wide, 100 m ahead and aside_m aside, higher than the path, of which everything is known to a metre. */
+static void place(double aside_m) {
+    goe_settings_t settings;
+    goe_settings_default(&settings);
+    settings.camera.fx_px = settings.camera.fy_px = 900.0f;
+    settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.navigation.velocity_bias_m_s = 0.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    estimator.motion.time_us = 5000000;
+    estimator.motion.heading_cos = 1.0f;
+    estimator.motion.height_m = 20.0f;
+    estimator.estimate_time_us = 5000000;
+    goe_estimate_t *e = &estimator.estimate;
+    e->method = GOE_METHOD_WINDOW;
+    e->model = GOE_MODEL_DISC;
+    e->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT;
+    e->fresh = true;
+    e->x_m = e->x0_m = (float)aside_m;
+    e->z_m = e->z0_m = 100.0f;
+    e->width_m = 6.0f;
+    e->height_m = 40.0f;
+    e->sigma.x0_m = e->sigma.z0_m = e->sigma.height_m = 1.0f;
+}
+
+void setUp(void) {
+    place(0.0);
+    memset(&plan, 0, sizeof plan);
+    plan.velocity_ned_m_s[0] = 10.0f;
+    plan.margin_m = 15.0f;
+    plan.clearance_m = 10.0f;
+    goe_rule_default(&rule);
+}
+void tearDown(void) {}
+
+static goe_decision_t decide(void) { return goe_decide(&estimator, &plan, &rule, &hazard); }
+
+/* GIVEN an obstacle on the course THEN the rule acts from the probability and from the time on that it is given, and not before. */
+static void probability_and_time_decide(void) {
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    TEST_ASSERT_TRUE(hazard.violation > 0.99f);
+    rule.act_s = 0.99f * (hazard.time_s - 2.0f * hazard.time_sd_s);
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    rule.act_s = 1.01f * goe_soonest_s(&hazard);
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    rule.act_s = 12.0f;
+    place(19.0); /* passed by a metre more than the margin */
+    (void)decide();
+    TEST_ASSERT_TRUE(hazard.violation > 0.05f && hazard.violation < 0.5f);
+    rule.violation_max = hazard.violation;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    rule.violation_max = 1.01f * hazard.violation;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+}
+
+/* GIVEN a place so uncertain that hardly any of it lies within the margin THEN the small probability is no "clear": the decision is that too
+ * little is known. One that is surely outside is clear, by either distance. */
+static void what_is_hardly_known_is_not_clear(void) {
+    for (int far_aside = 0; far_aside < 2; far_aside++) {
+        place(far_aside == 1 ? 60.0 : 0.0);
+        estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 5000.0f;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+        TEST_ASSERT_TRUE(hazard.violation < rule.violation_max);
+    }
+    place(0.0); /* met for sure, but nobody knows when: 10 s +- 8 s */
+    estimator.estimate.sigma.z0_m = 80.0f;
+    rule.act_s = 3.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    TEST_ASSERT_TRUE(hazard.violation > 0.5f && goe_soonest_s(&hazard) > rule.act_s);
+    rule.act_s = 12.0f;
+    place(60.0);
+    estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 5000.0f;
+    estimator.estimate.height_m = 2.0f; /* 18 m below the path */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    place(60.0);
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+}
+
+/* GIVEN detections for more than two seconds without an answer THEN the old answer clears nothing; an answer that is as old for want of
+ * detections does. */
+static void an_old_answer_beside_new_detections_clears_nothing(void) {
+    place(60.0);
+    estimator.estimate.method = GOE_METHOD_REFINED;
+    estimator.estimate.fresh = false;
+    for (int outdated = 0; outdated < 2; outdated++) {
+        estimator.filter.answer.outdated = true; /* the covariance of the sigmas in both */
+        estimator.motion.time_us = estimator.estimate_time_us + (outdated == 1 ? 2100000 : 1900000);
+        TEST_ASSERT_EQUAL_INT(outdated == 1 ? GOE_DECISION_UNKNOWN : GOE_DECISION_CLEAR, decide());
+    }
+    estimator.filter.answer.outdated = false; /* as old for want of detections */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    estimator.estimate.valid &= ~(unsigned)GOE_HAS_HEIGHT;
+    estimator.filter.answer.outdated = true;
+    estimator.motion.time_us = estimator.estimate_time_us;
+    estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 5000.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    place(60.0);
+    estimator.estimate.fresh = false;
+    estimator.motion.time_us = estimator.estimate_time_us + 2100000;
+    estimator.estimate.method = GOE_METHOD_WINDOW; /* in place of the filter, which runs without an answer */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    estimator.settings.method = GOE_METHOD_WINDOW;
+    goe_guard_seal(&estimator);
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+}
+
+/* GIVEN a suspect estimate THEN margin and clearance count `doubt` times; GIVEN one that is some seconds old, by its own age and the
+ * plan's THEN they have grown by the drift. The hazard is that of these distances. */
+static void doubt_and_age_widen(void) {
+    static const float seconds[] = {0.0f, 4.0f};
+    place(40.0);
+    for (int suspect = 0; suspect < 2; suspect++) {
+        for (int old = 0; old < 2; old++) {
+            goe_hazard_t expected;
+            goe_plan_t wide = plan;
+            rule.doubt = 1.8f;
+            rule.drift_m_s = 2.5f;
+            estimator.estimate.suspect = suspect == 1;
+            estimator.estimate.fresh = old == 0;
+            estimator.motion.time_us = 5000000 + (int64_t)(1.0e6f * seconds[old]);
+            plan.since_image_s = wide.since_image_s = 0.5f;
+            wide.margin_m = (suspect == 1 ? 1.8f : 1.0f) * 15.0f + 2.5f * (seconds[old] + 0.5f);
+            wide.clearance_m = (suspect == 1 ? 1.8f : 1.0f) * 10.0f + 2.5f * (seconds[old] + 0.5f);
+            CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &wide, &expected));
+            (void)decide();
+            CHECK_CLOSE(1.0e-6, expected.violation, hazard.violation);
+            CHECK_SAME(expected.miss_m, hazard.miss_m);
+        }
+    }
+}
+
+/* GIVEN an estimator without a position THEN the decision is that nothing is known. */
+static void without_a_position_nothing_is_known(void) {
+    estimator.estimate.valid = 0u;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    CHECK_SAME(0.0f, hazard.violation);
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, 0); /* memory of zeros is not "clear" */
+}
+
+static float *field(int i) {
+    float *const fields[] = {&plan.velocity_ned_m_s[0],
+                             &plan.velocity_ned_m_s[1],
+                             &plan.velocity_ned_m_s[2],
+                             &plan.margin_m,
+                             &plan.clearance_m,
+                             &plan.since_image_s,
+                             &plan.velocity_sd_m_s,
+                             &rule.violation_max,
+                             &rule.act_s,
+                             &rule.doubt,
+                             &rule.drift_m_s};
+    return fields[i];
+}
+
+/* GIVEN anything that the rule cannot work with: a number that is none, or out of range, in each field; no plan, no estimator, one that was
+ * not set or whose settings have changed THEN the decision is to keep the previous one, and the hazard is all zero. */
+static void every_failure_keeps_the_decision(void) {
+    static const uint32_t bits[] = {0x7FC00000u, 0xFFC00001u, 0x7F800000u, 0xFF800000u, 0x7F000000u, 0xFF000000u};
+    static goe_estimator_t broken;
+    for (int i = 0; i < 11; i++) {
+        for (size_t k = 0; k < sizeof bits / sizeof bits[0]; k++) {
+            setUp();
+            *field(i) = check_from_bits(bits[k]);
+            TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, decide());
+            CHECK_SAME(0.0f, hazard.violation);
+            CHECK_SAME(0.0f, hazard.time_s);
+        }
+    }
+    setUp();
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(&estimator, NULL, &rule, &hazard));
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(NULL, &plan, &rule, &hazard));
+    broken = estimator;
+    broken.settings.navigation.ground_m += 1.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(&broken, &plan, &rule, &hazard));
+    memset(&broken, 0, sizeof broken);
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(&broken, &plan, &rule, &hazard));
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, goe_decide(&estimator, &plan, &rule, NULL));
+}
+
+/* GIVEN no rule THEN it is the default one, which goe.h states. */
+static void no_rule_is_the_default(void) {
+    const goe_rule_t zero = {0.0f, 0.0f, 0.0f, 0.0f};
+    CHECK_SAME(0.1f, rule.violation_max);
+    CHECK_SAME(12.0f, rule.act_s);
+    CHECK_SAME(1.5f, rule.doubt);
+    CHECK_SAME(1.0f, rule.drift_m_s);
+    goe_rule_default(NULL);
+    for (double aside = -60.0; aside <= 60.0; aside += 1.5) {
+        place(aside);
+        TEST_ASSERT_EQUAL_INT(decide(), goe_decide(&estimator, &plan, NULL, NULL));
+    }
+    rule = zero; /* a doubt of 0 would narrow */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, decide());
+}
+
+/* GIVEN distances at the end of their range THEN doubt and age do not push them out of it. */
+static void the_widest_distances_are_taken(void) {
+    plan.margin_m = plan.clearance_m = 1.0e4f;
+    estimator.estimate.suspect = true;
+    plan.since_image_s = 1.0e3f;
+    rule.drift_m_s = 100.0f;
+    TEST_ASSERT_TRUE(decide() != GOE_DECISION_KEEP);
+}
+
+/* GIVEN times and their sigmas THEN the soonest is the time less two small sigmas, half of it for a sigma of half of it, 0 of 0, and never
+ * later for a larger sigma. */
+static void the_soonest_time_is_early(void) {
+    memset(&hazard, 0, sizeof hazard);
+    CHECK_SAME(0.0f, goe_soonest_s(&hazard));
+    CHECK_SAME(0.0f, goe_soonest_s(NULL));
+    hazard.time_s = 10.0f;
+    hazard.time_sd_s = 0.05f;
+    CHECK_CLOSE(2.0e-3, 9.9, goe_soonest_s(&hazard));
+    hazard.time_sd_s = 5.0f;
+    CHECK_CLOSE(1.0e-6, 5.0, goe_soonest_s(&hazard));
+    float before = 10.0f;
+    for (int i = 0; i < 100; i++) {
+        hazard.time_sd_s = 0.3f * (float)i;
+        TEST_ASSERT_TRUE(goe_soonest_s(&hazard) <= before && goe_soonest_s(&hazard) > 0.0f);
+        before = goe_soonest_s(&hazard);
+    }
+    hazard.time_sd_s = check_from_bits(0x7FC00000u);
+    CHECK_SAME(0.0f, goe_soonest_s(&hazard));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(probability_and_time_decide);
+    RUN_TEST(what_is_hardly_known_is_not_clear);
+    RUN_TEST(an_old_answer_beside_new_detections_clears_nothing);
+    RUN_TEST(doubt_and_age_widen);
+    RUN_TEST(without_a_position_nothing_is_known);
+    RUN_TEST(every_failure_keeps_the_decision);
+    RUN_TEST(no_rule_is_the_default);
+    RUN_TEST(the_widest_distances_are_taken);
+    RUN_TEST(the_soonest_time_is_early);
+    return UNITY_END();
+}

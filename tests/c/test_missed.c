@@ -1,0 +1,359 @@
+/* Images without a detection, and new starts of the filter: no warning is lost by them. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "goe_covariance.h"
+#include "refined/goe_filter.h"
+#include "refined/goe_prism.h"
+#include "scene.h"
+
+#define FLIGHTS 60
+#define IMAGES 70
+#define MARGIN_M 15.0
+#define CLEARANCE_M 10.0
+#define LOST_MAX                                                                                                       \
+    0.02 /* of a probability, in an image without a detection: what an eighth of a second adds to the sigmas */
+#define HZ 8.0
+
+typedef enum { BY_POINTS, BY_CORNERS, BY_BOXES, BY_BOXES_AND_CORNERS, BY_OUTLINE, KINDS } kind_t;
+
+static check_random_t any;
+static scene_t scene;
+static goe_settings_t settings;
+static goe_estimator_t estimator;
+static goe_image_t image;
+static goe_estimate_t estimate;
+static goe_hazard_t hazard;
+
+void setUp(void) {
+    scene_default(&scene);
+    any = check_random_start("missed");
+}
+void tearDown(void) {}
+
+static void hide_all(void) {
+    image.left.seen = image.right.seen = image.top.seen = false;
+    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    image.box.seen = 0;
+}
+
+/* Image k of the scene as a detector of that kind gives it, with noise. */
+static void look(kind_t kind, int k) {
+    goe_box_t box;
+    scene.boxes = true;
+    scene_image(&scene, k, &image, NULL);
+    box = image.box;
+    scene.boxes = false;
+    scene_image(&scene, k, &image, NULL);
+    scene_add_noise(&image, &any, 0.5);
+    if (kind == BY_BOXES || kind == BY_BOXES_AND_CORNERS) {
+        image.box = box;
+        image.left.seen = image.right.seen = image.top.seen = false;
+    }
+    if (kind != BY_CORNERS && kind != BY_BOXES_AND_CORNERS) {
+        image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    }
+    if (kind == BY_OUTLINE) {
+        image.top.seen = false;
+    }
+}
+
+static goe_plan_t plan_of(double since_s) {
+    const goe_plan_t plan = {
+        {(float)scene.speed_mps, 0.0f, 0.0f}, (float)MARGIN_M, (float)CLEARANCE_M, (float)since_s, 0.0f};
+    return plan;
+}
+
+static goe_status_t ask(double since_s) {
+    const goe_plan_t plan = plan_of(since_s);
+    return goe_hazard(&estimator, &plan, &hazard);
+}
+
+static void start(void) {
+    settings = scene_settings(&scene);
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+}
+
+/* Any obstacle near the course, from a mast to a wall, seen by any features. */
+static kind_t draw(int flight) {
+    const kind_t kind = (kind_t)(flight % KINDS);
+    scene_default(&scene);
+    if (kind == BY_POINTS) {
+        scene_make_cylinder(&scene);
+        scene.width_m = check_random_between(&any, 1.0, 30.0);
+    } else {
+        scene.width_m = check_random_between(&any, 2.0, 40.0);
+        scene.length_m = check_random_between(&any, 2.0, 40.0);
+        scene.alpha_deg = check_random_between(&any, -85.0, 85.0);
+    }
+    scene.height_m = check_random_between(&any, 4.0, 40.0);
+    scene.altitude_m = check_random_between(&any, 5.0, 30.0);
+    scene.x0_m = check_random_between(&any, -40.0, 40.0);
+    scene.z0_m = check_random_between(&any, 100.0, 200.0);
+    scene.speed_mps = check_random_between(&any, 8.0, 14.0);
+    scene.wobble_deg = flight % 2 == 0 ? 0.0 : 2.0;
+    scene.image_rate_hz = HZ;
+    return kind;
+}
+
+/* GIVEN random flights by any features, and an answer WHEN the next image shows nothing THEN the hazard is that which was predicted for that
+ * moment: its probability falls by no more than the time explains, and distance and time are the same; ten such images in a row, too. */
+static void an_image_without_a_detection_takes_no_warning_back(void) {
+    static goe_estimator_t kept;
+    double lost = 0.0;
+    double moved_sigma = 0.0;
+    int compared = 0;
+    int warned = 0;
+    for (int flight = 0; flight < FLIGHTS; flight++) {
+        const kind_t kind = draw(flight);
+        start();
+        for (int k = 0; k < IMAGES; k++) {
+            look(kind, k);
+            (void)goe_update(&estimator, &image, &estimate);
+            if (!estimate.fresh || ask(0.0) != GOE_OK) {
+                continue;
+            }
+            kept = estimator;
+            for (int missed = 1; missed <= 10; missed++) {
+                CHECK_STATUS(GOE_OK, ask(1.0 / HZ));
+                const goe_hazard_t predicted = hazard;
+                look(kind, k + missed);
+                hide_all();
+                CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &estimate));
+                CHECK_STATUS(GOE_OK, ask(0.0));
+                lost = fmax(lost, (double)predicted.violation - (double)hazard.violation);
+                moved_sigma = fmax(moved_sigma, fabs((double)predicted.miss_m - (double)hazard.miss_m) /
+                                                    ((double)predicted.miss_sd_m + 0.05));
+                compared++;
+                warned += predicted.violation > 0.5f ? 1 : 0;
+            }
+            estimator = kept;
+        }
+    }
+    check_report("images without a detection", compared);
+    check_report("... after a warning", warned);
+    check_report("largest probability lost", lost);
+    check_report("largest change of the distance, sigmas", moved_sigma);
+    TEST_ASSERT_TRUE(compared > 10000 && warned > 2000);
+    TEST_ASSERT_TRUE(lost < LOST_MAX);
+    TEST_ASSERT_TRUE(moved_sigma < 0.1);
+}
+
+/* GIVEN a warning WHEN the filter starts again, whatever comes next THEN the warning stays for as long as the truth is a violation: position
+ * and size are kept until an answer replaces them that is better or says otherwise. */
+static void a_new_start_of_the_filter_takes_no_warning_back(void) {
+    int warned = 0;
+    double least = 1.0;
+    for (int flight = 0; flight < FLIGHTS; flight++) {
+        const kind_t kind = draw(flight);
+        scene.x0_m = check_random_between(&any, -3.0, 3.0); /* met, whatever its size */
+        scene.altitude_m = check_random_between(&any, 0.2, 0.8) * scene.height_m;
+        start();
+        for (int k = 0; k < IMAGES; k++) {
+            look(kind, k);
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+        if (ask(0.0) != GOE_OK || hazard.violation < 0.99f || estimate.suspect) {
+            continue;
+        }
+        goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
+        for (int k = IMAGES; k < IMAGES + 12; k++) {
+            look(kind, k);
+            if (k % 4 == 2) {
+                hide_all();
+            }
+            (void)goe_update(&estimator, &image, &estimate);
+            CHECK_STATUS(GOE_OK, ask(0.0));
+            least = fmin(least, (double)hazard.violation);
+        }
+        warned++;
+    }
+    check_report("flights with a warning and a new start", warned);
+    check_report("least probability after it", least);
+    TEST_ASSERT_TRUE(warned > FLIGHTS / 2);
+    TEST_ASSERT_TRUE(least > 0.5);
+}
+
+/* GIVEN a building 36 m wide, by points and base corners without noise, every eighth detection missed WHEN the width is not valid THEN the
+ * probability stays: once it was 1.0000 with the detection, and 0.0000 an image later. */
+static void a_wide_building_stays_wide(void) {
+    scene.width_m = scene.length_m = 36.0;
+    scene.height_m = 17.0;
+    scene.altitude_m = 11.0;
+    scene.x0_m = 23.0;
+    scene.z0_m = 72.0;
+    scene.alpha_deg = 0.0;
+    scene.speed_mps = 10.0;
+    scene.image_rate_hz = HZ;
+    scene.top_nearest = true;
+    start();
+    int missed = 0;
+    for (int k = 0; k < 40; k++) {
+        scene_image(&scene, k, &image, NULL);
+        if (k % 8 == 7) {
+            hide_all();
+        }
+        (void)goe_update(&estimator, &image, &estimate);
+        if (k > 8) {
+            CHECK_STATUS(GOE_OK, ask(0.0));
+            TEST_ASSERT_TRUE(hazard.violation > 0.95f);
+            missed += estimate.fresh ? 0 : 1;
+        }
+    }
+    TEST_ASSERT_TRUE(missed >= 4);
+}
+
+/* Half of what is seen of the obstacle, by the filter's state. */
+static double reach_by_state(void) {
+    const float *x = estimator.filter.state;
+    const double q = (double)x[GOE_INVERSE_RANGE];
+    if (estimator.filter.phase == GOE_PHASE_PRISM) {
+        return (double)x[GOE_PRISM_HALF] / q;
+    }
+    const double side = estimator.filter.phase >= GOE_PHASE_BOX_FACE ? fabs((double)x[GOE_SIDE_X]) : 0.0;
+    return 0.5 * ((double)x[GOE_FRONT_X] + side) / q;
+}
+
+/* GIVEN flights by any features THEN a hazard reaches as far as the filter's own guess of the extent, valid or not; after a new start no
+ * less far than before, until a width is valid. */
+static void the_reach_is_that_of_the_state(void) {
+    unsigned phases = 0u;
+    for (int flight = 0; flight < 2 * KINDS; flight++) {
+        const kind_t kind = draw(flight);
+        scene.x0_m = 15.0;
+        start();
+        for (int k = 0; k < IMAGES; k++) {
+            look(kind, k);
+            (void)goe_update(&estimator, &image, &estimate);
+            const goe_answer_t *answer = &estimator.filter.answer;
+            if (estimate.fresh && estimate.method == GOE_METHOD_REFINED) {
+                const double reach_m = reach_by_state();
+                phases |= 1u << estimator.filter.phase;
+                CHECK_CLOSE(1.0e-4 * reach_m, fmax(reach_m, (double)answer->least_m), goe_latest_reach(&estimator));
+                TEST_ASSERT_TRUE(answer->least_m == 0.0f || !(estimate.valid & GOE_HAS_WIDTH));
+            }
+        }
+        const float before = goe_latest_reach(&estimator);
+        goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
+        CHECK_SAME(before, goe_latest_reach(&estimator));
+        TEST_ASSERT_TRUE(estimator.filter.answer.least_m >= before);
+    }
+    TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_PRISM));
+    TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_DISC));
+    TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_BOX));
+}
+
+/* GIVEN a first answer of a new start that agrees with the last one before it THEN it takes over once it knows the place as well; after
+ * three seconds whatever it knows; one that disagrees takes over at once. */
+static void a_worse_answer_waits_and_another_one_does_not(void) {
+    for (int moved = 0; moved < 2; moved++) {
+        scene_default(&scene);
+        scene_make_cylinder(&scene);
+        scene.image_rate_hz = HZ;
+        scene.z0_m = 250.0;
+        start();
+        for (int k = 0; k < 40; k++) {
+            look(BY_POINTS, k);
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+        TEST_ASSERT_TRUE(estimate.fresh);
+        goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
+        scene.x0_m += moved == 1 ? 60.0 : 0.0; /* another obstacle under the same id */
+        const int64_t started_us = estimator.motion.time_us;
+        double stood = 0.0; /* of the old answer, grown */
+        double waited_s = 0.0;
+        for (int k = 40; k < 80 && !(k > 40 && estimate.fresh); k++) {
+            stood = hypot((double)estimate.sigma.x_m, (double)estimate.sigma.z_m);
+            look(BY_POINTS, k);
+            (void)goe_update(&estimator, &image, &estimate);
+            waited_s = (double)(estimator.motion.time_us - started_us) * 1.0e-6;
+        }
+        check_report("s until a new answer", waited_s);
+        const double now = hypot((double)estimate.sigma.x_m, (double)estimate.sigma.z_m);
+        TEST_ASSERT_TRUE(estimate.fresh && waited_s < 3.4);
+        TEST_ASSERT_TRUE(moved == 1 || now <= 1.02 * stood || waited_s > 3.0);
+        TEST_ASSERT_TRUE(moved == 0 || waited_s < 1.0);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------- traps of the interface -- */
+
+/* GIVEN images without a feature, then a turn of 88 degrees, then a mast dead ahead THEN it is answered for within a second: the empty
+ * images have fixed no direction. */
+static void a_turn_before_first_sight_costs_nothing(void) {
+    scene_make_cylinder(&scene);
+    scene.x0_m = 0.0;
+    scene.z0_m = 120.0;
+    scene.image_rate_hz = HZ;
+    start();
+    int first = -1;
+    for (int k = 0; k < 30 && first < 0; k++) {
+        look(BY_POINTS, k);
+        if (k < 6) {
+            hide_all();
+            image.pose.attitude[0] = 0.719339800f; /* 88 degrees to the right */
+            image.pose.attitude[1] = image.pose.attitude[2] = 0.0f;
+            image.pose.attitude[3] = 0.694658370f;
+        }
+        (void)goe_update(&estimator, &image, &estimate);
+        first = (estimate.valid & GOE_HAS_POSITION) ? k : -1;
+    }
+    TEST_ASSERT_TRUE(first >= 6 && first <= 14);
+    CHECK_CLOSE(1.0e-3, 0.0, estimate.trajectory_heading_deg);
+}
+
+/* GIVEN box.seen = true, which marks the left side alone THEN every image says so, and counts it; a whole box does not. */
+static void a_box_of_one_side_is_reported(void) {
+    start();
+    for (int k = 0; k < 8; k++) {
+        look(BY_BOXES, k);
+        image.box.seen = true;
+        CHECK_STATUS(GOE_BOX_INCOMPLETE, goe_update(&estimator, &image, &estimate));
+    }
+    TEST_ASSERT_EQUAL_UINT32(8u, estimator.causes[-GOE_BOX_INCOMPLETE]);
+    look(BY_BOXES, 8);
+    TEST_ASSERT_TRUE(goe_update(&estimator, &image, &estimate) != GOE_BOX_INCOMPLETE);
+    TEST_ASSERT_EQUAL_UINT32(8u, estimator.causes[-GOE_BOX_INCOMPLETE]);
+}
+
+/* GIVEN a height of 0 with a box THEN it is counted as not set and nothing rests on it: range and clearance come from the growth of the
+ * box, within three sigma. */
+static void a_height_that_was_not_set_is_reported(void) {
+    scene.x0_m = -20.0;
+    scene.speed_mps = 14.0;
+    start();
+    for (int k = 0; k < 50; k++) {
+        look(BY_BOXES, k);
+        image.pose.height_m = k % 2 == 0 ? 0.0f : -0.0f;
+        (void)goe_update(&estimator, &image, &estimate);
+    }
+    TEST_ASSERT_EQUAL_UINT32(50u, estimator.causes[-GOE_NO_HEIGHT]);
+    if (estimate.valid & GOE_HAS_POSITION) {
+        scene_truth_t truth;
+        scene_image(&scene, 49, &image, &truth);
+        CHECK_CLOSE(3.0 * (double)estimate.sigma.z_m + 0.5 * scene.length_m, truth.z_m, estimate.z_m);
+        CHECK_STATUS(GOE_OK, ask(0.0));
+        TEST_ASSERT_TRUE(hazard.has_clearance); /* the growth of the box has shown the height, too */
+        CHECK_CLOSE(3.0 * (double)hazard.clearance_sd_m, truth.height_above_ground_m - scene.height_m,
+                    hazard.clearance_m);
+    }
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    look(BY_POINTS, 0);
+    image.pose.height_m = 0.0f;
+    (void)goe_update(&estimator, &image, &estimate);
+    TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[-GOE_NO_HEIGHT]);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(an_image_without_a_detection_takes_no_warning_back);
+    RUN_TEST(a_new_start_of_the_filter_takes_no_warning_back);
+    RUN_TEST(a_wide_building_stays_wide);
+    RUN_TEST(the_reach_is_that_of_the_state);
+    RUN_TEST(a_worse_answer_waits_and_another_one_does_not);
+    RUN_TEST(a_turn_before_first_sight_costs_nothing);
+    RUN_TEST(a_box_of_one_side_is_reported);
+    RUN_TEST(a_height_that_was_not_set_is_reported);
+    return UNITY_END();
+}
