@@ -26,6 +26,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
     "flight_cost": (".cost.flight", "measure what the calls of the flight layer take"),
     "ledger": (".cost.ledger", "measure what the library costs on each target"),
+    "lies": (".lies.command", "search for confident errors and warnings that vanish, in random legal flights"),
     "live": (".live.command", "write a page in which the library runs, compiled to WebAssembly"),
     "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
     "mcap": (".exchange.mcap_command", "write a log and its estimates as MCAP, for Foxglove and PlotJuggler"),
