@@ -525,6 +525,8 @@ static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *r
     result->action = (goe_flight_action_t)reaction->action;
     result->late = reaction->late;
     result->avoided = reaction->slot;
+    result->reason = (goe_flight_reason_t)reaction->reason;
+    result->clear_m = reaction->clear_m;
     if (reaction->action != GOE_FLIGHT_NONE) {
         memcpy(result->target_ned_m, reaction->target_ned_m, sizeof result->target_ned_m);
         if (flight->origin_known) {
@@ -548,7 +550,7 @@ static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_f
     report_action(flight, result);
 }
 
-goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, bool approach,
+goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uint8_t phase,
                                       goe_flight_assessment_t *result) {
     goe_flight_reaction_own_t own;
     if (!result) {
@@ -567,7 +569,8 @@ goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, boo
     const bool past = goe_flight_between_us(now_us, (uint32_t)flight->base_us) < 0;
     const uint32_t now = past ? (uint32_t)flight->base_us : now_us;
     find_own(flight, now, &own);
-    own.approach = approach;
+    own.approach = phase == GOE_FLIGHT_APPROACH;
+    own.grounded = phase == GOE_FLIGHT_FLARE || phase == GOE_FLIGHT_LANDED;
     bury(flight, now);
     catch_up(flight, now);
     const int worst = goe_flight_lookout_assess(flight, now);
@@ -709,6 +712,25 @@ const char *goe_flight_action_text(goe_flight_action_t action) {
             return "go_around";
         case GOE_FLIGHT_HOLD:
             return "hold";
+        default:
+            return "unknown";
+    }
+}
+
+const char *goe_flight_reason_text(goe_flight_reason_t reason) {
+    switch (reason) {
+        case GOE_FLIGHT_REASON_NONE:
+            return "none";
+        case GOE_FLIGHT_REASON_CLEAR:
+            return "clear";
+        case GOE_FLIGHT_REASON_LEAST_BAD:
+            return "least_bad";
+        case GOE_FLIGHT_REASON_LOW:
+            return "low";
+        case GOE_FLIGHT_REASON_SLOW:
+            return "slow";
+        case GOE_FLIGHT_REASON_LANDING:
+            return "landing";
         default:
             return "unknown";
     }

@@ -124,6 +124,9 @@ typedef struct {
     float reserve_s;   /* an order comes this much before its last moment; 0 to 60; 3 */
     float confirm_s;   /* the hazard must stay for this long before an order, unless none is left; 0 to 10; 0.3 */
     float hold_s;      /* ... and its end before the order is taken back; 0 to 60; 2 */
+    /* where no order is given; hazards are reported all the same */
+    float order_height_m;  /* no new order below this height above the ground; 0: at any; 0 to 1000; 5 */
+    float order_speed_m_s; /* ... nor below this speed over the ground; 0 to 100; 5 */
 } goe_flight_settings_t;
 
 /* ----------------------------------------------------------------------------------------------------------- input -- */
@@ -197,6 +200,25 @@ typedef enum {
                                  loiter */
 } goe_flight_action_t;
 
+/* Why it is this action. */
+typedef enum {
+    GOE_FLIGHT_REASON_NONE = 0,  /* no order, and none is withheld */
+    GOE_FLIGHT_REASON_CLEAR = 1, /* the order keeps clear of everything known */
+    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* nothing is free: the order has the largest clearance that was found */
+    /* an order is due and withheld, because the aircraft ... */
+    GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */
+    GOE_FLIGHT_REASON_SLOW = 4,  /* is slower than order_speed_m_s */
+    GOE_FLIGHT_REASON_LANDING = 5 /* flares, or has touched down */
+} goe_flight_reason_t;
+
+/* What the aircraft does, for goe_flight_assess(). Any other number counts as GOE_FLIGHT_FLYING. */
+enum {
+    GOE_FLIGHT_FLYING = 0,
+    GOE_FLIGHT_APPROACH = 1, /* it is landing: to go around comes first */
+    GOE_FLIGHT_FLARE = 2,    /* no order is given, and one that stands ends */
+    GOE_FLIGHT_LANDED = 3    /* it has touched down: the same. What stands behind the runway is not on its course */
+};
+
 /* What goe_flight_assess() finds. The worst obstacle is that of the largest violation / (1 + 0.1 time_s). */
 typedef struct {
     goe_flight_action_t action;
@@ -209,7 +231,11 @@ typedef struct {
     int8_t avoided;        /* slot of the obstacle that the action is about; -1: none, or it was given up */
     uint8_t obstacles;     /* with a position */
     float needed_s;        /* time that the action needs, or the best one would, if there is a worst obstacle */
-    float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE; GO_AROUND: where the approach is, over the top */
+    float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE. The height of CLIMB and GO_AROUND clears the highest top that is known on the
+                              course by clearance_m at two sigma; it rises with the estimate and never sinks while the order stands */
+    goe_flight_reason_t reason;
+    float clear_m;         /* of LEFT, RIGHT and HOLD: the least distance that the ways in which the order may be flown keep from any
+                              known outline, two sigmas of its place taken off; at most 1000. Else 0 */
     int32_t target_lat_e7, target_lon_e7; /* 0 if the origin is not known */
     goe_hazard_t hazard;   /* of the worst obstacle, from now; all zero if there is none */
 } goe_flight_assessment_t;
@@ -316,8 +342,15 @@ typedef struct { /* goe_reaction.c: the order that stands */
     float from_ne_m[2], course_ne[2]; /* where it was given, and the course then: the line to go back to */
     uint32_t rising_us, falling_us;   /* since when there is a hazard, and an end of it */
     float target_ned_m[3];
+    float along_ne[2];  /* the course when the target was chosen */
+    float clear_m;      /* as reported */
+    uint32_t ordered_us;
     uint8_t action;
     int8_t slot; /* what it is about; -1: none, or given up */
+    int8_t edge; /* the slot past whose outline the target lies; -1: the target does not follow one */
+    int8_t side; /* -1: left, 1: right, also of HOLD; 0: none */
+    uint8_t changes; /* of the side */
+    uint8_t reason;
     goe_flag_t rising, falling, late;
 } goe_flight_reaction_t;
 
@@ -395,10 +428,10 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
 
 /* What is ahead from now on, at the velocity of the newest sample, and what to do about it: README.md has the rule as a table.
  *   now_us    autopilot's clock; older than the newest sample: counts as that
- *   approach  the aircraft is landing: to go around comes first
+ *   phase     GOE_FLIGHT_FLYING, _APPROACH, _FLARE or _LANDED
  *   result    written by every call unless null; all zero (worst, avoided -1) on failure: that is not "clear" then
  * Returns GOE_FLIGHT_OK, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED, _CORRUPTED. */
-goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, bool approach,
+goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uint8_t phase,
                                       goe_flight_assessment_t *result);
 
 /* One obstacle, slot 0 to GOE_FLIGHT_SLOTS - 1, as of the latest image, with the hazard of the latest assessment.
@@ -418,6 +451,9 @@ goe_flight_status_t goe_flight_restart(goe_flight_t *flight);
 
 /* A short lower-case name for an action ("none", "left", ...), never null; "unknown" for any other number. */
 const char *goe_flight_action_text(goe_flight_action_t action);
+
+/* The same for a reason ("none", "clear", "least_bad", "low", "slow", "landing"). */
+const char *goe_flight_reason_text(goe_flight_reason_t reason);
 
 #ifdef __cplusplus
 }

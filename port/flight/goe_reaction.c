@@ -1,11 +1,15 @@
 /* Reaction. SPDX-License-Identifier: MIT
  *
  * A turn of radius R leaves the course by d after sqrt(d (2 R - d)) of it; by no more than R before it is crossed. So an
- * obstacle that needs d < R aside can be passed, and before one that needs more the only way is to turn away. */
+ * obstacle that needs d < R aside can be passed, and before one that needs more the only way is to turn away.
+ *
+ * A side is a target beside the course: past the outline of the obstacle at hand, or farther out past that of another one, or in
+ * the middle of the gap between the two. goe_clear.c says how clear of everything known each of them can be reached. */
 #include "goe_reaction.h"
 
 #include <math.h>
 
+#include "goe_clear.h"
 #include "goe_flight_maths.h"
 #include "goe_lookout.h"
 #include "goe_slot.h"
@@ -14,28 +18,55 @@
 #define SURE_SIGMA 2.0f
 #define SPEED_MIN_M_S 1.0f
 #define TIME_MAX_S 1.0e4f
+#define CLEAR_MAX_M 1000.0f
 #define LATE_VIOLATION                                                                                                 \
     0.5f /* where no action comes in time, a hazard that is less likely than not is no reason for one */
 #define NOBODY (-1)
+#define LEFT (-1)
+#define RIGHT 1
+
+/* Shares of the margin. */
+#define FREE 0.75f     /* a way of this much is free: on the way to its target an aircraft cuts the corner */
+#define HOLD_FREE 0.5f /* to hold is for where no side is free */
+#define KEPT 0.5f      /* a target is left for a better one below this */
+#define GAIN 0.2f      /* by which that must be better */
+#define NEVER (-2.0f * GOE_FLIGHT_CLEAR_MAX)
+
+#define EARLY 0.33f      /* of roll_in_s: an autopilot may obey so soon */
+#define SHARE_S 4.0f     /* of time that a whole margin is worth, between ways that are free */
+#define SAME_SIDE_S 0.5f /* ... and the side that was ordered before */
 
 /* Everything about one obstacle on a course: right is positive aside. */
 typedef struct {
-    float course_ne[2], speed_m_s, turn_m; /* turn_m: radius */
-    float ahead_m, aside_m;                /* of the centre from the aircraft */
-    float keep_m;                          /* distance that the centre is to have, aside */
-    float rise_m, top_down_m;              /* to the height that clears the top, and where that is; has_top */
+    float ahead_m, aside_m;   /* of the centre from the aircraft */
+    float keep_m;             /* distance that the centre is to have, aside */
+    float rise_m, top_down_m; /* to the height that clears the top, and where that is; has_top */
     float soonest_s;
     bool has_top;
 } encounter_t;
 
+/* What is looked at: the aircraft on its course and every obstacle in the frame of it. */
+typedef struct {
+    const goe_flight_t *flight;
+    const goe_flight_reaction_own_t *own;
+    goe_flight_clear_own_t at;
+    goe_flight_clear_slot_t slot[GOE_FLIGHT_SLOTS];
+    float speed_m_s;
+    float circle_m; /* that is flown about a target; 0: it is flown through */
+} look_t;
+
 typedef struct {
     goe_flight_action_t action;
-    float needed_s, aside_m; /* of LEFT, RIGHT, HOLD: how far to the right of the present course; else 0 */
+    float needed_s, cost_s;
+    float share;                /* of the margin, least */
+    goe_flight_clear_way_t way; /* of LEFT, RIGHT, HOLD */
+    float down_m;               /* of the target */
+    int8_t edge, side;
 } option_t;
 
 void goe_flight_reaction_clear(goe_flight_reaction_t *reaction) {
     memset(reaction, 0, sizeof *reaction);
-    reaction->slot = NOBODY;
+    reaction->slot = reaction->edge = NOBODY;
 }
 
 void goe_flight_reaction_shift(goe_flight_reaction_t *reaction, const float jump_ned_m[3]) {
@@ -48,6 +79,10 @@ void goe_flight_reaction_shift(goe_flight_reaction_t *reaction, const float jump
 }
 
 /* --------------------------------------------------------------------------------------------------------- encounter -- */
+
+static bool is_aside(unsigned action) { return action == GOE_FLIGHT_LEFT || action == GOE_FLIGHT_RIGHT; }
+static bool is_up(unsigned action) { return action == GOE_FLIGHT_CLIMB || action == GOE_FLIGHT_GO_AROUND; }
+static float times(int side, float aside_m) { return side == LEFT ? -aside_m : aside_m; }
 
 static void relate(const float from_ne_m[2], const float course_ne[2], const float place_ne_m[2], float *ahead_m,
                    float *aside_m) {
@@ -65,133 +100,256 @@ static float aside_sd_m(const goe_flight_slot_t *slot, const float course_ne[2])
     return sqrtf(goe_flight_larger(variance, 0.0f));
 }
 
-/* False: no course to speak of. */
-static bool find_course(const goe_flight_t *flight, encounter_t *e) {
+/* roll_in_s: what of it is left. False: no course to speak of. */
+static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, float roll_in_s,
+                        look_t *look) {
     const float north = flight->velocity_ned_m_s[0];
     const float east = flight->velocity_ned_m_s[1];
+    const float speed_m_s = sqrtf(north * north + east * east);
     float sine;
     float cosine;
-    e->speed_m_s = sqrtf(north * north + east * east);
-    if (!(e->speed_m_s > SPEED_MIN_M_S)) {
+    if (!(speed_m_s > SPEED_MIN_M_S)) {
         return false;
     }
-    e->course_ne[0] = north / e->speed_m_s;
-    e->course_ne[1] = east / e->speed_m_s;
     goe_flight_sincos_deg(flight->settings.bank_deg, &sine, &cosine);
-    e->turn_m = e->speed_m_s * e->speed_m_s * cosine / (GRAVITY_M_S2 * sine);
+    look->flight = flight;
+    look->own = own;
+    look->speed_m_s = speed_m_s;
+    look->at.course_ne[0] = north / speed_m_s;
+    look->at.course_ne[1] = east / speed_m_s;
+    memcpy(look->at.ned_m, own->ned_m, sizeof look->at.ned_m);
+    look->at.turn_m = speed_m_s * speed_m_s * cosine / (GRAVITY_M_S2 * sine);
+    look->at.late_m = speed_m_s * roll_in_s;
+    look->at.early_m = goe_flight_smaller(look->at.late_m, speed_m_s * EARLY * flight->settings.roll_in_s);
+    look->at.through_m = look->at.turn_m;
+    look->at.time_us = own->time_us;
+    look->circle_m =
+        flight->settings.loiter_m > 0.0f ? goe_flight_larger(flight->settings.loiter_m, look->at.turn_m) : 0.0f;
+    goe_flight_clear_slots(flight, &look->at, look->slot);
     return true;
 }
 
-static bool meet(const goe_flight_t *flight, const goe_flight_slot_t *slot, const goe_flight_reaction_own_t *own,
-                 encounter_t *e) {
-    const goe_flight_settings_t *settings = &flight->settings;
-    memset(e, 0, sizeof *e);
-    if (!find_course(flight, e)) {
-        return false;
-    }
-    const float doubt = goe_flight_lookout_doubt(flight, slot);
-    const float drift_m = goe_flight_lookout_drift_m(flight, slot, own->time_us);
-    relate(own->ned_m, e->course_ne, slot->center_ne_m, &e->ahead_m, &e->aside_m);
+static void meet(const look_t *look, int i, encounter_t *e) {
+    const goe_flight_slot_t *slot = &look->flight->slot[i];
+    const goe_flight_settings_t *settings = &look->flight->settings;
+    const float doubt = goe_flight_lookout_doubt(look->flight, slot);
+    const float drift_m = goe_flight_lookout_drift_m(look->flight, slot, look->own->time_us);
+    relate(look->own->ned_m, look->at.course_ne, slot->center_ne_m, &e->ahead_m, &e->aside_m);
     e->keep_m = goe_flight_slot_radius_m(slot) + doubt * settings->margin_m + drift_m +
-                SURE_SIGMA * aside_sd_m(slot, e->course_ne);
+                SURE_SIGMA * aside_sd_m(slot, look->at.course_ne);
     e->has_top = (slot->valid & GOE_HAS_HEIGHT) != 0u;
     e->top_down_m = slot->ground_down_m - slot->top_m - SURE_SIGMA * slot->top_sd_m - doubt * settings->clearance_m;
-    e->rise_m = goe_flight_larger(own->ned_m[2] - e->top_down_m, 0.0f);
+    e->rise_m = goe_flight_larger(look->own->ned_m[2] - e->top_down_m, 0.0f);
     e->soonest_s = goe_soonest_s(&slot->hazard);
-    return true;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- options -- */
 
-/* Whether another obstacle stands on the way past this one. */
-static bool is_blocked(const goe_flight_t *flight, const encounter_t *e, int about,
-                       const goe_flight_reaction_own_t *own, float aside_m) {
-    bool blocked = false;
+static float turn_time_s(const look_t *look, float aside_m) {
+    const float turn_m = look->at.turn_m;
+    const float d = goe_flight_clamped(aside_m, 0.0f, turn_m);
+    const float farther_m = goe_flight_larger(aside_m - turn_m, 0.0f);
+    return look->flight->settings.roll_in_s + (sqrtf(d * (2.0f * turn_m - d)) + farther_m) / look->speed_m_s;
+}
+
+static float climb_time_s(const look_t *look, float rise_m) {
+    const goe_flight_settings_t *settings = &look->flight->settings;
+    return goe_flight_smaller(settings->climb_in_s + rise_m / settings->climb_m_s, TIME_MAX_S);
+}
+
+static float rise_of(const look_t *look, const encounter_t *e) {
+    return e->has_top ? e->rise_m : look->flight->settings.clearance_m;
+}
+
+/* Of two ways: of those that are free the one of the least cost, else the clearer one. */
+static bool is_better(const option_t *a, const option_t *b) {
+    const bool a_is_free = a->share >= FREE;
+    const bool b_is_free = b->share >= FREE;
+    if (a_is_free && b_is_free) {
+        return a->cost_s < b->cost_s;
+    }
+    return a->share > b->share;
+}
+
+static void prefer(option_t *best, const option_t *option) {
+    if (best->action == GOE_FLIGHT_NONE || is_better(option, best)) {
+        *best = *option;
+    }
+}
+
+/* Of a climb straight on everything in the way is to be cleared: to the highest top, each in time. */
+static void try_climb(const look_t *look, int about, const encounter_t *e, option_t *best) {
+    option_t option;
+    const bool approach = look->own->approach;
+    float rise_m = rise_of(look, e);
+    bool possible = (e->has_top || approach) && climb_time_s(look, rise_m) <= e->soonest_s;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS && possible; i++) {
+        encounter_t other;
+        if (i == about || !look->slot[i].counts) {
+            continue;
+        }
+        meet(look, i, &other);
+        if (other.ahead_m > 0.0f && other.ahead_m < e->ahead_m + 2.0f * look->at.turn_m &&
+            goe_flight_absolute(other.aside_m) < other.keep_m) {
+            const float there_s = goe_flight_larger(other.ahead_m - look->slot[i].radius_m, 0.0f) / look->speed_m_s;
+            rise_m = goe_flight_larger(rise_m, rise_of(look, &other));
+            possible = (other.has_top || approach) && climb_time_s(look, rise_of(look, &other)) <= there_s;
+        }
+    }
+    if (possible) {
+        memset(&option, 0, sizeof option);
+        option.action = approach ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_CLIMB;
+        option.needed_s = option.cost_s = climb_time_s(look, rise_of(look, e));
+        option.share = 1.0f;
+        option.down_m = look->own->ned_m[2] - rise_m;
+        option.edge = NOBODY;
+        prefer(best, &option);
+    }
+}
+
+/* The way that keeps aside_m to the right of the present course, abeam of the obstacle. */
+static void try_target(const look_t *look, const encounter_t *e, int side, float aside_m, int edge, option_t *best) {
+    option_t option;
+    int nearest;
+    memset(&option, 0, sizeof option);
+    option.action = side == LEFT ? GOE_FLIGHT_LEFT : GOE_FLIGHT_RIGHT;
+    option.needed_s = turn_time_s(look, times(side, aside_m));
+    option.way.target_m[0] = e->ahead_m;
+    option.way.target_m[1] = aside_m + times(side, look->circle_m);
+    option.way.circle_m = look->circle_m;
+    option.way.line_m[0] = 1.0f;
+    option.way.shifts = true;
+    option.down_m = look->own->ned_m[2];
+    option.edge = (int8_t)edge;
+    option.side = (int8_t)side;
+    const float enough = best->share < FREE ? best->share : FREE;
+    option.share = goe_flight_clear_share(&look->at, look->slot, &option.way, enough, &nearest);
+    const int before = look->flight->reaction.side;
+    option.cost_s = option.needed_s + SHARE_S * (1.0f - goe_flight_smaller(option.share, 1.0f)) -
+                    (before == side ? SAME_SIDE_S : 0.0f);
+    prefer(best, &option);
+}
+
+/* Past the outline of this obstacle; past that of another, farther out; between the two. */
+static void try_side(const look_t *look, int about, const encounter_t *e, int side, option_t *best) {
+    const float base_m = e->aside_m + times(side, e->keep_m);
+    const float wall_m = e->aside_m + times(side, look->slot[about].radius_m);
+    if (!(times(side, base_m) < look->at.turn_m)) {
+        return;
+    }
+    try_target(look, e, side, base_m, about, best);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        const goe_flight_slot_t *other = &flight->slot[i];
-        float ahead_m;
-        float other_m;
-        relate(own->ned_m, e->course_ne, other->center_ne_m, &ahead_m, &other_m);
-        const float reach_m = goe_flight_slot_radius_m(other) + flight->settings.margin_m;
-        const bool on_the_way =
-            ahead_m > 0.0f && ahead_m < e->ahead_m + e->turn_m && goe_flight_absolute(other_m - aside_m) < reach_m;
-        blocked = blocked || (i != about && other->used && other->assessed && on_the_way &&
-                              other->hazard.violation > flight->settings.violation_max);
-    }
-    return blocked;
-}
-
-static float turn_time_s(const goe_flight_t *flight, const encounter_t *e, float aside_m) {
-    const float d = goe_flight_clamped(aside_m, 0.0f, e->turn_m);
-    return flight->settings.roll_in_s + sqrtf(d * (2.0f * e->turn_m - d)) / e->speed_m_s;
-}
-
-static float climb_time_s(const goe_flight_t *flight, const encounter_t *e) {
-    const float rise_m = e->has_top ? e->rise_m : flight->settings.clearance_m;
-    return goe_flight_smaller(flight->settings.climb_in_s + rise_m / flight->settings.climb_m_s, TIME_MAX_S);
-}
-
-static void prefer(option_t *best, goe_flight_action_t action, float needed_s, float aside_m) {
-    if (best->action == GOE_FLIGHT_NONE || needed_s < best->needed_s) {
-        best->action = action;
-        best->needed_s = needed_s;
-        best->aside_m = aside_m;
+        const goe_flight_clear_slot_t *other = &look->slot[i];
+        const float beyond_m = other->at_m[0] - e->ahead_m;
+        if (i == about || !other->counts || !(other->at_m[0] > -look->at.turn_m) ||
+            !(beyond_m < 2.0f * look->at.turn_m)) {
+            continue;
+        }
+        const float keep_m =
+            other->radius_m + other->margin_m + SURE_SIGMA * sqrtf(goe_flight_larger(other->variance_m2[2], 0.0f));
+        const float edge_m = other->at_m[1] + times(side, keep_m);
+        const float inner_m = other->at_m[1] - times(side, other->radius_m);
+        const float middle_m = 0.5f * (wall_m + inner_m);
+        if (times(side, edge_m - base_m) > 0.0f) {
+            try_target(look, e, side, edge_m, i, best);
+        }
+        if (times(side, inner_m - wall_m) > 0.0f && times(side, base_m - middle_m) > 0.0f) {
+            try_target(look, e, side, middle_m, NOBODY, best);
+        }
     }
 }
 
-/* The action that needs the least time of those that pass the obstacle; or to turn away. */
-static option_t choose(const goe_flight_t *flight, const encounter_t *e, int about,
-                       const goe_flight_reaction_own_t *own) {
-    option_t best = {GOE_FLIGHT_NONE, 0.0f, 0.0f};
-    const float right_m = e->aside_m + e->keep_m; /* where to be, from the present course */
-    const float left_m = e->aside_m - e->keep_m;
-    const float climb_s = climb_time_s(flight, e);
-    if (own->approach && climb_s <= e->soonest_s) {
-        prefer(&best, GOE_FLIGHT_GO_AROUND, climb_s, 0.0f);
+/* Turns away and circles: about a point abeam, or at once. */
+static void try_hold(const look_t *look, int side, option_t *best) {
+    const float circle_m = goe_flight_larger(look->flight->settings.loiter_m, look->at.turn_m);
+    for (int at_once = 0; at_once < 2; at_once++) {
+        option_t option;
+        int nearest;
+        memset(&option, 0, sizeof option);
+        option.action = GOE_FLIGHT_HOLD;
+        option.needed_s = option.cost_s = turn_time_s(look, look->at.turn_m);
+        option.way.target_m[0] = at_once ? look->at.late_m : 0.0f;
+        option.way.target_m[1] =
+            times(side, at_once ? circle_m : 2.0f * look->at.turn_m + look->flight->settings.loiter_m);
+        option.way.circle_m = circle_m;
+        option.way.turns_away = true;
+        option.down_m = look->own->ned_m[2];
+        option.edge = NOBODY;
+        option.side = (int8_t)side;
+        option.share = goe_flight_clear_share(&look->at, look->slot, &option.way, NEVER, &nearest);
+        if (best->action != GOE_FLIGHT_HOLD || goe_flight_smaller(option.share, 1.0f) > best->share) {
+            option.share = goe_flight_smaller(option.share, 1.0f);
+            *best = option;
+        }
+    }
+}
+
+/* The side or climb that is free and needs the least time; else to hold; else whatever keeps clearest. side: the only one that is
+ * allowed; 0: both. */
+static option_t choose(const look_t *look, int about, const encounter_t *e, int side) {
+    option_t best;
+    option_t hold;
+    memset(&best, 0, sizeof best);
+    memset(&hold, 0, sizeof hold);
+    best.share = hold.share = NEVER;
+    if (look->own->approach) {
+        try_climb(look, about, e, &best);
+        if (best.action != GOE_FLIGHT_NONE) {
+            return best;
+        }
+    }
+    if (side != LEFT && e->ahead_m > 0.0f) {
+        try_side(look, about, e, RIGHT, &best);
+    }
+    if (side != RIGHT && e->ahead_m > 0.0f) {
+        try_side(look, about, e, LEFT, &best);
+    }
+    if (side == 0) {
+        try_climb(look, about, e, &best);
+    }
+    if (best.action != GOE_FLIGHT_NONE && best.share >= FREE) {
         return best;
     }
-    if (right_m < e->turn_m && !is_blocked(flight, e, about, own, right_m)) {
-        prefer(&best, GOE_FLIGHT_RIGHT, turn_time_s(flight, e, right_m), right_m);
+    const int away = e->aside_m > 0.0f ? LEFT : RIGHT;
+    if (side == 0 || side == away) {
+        try_hold(look, away, &hold);
     }
-    if (-left_m < e->turn_m && !is_blocked(flight, e, about, own, left_m)) {
-        prefer(&best, GOE_FLIGHT_LEFT, turn_time_s(flight, e, -left_m), left_m);
+    if (side == 0 || side == -away) {
+        try_hold(look, -away, &hold);
     }
-    if (e->has_top && climb_s <= e->soonest_s) {
-        prefer(&best, own->approach ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_CLIMB, climb_s, 0.0f);
-    }
-    if (best.action == GOE_FLIGHT_NONE) {
-        const float away_m = 2.0f * e->turn_m + flight->settings.loiter_m;
-        prefer(&best, GOE_FLIGHT_HOLD, turn_time_s(flight, e, e->turn_m), e->aside_m > 0.0f ? -away_m : away_m);
-    }
-    return best;
+    const bool holds = best.action == GOE_FLIGHT_NONE || hold.share >= HOLD_FREE || hold.share > best.share + GAIN;
+    return holds ? hold : best;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- order -- */
 
-/* Where an order flies to: of a side the point abeam of the obstacle's middle, of HOLD the one abeam of the aircraft. */
-static void aim(const goe_flight_t *flight, const encounter_t *e, const option_t *option,
-                const goe_flight_reaction_own_t *own, float target_ned_m[3]) {
-    const bool hold = option->action == GOE_FLIGHT_HOLD;
-    const bool aside = option->action == GOE_FLIGHT_LEFT || option->action == GOE_FLIGHT_RIGHT;
-    const float loiter_m = option->action == GOE_FLIGHT_LEFT ? -flight->settings.loiter_m : flight->settings.loiter_m;
-    const float right_m = option->aside_m + (aside ? loiter_m : 0.0f);
-    const float ahead_m = hold ? 0.0f : e->ahead_m;
-    target_ned_m[0] = own->ned_m[0] + e->course_ne[0] * ahead_m - e->course_ne[1] * right_m;
-    target_ned_m[1] = own->ned_m[1] + e->course_ne[1] * ahead_m + e->course_ne[0] * right_m;
-    target_ned_m[2] = aside || hold || !e->has_top ? own->ned_m[2] : goe_flight_smaller(e->top_down_m, own->ned_m[2]);
-}
-
-static void order(goe_flight_t *flight, int slot, const encounter_t *e, const option_t *option,
-                  const goe_flight_reaction_own_t *own) {
+static void order(goe_flight_t *flight, int slot, const look_t *look, const encounter_t *e, const option_t *option) {
     goe_flight_reaction_t *r = &flight->reaction;
+    const float *course = look->at.course_ne;
+    const bool aside = option->side != 0;
     if (r->action == GOE_FLIGHT_NONE) { /* another order keeps the line of the first */
-        memcpy(r->from_ne_m, own->ned_m, sizeof r->from_ne_m);
-        memcpy(r->course_ne, e->course_ne, sizeof r->course_ne);
+        memcpy(r->from_ne_m, look->own->ned_m, sizeof r->from_ne_m);
+        memcpy(r->course_ne, course, sizeof r->course_ne);
     }
-    aim(flight, e, option, own, r->target_ned_m);
+    if (r->side != 0 && aside && r->side != option->side) {
+        r->changes = (uint8_t)(r->changes < UINT8_MAX ? r->changes + 1 : r->changes);
+    }
+    const float ahead_m = aside ? option->way.target_m[0] : e->ahead_m;
+    const float right_m = aside ? option->way.target_m[1] : 0.0f;
+    r->target_ned_m[0] = look->own->ned_m[0] + course[0] * ahead_m - course[1] * right_m;
+    r->target_ned_m[1] = look->own->ned_m[1] + course[1] * ahead_m + course[0] * right_m;
+    r->target_ned_m[2] = option->down_m;
+    memcpy(r->along_ne, course, sizeof r->along_ne);
+    r->ordered_us = r->action == (uint8_t)option->action ? r->ordered_us : look->own->time_us;
     r->action = (uint8_t)option->action;
     r->late = option->needed_s > e->soonest_s;
     r->slot = (int8_t)slot;
+    r->edge = option->edge;
+    r->side = aside ? option->side : r->side;
+    r->reason = option->share >= (option->action == GOE_FLIGHT_HOLD ? HOLD_FREE : FREE) ? GOE_FLIGHT_REASON_CLEAR
+                                                                                        : GOE_FLIGHT_REASON_LEAST_BAD;
+    r->clear_m =
+        aside ? goe_flight_clamped(option->share * look->flight->settings.margin_m, -CLEAR_MAX_M, CLEAR_MAX_M) : 0.0f;
     r->rising = r->falling = false;
 }
 
@@ -207,95 +365,305 @@ static bool is_due(goe_flight_reaction_t *r, const goe_flight_settings_t *settin
     return e->soonest_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
 }
 
-/* A side keeps to its side: the point moves with the estimate, along the line of the order. */
-static void follow(goe_flight_t *flight, const goe_flight_slot_t *slot, const goe_flight_reaction_own_t *own) {
+/* The target moves with the outline that it lies past, along the course on which it was chosen, and never inside of the obstacle's
+ * that the order is about. */
+static void follow(const look_t *look, goe_flight_reaction_t *r) {
+    float ahead_m;
+    float aside_m;
+    float farthest_m = 0.0f;
+    bool any = false;
+    if (!is_aside(r->action) || r->edge == NOBODY || r->slot == NOBODY) {
+        return;
+    }
+    const int past[2] = {r->slot, r->edge};
+    for (int k = 0; k < 2; k++) {
+        const goe_flight_slot_t *slot = &look->flight->slot[past[k]];
+        relate(r->from_ne_m, r->along_ne, slot->center_ne_m, &ahead_m, &aside_m);
+        const float edge_m = aside_m + times(r->side, look->slot[past[k]].radius_m + look->slot[past[k]].margin_m +
+                                                          SURE_SIGMA * aside_sd_m(slot, r->along_ne) + look->circle_m);
+        farthest_m = !any || times(r->side, edge_m - farthest_m) > 0.0f ? edge_m : farthest_m;
+        any = true;
+    }
+    relate(r->from_ne_m, r->along_ne, look->flight->slot[r->slot].center_ne_m, &ahead_m, &aside_m);
+    r->target_ned_m[0] = r->from_ne_m[0] + r->along_ne[0] * ahead_m - r->along_ne[1] * farthest_m;
+    r->target_ned_m[1] = r->from_ne_m[1] + r->along_ne[1] * ahead_m + r->along_ne[0] * farthest_m;
+}
+
+/* How clear the way is on which the order is flown from here. */
+static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, int *nearest) {
+    goe_flight_clear_way_t way;
+    memset(&way, 0, sizeof way);
+    goe_flight_clear_relate(&look->at, r->target_ned_m, way.target_m);
+    goe_flight_clear_direct(&look->at, r->along_ne, way.line_m);
+    way.circle_m = look->circle_m;
+    way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
+    if (r->action == GOE_FLIGHT_HOLD) {
+        way.circle_m = goe_flight_larger(look->flight->settings.loiter_m, look->at.turn_m);
+    }
+    return goe_flight_clear_share(&look->at, look->slot, &way, NEVER, nearest);
+}
+
+/* Another way, if the one that was ordered is not clear any more: of the same side, or of the other one once; a second time only if
+ * it is free and twice as clear. */
+static void find_better(goe_flight_t *flight, const look_t *look, float share, int nearest) {
     goe_flight_reaction_t *r = &flight->reaction;
     encounter_t e;
-    float ahead_m;
-    float aside_m;
-    if ((r->action != GOE_FLIGHT_LEFT && r->action != GOE_FLIGHT_RIGHT) || !meet(flight, slot, own, &e)) {
+    meet(look, nearest, &e);
+    option_t option = choose(look, nearest, &e, r->side);
+    if (!(option.share >= KEPT)) {
+        const option_t other = choose(look, nearest, &e, -r->side);
+        const bool allowed = r->changes == 0 ? other.share >= KEPT : other.share >= FREE && share > 0.0f;
+        if (allowed && other.share >= 2.0f * goe_flight_larger(option.share, share)) {
+            option = other;
+        }
+    }
+    if (option.share >= share + GAIN) {
+        order(flight, nearest, look, &e, &option);
+    }
+}
+
+static void review(goe_flight_t *flight, const look_t *look) {
+    goe_flight_reaction_t *r = &flight->reaction;
+    int nearest;
+    if (r->side == 0 || is_up(r->action)) {
         return;
     }
-    const float loiter_m = flight->settings.loiter_m;
-    relate(r->from_ne_m, r->course_ne, slot->center_ne_m, &ahead_m, &aside_m);
-    const float right_m = r->action == GOE_FLIGHT_RIGHT ? aside_m + e.keep_m + loiter_m : aside_m - e.keep_m - loiter_m;
-    r->target_ned_m[0] = r->from_ne_m[0] + r->course_ne[0] * ahead_m - r->course_ne[1] * right_m;
-    r->target_ned_m[1] = r->from_ne_m[1] + r->course_ne[1] * ahead_m + r->course_ne[0] * right_m;
+    follow(look, r);
+    const float share = share_of_order(look, r, &nearest);
+    r->clear_m = goe_flight_clamped(share * flight->settings.margin_m, -CLEAR_MAX_M, CLEAR_MAX_M);
+    if (share >= KEPT || nearest == NOBODY) {
+        r->rising = false;
+        return;
+    }
+    r->rising_us = r->rising ? r->rising_us : look->own->time_us;
+    r->rising = true;
+    if (share < 0.0f || goe_flight_between_s(look->own->time_us, r->rising_us) >= flight->settings.confirm_s) {
+        find_better(flight, look, share, nearest);
+    }
 }
 
-/* Whether the line of the order may be flown again: the obstacle lies behind on it, or surely aside of it; or is unknown. */
-static bool is_over(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, bool *behind) {
-    const goe_flight_reaction_t *r = &flight->reaction;
-    const goe_flight_slot_t *slot = r->slot == NOBODY ? NULL : &flight->slot[r->slot];
+/* --------------------------------------------------------------------------------------------------------------- end -- */
+
+/* Of one obstacle: whether it stands on the line of the order or between that and the aircraft, and is not passed. */
+static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
+    const goe_flight_slot_t *slot = &look->flight->slot[i];
+    const goe_flight_reaction_t *r = &look->flight->reaction;
+    const float reach_m = goe_flight_slot_radius_m(slot) + look->flight->settings.margin_m;
+    const float sure_m = reach_m + SURE_SIGMA * aside_sd_m(slot, r->course_ne);
+    const float horizon_m = goe_flight_absolute(own_aside_m) + 2.0f * look->at.turn_m +
+                            look->speed_m_s * (look->flight->settings.roll_in_s + look->flight->settings.reserve_s);
     float ahead_m;
     float aside_m;
-    *behind = false;
-    if (!slot || !slot->used || !slot->assessed) {
-        return true;
+    float from_ahead_m;
+    relate(look->own->ned_m, r->course_ne, slot->center_ne_m, &ahead_m, &aside_m);
+    if (ahead_m < -reach_m || (i != r->slot && ahead_m > horizon_m)) {
+        return false;
     }
-    const float reach_m = goe_flight_slot_radius_m(slot) + flight->settings.margin_m;
-    relate(own->ned_m, r->course_ne, slot->center_ne_m, &ahead_m, &aside_m);
-    *behind = ahead_m < -reach_m;
-    relate(r->from_ne_m, r->course_ne, slot->center_ne_m, &ahead_m, &aside_m);
-    return *behind || goe_flight_absolute(aside_m) > reach_m + SURE_SIGMA * aside_sd_m(slot, r->course_ne);
+    relate(r->from_ne_m, r->course_ne, slot->center_ne_m, &from_ahead_m, &aside_m);
+    return aside_m > goe_flight_smaller(own_aside_m, 0.0f) - sure_m &&
+           aside_m < goe_flight_larger(own_aside_m, 0.0f) + sure_m;
 }
 
-static void end_if_over(goe_flight_t *flight, const goe_flight_reaction_own_t *own) {
+/* Whether the aircraft may turn back to the line from here, whatever stands behind. */
+static bool is_way_back_clear(const look_t *look, float own_ahead_m, float own_aside_m) {
+    const goe_flight_reaction_t *r = &look->flight->reaction;
+    const float on_m = own_ahead_m + goe_flight_absolute(own_aside_m) + 2.0f * look->at.turn_m;
+    const float back_ne_m[2] = {r->from_ne_m[0] + on_m * r->course_ne[0], r->from_ne_m[1] + on_m * r->course_ne[1]};
+    goe_flight_clear_way_t way;
+    int nearest;
+    memset(&way, 0, sizeof way);
+    goe_flight_clear_relate(&look->at, back_ne_m, way.target_m);
+    goe_flight_clear_direct(&look->at, r->course_ne, way.line_m);
+    way.turns_away = !(way.target_m[0] > 0.0f);
+    return goe_flight_clear_share(&look->at, look->slot, &way, KEPT, &nearest) >= KEPT;
+}
+
+/* Whether the line of the order may be flown again: every obstacle lies behind on it, or surely aside of it, or is unknown; and the way
+ * back to it is clear. The order turns to the nearest obstacle that is left. */
+static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) {
+    float own_ahead_m;
+    float own_aside_m;
+    float least_m = TIME_MAX_S;
+    int next = NOBODY;
+    bool left = false;
+    relate(r->from_ne_m, r->course_ne, look->own->ned_m, &own_ahead_m, &own_aside_m);
+    own_aside_m = is_up(r->action) ? 0.0f : own_aside_m;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const float ahead_m = look->slot[i].at_m[0];
+        if (look->slot[i].counts && is_in_the_way(look, i, own_aside_m)) {
+            left = left || i == r->slot;
+            next = ahead_m < least_m ? i : next;
+            least_m = goe_flight_smaller(ahead_m, least_m);
+        }
+    }
+    *behind = false;
+    if (next != NOBODY) {
+        if (!left && r->slot != NOBODY) { /* past the one, before the next */
+            r->slot = (int8_t)next;
+            r->edge = is_aside(r->action) ? (int8_t)next : NOBODY;
+            memcpy(r->along_ne, r->course_ne, sizeof r->along_ne);
+        }
+        return false;
+    }
+    if (r->slot != NOBODY) {
+        float ahead_m;
+        float aside_m;
+        relate(look->own->ned_m, r->course_ne, look->flight->slot[r->slot].center_ne_m, &ahead_m, &aside_m);
+        *behind = ahead_m < 0.0f;
+    }
+    return is_up(r->action) || is_way_back_clear(look, own_ahead_m, own_aside_m);
+}
+
+static void end_if_over(goe_flight_t *flight, const look_t *look) {
     goe_flight_reaction_t *r = &flight->reaction;
     bool behind;
-    if (!is_over(flight, own, &behind)) {
+    if (!is_over(look, r, &behind)) {
         r->falling = false;
-        follow(flight, &flight->slot[r->slot], own);
         return;
     }
-    r->falling_us = r->falling ? r->falling_us : own->time_us;
+    r->falling_us = r->falling ? r->falling_us : look->own->time_us;
     r->falling = true;
-    if (behind || goe_flight_between_s(own->time_us, r->falling_us) >= flight->settings.hold_s) {
+    if (behind || goe_flight_between_s(look->own->time_us, r->falling_us) >= flight->settings.hold_s) {
         goe_flight_reaction_clear(r);
+    }
+}
+
+/* The height of a climb rises with the tops on the course. */
+static void rise(goe_flight_t *flight, const look_t *look) {
+    goe_flight_reaction_t *r = &flight->reaction;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS && is_up(r->action); i++) {
+        encounter_t e;
+        if (!flight->slot[i].used || (flight->slot[i].valid & GOE_HAS_POSITION) == 0u) {
+            continue;
+        }
+        meet(look, i, &e);
+        const bool on_course = e.ahead_m > 0.0f && goe_flight_absolute(e.aside_m) < e.keep_m;
+        if (e.has_top && on_course && (i == r->slot || e.ahead_m < look->at.late_m + 2.0f * look->at.turn_m)) {
+            r->target_ned_m[2] = goe_flight_smaller(r->target_ned_m[2], e.top_down_m);
+        }
     }
 }
 
 /* Of an approach that was left to a side, as no climb seemed to come in time: once one does, it is broken off. Whoever lands beside an
  * obstacle lands beside the runway. */
-static void break_off(goe_flight_t *flight, const goe_flight_reaction_own_t *own) {
+static void break_off(goe_flight_t *flight, const look_t *look) {
     const goe_flight_reaction_t *r = &flight->reaction;
     encounter_t e;
-    if (!own->approach || r->action == GOE_FLIGHT_NONE || r->action == GOE_FLIGHT_GO_AROUND || r->slot == NOBODY ||
-        !meet(flight, &flight->slot[r->slot], own, &e)) {
+    option_t option;
+    if (!look->own->approach || r->action == GOE_FLIGHT_NONE || r->action == GOE_FLIGHT_GO_AROUND ||
+        r->slot == NOBODY) {
         return;
     }
-    const option_t option = {GOE_FLIGHT_GO_AROUND, climb_time_s(flight, &e), 0.0f};
-    if (option.needed_s <= e.soonest_s) {
-        order(flight, r->slot, &e, &option, own);
+    memset(&option, 0, sizeof option);
+    option.share = NEVER;
+    meet(look, r->slot, &e);
+    try_climb(look, r->slot, &e, &option);
+    if (option.action == GOE_FLIGHT_GO_AROUND) {
+        order(flight, r->slot, look, &e, &option);
     }
 }
 
 /* An order that there is not, or about no slot that there is, is none: the hazard that stands brings another. */
 static void mend(goe_flight_reaction_t *r) {
-    if (r->action > GOE_FLIGHT_HOLD || r->slot < NOBODY || r->slot >= GOE_FLIGHT_SLOTS) {
+    if (r->action > GOE_FLIGHT_HOLD || r->slot < NOBODY || r->slot >= GOE_FLIGHT_SLOTS || r->edge < NOBODY ||
+        r->edge >= GOE_FLIGHT_SLOTS || r->side < LEFT || r->side > RIGHT) {
         goe_flight_reaction_clear(r);
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------------- decide -- */
+
+/* Why no order is given here; GOE_FLIGHT_REASON_NONE: it may be. */
+static goe_flight_reason_t withheld(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, float speed_m_s) {
+    if (own->grounded) {
+        return GOE_FLIGHT_REASON_LANDING;
+    }
+    if (flight->ground_down_m - own->ned_m[2] < flight->settings.order_height_m &&
+        flight->settings.order_height_m > 0.0f) {
+        return GOE_FLIGHT_REASON_LOW;
+    }
+    return speed_m_s < flight->settings.order_speed_m_s ? GOE_FLIGHT_REASON_SLOW : GOE_FLIGHT_REASON_NONE;
+}
+
+/* Time that is left beyond what the simplest action against this obstacle takes. */
+static float slack_s(const look_t *look, const encounter_t *e) {
+    const float right_s = turn_time_s(look, e->aside_m + e->keep_m);
+    const float left_s = turn_time_s(look, e->keep_m - e->aside_m);
+    return e->soonest_s - goe_flight_smaller(right_s, left_s);
+}
+
+/* The worst obstacle; but another one, where that leaves less time. */
+static int most_pressing(const look_t *look, int worst) {
+    encounter_t e;
+    int pressing = worst;
+    meet(look, worst, &e);
+    float least_s = slack_s(look, &e);
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &look->flight->slot[i];
+        if (i == worst || !slot->used || !slot->assessed ||
+            !(slot->hazard.violation >= look->flight->settings.violation_max)) {
+            continue;
+        }
+        meet(look, i, &e);
+        if (e.ahead_m > 0.0f && slack_s(look, &e) < least_s) {
+            least_s = slack_s(look, &e);
+            pressing = i;
+        }
+    }
+    return pressing;
+}
+
+/* What to do about one obstacle; an order, once it is due. */
+static float answer(goe_flight_t *flight, const look_t *look, int about) {
+    goe_flight_reaction_t *r = &flight->reaction;
+    const goe_flight_settings_t *settings = &flight->settings;
+    encounter_t e;
+    meet(look, about, &e);
+    const option_t option = choose(look, about, &e, 0);
+    const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, settings->violation_max)
+                                                     : settings->violation_max;
+    const bool is_hazard = flight->slot[about].hazard.violation >= most && e.ahead_m > 0.0f;
+    const bool is_new = r->action == GOE_FLIGHT_NONE || (is_up(r->action) && r->slot != about);
+    const bool reviewed = r->side != 0 && !is_up(r->action) && r->action != GOE_FLIGHT_NONE;
+    if (!reviewed && is_due(r, settings, &e, option.needed_s, is_hazard && is_new, look->own->time_us)) {
+        const goe_flight_reason_t why = withheld(flight, look->own, look->speed_m_s);
+        if (why == GOE_FLIGHT_REASON_NONE) {
+            order(flight, about, look, &e, &option);
+        } else if (r->action == GOE_FLIGHT_NONE) {
+            r->reason = (uint8_t)why;
+        }
+    }
+    return option.needed_s;
+}
+
 float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flight_reaction_own_t *own) {
     goe_flight_reaction_t *r = &flight->reaction;
-    encounter_t e;
+    look_t look;
     mend(r);
-    if (r->action != GOE_FLIGHT_NONE) {
-        end_if_over(flight, own);
-        break_off(flight, own);
+    if (own->grounded) {
+        goe_flight_reaction_clear(r);
     }
-    if (worst == NOBODY || !meet(flight, &flight->slot[worst], own, &e)) {
+    const bool stands = r->action != GOE_FLIGHT_NONE;
+    const float since_s = goe_flight_between_s(own->time_us, r->ordered_us);
+    const float left_s =
+        stands ? goe_flight_clamped(flight->settings.roll_in_s - since_s, 0.0f, flight->settings.roll_in_s)
+               : flight->settings.roll_in_s;
+    if (!stands) {
+        r->reason = GOE_FLIGHT_REASON_NONE;
+    }
+    if (!look_around(flight, own, left_s, &look)) {
         r->rising = false;
         return 0.0f;
     }
-    const option_t option = choose(flight, &e, worst, own);
-    const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, flight->settings.violation_max)
-                                                     : flight->settings.violation_max;
-    const bool is_hazard = flight->slot[worst].hazard.violation >= most && e.ahead_m > 0.0f;
-    const bool is_new = r->action == GOE_FLIGHT_NONE || r->slot != worst;
-    if (is_due(r, &flight->settings, &e, option.needed_s, is_hazard && is_new, own->time_us)) {
-        order(flight, worst, &e, &option, own);
+    if (stands) {
+        end_if_over(flight, &look);
+        break_off(flight, &look);
+        review(flight, &look);
+        rise(flight, &look);
     }
-    return option.needed_s;
+    if (worst == NOBODY) {
+        r->rising = false;
+        return 0.0f;
+    }
+    return answer(flight, &look, most_pressing(&look, worst));
 }

@@ -9,6 +9,7 @@ typedef struct {
     float ned_m[3];
     uint32_t time_us;
     bool approach;
+    bool grounded; /* it flares, or has touched down */
 } goe_flight_reaction_own_t;
 
 void goe_flight_reaction_clear(goe_flight_reaction_t *reaction);

@@ -9,7 +9,7 @@
 #define PIXEL_SD_MAX_PX 100.0f
 #define UNSEEN_S 2.0f   /* after which what has no position, or is passed, may be given up */
 #define WORTH_KEPT 0.5f /* a slot of more worth is never given up for a new obstacle */
-#define ORDERED_S 30.0f /* the obstacle of an order is kept so long */
+#define ORDERED_S 30.0f /* while an order stands every obstacle is kept so long: the way back leads past it */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
@@ -232,11 +232,15 @@ void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         const float unseen_s = goe_flight_between_s(now_us, slot->seen_us);
-        const float most_s = i == flight->reaction.slot ? goe_flight_larger(ORDERED_S, flight->settings.forget_s)
-                                                        : flight->settings.forget_s;
+        const bool ordered = i == flight->reaction.slot || flight->reaction.action != GOE_FLIGHT_NONE;
+        const float most_s =
+            ordered ? goe_flight_larger(ORDERED_S, flight->settings.forget_s) : flight->settings.forget_s;
         slot->used = slot->used && (unseen_s <= most_s || is_ahead(flight, slot));
         if (!slot->used && i == flight->reaction.slot) {
             flight->reaction.slot = NOBODY; /* whoever gets the slot next is not what the order is about */
+        }
+        if (!slot->used && i == flight->reaction.edge) {
+            flight->reaction.edge = NOBODY;
         }
     }
 }

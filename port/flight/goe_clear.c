@@ -1,0 +1,312 @@
+/* Clearance. SPDX-License-Identifier: MIT
+ *
+ * Nobody knows exactly how an autopilot obeys: half a second late or two, straight to the target or first beside the line. What is
+ * tested is therefore a region and not one path:
+ *
+ *   late     straight on for late_m, an arc of the turn's radius, straight to the target
+ *   fan      the triangle from where the turn may begin at the soonest to both sides of the circle about the target; or, where
+ *            the aircraft flies through, to the target and to where a line beside the course begins
+ *   end      the disc about the target, or the line flown on behind it
+ *
+ * On the way past an obstacle its sigma across the line of sight counts: what is not known of its range becomes known as it comes
+ * nearer, and the target moves with it. Before an obstacle, where an aircraft turns away, its sigma along the nearest distance counts.
+ */
+#include "goe_clear.h"
+
+#include <math.h>
+
+#include "goe_flight_maths.h"
+#include "goe_lookout.h"
+#include "goe_slot.h"
+
+#define SURE_SIGMA 2.0f
+#define MARGIN_MIN_M 1.0f
+#define DISTANCE_MAX_M 1.0e6f
+#define LENGTH_MIN_M2 1.0e-6f
+#define NOBODY (-1)
+
+/* Straight: from, to. Arc: about a centre, from one point to the other, to the right or to the left. */
+typedef struct {
+    float from_m[2], to_m[2], center_m[2];
+    float radius_m; /* 0: straight */
+    bool right, whole;
+} leg_t;
+
+enum { LEGS = 8 };
+
+typedef struct {
+    leg_t leg[LEGS];
+    int legs;
+    float fan_m[3][2]; /* corners */
+    bool has_fan;
+} region_t;
+
+/* ------------------------------------------------------------------------------------------------------------- frame -- */
+
+void goe_flight_clear_direct(const goe_flight_clear_own_t *own, const float direction_ne[2], float turned[2]) {
+    turned[0] = own->course_ne[0] * direction_ne[0] + own->course_ne[1] * direction_ne[1];
+    turned[1] = own->course_ne[0] * direction_ne[1] - own->course_ne[1] * direction_ne[0];
+}
+
+void goe_flight_clear_relate(const goe_flight_clear_own_t *own, const float place_ne_m[2], float at_m[2]) {
+    const float away_m[2] = {place_ne_m[0] - own->ned_m[0], place_ne_m[1] - own->ned_m[1]};
+    goe_flight_clear_direct(own, away_m, at_m);
+}
+
+static void turn_variance(const float course_ne[2], const float ne_m2[3], float turned_m2[3]) {
+    const float c = course_ne[0];
+    const float s = course_ne[1];
+    turned_m2[0] = c * c * ne_m2[0] + 2.0f * c * s * ne_m2[1] + s * s * ne_m2[2];
+    turned_m2[1] = c * s * (ne_m2[2] - ne_m2[0]) + (c * c - s * s) * ne_m2[1];
+    turned_m2[2] = s * s * ne_m2[0] - 2.0f * c * s * ne_m2[1] + c * c * ne_m2[2];
+}
+
+/* One sigma of the place along a vector of this length. */
+static float sd_along_m(const float variance_m2[3], const float off_m[2], float length_m) {
+    const float n = off_m[0] / length_m;
+    const float e = off_m[1] / length_m;
+    const float variance = n * n * variance_m2[0] + 2.0f * n * e * variance_m2[1] + e * e * variance_m2[2];
+    return sqrtf(goe_flight_larger(variance, 0.0f));
+}
+
+static bool is_below(const goe_flight_slot_t *slot, float doubt, const goe_flight_t *flight, float own_down_m) {
+    const float top_down_m = slot->ground_down_m - slot->top_m - SURE_SIGMA * slot->top_sd_m;
+    return (slot->valid & GOE_HAS_HEIGHT) != 0u && own_down_m < top_down_m - doubt * flight->settings.clearance_m;
+}
+
+void goe_flight_clear_slots(const goe_flight_t *flight, const goe_flight_clear_own_t *own,
+                            goe_flight_clear_slot_t slots[GOE_FLIGHT_SLOTS]) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        goe_flight_clear_slot_t *one = &slots[i];
+        memset(one, 0, sizeof *one);
+        if (!slot->used || (slot->valid & GOE_HAS_POSITION) == 0u) {
+            continue;
+        }
+        const float doubt = goe_flight_lookout_doubt(flight, slot);
+        goe_flight_clear_relate(own, slot->center_ne_m, one->at_m);
+        turn_variance(own->course_ne, slot->covariance_ne_m2, one->variance_m2);
+        const float sight_m2 = one->at_m[0] * one->at_m[0] + one->at_m[1] * one->at_m[1];
+        const float across[2] = {-one->at_m[1], one->at_m[0]};
+        one->across_sd_m = sd_along_m(one->variance_m2, across, sqrtf(goe_flight_larger(sight_m2, LENGTH_MIN_M2)));
+        one->radius_m = goe_flight_slot_radius_m(slot) + goe_flight_lookout_drift_m(flight, slot, own->time_us);
+        one->margin_m = goe_flight_larger(doubt * flight->settings.margin_m, MARGIN_MIN_M);
+        one->counts = !is_below(slot, doubt, flight, own->ned_m[2]);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- distance -- */
+
+static float cross(const float a[2], const float b[2]) { return a[0] * b[1] - a[1] * b[0]; }
+static float dot(const float a[2], const float b[2]) { return a[0] * b[0] + a[1] * b[1]; }
+
+static void minus(const float a[2], const float b[2], float difference[2]) {
+    difference[0] = a[0] - b[0];
+    difference[1] = a[1] - b[1];
+}
+
+/* From the nearest point of the leg to the place; square of its length. */
+static float off_straight_m2(const float from_m[2], const float to_m[2], const float at_m[2], float off_m[2]) {
+    float along[2];
+    minus(to_m, from_m, along);
+    minus(at_m, from_m, off_m);
+    const float square = dot(along, along);
+    const float share = square > LENGTH_MIN_M2 ? goe_flight_clamped(dot(off_m, along) / square, 0.0f, 1.0f) : 0.0f;
+    off_m[0] -= share * along[0];
+    off_m[1] -= share * along[1];
+    return dot(off_m, off_m);
+}
+
+/* Whether the arc passes abeam of the place. Ends belong to the legs before and after it. */
+static bool is_abeam(const leg_t *leg, const float out_m[2]) {
+    float from[2];
+    float to[2];
+    if (leg->whole) {
+        return true;
+    }
+    const float hand = leg->right ? 1.0f : -1.0f;
+    minus(leg->from_m, leg->center_m, from);
+    minus(leg->to_m, leg->center_m, to);
+    if (hand * cross(from, to) >= 0.0f) {
+        return hand * cross(from, out_m) >= 0.0f && hand * cross(out_m, to) >= 0.0f;
+    }
+    return !(hand * cross(to, out_m) > 0.0f && hand * cross(out_m, from) > 0.0f);
+}
+
+static float off_arc_m2(const leg_t *leg, const float at_m[2], float off_m[2]) {
+    float out_m[2];
+    minus(at_m, leg->center_m, out_m);
+    const float square = dot(out_m, out_m);
+    if (!is_abeam(leg, out_m) || !(square > LENGTH_MIN_M2)) {
+        return DISTANCE_MAX_M * DISTANCE_MAX_M;
+    }
+    const float share = 1.0f - leg->radius_m / sqrtf(square);
+    off_m[0] = share * out_m[0];
+    off_m[1] = share * out_m[1];
+    return share * share * square;
+}
+
+static bool is_in_fan(const region_t *region, const float at_m[2]) {
+    int right = 0;
+    int left = 0;
+    for (int i = 0; i < 3; i++) {
+        float side[2];
+        float off[2];
+        minus(region->fan_m[(i + 1) % 3], region->fan_m[i], side);
+        minus(at_m, region->fan_m[i], off);
+        const float turn = cross(side, off);
+        right += turn > 0.0f ? 1 : 0;
+        left += turn < 0.0f ? 1 : 0;
+    }
+    return right == 3 || left == 3;
+}
+
+static float sure_m(const goe_flight_clear_slot_t *slot, bool turns_away, const float off_m[2], float square,
+                    float within_m) {
+    const float length_m = sqrtf(goe_flight_larger(square, LENGTH_MIN_M2));
+    const float sd_m = turns_away ? sd_along_m(slot->variance_m2, off_m, length_m) : slot->across_sd_m;
+    return length_m - within_m - slot->radius_m - SURE_SIGMA * sd_m;
+}
+
+/* The least distance of one obstacle's circle. */
+static float spare_m(const region_t *region, const goe_flight_clear_way_t *way, const goe_flight_clear_slot_t *slot) {
+    float nearest[2] = {0.0f, 0.0f};
+    float least = DISTANCE_MAX_M * DISTANCE_MAX_M;
+    for (int i = 0; i < region->legs; i++) {
+        const leg_t *leg = &region->leg[i];
+        float off_m[2] = {0.0f, 0.0f};
+        const float square = leg->radius_m > 0.0f ? off_arc_m2(leg, slot->at_m, off_m)
+                                                  : off_straight_m2(leg->from_m, leg->to_m, slot->at_m, off_m);
+        if (square < least) {
+            least = square;
+            memcpy(nearest, off_m, sizeof nearest);
+        }
+    }
+    float spare = sure_m(slot, way->turns_away, nearest, least, 0.0f);
+    if (region->has_fan && is_in_fan(region, slot->at_m)) {
+        spare = goe_flight_smaller(spare, -slot->radius_m);
+    }
+    if (way->circle_m > 0.0f) {
+        float off_m[2];
+        minus(slot->at_m, way->target_m, off_m);
+        spare = goe_flight_smaller(spare, sure_m(slot, way->turns_away, off_m, dot(off_m, off_m), way->circle_m));
+    }
+    return spare;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ region -- */
+
+static leg_t *add(region_t *region) {
+    leg_t *leg = &region->leg[region->legs];
+    region->legs += region->legs < LEGS - 1 ? 1 : 0;
+    memset(leg, 0, sizeof *leg);
+    return leg;
+}
+
+static void add_straight(region_t *region, const float from_m[2], const float to_m[2]) {
+    leg_t *leg = add(region);
+    memcpy(leg->from_m, from_m, sizeof leg->from_m);
+    memcpy(leg->to_m, to_m, sizeof leg->to_m);
+}
+
+/* From the turn's beginning on the course by an arc towards the place, then straight. A place within the turn's circle is not reached:
+ * the circle is flown. */
+static void add_turn(region_t *region, float begin_m, float turn_m, const float place_m[2]) {
+    const float begin[2] = {begin_m, 0.0f};
+    leg_t *arc = add(region);
+    float d[2];
+    arc->right = place_m[1] > 0.0f;
+    arc->radius_m = turn_m;
+    arc->center_m[0] = begin_m;
+    arc->center_m[1] = arc->right ? turn_m : -turn_m;
+    minus(place_m, arc->center_m, d);
+    const float square = dot(d, d);
+    const float tangent_m2 = square - turn_m * turn_m;
+    memcpy(arc->from_m, begin, sizeof begin);
+    arc->whole = !(tangent_m2 > LENGTH_MIN_M2);
+    if (arc->whole) {
+        memcpy(arc->to_m, begin, sizeof begin);
+        return;
+    }
+    const float along = turn_m * turn_m / square;
+    const float across = (arc->right ? -turn_m : turn_m) * sqrtf(tangent_m2) / square;
+    arc->to_m[0] = arc->center_m[0] + along * d[0] - across * d[1];
+    arc->to_m[1] = arc->center_m[1] + along * d[1] + across * d[0];
+    const float leaves[2] = {arc->to_m[0], arc->to_m[1]};
+    add_straight(region, leaves, place_m);
+}
+
+/* Both ends of the circle about the target, as seen from the turn's beginning; inner_m: nearer to the course. */
+static bool ends_of_circle(const float begin_m[2], const goe_flight_clear_way_t *way, float inner_m[2],
+                           float outer_m[2]) {
+    float to[2];
+    minus(way->target_m, begin_m, to);
+    const float square = dot(to, to);
+    if (!(square > way->circle_m * way->circle_m)) {
+        return false;
+    }
+    const float share = (way->target_m[1] > 0.0f ? way->circle_m : -way->circle_m) / sqrtf(square);
+    inner_m[0] = way->target_m[0] + share * to[1];
+    inner_m[1] = way->target_m[1] - share * to[0];
+    outer_m[0] = way->target_m[0] - share * to[1];
+    outer_m[1] = way->target_m[1] + share * to[0];
+    return true;
+}
+
+static void add_fan(region_t *region, const float a_m[2], const float b_m[2], const float c_m[2]) {
+    memcpy(region->fan_m[0], a_m, sizeof region->fan_m[0]);
+    memcpy(region->fan_m[1], b_m, sizeof region->fan_m[1]);
+    memcpy(region->fan_m[2], c_m, sizeof region->fan_m[2]);
+    region->has_fan = true;
+    add_straight(region, a_m, b_m);
+    add_straight(region, a_m, c_m);
+    add_straight(region, b_m, c_m);
+}
+
+static void begin_region(const goe_flight_clear_own_t *own, const goe_flight_clear_way_t *way, region_t *region) {
+    const float here_m[2] = {0.0f, 0.0f};
+    const float early_m[2] = {own->early_m, 0.0f};
+    const float late_m[2] = {own->late_m, 0.0f};
+    float inner_m[2] = {way->target_m[0], way->target_m[1]};
+    float outer_m[2] = {way->target_m[0], way->target_m[1]};
+    region->legs = 0;
+    region->has_fan = false;
+    add_straight(region, here_m, late_m);
+    if (way->turns_away) {
+        add_turn(region, own->early_m, own->turn_m, way->target_m);
+        add_turn(region, own->late_m, own->turn_m, way->target_m);
+        return;
+    }
+    if (way->circle_m > 0.0f && !ends_of_circle(early_m, way, inner_m, outer_m)) {
+        return; /* on the circle already */
+    }
+    if (!(way->circle_m > 0.0f) && way->shifts) { /* 45 degrees away from the course, at once */
+        const float aside_m = goe_flight_absolute(way->target_m[1]);
+        outer_m[0] = goe_flight_smaller(own->early_m + aside_m, way->target_m[0]);
+    }
+    add_turn(region, own->late_m, own->turn_m, inner_m);
+    add_fan(region, early_m, inner_m, outer_m);
+    if (!(way->circle_m > 0.0f)) {
+        const float on_m[2] = {way->target_m[0] + own->through_m * way->line_m[0],
+                               way->target_m[1] + own->through_m * way->line_m[1]};
+        add_straight(region, way->target_m, on_m);
+    }
+}
+
+float goe_flight_clear_share(const goe_flight_clear_own_t *own, const goe_flight_clear_slot_t slots[GOE_FLIGHT_SLOTS],
+                             const goe_flight_clear_way_t *way, float enough, int *nearest) {
+    region_t region;
+    float least = GOE_FLIGHT_CLEAR_MAX;
+    *nearest = NOBODY;
+    begin_region(own, way, &region);
+    for (int i = 0; i < GOE_FLIGHT_SLOTS && least >= enough; i++) {
+        if (slots[i].counts) {
+            const float share = spare_m(&region, way, &slots[i]) / slots[i].margin_m;
+            if (!(share >= least)) { /* also what is no number */
+                least = share;
+                *nearest = i;
+            }
+        }
+    }
+    return goe_flight_larger(least, -GOE_FLIGHT_CLEAR_MAX);
+}
