@@ -18,6 +18,7 @@
 #include "avoid_text.h"
 #include "option_fault.h"
 #include "output_file.h"
+#include "several_text.h"
 #include "standard_output.h"
 
 #define PROGRAM "goe_avoid"
@@ -30,6 +31,9 @@ static int runs = 334;
 static int seed = 1;
 static double delay_s = 0.1;
 static int list;
+static int several;
+static int step = 1;
+static int trace = -1;
 static char *csv;
 
 static struct poptOption options[] = {
@@ -38,6 +42,9 @@ static struct poptOption options[] = {
     {"delay", 'd', POPT_ARG_DOUBLE | POPT_ARGFLAG_SHOW_DEFAULT, &delay_s, 0, "of a frame, s", "S"},
     {"list", 'l', POPT_ARG_NONE, &list, 0, "a line for every run that collided although it reacted, or reacted falsely",
      NULL},
+    {"several", 'm', POPT_ARG_INT, &several, 0, "flies so many flights among one to nine obstacles instead", "N"},
+    {"step", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &step, 0, "of these: from one seed to the next", "N"},
+    {"trace", 0, POPT_ARG_INT, &trace, 0, "of these: prints flight N, one line for every assessment", "N"},
     {"csv", 'c', POPT_ARG_STRING, &csv, 0, "a row for every run goes here", "FILE"},
     {"version", 'V', POPT_ARG_NONE, NULL, 'V', "the version", NULL},
     POPT_AUTOHELP POPT_TABLEEND};
@@ -221,6 +228,14 @@ static bool check_ranges(void) {
         (void)snprintf(reason, sizeof reason, "must be 1 to %d, not %d", RUNS_MAX, runs);
         return give_up("--runs", reason);
     }
+    if (several < 0 || several > RUNS_MAX) {
+        (void)snprintf(reason, sizeof reason, "must be 1 to %d, not %d", RUNS_MAX, several);
+        return give_up("--several", reason);
+    }
+    if (step < 1 || step > RUNS_MAX) {
+        (void)snprintf(reason, sizeof reason, "must be 1 to %d, not %d", RUNS_MAX, step);
+        return give_up("--step", reason);
+    }
     if (seed < 0) {
         return give_up("--seed", "must be 0 or more");
     }
@@ -229,6 +244,21 @@ static bool check_ranges(void) {
         return give_up("--delay", reason);
     }
     return true;
+}
+
+/* Flight `trace` of the campaign, with its seed. */
+static bool trace_one(void) {
+    several_outcome_t outcome;
+    several_case_t setup = several_case(trace, (uint64_t)seed + (uint64_t)trace * (uint64_t)step);
+    setup.traced = true;
+    const char *fault = several_fly(&setup, &outcome);
+    return fault == NULL || give_up("--trace", fault);
+}
+
+/* Goals that are missed are printed, and no failure of the program. */
+static bool fly_several(void) {
+    bool met;
+    return trace >= 0 ? trace_one() : several_campaign(several, (uint64_t)seed, (uint64_t)step, list != 0, &met);
 }
 
 static bool run_options(poptContext context, int argc, const char *const *argv) {
@@ -248,6 +278,9 @@ static bool run_options(poptContext context, int argc, const char *const *argv) 
     }
     if (!check_ranges()) {
         return false;
+    }
+    if (several > 0 || trace >= 0) {
+        return fly_several();
     }
     return csv != NULL ? print_and_write() : print_tables(NULL);
 }

@@ -33,6 +33,7 @@
 #define NEVER (-2.0f * GOE_FLIGHT_CLEAR_MAX)
 
 #define EARLY 0.33f      /* of roll_in_s: an autopilot may obey so soon */
+#define WHOLE 0.9f       /* more than this share makes no way better */
 #define SHARE_S 4.0f     /* of time that a whole margin is worth, between ways that are free */
 #define SAME_SIDE_S 0.5f /* ... and the side that was ordered before */
 
@@ -225,7 +226,7 @@ static void try_target(const look_t *look, const encounter_t *e, int side, float
     const float enough = best->share < FREE ? best->share : FREE;
     option.share = goe_flight_clear_share(&look->at, look->slot, &option.way, enough, &nearest);
     const int before = look->flight->reaction.side;
-    option.cost_s = option.needed_s + SHARE_S * (1.0f - goe_flight_smaller(option.share, 1.0f)) -
+    option.cost_s = option.needed_s + SHARE_S * (WHOLE - goe_flight_smaller(option.share, WHOLE)) -
                     (before == side ? SAME_SIDE_S : 0.0f);
     prefer(best, &option);
 }

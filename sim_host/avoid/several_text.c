@@ -1,0 +1,133 @@
+/* Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT */
+#include "several_text.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define FALSE_SHARE_MAX 0.02
+#define CHANGES_MAX 1
+
+static const double obey_s[] = {0.5, 1.0, 1.5, 2.0};
+static const double frame_s[] = {0.1, 0.3};
+enum { OBEYS = sizeof obey_s / sizeof obey_s[0], FRAMES = sizeof frame_s / sizeof frame_s[0] };
+
+typedef struct {
+    int flights, ordered, late, possible, missed, collided, excused, changed, least_bad, by_action[GOE_FLIGHT_HOLD + 1];
+    double closest_m; /* where it was possible */
+} tally_t;
+
+several_case_t several_case(int k, uint64_t seed) {
+    several_case_t setup;
+    memset(&setup, 0, sizeof setup);
+    setup.kind = (several_kind_t)(k % SEVERAL_KINDS);
+    setup.seed = seed;
+    setup.obey_s = obey_s[k / SEVERAL_KINDS % OBEYS];
+    setup.circles = k / (SEVERAL_KINDS * OBEYS) % 2 != 0;
+    setup.frame_s = frame_s[k / (SEVERAL_KINDS * OBEYS * 2) % FRAMES];
+    return setup;
+}
+
+static void count(tally_t *tally, const several_outcome_t *outcome) {
+    tally->closest_m = tally->flights == 0 ? HUGE_VAL : tally->closest_m;
+    tally->flights++;
+    tally->ordered += outcome->ordered ? 1 : 0;
+    tally->late += outcome->late ? 1 : 0;
+    tally->possible += outcome->possible ? 1 : 0;
+    tally->missed += several_misses(outcome) ? 1 : 0;
+    tally->collided += outcome->collided && outcome->possible ? 1 : 0;
+    tally->excused += outcome->collided && !outcome->possible ? 1 : 0;
+    tally->changed += outcome->changes > CHANGES_MAX ? 1 : 0;
+    tally->least_bad += outcome->reason == GOE_FLIGHT_REASON_LEAST_BAD ? 1 : 0;
+    tally->by_action[outcome->action]++;
+    if (outcome->possible) {
+        tally->closest_m = fmin(tally->closest_m, outcome->closest_m);
+    }
+}
+
+static void print_row(const char *what, const char *name, const tally_t *tally) {
+    if (tally->flights == 0) {
+        return;
+    }
+    printf("| %s%s | %d | %d | %d | %d (%d) | %d | %.1f | %d | ", what, name, tally->flights, tally->ordered,
+           tally->possible, tally->collided, tally->excused, tally->missed, tally->closest_m, tally->changed);
+    for (int action = GOE_FLIGHT_LEFT; action <= GOE_FLIGHT_HOLD; action++) {
+        if (tally->by_action[action] > 0) {
+            printf("%s %d ", goe_flight_action_text((goe_flight_action_t)action), tally->by_action[action]);
+        }
+    }
+    printf("| %d | %d |\n", tally->least_bad, tally->late);
+}
+
+static void print_miss(int k, const several_case_t *setup, const several_outcome_t *outcome) {
+    printf("%d %s seed %" PRIu64 ": %d obstacles, offset %.0f m, obeyed after %.1f s, %s, boxes after %.1f s: %s %s%s "
+           "%.1f s ahead, closest %.1f m%s, %d changes, %s\n",
+           k, SEVERAL_NAMES[setup->kind], setup->seed, outcome->obstacles, outcome->offset_m, setup->obey_s,
+           setup->circles ? "circles" : "line", setup->frame_s, goe_flight_action_text(outcome->action),
+           goe_flight_reason_text(outcome->reason), outcome->late ? " (late)" : "", outcome->ahead_s,
+           outcome->closest_m, outcome->collided ? " (hit)" : "", outcome->changes,
+           outcome->known ? "all known" : "not all known");
+}
+
+static bool print_goal(const char *what, int missed, int of, double most_share) {
+    const bool met = missed <= (int)(most_share * of);
+    printf("| %s | %d of %d | %s |\n", what, missed, of, met ? "met" : "missed");
+    return met;
+}
+
+bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bool *met) {
+    static tally_t all, by_kind[SEVERAL_KINDS], by_number[SEVERAL_MAX + 1], by_obey[OBEYS], by_autopilot[2];
+    memset(&all, 0, sizeof all);
+    memset(by_kind, 0, sizeof by_kind);
+    memset(by_number, 0, sizeof by_number);
+    memset(by_obey, 0, sizeof by_obey);
+    memset(by_autopilot, 0, sizeof by_autopilot);
+    for (int k = 0; k < flights; k++) {
+        several_outcome_t outcome;
+        const several_case_t setup = several_case(k, first + (uint64_t)k * step);
+        const char *fault = several_fly(&setup, &outcome);
+        if (fault != NULL) {
+            (void)fprintf(stderr, "goe_avoid: %s, seed %" PRIu64 ": %s\n", SEVERAL_NAMES[setup.kind], setup.seed,
+                          fault);
+            return false;
+        }
+        count(&by_kind[setup.kind], &outcome);
+        if (lists && (several_misses(&outcome) || outcome.changes > CHANGES_MAX ||
+                      (setup.kind == SEVERAL_BETWEEN && outcome.ordered))) {
+            print_miss(k, &setup, &outcome);
+        }
+        count(&all, &outcome);
+        count(&by_number[outcome.obstacles], &outcome);
+        count(&by_obey[k / SEVERAL_KINDS % OBEYS], &outcome);
+        count(&by_autopilot[setup.circles ? 1 : 0], &outcome);
+    }
+    puts("| flights | number | with an order | passable | collisions (not passable) | below 5 m | closest, m | changes "
+         "of side above 1 | first orders | least bad | late |");
+    puts("|---|---|---|---|---|---|---|---|---|---|---|");
+    for (int kind = 0; kind < SEVERAL_KINDS; kind++) {
+        print_row("", SEVERAL_NAMES[kind], &by_kind[kind]);
+    }
+    for (int number = 1; number <= SEVERAL_MAX; number++) {
+        char name[24];
+        (void)snprintf(name, sizeof name, "%d", number);
+        print_row("obstacles: ", name, &by_number[number]);
+    }
+    for (int i = 0; i < OBEYS; i++) {
+        char name[24];
+        (void)snprintf(name, sizeof name, "%.1f s", obey_s[i]);
+        print_row("obeyed after ", name, &by_obey[i]);
+    }
+    print_row("beside its line", "", &by_autopilot[0]);
+    print_row("about the target", "", &by_autopilot[1]);
+    puts("");
+    puts("| goal | missed by | |");
+    puts("|---|---|---|");
+    *met = print_goal("no collision where a search finds a way", all.collided, all.possible, 0.0);
+    *met = print_goal("5 m to every wall where a search finds a way", all.missed, all.possible, 0.0) && *met;
+    *met = print_goal("at most one change of side", all.changed, all.flights, 0.0) && *met;
+    *met = print_goal("at most 2 % orders between two at twice the margin", by_kind[SEVERAL_BETWEEN].ordered,
+                      by_kind[SEVERAL_BETWEEN].flights, FALSE_SHARE_MAX) &&
+           *met;
+    return true;
+}
