@@ -32,6 +32,7 @@
 #define GAIN 0.2f      /* by which that must be better */
 #define NEVER (-2.0f * GOE_FLIGHT_CLEAR_MAX)
 
+#define SIDE_REMEMBERED_S 10.0f
 #define EARLY 0.33f      /* of roll_in_s: an autopilot may obey so soon */
 #define WHOLE 0.9f       /* more than this share makes no way better */
 #define SHARE_S 4.0f     /* of time that a whole margin is worth, between ways that are free */
@@ -122,7 +123,7 @@ static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_ow
     look->at.turn_m = speed_m_s * speed_m_s * cosine / (GRAVITY_M_S2 * sine);
     look->at.late_m = speed_m_s * roll_in_s;
     look->at.early_m = goe_flight_smaller(look->at.late_m, speed_m_s * EARLY * flight->settings.roll_in_s);
-    look->at.through_m = look->at.turn_m;
+    look->at.through_m = look->at.turn_m + speed_m_s * (flight->settings.roll_in_s + flight->settings.reserve_s);
     look->at.time_us = own->time_us;
     look->circle_m =
         flight->settings.loiter_m > 0.0f ? goe_flight_larger(flight->settings.loiter_m, look->at.turn_m) : 0.0f;
@@ -149,8 +150,7 @@ static void meet(const look_t *look, int i, encounter_t *e) {
 static float turn_time_s(const look_t *look, float aside_m) {
     const float turn_m = look->at.turn_m;
     const float d = goe_flight_clamped(aside_m, 0.0f, turn_m);
-    const float farther_m = goe_flight_larger(aside_m - turn_m, 0.0f);
-    return look->flight->settings.roll_in_s + (sqrtf(d * (2.0f * turn_m - d)) + farther_m) / look->speed_m_s;
+    return look->flight->settings.roll_in_s + sqrtf(d * (2.0f * turn_m - d)) / look->speed_m_s;
 }
 
 static float climb_time_s(const look_t *look, float rise_m) {
@@ -525,7 +525,21 @@ static void end_if_over(goe_flight_t *flight, const look_t *look) {
     r->falling_us = r->falling ? r->falling_us : look->own->time_us;
     r->falling = true;
     if (behind || goe_flight_between_s(look->own->time_us, r->falling_us) >= flight->settings.hold_s) {
+        const int8_t side = r->side;
+        const uint8_t changes = r->changes;
         goe_flight_reaction_clear(r);
+        r->side = side;
+        r->changes = changes;
+        r->falling_us = look->own->time_us;
+    }
+}
+
+/* The side of an order that has ended is forgotten later: what comes soon after is the same encounter. */
+static void forget_side(goe_flight_reaction_t *r, uint32_t now_us) {
+    if (r->action == GOE_FLIGHT_NONE && r->side != 0 &&
+        goe_flight_between_s(now_us, r->falling_us) > SIDE_REMEMBERED_S) {
+        r->side = 0;
+        r->changes = 0;
     }
 }
 
@@ -614,13 +628,24 @@ static int most_pressing(const look_t *look, int worst) {
     return pressing;
 }
 
+/* A side that was changed once is changed again only for one that is twice as clear. */
+static option_t choose_steadily(const look_t *look, int about, const encounter_t *e) {
+    const goe_flight_reaction_t *r = &look->flight->reaction;
+    const option_t option = choose(look, about, e, 0);
+    if (r->changes == 0 || option.side == 0 || option.side == r->side) {
+        return option;
+    }
+    const option_t same = choose(look, about, e, r->side);
+    return same.share > 0.0f && option.share < 2.0f * same.share ? same : option;
+}
+
 /* What to do about one obstacle; an order, once it is due. */
 static float answer(goe_flight_t *flight, const look_t *look, int about) {
     goe_flight_reaction_t *r = &flight->reaction;
     const goe_flight_settings_t *settings = &flight->settings;
     encounter_t e;
     meet(look, about, &e);
-    const option_t option = choose(look, about, &e, 0);
+    const option_t option = choose_steadily(look, about, &e);
     const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, settings->violation_max)
                                                      : settings->violation_max;
     const bool is_hazard = flight->slot[about].hazard.violation >= most && e.ahead_m > 0.0f;
@@ -641,6 +666,7 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
     goe_flight_reaction_t *r = &flight->reaction;
     look_t look;
     mend(r);
+    forget_side(r, own->time_us);
     if (own->grounded) {
         goe_flight_reaction_clear(r);
     }

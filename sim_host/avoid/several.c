@@ -242,7 +242,7 @@ static void circle(const run_t *run, guidance_t *guidance, double radius_m) {
     guidance->path_curvature = fabs(out_m) < 0.3 * radius_m ? 1.0 / radius_m : 0.0;
 }
 
-static void steer(const run_t *run, guidance_t *guidance, double right_m) {
+static void steer(const run_t *run, guidance_t *guidance, double along_m, double right_m) {
     const goe_flight_assessment_t *o = &run->obeyed;
     const vec3_t at = run->aircraft.state.position_ned_m;
     const double tightest_m = run->speed_mps * run->speed_mps / (9.80665 * tan(radians(BANK_DEG)));
@@ -253,6 +253,9 @@ static void steer(const run_t *run, guidance_t *guidance, double right_m) {
         case GOE_FLIGHT_RIGHT:
             if (run->setup->circles) {
                 circle(run, guidance, fmax(CIRCLE_M, tightest_m));
+            } else if (fabs(right_m - target_right_m) > target_along_m - along_m && target_along_m > along_m) {
+                guidance->path_course_rad = atan2((double)o->target_ned_m[1] - at.y, (double)o->target_ned_m[0] - at.x);
+                guidance->cross_track_m = 0.0;
             } else {
                 guidance->cross_track_m = right_m - target_right_m;
             }
@@ -280,7 +283,7 @@ static void step(run_t *run) {
     guidance.height_error_m = run->height_m + state->position_ned_m.z;
     guidance.cross_track_m = right_m;
     guidance.path_course_rad = run->course_rad;
-    steer(run, &guidance, right_m);
+    steer(run, &guidance, along_m, right_m);
     run->air.gust = turbulence_step(&run->turbulence, fmax(aircraft_airspeed(state, &run->air), 5.0),
                                     -state->position_ned_m.z, AIRCRAFT_STEP_S);
     aircraft_autopilot(&run->aircraft, &guidance, &run->air);
