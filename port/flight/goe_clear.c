@@ -161,11 +161,11 @@ static bool is_in_fan(const region_t *region, const float at_m[2]) {
     return right == 3 || left == 3;
 }
 
-static float sure_m(const goe_flight_clear_slot_t *slot, bool turns_away, const float off_m[2], float square,
-                    float within_m) {
+static float sure_m(const goe_flight_clear_slot_t *slot, const goe_flight_clear_way_t *way, const float off_m[2],
+                    float square, float within_m) {
     const float length_m = sqrtf(goe_flight_larger(square, LENGTH_MIN_M2));
-    const float sd_m = turns_away ? sd_along_m(slot->variance_m2, off_m, length_m) : slot->across_sd_m;
-    return length_m - within_m - slot->radius_m - SURE_SIGMA * sd_m;
+    const float sd_m = way->turns_away ? sd_along_m(slot->variance_m2, off_m, length_m) : slot->across_sd_m;
+    return length_m - within_m - slot->radius_m - way->sigmas * sd_m;
 }
 
 /* The least distance of one obstacle's circle. */
@@ -182,14 +182,14 @@ static float spare_m(const region_t *region, const goe_flight_clear_way_t *way, 
             memcpy(nearest, off_m, sizeof nearest);
         }
     }
-    float spare = sure_m(slot, way->turns_away, nearest, least, 0.0f);
+    float spare = sure_m(slot, way, nearest, least, 0.0f);
     if (region->has_fan && is_in_fan(region, slot->at_m)) {
         spare = goe_flight_smaller(spare, -slot->radius_m);
     }
     if (way->circle_m > 0.0f) {
         float off_m[2];
         minus(slot->at_m, way->target_m, off_m);
-        spare = goe_flight_smaller(spare, sure_m(slot, way->turns_away, off_m, dot(off_m, off_m), way->circle_m));
+        spare = goe_flight_smaller(spare, sure_m(slot, way, off_m, dot(off_m, off_m), way->circle_m));
     }
     return spare;
 }

@@ -18,6 +18,7 @@ typedef struct {
     float target_m[2];
     float circle_m;  /* about the target; 0: the aircraft flies through, then along line_m */
     float line_m[2]; /* unit vector */
+    float sigmas;      /* of every place, that are taken off its distance */
     bool shifts;     /* an autopilot may also leave the line at once and fly beside it to the target */
     bool turns_away; /* the target lies abeam or behind: the turn is the same from early_m and from late_m */
 } goe_flight_clear_way_t;
@@ -40,7 +41,7 @@ void goe_flight_clear_direct(const goe_flight_clear_own_t *own, const float dire
 void goe_flight_clear_slots(const goe_flight_t *flight, const goe_flight_clear_own_t *own,
                             goe_flight_clear_slot_t slots[GOE_FLIGHT_SLOTS]);
 
-/* The least distance that the way keeps from any obstacle's circle, two sigmas of its place taken off, as a share of the margin wanted
+/* The least distance that the way keeps from any obstacle's circle, way->sigmas of its place taken off, as a share of the margin wanted
  * there; at most GOE_FLIGHT_CLEAR_MAX. Negative: through one. *nearest: of which slot, -1 if there is none. What is found to be
  * below `enough` is not looked at further. */
 #define GOE_FLIGHT_CLEAR_MAX 2.0f

@@ -16,6 +16,7 @@
 
 #define GRAVITY_M_S2 9.80665f
 #define SURE_SIGMA 2.0f
+#define LIKELY_SIGMA 1.0f /* an order that is obeyed is left for another one only where that is likely to be better */
 #define SPEED_MIN_M_S 1.0f
 #define TIME_MAX_S 1.0e4f
 #define CLEAR_MAX_M 1000.0f
@@ -28,11 +29,13 @@
 /* Shares of the margin. */
 #define FREE 0.75f     /* a way of this much is free: on the way to its target an aircraft cuts the corner */
 #define HOLD_FREE 0.5f /* to hold is for where no side is free */
-#define KEPT 0.5f      /* a target is left for a better one below this */
+#define KEPT 0.33f     /* a target is left for a better one below this */
 #define GAIN 0.2f      /* by which that must be better */
 #define NEVER (-2.0f * GOE_FLIGHT_CLEAR_MAX)
 
 #define SIDE_REMEMBERED_S 10.0f
+#define LATEST 1.33f     /* of roll_in_s: an autopilot may obey so late */
+#define TURNED 0.99f     /* cosine of 8 degrees: from there on the aircraft obeys */
 #define EARLY 0.33f      /* of roll_in_s: an autopilot may obey so soon */
 #define WHOLE 0.9f       /* more than this share makes no way better */
 #define SHARE_S 4.0f     /* of time that a whole margin is worth, between ways that are free */
@@ -102,9 +105,15 @@ static float aside_sd_m(const goe_flight_slot_t *slot, const float course_ne[2])
     return sqrtf(goe_flight_larger(variance, 0.0f));
 }
 
-/* roll_in_s: what of it is left. False: no course to speak of. */
-static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, float roll_in_s,
-                        look_t *look) {
+/* An order that is given now, or was given so long ago, is obeyed after straight on of this length. */
+static void set_delay(look_t *look, float since_s) {
+    const float roll_in_s = look->flight->settings.roll_in_s;
+    look->at.early_m = look->speed_m_s * goe_flight_larger(EARLY * roll_in_s - since_s, 0.0f);
+    look->at.late_m = look->speed_m_s * goe_flight_larger(LATEST * roll_in_s - since_s, EARLY * roll_in_s);
+}
+
+/* False: no course to speak of. */
+static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, look_t *look) {
     const float north = flight->velocity_ned_m_s[0];
     const float east = flight->velocity_ned_m_s[1];
     const float speed_m_s = sqrtf(north * north + east * east);
@@ -121,12 +130,11 @@ static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_ow
     look->at.course_ne[1] = east / speed_m_s;
     memcpy(look->at.ned_m, own->ned_m, sizeof look->at.ned_m);
     look->at.turn_m = speed_m_s * speed_m_s * cosine / (GRAVITY_M_S2 * sine);
-    look->at.late_m = speed_m_s * roll_in_s;
-    look->at.early_m = goe_flight_smaller(look->at.late_m, speed_m_s * EARLY * flight->settings.roll_in_s);
     look->at.through_m = look->at.turn_m + speed_m_s * (flight->settings.roll_in_s + flight->settings.reserve_s);
     look->at.time_us = own->time_us;
     look->circle_m =
         flight->settings.loiter_m > 0.0f ? goe_flight_larger(flight->settings.loiter_m, look->at.turn_m) : 0.0f;
+    set_delay(look, 0.0f);
     goe_flight_clear_slots(flight, &look->at, look->slot);
     return true;
 }
@@ -218,6 +226,7 @@ static void try_target(const look_t *look, const encounter_t *e, int side, float
     option.way.target_m[0] = e->ahead_m;
     option.way.target_m[1] = aside_m + times(side, look->circle_m);
     option.way.circle_m = look->circle_m;
+    option.way.sigmas = SURE_SIGMA;
     option.way.line_m[0] = 1.0f;
     option.way.shifts = true;
     option.down_m = look->own->ned_m[2];
@@ -273,6 +282,7 @@ static void try_hold(const look_t *look, int side, option_t *best) {
         option.way.target_m[1] =
             times(side, at_once ? circle_m : 2.0f * look->at.turn_m + look->flight->settings.loiter_m);
         option.way.circle_m = circle_m;
+        option.way.sigmas = SURE_SIGMA;
         option.way.turns_away = true;
         option.down_m = look->own->ned_m[2];
         option.edge = NOBODY;
@@ -397,6 +407,7 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     goe_flight_clear_relate(&look->at, r->target_ned_m, way.target_m);
     goe_flight_clear_direct(&look->at, r->along_ne, way.line_m);
     way.circle_m = look->circle_m;
+    way.sigmas = LIKELY_SIGMA;
     way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
     if (r->action == GOE_FLIGHT_HOLD) {
         way.circle_m = goe_flight_larger(look->flight->settings.loiter_m, look->at.turn_m);
@@ -406,14 +417,15 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
 
 /* Another way, if the one that was ordered is not clear any more: of the same side, or of the other one once; a second time only if
  * it is free and twice as clear. */
-static void find_better(goe_flight_t *flight, const look_t *look, float share, int nearest) {
+static void find_better(goe_flight_t *flight, look_t *look, float share, int nearest) {
     goe_flight_reaction_t *r = &flight->reaction;
     encounter_t e;
     meet(look, nearest, &e);
     option_t option = choose(look, nearest, &e, r->side);
     if (!(option.share >= KEPT)) {
+        set_delay(look, 0.0f);
         const option_t other = choose(look, nearest, &e, -r->side);
-        const bool allowed = r->changes == 0 ? other.share >= KEPT : other.share >= FREE && share > 0.0f;
+        const bool allowed = share < 0.0f && other.share >= (r->changes == 0 ? HOLD_FREE : FREE);
         if (allowed && other.share >= 2.0f * goe_flight_larger(option.share, share)) {
             option = other;
         }
@@ -423,13 +435,19 @@ static void find_better(goe_flight_t *flight, const look_t *look, float share, i
     }
 }
 
-static void review(goe_flight_t *flight, const look_t *look) {
+static void review(goe_flight_t *flight, look_t *look) {
     goe_flight_reaction_t *r = &flight->reaction;
     int nearest;
     if (r->side == 0 || is_up(r->action)) {
         return;
     }
     follow(look, r);
+    const bool turned = r->along_ne[0] * look->at.course_ne[0] + r->along_ne[1] * look->at.course_ne[1] < TURNED;
+    if (turned) {
+        look->at.early_m = look->at.late_m = 0.0f;
+    } else {
+        set_delay(look, goe_flight_between_s(look->own->time_us, r->ordered_us));
+    }
     const float share = share_of_order(look, r, &nearest);
     r->clear_m = goe_flight_clamped(share * flight->settings.margin_m, -CLEAR_MAX_M, CLEAR_MAX_M);
     if (share >= KEPT || nearest == NOBODY) {
@@ -475,8 +493,20 @@ static bool is_way_back_clear(const look_t *look, float own_ahead_m, float own_a
     memset(&way, 0, sizeof way);
     goe_flight_clear_relate(&look->at, back_ne_m, way.target_m);
     goe_flight_clear_direct(&look->at, r->course_ne, way.line_m);
+    way.sigmas = SURE_SIGMA;
     way.turns_away = !(way.target_m[0] > 0.0f);
-    return goe_flight_clear_share(&look->at, look->slot, &way, KEPT, &nearest) >= KEPT;
+    return goe_flight_clear_share(&look->at, look->slot, &way, HOLD_FREE, &nearest) >= HOLD_FREE;
+}
+
+/* How far aside of the line the aircraft comes before it flies back: straight on until it obeys, and a turn. */
+static float farthest_aside_m(const look_t *look, float own_aside_m) {
+    const float *line = look->flight->reaction.course_ne;
+    const float *course = look->at.course_ne;
+    const float cosine = line[0] * course[0] + line[1] * course[1];
+    const float sine = line[0] * course[1] - line[1] * course[0];
+    const float way_m =
+        look->at.late_m * goe_flight_absolute(sine) + look->at.turn_m * goe_flight_larger(1.0f - cosine, 0.0f);
+    return (sine > 0.0f) == (own_aside_m > 0.0f) ? own_aside_m + (sine > 0.0f ? way_m : -way_m) : own_aside_m;
 }
 
 /* Whether the line of the order may be flown again: every obstacle lies behind on it, or surely aside of it, or is unknown; and the way
@@ -488,7 +518,7 @@ static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) 
     int next = NOBODY;
     bool left = false;
     relate(r->from_ne_m, r->course_ne, look->own->ned_m, &own_ahead_m, &own_aside_m);
-    own_aside_m = is_up(r->action) ? 0.0f : own_aside_m;
+    own_aside_m = is_up(r->action) ? 0.0f : farthest_aside_m(look, own_aside_m);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const float ahead_m = look->slot[i].at_m[0];
         if (look->slot[i].counts && is_in_the_way(look, i, own_aside_m)) {
@@ -671,14 +701,10 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
         goe_flight_reaction_clear(r);
     }
     const bool stands = r->action != GOE_FLIGHT_NONE;
-    const float since_s = goe_flight_between_s(own->time_us, r->ordered_us);
-    const float left_s =
-        stands ? goe_flight_clamped(flight->settings.roll_in_s - since_s, 0.0f, flight->settings.roll_in_s)
-               : flight->settings.roll_in_s;
     if (!stands) {
         r->reason = GOE_FLIGHT_REASON_NONE;
     }
-    if (!look_around(flight, own, left_s, &look)) {
+    if (!look_around(flight, own, &look)) {
         r->rising = false;
         return 0.0f;
     }
@@ -686,6 +712,7 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
         end_if_over(flight, &look);
         break_off(flight, &look);
         review(flight, &look);
+        set_delay(&look, 0.0f);
         rise(flight, &look);
     }
     if (worst == NOBODY) {
