@@ -352,6 +352,7 @@ typedef struct { /* goe_reaction.c: the order that stands */
     uint8_t changes; /* of the side */
     uint8_t reason;
     goe_flag_t rising, falling, late;
+    goe_flag_t gap; /* the target lies in the middle between slot and edge */
 } goe_flight_reaction_t;
 
 typedef struct { /* goe_flight.c */

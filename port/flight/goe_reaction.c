@@ -34,7 +34,7 @@
 #define NEVER (-2.0f * GOE_FLIGHT_CLEAR_MAX)
 
 #define SIDE_REMEMBERED_S 10.0f
-#define LATEST 1.33f     /* of roll_in_s: an autopilot may obey so late */
+#define LATEST 1.2f      /* of roll_in_s: an autopilot may obey so late */
 #define TURNED 0.99f     /* cosine of 8 degrees: from there on the aircraft obeys */
 #define EARLY 0.33f      /* of roll_in_s: an autopilot may obey so soon */
 #define WHOLE 0.9f       /* more than this share makes no way better */
@@ -67,6 +67,7 @@ typedef struct {
     goe_flight_clear_way_t way; /* of LEFT, RIGHT, HOLD */
     float down_m;               /* of the target */
     int8_t edge, side;
+    bool gap; /* between the obstacle and `edge` */
 } option_t;
 
 void goe_flight_reaction_clear(goe_flight_reaction_t *reaction) {
@@ -217,7 +218,8 @@ static void try_climb(const look_t *look, int about, const encounter_t *e, optio
 }
 
 /* The way that keeps aside_m to the right of the present course, abeam of the obstacle. */
-static void try_target(const look_t *look, const encounter_t *e, int side, float aside_m, int edge, option_t *best) {
+static void try_target(const look_t *look, const encounter_t *e, int side, float aside_m, int edge, bool gap,
+                       option_t *best) {
     option_t option;
     int nearest;
     memset(&option, 0, sizeof option);
@@ -231,6 +233,7 @@ static void try_target(const look_t *look, const encounter_t *e, int side, float
     option.way.shifts = true;
     option.down_m = look->own->ned_m[2];
     option.edge = (int8_t)edge;
+    option.gap = gap;
     option.side = (int8_t)side;
     const float enough = best->share < FREE ? best->share : FREE;
     option.share = goe_flight_clear_share(&look->at, look->slot, &option.way, enough, &nearest);
@@ -247,7 +250,7 @@ static void try_side(const look_t *look, int about, const encounter_t *e, int si
     if (!(times(side, base_m) < look->at.turn_m)) {
         return;
     }
-    try_target(look, e, side, base_m, about, best);
+    try_target(look, e, side, base_m, about, false, best);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_clear_slot_t *other = &look->slot[i];
         const float beyond_m = other->at_m[0] - e->ahead_m;
@@ -261,10 +264,10 @@ static void try_side(const look_t *look, int about, const encounter_t *e, int si
         const float inner_m = other->at_m[1] - times(side, other->radius_m);
         const float middle_m = 0.5f * (wall_m + inner_m);
         if (times(side, edge_m - base_m) > 0.0f) {
-            try_target(look, e, side, edge_m, i, best);
+            try_target(look, e, side, edge_m, i, false, best);
         }
         if (times(side, inner_m - wall_m) > 0.0f && times(side, base_m - middle_m) > 0.0f) {
-            try_target(look, e, side, middle_m, NOBODY, best);
+            try_target(look, e, side, middle_m, i, true, best);
         }
     }
 }
@@ -356,6 +359,7 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
     r->late = option->needed_s > e->soonest_s;
     r->slot = (int8_t)slot;
     r->edge = option->edge;
+    r->gap = option->gap;
     r->side = aside ? option->side : r->side;
     r->reason = option->share >= (option->action == GOE_FLIGHT_HOLD ? HOLD_FREE : FREE) ? GOE_FLIGHT_REASON_CLEAR
                                                                                         : GOE_FLIGHT_REASON_LEAST_BAD;
@@ -376,28 +380,34 @@ static bool is_due(goe_flight_reaction_t *r, const goe_flight_settings_t *settin
     return e->soonest_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
 }
 
+/* How far to the right of the line the target is to lie, by one obstacle: past its outline on the side of the order; in a gap, at the
+ * wall that is passed. */
+static float edge_of(const look_t *look, const goe_flight_reaction_t *r, int i, int side) {
+    const goe_flight_clear_slot_t *one = &look->slot[i];
+    float ahead_m;
+    float aside_m;
+    relate(r->from_ne_m, r->along_ne, look->flight->slot[i].center_ne_m, &ahead_m, &aside_m);
+    const float beyond_m = r->gap ? one->radius_m
+                                  : one->radius_m + one->margin_m + look->circle_m +
+                                        SURE_SIGMA * aside_sd_m(&look->flight->slot[i], r->along_ne);
+    return aside_m + times(side, beyond_m);
+}
+
 /* The target moves with the outline that it lies past, along the course on which it was chosen, and never inside of the obstacle's
- * that the order is about. */
+ * that the order is about; or it stays in the middle of a gap. */
 static void follow(const look_t *look, goe_flight_reaction_t *r) {
     float ahead_m;
     float aside_m;
-    float farthest_m = 0.0f;
-    bool any = false;
     if (!is_aside(r->action) || r->edge == NOBODY || r->slot == NOBODY) {
         return;
     }
-    const int past[2] = {r->slot, r->edge};
-    for (int k = 0; k < 2; k++) {
-        const goe_flight_slot_t *slot = &look->flight->slot[past[k]];
-        relate(r->from_ne_m, r->along_ne, slot->center_ne_m, &ahead_m, &aside_m);
-        const float edge_m = aside_m + times(r->side, look->slot[past[k]].radius_m + look->slot[past[k]].margin_m +
-                                                          SURE_SIGMA * aside_sd_m(slot, r->along_ne) + look->circle_m);
-        farthest_m = !any || times(r->side, edge_m - farthest_m) > 0.0f ? edge_m : farthest_m;
-        any = true;
-    }
+    const float about_m = edge_of(look, r, r->slot, r->side);
+    const float other_m = edge_of(look, r, r->edge, r->gap ? -r->side : r->side);
+    const float outer_m = times(r->side, other_m - about_m) > 0.0f ? other_m : about_m;
+    const float target_m = r->gap ? 0.5f * (about_m + other_m) + times(r->side, look->circle_m) : outer_m;
     relate(r->from_ne_m, r->along_ne, look->flight->slot[r->slot].center_ne_m, &ahead_m, &aside_m);
-    r->target_ned_m[0] = r->from_ne_m[0] + r->along_ne[0] * ahead_m - r->along_ne[1] * farthest_m;
-    r->target_ned_m[1] = r->from_ne_m[1] + r->along_ne[1] * ahead_m + r->along_ne[0] * farthest_m;
+    r->target_ned_m[0] = r->from_ne_m[0] + r->along_ne[0] * ahead_m - r->along_ne[1] * target_m;
+    r->target_ned_m[1] = r->from_ne_m[1] + r->along_ne[1] * ahead_m + r->along_ne[0] * target_m;
 }
 
 /* How clear the way is on which the order is flown from here. */
@@ -409,6 +419,11 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     way.circle_m = look->circle_m;
     way.sigmas = LIKELY_SIGMA;
     way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
+    if (!(way.circle_m > 0.0f) && way.turns_away && r->action != GOE_FLIGHT_HOLD) { /* it was flown through */
+        way.target_m[0] = way.line_m[0];
+        way.target_m[1] = way.line_m[1];
+        way.turns_away = false;
+    }
     if (r->action == GOE_FLIGHT_HOLD) {
         way.circle_m = goe_flight_larger(look->flight->settings.loiter_m, look->at.turn_m);
     }
@@ -532,6 +547,7 @@ static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) 
         if (!left && r->slot != NOBODY) { /* past the one, before the next */
             r->slot = (int8_t)next;
             r->edge = is_aside(r->action) ? (int8_t)next : NOBODY;
+            r->gap = false;
             memcpy(r->along_ne, r->course_ne, sizeof r->along_ne);
         }
         return false;
