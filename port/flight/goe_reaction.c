@@ -420,8 +420,8 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     way.sigmas = LIKELY_SIGMA;
     way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
     if (!(way.circle_m > 0.0f) && way.turns_away && r->action != GOE_FLIGHT_HOLD) { /* it was flown through */
-        way.target_m[0] = way.line_m[0];
-        way.target_m[1] = way.line_m[1];
+        way.target_m[0] = 2.0f * look->at.turn_m * way.line_m[0];
+        way.target_m[1] = 2.0f * look->at.turn_m * way.line_m[1];
         way.turns_away = false;
     }
     if (r->action == GOE_FLIGHT_HOLD) {
@@ -571,11 +571,12 @@ static void end_if_over(goe_flight_t *flight, const look_t *look) {
     r->falling_us = r->falling ? r->falling_us : look->own->time_us;
     r->falling = true;
     if (behind || goe_flight_between_s(look->own->time_us, r->falling_us) >= flight->settings.hold_s) {
-        const int8_t side = r->side;
-        const uint8_t changes = r->changes;
+        const goe_flight_reaction_t ended = *r;
         goe_flight_reaction_clear(r);
-        r->side = side;
-        r->changes = changes;
+        memcpy(r->from_ne_m, ended.from_ne_m, sizeof r->from_ne_m);
+        memcpy(r->course_ne, ended.course_ne, sizeof r->course_ne);
+        r->side = ended.side;
+        r->changes = ended.changes;
         r->falling_us = look->own->time_us;
     }
 }
@@ -685,8 +686,25 @@ static option_t choose_steadily(const look_t *look, int about, const encounter_t
     return same.share > 0.0f && option.share < 2.0f * same.share ? same : option;
 }
 
+/* The order before has just ended, the autopilot is about to fly back to its line, and that is clear: what lies on the course of this
+ * moment is no reason for another order. */
+static bool is_flying_back(look_t *look) {
+    const goe_flight_reaction_t *r = &look->flight->reaction;
+    const float since_s = goe_flight_between_s(look->own->time_us, r->falling_us);
+    float own_ahead_m;
+    float own_aside_m;
+    if (r->action != GOE_FLIGHT_NONE || r->side == 0 || since_s > LATEST * look->flight->settings.roll_in_s) {
+        return false;
+    }
+    relate(r->from_ne_m, r->course_ne, look->own->ned_m, &own_ahead_m, &own_aside_m);
+    set_delay(look, since_s);
+    const bool clear = is_way_back_clear(look, own_ahead_m, own_aside_m);
+    set_delay(look, 0.0f);
+    return clear;
+}
+
 /* What to do about one obstacle; an order, once it is due. */
-static float answer(goe_flight_t *flight, const look_t *look, int about) {
+static float answer(goe_flight_t *flight, look_t *look, int about) {
     goe_flight_reaction_t *r = &flight->reaction;
     const goe_flight_settings_t *settings = &flight->settings;
     encounter_t e;
@@ -694,7 +712,7 @@ static float answer(goe_flight_t *flight, const look_t *look, int about) {
     const option_t option = choose_steadily(look, about, &e);
     const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, settings->violation_max)
                                                      : settings->violation_max;
-    const bool is_hazard = flight->slot[about].hazard.violation >= most && e.ahead_m > 0.0f;
+    const bool is_hazard = flight->slot[about].hazard.violation >= most && e.ahead_m > 0.0f && !is_flying_back(look);
     const bool is_new = r->action == GOE_FLIGHT_NONE || (is_up(r->action) && r->slot != about);
     const bool reviewed = r->side != 0 && !is_up(r->action) && r->action != GOE_FLIGHT_NONE;
     if (!reviewed && is_due(r, settings, &e, option.needed_s, is_hazard && is_new, look->own->time_us)) {
