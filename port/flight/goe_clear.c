@@ -28,8 +28,8 @@
 /* Straight: from, to. Arc: about a centre, from one point to the other, to the right or to the left. */
 typedef struct {
     float from_m[2], to_m[2], center_m[2];
-    float radius_m; /* 0: straight */
-    bool right, whole;
+    float radius_m;           /* 0: straight */
+    bool right, whole, minor; /* minor: less than half a circle */
 } leg_t;
 
 enum { LEGS = 8 };
@@ -127,7 +127,7 @@ static bool is_abeam(const leg_t *leg, const float out_m[2]) {
     const float hand = leg->right ? 1.0f : -1.0f;
     minus(leg->from_m, leg->center_m, from);
     minus(leg->to_m, leg->center_m, to);
-    if (hand * cross(from, to) >= 0.0f) {
+    if (leg->minor || hand * cross(from, to) >= 0.0f) {
         return hand * cross(from, out_m) >= 0.0f && hand * cross(out_m, to) >= 0.0f;
     }
     return !(hand * cross(to, out_m) > 0.0f && hand * cross(out_m, from) > 0.0f);
@@ -216,6 +216,7 @@ static void add_turn(region_t *region, float begin_m, float turn_m, const float 
     leg_t *arc = add(region);
     float d[2];
     arc->right = place_m[1] > 0.0f;
+    arc->minor = place_m[0] > begin_m; /* whatever rounding makes of an arc of next to nothing */
     arc->radius_m = turn_m;
     arc->center_m[0] = begin_m;
     arc->center_m[1] = arc->right ? turn_m : -turn_m;
