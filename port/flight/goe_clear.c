@@ -127,6 +127,9 @@ static bool is_abeam(const leg_t *leg, const float out_m[2]) {
     const float hand = leg->right ? 1.0f : -1.0f;
     minus(leg->from_m, leg->center_m, from);
     minus(leg->to_m, leg->center_m, to);
+    if (leg->minor && !(dot(from, out_m) + dot(to, out_m) > 0.0f)) {
+        return false; /* on the other half of the circle */
+    }
     if (leg->minor || hand * cross(from, to) >= 0.0f) {
         return hand * cross(from, out_m) >= 0.0f && hand * cross(out_m, to) >= 0.0f;
     }

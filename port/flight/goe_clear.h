@@ -18,7 +18,7 @@ typedef struct {
     float target_m[2];
     float circle_m;  /* about the target; 0: the aircraft flies through, then along line_m */
     float line_m[2]; /* unit vector */
-    float sigmas;      /* of every place, that are taken off its distance */
+    float sigmas;    /* of every place, that are taken off its distance */
     bool shifts;     /* an autopilot may also leave the line at once and fly beside it to the target */
     bool turns_away; /* the target lies abeam or behind: the turn is the same from early_m and from late_m */
 } goe_flight_clear_way_t;

@@ -731,7 +731,7 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
     look_t look;
     mend(r);
     forget_side(r, own->time_us);
-    if (own->grounded) {
+    if (own->grounded && r->action != GOE_FLIGHT_NONE) {
         goe_flight_reaction_clear(r);
     }
     const bool stands = r->action != GOE_FLIGHT_NONE;

@@ -1,0 +1,381 @@
+/* Where an order is given or withheld, what it clears and when it ends, with more than one obstacle. SPDX-License-Identifier: MIT
+ *
+ * Obstacles are written straight into the table, as in test_flight_reaction.c. */
+#include <math.h>
+#include <string.h>
+
+#include "flown.h"
+#include "goe_clear.h"
+#include "goe_reaction.h"
+
+#define SPEED_M_S 20.0f
+
+static goe_flight_t flight;
+static goe_flight_reaction_own_t own;
+
+/* A mast of 6 m diameter; see test_flight_reaction.c. */
+static void put(int slot, float ahead_m, float right_m, float top_m) {
+    goe_flight_slot_t *s = &flight.slot[slot];
+    s->used = s->assessed = true;
+    s->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT;
+    s->center_ne_m[0] = ahead_m;
+    s->center_ne_m[1] = right_m;
+    s->width_m = 6.0f;
+    s->top_m = top_m;
+    s->hazard.violation = fabsf(right_m) < 18.0f && ahead_m > own.ned_m[0] ? 1.0f : 0.0f;
+    s->hazard.time_s = (ahead_m - own.ned_m[0] - 3.0f) / SPEED_M_S;
+}
+
+static void start(float loiter_m) {
+    static flown_t flown;
+    goe_flight_settings_t settings;
+    goe_flight_settings_default(&settings);
+    settings.loiter_m = loiter_m;
+    flown_start(&flown, &settings);
+    flight = flown.flight;
+    memset(&own, 0, sizeof own);
+    own.ned_m[2] = -20.0f;
+    flight.velocity_ned_m_s[0] = SPEED_M_S;
+}
+
+void setUp(void) { start(0.0f); }
+void tearDown(void) {}
+
+static goe_flight_action_t decide(double seconds) {
+    for (int k = 0; k <= (int)(seconds * 10.0 + 0.5); k++) {
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            flight.slot[i].taken_us = own.time_us;
+        }
+        (void)goe_flight_reaction_decide(&flight, 0, &own);
+        own.time_us += 100000u;
+    }
+    return (goe_flight_action_t)flight.reaction.action;
+}
+
+static double miss_m(int slot) {
+    const float *at = flight.slot[slot].center_ne_m;
+    return hypot((double)(at[0] - flight.reaction.target_ned_m[0]), (double)(at[1] - flight.reaction.target_ned_m[1]));
+}
+
+/* --------------------------------------------------------------------------------------------------------------- side -- */
+
+/* The nearer side leads to 17.5 m left, and 4 m beside it stands a second mast that does not touch the present course. */
+static void a_mast_that_is_not_on_the_course_blocks_a_side(void) {
+    put(0, 110.0f, 0.5f, 50.0f);
+    put(1, 115.0f, -24.0f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_CLEAR, flight.reaction.reason);
+    TEST_ASSERT_TRUE(miss_m(0) >= 17.9 && miss_m(1) >= 17.9);
+}
+
+/* Its sigma counts: 22 m beyond the target it is free, but not with 6 m of one sigma. */
+static void a_place_that_is_hardly_known_blocks_a_side(void) {
+    for (int unsure = 0; unsure < 2; unsure++) {
+        start(0.0f);
+        put(0, 110.0f, 0.5f, 50.0f);
+        put(1, 110.0f, -39.5f, 50.0f);
+        flight.slot[1].covariance_ne_m2[2] = unsure ? 36.0f : 0.0f;
+        TEST_ASSERT_EQUAL(unsure ? GOE_FLIGHT_RIGHT : GOE_FLIGHT_LEFT, decide(0.5));
+    }
+}
+
+/* So does its age: 10 s without an image. */
+static void an_old_place_blocks_a_side(void) {
+    put(0, 110.0f, 0.5f, 50.0f);
+    put(1, 110.0f, -39.5f, 50.0f);
+    flight.slot[1].age_s = 10.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
+}
+
+/* A mast that is surely passed over blocks nothing. */
+static void a_low_one_blocks_no_side(void) {
+    put(0, 110.0f, 0.5f, 50.0f);
+    put(1, 110.0f, -20.0f, 8.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
+/* An autopilot that circles its target with 80 m comes to 178 m left of the line. */
+static void the_circle_about_the_target_is_kept_clear(void) {
+    put(0, 125.0f, 0.5f, 50.0f);
+    put(1, 125.0f, -150.0f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5)); /* which nothing stands beside where the aircraft flies through */
+    start(80.0f);
+    put(0, 125.0f, 0.5f, 50.0f);
+    put(1, 125.0f, -150.0f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
+    TEST_ASSERT_TRUE(miss_m(0) >= 80.0 + 17.9 && miss_m(1) >= 80.0 + 17.9);
+}
+
+/* A circle of 30 m cannot be flown at 20 m/s and 30 degrees of bank: the target keeps the turn's 71 m away. */
+static void a_circle_is_never_smaller_than_the_turn(void) {
+    start(30.0f);
+    put(0, 125.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    TEST_ASSERT_TRUE(miss_m(0) >= 70.6 + 17.9);
+}
+
+/* Four of 44 m across the course, 16 m of clear width between them. */
+static void put_wall(float ahead_m) {
+    for (int i = 0; i < 4; i++) {
+        put(i, ahead_m, -88.0f + 60.0f * (float)i, 50.0f);
+        flight.slot[i].width_m = 44.0f;
+        flight.slot[i].hazard.violation = i == 1 || i == 2 ? 1.0f : 0.0f;
+    }
+}
+
+/* It is not passed where there is room to turn away. */
+static void a_wall_of_masts_is_a_reason_to_hold(void) {
+    put_wall(160.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_HOLD, decide(0.5));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_CLEAR, flight.reaction.reason);
+    TEST_ASSERT_TRUE(flight.reaction.clear_m >= 7.5f);
+}
+
+/* A wall that is known too late to be turned away from: the middle of the gap keeps 8 m and is taken, and called the least bad. */
+static void what_has_no_free_way_says_so(void) {
+    put_wall(60.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LEAST_BAD, flight.reaction.reason);
+    CHECK_CLOSE(0.1, 2.0, flight.reaction.target_ned_m[1]);
+    CHECK_CLOSE(1.0, 7.5, flight.reaction.clear_m);
+}
+
+/* A new mast on the way of a standing order: the order goes farther out on its side. */
+static void a_standing_order_evades_to_its_own_side_first(void) {
+    put(0, 130.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    put(1, 150.0f, -20.0f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    TEST_ASSERT_TRUE(flight.reaction.target_ned_m[1] < -37.0f);
+    TEST_ASSERT_EQUAL(0, flight.reaction.changes);
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- end -- */
+
+/* The order about B is not over while A, which stands on the line, is not passed. */
+static void an_order_stands_while_another_one_stands_on_its_line(void) {
+    put(0, 100.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    put(1, 90.0f, -60.0f, 50.0f);
+    flight.reaction.slot = flight.reaction.edge = 1; /* as if it had been given for that one since */
+    flight.slot[0].hazard.violation = 0.0f;
+    TEST_ASSERT_TRUE(decide(4.0) != GOE_FLIGHT_NONE);
+}
+
+/* Past A, before B: the order turns to B; past both it ends. */
+static void an_order_turns_to_the_next_one_on_its_line(void) {
+    put(0, 100.0f, 0.5f, 50.0f);
+    put(1, 200.0f, 2.0f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    own.ned_m[0] = 125.0f;
+    own.ned_m[1] = -18.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    TEST_ASSERT_EQUAL(1, flight.reaction.slot);
+    CHECK_CLOSE(0.1, 200.0, flight.reaction.target_ned_m[0]);
+    own.ned_m[0] = 225.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.0));
+}
+
+/* The way back to the line leads past a mast beside the line, which the line itself passes. */
+static void an_order_stands_while_the_way_back_is_not_clear(void) {
+    put(0, 100.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    own.ned_m[0] = 125.0f;
+    own.ned_m[1] = -60.0f;
+    put(1, 165.0f, -30.0f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    put(1, 165.0f, -130.0f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(3.0));
+}
+
+/* ------------------------------------------------------------------------------------------------------------ withheld -- */
+
+static void no_order_is_given_too_low(void) {
+    own.ned_m[2] = -4.9f;
+    put(0, 100.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LOW, flight.reaction.reason);
+    flight.ground_down_m = 0.2f; /* the ground lies lower */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    own.ned_m[2] = -2.0f; /* one that stands is not taken back */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
+static void a_height_of_zero_gives_orders_at_any_height(void) {
+    flight.settings.order_height_m = 0.0f;
+    own.ned_m[2] = 30.0f; /* below the origin */
+    put(0, 100.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
+static void no_order_is_given_too_slow(void) {
+    flight.velocity_ned_m_s[0] = 4.9f;
+    put(0, 30.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_SLOW, flight.reaction.reason);
+}
+
+static void no_order_is_given_in_flare_or_after_touchdown(void) {
+    own.grounded = true;
+    put(0, 100.0f, 0.5f, 8.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.0));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LANDING, flight.reaction.reason);
+    own.grounded = false;
+    TEST_ASSERT_TRUE(decide(0.5) != GOE_FLIGHT_NONE);
+    own.grounded = true; /* ends one that stands */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.0));
+}
+
+/* A hangar behind the runway, from the approach to the rollout: the hazard is reported throughout, an order in none of the last phases.
+ * Any number that is no phase counts as flying. */
+static void phases_reach_the_rule(void) {
+    static flown_t flown;
+    goe_flight_assessment_t now;
+    const uint8_t phase[] = {GOE_FLIGHT_LANDED, GOE_FLIGHT_FLARE, 77u};
+    for (int k = 0; k < 3; k++) {
+        flown_start(&flown, NULL);
+        flown.scene.x0_m = 0.5;
+        flown.scene.z0_m = 120.0;
+        flown.scene.height_m = 60.0;
+        flown.scene.altitude_m = 20.0;
+        bool ordered = false;
+        bool warned = false;
+        for (int tenth = 0; tenth < 45; tenth++) {
+            for (int i = 0; i < FLOWN_POSE_HZ / 10; i++) {
+                (void)flown_step(&flown);
+            }
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, flown_now_us(&flown), phase[k], &now));
+            ordered = ordered || now.action != GOE_FLIGHT_NONE;
+            warned = warned || (now.hazard.violation > 0.9f && now.reason == GOE_FLIGHT_REASON_LANDING);
+        }
+        TEST_ASSERT_EQUAL(k == 2, ordered);
+        TEST_ASSERT_EQUAL(k != 2, warned);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------------- height -- */
+
+/* 12 m and 10 m of clearance, then a second one of 18 m, and an estimate that grows: the height clears the highest. */
+static void a_go_around_carries_the_height_of_the_highest_top(void) {
+    own.approach = true;
+    put(0, 110.0f, 0.5f, 12.0f);
+    put(1, 160.0f, 3.0f, 14.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    CHECK_CLOSE(0.01, -24.0, flight.reaction.target_ned_m[2]);
+    put(1, 160.0f, 3.0f, 18.0f);
+    (void)decide(0.0);
+    CHECK_CLOSE(0.01, -28.0, flight.reaction.target_ned_m[2]);
+    put(1, 160.0f, 3.0f, 10.0f); /* it does not sink while the order stands */
+    (void)decide(0.0);
+    CHECK_CLOSE(0.01, -28.0, flight.reaction.target_ned_m[2]);
+}
+
+/* Of a top that is not known: by the clearance over the present height. */
+static void a_go_around_over_an_unknown_top_climbs(void) {
+    own.approach = true;
+    put(0, 150.0f, 0.5f, 0.0f);
+    flight.slot[0].valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    CHECK_CLOSE(0.01, -30.0, flight.reaction.target_ned_m[2]);
+}
+
+/* Behind a low one stands a high one: a climb over the first leads into the second. */
+static void a_climb_does_not_lead_into_what_stands_behind(void) {
+    put(0, 110.0f, 0.5f, 12.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
+    start(0.0f);
+    put(0, 110.0f, 0.5f, 12.0f);
+    put(1, 160.0f, 0.5f, 60.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- clear -- */
+
+static float share_of(float circle_m, float target_ahead_m, float target_right_m, float ahead_m, float right_m) {
+    static goe_flight_clear_slot_t slots[GOE_FLIGHT_SLOTS];
+    goe_flight_clear_own_t at;
+    goe_flight_clear_way_t way;
+    int nearest;
+    memset(slots, 0, sizeof slots);
+    memset(&at, 0, sizeof at);
+    memset(&way, 0, sizeof way);
+    at.turn_m = 70.0f;
+    at.late_m = 30.0f;
+    at.early_m = 10.0f;
+    at.through_m = 100.0f;
+    at.course_ne[0] = 1.0f;
+    way.target_m[0] = target_ahead_m;
+    way.target_m[1] = target_right_m;
+    way.line_m[0] = 1.0f;
+    way.circle_m = circle_m;
+    way.sigmas = 2.0f;
+    slots[1].counts = true;
+    slots[1].at_m[0] = ahead_m;
+    slots[1].at_m[1] = right_m;
+    slots[1].radius_m = 3.0f;
+    slots[1].margin_m = 10.0f;
+    const float share = goe_flight_clear_share(&at, slots, &way, -4.0f, &nearest);
+    TEST_ASSERT_EQUAL(share < GOE_FLIGHT_CLEAR_MAX ? 1 : -1, nearest);
+    return share;
+}
+
+/* Beside the way straight on, beside the target, within the fan, in the circle, on the line behind; mirrored it is the same. */
+static void clearance_is_that_of_the_nearest_part_of_the_way(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        const float s = (float)side;
+        CHECK_CLOSE(0.001, 0.7, share_of(0.0f, 100.0f, 20.0f * s, 10.0f, -10.0f * s));
+        CHECK_CLOSE(0.001, 1.2, share_of(0.0f, 100.0f, 20.0f * s, 150.0f, 35.0f * s));
+        CHECK_CLOSE(0.001, 1.2, share_of(0.0f, 100.0f, 20.0f * s, 215.0f, 20.0f * s));
+        CHECK_CLOSE(0.001, 0.7, share_of(60.0f, 150.0f, 90.0f * s, 150.0f, 160.0f * s));
+        TEST_ASSERT_TRUE(share_of(60.0f, 150.0f, 90.0f * s, 150.0f, 90.0f * s) < -2.0f + 0.001f);
+        TEST_ASSERT_TRUE(share_of(60.0f, 200.0f, 90.0f * s, 120.0f, 50.0f * s) < 0.0f);
+        CHECK_CLOSE(0.001, 2.0, share_of(0.0f, 100.0f, 20.0f * s, -60.0f, 0.0f));
+    }
+}
+
+/* A target almost straight ahead takes an arc of almost nothing, whatever the rounding. */
+static void a_target_straight_ahead_takes_no_circle(void) {
+    for (int k = -20; k <= 20; k++) {
+        const float aside_m = 1.0e-6f * (float)k;
+        TEST_ASSERT_TRUE(share_of(0.0f, 100.0f, aside_m, 30.0f, 140.0f) > 1.9f);
+        TEST_ASSERT_TRUE(share_of(0.0f, 100.0f, aside_m, 30.0f, -140.0f) > 1.9f);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- names -- */
+
+static void every_reason_has_a_name(void) {
+    for (int reason = GOE_FLIGHT_REASON_NONE; reason <= GOE_FLIGHT_REASON_LANDING; reason++) {
+        TEST_ASSERT_TRUE(strcmp("unknown", goe_flight_reason_text((goe_flight_reason_t)reason)) != 0);
+    }
+    TEST_ASSERT_EQUAL_STRING("least_bad", goe_flight_reason_text(GOE_FLIGHT_REASON_LEAST_BAD));
+    TEST_ASSERT_EQUAL_STRING("unknown", goe_flight_reason_text((goe_flight_reason_t)77));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_mast_that_is_not_on_the_course_blocks_a_side);
+    RUN_TEST(a_place_that_is_hardly_known_blocks_a_side);
+    RUN_TEST(an_old_place_blocks_a_side);
+    RUN_TEST(a_low_one_blocks_no_side);
+    RUN_TEST(the_circle_about_the_target_is_kept_clear);
+    RUN_TEST(a_circle_is_never_smaller_than_the_turn);
+    RUN_TEST(a_wall_of_masts_is_a_reason_to_hold);
+    RUN_TEST(what_has_no_free_way_says_so);
+    RUN_TEST(a_standing_order_evades_to_its_own_side_first);
+    RUN_TEST(an_order_stands_while_another_one_stands_on_its_line);
+    RUN_TEST(an_order_turns_to_the_next_one_on_its_line);
+    RUN_TEST(an_order_stands_while_the_way_back_is_not_clear);
+    RUN_TEST(no_order_is_given_too_low);
+    RUN_TEST(a_height_of_zero_gives_orders_at_any_height);
+    RUN_TEST(no_order_is_given_too_slow);
+    RUN_TEST(no_order_is_given_in_flare_or_after_touchdown);
+    RUN_TEST(phases_reach_the_rule);
+    RUN_TEST(a_go_around_carries_the_height_of_the_highest_top);
+    RUN_TEST(a_go_around_over_an_unknown_top_climbs);
+    RUN_TEST(a_climb_does_not_lead_into_what_stands_behind);
+    RUN_TEST(clearance_is_that_of_the_nearest_part_of_the_way);
+    RUN_TEST(a_target_straight_ahead_takes_no_circle);
+    RUN_TEST(every_reason_has_a_name);
+    return UNITY_END();
+}
