@@ -419,10 +419,12 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     way.circle_m = look->circle_m;
     way.sigmas = LIKELY_SIGMA;
     way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
-    if (!(way.circle_m > 0.0f) && way.turns_away && r->action != GOE_FLIGHT_HOLD) { /* it was flown through */
-        way.target_m[0] = 2.0f * look->at.turn_m * way.line_m[0];
-        way.target_m[1] = 2.0f * look->at.turn_m * way.line_m[1];
-        way.turns_away = false;
+    if (!(way.circle_m > 0.0f) &&
+        is_aside(r->action)) { /* it is flown through: what counts beside it is the line behind it */
+        const float on_m = goe_flight_larger(2.0f * look->at.turn_m - way.target_m[0], 0.0f);
+        way.target_m[0] += on_m * way.line_m[0];
+        way.target_m[1] += on_m * way.line_m[1];
+        way.turns_away = !(way.target_m[0] > 0.0f);
     }
     if (r->action == GOE_FLIGHT_HOLD) {
         way.circle_m = goe_flight_larger(look->flight->settings.loiter_m, look->at.turn_m);

@@ -16,6 +16,7 @@ FLOORS = [
     {"goe_geometry"},
     {"goe_slot"},
     {"goe_table", "goe_lookout"},
+    {"goe_clear"},
     {"goe_reaction"},
     {"goe_flight.c"},
 ]

@@ -141,3 +141,72 @@ def test_a_place_that_cannot_be_written_is_told_before_anything_is_flown(
     done = subprocess.run([str(goe_avoid), *wrong], capture_output=True, text=True, timeout=HANG_S)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(f"goe_avoid: {tmp_path / place}: ")
+
+
+SEVERAL = 700  # flights, some 20 s; with seeds that no threshold was settled on
+SEVERAL_SEED = 1
+
+
+@pytest.fixture(scope="module")
+def several(goe_avoid: Path) -> str:
+    text = avoid(goe_avoid, "--several", str(SEVERAL), "--seed", str(SEVERAL_SEED), "--step", "2", "--list")
+    print(text)
+    return text
+
+
+def numbers_of(text: str, name: str) -> list[int]:
+    row = next(line for line in text.splitlines() if line.startswith(f"| {name} |"))
+    return [int(found) for found in re.findall(r"\| (\d+)(?= [|(])", row)]
+
+
+GEOMETRIES = ("single", "pair", "gate", "wall", "row", "field", "between")
+
+
+def test_several_obstacles_are_flown_in_every_geometry_number_and_delay(several: str) -> None:
+    for name in GEOMETRIES:
+        assert numbers_of(several, name)[0] == SEVERAL // len(GEOMETRIES)
+    for number in range(1, 10):
+        assert numbers_of(several, f"obstacles: {number}")[0] > 0
+    for delay in ("0.5", "1.0", "1.5", "2.0"):
+        assert numbers_of(several, f"obeyed after {delay} s")[0] >= SEVERAL // 5
+
+
+def test_one_or_two_obstacles_are_passed_by_5_m(several: str) -> None:
+    for name in ("single", "pair", "between", "obstacles: 1", "obstacles: 2"):
+        _, _, passable, collided, _, below, *_ = numbers_of(several, name)
+        assert passable > 0 and collided == below == 0, name
+
+
+@pytest.mark.parametrize(
+    ("goal", "share"),
+    [
+        ("no collision where a search finds a way", 0.0),
+        ("5 m to every wall where a search finds a way", 0.0),
+        ("at most one change of side", 0.0),
+        ("at most 2 % orders between two at twice the margin", 0.02),
+    ],
+)
+def test_the_goals_are_met(several: str, goal: str, share: float) -> None:
+    row = next(line for line in several.splitlines() if line.startswith(f"| {goal} |"))
+    missed, of, word = re.fullmatch(r"\| .* \| (\d+) of (\d+) \| (met|missed) \|", row).groups()
+    assert (word == "met") == (int(missed) <= share * int(of))
+    assert word == "met", several
+
+
+def test_a_flight_among_several_can_be_traced(goe_avoid: Path) -> None:
+    text = avoid(goe_avoid, "--trace", "1", "--seed", "3")
+    lines = text.splitlines()
+    assert len(lines) >= 390 and all(re.match(r"\d+\.\d at ", line) for line in lines)
+    assert any(": left clear" in line or ": right clear" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--several", "-1"], "--several: must be 1 to 100000, not -1"),
+        (["--several", "3", "--step", "0"], "--step: must be 1 to 100000, not 0"),
+    ],
+)
+def test_bad_numbers_of_flights_name_their_option(goe_avoid: Path, words: list[str], told: str) -> None:
+    done = subprocess.run([str(goe_avoid), *words], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"goe_avoid: {told}\n")

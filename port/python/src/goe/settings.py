@@ -419,6 +419,10 @@ class FlightSettings(_Group):
     """The hazard must stay for this long before an order, s."""
     hold_s: float = flight("hold_s")
     """... and its end before the order is taken back, s."""
+    order_height_m: float = flight("order_height_m")
+    """No new order below this height above the ground, m; 0: at any."""
+    order_speed_m_s: float = flight("order_speed_m_s")
+    """... nor below this speed over the ground, m/s."""
 
     def check(self) -> None:
         """Raises SettingError for the first setting that is outside its range or no number."""
