@@ -649,12 +649,15 @@ static goe_flight_reason_t withheld(const goe_flight_t *flight, const goe_flight
     return speed_m_s < flight->settings.order_speed_m_s ? GOE_FLIGHT_REASON_SLOW : GOE_FLIGHT_REASON_NONE;
 }
 
-/* Time that is left beyond what the simplest action against this obstacle takes. */
-static float slack_s(const look_t *look, const encounter_t *e) {
-    const float right_s = turn_time_s(look, e->aside_m + e->keep_m);
+/* What the simplest turn past an obstacle takes, whatever else stands there. */
+static float simplest_s(const look_t *look, const encounter_t *e) {
+    const float right_s = turn_time_s(look, e->keep_m + e->aside_m);
     const float left_s = turn_time_s(look, e->keep_m - e->aside_m);
-    return e->soonest_s - goe_flight_smaller(right_s, left_s);
+    return goe_flight_smaller(right_s, left_s);
 }
+
+/* Time that is left beyond what the simplest action against this obstacle takes. */
+static float slack_s(const look_t *look, const encounter_t *e) { return e->soonest_s - simplest_s(look, e); }
 
 /* The worst obstacle; but another one, where that leaves less time. */
 static int most_pressing(const look_t *look, int worst) {
@@ -710,14 +713,22 @@ static float answer(goe_flight_t *flight, look_t *look, int about) {
     goe_flight_reaction_t *r = &flight->reaction;
     const goe_flight_settings_t *settings = &flight->settings;
     encounter_t e;
+    const float violation = flight->slot[about].hazard.violation;
+    const bool reviewed = r->side != 0 && !is_up(r->action) && r->action != GOE_FLIGHT_NONE;
     meet(look, about, &e);
+    if (reviewed) {
+        return simplest_s(look, &e);
+    }
+    if (!(violation >= settings->violation_max) || !(e.ahead_m > 0.0f)) {
+        r->rising = false;
+        return simplest_s(look, &e);
+    }
     const option_t option = choose_steadily(look, about, &e);
     const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, settings->violation_max)
                                                      : settings->violation_max;
-    const bool is_hazard = flight->slot[about].hazard.violation >= most && e.ahead_m > 0.0f && !is_flying_back(look);
+    const bool is_hazard = violation >= most && !is_flying_back(look);
     const bool is_new = r->action == GOE_FLIGHT_NONE || (is_up(r->action) && r->slot != about);
-    const bool reviewed = r->side != 0 && !is_up(r->action) && r->action != GOE_FLIGHT_NONE;
-    if (!reviewed && is_due(r, settings, &e, option.needed_s, is_hazard && is_new, look->own->time_us)) {
+    if (is_due(r, settings, &e, option.needed_s, is_hazard && is_new, look->own->time_us)) {
         const goe_flight_reason_t why = withheld(flight, look->own, look->speed_m_s);
         if (why == GOE_FLIGHT_REASON_NONE) {
             order(flight, about, look, &e, &option);
