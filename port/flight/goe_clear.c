@@ -257,6 +257,17 @@ static bool ends_of_circle(const float begin_m[2], const goe_flight_clear_way_t 
     return true;
 }
 
+/* Where an autopilot that leaves its line by 45 degrees at once begins to fly beside it. */
+static void shift_aside(const float begin_m[2], const goe_flight_clear_way_t *way, float beside_m[2]) {
+    const float *line = way->line_m;
+    float to[2];
+    minus(way->target_m, begin_m, to);
+    const float aside_m = cross(line, to);
+    const float ahead_m = goe_flight_clamped(dot(line, to), 0.0f, goe_flight_absolute(aside_m));
+    beside_m[0] = begin_m[0] + ahead_m * line[0] - aside_m * line[1];
+    beside_m[1] = begin_m[1] + ahead_m * line[1] + aside_m * line[0];
+}
+
 static void add_fan(region_t *region, const float a_m[2], const float b_m[2], const float c_m[2]) {
     memcpy(region->fan_m[0], a_m, sizeof region->fan_m[0]);
     memcpy(region->fan_m[1], b_m, sizeof region->fan_m[1]);
@@ -285,8 +296,7 @@ static void begin_region(const goe_flight_clear_own_t *own, const goe_flight_cle
         return; /* on the circle already */
     }
     if (!(way->circle_m > 0.0f) && way->shifts) { /* 45 degrees away from the course, at once */
-        const float aside_m = goe_flight_absolute(way->target_m[1]);
-        outer_m[0] = goe_flight_smaller(own->early_m + aside_m, way->target_m[0]);
+        shift_aside(early_m, way, outer_m);
     }
     add_turn(region, own->late_m, own->turn_m, inner_m);
     add_fan(region, early_m, inner_m, outer_m);

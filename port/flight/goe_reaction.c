@@ -57,7 +57,8 @@ typedef struct {
     goe_flight_clear_own_t at;
     goe_flight_clear_slot_t slot[GOE_FLIGHT_SLOTS];
     float speed_m_s;
-    float circle_m; /* that is flown about a target; 0: it is flown through */
+    float circle_m;  /* that is flown about a target; 0: it is flown through */
+    float line_m[2]; /* the line of the order that stands, or the course */
 } look_t;
 
 typedef struct {
@@ -136,6 +137,9 @@ static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_ow
     look->circle_m =
         flight->settings.loiter_m > 0.0f ? goe_flight_larger(flight->settings.loiter_m, look->at.turn_m) : 0.0f;
     set_delay(look, 0.0f);
+    goe_flight_clear_direct(
+        &look->at, flight->reaction.action == GOE_FLIGHT_NONE ? look->at.course_ne : flight->reaction.course_ne,
+        look->line_m);
     goe_flight_clear_slots(flight, &look->at, look->slot);
     return true;
 }
@@ -229,7 +233,7 @@ static void try_target(const look_t *look, const encounter_t *e, int side, float
     option.way.target_m[1] = aside_m + times(side, look->circle_m);
     option.way.circle_m = look->circle_m;
     option.way.sigmas = SURE_SIGMA;
-    option.way.line_m[0] = 1.0f;
+    memcpy(option.way.line_m, look->line_m, sizeof option.way.line_m);
     option.way.shifts = true;
     option.down_m = look->own->ned_m[2];
     option.edge = (int8_t)edge;
@@ -415,7 +419,8 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     goe_flight_clear_way_t way;
     memset(&way, 0, sizeof way);
     goe_flight_clear_relate(&look->at, r->target_ned_m, way.target_m);
-    goe_flight_clear_direct(&look->at, r->along_ne, way.line_m);
+    goe_flight_clear_direct(&look->at, r->course_ne, way.line_m);
+    way.shifts = true;
     way.circle_m = look->circle_m;
     way.sigmas = LIKELY_SIGMA;
     way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
@@ -432,6 +437,12 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     return goe_flight_clear_share(&look->at, look->slot, &way, NEVER, nearest);
 }
 
+/* Left of another obstacle, but still right of the one that the order is about, or the other way round: no change of side. */
+static bool is_between(const look_t *look, const goe_flight_reaction_t *r, int nearest, const option_t *other) {
+    return is_aside(r->action) && is_aside(other->action) && r->slot != NOBODY && r->slot != nearest &&
+           times(r->side, other->way.target_m[1] - look->slot[r->slot].at_m[1]) > 0.0f;
+}
+
 /* Another way, if the one that was ordered is not clear any more: of the same side, or of the other one once; a second time only if
  * it is free and twice as clear. */
 static void find_better(goe_flight_t *flight, look_t *look, float share, int nearest) {
@@ -441,7 +452,15 @@ static void find_better(goe_flight_t *flight, look_t *look, float share, int nea
     option_t option = choose(look, nearest, &e, r->side);
     if (!(option.share >= KEPT)) {
         set_delay(look, 0.0f);
-        const option_t other = choose(look, nearest, &e, -r->side);
+        option_t other = choose(look, nearest, &e, -r->side);
+        if (is_between(look, r, nearest, &other) && other.share >= KEPT && other.share >= share + GAIN) {
+            other.action = (goe_flight_action_t)r->action;
+            other.side = r->side;
+            other.edge = NOBODY;
+            other.gap = false;
+            order(flight, r->slot, look, &e, &other);
+            return;
+        }
         const bool allowed = share < 0.0f && other.share >= (r->changes == 0 ? HOLD_FREE : FREE);
         if (allowed && other.share >= 2.0f * goe_flight_larger(option.share, share)) {
             option = other;
