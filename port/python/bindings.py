@@ -31,8 +31,8 @@ TYPES = {
     "goe_python.h": ("goe_python_setting_t", "goe_python_rule_t"),
     "goe_flight.h": (
         "goe_flight_status_t", "goe_flight_attitude_t", "goe_flight_position_t", "goe_flight_detection_t",
-        "goe_flight_frame_t", "goe_flight_action_t", "goe_flight_assessment_t", "goe_flight_obstacle_t",
-        "goe_flight_counters_t",
+        "goe_flight_frame_t", "goe_flight_action_t", "goe_flight_reason_t", "goe_flight_assessment_t",
+        "goe_flight_obstacle_t", "goe_flight_counters_t",
     ),
     "goe_python_flight.h": (),
 }  # fmt: skip

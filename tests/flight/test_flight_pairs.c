@@ -157,9 +157,7 @@ static void fly_offsets(double first_m, double last_m, double loiter_m) {
 
 static void no_order_leads_into_a_second_mast_on_the_right(void) { fly_offsets(0.0, 100.0, 0.0); }
 static void no_order_leads_into_a_second_mast_on_the_left(void) { fly_offsets(-100.0, 0.0, 0.0); }
-static void no_circle_about_a_target_leads_into_a_second_mast(void) {
-    fly_offsets(-100.0, 100.0, 80.0);
-}
+static void no_circle_about_a_target_leads_into_a_second_mast(void) { fly_offsets(-100.0, 100.0, 80.0); }
 
 /* One behind the other on the course. */
 static void a_second_mast_behind_the_first_one_is_passed_too(void) {

@@ -143,8 +143,8 @@ def test_a_place_that_cannot_be_written_is_told_before_anything_is_flown(
     assert done.stderr.startswith(f"goe_avoid: {tmp_path / place}: ")
 
 
-# Flights, some 10 s of one core. Even seeds: on these the thresholds were settled. Of 3,000 flights of other seeds some still miss a
-# goal: port/flight/README.md has the table.
+# Flights, some 10 s of one core. Even seeds: on these the thresholds were settled. Of 3,000 flights of other seeds some
+# still miss a goal: port/flight/README.md has the table.
 SEVERAL = 630
 SEVERAL_SEED = 2
 
