@@ -37,7 +37,8 @@
     X(method, CHOICE, "", GOE_METHOD_MIN, GOE_METHOD_MAX, GOE_METHOD_MAX, "1 window, 2 refined") \
     X(model, CHOICE, "", GOE_MODEL_AUTO, GOE_MODEL_LINE, GOE_MODEL_AUTO, "1 auto, 2 disc, 3 line (refined: a box)") \
     X(heading_auto, TRUTH, "", 0, 1, 1, "direction of Z: the vehicle's yaw at the first image") \
-    X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "direction of Z otherwise, clockwise from north")
+    X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "direction of Z otherwise, clockwise from north") \
+    X(navigation.velocity_bias_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity")
 
 #if GOE_WITH_REFINED
 #define GOE_SETTINGS_REFINED(X) \
@@ -45,7 +46,6 @@
     X(navigation.attitude_white_deg, REAL, "deg", 1.0e-4f, 30.0f, 0.1f, "attitude error that is new in each image") \
     X(navigation.attitude_drift_deg, REAL, "deg/s^0.5", 0.0f, 30.0f, 0.0f, "random walk of the attitude error") \
     X(navigation.height_bias_m, REAL, "m", 1.0e-3f, 1.0e3f, 0.5f, "constant error of the height above ground") \
-    X(navigation.velocity_bias_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity") \
     X(navigation.position_walk_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the own position") \
     X(navigation.position_white_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of the own position that is new in each image; boxes") \
     X(navigation.height_white_m, REAL, "m", 0.0f, 1.0e3f, 0.0f, "error of the height that is new in each image") \

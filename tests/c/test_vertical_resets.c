@@ -326,7 +326,7 @@ static void a_jump_counts_where_the_track_begins_at_first_sight(void) {
     add_jump(8, 0.0f, 0.0f, 2.5f);
     add_jump(16, 2.0f, 0.0f, -4.0f);
     check_source_by_source();
-    TEST_ASSERT_EQUAL_INT64(1000000 + 16 * 125000, plain.motion.start_time_us); /* the track began with image 16 */
+    TEST_ASSERT_TRUE(plain.motion.start_time_us == 1000000 + 16 * 125000); /* the track began with image 16 */
     TEST_ASSERT_TRUE(of_jumped.valid & GOE_HAS_POSITION);
 }
 
