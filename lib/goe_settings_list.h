@@ -37,7 +37,10 @@
     X(method, CHOICE, "", GOE_METHOD_MIN, GOE_METHOD_MAX, GOE_METHOD_MAX, "1 window, 2 refined") \
     X(model, CHOICE, "", GOE_MODEL_AUTO, GOE_MODEL_LINE, GOE_MODEL_AUTO, "1 auto, 2 disc, 3 line (refined: a box)") \
     X(heading_auto, TRUTH, "", 0, 1, 1, "direction of Z: the vehicle's yaw at the first image") \
-    X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "direction of Z otherwise, clockwise from north") \
+    X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "direction of Z otherwise, clockwise from north")
+
+/* Of every method: a plan without a sigma of its own takes it. */
+#define GOE_SETTINGS_VELOCITY(X) \
     X(navigation.velocity_bias_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity")
 
 #if GOE_WITH_REFINED
@@ -83,7 +86,9 @@
 #endif
 /* clang-format on */
 
-#define GOE_SETTINGS(X) GOE_SETTINGS_CAMERA(X) GOE_SETTINGS_GENERAL(X) GOE_SETTINGS_REFINED(X) GOE_SETTINGS_WINDOW(X)
+#define GOE_SETTINGS(X)                                                                                                \
+    GOE_SETTINGS_CAMERA(X)                                                                                             \
+    GOE_SETTINGS_GENERAL(X) GOE_SETTINGS_VELOCITY(X) GOE_SETTINGS_REFINED(X) GOE_SETTINGS_WINDOW(X)
 
 #if GOE_WINDOW_MAX < 8
 #define GOE_WINDOW_DEFAULT GOE_WINDOW_MAX
