@@ -219,6 +219,53 @@ static void a_side_that_is_not_seen_gives_no_row(void) {
     TEST_ASSERT_EQUAL_size_t(GOE_POINT_TOP, sighting.rows.feature[1]);
 }
 
+/* A cylinder 10 m wide and 100 m ahead, whose upright box has no extent: all sides lie on the principal point. */
+static void cylinder_ahead(double roof_m, double pitch_down_deg) {
+    const double c = cos(pitch_down_deg * RAD_PER_DEG);
+    const double s = sin(pitch_down_deg * RAD_PER_DEG);
+    const float pitched[9] = {1.0f, 0.0f, 0.0f, 0.0f, (float)c, (float)s, 0.0f, (float)-s, (float)c};
+    model = A_DISC;
+    any = check_random_start("cylinder ahead");
+    sighting_start(&sighting, &any);
+    memset(sighting.state, 0, sizeof sighting.state);
+    memcpy(sighting.sight.camera_to_axes, pitched, sizeof pitched);
+    sighting.sight.camera_m = (goe_xz_t){0.0f, 0.0f};
+    sighting.sight.sides = &sides;
+    sighting.state[GOE_INVERSE_RANGE] = 0.01f;
+    sighting.state[GOE_FRONT_X] = 0.1f;
+    sighting.state[GOE_TOP] = (float)(0.01 * roof_m);
+    sighting_look(&sighting);
+    sides.usable = GOE_SEES_BOX;
+    sides.cut = false;
+    for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
+        sides.px[side] = (side & 1u) ? sighting.settings.camera.cy_px : sighting.settings.camera.cx_px;
+    }
+}
+
+/* GIVEN a cylinder whose roof is as high as a level camera WHEN the top is measured there THEN its plane is level and meets no point
+ * of the rim before the others: the nearest counts, 95 m away, and nothing is divided by the missing horizontal part. */
+static void a_level_plane_touches_the_nearest_point(void) {
+    cylinder_ahead(20.0, 0.0);
+    make_rows();
+    TEST_ASSERT_EQUAL_size_t(3, sighting.rows.count);
+    TEST_ASSERT_EQUAL_size_t(GOE_POINT_TOP, sighting.rows.feature[2]);
+    const float *by = &sighting.matrix.row[2][GOE_STATE_COLUMN];
+    CHECK_CLOSE(RESIDUAL_BOUND, 0.0, sighting.matrix.row[2][GOE_RESIDUAL]);
+    CHECK_CLOSE(1.0e-5, -1.0 / 0.95, by[GOE_TOP]);
+    CHECK_CLOSE(1.0e-5, 0.0, by[GOE_BEARING]);
+}
+
+/* GIVEN a camera with a lens that looks 60 degrees down WHEN the foot is ahead of it and the head of a tall cylinder is not THEN no
+ * side gives a row; a low one gives them. */
+static void a_head_behind_the_camera_gives_no_row(void) {
+    for (int tall = 0; tall < 2; tall++) {
+        cylinder_ahead(tall ? 100.0 : 5.0, 60.0);
+        sighting.settings.camera.k1 = -0.05f;
+        make_rows();
+        TEST_ASSERT_EQUAL_size_t(tall ? 0 : 3, sighting.rows.count);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------ flights -- */
 
 static goe_settings_t settings;
@@ -295,6 +342,8 @@ int main(void) {
     RUN_TEST(sides_touch_a_chord_where_its_image_ends);
     RUN_TEST(sides_touch_a_disc_where_its_image_ends);
     RUN_TEST(a_side_that_is_not_seen_gives_no_row);
+    RUN_TEST(a_level_plane_touches_the_nearest_point);
+    RUN_TEST(a_head_behind_the_camera_gives_no_row);
     RUN_TEST(a_house_by_its_box_and_its_corners_has_its_height);
     RUN_TEST(a_good_detector_is_not_spoiled_by_roll);
     return UNITY_END();
