@@ -239,7 +239,7 @@ static int check_diagonal(const goe_estimate_t *e) {
     return valid;
 }
 
-/* GIVEN flights that go through all models, and scatter THEN sigma and covariance tell the same of every quantity, in images that
+/* GIVEN flights that go through all models, and scatter THEN sigma and covariance agree for every quantity, in images that
  * show the obstacle and in those that do not. */
 static void sigmas_and_covariance_agree_in_flight(void) {
     unsigned models = 0;

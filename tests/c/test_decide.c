@@ -66,8 +66,8 @@ static void probability_and_time_decide(void) {
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
 }
 
-/* GIVEN a place so uncertain that hardly any of it lies within the margin THEN the small probability is no "clear": the decision is that too
- * little is known. One that is surely outside is clear, by either distance. */
+/* GIVEN a place so uncertain that hardly any of it lies within the margin THEN the small probability is no "clear": too little is known.
+ * A place that is surely outside is clear, by either distance. */
 static void what_is_hardly_known_is_not_clear(void) {
     for (int far_aside = 0; far_aside < 2; far_aside++) {
         place(far_aside == 1 ? 60.0 : 0.0);
@@ -91,7 +91,7 @@ static void what_is_hardly_known_is_not_clear(void) {
 
 /* GIVEN detections for more than two seconds without an answer THEN the old answer clears nothing; an answer that is as old for want of
  * detections does. */
-static void an_old_answer_beside_new_detections_clears_nothing(void) {
+static void an_old_answer_clears_nothing_after_new_detections(void) {
     place(60.0);
     estimator.estimate.method = GOE_METHOD_REFINED;
     estimator.estimate.fresh = false;
@@ -242,7 +242,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(probability_and_time_decide);
     RUN_TEST(what_is_hardly_known_is_not_clear);
-    RUN_TEST(an_old_answer_beside_new_detections_clears_nothing);
+    RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(without_a_position_nothing_is_known);
     RUN_TEST(every_failure_keeps_the_decision);

@@ -939,7 +939,7 @@ static float height_sigma_with(float first_m, float later_m, goe_model_t model, 
     return estimate->sigma.height_m;
 }
 
-/* A thing 7 to 14 times as long as wide, some 3 to 40 m beside a straight flight. Returns the images of the pass. */
+/* A thing 7 to 14 times as long as wide, some 3 to 40 m to the side of a straight flight. Returns the images of the pass. */
 static int any_slender(scene_t *scene) {
     scene_default(scene);
     scene->boxes = true;
@@ -968,7 +968,7 @@ static double width_across(const scene_t *scene, const goe_estimator_t *estimato
 }
 
 /* GIVEN exact boxes of slender things, whose width changes as the line of sight turns, and of which no image shows how deep they are,
- * THEN none is told with a width that is wrong by six sigma, suspect or not. */
+ * THEN no width is reported that is wrong by six sigma, suspect or not. */
 static void the_width_of_slender_things_is_not_confidently_wrong(void) {
     int wrong = 0;
     any = check_random_start("slender");
@@ -991,7 +991,7 @@ static void the_width_of_slender_things_is_not_confidently_wrong(void) {
         }
         wrong += worst > 6.0 ? 1 : 0;
     }
-    check_report("slender things told wrong by six sigma, of 400", wrong);
+    check_report("slender things reported wrong by six sigma, of 400", wrong);
     TEST_ASSERT_EQUAL_INT(0, wrong);
 }
 

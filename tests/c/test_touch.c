@@ -200,7 +200,7 @@ static void check_model(model_t of, int cases, const char *what) {
 }
 
 /* GIVEN obstacles of any size and place, a camera above or below the roof that rolls by up to 30 degrees, under an attitude bias,
- * WHEN a box stands for left, right and top THEN the sides leave no residual whichever top is configured, and the derivatives are
+ * WHEN a box replaces left, right and top THEN the sides leave no residual whichever top is configured, and the derivatives are
  * those of the extremes of roof and foot. */
 static void sides_touch_a_box_where_its_image_ends(void) { check_model(A_BOX, CASES, "boxes"); }
 static void sides_touch_a_chord_where_its_image_ends(void) { check_model(A_CHORD, CASES, "chords"); }
@@ -287,11 +287,11 @@ static scene_t house(double altitude_m, double roll_deg) {
     return scene;
 }
 
-/* Flies past it; returns the worst error of a height that is told, in its sigmas. */
+/* Flies past it; returns the worst error of a reported height, in its sigmas. */
 static double worst_height(const scene_t *scene) {
     scene_t by_box = *scene;
     double worst = 0.0;
-    int told = 0;
+    int reported = 0;
     by_box.boxes = true;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < IMAGES; k++) {
@@ -302,12 +302,12 @@ static double worst_height(const scene_t *scene) {
         image.box = boxed.box;
         (void)goe_update(&estimator, &image, &estimate);
         if (estimate.fresh && (estimate.valid & GOE_HAS_HEIGHT) != 0u && estimate.model == GOE_MODEL_BOX) {
-            told++;
+            reported++;
             check_worst(&worst, ((double)estimate.height_m - scene->height_m) / (double)estimate.sigma.height_m);
         }
         TEST_ASSERT_FALSE(estimate.suspect);
     }
-    TEST_ASSERT_TRUE(told > IMAGES / 3);
+    TEST_ASSERT_TRUE(reported > IMAGES / 3);
     return worst;
 }
 
@@ -325,8 +325,8 @@ static void a_house_by_its_box_and_its_corners_has_its_height(void) {
     }
 }
 
-/* GIVEN the same by a detector that is good to half a percent THEN the points that used to stand for a box would be off by
- * more than that: a rolled house keeps its height, its width and its length. */
+/* GIVEN the same by a detector that is good to half a percent THEN a rolled house keeps its height, its width and its length:
+ * points in place of the box would be off by more than that detector. */
 static void a_good_detector_is_not_spoiled_by_roll(void) {
     scene_t scene = house(30.0, 25.0);
     settings = scene_settings(&scene);

@@ -603,7 +603,7 @@ def test_bad_usage(words: list[str], capsys: pytest.CaptureFixture[str]) -> None
     assert "too small" in capsys.readouterr().err
 
 
-def test_the_evidence_tells_the_goals_by_mix() -> None:
+def test_the_evidence_lists_the_goals_by_mix() -> None:
     counts = {"flights|points": 1000, "confident|points|any": 4, "flights|base": 1000, "vanished|base|any": 1}
     rows = {row.what: row for row in evidence_lies.rows_of(counts, ["points", "base"])}
     assert rows["flights"].figure == "2,000"
