@@ -71,11 +71,6 @@ static void add_jump(int from, float north_m, float east_m, float down_m) {
 
 /* ------------------------------------------------------------------------------------------------------------ images -- */
 
-static void hide_points(goe_image_t *image) {
-    image->left.seen = image->right.seen = image->top.seen = false;
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
-}
-
 /* By half a turn about the vertical. */
 static void turn_back(float q[4]) {
     const float before[4] = {q[0], q[1], q[2], q[3]};
@@ -111,13 +106,13 @@ static void see(int k, goe_image_t *image) {
         image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
     }
     if (flight.kind == BOXES) {
-        hide_points(image);
+        scene_hide_points(image);
     }
     if (flight.kind == BOXES || flight.kind == BOXES_AND_CORNERS) {
         image->box = box.box;
     }
     if (k >= flight.blind_from && k < flight.blind_until) {
-        hide_points(image);
+        scene_hide_points(image);
         image->box.seen = 0u;
         if (flight.looks_back) {
             turn_back(image->pose.attitude);
