@@ -2,7 +2,7 @@
  * goe - Ground Obstacle Estimator
  *
  * From one camera's view of a static ground obstacle (a building, a truck, a chimney) and the aircraft's own motion:
- * where the obstacle is, how big it is, how it stands, each with its one-sigma.
+ * the position, size and orientation of the obstacle, each with a 1-sigma uncertainty.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  *
