@@ -17,6 +17,7 @@ from ..spread import Workers
 from . import record, search
 from .decode import decode
 from .evolve import Best, evolve
+from .finds import KINDS
 from .genes import MIXES, Flights
 from .goals import BLOCK, block
 from .show import from_json, show, to_json
@@ -53,8 +54,9 @@ def _checked(arguments: argparse.Namespace) -> int:
 
 
 def _chosen(tally: Tally, seed: int, mixes: list[int]) -> dict[str, tuple[Key, Flights]]:
-    """A flight of each of the most frequent classes, by the folder that it goes to."""
-    keys = sorted(tally.examples, key=lambda key: (-tally.counts[("class", *key)], key))[:LOGS_MOST]
+    """A flight of each class, by the folder that it goes to: lost warnings first, then the most frequent classes."""
+    keys = sorted(tally.examples, key=lambda key: (-KINDS.index(key[0]), -tally.counts[("class", *key)], key))
+    keys = keys[:LOGS_MOST]
     found = {}
     for key in keys:
         example = tally.examples[key]
