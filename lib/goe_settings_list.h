@@ -88,7 +88,7 @@
 
 #define GOE_SETTINGS(X)                                                                                                \
     GOE_SETTINGS_CAMERA(X)                                                                                             \
-    GOE_SETTINGS_GENERAL(X) GOE_SETTINGS_VELOCITY(X) GOE_SETTINGS_REFINED(X) GOE_SETTINGS_WINDOW(X)
+    GOE_SETTINGS_GENERAL(X) GOE_SETTINGS_REFINED(X) GOE_SETTINGS_VELOCITY(X) GOE_SETTINGS_WINDOW(X)
 
 #if GOE_WINDOW_MAX < 8
 #define GOE_WINDOW_DEFAULT GOE_WINDOW_MAX
