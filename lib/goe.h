@@ -280,8 +280,8 @@ typedef struct {
                                  height is a reading of where it began, whose mean the filter learns */
     float slope;              /* slope of the ground that height_m is above, m per m flown; 0 to 1; default 0. It lets the height
                                  go wrong on the way; what it is wrong by at first, slope times range, is height_bias_m's */
-    float ground_m;           /* upright boxes: how far the obstacle's ground may lie off that which height_m is above, added to
-                                 height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
+    float ground_m;           /* upright boxes, also with base corners: how far the obstacle's ground may lie off that which height_m
+                                 is above, added to height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
 } goe_navigation_t;
 
 /* How wrong the features are, for the refined method: one-sigma each. */
@@ -423,7 +423,10 @@ typedef struct {
                                 upper rim. Seen from below the roof and not far from the axis it is the highest point in
                                 the image; from above, the highest one is another: refined.top_is_highest */
     goe_pixel_t base_left, base_near, base_right; /* visible corners of the base on the ground, in image order;
-                                base_near lies between two visible faces, and is not seen when one face alone is */
+                                base_near lies between two visible faces, and is not seen when one face alone is.
+                                Refined: for eight images after it was seen it counts as missed; left and right
+                                alone are a face only where one would be seen alone, and the sigmas hold that they
+                                may be the outer ends of two */
     goe_box_t box;
     goe_image_noise_t noise;
     uint8_t camera; /* number of the camera that took it; GOE_OUT_OF_RANGE if there is none of that number. A track passes from

@@ -52,6 +52,7 @@ static void start(float range_m, float height_sd_m) {
         *goe_srif_at(&filter.root, i, i) = 1.0f;
     }
     filter.phase = GOE_PHASE_DISC;
+    filter.known = GOE_HAS_POSITION;
     filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = RANGE_KNOWN * range_m;
     *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) = range_m / height_sd_m;
@@ -140,6 +141,21 @@ static void what_finds_no_room_is_told_later(void) {
     TEST_ASSERT_EQUAL_INT(0, tell());
     CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
     CHECK_CLOSE(0.05, 1.0 - 1.0 / READINGS, filter.state[GOE_GROUND] * RANGE_M);
+}
+
+/* GIVEN a filter that knows no position yet THEN what the heights say waits, as its range may be off by a factor; none of it is lost. */
+static void without_a_position_the_heights_wait(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M, obs.height_sd_m);
+    for (int k = 1; k < READINGS; k++) {
+        read_height(HEIGHT_M + 1.0f, 0.0f);
+    }
+    filter.known = 0;
+    TEST_ASSERT_EQUAL_INT(0, tell());
+    filter.known = GOE_HAS_POSITION;
+    TEST_ASSERT_EQUAL_INT(1, tell());
+    CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
 }
 
 /* GIVEN a first guess of the range that proves wrong THEN the height is known as it was told, in metres: no better when the
@@ -291,6 +307,7 @@ int main(void) {
     RUN_TEST(readings_tell_the_mean_and_no_more);
     RUN_TEST(the_count_of_readings_saturates);
     RUN_TEST(what_finds_no_room_is_told_later);
+    RUN_TEST(without_a_position_the_heights_wait);
     RUN_TEST(a_wrong_first_range_leaves_the_height_as_told);
     RUN_TEST(the_slope_of_the_ground_adds_up_over_the_way);
     RUN_TEST(a_height_that_is_kept_has_no_slope);
