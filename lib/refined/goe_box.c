@@ -141,7 +141,7 @@ static void corners_from(size_t left, bool two, size_t corner[3]) {
 static float misfit(const goe_observation_t *obs, const outline_t *o, const size_t corner[3]) {
     const goe_xz_t *l = &o->corner[corner[OUTER_LEFT]];
     const goe_xz_t *r = &o->corner[corner[OUTER_RIGHT]];
-    const float wide = r->x / (r->z > AHEAD_MIN ? r->z : AHEAD_MIN) - l->x / (l->z > AHEAD_MIN ? l->z : AHEAD_MIN);
+    const float wide = r->x / goe_larger(r->z, AHEAD_MIN) - l->x / goe_larger(l->z, AHEAD_MIN);
     return goe_absolute(obs->point[GOE_POINT_BASE_RIGHT].x - obs->point[GOE_POINT_BASE_LEFT].x - wide);
 }
 

@@ -26,7 +26,7 @@ typedef struct {
     float range_variance; /* of GOE_INVERSE_RANGE */
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;       /* box: both were seen, its length is estimated */
-    bool stand_in;           /* disc: it stands in for a box */
+    bool stand_in;        /* disc: it stands in for a box */
     bool base;            /* both outer base corners are seen */
     bool edge;            /* an edge of the base is seen */
     uint8_t number;       /* of the camera */

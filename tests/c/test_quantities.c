@@ -645,6 +645,19 @@ static void what_has_moved_beyond_all_bounds_is_not_told(void) {
     }
 }
 
+/* GIVEN a roof higher than any obstacle's, known to a share of its height, THEN no height is reported; the rest is. */
+static void a_height_beyond_all_bounds_is_not_reported(void) {
+    static const float high_m[] = {9.0e5f, 1.1e6f};
+    any = check_random_start("high");
+    for (size_t i = 0; i < 2; i++) {
+        make_any(GOE_PHASE_BOX);
+        be_uncertain(1.0e-3);
+        filter.state[GOE_TOP] = high_m[i] * filter.state[GOE_INVERSE_RANGE];
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        TEST_ASSERT_EQUAL_HEX(i == 0 ? 0x3Fu : 0x3Fu & ~(unsigned)GOE_HAS_HEIGHT, quantities.known);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
@@ -660,5 +673,6 @@ int main(void) {
     RUN_TEST(what_is_told_was_known_twice);
     RUN_TEST(without_a_range_nothing_is_known);
     RUN_TEST(what_has_moved_beyond_all_bounds_is_not_told);
+    RUN_TEST(a_height_beyond_all_bounds_is_not_reported);
     return UNITY_END();
 }
