@@ -4,7 +4,8 @@
 #include "goe_mavlink.h"
 
 static constexpr uint8_t NO_CAMERA = 255;
-static constexpr uint16_t FEATURES = 42700;
+static constexpr uint16_t FEATURES = 4270;
+static constexpr uint8_t SYSTEM = 1, COMPONENT = 1; /* as Px4Flight::set_mode() has them */
 
 extern "C" void setUp(void) { standin::begin(1000000u); }
 extern "C" void tearDown(void) {}
@@ -147,10 +148,46 @@ static void a_tunnel_that_is_cut_holds_one_less() {
 static void others_tunnels_are_theirs() {
     mavlink_tunnel_s tunnel{};
     goe_mavlink_sighting_t sighting;
-    unsigned offset = 0;
     append(tunnel, features(1));
-    tunnel.payload_type = 0;
-    TEST_ASSERT_FALSE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
+    for (const uint16_t type : {0, 200, 42700}) { /* types above 32767 are for experiments that nobody else sees */
+        unsigned offset = 0;
+        tunnel.payload_type = type;
+        TEST_ASSERT_FALSE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
+    }
+}
+
+/* Images that are taken of one TUNNEL to this system and component, by a vehicle that is system 1, component 1. */
+static unsigned taken_of_tunnel_to(uint8_t system, uint8_t component, bool knows_itself) {
+    static Px4Flight flight;
+    mavlink_tunnel_s tunnel{};
+    flight.begin();
+    flight.follows = flight.tells_images = false;
+    if (knows_itself) {
+        flight.set_mode(false, vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER);
+    }
+    flight.fly(0.5);
+    goe_mavlink_features_t message = features(1);
+    message.time_usec = standin::now_us() - 50000u;
+    tunnel.timestamp = standin::now_us();
+    tunnel.payload_type = FEATURES;
+    tunnel.target_system = system;
+    tunnel.target_component = component;
+    append(tunnel, message);
+    standin::publish(ORB_ID(mavlink_tunnel), &tunnel);
+    flight.fly(0.5);
+    const unsigned taken = flight.status().taken;
+    flight.end();
+    return taken;
+}
+
+static void a_tunnel_to_another_vehicle_is_not_taken() {
+    TEST_ASSERT_EQUAL(1, taken_of_tunnel_to(SYSTEM, COMPONENT, true));
+    TEST_ASSERT_EQUAL(1, taken_of_tunnel_to(SYSTEM, 0, true)); /* any component */
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(SYSTEM, 191, true));
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(2, COMPONENT, true));
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(0, 0, true)); /* to everybody: boxes are of one vehicle's camera */
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(SYSTEM, COMPONENT, false));
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(0, 0, false));
 }
 
 /* Random bytes, lengths and types: each call moves on or ends, and what is not understood names no camera that there is. */
@@ -158,6 +195,7 @@ static void any_bytes_in_a_tunnel_are_borne() {
     check_random_t random = check_random_start("tunnel");
     static Px4Flight flight;
     flight.begin();
+    flight.set_mode(false, vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER);
     flight.follows = flight.tells_images = false;
     for (int i = 0; i < 2000; i++) {
         mavlink_tunnel_s tunnel{};
@@ -166,6 +204,7 @@ static void any_bytes_in_a_tunnel_are_borne() {
         }
         tunnel.timestamp = standin::now_us();
         tunnel.payload_type = FEATURES;
+        tunnel.target_system = SYSTEM;
         tunnel.payload_length = static_cast<uint8_t>(check_random_bits(&random));
         tunnel.payload[0] = static_cast<uint8_t>(check_random_bits(&random) % 80u);
         standin::publish(ORB_ID(mavlink_tunnel), &tunnel);
@@ -182,6 +221,7 @@ static void a_flight_by_tunnel_is_that_by_topic() {
     goe_obstacle_s by[2];
     for (int i = 0; i < 2; i++) {
         flight.begin();
+        flight.set_mode(false, vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER);
         flight.follows = false;
         flight.tells_images = i == 0;
         for (int k = 0; k < 200; k++) {
@@ -202,6 +242,8 @@ static void a_flight_by_tunnel_is_that_by_topic() {
             }
             tunnel.timestamp = standin::now_us();
             tunnel.payload_type = FEATURES;
+            tunnel.target_system = SYSTEM;
+            tunnel.target_component = COMPONENT;
             append(tunnel, message);
             standin::publish(ORB_ID(mavlink_tunnel), &tunnel);
             standin::settle();
@@ -487,6 +529,7 @@ int main() {
     RUN_TEST(a_tunnel_holds_three_boxes);
     RUN_TEST(a_tunnel_that_is_cut_holds_one_less);
     RUN_TEST(others_tunnels_are_theirs);
+    RUN_TEST(a_tunnel_to_another_vehicle_is_not_taken);
     RUN_TEST(any_bytes_in_a_tunnel_are_borne);
     RUN_TEST(a_flight_by_tunnel_is_that_by_topic);
     RUN_TEST(a_landing_target_is_a_box_of_a_calibrated_age);

@@ -142,7 +142,8 @@ void Goe::take_features(uint32_t now_us) {
 void Goe::take_tunnel(uint32_t now_us) {
     mavlink_tunnel_s topic;
     unsigned offset = 0;
-    if (_tunnel_sub.update(&topic) && (_parameters.inputs & GOE_IN_TUNNEL) != 0) {
+    if (_tunnel_sub.update(&topic) && (_parameters.inputs & GOE_IN_TUNNEL) != 0 &&
+        goe_px4::is_addressed(topic, _vehicle_status.system_id, _vehicle_status.component_id)) {
         while (goe_px4::next_of_tunnel(topic, offset, _images.room())) {
             _images.keep(now_us);
         }
