@@ -1,6 +1,8 @@
 /* Behind the stand-in headers. SPDX-License-Identifier: MIT */
 #include "scripted.h"
 
+#include <AP_GOE.h>
+
 #include <AP_Arming/AP_Arming.h>
 #include <AP_HAL/AP_HAL.h>
 #include <AP_InertialSensor/AP_InertialSensor.h>
@@ -9,10 +11,12 @@
 #include <AP_Terrain/AP_Terrain.h>
 #include <AP_Vehicle/AP_Vehicle.h>
 
+#include <condition_variable>
 #include <cstdarg>
 #include <cstdio>
-#include <memory>
+#include <mutex>
 #include <sstream>
+#include <thread>
 
 Scripted scripted;
 
@@ -21,8 +25,8 @@ Scripted::Scripted()
       down_of_home(0.0f), origin{48800, 473977420, 85455940}, ekf_type(3), core(0), yaw_reset_ms(0),
       horizontal_reset_ms(0), vertical_reset_ms(0), vertical_change(0.0f), has_range_finder(false), has_terrain(false),
       range_finder(RangeFinder::Status::Good), range_m(0.0f), terrain_m(0.0f), armed(false), landing(false),
-      has_memory(true), has_database(true), channel(1), active(1, true), is_private(1, false), txspace(1000),
-      allocations(0) {
+      has_memory(true), has_threads(true), has_database(true), thread_is_late(false), channel(1), active(1, true),
+      is_private(1, false), txspace(1000), allocations(0), thread_stack(0), wakes(0) {
     channel[0] = mavlink_status_t{0, nullptr};
 }
 
@@ -35,19 +39,24 @@ bool Scripted::has_said(const char *part) const {
     return false;
 }
 
-std::map<uint32_t, ScriptedPush> Scripted::database() const {
-    std::map<uint32_t, ScriptedPush> latest;
-    for (const ScriptedPush &push : pushes) {
-        latest[push.id] = push;
+std::map<uint32_t, AP_OADatabase::OA_DbItem> Scripted::database() const {
+    std::map<uint32_t, AP_OADatabase::OA_DbItem> found;
+    AP_OADatabase *const database = AP::oadatabase();
+    for (unsigned i = 0; database != nullptr && i < database->database_count(); i++) {
+        const AP_OADatabase::OA_DbItem &item = database->get_item(i);
+        if (item.source == AP_OADatabase::OA_DbItem::Source::camera) {
+            found[item.id] = item;
+        }
     }
-    return latest;
+    return found;
 }
 
 // --------------------------------------------------------------------------------------------------------------- HAL
 
 static AP_HAL::Util util;
 extern const AP_HAL::HAL &hal;
-static const AP_HAL::HAL the_hal{&util};
+static AP_HAL::Scheduler scheduler;
+static const AP_HAL::HAL the_hal{&scheduler, &util};
 const AP_HAL::HAL &hal = the_hal;
 
 int AP_HAL::Util::snprintf(char *text, size_t size, const char *format, ...) {
@@ -63,13 +72,79 @@ uint64_t AP_HAL::micros64() { return scripted.now_us; }
 uint32_t AP_HAL::millis() { return uint32_t(scripted.now_us / 1000); }
 
 void *operator new(size_t size, const ScriptedHeap &) noexcept {
-    static std::vector<std::unique_ptr<char[]>> taken; // the firmware never gives it back
+    static std::vector<void *> &taken = *new std::vector<void *>; // what an object that a test has left still holds
     scripted.allocations++;
-    if (!scripted.has_memory) {
-        return nullptr;
+    taken.push_back(scripted.has_memory ? ::operator new(size, std::nothrow) : nullptr);
+    return taken.back();
+}
+
+// -------------------------------------------------------------------------------------------------------------- threads
+
+/* The thread and who wakes it run in turns, so that a test repeats to the last bit. A thread whose object a test has left waits for
+ * ever. */
+struct ScriptedThread {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool runs;
+
+    void wait_for(std::unique_lock<std::mutex> &lock, bool turn) {
+        changed.wait(lock, [&] { return runs == turn; });
     }
-    taken.emplace_back(new char[size]);
-    return taken.back().get();
+};
+
+static ScriptedThread *latest_thread;
+static thread_local ScriptedThread *own_thread;
+
+bool AP_HAL::Scheduler::thread_create(MemberProc proc, const char *name, uint32_t stack_size, priority_base, int8_t) {
+    if (!scripted.has_threads) {
+        return false;
+    }
+    ScriptedThread *const made = new ScriptedThread{{}, {}, true};
+    scripted.thread_name = name;
+    scripted.thread_stack = stack_size;
+    latest_thread = made;
+    std::thread([=] {
+        own_thread = made;
+        proc();
+    }).detach();
+    std::unique_lock<std::mutex> lock(made->mutex);
+    made->wait_for(lock, false);
+    return true;
+}
+
+bool ScriptedBinarySemaphore::wait_blocking() {
+    std::unique_lock<std::mutex> lock(own_thread->mutex);
+    own_thread->runs = false;
+    own_thread->changed.notify_all();
+    own_thread->wait_for(lock, true);
+    return true;
+}
+
+void ScriptedBinarySemaphore::signal() {
+    std::unique_lock<std::mutex> lock(latest_thread->mutex);
+    scripted.wakes++;
+    if (scripted.thread_is_late) {
+        return;
+    }
+    latest_thread->runs = true;
+    latest_thread->changed.notify_all();
+    latest_thread->wait_for(lock, false);
+}
+
+void ScriptedSemaphore::take() {
+    if (_taken++ != 0) {
+        abort();
+    }
+}
+
+void ScriptedSemaphore::give() { _taken--; }
+
+// ----------------------------------------------------------------------------------------------------------- parameters
+
+bool AP_Param::get(const char *name, float &value) {
+    const auto found = scripted.parameters.find(name);
+    value = found != scripted.parameters.end() ? found->second : value;
+    return found != scripted.parameters.end();
 }
 
 void AP_Param::setup_object_defaults(void *object, const GroupInfo *info) {
@@ -176,11 +251,36 @@ AP_Logger &logger() {
 
 bool AP_Arming::is_armed() const { return scripted.armed; }
 bool AP_Vehicle::is_landing() const { return scripted.landing; }
-bool AP_OADatabase::healthy() const { return true; }
 
-void AP_OADatabase::queue_push(const Vector3f &pos, uint32_t timestamp_ms, float distance, float radius,
-                               OA_DbItem::Source source, uint32_t id) {
-    scripted.pushes.push_back(ScriptedPush{pos, timestamp_ms, id, distance, radius, source});
+static AP_OADatabase::OA_DbItem database_items[5]; // of which one is another's
+
+AP_OADatabase::AP_OADatabase() : _database{database_items, 0, 5}, _radius_min(0.01f), _dist_max(0.0f) {}
+
+void AP_OADatabase::update() { AP::goe()->refresh_database(*this); }
+
+void AP_OADatabase::database_item_add(const OA_DbItem &item) {
+    if (_database.count < _database.size) {
+        _database.items[_database.count] = item;
+        _database.items[_database.count].send_to_gcs = get_send_to_gcs_flags(item.importance);
+        _database.count++;
+    }
+}
+
+uint8_t AP_OADatabase::get_send_to_gcs_flags(OA_DbItemImportance) { return 0xFF; }
+
+void AP_OADatabase::begin(unsigned foreign) {
+    _database.count = 0;
+    for (unsigned i = 0; i < foreign; i++) {
+        OA_DbItem item{};
+        item.source = OA_DbItem::Source::AIS;
+        item.id = 0x474F4500u; // as AP_GOE's first
+        database_item_add(item);
+    }
+}
+
+void AP_OADatabase::set_limits(float radius_min, float dist_max) {
+    _radius_min = radius_min;
+    _dist_max = dist_max;
 }
 
 /* Reads the arguments as the format says: an argument of another kind gives nonsense, which a test sees. */

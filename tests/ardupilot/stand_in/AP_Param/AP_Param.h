@@ -33,6 +33,7 @@ class AP_Param {
         uint8_t type;
     };
 
+    static bool get(const char *name, float &value);
     static void setup_object_defaults(void *object, const GroupInfo *info);
 };
 
