@@ -335,19 +335,30 @@ local function value_of(name)
     return param:get(name) or 0
 end
 
--- Why the fence forbids a place; nil: it does not. What the firmware does at a fence, it still does.
-local function fence_forbids(place, up_m)
+local function fence_kinds()
     if value_of("FENCE_ENABLE") < 1 and value_of("FENCE_AUTOENABLE") < 1 then
-        return nil
+        return 0
     end
-    local kinds = math.floor(value_of("FENCE_TYPE"))
+    return math.floor(value_of("FENCE_TYPE"))
+end
+
+-- Why the fence forbids a height above home; nil: it does not.
+local function fence_forbids_height(up_m)
+    local kinds = fence_kinds()
     local margin_m = value_of("FENCE_MARGIN")
     if kinds & FENCE_ALT_MAX ~= 0 and up_m > value_of("FENCE_ALT_MAX") - margin_m then
         return "above the fence"
     elseif kinds & FENCE_ALT_MIN ~= 0 and up_m < value_of("FENCE_ALT_MIN") + margin_m then
         return "below the fence"
-    elseif kinds & FENCE_CIRCLE ~= 0 and ahrs:get_home():get_distance(place) + math.abs(value_of("WP_LOITER_RAD")) >
-        value_of("FENCE_RADIUS") - margin_m then
+    end
+    return nil
+end
+
+-- The same of a place. What the firmware does at a fence, it still does.
+local function fence_forbids_place(place)
+    local kinds = fence_kinds()
+    local room_m = value_of("FENCE_RADIUS") - value_of("FENCE_MARGIN") - math.abs(value_of("WP_LOITER_RAD"))
+    if kinds & FENCE_CIRCLE ~= 0 and ahrs:get_home():get_distance(place) > room_m then
         return "outside the fence"
     elseif kinds & FENCE_POLYGON ~= 0 and value_of("FENCE_TOTAL") > 0 and any_polygon:get() < 1 then
         return "polygon fence, not visible"
@@ -373,7 +384,7 @@ local function forbids(place)
     elseif rise_m > ABOVE_M then
         return "too far above"
     end
-    return fence_forbids(place, up_m)
+    return fence_forbids_height(up_m) or fence_forbids_place(place)
 end
 
 -- Where the order leads to; nil: nowhere, or not where an aircraft may be led to.
@@ -403,10 +414,25 @@ local function fly_to_target()
     end
 end
 
+-- Above home, over the obstacle's top; nil: the autopilot's own height for an aborted landing.
+local function height_to_climb_m()
+    local place, here = ahrs:get_origin(), ahrs:get_location()
+    if not place or not here or not ahrs:home_is_set() or not (math.abs(standing.down) < DOWN_FAR_M) then
+        return nil
+    end
+    place:alt(place:alt() - math.floor(100 * standing.down))
+    local up_m = 0.01 * (place:alt() - ahrs:get_home():alt())
+    local rise_m = 0.01 * (place:alt() - here:alt())
+    if rise_m < 1 or rise_m > ABOVE_M or fence_forbids_height(up_m) then
+        return nil
+    end
+    return up_m
+end
+
 local function go_around()
     if vehicle:get_mode() == AUTO and vehicle:is_landing() then
         say(TEXT_WARNING, "go around")
-        gcs:run_command_int(DO_GO_AROUND, {})
+        gcs:run_command_int(DO_GO_AROUND, { p1 = height_to_climb_m() })
     end
     overruled = true -- once; the landing sequence goes on from there
 end

@@ -40,7 +40,7 @@ param = { add_table = function(_, _, prefix, count) assert(prefix == "GOEP_"); r
           get = function(_, name) return py.parameter(name) end }
 function Parameter(name) return { get = function() return py.parameter(name) end } end
 gcs = { send_text = function(_, severity, text) assert(#text <= 50, text); py.say(text) end,
-        run_command_int = function(_, command, what) py.command(command); return 0 end }
+        run_command_int = function(_, command, what) py.command(command, what.p1); return 0 end }
 arming = { is_armed = function() return py.armed end }
 local listens = {}
 mavlink = { init = function(_, queue, kinds) assert(queue >= kinds and kinds == py.kinds and queue <= 25) end,
@@ -125,6 +125,7 @@ class Plane:
     parameters: dict[str, float] = field(default_factory=lambda: {"MAV_SYSID": 1})
     texts: list[str] = field(default_factory=list)
     commands: list[int] = field(default_factory=list)
+    heights: list[float | None] = field(default_factory=list)  # that commands carry
     modes: list[int] = field(default_factory=list)
     places: list[tuple[int, int, int]] = field(default_factory=list)
     registered: list[int] = field(default_factory=list)
@@ -148,8 +149,9 @@ class Plane:
     def say(self, text: bytes) -> None:
         self.texts.append(text.decode())
 
-    def command(self, command: int) -> None:
+    def command(self, command: int, height_m: float | None) -> None:
         self.commands.append(command)
+        self.heights.append(height_m)
 
     def register(self, message: int) -> None:
         self.registered.append(message)
@@ -362,6 +364,28 @@ def test_going_around_is_for_landings_and_commanded_once(plane: Plane) -> None:
         plane.run(0.5, status=GO_AROUND)
     assert plane.commands == [DO_GO_AROUND]
     assert plane.modes == []
+
+
+@pytest.mark.parametrize(
+    ("down", "parameters", "height_m"),
+    [
+        (-60.0, {}, 60.0),
+        (math.nan, {}, None),
+        (math.inf, {}, None),
+        (-35.0, {}, None),  # the aircraft's own height: nothing is known of the top
+        (-190.0, {}, None),  # too far above
+        (-60.0, {"FENCE_ENABLE": 1, "FENCE_TYPE": 1, "FENCE_ALT_MAX": 50}, None),
+    ],
+)
+def test_going_around_climbs_over_the_top(
+    plane: Plane, down: float, parameters: dict[str, float], height_m: float | None
+) -> None:
+    plane.landing = True
+    plane.parameters |= parameters
+    plane.send(plane.hazard(action=GO_AROUND, lat=NOWHERE, down=down))
+    plane.run(1.0, status=GO_AROUND)
+    assert plane.commands == [DO_GO_AROUND]
+    assert plane.heights == [height_m]
 
 
 def test_holding_is_flown_like_the_others(plane: Plane) -> None:
