@@ -198,6 +198,7 @@ void FlownVehicle::take_sample() {
     flown_samples(&flown, flown.sample, &attitude, &position);
     scripted.now_us = first_us + uint64_t(flown.sample) * STEP_US;
     scripted.sample_us = uint32_t(scripted.now_us);
+    show_clock();
     scripted.q.q1 = attitude.q[0];
     scripted.q.q2 = attitude.q[1];
     scripted.q.q3 = attitude.q[2];
@@ -215,7 +216,7 @@ void FlownVehicle::step() {
     take_sample();
     send_image();
     goe->update();
-    if (AP::oadatabase() != nullptr) {
+    if (steps_database && AP::oadatabase() != nullptr) {
         AP::oadatabase()->update();
     }
     step_layer();

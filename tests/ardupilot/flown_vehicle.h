@@ -58,6 +58,7 @@ class FlownVehicle {
     goe_flight_assessment_t assessment;
     flown_t flown;
     bool compares;
+    bool steps_database{true};
 
     // the detector
     int delay;         // samples from exposure to arrival

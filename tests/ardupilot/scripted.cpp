@@ -11,6 +11,7 @@
 #include <AP_Terrain/AP_Terrain.h>
 #include <AP_Vehicle/AP_Vehicle.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdarg>
 #include <cstdio>
@@ -25,8 +26,8 @@ Scripted::Scripted()
       down_of_home(0.0f), origin{48800, 473977420, 85455940}, ekf_type(3), core(0), yaw_reset_ms(0),
       horizontal_reset_ms(0), vertical_reset_ms(0), vertical_change(0.0f), has_range_finder(false), has_terrain(false),
       range_finder(RangeFinder::Status::Good), range_m(0.0f), terrain_m(0.0f), armed(false), landing(false),
-      has_memory(true), has_threads(true), has_database(true), thread_is_late(false), channel(1), active(1, true),
-      is_private(1, false), txspace(1000), allocations(0), thread_stack(0), wakes(0) {
+      has_memory(true), has_threads(true), has_database(true), thread_is_late(false), runs_at_once(false), channel(1),
+      active(1, true), is_private(1, false), txspace(1000), allocations(0), thread_stack(0), wakes(0) {
     channel[0] = mavlink_status_t{0, nullptr};
 }
 
@@ -67,9 +68,19 @@ int AP_HAL::Util::snprintf(char *text, size_t size, const char *format, ...) {
     return length;
 }
 
-uint32_t AP_HAL::micros() { return uint32_t(scripted.now_us); }
-uint64_t AP_HAL::micros64() { return scripted.now_us; }
-uint32_t AP_HAL::millis() { return uint32_t(scripted.now_us / 1000); }
+static std::atomic<uint64_t> clock_us; // what the thread sees of scripted.now_us
+void show_clock() { clock_us = scripted.now_us; }
+
+static uint64_t seen_us() {
+    if (!scripted.runs_at_once) {
+        show_clock();
+    }
+    return clock_us;
+}
+
+uint32_t AP_HAL::micros() { return uint32_t(seen_us()); }
+uint64_t AP_HAL::micros64() { return seen_us(); }
+uint32_t AP_HAL::millis() { return uint32_t(seen_us() / 1000); }
 
 void *operator new(size_t size, const ScriptedHeap &) noexcept {
     static std::vector<void *> &taken = *new std::vector<void *>; // what an object that a test has left still holds
@@ -128,16 +139,25 @@ void ScriptedBinarySemaphore::signal() {
     }
     latest_thread->runs = true;
     latest_thread->changed.notify_all();
+    if (!scripted.runs_at_once) {
+        latest_thread->wait_for(lock, false);
+    }
+}
+
+void wait_for_the_thread() {
+    std::unique_lock<std::mutex> lock(latest_thread->mutex);
     latest_thread->wait_for(lock, false);
 }
 
 void ScriptedSemaphore::take() {
-    if (_taken++ != 0) {
+    if (scripted.runs_at_once) {
+        _mutex.lock();
+    } else if (!_mutex.try_lock()) {
         abort();
     }
 }
 
-void ScriptedSemaphore::give() { _taken--; }
+void ScriptedSemaphore::give() { _mutex.unlock(); }
 
 // ----------------------------------------------------------------------------------------------------------- parameters
 

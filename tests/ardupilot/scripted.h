@@ -48,6 +48,7 @@ struct Scripted {
     // the rest of the vehicle
     bool armed, landing, has_memory, has_threads, has_database;
     bool thread_is_late;                     // it gets no turn
+    bool runs_at_once;                       // the thread and the others, on as many cores
     std::map<std::string, float> parameters; // of the vehicle
     std::vector<mavlink_status_t> channel;   // links, one each
     std::vector<bool> active, is_private;
@@ -68,3 +69,7 @@ struct Scripted {
 };
 
 extern Scripted scripted;
+
+/* While the threads run at once: the thread sees the clock from here on; and who waits until it waits. */
+void show_clock();
+void wait_for_the_thread();

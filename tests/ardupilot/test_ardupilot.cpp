@@ -6,9 +6,11 @@
 
 #include <fenv.h>
 
+#include <atomic>
 #include <cstring>
 #include <set>
 #include <string>
+#include <thread>
 
 extern "C" {
 #include "goe_settings_list.h"
@@ -262,6 +264,38 @@ static void test_a_thread_that_is_late_loses_no_pose_and_no_image(void) {
     }
     TEST_ASSERT_EQUAL(vehicle.layer.counters.taken, vehicle.flight().counters.taken);
     TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
+}
+
+/* The thread, the main loop and the database's thread at once, as fast as they can: what a sanitizer of threads looks at. */
+static void test_the_threads_may_run_at_once(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.fly(3.0);
+    scripted.runs_at_once = true;
+    std::atomic<bool> goes_on(true);
+    std::thread planner([&] {
+        while (goes_on) {
+            AP::oadatabase()->update();
+            std::this_thread::yield();
+        }
+    });
+    for (int i = 0; i < 200; i++) {
+        vehicle.steps_database = false;
+        vehicle.step();
+        if (i % 10 == 0) {
+            char text[42];
+            (void)vehicle.goe->pre_arm_check(text, sizeof text);
+            set_parameter(*vehicle.goe, "OPTIONS", i % 20 == 0 ? 0 : 1);
+        }
+    }
+    goes_on = false;
+    planner.join();
+    wait_for_the_thread();
+    scripted.runs_at_once = false;
+    vehicle.fly(2.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
+    TEST_ASSERT_EQUAL(1, scripted.database().size());
 }
 
 static void test_a_thread_that_stands_still_is_survived(void) {
@@ -711,6 +745,7 @@ int main(void) {
     RUN_TEST(test_without_a_thread_it_says_so);
     RUN_TEST(test_the_scheduler_waits_for_no_estimator);
     RUN_TEST(test_a_thread_that_is_late_loses_no_pose_and_no_image);
+    RUN_TEST(test_the_threads_may_run_at_once);
     RUN_TEST(test_a_thread_that_stands_still_is_survived);
     RUN_TEST(test_parameters_wait_in_flight_until_nothing_is_followed);
     RUN_TEST(test_on_the_ground_parameters_are_taken_at_once);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 
 #include "AP_HAL_Boards.h"
 
@@ -38,15 +39,14 @@ uint32_t millis();
 
 #define FUNCTOR_BIND_MEMBER(method, result) ([this]() { (this->*method)(); })
 
-/* Two threads never hold one at a time: in step only one of them runs, and it gives back what it takes before it waits. */
+/* In turns nobody may wait for one: who has the turn gives back what it takes before it ends. */
 class ScriptedSemaphore {
   public:
-    ScriptedSemaphore() : _taken(0) {}
     void take();
     void give();
 
   private:
-    int _taken;
+    std::mutex _mutex;
 };
 
 class ScriptedHold {
@@ -58,7 +58,7 @@ class ScriptedHold {
     ScriptedSemaphore &_semaphore;
 };
 
-/* signal() lets the thread that waits run until it waits again. */
+/* signal() lets the thread that waits run until it waits again; or, if the test wants both to run at once, from now on. */
 class ScriptedBinarySemaphore {
   public:
     void signal();
