@@ -298,6 +298,12 @@ void AP_OADatabase::begin(unsigned foreign) {
     }
 }
 
+void AP_OADatabase::note_sent() {
+    for (uint16_t i = 0; i < _database.count; i++) {
+        _database.items[i].send_to_gcs = 0;
+    }
+}
+
 void AP_OADatabase::set_limits(float radius_min, float dist_max) {
     _radius_min = radius_min;
     _dist_max = dist_max;

@@ -252,6 +252,21 @@ static void test_the_scheduler_waits_for_no_estimator(void) {
     TEST_ASSERT_EQUAL(taken, vehicle.flight().counters.taken); // update() touched nothing of it
 }
 
+static void test_the_layer_knows_that_the_vehicle_lands(void) {
+    bool goes_around = false;
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.flown.scene.altitude_m = 9.0; // over a truck of 2.5 m: less than GOE_CLEAR
+    vehicle.flown.scene.x0_m = 0.5;
+    vehicle.flown.scene.z0_m = 260.0;
+    scripted.landing = true;
+    for (int i = 0; i < 12 * FLOWN_POSE_HZ; i++) {
+        vehicle.step();
+        goes_around = goes_around || vehicle.seen().action == GOE_FLIGHT_GO_AROUND;
+    }
+    TEST_ASSERT_TRUE(goes_around);
+}
+
 static void test_a_thread_that_is_late_loses_no_pose_and_no_image(void) {
     FlownVehicle vehicle;
     vehicle.compares = false; // the layer beside assesses meanwhile
@@ -404,17 +419,33 @@ static void test_the_loiter_radius_is_the_vehicles(void) {
     TEST_ASSERT_FALSE(scripted.has_said("too small"));
 }
 
-static void test_a_circle_that_cannot_be_flown_is_widened_with_a_word(void) {
-    CHECK_CLOSE(0.2, 85.5, settings_of({{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}}).loiter_m); // 22^2 / (g tan 30)
-    TEST_ASSERT_TRUE(scripted.has_said("GOE: WP_LOITER_RAD 60 too small, 85 used"));
+static unsigned words_with(const char *part) {
     unsigned words = 0;
     for (const std::string &text : scripted.texts) {
-        words += text.find("too small") != std::string::npos;
+        words += text.find(part) != std::string::npos;
     }
-    TEST_ASSERT_EQUAL(1, words);
+    return words;
+}
+
+static void test_a_circle_that_cannot_be_flown_is_widened_with_a_word(void) {
+    CHECK_CLOSE(0.2, 85.5, settings_of({{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}}).loiter_m); // 22^2 / (g tan 30)
+    TEST_ASSERT_EQUAL(1, words_with("GOE: WP_LOITER_RAD 60 too small, 85 used"));
     CHECK_CLOSE(0.2, 85.5, settings_of({{"WP_LOITER_RAD", 60}, {"TRIM_ARSPD_CM", 2200}}).loiter_m);
     CHECK_CLOSE(0.3, 135.6,
                 settings_of({{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}, {"ROLL_LIMIT_DEG", 20}}).loiter_m);
+}
+
+static void test_the_word_about_the_circle_comes_once(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    scripted.parameters = {{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}};
+    vehicle.fly(2.0);
+    set_parameter(*vehicle.goe, "MARGIN", 20);
+    vehicle.fly(2.0);
+    TEST_ASSERT_EQUAL(1, words_with("too small"));
+    scripted.parameters["AIRSPEED_CRUISE"] = 25;
+    vehicle.fly(2.0);
+    TEST_ASSERT_EQUAL(2, words_with("too small"));
 }
 
 static void test_bank_and_climb_are_no_more_than_the_vehicles(void) {
@@ -539,6 +570,7 @@ static void test_what_it_sends(void) {
     goe_mavlink_read_status(last.payload.data(), last.payload.size(), &status);
     TEST_ASSERT_EQUAL(3, status.alive);
     TEST_ASSERT_INT_WITHIN(3, 100, status.delay_mean);
+    TEST_ASSERT_INT_WITHIN(3, 100, status.delay_max);
     TEST_ASSERT_EQUAL(1, status.obstacles);
 
     const size_t so_far = scripted.sent.size();
@@ -564,6 +596,18 @@ static void test_an_obstacle_in_the_database(void) {
     CHECK_SAME(obstacle.center_ned_m[1], item.pos.y);
     TEST_ASSERT_EQUAL(AP_HAL::millis(), item.timestamp_ms);
     TEST_ASSERT_EQUAL(0xFF, item.send_to_gcs);
+}
+
+static void test_the_ground_station_sees_an_item_twice_a_second(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    unsigned sent = 0;
+    for (int i = 0; i < 4 * FLOWN_POSE_HZ; i++) {
+        vehicle.step();
+        sent += scripted.database().at(ID).send_to_gcs == 0xFF;
+        AP::oadatabase()->note_sent();
+    }
+    TEST_ASSERT_INT_WITHIN(1, 8, sent);
 }
 
 static void test_others_items_stay_as_they_are(void) {
@@ -744,6 +788,7 @@ int main(void) {
     RUN_TEST(test_without_memory_it_says_so);
     RUN_TEST(test_without_a_thread_it_says_so);
     RUN_TEST(test_the_scheduler_waits_for_no_estimator);
+    RUN_TEST(test_the_layer_knows_that_the_vehicle_lands);
     RUN_TEST(test_a_thread_that_is_late_loses_no_pose_and_no_image);
     RUN_TEST(test_the_threads_may_run_at_once);
     RUN_TEST(test_a_thread_that_stands_still_is_survived);
@@ -754,12 +799,14 @@ int main(void) {
     RUN_TEST(test_a_bad_parameter_is_named_as_the_ground_station_shows_it);
     RUN_TEST(test_the_loiter_radius_is_the_vehicles);
     RUN_TEST(test_a_circle_that_cannot_be_flown_is_widened_with_a_word);
+    RUN_TEST(test_the_word_about_the_circle_comes_once);
     RUN_TEST(test_bank_and_climb_are_no_more_than_the_vehicles);
     RUN_TEST(test_defaults_are_those_of_the_library);
     RUN_TEST(test_parameters_fit_into_their_table);
     RUN_TEST(test_only_whole_messages_of_the_own_vehicle_are_taken);
     RUN_TEST(test_what_it_sends);
     RUN_TEST(test_an_obstacle_in_the_database);
+    RUN_TEST(test_the_ground_station_sees_an_item_twice_a_second);
     RUN_TEST(test_others_items_stay_as_they_are);
     RUN_TEST(test_a_full_database_is_survived);
     RUN_TEST(test_what_the_database_forgot_comes_back);

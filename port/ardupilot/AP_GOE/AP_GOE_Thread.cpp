@@ -46,7 +46,6 @@ void AP_GOE::take_settings()
         _state->inbox.has_settings = false;
     }
     Found &next = _state->next;
-    next.bad_field = nullptr;
     if (init_flight(_state->tried, &next.bad_field)) {
         _state->good = _state->tried;
         _state->has_good = true;

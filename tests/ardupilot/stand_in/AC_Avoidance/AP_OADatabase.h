@@ -26,6 +26,7 @@ class AP_OADatabase {
     void update();
     uint16_t database_count() const { return _database.count; }
     const OA_DbItem &get_item(uint32_t i) const { return _database.items[i]; }
+    void note_sent();             // to the ground station
     void begin(unsigned foreign); // empty but for so many items of others
     void set_limits(float radius_min, float dist_max);
 
