@@ -131,6 +131,7 @@ class Plane:
     registered: list[int] = field(default_factory=list)
     waiting: list[tuple[bytes, int]] = field(default_factory=list)
     stamp: int = 1000000000000
+    link_id: int = 0
 
     def __post_init__(self) -> None:
         self.lua = lua53.LuaRuntime(encoding=None, unpack_returned_tuples=True)
@@ -184,7 +185,7 @@ class Plane:
         mav = self.goe.MAVLink(None, srcSystem=system, srcComponent=component)
         if self.key is not None:
             mav.signing.secret_key, mav.signing.sign_outgoing = self.key, True
-            mav.signing.link_id, mav.signing.timestamp = 0, self.stamp
+            mav.signing.link_id, mav.signing.timestamp = self.link_id, self.stamp
             self.stamp += 1
         return bytes(message.pack(mav))
 
@@ -476,7 +477,53 @@ def test_a_signed_order_that_is_played_once_more_counts_for_nothing(goe: ModuleT
     assert plane.modes == [GUIDED, AUTO]
 
 
-@pytest.mark.parametrize("text", [b"", b"short", KEY + b"x", b"g" * 64])
+@pytest.mark.parametrize("signed", [False, True])
+def test_another_vehicle_that_is_heard_as_well_gives_no_orders(goe: ModuleType, signed: bool) -> None:
+    plane = Plane(goe, key=KEY, files={"APM/goe.key": KEY}) if signed else Plane(goe)
+    plane.send(plane.heartbeat(), system=2)
+    plane.run(0.2)
+    plane.send(plane.hazard(), system=2)
+    plane.run(1.0)
+    assert plane.modes == []
+
+
+def test_a_signed_heartbeat_opens_no_link_to_unsigned_orders(goe: ModuleType) -> None:
+    plane = Plane(goe, key=KEY)
+    plane.run(2.0)
+    plane.beats, plane.key = False, None
+    plane.send(plane.hazard())
+    plane.run(1.0)
+    assert plane.modes == []
+
+
+def test_the_time_of_a_signature_has_48_bits(goe: ModuleType) -> None:
+    plane = Plane(goe, key=KEY, files={"APM/goe.key": KEY}, stamp=(5 << 24) - 3)
+    plane.send(plane.hazard())
+    plane.run(4.0, status=LEFT)
+    plane.pass_by()
+    plane.run(1.0)
+    assert plane.modes == [GUIDED, AUTO] and plane.stamp > 5 << 24
+
+
+def test_each_link_of_a_sender_has_its_own_time(goe: ModuleType) -> None:
+    plane = Plane(goe, key=KEY, files={"APM/goe.key": KEY})
+    plane.run(1.0, status=0)
+    plane.link_id, plane.stamp = 1, 1000
+    plane.send(plane.hazard())
+    plane.run(0.5)
+    assert plane.modes == [GUIDED]
+
+
+def test_many_signed_messages_are_judged_soon(goe: ModuleType) -> None:
+    plane = Plane(goe, key=KEY, files={"APM/goe.key": KEY})
+    for _ in range(20):
+        plane.send(plane.status(0))
+    plane.send(plane.hazard())
+    plane.run(1.0)
+    assert plane.modes == [GUIDED]
+
+
+@pytest.mark.parametrize("text", [b"", b"short", KEY + b"x", b"g" * 64, KEY.hex()[:-2].encode()])
 def test_a_key_file_that_holds_none_shuts_the_script(goe: ModuleType, text: bytes) -> None:
     plane = Plane(goe, files={"APM/goe.key": text})
     for key in (None, bytes(32), KEY):
@@ -584,6 +631,15 @@ def test_a_target_that_leaves_the_bounds_leaves_the_aircraft_at_the_one_before(p
     plane.run(5.0, status=LEFT)
     assert {place[0] for place in plane.places} == {474000000}
     assert sum("not flown" in text for text in plane.texts) == 1
+
+
+def test_each_order_that_is_not_flown_is_told(plane: Plane) -> None:
+    for _ in range(2):
+        plane.send(plane.hazard(lat=north(3000)))
+        plane.run(2.0, status=LEFT)
+        plane.pass_by()
+        plane.run(1.0, status=0)
+    assert sum("not flown" in text for text in plane.texts) == 2
 
 
 def test_an_order_that_nobody_knows_is_none(plane: Plane) -> None:
