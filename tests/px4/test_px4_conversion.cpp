@@ -471,6 +471,12 @@ static void a_fixed_wing_tells_loiter_bank_and_climb() {
     standin::set_other("FW_T_CLMB_MAX", 2.f);
     goe_parameters_read(parameters, true);
     CHECK_SAME(2.f, parameters.flight.climb_m_s);
+    standin::set_other("FW_T_CLMB_MAX", 5.f);
+    standin::set_other("NAV_LOITER_RAD", NAN);
+    goe_parameters_read(parameters, true);
+    CHECK_SAME(2.5f, parameters.flight.climb_m_s);
+    CHECK_SAME(0.f, parameters.flight.loiter_m);
+    standin::set_other("NAV_LOITER_RAD", 200.f);
     goe_parameters_read(parameters, false); /* without wings there is no circle */
     CHECK_SAME(0.f, parameters.flight.loiter_m);
     CHECK_SAME(30.f, parameters.flight.bank_deg);
