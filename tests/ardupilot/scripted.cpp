@@ -1,6 +1,8 @@
 /* Behind the stand-in headers. SPDX-License-Identifier: MIT */
 #include "scripted.h"
 
+#include <unity.h>
+
 #include <AP_GOE.h>
 
 #include <AP_Arming/AP_Arming.h>
@@ -27,7 +29,7 @@ Scripted::Scripted()
       horizontal_reset_ms(0), vertical_reset_ms(0), vertical_change(0.0f), has_range_finder(false), has_terrain(false),
       range_finder(RangeFinder::Status::Good), range_m(0.0f), terrain_m(0.0f), armed(false), landing(false),
       has_memory(true), has_threads(true), has_database(true), thread_is_late(false), runs_at_once(false), channel(1),
-      active(1, true), is_private(1, false), txspace(1000), allocations(0), thread_stack(0), wakes(0) {
+      active(1, true), is_private(1, false), txspace(1000), allocations(0), thread_stack(0), wakes(0), searches(0) {
     channel[0] = mavlink_status_t{0, nullptr};
 }
 
@@ -161,10 +163,31 @@ void ScriptedSemaphore::give() { _mutex.unlock(); }
 
 // ----------------------------------------------------------------------------------------------------------- parameters
 
-bool AP_Param::get(const char *name, float &value) {
-    const auto found = scripted.parameters.find(name);
-    value = found != scripted.parameters.end() ? found->second : value;
-    return found != scripted.parameters.end();
+static std::map<const AP_Param *, std::string> &names() {
+    static std::map<const AP_Param *, std::string> the_names;
+    return the_names;
+}
+
+/* By name through all of them: a slow search, which is counted. */
+AP_Param *AP_Param::find(const char *name, enum ap_var_type *type, uint16_t *) {
+    static AP_Param found[8];
+    scripted.searches++;
+    if (scripted.parameters.count(name) == 0) {
+        return nullptr;
+    }
+    for (AP_Param &one : found) {
+        if (names()[&one].empty() || names()[&one] == name) {
+            names()[&one] = name;
+            *type = AP_PARAM_INT16;
+            return &one;
+        }
+    }
+    abort();
+}
+
+float AP_Param::cast_to_float(enum ap_var_type type) const {
+    TEST_ASSERT_EQUAL(AP_PARAM_INT16, type);
+    return scripted.parameters.at(names().at(this));
 }
 
 void AP_Param::setup_object_defaults(void *object, const GroupInfo *info) {

@@ -62,6 +62,7 @@ struct Scripted {
     std::string thread_name;
     uint32_t thread_stack;
     unsigned wakes;
+    unsigned searches; // for parameters, by name
 
     Scripted();
     bool has_said(const char *part) const;

@@ -448,6 +448,17 @@ static void test_the_word_about_the_circle_comes_once(void) {
     TEST_ASSERT_EQUAL(2, words_with("too small"));
 }
 
+static void test_parameters_are_searched_for_once(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    scripted.parameters = {{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}};
+    vehicle.step();
+    const unsigned searches = scripted.searches;
+    TEST_ASSERT_LESS_OR_EQUAL(6, searches);
+    vehicle.fly(3.0);
+    TEST_ASSERT_EQUAL(searches, scripted.searches);
+}
+
 static void test_bank_and_climb_are_no_more_than_the_vehicles(void) {
     CHECK_CLOSE(0.0, 20.0, settings_of({{"ROLL_LIMIT_DEG", 20}}).bank_deg);
     CHECK_CLOSE(1e-4, 25.0, settings_of({{"LIM_ROLL_CD", 2500}}).bank_deg);
@@ -800,6 +811,7 @@ int main(void) {
     RUN_TEST(test_the_loiter_radius_is_the_vehicles);
     RUN_TEST(test_a_circle_that_cannot_be_flown_is_widened_with_a_word);
     RUN_TEST(test_the_word_about_the_circle_comes_once);
+    RUN_TEST(test_parameters_are_searched_for_once);
     RUN_TEST(test_bank_and_climb_are_no_more_than_the_vehicles);
     RUN_TEST(test_defaults_are_those_of_the_library);
     RUN_TEST(test_parameters_fit_into_their_table);

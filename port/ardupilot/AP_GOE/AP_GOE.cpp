@@ -64,6 +64,7 @@ bool AP_GOE::start()
         return false;
     }
     _state = state;
+    find_vehicle();
     follow_params();
     return true;
 }
@@ -175,13 +176,12 @@ void AP_GOE::tell_settings()
 // A circle that the aircraft cannot fly is none: what it flies instead is wider, and that is what the layer must know.
 void AP_GOE::tell_loiter(float used_m)
 {
-    float set_m;
-    if (!AP_Param::get("WP_LOITER_RAD", set_m) || used_m <= fabsf(set_m) + 0.5f || is_zero(used_m - _told_loiter_m)) {
+    const float set_m = fabsf(_loiter_m.get());
+    if (used_m <= set_m + 0.5f || is_zero(used_m - _told_loiter_m)) {
         return;
     }
     _told_loiter_m = used_m;
-    GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: WP_LOITER_RAD %.0f too small, %.0f used", double(fabsf(set_m)),
-                  double(used_m));
+    GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: WP_LOITER_RAD %.0f too small, %.0f used", double(set_m), double(used_m));
 }
 
 void AP_GOE::tell_changes()

@@ -79,6 +79,15 @@ class AP_GOE
         goe_flight_settings_t layer;
     };
 
+    struct Foreign {           // parameter of the vehicle
+        const AP_Param *param; // null: it has none of that name
+        enum ap_var_type type;
+        float scale;
+
+        bool find(const char *name, float its_scale);
+        float get() const { return param != nullptr ? param->cast_to_float(type) * scale : 0.0f; }
+    };
+
     static const uint8_t WAITING_MAX = 16;
     static const uint8_t POSES_MAX = 16; // 0.32 s: the thread may be that late without a loss
 
@@ -121,6 +130,7 @@ class AP_GOE
 
     // AP_GOE_Params.cpp
     void read_params(goe_settings_t &estimator, goe_flight_settings_t &layer) const;
+    void find_vehicle();
     void read_vehicle(goe_flight_settings_t &layer) const;
     bool has_option(Option option) const { return (_options.get() & uint16_t(option)) != 0; }
     static const char *parameter_of(const char *field);
@@ -177,6 +187,7 @@ class AP_GOE
     HAL_Semaphore _inbox_sem, _found_sem;
     HAL_BinarySemaphore _wake; // the thread has something to do
     bool _tried;               // start() was called
+    Foreign _roll_limit_deg, _climb_max_m_s, _loiter_m, _cruise_m_s;
     unsigned _self_check;
 
     // pose

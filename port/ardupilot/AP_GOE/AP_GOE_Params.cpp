@@ -210,38 +210,42 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
 static float or_else(float value, float otherwise) { return is_zero(value) ? otherwise : value; }
 
-// A parameter of the vehicle's, under either of its names; false: it has none that is more than nothing.
-static bool find_positive(const char *name, const char *old_name, float old_scale, float &value)
+bool AP_GOE::Foreign::find(const char *name, float its_scale)
 {
-    float found;
-    if (AP_Param::get(name, found)) {
-        value = found;
-    } else if (old_name != nullptr && AP_Param::get(old_name, found)) {
-        value = found * old_scale;
-    } else {
-        return false;
+    param = AP_Param::find(name, &type);
+    scale = its_scale;
+    return param != nullptr;
+}
+
+// Once: the search goes through all names of the vehicle. Newer names first.
+void AP_GOE::find_vehicle()
+{
+    if (!_roll_limit_deg.find("ROLL_LIMIT_DEG", 1.0f)) {
+        (void)_roll_limit_deg.find("LIM_ROLL_CD", 1.0f / CM_PER_M);
     }
-    return is_positive(value);
+    (void)_climb_max_m_s.find("TECS_CLMB_MAX", 1.0f);
+    (void)_loiter_m.find("WP_LOITER_RAD", 1.0f);
+    if (!_cruise_m_s.find("AIRSPEED_CRUISE", 1.0f)) {
+        (void)_cruise_m_s.find("TRIM_ARSPD_CM", 1.0f / CM_PER_M);
+    }
 }
 
 /* What the vehicle's own parameters tell. A circle smaller than a turn at cruise speed and that bank is not flown: the layer gets
  * the one that is. */
 void AP_GOE::read_vehicle(goe_flight_settings_t &layer) const
 {
-    float value;
-    if (find_positive("ROLL_LIMIT_DEG", "LIM_ROLL_CD", 1.0f / CM_PER_M, value)) {
-        layer.bank_deg = MIN(layer.bank_deg, value);
+    if (is_positive(_roll_limit_deg.get())) {
+        layer.bank_deg = MIN(layer.bank_deg, _roll_limit_deg.get());
     }
-    if (find_positive("TECS_CLMB_MAX", nullptr, 0.0f, value)) {
-        layer.climb_m_s = MIN(layer.climb_m_s, value);
+    if (is_positive(_climb_max_m_s.get())) {
+        layer.climb_m_s = MIN(layer.climb_m_s, _climb_max_m_s.get());
     }
-    if (!AP_Param::get("WP_LOITER_RAD", value)) {
+    if (_loiter_m.param == nullptr) {
         return;
     }
-    layer.loiter_m = fabsf(value);
-    float cruise_m_s;
-    if (is_positive(layer.loiter_m) && find_positive("AIRSPEED_CRUISE", "TRIM_ARSPD_CM", 1.0f / CM_PER_M, cruise_m_s)) {
-        layer.loiter_m = MAX(layer.loiter_m, sq(cruise_m_s) / (GRAVITY_M_S2 * tanf(radians(layer.bank_deg))));
+    layer.loiter_m = fabsf(_loiter_m.get());
+    if (is_positive(layer.loiter_m) && is_positive(_cruise_m_s.get())) {
+        layer.loiter_m = MAX(layer.loiter_m, sq(_cruise_m_s.get()) / (GRAVITY_M_S2 * tanf(radians(layer.bank_deg))));
     }
 }
 

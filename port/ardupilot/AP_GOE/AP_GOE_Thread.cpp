@@ -15,7 +15,7 @@
 void AP_GOE::thread_main()
 {
     while (true) {
-        _wake.wait_blocking();
+        (void)_wake.wait_blocking();
         work();
     }
 }
