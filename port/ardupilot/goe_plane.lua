@@ -6,7 +6,7 @@ an order makes this script fly to the order's target in GUIDED, and back into th
 from AUTO and CRUISE; GO_AROUND only while landing in AUTO. Whoever chooses another mode meanwhile is not fought.
 
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
-companion falls silent, the aircraft stays at the target, circling, and the pilot is told: what is not seen may lie ahead.
+companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead.
 
 The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know, without having
 judged its signature. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new
@@ -66,15 +66,15 @@ local standing -- the order: whose, action, lat, lon, down; is_past: that one is
 local heard_ms = uint32_t(0)
 local sent_ms = uint32_t(0)
 local silence_told = false
-local told = {} -- texts that are said once
+local said = {} -- texts that were sent once, and are not sent again
 
 local function say(severity, text)
     gcs:send_text(severity, "GOE: " .. text)
 end
 
 local function say_once(text)
-    if not told[text] then
-        told[text] = true
+    if not said[text] then
+        said[text] = true
         say(TEXT_WARNING, text)
     end
 end
@@ -480,7 +480,7 @@ local function end_order()
             say(TEXT_WARNING, "not surely past, circling: pilot to decide")
         end
     end
-    standing, mode_before, overruled, told = nil, nil, false, {}
+    standing, mode_before, overruled, said = nil, nil, false, {}
 end
 
 -- Its report without an order may come after the word that there is none.

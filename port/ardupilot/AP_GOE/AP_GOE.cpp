@@ -91,15 +91,15 @@ void AP_GOE::follow_params()
         return;
     }
     if (!is_first && AP::arming().is_armed() && follows_something()) {
-        if (!_told_waiting) {
+        if (!_reported_waiting) {
             GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: parameters wait until nothing is followed");
-            _told_waiting = true;
+            _reported_waiting = true;
         }
         return;
     }
-    _told_waiting = false;
+    _reported_waiting = false;
     _state->given = now;
-    tell_loiter(now.layer.loiter_m);
+    report_loiter(now.layer.loiter_m);
     WITH_SEMAPHORE(_inbox_sem);
     _state->inbox.settings = now;
     _state->inbox.has_settings = true;
@@ -143,60 +143,60 @@ void AP_GOE::take_found()
 void AP_GOE::report()
 {
     log_obstacles();
-    tell_settings();
-    tell_changes();
+    report_settings();
+    report_changes();
     if (is_positive(_report_hz) && (AP_HAL::millis() - _reported_ms) * 0.001f * _report_hz >= 1.0f) {
         _reported_ms = AP_HAL::millis();
         send_obstacles();
     }
 }
 
-void AP_GOE::tell_settings()
+void AP_GOE::report_settings()
 {
     const Found &now = _state->shown;
-    if (now.taken_settings != _told_taken) {
-        if (_told_taken != 0) {
+    if (now.taken_settings != _reported_taken) {
+        if (_reported_taken != 0) {
             GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: parameters taken");
         }
-        _told_taken = now.taken_settings;
-        _told_lost = 0;
+        _reported_taken = now.taken_settings;
+        _reported_lost = 0;
     }
-    if (now.refused_settings != _told_refused) {
-        _told_refused = now.refused_settings;
-        _told_lost = 0;
+    if (now.refused_settings != _reported_refused) {
+        _reported_refused = now.refused_settings;
+        _reported_lost = 0;
         GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: bad parameter %s", parameter_of(now.bad_field));
     }
-    if (now.corruptions != _told_corruptions) {
-        _told_corruptions = now.corruptions;
-        _told_lost = 0;
+    if (now.corruptions != _reported_corruptions) {
+        _reported_corruptions = now.corruptions;
+        _reported_lost = 0;
         GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: memory was corrupted, begun again");
     }
 }
 
 // A circle that the aircraft cannot fly is none: what it flies instead is wider, and that is what the layer must know.
-void AP_GOE::tell_loiter(float used_m)
+void AP_GOE::report_loiter(float used_m)
 {
     const float set_m = fabsf(_loiter_m.get());
-    if (used_m <= set_m + 0.5f || is_zero(used_m - _told_loiter_m)) {
+    if (used_m <= set_m + 0.5f || is_zero(used_m - _reported_loiter_m)) {
         return;
     }
-    _told_loiter_m = used_m;
+    _reported_loiter_m = used_m;
     GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: WP_LOITER_RAD %.0f too small, %.0f used", double(set_m), double(used_m));
 }
 
-void AP_GOE::tell_changes()
+void AP_GOE::report_changes()
 {
     const goe_flight_assessment_t &now = _state->shown.assessment;
     const bool alive = now.detector_alive && now.pose_alive;
-    if (alive != _told_alive) {
-        _told_alive = alive;
+    if (alive != _reported_alive) {
+        _reported_alive = alive;
         GCS_SEND_TEXT(alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING, "GOE: %s",
                       alive            ? "alive"
                       : now.pose_alive ? "no images"
                                        : "no pose");
     }
-    if (now.action != _told_action) {
-        _told_action = now.action;
+    if (now.action != _reported_action) {
+        _reported_action = now.action;
         if (now.action == GOE_FLIGHT_NONE) {
             GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: no action any more");
         } else {
@@ -205,8 +205,8 @@ void AP_GOE::tell_changes()
         }
     }
     const uint16_t lost = _state->shown.counters.lost;
-    if (lost != _told_lost) {
-        _told_lost = lost;
+    if (lost != _reported_lost) {
+        _reported_lost = lost;
         GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: pose jumped, all obstacles given up");
     }
 }

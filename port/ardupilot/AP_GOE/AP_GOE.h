@@ -141,9 +141,9 @@ class AP_GOE
     bool follows_something() const;
     void take_found();
     void report();
-    void tell_changes();
-    void tell_settings();
-    void tell_loiter(float used_m);
+    void report_changes();
+    void report_settings();
+    void report_loiter(float used_m);
     void once_a_second();
 
     // AP_GOE_Thread.cpp
@@ -200,12 +200,12 @@ class AP_GOE
     // at the latest GOE_STATUS
     uint32_t _status_delay_us, _status_images;
 
-    // what was told last
+    // what was reported last
     uint32_t _second_ms, _reported_ms, _resent_ms;
-    goe_flight_action_t _told_action;
-    bool _told_alive, _told_waiting;
-    uint16_t _told_lost, _told_taken, _told_refused, _told_corruptions;
-    float _told_loiter_m;
+    goe_flight_action_t _reported_action;
+    bool _reported_alive, _reported_waiting;
+    uint16_t _reported_lost, _reported_taken, _reported_refused, _reported_corruptions;
+    float _reported_loiter_m;
 
     AP_Int8 _enable;
     AP_Int16 _width, _height;

@@ -230,7 +230,7 @@ void AP_GOE::find_vehicle()
     }
 }
 
-/* What the vehicle's own parameters tell. A circle smaller than a turn at cruise speed and that bank is not flown: the layer gets
+/* Limits from the vehicle's own parameters. A circle smaller than a turn at cruise speed and that bank is not flown: the layer gets
  * the one that is. */
 void AP_GOE::read_vehicle(goe_flight_settings_t &layer) const
 {

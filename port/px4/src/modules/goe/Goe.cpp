@@ -55,10 +55,10 @@ bool Goe::init() {
 bool Goe::has_wings() const { return _vehicle_status.vehicle_type == vehicle_status_s::VEHICLE_TYPE_FIXED_WING; }
 
 void Goe::read_parameters() {
-    const float told_m = _parameters.narrow_loiter_m;
+    const float reported_m = _parameters.narrow_loiter_m;
     _had_wings = has_wings();
     goe_parameters_read(_parameters, _had_wings);
-    if (_parameters.narrow_loiter_m > 0.f && fabsf(_parameters.narrow_loiter_m - told_m) > 0.f) {
+    if (_parameters.narrow_loiter_m > 0.f && fabsf(_parameters.narrow_loiter_m - reported_m) > 0.f) {
         mavlink_log_critical(&_mavlink_log_pub, "goe: NAV_LOITER_RAD %.0f too small, %.0f used",
                              static_cast<double>(_parameters.narrow_loiter_m),
                              static_cast<double>(_parameters.flight.loiter_m));
