@@ -12,7 +12,7 @@ The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scrip
 judged its signature. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new
 signature counts. Without a key only an unsigned message counts, and only while the autopilot itself takes unsigned messages from
 the same sender on the same link: its HEARTBEAT shows that. On a signed link the autopilot drops an unsigned HEARTBEAT, so nothing
-counts there.
+counts there; nor on a link on which anybody's signed HEARTBEAT comes.
 
 No target counts that is farther than GOEP_DIST, lower than GOEP_ALT_MIN, far below or above the aircraft, or outside the fence.
 ]]
@@ -104,10 +104,10 @@ local function sender_of(message, link)
     return string.char(link) .. message:sub(8, 9)
 end
 
--- A whole message of that kind from the own system: bytes on the wire from the length on, without the checksum. nil: it is none.
+-- A whole message of that kind: bytes on the wire from the length on, without the checksum. nil: it is none.
 local function frame_of(message, kind)
     local crc, _, length = string.unpack("<HBB", message)
-    if length > kind.length or message:byte(8) ~= own_system then
+    if length > kind.length then
         return nil
     end
     local frame = message:sub(4, HEADER + length)
@@ -232,6 +232,7 @@ local function take(payload, kind)
 end
 
 local beat_ms = {}   -- by sender: when the autopilot took an unsigned HEARTBEAT of it
+local signed_ms = {} -- by link: when the autopilot took a signed HEARTBEAT of anybody
 local newest = {}    -- by sender: low and high half of the time of its latest right signature
 local judged         -- the signed message that is being hashed
 
@@ -272,21 +273,30 @@ local function go_on_judging()
     take(payload_of(of.message, of.kind), of.kind)
 end
 
--- Whether a message may count at all, which costs less to know than its checksum. What is not known to the parser comes as it is.
-local function may_count(message, link, kind)
-    if kind == HEARTBEAT then
-        return not key and not is_signed(message)
-    elseif key then
-        if not is_signed(message) then
-            say_once("unsigned message, ignored")
-        end
-        return is_signed(message)
+local function is_recent(when_ms)
+    return when_ms and millis() - when_ms <= BEAT_MS
+end
+
+-- A HEARTBEAT comes only where the autopilot takes it: what it shows is how the link is used.
+local function take_heartbeat(message, link)
+    if not frame_of(message, HEARTBEAT) then
+        return
     elseif is_signed(message) then
+        signed_ms[link] = millis()
+    else
+        beat_ms[sender_of(message, link)] = millis()
+    end
+end
+
+-- Whether a message may count at all, which costs less to know than its checksum. What the parser does not know comes as it is.
+local function may_count(message, link)
+    local is_open = is_recent(beat_ms[sender_of(message, link)]) and not is_recent(signed_ms[link])
+    if message:byte(8) ~= own_system then
+        return false
+    elseif is_signed(message) and not key then
         say_once("signed message and no goe.key, ignored")
         return false
-    end
-    local beat = beat_ms[sender_of(message, link)]
-    if not beat or millis() - beat > BEAT_MS then
+    elseif not is_signed(message) and (key or not is_open) then
         say_once("unsigned message, ignored")
         return false
     end
@@ -295,14 +305,15 @@ end
 
 local function take_message(message, link)
     local kind = KINDS[id_of(message)]
-    if key == false or not kind or not may_count(message, link, kind) then
-        return
-    end
-    local frame = frame_of(message, kind)
-    if not frame then
+    if key == false or not kind then
         return
     elseif kind == HEARTBEAT then
-        beat_ms[sender_of(message, link)] = millis()
+        take_heartbeat(message, link)
+        return
+    end
+    local frame = may_count(message, link) and frame_of(message, kind)
+    if not frame then
+        return
     elseif key then
         begin_judging(message, link, kind, frame)
     else

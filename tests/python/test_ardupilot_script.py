@@ -496,6 +496,33 @@ def test_a_signed_heartbeat_opens_no_link_to_unsigned_orders(goe: ModuleType) ->
     assert plane.modes == []
 
 
+def test_a_link_on_which_somebody_signs_is_signed(goe: ModuleType) -> None:
+    """ArduPilot's first link takes unsigned messages even if it signs."""
+    plane = Plane(goe)
+    for _ in range(4):
+        plane.key = KEY
+        plane.send(plane.heartbeat(), system=255, component=190)
+        plane.key = None
+        plane.send(plane.heartbeat())
+        plane.send(plane.hazard())
+        plane.run(1.0)
+    assert plane.modes == [] and sum("unsigned" in text for text in plane.texts) == 1
+    plane.run(6.0)  # nobody signs any more
+    plane.send(plane.hazard())
+    plane.run(1.0)
+    assert plane.modes == [GUIDED]
+
+
+def test_a_harmed_signed_heartbeat_shuts_no_link(plane: Plane) -> None:
+    plane.key = KEY
+    plane.send(plane.heartbeat(), system=255, harm=13)
+    plane.key = None
+    plane.run(1.1)
+    plane.send(plane.hazard())
+    plane.run(1.0)
+    assert plane.modes == [GUIDED]
+
+
 def test_the_time_of_a_signature_has_48_bits(goe: ModuleType) -> None:
     plane = Plane(goe, key=KEY, files={"APM/goe.key": KEY}, stamp=(5 << 24) - 3)
     plane.send(plane.hazard())
