@@ -5,6 +5,7 @@
 #include "clock_sync.h"
 #include "companion_config.h"
 #include "goe_flight.h"
+#include "message_rates.h"
 #include "wire.h"
 
 #define AUTOPILOT_QUESTIONS 8 /* that are under way at most: a round trip of two seconds */
@@ -57,8 +58,8 @@ typedef struct {
     int64_t asked_us[AUTOPILOT_QUESTIONS]; /* own times of the latest questions for its clock, a ring ... */
     unsigned asked;                        /* ... with so many of them ever */
     bool answered;                         /* one was */
+    message_rates_t rates;
     int64_t requested_us, origin_asked_us; /* own times of the latest requests */
-    unsigned requests;
 
     /* counted; summary and status line tell them */
     unsigned long attitudes, positions, bad_samples, restarts, slips, jumps, strangers;

@@ -288,11 +288,6 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
     }
 }
 
-static bool is_for_us(const orders_t *orders, const mavlink_command_ack_t *answer) {
-    return (answer->target_system == 0 || answer->target_system == orders->wire->system) &&
-           (answer->target_component == 0 || answer->target_component == orders->wire->component);
-}
-
 void orders_take(orders_t *orders, const mavlink_message_t *message) {
     mavlink_command_ack_t answer;
     if (message->msgid != MAVLINK_MSG_ID_COMMAND_ACK || message->sysid != orders->autopilot->system ||
@@ -300,7 +295,7 @@ void orders_take(orders_t *orders, const mavlink_message_t *message) {
         return;
     }
     mavlink_msg_command_ack_decode(message, &answer);
-    if (answer.command != orders->command || !is_for_us(orders, &answer)) {
+    if (answer.command != orders->command || !wire_is_for_us(orders->wire, &answer)) {
         return;
     }
     if (answer.result == MAV_RESULT_ACCEPTED || answer.result == MAV_RESULT_IN_PROGRESS) {

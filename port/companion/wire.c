@@ -93,3 +93,8 @@ void wire_send_payload(wire_t *wire, goe_mavlink_message_t message, const uint8_
     wire->sender.current_tx_seq = sender.sequence;
     send_bytes(wire, bytes, size);
 }
+
+bool wire_is_for_us(const wire_t *wire, const mavlink_command_ack_t *answer) {
+    return (answer->target_system == 0 || answer->target_system == wire->system) &&
+           (answer->target_component == 0 || answer->target_component == wire->component);
+}

@@ -45,4 +45,7 @@ void wire_send(wire_t *wire, mavlink_message_t *message);
 /* Sends a payload of goe_mavlink's. */
 void wire_send_payload(wire_t *wire, goe_mavlink_message_t message, const uint8_t *payload, size_t length);
 
+/* Whether a command was the companion's: an autopilot may leave out whose. */
+bool wire_is_for_us(const wire_t *wire, const mavlink_command_ack_t *answer);
+
 #endif
