@@ -438,11 +438,13 @@ static void take_acknowledgement(autopilot_t *autopilot, const mavlink_message_t
     }
 }
 
+bool autopilot_is_stranger(autopilot_t *autopilot, int64_t now_us) {
+    const bool is_stranger = is_from_elsewhere(autopilot, now_us);
+    autopilot->strangers += is_stranger ? 1u : 0u;
+    return is_stranger;
+}
+
 void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
-    if (is_from_elsewhere(autopilot, now_us)) {
-        autopilot->strangers++;
-        return;
-    }
     if (message->msgid == MAVLINK_MSG_ID_HEARTBEAT) {
         take_heartbeat(autopilot, message, now_us);
         return;
@@ -559,6 +561,9 @@ void autopilot_ask(autopilot_t *autopilot, int64_t now_us) {
     judge_told_reset(autopilot, now_us);
     if (autopilot->heartbeat_us == 0) {
         return;
+    }
+    if (now_us - autopilot->heartbeat_us >= SILENT_US) { /* it may come back from another address */
+        link_release(autopilot->wire->link);
     }
     if (now_us - latest_question_us(autopilot) >= ASK_US) {
         ask_clock(autopilot, now_us);

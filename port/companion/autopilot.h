@@ -67,6 +67,10 @@ typedef struct {
 
 void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire);
 
+/* Whether what was read last came from another address than the autopilot's, while that is not silent: then it is counted, and no
+ * message of it is to be taken. */
+bool autopilot_is_stranger(autopilot_t *autopilot, int64_t now_us);
+
 /* Any message; those that are not the autopilot's, or of no interest, are passed over. */
 void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us);
 

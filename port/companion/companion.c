@@ -195,12 +195,13 @@ static void on_message(void *user, const mavlink_message_t *message) {
     companion_t *c = user;
     const int64_t now_us = clock_us(CLOCK_MONOTONIC);
     const uint32_t arrival_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
+    if (autopilot_is_stranger(&c->autopilot, now_us)) {
+        return;
+    }
     if (c->autopilot.heartbeat_us != 0 && message->sysid == c->autopilot.system) {
         take_detections(c, message, arrival_us);
     }
-    if (link_is_answered(c->autopilot_link)) {
-        orders_take(&c->orders, message);
-    }
+    orders_take(&c->orders, message);
     autopilot_take(&c->autopilot, message, now_us);
     if (c->autopilot.restarts != c->restarts) {
         c->restarts = c->autopilot.restarts;
@@ -291,6 +292,7 @@ static void end_second(companion_t *c, int64_t now_us) {
     reports_send_status(&c->wire, &c->flight, &c->assessment, &own, &rates->delay, c->self_check);
     (void)memset(&rates->delay, 0, sizeof rates->delay);
     flight_record_flush(&c->record);
+    signing_go_on(&c->signing, &c->wire, clock_us(CLOCK_REALTIME));
     watch_own_clock(c, now_us);
     mend_links(c, now_us);
 }
@@ -366,6 +368,11 @@ companion_t *companion_new(const companion_config_t *config, char *fault, size_t
     c->wire.link = c->autopilot_link;
     c->wire.system = 1;
     c->wire.component = (uint8_t)config->link_component;
+    if (*config->link_key_file != '\0') {
+        signing_begin(&c->signing, &c->wire, config->link_key_file, config->link_key, clock_us(CLOCK_REALTIME));
+    } else if (link_is_wide(config->link_autopilot)) {
+        event("%s is open to every network, and not signed: whoever reaches it can steer", config->link_autopilot);
+    }
     c->self_check = goe_self_check();
     c->assessed_us = c->reported_us = c->second_us = now_us;
     c->clock_difference_us = clock_us(CLOCK_REALTIME) - now_us;

@@ -16,6 +16,7 @@
 #include "link.h"
 #include "orders.h"
 #include "reports.h"
+#include "signing.h"
 #include "wire.h"
 
 typedef struct {
@@ -39,6 +40,7 @@ typedef struct {
     goe_flight_assessment_t assessment;
     link_t *autopilot_link, *detections_link; /* the latter null: detections come over MAVLink alone */
     wire_t wire;
+    signing_t signing;
     autopilot_t autopilot;
     line_reader_t lines;
     image_queue_t queue;

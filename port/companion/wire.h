@@ -13,12 +13,13 @@
 #include "link.h"
 
 typedef struct {
-    unsigned long messages; /* understood */
-    unsigned long unknown;  /* of a kind that is not in companion.xml */
-    unsigned long garbage;  /* frames with a wrong checksum */
-    unsigned long stray;    /* bytes between frames */
-    unsigned long lost;     /* of the autopilot's, by its running number */
-    unsigned long unsent;   /* did not go out */
+    unsigned long messages;                  /* understood */
+    unsigned long unknown;                   /* of a kind that is not in companion.xml */
+    unsigned long garbage;                   /* frames with a wrong checksum */
+    unsigned long stray;                     /* bytes between frames */
+    unsigned long lost;                      /* of the autopilot's, by its running number */
+    unsigned long unsent;                    /* did not go out */
+    unsigned long without_signature, forged; /* on a signed link: refused */
 } wire_counts_t;
 
 typedef struct {

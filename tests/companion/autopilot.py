@@ -20,6 +20,7 @@ LOITER = 4 << 16 | 3 << 24  # PX4: AUTO.LOITER
 DO_SET_MODE, DO_GO_AROUND, DO_REPOSITION, SET_MESSAGE_INTERVAL, REQUEST_MESSAGE = 176, 191, 192, 511, 512
 BANK, BANK_RATE = math.radians(30.0), math.radians(60.0)  # of a turn, and of rolling into it
 ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that ask for messages and move nothing
+SIGNING_EPOCH_S = 1_420_070_400  # UNIX time of 2015: times of signatures count from there, in 10 us
 ACCEPTED, DENIED, FAILED = 0, 2, 4  # results of a command
 ATTITUDE, POSITION, ODOMETRY = 31, 32, 331  # messages: ATTITUDE_QUATERNION, LOCAL_POSITION_NED
 
@@ -158,7 +159,7 @@ class Autopilot:
 
     `ignored` tells how many of a command are neither obeyed nor answered: the companion has to send them again.
     With `most_hz` a pose comes only once it was asked for, as often as that; more often is refused, as are messages
-    that are in `refused`.
+    that are in `refused`. With a `key` it signs, and refuses what is not signed by it.
     """
 
     def __init__(
@@ -177,6 +178,7 @@ class Autopilot:
         landing: bool = False,
         most_hz: float | None = None,
         refused: Sequence[int] = (),
+        key: bytes | None = None,
     ) -> None:
         self.loop, self.dialect, self.make = loop, dialect, make
         self.aircraft = aircraft or Aircraft(time_s=loop.now_s)
@@ -193,6 +195,7 @@ class Autopilot:
         self.reset_counter: int | None = None  # a number: ODOMETRY is sent as well
         self.asked: list[int] = []
         self.most_hz, self.refused = most_hz, refused
+        self.key, self.refused_signatures = key, 0
         self._fresh()
         loop.every(1.0 / pose_hz, self._pose)
         loop.every(1.0, self._second)
@@ -203,6 +206,10 @@ class Autopilot:
         self.mavlink = self.dialect.MAVLink(None, srcSystem=1, srcComponent=1)
         self.parser = self.dialect.MAVLink(None)
         self.parser.robust_parsing = True
+        if self.key:
+            for end in (self.mavlink, self.parser):
+                end.signing.secret_key, end.signing.sign_outgoing = self.key, True
+                end.signing.timestamp = int((self.loop.unix_s - SIGNING_EPOCH_S) * 1e5)
 
     # ------------------------------------------------------------------------------------------------------ sending
 
@@ -268,6 +275,9 @@ class Autopilot:
         if self.silent:
             return
         for message in self.parser.parse_buffer(data) or []:
+            if message.get_type() == "BAD_DATA":
+                self.refused_signatures += 1
+                continue
             self.heard.append(Heard(self.loop.now_s, message, self.aircraft.place()))
             handle: Callable[[Any], None] | None = getattr(self, f"_on_{message.get_type().lower()}", None)
             if handle:

@@ -49,6 +49,8 @@ bool link_check(const char *where, char *fault, size_t fault_size) {
     return *where == 'u' || *where == 's';
 }
 
+bool link_is_wide(const char *where) { return where == NULL; }
+
 link_t *link_open(const char *where, char *fault, size_t fault_size) {
     (void)where;
     (void)fault;
@@ -73,6 +75,7 @@ size_t link_read(link_t *link, uint8_t *bytes, size_t size) {
 }
 
 void link_answer(link_t *link) { (void)link; }
+void link_release(link_t *link) { (void)link; }
 bool link_is_answered(const link_t *link) { return link != NULL; }
 
 bool link_write(link_t *link, const uint8_t *bytes, size_t size) {
@@ -146,7 +149,7 @@ static void try_config(const uint8_t *data, size_t size) {
         (void)fuzz_file(1, "camera.ini", camera, sizeof camera - 1u);
     }
     const char *path = fuzz_file(0, "companion.ini", data, size);
-    if (companion_config_read(path, &config, &error)) {
+    if (companion_config_read(path, NULL, &config, &error)) {
         fuzz_counts[CONFIGS].times++;
         companion_config_print(sink, &config);
         FUZZ_HOLDS(goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, NULL) == GOE_FLIGHT_OK);
@@ -230,6 +233,9 @@ static void follow(void) {
 
 static void on_message(void *user, const mavlink_message_t *message) {
     (void)user;
+    if (autopilot_is_stranger(&autopilot, now_us)) {
+        return;
+    }
     autopilot_take(&autopilot, message, now_us);
     orders_take(&orders, message);
     fuzz_counts[MESSAGES].times++;
