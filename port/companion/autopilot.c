@@ -430,6 +430,22 @@ static bool is_from_elsewhere(const autopilot_t *autopilot, int64_t now_us) {
            !link_is_answered(autopilot->wire->link);
 }
 
+/* ArduPlane says so when its avoidance of traffic ends without a pilot. */
+static void take_text(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    static const char recovery[] = "Avoid: Resuming";
+    char text[MAVLINK_MSG_STATUSTEXT_FIELD_TEXT_LEN];
+    (void)mavlink_msg_statustext_get_text(message, text);
+    if (memcmp(text, recovery, sizeof recovery - 1u) == 0) {
+        autopilot->recovered_us = now_us;
+    }
+}
+
+static void take_target(autopilot_t *autopilot, const mavlink_message_t *message) {
+    autopilot->target_lat_e7 = mavlink_msg_position_target_global_int_get_lat_int(message);
+    autopilot->target_lon_e7 = mavlink_msg_position_target_global_int_get_lon_int(message);
+    autopilot->targets++;
+}
+
 static void take_acknowledgement(autopilot_t *autopilot, const mavlink_message_t *message) {
     mavlink_command_ack_t answer;
     mavlink_msg_command_ack_decode(message, &answer);
@@ -481,6 +497,12 @@ void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, in
         case MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN:
             take_origin(autopilot, message);
             break;
+        case MAVLINK_MSG_ID_STATUSTEXT:
+            take_text(autopilot, message, now_us);
+            break;
+        case MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT:
+            take_target(autopilot, message);
+            break;
         case MAVLINK_MSG_ID_COMMAND_ACK:
             take_acknowledgement(autopilot, message);
             break;
@@ -528,6 +550,7 @@ static void want_messages(autopilot_t *autopilot) {
     message_rates_want(rates, MAVLINK_MSG_ID_ODOMETRY, "ODOMETRY", 10.0);
     if (autopilot->kind == MAV_AUTOPILOT_PX4) {
         message_rates_want(rates, MAVLINK_MSG_ID_ALTITUDE, "ALTITUDE", 10.0);
+        message_rates_want(rates, MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT, "POSITION_TARGET_GLOBAL_INT", 2.0);
     } else {
         message_rates_want(rates, MAVLINK_MSG_ID_TERRAIN_REPORT, "TERRAIN_REPORT", 2.0);
     }

@@ -23,8 +23,11 @@ typedef struct {
     uint32_t custom_mode;
     uint8_t base_mode;
     bool landing;         /* EXTENDED_SYS_STATE: on approach */
-    int64_t heartbeat_us; /* own time of the latest */
-    unsigned heartbeats;  /* counted */
+    int64_t recovered_us; /* own time when ArduPilot reported that it ended an avoidance by itself; 0: never */
+    int32_t target_lat_e7, target_lon_e7; /* where it flies to, as it reports ... */
+    unsigned targets;                     /* ... so many times */
+    int64_t heartbeat_us;                 /* own time of the latest */
+    unsigned heartbeats;                  /* counted */
 
     /* pose */
     mavlink_attitude_quaternion_t attitude;

@@ -378,6 +378,8 @@ companion_t *companion_new(const companion_config_t *config, char *fault, size_t
     c->clock_difference_us = clock_us(CLOCK_REALTIME) - now_us;
     autopilot_init(&c->autopilot, &c->config, &c->flight, &c->wire);
     orders_init(&c->orders, &c->wire, &c->config, &c->autopilot, &c->flight);
+    c->orders.log = &c->record.orders;
+    orders_take_over(&c->orders, &c->record.left);
     if (c->self_check != 0) {
         event("the arithmetic of this computer is not right (self-check 0x%02x): no orders are sent", c->self_check);
         c->config.reaction_mode = REACTION_OFF;

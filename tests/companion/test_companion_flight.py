@@ -307,7 +307,7 @@ def rows_of(log: Path) -> list[dict[str, str]]:
 
 
 def test_the_log_holds_every_detection(fleet: Fleet, log: Path) -> None:
-    assert {file.name for file in log.iterdir()} == {"camera.ini", "frames.csv"}
+    assert {file.name for file in log.iterdir()} == {"camera.ini", "frames.csv", "orders.csv"}
     rows = rows_of(log)
     assert len(rows) > 0.9 * len(fleet["recorded"].detector.poses) - 5
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import math
+import signal
 import statistics
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -27,6 +30,7 @@ TO_PX4 = {"reaction": {"mode": "px4"}, "flight": STOPS}
 TO_ARDUPLANE = {"reaction": {"mode": "arduplane"}}
 AVOIDS, STAYS, PAST = "px4", "px4 without resume", "px4, mast aside"
 OVERRULED, AT_ONCE = "px4 and its pilot", "px4 and its pilot, at once"
+KILLED, FORGETFUL = "px4, companion killed", "px4, companion killed without a log"
 LANDING, LANDING_PLANE = "px4 on approach", "arduplane on approach"
 TRAFFIC, LOW_TRAFFIC, NO_TRAFFIC = "arduplane", "arduplane, low mast", "arduplane, mast aside"
 PLANE = {"make": ARDUPILOT}
@@ -35,6 +39,8 @@ PLANS = [
     Plan(STAYS, settings={"reaction": {"mode": "px4", "resume": 0}, "flight": STOPS}),
     Plan(OVERRULED, settings=TO_PX4),
     Plan(AT_ONCE, settings=TO_PX4),
+    Plan(KILLED, settings=TO_PX4, recorded=True),
+    Plan(FORGETFUL, settings=TO_PX4),
     Plan(PAST, settings=TO_PX4, obstacles=ASIDE),
     Plan(LANDING, settings=TO_PX4, obstacles=(LOW,), autopilot={"landing": True}),
     Plan(LANDING_PLANE, settings=TO_ARDUPLANE, obstacles=(LOW,), autopilot={**PLANE, "landing": True}),
@@ -62,6 +68,24 @@ class Pilot:
         self.since_s = self.loop.now_s
 
 
+class Killer:
+    """Kills the companion, once, so long after the order, and starts it again."""
+
+    def __init__(self, flight: Flight, after_s: float) -> None:
+        self.flight, self.after_s = flight, after_s
+        self.seen = False
+        flight.loop.every(0.05, self._look)
+
+    def _look(self) -> None:
+        if self.flight.autopilot.mode == LOITER and not self.seen:
+            self.seen = True
+            self.flight.loop.after(self.after_s, self._strike)
+
+    def _strike(self) -> None:
+        self.flight.companion.stop(signal.SIGKILL)
+        self.flight.companion.start()
+
+
 @pytest.fixture(scope="module", name="pilots")
 def all_pilots() -> dict[str, Pilot]:
     return {}
@@ -72,8 +96,10 @@ def flown(make_fleet: MakeFleet, pilots: dict[str, Pilot]) -> Iterator[Fleet]:
     fleet = make_fleet(PLANS)
     fleet.start()
     pilots.update({name: Pilot(fleet[name], after_s) for name, after_s in ((OVERRULED, 2.0), (AT_ONCE, 0.01))})
+    killers = [Killer(fleet[name], 1.5) for name in (KILLED, FORGETFUL)]
     fleet.run(FLIGHT_S)
     fleet.stop()
+    assert all(killer.seen for killer in killers)
     yield fleet
 
 
@@ -168,6 +194,31 @@ def test_what_the_pilot_chose_is_not_taken_from_him(fleet: Fleet, pilots: dict[s
     since_s = pilots[name].since_s + 1.2
     assert [heard.time_s - since_s for heard in orders(fleet[name]) if heard.time_s > since_s] == []
     assert fleet[name].autopilot.modes == [MODES[PX4], LOITER, POSITION]
+
+
+def test_after_a_restart_in_an_order_the_mode_comes_back(fleet: Fleet) -> None:
+    """By the log of the companion that was killed; without one it stays where it loiters."""
+    assert fleet[KILLED].autopilot.modes == [MODES[PX4], LOITER, MODES[PX4]]
+    assert fleet[FORGETFUL].autopilot.modes == [MODES[PX4], LOITER]
+
+
+def log_rows(folder: Path) -> list[dict[str, str]]:
+    with open(folder / "orders.csv", encoding="ascii") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_log_has_the_orders(fleet: Fleet) -> None:
+    """With both clocks, the mode before and what was sent."""
+    log = fleet[KILLED].log
+    rows = log_rows(log)
+    assert [row["event"] for row in rows][:3] == ["order", "reposition", "acknowledged"]
+    assert {row["stands"] for row in rows} == {"1"} and rows[0]["action_name"] in ("left", "right")
+    assert {int(row["mode_before"]) for row in rows} == {MODES[PX4]}
+    assert float(rows[0]["obstacle_n_m"]) == pytest.approx(MAST.north_m, abs=25.0)
+    times = [int(row["unix_us"]) for row in rows]
+    assert times == sorted(times) and times[0] > 1_700_000_000 * 1_000_000
+    after = log_rows(log.with_name(log.name + "-2"))
+    assert after[-1]["stands"] == "0" and {"end", "resume"} & {row["event"] for row in after}
 
 
 @pytest.mark.parametrize("name", [PAST, NO_TRAFFIC])
