@@ -454,6 +454,11 @@ static void take_acknowledgement(autopilot_t *autopilot, const mavlink_message_t
     }
 }
 
+bool autopilot_is_from(const autopilot_t *autopilot, const mavlink_message_t *message) {
+    return autopilot->heartbeat_us != 0 && message->sysid == autopilot->system &&
+           message->compid == MAV_COMP_ID_AUTOPILOT1;
+}
+
 bool autopilot_is_stranger(autopilot_t *autopilot, int64_t now_us) {
     const bool is_stranger = is_from_elsewhere(autopilot, now_us);
     autopilot->strangers += is_stranger ? 1u : 0u;
@@ -465,8 +470,7 @@ void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, in
         take_heartbeat(autopilot, message, now_us);
         return;
     }
-    if (autopilot->heartbeat_us == 0 || message->sysid != autopilot->system ||
-        message->compid != MAV_COMP_ID_AUTOPILOT1) {
+    if (!autopilot_is_from(autopilot, message)) {
         return;
     }
     switch (message->msgid) {
@@ -548,10 +552,13 @@ static void want_messages(autopilot_t *autopilot) {
     message_rates_want(rates, MAVLINK_MSG_ID_EXTENDED_SYS_STATE, "EXTENDED_SYS_STATE", 2.0);
     message_rates_want(rates, MAVLINK_MSG_ID_HOME_POSITION, "HOME_POSITION", 0.5);
     message_rates_want(rates, MAVLINK_MSG_ID_ODOMETRY, "ODOMETRY", 10.0);
+    message_rates_want(rates, MAVLINK_MSG_ID_GPS_RAW_INT, "GPS_RAW_INT", 2.0);
     if (autopilot->kind == MAV_AUTOPILOT_PX4) {
+        message_rates_want(rates, MAVLINK_MSG_ID_ESTIMATOR_STATUS, "ESTIMATOR_STATUS", 2.0);
         message_rates_want(rates, MAVLINK_MSG_ID_ALTITUDE, "ALTITUDE", 10.0);
         message_rates_want(rates, MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT, "POSITION_TARGET_GLOBAL_INT", 2.0);
     } else {
+        message_rates_want(rates, MAVLINK_MSG_ID_EKF_STATUS_REPORT, "EKF_STATUS_REPORT", 2.0);
         message_rates_want(rates, MAVLINK_MSG_ID_TERRAIN_REPORT, "TERRAIN_REPORT", 2.0);
     }
 }

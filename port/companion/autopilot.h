@@ -74,6 +74,9 @@ void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, go
  * message of it is to be taken. */
 bool autopilot_is_stranger(autopilot_t *autopilot, int64_t now_us);
 
+/* Whether a message is of the autopilot that was found. */
+bool autopilot_is_from(const autopilot_t *autopilot, const mavlink_message_t *message);
+
 /* Any message; those that are not the autopilot's, or of no interest, are passed over. */
 void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us);
 

@@ -11,6 +11,7 @@
 
 #include "events.h"
 #include "goe_mavlink_map.h"
+#include "margins.h"
 
 #define US_PER_S 1000000
 #define WAIT_MS 10           /* longest wait: everything that is due every so often is looked at in between */
@@ -203,8 +204,13 @@ static void on_message(void *user, const mavlink_message_t *message) {
     }
     orders_take(&c->orders, message);
     autopilot_take(&c->autopilot, message, now_us);
+    if (autopilot_is_from(&c->autopilot, message)) {
+        health_take(&c->health, message, now_us);
+    }
     if (c->autopilot.restarts != c->restarts) {
         c->restarts = c->autopilot.restarts;
+        (void)memset(&c->health, 0, sizeof c->health);
+        (void)margins_set(&c->flight, &c->spare, &c->config, false);
         image_queue_clear(&c->queue);
     }
 }
@@ -228,12 +234,42 @@ static void tell_alive(companion_t *c) {
     if (a->detector_alive != c->detector_alive) {
         event(a->detector_alive ? "the detector is alive"
                                 : "the detector is silent: nothing ahead is known to be clear");
+        screen_show(&c->screen, SCREEN_DETECTOR, a->detector_alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING,
+                    a->detector_alive ? "GOE: detector is alive" : "GOE: detector is silent");
     }
     if (a->pose_alive != c->pose_alive) {
         event(a->pose_alive ? "poses come" : "no poses come");
+        screen_show(&c->screen, SCREEN_POSE, a->pose_alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING,
+                    a->pose_alive ? "GOE: poses come" : "GOE: no poses come");
     }
     c->detector_alive = a->detector_alive;
     c->pose_alive = a->pose_alive;
+}
+
+/* Doubt about the own place widens the margins, and is reported. */
+static void watch_health(companion_t *c, int64_t now_us) {
+    const bool was_in_doubt = c->health.doubts != 0;
+    if (!health_judge(&c->health, now_us)) {
+        return;
+    }
+    const bool in_doubt = c->health.doubts != 0;
+    const char *what = health_text(c->health.doubts);
+    event("navigation: %s%s", what, in_doubt ? ": margins are wider" : " again");
+    screen_show(&c->screen, SCREEN_NAVIGATION, in_doubt ? MAV_SEVERITY_WARNING : MAV_SEVERITY_INFO,
+                "GOE: navigation: %s", what);
+    if (in_doubt != was_in_doubt && !margins_set(&c->flight, &c->spare, &c->config, in_doubt)) {
+        event("the margins cannot be changed");
+    }
+}
+
+/* Without reactions the order is advice. */
+static void show_advice(companion_t *c) {
+    const goe_flight_assessment_t *a = &c->assessment;
+    if (c->config.reaction_mode == REACTION_OFF && a->action != c->advised && a->action != GOE_FLIGHT_NONE) {
+        screen_show(&c->screen, SCREEN_ORDER, MAV_SEVERITY_WARNING, "GOE advises %s: obstacle in %.0f s",
+                    goe_flight_action_text(a->action), (double)a->hazard.time_s);
+    }
+    c->advised = a->action;
 }
 
 static bool begin_flight(companion_t *c, const char **bad) {
@@ -249,9 +285,11 @@ static void assess(companion_t *c, int64_t now_us) {
     if (status == GOE_FLIGHT_CORRUPTED) {
         event("its memory was corrupted: obstacles are looked for anew");
         (void)begin_flight(c, NULL);
+        (void)margins_set(&c->flight, &c->spare, &c->config, c->health.doubts != 0);
     }
     if (status == GOE_FLIGHT_OK) { /* without a pose nothing is known, and what stands stands */
         orders_follow(&c->orders, &c->assessment, &own, now_us);
+        show_advice(c);
     }
 }
 
@@ -300,6 +338,8 @@ static void end_second(companion_t *c, int64_t now_us) {
 static bool do_what_is_due(companion_t *c) {
     const int64_t now_us = clock_us(CLOCK_MONOTONIC);
     autopilot_ask(&c->autopilot, now_us);
+    watch_health(c, now_us);
+    screen_go_on(&c->screen, &c->wire, now_us);
     if (is_due(&c->assessed_us, now_us, c->config.reports_assess_hz)) {
         assess(c, now_us);
     }
@@ -378,7 +418,9 @@ companion_t *companion_new(const companion_config_t *config, char *fault, size_t
     c->clock_difference_us = clock_us(CLOCK_REALTIME) - now_us;
     autopilot_init(&c->autopilot, &c->config, &c->flight, &c->wire);
     orders_init(&c->orders, &c->wire, &c->config, &c->autopilot, &c->flight);
+    c->screen.on = config->reports_screen != 0;
     c->orders.log = &c->record.orders;
+    c->orders.screen = &c->screen;
     orders_take_over(&c->orders, &c->record.left);
     if (c->self_check != 0) {
         event("the arithmetic of this computer is not right (self-check 0x%02x): no orders are sent", c->self_check);

@@ -11,11 +11,13 @@
 #include "detection_text.h"
 #include "flight_record.h"
 #include "goe_flight.h"
+#include "health.h"
 #include "image_queue.h"
 #include "line_reader.h"
 #include "link.h"
 #include "orders.h"
 #include "reports.h"
+#include "screen.h"
 #include "signing.h"
 #include "wire.h"
 
@@ -36,7 +38,7 @@ typedef struct {
 
 typedef struct {
     companion_config_t config;
-    goe_flight_t flight;
+    goe_flight_t flight, spare; /* spare: room to change the margins */
     goe_flight_assessment_t assessment;
     link_t *autopilot_link, *detections_link; /* the latter null: detections come over MAVLink alone */
     wire_t wire;
@@ -46,6 +48,9 @@ typedef struct {
     image_queue_t queue;
     camera_image_t image; /* that is being read */
     orders_t orders;
+    health_t health;
+    screen_t screen;
+    goe_flight_action_t advised; /* that was shown while reactions are off */
     flight_record_t record;
     companion_counts_t counts;
     companion_rates_t rates;

@@ -56,6 +56,7 @@ static const config_key_t keys[] = {
     {"reaction.icao", AT(reaction_icao), KEY_WHOLE, 1, 0xFFFFF0, 0xF0E000, NULL},
     {"reports.assess_hz", AT(reports_assess_hz), KEY_NUMBER, 1, 100, 10, NULL},
     {"reports.obstacle_hz", AT(reports_obstacle_hz), KEY_NUMBER, 0.1, 100, 5, NULL},
+    {"reports.screen", AT(reports_screen), KEY_WHOLE, 0, 1, 1, NULL},
     {"reports.standard", AT(reports_standard), KEY_LIST, 0, 0, 0,
      "obstacle_distance obstacle_distance_3d collision target_absolute"},
     {"reports.distance_increment_deg", AT(reports_distance_increment_deg), KEY_WHOLE, 5, 180, 5, NULL},

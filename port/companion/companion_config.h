@@ -50,6 +50,7 @@ typedef struct {
     double reaction_adsb_hz;
     double reports_assess_hz, reports_obstacle_hz;
     unsigned reports_standard; /* REPORT_... */
+    uint32_t reports_screen;
     uint32_t reports_distance_increment_deg;
     double reports_distance_max_m;
     char record_folder[CONFIG_TEXT_MAX]; /* empty: no log */

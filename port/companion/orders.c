@@ -101,16 +101,16 @@ static bool is_mode_allowed(const orders_t *orders, uint32_t mode, goe_flight_ac
 static const char *find_hindrance(const orders_t *orders, goe_flight_action_t action) {
     const uint32_t mode = orders->sent ? orders->watch.mode_before : orders->autopilot->custom_mode;
     if (!suits_kind(orders)) {
-        return "reaction.mode is for another kind of autopilot";
+        return "reaction.mode is for others";
     }
     if ((orders->autopilot->base_mode & MAV_MODE_FLAG_SAFETY_ARMED) == 0) {
-        return "it is not armed";
+        return "not armed";
     }
     if (!is_mode_allowed(orders, mode, action)) {
-        return "it is in a mode that reaction.modes does not name";
+        return "mode is not in reaction.modes";
     }
     if (action != GOE_FLIGHT_GO_AROUND && !orders->autopilot->origin_given) {
-        return "the origin of its local frame is not known";
+        return "no origin of its frame";
     }
     return NULL;
 }
@@ -258,6 +258,7 @@ static void watch_pilot(orders_t *orders) {
         orders->overruled = true;
         event("another %s was chosen: the order is left to whoever did", by_mode ? "mode" : "place");
         put_log(orders, "overruled", by_mode ? "mode" : "place");
+        screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_NOTICE, "GOE: order left to the pilot");
     }
 }
 
@@ -268,6 +269,7 @@ static void watch_hindrance(orders_t *orders, goe_flight_action_t action, bool i
     if (orders->hindrance != NULL && (is_new || orders->hindrance != before)) {
         event("the order is not sent to the autopilot: %s", orders->hindrance);
         put_log(orders, "hindered", orders->hindrance);
+        screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_WARNING, "GOE not sent: %s", orders->hindrance);
     } else if (orders->hindrance == NULL && before != NULL && !is_new && !orders->overruled) {
         event("nothing hinders the order now: it is sent");
     }
@@ -367,6 +369,16 @@ static void begin_first(orders_t *orders) {
     orders->overruled = false;
 }
 
+/* ArduPlane turns where its own avoidance leads it: no side is named. */
+static void show_order(orders_t *orders, const goe_flight_assessment_t *assessment) {
+    const bool is_traffic =
+        orders->config->reaction_mode == REACTION_ARDUPLANE && assessment->action != GOE_FLIGHT_GO_AROUND;
+    screen_show(orders->screen, SCREEN_ORDER, assessment->late ? MAV_SEVERITY_CRITICAL : MAV_SEVERITY_WARNING,
+                "GOE order, %s: obstacle in %.0f s%s",
+                is_traffic ? "as traffic" : goe_flight_action_text(assessment->action),
+                (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
+}
+
 static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
     if (orders->action == GOE_FLIGHT_NONE) {
         begin_first(orders);
@@ -376,6 +388,7 @@ static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
     orders->orders++;
     event("order: %s; on this course %.0f m beside it in %.1f s%s", goe_flight_action_text(assessment->action),
           (double)assessment->hazard.miss_m, (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
+    show_order(orders, assessment);
     orders->action = assessment->action;
     keep(orders);
     put_log(orders, "order", assessment->late ? "late" : "");
@@ -384,6 +397,7 @@ static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
 static void end(orders_t *orders, int64_t now_us) {
     const goe_flight_action_t ended = orders->action;
     event("the order ends");
+    screen_show(orders->screen, SCREEN_ORDER, MAV_SEVERITY_INFO, "GOE: order ends");
     orders->command = 0;
     if (orders->config->reaction_mode == REACTION_PX4) {
         resume(orders, ended, now_us);
@@ -458,6 +472,7 @@ void orders_take(orders_t *orders, const mavlink_message_t *message) {
     }
     orders->refused++;
     event("the autopilot refuses the order (result %u)", answer.result);
+    screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_WARNING, "GOE: autopilot refuses the order");
     put_log(orders, "refused", "");
     if (answer.result == MAV_RESULT_DENIED || answer.result == MAV_RESULT_UNSUPPORTED) {
         orders->denied = orders->silenced = true; /* it will not think better of it; others may be tried again */

@@ -15,6 +15,7 @@
 #include "goe_mavlink_map.h"
 #include "mode_watch.h"
 #include "order_log.h"
+#include "screen.h"
 #include "wire.h"
 
 typedef struct {
@@ -35,6 +36,7 @@ typedef struct {
     int64_t sent_us;
     uint16_t command; /* whose acknowledgement is awaited; 0: none */
     mode_watch_t watch;
+    screen_t *screen;                   /* null: none */
     order_log_t *log;                   /* null: none */
     order_left_t stands;                /* what of the order that stands the log keeps ... */
     order_left_t left;                  /* ... and what of one a companion before this one left */

@@ -95,6 +95,9 @@ void status_line_show(const companion_t *c) {
     add_autopilot(&line, c);
     add_images(&line, c);
     add_obstacle(&line, c);
+    if (c->health.doubts != 0) {
+        add(&line, " | %s", health_text(c->health.doubts));
+    }
     add(&line, " | lost %lu", lost_of(c));
     if (on_terminal && (size_t)width_of_terminal() <= line.length) {
         line.text[width_of_terminal() - 1] = '\0';

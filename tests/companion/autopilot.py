@@ -196,6 +196,8 @@ class Autopilot:
         self.asked: list[int] = []
         self.most_hz, self.refused = most_hz, refused
         self.key, self.refused_signatures = key, 0
+        self.gps_fix: int | None = None  # a number: GPS_RAW_INT is sent, with this fix
+        self.filter_flags: int | None = None  # a number: the state of the filter is sent, as each make has it
         self._fresh()
         loop.every(1.0 / pose_hz, self._pose)
         loop.every(1.0, self._second)
@@ -264,10 +266,21 @@ class Autopilot:
                 LAT_E7, LON_E7, int(ALT_M * 1e3), *home, [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0, us
             )
         )
+        self._send_health(us)
         if self.landing:
             send(self.dialect.MAVLink_extended_sys_state_message(0, 4))
         self.asked.append(us * 1000)
         send(self.dialect.MAVLink_timesync_message(0, us * 1000))
+
+    def _send_health(self, us: int) -> None:
+        if self.gps_fix is not None:
+            self.send(
+                self.dialect.MAVLink_gps_raw_int_message(us, self.gps_fix, LAT_E7, LON_E7, 0, 100, 100, 2000, 0, 12)
+            )
+        if self.filter_flags is not None and self.make == ARDUPILOT:
+            self.send(self.dialect.MAVLink_ekf_status_report_message(self.filter_flags, 0.1, 0.1, 0.1, 0.1, 0.0))
+        elif self.filter_flags is not None:
+            self.send(self.dialect.MAVLink_estimator_status_message(us, self.filter_flags, *6 * [0.1], 1.0, 1.0))
 
     # ---------------------------------------------------------------------------------------------------- receiving
 
