@@ -25,6 +25,7 @@ void mode_watch_answered(mode_watch_t *watch, const autopilot_t *autopilot) {
     watch->answered_at = autopilot->heartbeats;
     watch->targets_at = autopilot->targets;
     watch->strange = 0;
+    watch->matched = false;
 }
 
 /* By heartbeats: those that came after the acknowledgement show where the order has led, earlier ones may still show the mode before. */
@@ -79,6 +80,7 @@ bool mode_watch_is_target_another(mode_watch_t *watch, const autopilot_t *autopi
     }
     watch->targets_at = autopilot->targets;
     const float off_m = mode_watch_apart_m(lat_e7, lon_e7, autopilot->target_lat_e7, autopilot->target_lon_e7);
-    watch->strange = off_m > TARGET_OFF_M ? watch->strange + 1u : 0u;
+    watch->matched = watch->matched || off_m <= TARGET_OFF_M;
+    watch->strange = off_m > TARGET_OFF_M && watch->matched ? watch->strange + 1u : 0u;
     return watch->strange >= STRANGE_MAX;
 }

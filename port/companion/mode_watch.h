@@ -24,7 +24,8 @@ typedef struct {
     int64_t avoided_us;   /* arduplane: own time of the latest heartbeat in AVOID_ADSB ... */
     unsigned left_beats;  /* ... and heartbeats in another mode since */
     unsigned targets_at;  /* px4: count of targets that were looked at ... */
-    unsigned strange;     /* ... and how many in a row were another's */
+    unsigned strange;     /* ... and how many in a row were another's ... */
+    bool matched;         /* ... after one that was the order's: a target that a fence refuses never is */
 } mode_watch_t;
 
 /* With a first order: the mode before is the present one, or `mode_before` if that is older. */

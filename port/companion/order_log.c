@@ -3,12 +3,16 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "companion_config.h"
 
 #define LINE_MAX_LENGTH 512
-#define LEFT_FIELDS 11
+#define NUMBER_MAX 9.0e15 /* what a double holds to the unit */
+
+/* Columns that a restarted companion reads. */
+enum { UNIX_US, BOOT_US, STANDS, ACTION, MODE_BEFORE, COURSE_N, COURSE_E, OBSTACLE_N, OBSTACLE_E, RADIUS, NUMBERS };
 
 static const char header[] =
     "unix_us,boot_us,stands,action,mode_before,course_n,course_e,obstacle_n_m,obstacle_e_m,radius_m,event,action_name,"
@@ -47,20 +51,39 @@ void order_log_close(order_log_t *log) {
     }
 }
 
+/* The first numbers of a row, with a comma behind each. False: these are not all. */
+static bool read_numbers(const char *line, double number[NUMBERS]) {
+    for (int i = 0; i < NUMBERS; i++) {
+        char *end = NULL;
+        number[i] = strtod(line, &end);
+        if (end == line || *end != ',' || !(fabs(number[i]) < NUMBER_MAX)) {
+            return false;
+        }
+        line = end + 1;
+    }
+    return true;
+}
+
 /* A row that was cut by a crash has no end, and does not count. */
 static bool parse(const char *line, order_left_t *left) {
-    int stands = 0;
-    char event[32];
+    double number[NUMBERS];
     (void)memset(left, 0, sizeof *left);
-    const int fields =
-        sscanf(line, "%" SCNd64 ",%" SCNd64 ",%d,%u,%" SCNu32 ",%f,%f,%f,%f,%f,%31[a-z ]", &left->unix_us,
-               &left->boot_us, &stands, &left->action, &left->mode_before, &left->course_ne[0], &left->course_ne[1],
-               &left->obstacle_ne_m[0], &left->obstacle_ne_m[1], &left->radius_m, event);
-    left->stands = stands == 1;
-    const bool is_finite = isfinite(left->course_ne[0]) && isfinite(left->course_ne[1]) &&
-                           isfinite(left->obstacle_ne_m[0]) && isfinite(left->obstacle_ne_m[1]) &&
-                           isfinite(left->radius_m);
-    return fields == LEFT_FIELDS && strchr(line, '\n') != NULL && is_finite && left->action <= GOE_FLIGHT_HOLD;
+    if (strchr(line, '\n') == NULL || !read_numbers(line, number) || number[ACTION] < 0.0 ||
+        number[ACTION] > (double)GOE_FLIGHT_HOLD || number[MODE_BEFORE] < 0.0 ||
+        number[MODE_BEFORE] > (double)UINT32_MAX) {
+        return false;
+    }
+    left->unix_us = (int64_t)number[UNIX_US];
+    left->boot_us = (int64_t)number[BOOT_US];
+    left->stands = number[STANDS] > 0.5;
+    left->action = (unsigned)number[ACTION];
+    left->mode_before = (uint32_t)number[MODE_BEFORE];
+    left->course_ne[0] = (float)number[COURSE_N];
+    left->course_ne[1] = (float)number[COURSE_E];
+    left->obstacle_ne_m[0] = (float)number[OBSTACLE_N];
+    left->obstacle_ne_m[1] = (float)number[OBSTACLE_E];
+    left->radius_m = (float)number[RADIUS];
+    return true;
 }
 
 bool order_log_read(const char *folder, order_left_t *left) {

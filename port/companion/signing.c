@@ -3,30 +3,31 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "events.h"
 
 #define EPOCH_US INT64_C(1420070400000000) /* UNIX time of 2015: times of signatures count from there ... */
 #define TICK_US 10                         /* ... in so many microseconds */
+#define TIME_MAX (UINT64_C(1) << 48)       /* of a signature */
+#define TEXT_MAX 32
 #define TICKS_PER_S UINT64_C(100000)
-#define AHEAD (60u * TICKS_PER_S) /* of the time now that is kept, and of what is left of it when another is */
-#define ENOUGH (30u * TICKS_PER_S)
+#define AHEAD (20u * TICKS_PER_S)  /* of the time now that is kept: well within the minute that a receiver allows ... */
+#define ENOUGH (10u * TICKS_PER_S) /* ... and what of that is left when another is */
 
 static uint64_t ticks_of(int64_t unix_us) { return unix_us > EPOCH_US ? (uint64_t)(unix_us - EPOCH_US) / TICK_US : 0u; }
 
 /* 0: there is none. */
 static uint64_t read_time(const char *path) {
-    uint64_t time = 0;
+    char text[TEXT_MAX] = "";
     FILE *file = fopen(path, "r");
     if (file == NULL) {
         return 0;
     }
-    if (fscanf(file, "%" SCNu64, &time) != 1) {
-        time = 0;
-    }
+    const uint64_t time = fgets(text, sizeof text, file) != NULL ? strtoull(text, NULL, 10) : 0u;
     (void)fclose(file);
-    return time;
+    return time < TIME_MAX ? time : 0u;
 }
 
 /* A new file takes the old one's place at once: a loss of power leaves one of both. */

@@ -411,6 +411,18 @@ static void a_place_that_the_pilot_chose_is_left_to_him(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
+/* An autopilot may acknowledge the mode and refuse the place, as for its fence: that is no pilot's choice. */
+static void a_place_that_was_never_flown_to_is_no_choice(void) {
+    ordered();
+    autopilot.target_lat_e7 = assessment.target_lat_e7 + 10000;
+    autopilot.target_lon_e7 = assessment.target_lon_e7;
+    for (int k = 0; k < 5; k++) {
+        autopilot.targets++;
+        go_on(5, LOITER);
+    }
+    TEST_ASSERT_FALSE(orders.silenced);
+}
+
 /* The top over home, with the clearance: what the flight layer's target holds. */
 static void a_go_around_carries_the_height_that_the_top_requires(void) {
     know_obstacle(true);
@@ -558,6 +570,7 @@ int main(void) {
     RUN_TEST(an_order_that_is_disarmed_is_not_repeated);
     RUN_TEST(the_mode_before_may_be_the_pilots_choice);
     RUN_TEST(a_place_that_the_pilot_chose_is_left_to_him);
+    RUN_TEST(a_place_that_was_never_flown_to_is_no_choice);
     RUN_TEST(a_go_around_carries_the_height_that_the_top_requires);
     RUN_TEST(every_obstacle_is_traffic);
     RUN_TEST(a_pilots_mode_ends_traffic);
