@@ -17,6 +17,7 @@
 #define WAIT_MS 10           /* longest wait: everything that is due every so often is looked at in between */
 #define READS_MAX 64         /* of the detector's in one turn */
 #define SAME_IMAGE_US 5000u  /* images are farther apart */
+#define DEAF_US 10000000     /* without a heartbeat, after which that is reported */
 #define CLOCK_STEP_US 100000 /* by which the computer's own clock may be set without a word */
 
 static int64_t clock_us(clockid_t clock) {
@@ -316,6 +317,16 @@ static void mend_links(companion_t *c, int64_t now_us) {
     c->links_lost = lost;
 }
 
+/* Who listens to this computer alone hears no autopilot of another. */
+static void watch_deafness(companion_t *c, int64_t now_us) {
+    const bool is_deaf = c->autopilot.heartbeat_us == 0 && now_us - c->begun_us > DEAF_US;
+    if (is_deaf && !c->deafness_reported) {
+        event("no autopilot is heard on %s%s", c->config.link_autopilot,
+              link_is_local(c->config.link_autopilot) ? ": udpin:0.0.0.0:PORT listens to other computers, too" : "");
+        c->deafness_reported = true;
+    }
+}
+
 static void end_second(companion_t *c, int64_t now_us) {
     companion_rates_t *rates = &c->rates;
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
@@ -332,6 +343,7 @@ static void end_second(companion_t *c, int64_t now_us) {
     flight_record_flush(&c->record);
     signing_go_on(&c->signing, &c->wire, clock_us(CLOCK_REALTIME));
     watch_own_clock(c, now_us);
+    watch_deafness(c, now_us);
     mend_links(c, now_us);
 }
 
@@ -414,7 +426,7 @@ companion_t *companion_new(const companion_config_t *config, char *fault, size_t
         event("%s is open to every network, and not signed: whoever reaches it can steer", config->link_autopilot);
     }
     c->self_check = goe_self_check();
-    c->assessed_us = c->reported_us = c->second_us = now_us;
+    c->assessed_us = c->reported_us = c->second_us = c->begun_us = now_us;
     c->clock_difference_us = clock_us(CLOCK_REALTIME) - now_us;
     autopilot_init(&c->autopilot, &c->config, &c->flight, &c->wire);
     orders_init(&c->orders, &c->wire, &c->config, &c->autopilot, &c->flight);

@@ -58,7 +58,8 @@ typedef struct {
     bool detector_alive, pose_alive; /* as they were told last ... */
     unsigned links_lost;             /* ... and how often the links were lost by then */
     unsigned long restarts;          /* of the autopilot, that were seen here */
-    int64_t assessed_us, reported_us, second_us;
+    int64_t assessed_us, reported_us, second_us, begun_us;
+    bool deafness_reported;
     int64_t clock_difference_us; /* UNIX time minus monotonic time, as it was last */
 } companion_t;
 

@@ -270,12 +270,16 @@ bool link_check(const char *where, char *fault, size_t fault_size) {
     return why == NULL;
 }
 
-bool link_is_wide(const char *where) {
+/* Whether `where` waits on one of these hosts. */
+static bool waits_on(const char *where, const char *one, const char *other) {
     link_t link;
     (void)memset(&link, 0, sizeof link);
-    const bool is_open = parse_where(&link, where) && link.kind == LINK_UDP_IN;
-    return is_open && (strcmp(link.host, "0.0.0.0") == 0 || strcmp(link.host, "::") == 0);
+    return parse_where(&link, where) && link.kind == LINK_UDP_IN &&
+           (strcmp(link.host, one) == 0 || strcmp(link.host, other) == 0);
 }
+
+bool link_is_wide(const char *where) { return waits_on(where, "0.0.0.0", "::"); }
+bool link_is_local(const char *where) { return waits_on(where, "127.0.0.1", "::1"); }
 
 link_t *link_open(const char *where, char *fault, size_t fault_size) {
     link_t *link = calloc(1, sizeof *link);

@@ -14,8 +14,9 @@ typedef struct link link_t;
 /* Whether `where` is of one of the forms; nothing is opened. False: fault says why. */
 bool link_check(const char *where, char *fault, size_t fault_size);
 
-/* Whether `where` waits for whoever comes from any network. */
+/* Whether `where` waits for whoever comes from any network, or from this computer alone. */
 bool link_is_wide(const char *where);
+bool link_is_local(const char *where);
 
 /* `where`: udpin:HOST:PORT (receives there, answers to whom link_answer() was called for last), udpout:HOST:PORT (hears
  * nobody else), tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH, stdin. Null on failure: fault says why. A TCP peer or device that is not there

@@ -1,13 +1,15 @@
 /* How often the autopilot is to send what. SPDX-License-Identifier: MIT */
 #include "message_rates.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "events.h"
 
 #define US_PER_S 1000000
 #define ANSWER_US 1000000 /* an answer that takes longer is lost */
-#define TRIES_MAX 5       /* requests without an answer, after which the next message follows */
+#define HZ_SAME 0.5
+#define TRIES_MAX 5 /* requests without an answer, after which the next message follows */
 
 /* Rates that are tried after a refusal, Hz. ArduPilot sends a message at most in 80 % of its main loops: at 50 loops a second, the
  * least for a plane, in 40. Below the last one a pose counts as dead: 0.5 s. */
@@ -18,7 +20,7 @@ void message_rates_clear(message_rates_t *rates) { (void)memset(rates, 0, sizeof
 
 void message_rates_want(message_rates_t *rates, uint32_t message, const char *name, double hz) {
     if (rates->count < MESSAGE_RATES_MAX) {
-        const message_rate_t rate = {message, name, hz, hz, false};
+        const message_rate_t rate = {.message = message, .name = name, .wanted_hz = hz, .hz = hz};
         rates->rate[rates->count] = rate;
         rates->count++;
     }
@@ -29,6 +31,11 @@ bool message_rates_done(const message_rates_t *rates) { return rates->next >= ra
 void message_rates_repeat(message_rates_t *rates) {
     rates->next = rates->tries = 0;
     rates->awaiting = false;
+    for (unsigned i = 0; i < rates->count; i++) {
+        message_rate_t *rate = &rates->rate[i];
+        rate->hz = rate->refused ? rate->wanted_hz : rate->hz;
+        rate->refused = false;
+    }
 }
 
 /* 0: there is none. */
@@ -55,9 +62,6 @@ void message_rates_ask(message_rates_t *rates, wire_t *wire, uint8_t system, int
     if (rates->tries >= TRIES_MAX) {
         go_on(rates);
     }
-    while (!message_rates_done(rates) && rates->rate[rates->next].refused) {
-        go_on(rates);
-    }
     if (message_rates_done(rates)) {
         return;
     }
@@ -72,9 +76,10 @@ void message_rates_ask(message_rates_t *rates, wire_t *wire, uint8_t system, int
 }
 
 static void accept(message_rates_t *rates) {
-    const message_rate_t *rate = &rates->rate[rates->next];
-    if (rate->hz < rate->wanted_hz) {
+    message_rate_t *rate = &rates->rate[rates->next];
+    if (rate->hz < rate->wanted_hz && !(fabs(rate->hz - rate->reported_hz) < HZ_SAME)) {
         event("%s at %.0f Hz is refused: %.0f Hz", rate->name, rate->wanted_hz, rate->hz);
+        rate->reported_hz = rate->hz;
     }
     go_on(rates);
 }
@@ -89,7 +94,10 @@ static void refuse(message_rates_t *rates) {
         return;
     }
     rate->refused = true;
-    event("the autopilot does not send %s", rate->name);
+    if (!rate->refusal_reported) {
+        event("the autopilot does not send %s", rate->name);
+    }
+    rate->refusal_reported = true;
     go_on(rates);
 }
 
@@ -101,10 +109,9 @@ void message_rates_answer(message_rates_t *rates, uint8_t result) {
         case MAV_RESULT_ACCEPTED:
             accept(rates);
             break;
-        case MAV_RESULT_IN_PROGRESS:
-        case MAV_RESULT_TEMPORARILY_REJECTED: /* it is asked again after ANSWER_US */
+        case MAV_RESULT_IN_PROGRESS: /* it is asked again after ANSWER_US */
             break;
-        default:
+        default: /* whatever it says of a rate that is beyond it: versions differ */
             refuse(rates);
             break;
     }

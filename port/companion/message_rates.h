@@ -14,8 +14,9 @@
 typedef struct {
     uint32_t message;
     const char *name;
-    double wanted_hz, hz; /* hz: that is asked for now */
-    bool refused;         /* at every rate */
+    double wanted_hz, hz;           /* hz: that is asked for now */
+    double reported_hz;             /* that was reported last; 0: none was */
+    bool refused, refusal_reported; /* at every rate */
 } message_rate_t;
 
 typedef struct {
@@ -35,7 +36,7 @@ void message_rates_want(message_rates_t *rates, uint32_t message, const char *na
 /* Whether every message was accepted, refused or left unanswered. */
 bool message_rates_done(const message_rates_t *rates);
 
-/* Begins again with the first message, at the rate that was accepted. */
+/* Begins again with the first message: each at the rate that was accepted, what was refused at the one that is wanted. */
 void message_rates_repeat(message_rates_t *rates);
 
 /* Sends the next request, if it is due. */

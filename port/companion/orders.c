@@ -310,6 +310,17 @@ static bool is_behind(const orders_t *orders, const order_left_t *left) {
     return ahead_m < -(left->radius_m + orders->config->flight.margin_m);
 }
 
+/* Once. */
+static void report_left(orders_t *orders) {
+    if (!orders->left_reported) {
+        event("an order of before the restart stands in the log: %s",
+              goe_flight_action_text((goe_flight_action_t)orders->left.action));
+        screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_NOTICE,
+                    "GOE restarted in an order: Hold until passed");
+    }
+    orders->left_reported = true;
+}
+
 /* While no order of its own stands: back, once the obstacle of the log lies behind. */
 static void follow_left(orders_t *orders, int64_t now_us) {
     const order_left_t *left = &orders->left;
@@ -319,7 +330,10 @@ static void follow_left(orders_t *orders, int64_t now_us) {
     if (orders->config->reaction_mode != REACTION_PX4 || orders->config->reaction_resume == 0 ||
         orders->autopilot->custom_mode != PX4_AUTO_LOITER || !is_of_this_flight(orders, left)) {
         orders->left.stands = false;
-    } else if (is_behind(orders, left)) {
+        return;
+    }
+    report_left(orders);
+    if (is_behind(orders, left)) {
         event("the obstacle of the order before the restart is passed");
         orders->watch.mode_before = left->mode_before;
         orders->left.stands = false;

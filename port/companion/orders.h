@@ -36,9 +36,10 @@ typedef struct {
     int64_t sent_us;
     uint16_t command; /* whose acknowledgement is awaited; 0: none */
     mode_watch_t watch;
-    screen_t *screen;                   /* null: none */
-    order_log_t *log;                   /* null: none */
-    order_left_t stands;                /* what of the order that stands the log keeps ... */
+    screen_t *screen;    /* null: none */
+    order_log_t *log;    /* null: none */
+    order_left_t stands; /* what of the order that stands the log keeps ... */
+    bool left_reported;
     order_left_t left;                  /* ... and what of one a companion before this one left */
     goe_flight_assessment_t assessment; /* the latest */
     int64_t unix_us, boot_us;           /* ... and when it was, by both clocks */

@@ -21,7 +21,7 @@ DO_SET_MODE, DO_GO_AROUND, DO_REPOSITION, SET_MESSAGE_INTERVAL, REQUEST_MESSAGE 
 BANK, BANK_RATE = math.radians(30.0), math.radians(60.0)  # of a turn, and of rolling into it
 ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that ask for messages and move nothing
 SIGNING_EPOCH_S = 1_420_070_400  # UNIX time of 2015: times of signatures count from there, in 10 us
-ACCEPTED, DENIED, FAILED = 0, 2, 4  # results of a command
+ACCEPTED, REJECTED, DENIED, FAILED = 0, 1, 2, 4  # results of a command
 ATTITUDE, POSITION, ODOMETRY = 31, 32, 331  # messages: ATTITUDE_QUATERNION, LOCAL_POSITION_NED
 
 
@@ -158,8 +158,8 @@ class Autopilot:
     """Sends and answers over a wire; `heard` is everything that came.
 
     `ignored` tells how many of a command are neither obeyed nor answered: the companion has to send them again.
-    With `most_hz` a pose comes only once it was asked for, as often as that; more often is refused, as are messages
-    that are in `refused`. With a `key` it signs, and refuses what is not signed by it.
+    With `most_hz` a pose comes only once it was asked for, as often as that; more often is refused by `refusal`. The
+    messages of `refused` it does not have. With a `key` it signs, and refuses what is not signed by it.
     """
 
     def __init__(
@@ -178,6 +178,7 @@ class Autopilot:
         landing: bool = False,
         most_hz: float | None = None,
         refused: Sequence[int] = (),
+        refusal: int = FAILED,
         key: bytes | None = None,
     ) -> None:
         self.loop, self.dialect, self.make = loop, dialect, make
@@ -194,7 +195,7 @@ class Autopilot:
         self.yaw_shift = 0.0
         self.reset_counter: int | None = None  # a number: ODOMETRY is sent as well
         self.asked: list[int] = []
-        self.most_hz, self.refused = most_hz, refused
+        self.most_hz, self.refused, self.refusal = most_hz, refused, refusal
         self.key, self.refused_signatures = key, 0
         self.gps_fix: int | None = None  # a number: GPS_RAW_INT is sent, with this fix
         self.filter_flags: int | None = None  # a number: the state of the filter is sent, as each make has it
@@ -322,7 +323,7 @@ class Autopilot:
         if asked in self.refused:
             return DENIED
         if self.most_hz is not None and interval * self.most_hz < 0.999:
-            return FAILED
+            return self.refusal
         self.intervals[asked] = interval
         return ACCEPTED
 

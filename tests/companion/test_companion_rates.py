@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from autopilot import ARDUPILOT, ATTITUDE, ODOMETRY, POSITION, PX4, SET_MESSAGE_INTERVAL
+from autopilot import ARDUPILOT, ATTITUDE, DENIED, ODOMETRY, POSITION, PX4, REJECTED, SET_MESSAGE_INTERVAL
 from companion import PROGRAM, is_missing
 from flights import Fleet, Flight, MakeFleet, Plan
 
@@ -15,6 +15,7 @@ pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 FLIGHT_S = 14.0
 FASTER = {"link": {"attitude_hz": 50, "position_hz": 50}}
 STOCK, SLOW, FAST, SILENT, REBOOT = "stock", "slow", "more than its loop", "answers late", "restarts"
+TEMPORARILY, DENYING, STUBBORN = "refuses for now", "denies", "refuses everything at first"
 
 
 def plane(most_hz: float, **more: Any) -> dict[str, Any]:
@@ -27,6 +28,9 @@ PLANS = [
     Plan(FAST, autopilot=plane(40.0), settings=FASTER),
     Plan(SILENT, autopilot=plane(40.0, ignored={SET_MESSAGE_INTERVAL: 3})),
     Plan(REBOOT, autopilot=plane(40.0)),
+    Plan(TEMPORARILY, autopilot=plane(12.0, refusal=REJECTED)),
+    Plan(DENYING, autopilot=plane(12.0, refusal=DENIED)),
+    Plan(STUBBORN, autopilot=plane(1.0)),
     Plan("px4", autopilot={"make": PX4, "most_hz": 100.0, "pose_hz": 200.0}),
 ]
 
@@ -36,6 +40,7 @@ def flown(make_fleet: MakeFleet) -> Iterator[Fleet]:
     fleet = make_fleet(PLANS)
     fleet.start()
     fleet.loop.after(6.0, lambda: fleet[REBOOT].autopilot.restart(0.5))
+    fleet.loop.after(2.0, lambda: setattr(fleet[STUBBORN].autopilot, "most_hz", 40.0))
     fleet.run(FLIGHT_S)
     fleet.stop()
     yield fleet
@@ -61,7 +66,11 @@ def test_it_starts_at_25_hz(fleet: Fleet) -> None:
     assert fleet[STOCK].ended and "refuses ATT" not in fleet[STOCK].ended.err
 
 
-@pytest.mark.parametrize("name, rates", [(SLOW, [25.0, 20.0, 10.0]), (FAST, [50.0, 40.0])])
+LOWERED = [(SLOW, [25.0, 20.0, 10.0]), (FAST, [50.0, 40.0])]
+LOWERED += [(name, [25.0, 20.0, 10.0]) for name in (TEMPORARILY, DENYING)]
+
+
+@pytest.mark.parametrize("name, rates", LOWERED)
 def test_what_is_refused_is_asked_for_less_often(fleet: Fleet, name: str, rates: list[float]) -> None:
     flight = fleet[name]
     assert asked_hz(flight, ATTITUDE) == rates
@@ -72,6 +81,11 @@ def test_what_is_refused_is_asked_for_less_often(fleet: Fleet, name: str, rates:
 
 def test_what_is_not_answered_is_asked_for_again(fleet: Fleet) -> None:
     assert asked_hz(fleet[SILENT], ATTITUDE) == 4 * [25.0]
+
+
+def test_what_was_refused_is_asked_for_again_while_no_poses_come(fleet: Fleet) -> None:
+    assert asked_hz(fleet[STUBBORN], ATTITUDE) == [25.0, 20.0, 10.0, 5.0, 25.0]
+    assert fleet[STUBBORN].ended and fleet[STUBBORN].ended.err.count("does not send ATTITUDE_QUATERNION") == 1
 
 
 def test_an_autopilot_that_starts_anew_is_asked_again(fleet: Fleet) -> None:

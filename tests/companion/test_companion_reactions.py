@@ -200,6 +200,7 @@ def test_after_a_restart_in_an_order_the_mode_comes_back(fleet: Fleet) -> None:
     """By the log of the companion that was killed; without one it stays where it loiters."""
     assert fleet[KILLED].autopilot.modes == [MODES[PX4], LOITER, MODES[PX4]]
     assert fleet[FORGETFUL].autopilot.modes == [MODES[PX4], LOITER]
+    assert [m.text for m in fleet[KILLED].of("STATUSTEXT") if "restarted in an order" in m.text]
 
 
 def log_rows(folder: Path) -> list[dict[str, str]]:

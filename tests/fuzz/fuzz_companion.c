@@ -52,6 +52,7 @@ bool link_check(const char *where, char *fault, size_t fault_size) {
 }
 
 bool link_is_wide(const char *where) { return where == NULL; }
+bool link_is_local(const char *where) { return where == NULL; }
 
 link_t *link_open(const char *where, char *fault, size_t fault_size) {
     (void)where;
