@@ -348,6 +348,13 @@ void link_answer(link_t *link) {
     link->bound = connect(link->descriptor, (const struct sockaddr *)&link->peer, link->peer_size) == 0;
 }
 
+void link_greet(link_t *link) {
+    if (link->kind == LINK_UDP_IN && !link->bound) {
+        link->peer = link->from;
+        link->peer_size = link->from_size;
+    }
+}
+
 void link_release(link_t *link) {
     struct sockaddr nobody;
     (void)memset(&nobody, 0, sizeof nobody);

@@ -35,6 +35,9 @@ size_t link_read(link_t *link, uint8_t *bytes, size_t size);
 /* udpin: answers from now on go to the sender of what was read last, and the system refuses what others send. */
 void link_answer(link_t *link);
 
+/* udpin: answers go there until the next link_answer(), and everybody is still heard. */
+void link_greet(link_t *link);
+
 /* udpin: whoever sends is heard again; answers go on to the same peer. */
 void link_release(link_t *link);
 

@@ -28,6 +28,17 @@ static void count_lost(wire_t *wire, const mavlink_message_t *message) {
     wire->has_sequence = true;
 }
 
+/* The right key at an old time may be an autopilot that knows no better, such as without GPS: signed messages of the companion's tell it
+ * the time. Nothing of what it sent is taken. */
+static void refuse(wire_t *wire, const mavlink_message_t *message) {
+    const bool is_signed = (message->incompat_flags & MAVLINK_IFLAG_SIGNED) != 0;
+    wire->counts.forged += is_signed ? 1u : 0u;
+    wire->counts.without_signature += is_signed ? 0u : 1u;
+    if (is_signed && wire->parser.signing->last_status == MAVLINK_SIGNING_STATUS_OLD_TIMESTAMP) {
+        link_greet(wire->link);
+    }
+}
+
 static void take_byte(wire_t *wire, uint8_t byte, message_taker_t take, void *user) {
     mavlink_message_t message;
     mavlink_status_t status;
@@ -40,9 +51,7 @@ static void take_byte(wire_t *wire, uint8_t byte, message_taker_t take, void *us
         wire->counts.unknown++;
         count_lost(wire, &message);
     } else if (result == MAVLINK_FRAMING_BAD_SIGNATURE) {
-        const bool is_signed = (message.incompat_flags & MAVLINK_IFLAG_SIGNED) != 0;
-        wire->counts.forged += is_signed ? 1u : 0u;
-        wire->counts.without_signature += is_signed ? 0u : 1u;
+        refuse(wire, &message);
     } else if (result != MAVLINK_FRAMING_INCOMPLETE) {
         wire->counts.garbage++;
     } else if (wire->parser.parse_state == MAVLINK_PARSE_STATE_IDLE ||

@@ -159,7 +159,8 @@ class Autopilot:
 
     `ignored` tells how many of a command are neither obeyed nor answered: the companion has to send them again.
     With `most_hz` a pose comes only once it was asked for, as often as that; more often is refused by `refusal`. The
-    messages of `refused` it does not have. With a `key` it signs, and refuses what is not signed by it.
+    messages of `refused` it does not have. With a `key` it signs, and refuses what is not signed by it; its
+    clock for that may be `late_s`.
     """
 
     def __init__(
@@ -180,6 +181,7 @@ class Autopilot:
         refused: Sequence[int] = (),
         refusal: int = FAILED,
         key: bytes | None = None,
+        late_s: float = 0.0,
     ) -> None:
         self.loop, self.dialect, self.make = loop, dialect, make
         self.aircraft = aircraft or Aircraft(time_s=loop.now_s)
@@ -196,7 +198,7 @@ class Autopilot:
         self.reset_counter: int | None = None  # a number: ODOMETRY is sent as well
         self.asked: list[int] = []
         self.most_hz, self.refused, self.refusal = most_hz, refused, refusal
-        self.key, self.refused_signatures = key, 0
+        self.key, self.refused_signatures, self.late_s = key, 0, late_s
         self.gps_fix: int | None = None  # a number: GPS_RAW_INT is sent, with this fix
         self.filter_flags: int | None = None  # a number: the state of the filter is sent, as each make has it
         self._fresh()
@@ -210,9 +212,9 @@ class Autopilot:
         self.parser = self.dialect.MAVLink(None)
         self.parser.robust_parsing = True
         if self.key:
-            for end in (self.mavlink, self.parser):
-                end.signing.secret_key, end.signing.sign_outgoing = self.key, True
-                end.signing.timestamp = int((self.loop.unix_s - SIGNING_EPOCH_S) * 1e5)
+            signing = self.parser.signing = self.mavlink.signing
+            signing.secret_key, signing.sign_outgoing = self.key, True
+            signing.timestamp = int((self.loop.unix_s - self.late_s - SIGNING_EPOCH_S) * 1e5)
 
     # ------------------------------------------------------------------------------------------------------ sending
 

@@ -22,12 +22,13 @@ KEY, OTHER_KEY = bytes(range(32)), bytes(32)
 DAY_S = 86400
 BOUND, CONNECTED, BOXES = "udpin", "udpout", "boxes of a stranger"
 SIGNED, UNSIGNED, FORGED, MIXED, AGAIN = "signed", "unsigned", "another key", "signed and attacked", "clock set back"
+LATE = "autopilot without time"
 STRANGERS = {BOUND: "udpin", CONNECTED: "udpout"}
 
 
-def signed(name: str, key: bytes | None) -> Plan:
+def signed(name: str, key: bytes | None, **more: Any) -> Plan:
     """Times of images are ages: this computer's clock may be wrong."""
-    return Plan(name, clock="age", settings={"link": {"key_file": "link.key"}}, autopilot={"key": key})
+    return Plan(name, clock="age", settings={"link": {"key_file": "link.key"}}, autopilot={"key": key, **more})
 
 
 PLANS = [
@@ -39,6 +40,7 @@ PLANS = [
     signed(FORGED, OTHER_KEY),
     signed(MIXED, KEY),
     signed(AGAIN, KEY),
+    signed(LATE, KEY, late_s=2.0 * 3600.0),
 ]
 
 
@@ -134,7 +136,7 @@ def test_boxes_of_strangers_are_none(fleet: Fleet) -> None:
     assert fleet[BOUND].ended.count("images_unread") == 0
 
 
-@pytest.mark.parametrize("name", [SIGNED, MIXED, AGAIN])
+@pytest.mark.parametrize("name", [SIGNED, MIXED, AGAIN, LATE])
 def test_a_signed_link_works_in_both_directions(fleet: Fleet, name: str) -> None:
     """The stand-in refuses what is not signed, or whose time goes back."""
     flight = fleet[name]

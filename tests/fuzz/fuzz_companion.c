@@ -78,6 +78,7 @@ size_t link_read(link_t *link, uint8_t *bytes, size_t size) {
 }
 
 void link_answer(link_t *link) { (void)link; }
+void link_greet(link_t *link) { (void)link; }
 void link_release(link_t *link) { (void)link; }
 bool link_is_answered(const link_t *link) { return link != NULL; }
 
