@@ -210,8 +210,7 @@ static void on_message(void *user, const mavlink_message_t *message) {
     }
     if (c->autopilot.restarts != c->restarts) {
         c->restarts = c->autopilot.restarts;
-        (void)memset(&c->health, 0, sizeof c->health);
-        (void)margins_set(&c->flight, &c->spare, &c->config, false);
+        health_restart(&c->health);
         image_queue_clear(&c->queue);
     }
 }

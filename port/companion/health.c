@@ -70,6 +70,12 @@ void health_take(health_t *health, const mavlink_message_t *message, int64_t now
     }
 }
 
+void health_restart(health_t *health) {
+    health->has_fix = false;
+    health->gps_us = 0;
+    health->gps = health->filter = 0;
+}
+
 bool health_judge(health_t *health, int64_t now_us) {
     const bool is_silent = health->gps_us != 0 && now_us - health->gps_us > SILENT_US;
     const unsigned before = health->doubts;

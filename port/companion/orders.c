@@ -420,7 +420,6 @@ static void end(orders_t *orders, int64_t now_us) {
     orders->action = GOE_FLIGHT_NONE;
     put_log(orders, "end", orders->resumes_left > 0 ? "back into the mode before" : "");
     orders->slot = -1;
-    orders->sent = orders->silenced = false;
     orders->hindrance = NULL;
 }
 

@@ -1,13 +1,10 @@
 /* Orders: when a command goes out, when none does, and when the mode before comes back. SPDX-License-Identifier: MIT */
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include "check.h"
 #include "orders.h"
+#include "receiver.h"
 
 #define SYSTEM 1
 #define MISSION (4u << 16 | 4u << 24)
@@ -17,6 +14,7 @@
 #define AUTO 10u /* of ArduPlane */
 #define CRUISE 7u
 #define AVOID 14u
+#define PLANE_LOITER 12u
 #define STEP_US 100000 /* between assessments */
 
 static companion_config_t config;
@@ -27,25 +25,10 @@ static orders_t orders;
 static goe_flight_assessment_t assessment;
 static goe_mavlink_own_t own;
 static int64_t now_us;
-static int receiver;             /* where the companion's messages arrive */
+static receiver_t receiver;      /* where the companion's messages arrive */
 static mavlink_message_t latest; /* command that arrived */
 static bool has_arrived[256];    /* traffic, by the last byte of its address */
 static int arrived;              /* messages of traffic */
-
-static void open_wire(void) {
-    struct sockaddr_in address;
-    socklen_t size = sizeof address;
-    char where[64], fault[128];
-    (void)memset(&address, 0, sizeof address);
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    receiver = socket(AF_INET, SOCK_DGRAM, 0);
-    TEST_ASSERT_EQUAL_INT(0, bind(receiver, (struct sockaddr *)&address, sizeof address));
-    TEST_ASSERT_EQUAL_INT(0, getsockname(receiver, (struct sockaddr *)&address, &size));
-    (void)snprintf(where, sizeof where, "udpout:127.0.0.1:%d", ntohs(address.sin_port));
-    wire.link = link_open(where, fault, sizeof fault);
-    TEST_ASSERT_NOT_NULL_MESSAGE(wire.link, fault);
-}
 
 void setUp(void) {
     const char *bad = NULL;
@@ -64,9 +47,7 @@ void setUp(void) {
     config.reaction_adsb_hz = 2.0;
     config.reaction_icao = 0xF0E000;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, &bad));
-    open_wire();
-    wire.system = SYSTEM;
-    wire.component = 196;
+    receiver_open(&receiver, &wire);
     autopilot.system = SYSTEM;
     autopilot.kind = MAV_AUTOPILOT_PX4;
     autopilot.base_mode = MAV_MODE_FLAG_SAFETY_ARMED;
@@ -78,40 +59,27 @@ void setUp(void) {
     orders_init(&orders, &wire, &config, &autopilot, &flight);
 }
 
-void tearDown(void) {
-    link_close(wire.link);
-    (void)close(receiver);
-}
+void tearDown(void) { receiver_close(&receiver, &wire); }
 
 /* How many commands of this number have come since the last call, the latest of them in `latest`. */
 static int count_commands(uint16_t number) {
-    uint8_t bytes[512];
     int count = 0;
-    for (;;) {
-        const ssize_t size = recv(receiver, bytes, sizeof bytes, MSG_DONTWAIT);
-        mavlink_message_t message;
-        mavlink_status_t status;
-        if (size <= 0) {
-            return count;
+    mavlink_message_t message;
+    while (receiver_next(&receiver, &message)) {
+        if (message.msgid == MAVLINK_MSG_ID_ADSB_VEHICLE) {
+            has_arrived[mavlink_msg_adsb_vehicle_get_ICAO_address(&message) & 0xFFu] = true;
+            arrived++;
         }
-        for (ssize_t i = 0; i < size; i++) {
-            if (mavlink_parse_char(MAVLINK_COMM_1, bytes[i], &message, &status) == 0) {
-                continue;
-            }
-            if (message.msgid == MAVLINK_MSG_ID_ADSB_VEHICLE) {
-                has_arrived[mavlink_msg_adsb_vehicle_get_ICAO_address(&message) & 0xFFu] = true;
-                arrived++;
-            }
-            if (message.msgid != MAVLINK_MSG_ID_COMMAND_INT && message.msgid != MAVLINK_MSG_ID_COMMAND_LONG) {
-                continue;
-            }
-            const bool is_int = message.msgid == MAVLINK_MSG_ID_COMMAND_INT;
-            const uint16_t command =
-                is_int ? mavlink_msg_command_int_get_command(&message) : mavlink_msg_command_long_get_command(&message);
-            latest = command == number ? message : latest;
-            count += command == number ? 1 : 0;
+        if (message.msgid != MAVLINK_MSG_ID_COMMAND_INT && message.msgid != MAVLINK_MSG_ID_COMMAND_LONG) {
+            continue;
         }
+        const bool is_int = message.msgid == MAVLINK_MSG_ID_COMMAND_INT;
+        const uint16_t command =
+            is_int ? mavlink_msg_command_int_get_command(&message) : mavlink_msg_command_long_get_command(&message);
+        latest = command == number ? message : latest;
+        count += command == number ? 1 : 0;
     }
+    return count;
 }
 
 /* How many messages of traffic have come since the last call. */
@@ -423,6 +391,44 @@ static void a_place_that_was_never_flown_to_is_no_choice(void) {
     TEST_ASSERT_FALSE(orders.silenced);
 }
 
+/* The old place may be reported for a while after another was sent. */
+static void a_place_that_is_reported_late_is_no_choice(void) {
+    ordered();
+    autopilot.target_lat_e7 = assessment.target_lat_e7;
+    autopilot.target_lon_e7 = assessment.target_lon_e7;
+    autopilot.targets++;
+    go_on(5, LOITER);
+    assessment.target_lat_e7 += 10000;
+    go_on(15, LOITER);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    for (int k = 0; k < 4; k++) {
+        autopilot.targets++;
+        go_on(5, LOITER);
+    }
+    TEST_ASSERT_FALSE(orders.silenced);
+}
+
+/* GIVEN an acknowledgement that comes late WHEN the next heartbeat still shows the mode before THEN that is no pilot's choice. */
+static void a_late_acknowledgement_gives_the_mode_its_time(void) {
+    decide(GOE_FLIGHT_LEFT);
+    go_on(60, MISSION);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    go_on(15, MISSION);
+    TEST_ASSERT_FALSE(orders.silenced);
+    go_on(30, MISSION);
+    TEST_ASSERT_TRUE(orders.silenced);
+}
+
+static void another_action_may_be_accepted_where_one_was_denied(void) {
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_DENIED);
+    (void)count_commands(0);
+    decide(GOE_FLIGHT_RIGHT);
+    go_on(1, MISSION);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
 /* The top over home, with the clearance: what the flight layer's target holds. */
 static void a_go_around_carries_the_height_that_the_top_requires(void) {
     know_obstacle(true);
@@ -508,6 +514,24 @@ static void an_avoidance_that_the_autopilot_ends_goes_on(void) {
     TEST_ASSERT_EQUAL_INT(0, count_traffic());
 }
 
+/* As AVD_F_RCVRY 3 out of CRUISE: it loiters, and the next avoidance comes from there. */
+static void a_recovery_into_another_mode_is_the_autopilots(void) {
+    fly_arduplane();
+    go_on(20, CRUISE);
+    orders_init(&orders, &wire, &config, &autopilot, &flight);
+    go_on(20, CRUISE);
+    go_on(30, AVOID);
+    autopilot.recovered_us = now_us;
+    go_on(50, PLANE_LOITER);
+    (void)count_traffic();
+    go_on(10, PLANE_LOITER);
+    TEST_ASSERT_TRUE(count_traffic() > 0);
+    go_on(30, CRUISE);
+    (void)count_traffic();
+    go_on(20, CRUISE);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic());
+}
+
 /* --------------------------------------------------------------------------------------------------------- restarts -- */
 
 static const order_left_t left = {.stands = true,
@@ -564,13 +588,53 @@ static void an_order_of_another_flight_is_not_taken_over(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
+/* An order that was left to the pilot is not resumed; a row that was torn does not count. */
+static void the_log_tells_whether_an_order_stands(void) {
+    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
+    order_log_t log = {NULL};
+    order_left_t read;
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    TEST_ASSERT_TRUE(order_log_open(&log, folder));
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    orders.log = &log;
+    know_obstacle(true);
+    ordered();
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    TEST_ASSERT_EQUAL_UINT32(MISSION, read.mode_before);
+    TEST_ASSERT_EQUAL_UINT(GOE_FLIGHT_LEFT, read.action);
+    go_on(20, POSITION);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, MISSION);
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    (void)fputs("1,2,0,1,3,1,0,5,6,7,en", log.stream);
+    (void)fflush(log.stream);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    (void)fputs("d\n", log.stream);
+    (void)fflush(log.stream);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    orders.log = NULL;
+    order_log_close(&log);
+    (void)remove(path);
+    (void)rmdir(folder);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_recovery_into_another_mode_is_the_autopilots);
+    RUN_TEST(the_log_tells_whether_an_order_stands);
     RUN_TEST(what_hinders_an_order_may_end);
     RUN_TEST(an_order_that_is_disarmed_is_not_repeated);
     RUN_TEST(the_mode_before_may_be_the_pilots_choice);
     RUN_TEST(a_place_that_the_pilot_chose_is_left_to_him);
     RUN_TEST(a_place_that_was_never_flown_to_is_no_choice);
+    RUN_TEST(a_place_that_is_reported_late_is_no_choice);
+    RUN_TEST(a_late_acknowledgement_gives_the_mode_its_time);
+    RUN_TEST(another_action_may_be_accepted_where_one_was_denied);
     RUN_TEST(a_go_around_carries_the_height_that_the_top_requires);
     RUN_TEST(every_obstacle_is_traffic);
     RUN_TEST(a_pilots_mode_ends_traffic);

@@ -73,6 +73,11 @@ class Attack:
             self.dialect.MAVLink_local_position_ned_message(ms, 900.0, 0.0, 0.0, 0.0, 0.0, 0.0).pack(mavlink),
         ]
 
+    def strike_at_once(self) -> None:
+        """Behind the autopilot's first messages, before the companion has read any."""
+        for data in self.forged(self.fleet[BOUND].autopilot):
+            self.socket.sendto(data, self.address(BOUND))
+
     def strike(self) -> None:
         for name in (BOUND, CONNECTED):
             for data in self.forged(self.fleet[name].autopilot):
@@ -112,6 +117,7 @@ def flown(make_fleet: MakeFleet, dialect: Any) -> Iterator[Fleet]:
         key.chmod(0o600)
     attack = Attack(fleet, dialect)
     fleet.start()
+    fleet.loop.after(0.0, attack.strike_at_once)
     fleet.run(ATTACK_S)
     attack.begin()
     restart_in_the_past(fleet)
@@ -127,6 +133,10 @@ def test_what_strangers_say_is_not_believed(fleet: Fleet, name: str) -> None:
     flight.assert_ended_well()
     assert flight.ended and flight.ended.count("jumps") == 0
     assert len(flight.found(since_s=flight.loop.now_s - 3.0)) > 5
+
+
+def test_what_came_before_the_system_refused_strangers_is_counted(fleet: Fleet) -> None:
+    assert fleet[BOUND].ended and fleet[BOUND].ended.count("strangers") == 2
 
 
 def test_boxes_of_strangers_are_none(fleet: Fleet) -> None:
