@@ -21,6 +21,7 @@ TO_PX4 = {"reaction": {"mode": "px4"}, "flight": {"loiter_m": 0}}
 TO_ARDUPLANE = {"reaction": {"mode": "arduplane"}}
 HEALTHY, LOST, SILENT, FILTER = "healthy", "gps lost", "gps silent", "filter in doubt"
 PLANE, GLITCH, AGAIN, OFF = "arduplane, gps lost", "arduplane, glitch", "gps comes back", "reactions off"
+REBORN = "gps lost, and a restart"
 ARDUPLANE = {"make": ARDUPILOT}
 PLANS = [
     Plan(HEALTHY, settings=TO_PX4, obstacles=FAR),
@@ -31,6 +32,7 @@ PLANS = [
     Plan(PLANE, settings=TO_ARDUPLANE, autopilot=ARDUPLANE, obstacles=FAR),
     Plan(GLITCH, settings=TO_ARDUPLANE, autopilot=ARDUPLANE, obstacles=FAR),
     Plan(OFF, obstacles=FAR),
+    Plan(REBORN, obstacles=FAR),
 ]
 ILL = [LOST, SILENT, FILTER, PLANE, GLITCH, AGAIN]
 
@@ -42,13 +44,14 @@ def flown(make_fleet: MakeFleet) -> Iterator[Fleet]:
         flight.autopilot.gps_fix, flight.autopilot.filter_flags = FIX_3D, GOOD
     fleet.start()
     fleet.run(BEGIN_S)
-    for name in (LOST, PLANE, AGAIN):
+    for name in (LOST, PLANE, AGAIN, REBORN):
         fleet[name].autopilot.gps_fix = NO_GPS
     fleet[SILENT].autopilot.gps_fix = None
     fleet[FILTER].autopilot.filter_flags = GOOD & ~2
     fleet[GLITCH].autopilot.filter_flags = GOOD | 32768
     fleet.run(2.5)
-    fleet[AGAIN].autopilot.gps_fix = FIX_3D
+    fleet[AGAIN].autopilot.gps_fix, fleet[REBORN].autopilot.gps_fix = FIX_3D, None
+    fleet[REBORN].autopilot.restart(0.5)
     fleet.run(FLIGHT_S - BEGIN_S - 2.5)
     fleet.stop()
     yield fleet
@@ -99,6 +102,10 @@ def test_nothing_is_reported_of_a_healthy_autopilot(fleet: Fleet) -> None:
 def test_the_end_of_a_doubt_is_reported(fleet: Fleet) -> None:
     told = [text for text in texts(fleet[AGAIN]) if "GPS" in text or "navigation" in text]
     assert len(told) == 2 and "good" in told[-1]
+
+
+def test_a_restart_of_the_autopilot_ends_its_faults(fleet: Fleet) -> None:
+    assert fleet[REBORN].ended and "navigation: good again" in fleet[REBORN].ended.err
 
 
 @pytest.mark.parametrize("name", [LOST, SILENT, FILTER])
