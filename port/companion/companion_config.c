@@ -356,8 +356,8 @@ static bool resolve(char path[CONFIG_TEXT_MAX], const char *beside) {
     return true;
 }
 
-static bool resolve_if_given(char path[CONFIG_TEXT_MAX], const char *beside) {
-    return *path == '\0' || resolve(path, beside);
+static bool resolve_if_given(char path[CONFIG_TEXT_MAX], const char *configuration) {
+    return *path == '\0' || resolve(path, configuration);
 }
 
 /* Blanks around each name, so that a name can be looked for as a whole. A line's length leaves room for them. */

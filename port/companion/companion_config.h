@@ -58,7 +58,7 @@ typedef struct {
 } companion_config_t;
 
 /* Reads the file, and those of the camera and the key that it names.
- *   link  null, or what is to stand for link.autopilot
+ *   link  null, or what replaces link.autopilot
  * False on failure: *error says what is wrong and where. */
 bool companion_config_read(const char *path, const char *link, companion_config_t *config, input_error_t *error);
 

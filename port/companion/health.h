@@ -31,7 +31,7 @@ void health_take(health_t *health, const mavlink_message_t *message, int64_t now
 /* To be called often. Returns whether `doubts` has changed. */
 bool health_judge(health_t *health, int64_t now_us);
 
-/* The autopilot has started anew: what it said before is no fault any more. */
+/* The autopilot has restarted: what it said before is no fault any more. */
 void health_restart(health_t *health);
 
 /* The gravest of these faults in a few words; "good" for none. */

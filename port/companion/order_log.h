@@ -1,4 +1,4 @@
-/* Orders in the log: orders.csv, beside frames.csv. SPDX-License-Identifier: MIT
+/* Orders in the log: orders.csv, next to frames.csv. SPDX-License-Identifier: MIT
  *
  * A row for each order, command, acknowledgement and end; on the disk at once. By its last row a companion that was restarted knows
  * of the order that it left. */

@@ -28,8 +28,8 @@ static void count_lost(wire_t *wire, const mavlink_message_t *message) {
     wire->has_sequence = true;
 }
 
-/* The right key at an old time may be an autopilot that knows no better, such as without GPS: signed messages of the companion's tell it
- * the time. Nothing of what it sent is taken. */
+/* The right key at an old time may be an autopilot that knows no better, such as without GPS: signed messages of the companion's
+ * set its time. Nothing of what it sent is taken. */
 static void refuse(wire_t *wire, const mavlink_message_t *message) {
     const bool is_signed = (message->incompat_flags & MAVLINK_IFLAG_SIGNED) != 0;
     wire->counts.forged += is_signed ? 1u : 0u;

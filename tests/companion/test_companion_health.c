@@ -79,7 +79,7 @@ static void faults_of_moments_make_no_doubt(void) {
     TEST_ASSERT_EQUAL_HEX32(0, health.doubts);
 }
 
-/* As indoors, where something else tells the place. */
+/* As indoors, where something else gives the place. */
 static void who_never_had_a_fix_has_lost_none(void) {
     fix = GPS_FIX_TYPE_NO_GPS;
     go_on(20, true);

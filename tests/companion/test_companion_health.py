@@ -73,10 +73,10 @@ def test_it_ends_well(fleet: Fleet, name: str) -> None:
 
 
 def test_health_is_asked_for(fleet: Fleet) -> None:
-    """GPS_RAW_INT of both makes, and of each the message that tells of its filter."""
+    """GPS_RAW_INT of both makes, and of each the message about its filter."""
     for name, messages in ((HEALTHY, {24, 230, 331}), (PLANE, {24, 193, 331})):
-        told = [m for m in fleet[name].of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL]
-        assert messages <= {int(m.param1) for m in told}
+        asked = [m for m in fleet[name].of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL]
+        assert messages <= {int(m.param1) for m in asked}
 
 
 @pytest.mark.parametrize("name", [LOST, SILENT, PLANE, AGAIN])
@@ -100,8 +100,8 @@ def test_nothing_is_reported_of_a_healthy_autopilot(fleet: Fleet) -> None:
 
 
 def test_the_end_of_a_doubt_is_reported(fleet: Fleet) -> None:
-    told = [text for text in texts(fleet[AGAIN]) if "GPS" in text or "navigation" in text]
-    assert len(told) == 2 and "good" in told[-1]
+    shown = [text for text in texts(fleet[AGAIN]) if "GPS" in text or "navigation" in text]
+    assert len(shown) == 2 and "good" in shown[-1]
 
 
 def test_a_restart_of_the_autopilot_ends_its_faults(fleet: Fleet) -> None:
@@ -123,8 +123,8 @@ def test_a_doubt_ends_no_track(fleet: Fleet) -> None:
 @pytest.mark.parametrize("name", [HEALTHY, PLANE])
 def test_orders_are_on_the_screen(fleet: Fleet, name: str) -> None:
     """From the companion, with the obstacle's time; and their end."""
-    told = [text for text in texts(fleet[name]) if "order" in text or "traffic" in text]
-    assert re.search(r"\d s", told[0]) and "end" in told[-1], told
+    shown = [text for text in texts(fleet[name]) if "order" in text or "traffic" in text]
+    assert re.search(r"\d s", shown[0]) and "end" in shown[-1], shown
     assert {m.get_srcComponent() for m in fleet[name].of("STATUSTEXT")} == {196}
 
 

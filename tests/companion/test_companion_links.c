@@ -33,7 +33,7 @@ void tearDown(void) {
     (void)close(stranger_socket);
 }
 
-static void tell(int from, char what) {
+static void send_from(int from, char what) {
     struct sockaddr_in to;
     (void)memset(&to, 0, sizeof to);
     to.sin_family = AF_INET;
@@ -55,22 +55,22 @@ static bool is_answered_at(int where) {
 }
 
 static void once_answered_the_system_refuses_strangers(void) {
-    tell(stranger_socket, 's');
-    tell(friend_socket, 'f');
+    send_from(stranger_socket, 's');
+    send_from(friend_socket, 'f');
     TEST_ASSERT_EQUAL_CHAR('s', heard());
     TEST_ASSERT_EQUAL_CHAR('f', heard());
     link_answer(own);
     TEST_ASSERT_TRUE(is_answered_at(friend_socket));
-    tell(stranger_socket, 's');
+    send_from(stranger_socket, 's');
     TEST_ASSERT_EQUAL_CHAR('\0', heard());
-    tell(friend_socket, 'f');
+    send_from(friend_socket, 'f');
     TEST_ASSERT_EQUAL_CHAR('f', heard());
     TEST_ASSERT_TRUE(link_is_answered(own));
 }
 
 static void what_lay_there_before_is_known_as_a_strangers(void) {
-    tell(friend_socket, 'f');
-    tell(stranger_socket, 's');
+    send_from(friend_socket, 'f');
+    send_from(stranger_socket, 's');
     TEST_ASSERT_EQUAL_CHAR('f', heard());
     link_answer(own);
     TEST_ASSERT_EQUAL_CHAR('s', heard());
@@ -78,28 +78,28 @@ static void what_lay_there_before_is_known_as_a_strangers(void) {
 }
 
 static void a_link_that_is_released_hears_everybody_again(void) {
-    tell(friend_socket, 'f');
+    send_from(friend_socket, 'f');
     (void)heard();
     link_answer(own);
     link_release(own);
     TEST_ASSERT_TRUE(is_answered_at(friend_socket));
-    tell(stranger_socket, 's');
+    send_from(stranger_socket, 's');
     TEST_ASSERT_EQUAL_CHAR('s', heard());
     link_answer(own);
     TEST_ASSERT_TRUE(is_answered_at(stranger_socket));
-    tell(friend_socket, 'f');
+    send_from(friend_socket, 'f');
     TEST_ASSERT_EQUAL_CHAR('\0', heard());
 }
 
 static void who_is_greeted_is_answered_and_not_alone_heard(void) {
-    tell(friend_socket, 'f');
+    send_from(friend_socket, 'f');
     (void)heard();
     link_greet(own);
     TEST_ASSERT_TRUE(is_answered_at(friend_socket));
-    tell(stranger_socket, 's');
+    send_from(stranger_socket, 's');
     TEST_ASSERT_EQUAL_CHAR('s', heard());
     link_answer(own);
-    tell(stranger_socket, 's');
+    send_from(stranger_socket, 's');
     (void)heard();
     link_greet(own);
     TEST_ASSERT_FALSE(is_answered_at(friend_socket));

@@ -47,8 +47,8 @@ def flown(make_fleet: MakeFleet) -> Iterator[Fleet]:
 
 
 def asked_hz(flight: Flight, message: int) -> list[float]:
-    told = [m for m in flight.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL and int(m.param1) == message]
-    return [round(1e6 / m.param2, 1) for m in told]
+    asked = [m for m in flight.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL and int(m.param1) == message]
+    return [round(1e6 / m.param2, 1) for m in asked]
 
 
 @pytest.mark.parametrize("name", [plan.name for plan in PLANS])
@@ -88,13 +88,13 @@ def test_what_was_refused_is_asked_for_again_while_no_poses_come(fleet: Fleet) -
     assert fleet[STUBBORN].ended and fleet[STUBBORN].ended.err.count("does not send ATTITUDE_QUATERNION") == 1
 
 
-def test_an_autopilot_that_starts_anew_is_asked_again(fleet: Fleet) -> None:
+def test_an_autopilot_that_restarts_is_asked_again(fleet: Fleet) -> None:
     """Without poses its new clock is not seen at once: then once more."""
     assert asked_hz(fleet[REBOOT], ATTITUDE) in (2 * [25.0], 3 * [25.0])
 
 
 def test_odometry_is_asked_of_every_autopilot(fleet: Fleet) -> None:
-    """Whoever does not have it is asked for no rate twice, and that is told once."""
+    """Whoever does not have it is asked for no rate twice, and that is reported once."""
     assert asked_hz(fleet["px4"], ODOMETRY) == [10.0]
     assert asked_hz(fleet[STOCK], ODOMETRY) == [10.0, 5.0]
     assert fleet[STOCK].ended and fleet[STOCK].ended.err.count("ODOMETRY") == 1

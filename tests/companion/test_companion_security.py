@@ -169,7 +169,7 @@ def test_who_has_no_key_is_not_heard(fleet: Fleet, name: str, row: str) -> None:
     assert flight.ended.count("attitudes") == 0 and flight.autopilot.heard == []
 
 
-def test_what_is_refused_is_counted_and_told(fleet: Fleet) -> None:
+def test_what_is_refused_is_counted_and_reported(fleet: Fleet) -> None:
     ended = fleet[MIXED].ended
     assert ended and ended.count("messages_unsigned") >= 80
     assert ended.count("messages_forged") >= 80  # replayed: their time is past
@@ -202,7 +202,7 @@ def test_the_key_is_not_printed(folder: Path) -> None:
 
 
 def test_it_listens_to_this_computer_alone(folder: Path) -> None:
-    """Unless it is told otherwise, in the file or in the call."""
+    """Unless the file or the call says otherwise."""
     (folder / "companion.ini").write_text("", encoding="utf-8")
     assert "link.autopilot = udpin:127.0.0.1:" in call("--check", folder / "companion.ini").stdout
     wide = call("--check", "--link", "udpin:0.0.0.0:14540", folder / "companion.ini")

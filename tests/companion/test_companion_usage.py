@@ -279,7 +279,7 @@ def test_nothing_moves_it_to_use_the_processor(make: Make) -> None:
         assert companion.stop().status == 0
 
 
-def test_who_hears_nobody_is_told_how_to_listen(make: Make) -> None:
+def test_who_hears_nobody_learns_how_to_listen(make: Make) -> None:
     """Once, after ten seconds."""
     companion = make(usual())
     companion.start()
