@@ -246,6 +246,22 @@ static void the_first_heights_own_error_is_kept(void) {
     CHECK_SAME(0.7f, filter.datum.sd_m);
 }
 
+/* GIVEN heights with a white error and a box in each image WHEN the height is not set THEN no reading counts and the ground's height is
+ * unknown; the first height that is set is the first reading. */
+static void a_height_that_is_not_set_is_no_reading(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    image.box.seen = GOE_SEES_BOX;
+    image.noise.height_m = 0.7f; /* of a height that is not there */
+    read_height(0.0f, 0.0f);
+    read_height(0.0f, 0.0f);
+    TEST_ASSERT_EQUAL_UINT16(0u, filter.datum.readings);
+    TEST_ASSERT_TRUE(filter.datum.sd_m >= 1.0e3f);
+    image.pose.height_m = HEIGHT_M;
+    read_height(HEIGHT_M, 0.0f);
+    TEST_ASSERT_EQUAL_UINT16(1u, filter.datum.readings);
+    CHECK_CLOSE(1.0e-5, (double)HEIGHT_M, filter.datum.height_m);
+}
+
 /* GIVEN a camera on an arm WHEN the aircraft pitches and rolls THEN the camera's height has moved by the arm's end, not by the
  * vehicle's down alone. */
 static void the_arm_moves_the_camera_up_and_down(void) {
@@ -280,6 +296,7 @@ int main(void) {
     RUN_TEST(a_height_that_is_kept_has_no_slope);
     RUN_TEST(sloping_ground_makes_the_height_uncertain);
     RUN_TEST(the_first_heights_own_error_is_kept);
+    RUN_TEST(a_height_that_is_not_set_is_no_reading);
     RUN_TEST(the_arm_moves_the_camera_up_and_down);
     return UNITY_END();
 }

@@ -183,8 +183,8 @@ static void sight_of(double *x_m, double *z_m) {
     *z_m = 1.0 / q - (double)camera.z;
 }
 
-/* On purpose: the middle of what is no disc may lie beside the obstacle's, its ends change, and the roof's corner that the top is over
- * lies beside the middle as well. share: of that, 1 of a chord. */
+/* On purpose: the middle of what is no disc may lie apart from the obstacle's, its ends change, and the roof's corner that the top is over
+ * lies apart from the middle as well. share: of that, 1 of a chord. */
 /* The square of the sine of the angle under which the top is seen from the camera's height. */
 static double below2(void) {
     goe_quantities_t q;
