@@ -422,7 +422,10 @@ companion_t *companion_new(const companion_config_t *config, char *fault, size_t
     if (*config->link_key_file != '\0') {
         signing_begin(&c->signing, &c->wire, config->link_key_file, config->link_key, clock_us(CLOCK_REALTIME));
     } else if (link_is_wide(config->link_autopilot)) {
-        event("%s is open to every network, and not signed: whoever reaches it can steer", config->link_autopilot);
+        event("%s is open to every network, and not signed: who reaches it can steer", config->link_autopilot);
+    }
+    if (link_is_wide(config->detections_from)) {
+        event("%s is open to every network: who reaches it can send obstacles", config->detections_from);
     }
     c->self_check = goe_self_check();
     c->assessed_us = c->reported_us = c->second_us = c->begun_us = now_us;
