@@ -33,7 +33,9 @@ OVERRULED, AT_ONCE = "px4 and its pilot", "px4 and its pilot, at once"
 KILLED, FORGETFUL = "px4, companion killed", "px4, companion killed without a log"
 LANDING, LANDING_PLANE = "px4 on approach", "arduplane on approach"
 TRAFFIC, LOW_TRAFFIC, NO_TRAFFIC = "arduplane", "arduplane, low mast", "arduplane, mast aside"
+PILOT_OUT, BY_ITSELF = "arduplane, its pilot ends the avoidance", "arduplane ends its avoidance by itself"
 PLANE = {"make": ARDUPILOT}
+AVOID_ADSB = 14  # mode of ArduPlane
 PLANS = [
     Plan(AVOIDS, settings=TO_PX4, autopilot={"ignored": {DO_REPOSITION: IGNORED, DO_SET_MODE: 1}}),
     Plan(STAYS, settings={"reaction": {"mode": "px4", "resume": 0}, "flight": STOPS}),
@@ -46,6 +48,8 @@ PLANS = [
     Plan(LANDING_PLANE, settings=TO_ARDUPLANE, obstacles=(LOW,), autopilot={**PLANE, "landing": True}),
     Plan(TRAFFIC, settings={"reaction": {"mode": "arduplane", "icao": hex(ICAO)}}, autopilot=PLANE),
     Plan(LOW_TRAFFIC, settings=TO_ARDUPLANE, obstacles=(LOW,), autopilot=PLANE),
+    Plan(PILOT_OUT, settings=TO_ARDUPLANE, autopilot=PLANE),
+    Plan(BY_ITSELF, settings=TO_ARDUPLANE, autopilot=PLANE),
     Plan(NO_TRAFFIC, settings=TO_ARDUPLANE, obstacles=ASIDE, autopilot=PLANE),
 ]
 
@@ -66,6 +70,29 @@ class Pilot:
     def _take_over(self) -> None:
         self.autopilot.set_mode(POSITION)
         self.since_s = self.loop.now_s
+
+
+class Avoidance:
+    """Of ArduPlane's: into AVOID_ADSB when traffic comes, and after 2 s back, once. By itself it says so."""
+
+    def __init__(self, flight: Flight, by_itself: bool) -> None:
+        self.flight, self.by_itself = flight, by_itself
+        self.since_s = math.inf  # of the way back
+        self.seen = False
+        flight.loop.every(0.05, self._look)
+
+    def _look(self) -> None:
+        if not self.seen and self.flight.of("ADSB_VEHICLE"):
+            self.seen = True
+            self.flight.autopilot.set_mode(AVOID_ADSB)
+            self.flight.loop.after(2.0, self._back)
+
+    def _back(self) -> None:
+        autopilot = self.flight.autopilot
+        autopilot.set_mode(MODES[ARDUPILOT])
+        self.since_s = self.flight.loop.now_s
+        if self.by_itself:
+            autopilot.send(autopilot.dialect.MAVLink_statustext_message(6, b"Avoid: Resuming with action: 1"))
 
 
 class Killer:
@@ -91,11 +118,17 @@ def all_pilots() -> dict[str, Pilot]:
     return {}
 
 
+@pytest.fixture(scope="module", name="avoidances")
+def all_avoidances() -> dict[str, Avoidance]:
+    return {}
+
+
 @pytest.fixture(scope="module", name="fleet")
-def flown(make_fleet: MakeFleet, pilots: dict[str, Pilot]) -> Iterator[Fleet]:
+def flown(make_fleet: MakeFleet, pilots: dict[str, Pilot], avoidances: dict[str, Avoidance]) -> Iterator[Fleet]:
     fleet = make_fleet(PLANS)
     fleet.start()
     pilots.update({name: Pilot(fleet[name], after_s) for name, after_s in ((OVERRULED, 2.0), (AT_ONCE, 0.01))})
+    avoidances.update({name: Avoidance(fleet[name], name == BY_ITSELF) for name in (PILOT_OUT, BY_ITSELF)})
     killers = [Killer(fleet[name], 1.5) for name in (KILLED, FORGETFUL)]
     fleet.run(FLIGHT_S)
     fleet.stop()
@@ -237,6 +270,13 @@ def test_on_approach_it_goes_around(fleet: Fleet, name: str) -> None:
     assert orders(fleet[name]) == []
 
 
+@pytest.mark.parametrize("name", [LANDING, LANDING_PLANE])
+def test_the_go_around_carries_its_height(fleet: Fleet, name: str) -> None:
+    """Over home: the mast's top and the clearance of 10 m, with what the top is uncertain by."""
+    told = [m for m in fleet[name].autopilot.commands() if m.command == DO_GO_AROUND]
+    assert LOW.height_m + 9.0 < told[0].param1 < LOW.height_m + 40.0
+
+
 # ------------------------------------------------------------------------------------------------------------ arduplane
 
 
@@ -297,3 +337,17 @@ def test_traffic_ends_behind_the_mast(fleet: Fleet) -> None:
 def test_arduplane_is_given_no_order(fleet: Fleet, name: str) -> None:
     """Its own avoidance turns away."""
     assert fleet[name].autopilot.commands() == []
+
+
+def test_a_pilot_who_ends_the_avoidance_gets_no_more_traffic(fleet: Fleet, avoidances: dict[str, Avoidance]) -> None:
+    """Once two heartbeats have shown it."""
+    since_s = avoidances[PILOT_OUT].since_s
+    times = [heard.time_s for heard in fleet[PILOT_OUT].autopilot.heard_of("ADSB_VEHICLE")]
+    assert since_s < math.inf and max(times) < since_s + 2.3
+    assert any("pilot" in message.text for message in fleet[PILOT_OUT].of("STATUSTEXT"))
+
+
+def test_an_avoidance_that_ends_by_itself_gets_more_traffic(fleet: Fleet, avoidances: dict[str, Avoidance]) -> None:
+    since_s = avoidances[BY_ITSELF].since_s
+    times = [heard.time_s for heard in fleet[BY_ITSELF].autopilot.heard_of("ADSB_VEHICLE")]
+    assert since_s < math.inf and len([time for time in times if time > since_s + 2.5]) > 3
