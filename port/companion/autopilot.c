@@ -86,7 +86,8 @@ static void start_anew(autopilot_t *autopilot) {
     autopilot->has_attitude = autopilot->has_position = false;
     autopilot->has_range_finder = autopilot->has_terrain = false;
     autopilot->has_origin = autopilot->origin_given = autopilot->has_home = autopilot->has_home_alt = false;
-    autopilot->has_odometry_resets = autopilot->landing = autopilot->answered = false;
+    autopilot->has_odometry_resets = autopilot->answered = false;
+    autopilot->landing = autopilot->on_ground = false;
     autopilot->told_us = autopilot->jump_us = 0;
     autopilot->strange_times = 0;
     message_rates_clear(&autopilot->rates);
@@ -430,6 +431,11 @@ static bool is_from_elsewhere(const autopilot_t *autopilot, int64_t now_us) {
            !link_is_answered(autopilot->wire->link);
 }
 
+static void take_landed_state(autopilot_t *autopilot, uint8_t state) {
+    autopilot->landing = state == MAV_LANDED_STATE_LANDING;
+    autopilot->on_ground = state == MAV_LANDED_STATE_ON_GROUND;
+}
+
 /* ArduPlane says so when its avoidance of traffic ends without a pilot. */
 static void take_text(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     static const char recovery[] = "Avoid: Resuming";
@@ -511,7 +517,7 @@ void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, in
             take_acknowledgement(autopilot, message);
             break;
         case MAVLINK_MSG_ID_EXTENDED_SYS_STATE:
-            autopilot->landing = mavlink_msg_extended_sys_state_get_landed_state(message) == MAV_LANDED_STATE_LANDING;
+            take_landed_state(autopilot, mavlink_msg_extended_sys_state_get_landed_state(message));
             break;
         default:
             break;

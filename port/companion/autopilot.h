@@ -22,7 +22,8 @@ typedef struct {
     uint8_t kind;   /* MAV_AUTOPILOT_... */
     uint32_t custom_mode;
     uint8_t base_mode;
-    bool landing;         /* EXTENDED_SYS_STATE: on approach */
+    bool landing;         /* EXTENDED_SYS_STATE: on approach ... */
+    bool on_ground;       /* ... or on the ground */
     int64_t recovered_us; /* own time when ArduPilot reported that it ended an avoidance by itself; 0: never */
     int32_t target_lat_e7, target_lon_e7; /* where it flies to, as it reports ... */
     unsigned targets;                     /* ... so many times */

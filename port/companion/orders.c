@@ -106,6 +106,9 @@ static const char *find_hindrance(const orders_t *orders, goe_flight_action_t ac
     if ((orders->autopilot->base_mode & MAV_MODE_FLAG_SAFETY_ARMED) == 0) {
         return "not armed";
     }
+    if (orders->autopilot->on_ground) {
+        return "on the ground";
+    }
     if (!is_mode_allowed(orders, mode, action)) {
         return "mode is not in reaction.modes";
     }

@@ -272,6 +272,21 @@ static void the_end_of_an_avoidance_is_read_from_its_text(void) {
     TEST_ASSERT_EQUAL_INT64(own_us, autopilot.recovered_us);
 }
 
+static void show_landed_state(uint8_t state) {
+    mavlink_message_t message;
+    (void)mavlink_msg_extended_sys_state_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 0, state);
+    autopilot_take(&autopilot, &message, own_us);
+}
+
+static void approach_and_touchdown_are_read(void) {
+    show_landed_state(MAV_LANDED_STATE_LANDING);
+    TEST_ASSERT_TRUE(autopilot.landing && !autopilot.on_ground);
+    show_landed_state(MAV_LANDED_STATE_ON_GROUND);
+    TEST_ASSERT_TRUE(!autopilot.landing && autopilot.on_ground);
+    show_landed_state(MAV_LANDED_STATE_IN_AIR);
+    TEST_ASSERT_FALSE(autopilot.landing || autopilot.on_ground);
+}
+
 static void the_place_that_it_flies_to_is_kept(void) {
     mavlink_message_t message;
     mavlink_position_target_global_int_t target;
@@ -314,6 +329,7 @@ int main(void) {
     RUN_TEST(a_counter_that_rises_with_a_step_tells_nothing_new);
     RUN_TEST(a_range_finder_is_taken_upright);
     RUN_TEST(the_end_of_an_avoidance_is_read_from_its_text);
+    RUN_TEST(approach_and_touchdown_are_read);
     RUN_TEST(the_place_that_it_flies_to_is_kept);
     RUN_TEST(a_restart_of_the_autopilot_asks_for_everything_again);
     return UNITY_END();

@@ -342,6 +342,18 @@ static void an_order_that_is_disarmed_is_not_repeated(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
+/* After touchdown no landing is broken off; a bounce is a flight again. */
+static void nothing_is_sent_on_the_ground(void) {
+    autopilot.custom_mode = LAND;
+    autopilot.on_ground = true;
+    decide(GOE_FLIGHT_GO_AROUND);
+    go_on(20, LAND);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
+    autopilot.on_ground = false;
+    go_on(1, LAND);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+}
+
 /* GIVEN an order that has led to its mode, WHEN the pilot goes back to the mode before, and the target moves, THEN the order is not
  * repeated over him, and no mode is asked for. */
 static void the_mode_before_may_be_the_pilots_choice(void) {
@@ -629,6 +641,7 @@ int main(void) {
     RUN_TEST(the_log_tells_whether_an_order_stands);
     RUN_TEST(what_hinders_an_order_may_end);
     RUN_TEST(an_order_that_is_disarmed_is_not_repeated);
+    RUN_TEST(nothing_is_sent_on_the_ground);
     RUN_TEST(the_mode_before_may_be_the_pilots_choice);
     RUN_TEST(a_place_that_the_pilot_chose_is_left_to_him);
     RUN_TEST(a_place_that_was_never_flown_to_is_no_choice);
