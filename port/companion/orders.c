@@ -286,7 +286,7 @@ static bool watch(orders_t *orders, goe_flight_action_t action, bool is_new) {
     if (!orders->sent) { /* while nothing is sent the mode is the pilot's */
         const bool may_be_old =
             orders->resumed_at != 0 && orders->autopilot->heartbeats - orders->resumed_at < BEATS_TO_RESUME;
-        if (!may_be_old && !orders->left.stands) {
+        if (!may_be_old) {
             mode_watch_begin(&orders->watch, orders->autopilot, orders->autopilot->custom_mode);
         }
     }
@@ -313,15 +313,25 @@ static bool is_behind(const orders_t *orders, const order_left_t *left) {
     return ahead_m < -(left->radius_m + orders->config->flight.margin_m);
 }
 
-/* Once. */
+/* Once; and into this log, for a companion after this one. */
 static void report_left(orders_t *orders) {
-    if (!orders->left_reported) {
-        event("an order of before the restart stands in the log: %s",
-              goe_flight_action_text((goe_flight_action_t)orders->left.action));
-        screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_NOTICE,
-                    "GOE restarted in an order: Hold until passed");
+    if (orders->left_reported) {
+        return;
     }
     orders->left_reported = true;
+    orders->stands = orders->left;
+    orders->watch.mode_before = orders->left.mode_before;
+    put_log(orders, "taken over", "");
+    event("an order of before the restart stands in the log: %s",
+          goe_flight_action_text((goe_flight_action_t)orders->left.action));
+    screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_NOTICE, "GOE restarted in an order: Hold until passed");
+}
+
+static void end_left(orders_t *orders, const char *how) {
+    orders->left.stands = orders->stands.stands = false;
+    if (orders->left_reported) {
+        put_log(orders, how, "after a restart");
+    }
 }
 
 /* While no order of its own stands: back, once the obstacle of the log lies behind. */
@@ -332,17 +342,15 @@ static void follow_left(orders_t *orders, int64_t now_us) {
     }
     if (orders->config->reaction_mode != REACTION_PX4 || orders->config->reaction_resume == 0 ||
         orders->autopilot->custom_mode != PX4_AUTO_LOITER || !is_of_this_flight(orders, left)) {
-        orders->left.stands = false;
+        end_left(orders, "end");
         return;
     }
     report_left(orders);
     if (is_behind(orders, left)) {
         event("the obstacle of the order before the restart is passed");
-        orders->watch.mode_before = left->mode_before;
-        orders->left.stands = false;
         orders->resumes_left = RESUMES_MAX;
         ask_for_mode_before(orders, now_us);
-        put_log(orders, "resume", "after a restart");
+        end_left(orders, "resume");
     }
 }
 

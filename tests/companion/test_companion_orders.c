@@ -635,8 +635,36 @@ static void the_log_tells_whether_an_order_stands(void) {
     (void)rmdir(folder);
 }
 
+/* GIVEN a companion that is restarted twice, and no new order between, THEN the second log still has the order; its end is there, too. */
+static void an_order_that_was_taken_over_stands_in_the_next_log(void) {
+    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
+    order_log_t log = {NULL};
+    order_left_t read;
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
+    TEST_ASSERT_TRUE(order_log_open(&log, folder));
+    orders.log = &log;
+    take_over(100.0f, 3000000);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    TEST_ASSERT_EQUAL_UINT32(MISSION, read.mode_before);
+    CHECK_SAME(200.0f, read.obstacle_ne_m[0]);
+    CHECK_SAME(1.0f, read.course_ne[0]);
+    TEST_ASSERT_EQUAL_INT64(left.unix_us + 3000000, read.unix_us);
+    go_on(20, POSITION);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    orders_init(&orders, &wire, &config, &autopilot, &flight);
+    orders.log = &log;
+    take_over(230.0f, 3000000);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read)); /* passed */
+    orders.log = NULL;
+    order_log_close(&log);
+    (void)remove(path);
+    (void)rmdir(folder);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(an_order_that_was_taken_over_stands_in_the_next_log);
     RUN_TEST(a_recovery_into_another_mode_is_the_autopilots);
     RUN_TEST(the_log_tells_whether_an_order_stands);
     RUN_TEST(what_hinders_an_order_may_end);
