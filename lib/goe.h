@@ -2,7 +2,7 @@
  * goe - Ground Obstacle Estimator
  *
  * From one camera's view of a static ground obstacle (a building, a truck, a chimney) and the aircraft's own motion:
- * where the obstacle is, how big it is, how it stands, each with its one-sigma.
+ * the position, size and orientation of the obstacle, each with a 1-sigma uncertainty.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  *
@@ -69,7 +69,7 @@
  *             estimator needs the caller's lock.
  * Arithmetic  float only; of the C library sqrtf, memcpy and memset, no more. sqrtf must be correctly rounded, as IEEE 754
  *             asks: goe_self_check() tries it. Compiled with the library's own flags (-ffp-contract=off) the results are
- *             bit-identical on every IEEE 754 target; goe_self_check() tells at run time whether they are.
+ *             bit-identical on every IEEE 754 target; goe_self_check() verifies it at run time.
  *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity.
  *             What float rounds, against double precision, stays below one and a half sigma of any quantity of the refined method
  *             with positions within 10 km of their origin, for lever arms of metres, 300 to 3000 px of focal length and sensors'
@@ -121,7 +121,7 @@
 #define GOE_WITH_HAZARD 1 /* goe_hazard() */
 #endif
 #ifndef GOE_WITH_MOVERS
-#define GOE_WITH_MOVERS 1 /* refined: late poses are told and taken off, and so is the velocity of an obstacle that moves */
+#define GOE_WITH_MOVERS 1 /* refined: detects and corrects pose latency, and estimates the velocity of an obstacle that moves */
 #endif
 #if !GOE_WITH_WINDOW && !GOE_WITH_REFINED
 #error "GOE_WITH_WINDOW or GOE_WITH_REFINED must be 1"
@@ -219,7 +219,7 @@ typedef enum {
     GOE_MODEL_AUTO = 1, /* setting only. Window: disc until window.line_points line points exist, the line from then on: when
                            no more base corners come its last solution is held, until goe_reset. Refined: disc until the
                            images show a box */
-    GOE_MODEL_DISC = 2, /* an upright cylinder, or the circle that stands for anything else; (2) */
+    GOE_MODEL_DISC = 2, /* an upright cylinder, or the circle that replaces anything else; (2) */
     GOE_MODEL_LINE = 3, /* (3): the front edge of a box; needs base corners. As a setting of the refined method: a box,
                            and no disc before it */
     GOE_MODEL_BOX = 4,  /* estimate only: a box with an upright, level outline. Refined method */
@@ -237,8 +237,8 @@ typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2 } goe_method_t;
  * Mounting: the un-mounted camera looks along body x with image x = body y and image y = body z; it is turned by yaw
  * about z, then pitch about the new y, then roll about the newest x. A camera that looks left has a negative yaw. */
 typedef struct {
-    float fx_px;           /* focal length along x, px; 1 to 1e5; no default: must be set. No image shows that it is off: by
-                              3 %, untold, W is within 2 sigma in 51 % of the answers, H in 68 %, Z0 in 91 % */
+    float fx_px;           /* focal length along x, px; 1 to 1e5; no default: must be set. No image shows that it is off. By
+                              3 %, W is within 2 sigma in 51 % of the answers only, H in 68 %, Z0 in 91 % */
     float fy_px;           /* ... along y; 1 to 1e5; no default: must be set */
     float cx_px;           /* principal point, px; -1e5 to 1e5; no default: must be set */
     float cy_px;           /* principal point, px; -1e5 to 1e5; no default: must be set */
@@ -262,15 +262,15 @@ typedef struct {
 
 /* How wrong the pose is, for the refined method: one-sigma each, as a data sheet or a look at a log gives them. Too large a
  * figure wastes data; too small a one makes the sigmas too small by as much, refuses good points and makes obstacles
- * suspect. A constant error is the same over a track: the filter estimates it beside the obstacle. */
+ * suspect. A constant error is the same over a track: the filter estimates it together with the obstacle. */
 typedef struct {
     float attitude_bias_deg;  /* constant attitude error about each body axis, mounting included, degrees; 1e-3 to 30;
                                  default 0.5 */
     float attitude_white_deg; /* attitude error that is new in each image, degrees; 1e-4 to 30; default 0.1 */
     float attitude_drift_deg; /* random walk of the attitude error, degrees per square root of a second; 0 to 30; default 0 */
     float height_bias_m;      /* constant error of goe_pose_t.height_m over the obstacle's ground, m; 1e-3 to 1e3;
-                                 default 0.5. No image shows that it is larger: ground 5 m off and told as 0.5, by base corners,
-                                 leaves Z0 within 2 sigma in 45 % of the answers, H in 15 %, and 59 % of the tracks suspect */
+                                 default 0.5. No image shows that it is larger: ground 5 m off but configured as 0.5, by base
+                                 corners, leaves Z0 within 2 sigma in 45 % of the answers, H in 15 %, and 59 % of the tracks suspect */
     float velocity_bias_m_s;  /* constant error of the own horizontal velocity, each axis, m/s; 0 to 100; default 0.05 */
     float position_walk_m;    /* random walk of the own position, m per square root of a second; 0 to 100; default 0.05 */
     float position_white_m;   /* error of the own position that is new in each image, each axis, m; 0 to 100; default 0.
@@ -280,8 +280,8 @@ typedef struct {
                                  height is a reading of where it began, whose mean the filter learns */
     float slope;              /* slope of the ground that height_m is above, m per m flown; 0 to 1; default 0. It lets the height
                                  go wrong on the way; what it is wrong by at first, slope times range, is height_bias_m's */
-    float ground_m;           /* upright boxes: how far the obstacle's ground may lie off that which height_m is above, added to
-                                 height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
+    float ground_m;           /* upright boxes, also with base corners: how far the obstacle's ground may lie off that which height_m
+                                 is above, added to height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
 } goe_navigation_t;
 
 /* How wrong the features are, for the refined method: one-sigma each. */
@@ -319,7 +319,7 @@ typedef struct {
     float gate_sigma;     /* a point farther off than this is left out, sigmas; 1 to 100; default 5 */
     float huber_sigma;    /* a point farther off than this counts less, sigmas; 0.5 to 100; default 2.5 */
     float misfit_max;     /* goe_estimate_t.misfit above which the obstacle is suspect; 0.01 to 1e3; default 1.9. Less where
-                             shape_share or box_share stand for what is the same in every image */
+                             shape_share or box_share describe what is the same in every image */
     float range_share;    /* a position is reported once its sigma is below this share of the range, without what no image can
                              show (GOE_MODEL_PRISM); 0.01 to 10; default 0.25 */
     bool top_is_highest;  /* `top`, as a point, is the highest one in the image also when seen from above the roof: see
@@ -352,7 +352,7 @@ typedef struct {
  * position it jumped by, when it is known: new minus old, summed over all resets since the last image that was taken,
  * that is, not refused whole (GOE_NOT_FINITE to GOE_BAD_ATTITUDE): after a refusal the same delta must be given again.
  * Known: compensated, the track goes on. Unknown, and also when heading or attitude jumped: reset_delta_known = false,
- * the track starts anew with this image.
+ * a new track starts with this image.
  * A known jump of down is compensated in the height, too. A height_m of the same filter jumps by minus that delta; a range finder's
  * does not jump. goe compares the step of position_ned_m and height_m with both in the first image after the jump, and takes the
  * nearer one. If height_m jumped, goe takes the jump off every height_m of the rest of the track. So the camera's height, the
@@ -406,12 +406,12 @@ typedef struct {
 
 /* One image of one obstacle: a box, or points, or both. Any subset of the features may be seen.
  * Box: what detectors give. It is exact at any attitude, as every side is a plane through the camera that touches the obstacle
- * at its roof or at its foot. A box stands for left, right and top, which are not read then; base corners are. Beside base
+ * at its roof or at its foot. A box replaces left, right and top, which are not read then; base corners are. With base
  * corners, too, left, right and top of the box touch roof or foot, wherever the solid ends in the raw image: the top is the
  * highest point of the roof in it, not the one over the nearest corner. The box's bottom is not used then.
  * Disc: left and right. Line and box: two or three base corners; refined also finds a box by left and right alone when one of
  * its faces turns away in flight: before that it is reported as a disc about its middle, whose width is the lateral extent of
- * what has been seen of it, which changes on the way. The sigmas of such a disc hold that it may be something else, and are
+ * what has been seen of it, which changes on the way. The sigmas of such a disc include that it may be something else, and are
  * wider for that, until the images show that it is none; those of goe_settings_t.model disc are a disc's alone. Height: top,
  * and a solution of any model.
  * Do not give the middles of a box's sides as points: when the camera rolls, the sides touch the top and the foot of a tall
@@ -423,7 +423,10 @@ typedef struct {
                                 upper rim. Seen from below the roof and not far from the axis it is the highest point in
                                 the image; from above, the highest one is another: refined.top_is_highest */
     goe_pixel_t base_left, base_near, base_right; /* visible corners of the base on the ground, in image order;
-                                base_near lies between two visible faces, and is not seen when one face alone is */
+                                base_near lies between two visible faces, and is not seen when one face alone is.
+                                Refined: for eight images after it was seen it counts as missed; left and right
+                                alone are a face only where one would be seen alone, and the sigmas hold that they
+                                may be the outer ends of two */
     goe_box_t box;
     goe_image_noise_t noise;
     uint8_t camera; /* number of the camera that took it; GOE_OUT_OF_RANGE if there is none of that number. A track passes from
@@ -455,10 +458,10 @@ typedef struct {
     float velocity_north_m_s, velocity_east_m_s, latency_s;
 } goe_sigma_t;
 
-/* Why an estimate is suspect, the most telling one. Refined method. */
+/* Why an estimate is suspect, the most significant one. Refined method. */
 typedef enum {
     GOE_REASON_NONE,
-    GOE_REASON_CONVENTION, /* the filter had to start anew twice within 24 images: what is given does not belong together (axes,
+    GOE_REASON_CONVENTION, /* the filter had to start again twice within 24 images: what is given does not belong together (axes,
                               signs or order of the attitude, the mounting, a pose half a second late), or it is of quite
                               another shape */
     GOE_REASON_MOVES,      /* the obstacle moves. GOE_HAS_VELOCITY: it is followed, and so are position and hazard. Without it,
@@ -483,12 +486,12 @@ typedef struct {
                               and its silhouette is not that of one; or what was given as base corners proved to be none and
                               is left out. The sigmas may then be too small: widen the margins, never drop a warning. Motion
                               along the line of sight looks like another size: oncoming at 15 m/s, 60 % of the tracks with
-                              base corners are told to move after 4 s and 72 % ever, of outlines 19 % ever. All lengths in
+                              base corners are reported as moving within 4 s and 72 % ever, of outlines 19 % ever. All lengths in
                               another unit are never noticed */
     goe_reason_t reason;   /* of that; GOE_REASON_LATE also of an estimate that is not suspect */
     int points;            /* images behind the answer: the window, or all that were used; at most 32767; 0 if none */
     float age_s;           /* since the image of the last solution, refused images included; 0 if fresh or none; at
-                              most 4000. It stands still when goe_update is not called, and falls if a refused image told a
+                              most 4000. It stands still when goe_update is not called, and falls if a refused image had a
                               time that lay ahead of the next one's */
     float x0_m, z0_m;      /* reference point at the track's first image, T axes */
     float x_m, z_m;        /* the same relative to the camera at the latest image taken: follows the motion also if stale, and
@@ -509,7 +512,7 @@ typedef struct {
     float velocity_north_m_s, velocity_east_m_s; /* of an obstacle that moves; its place is that at the image behind the
                                                     estimate, in x_m and z_m at the latest one */
     float latency_s;       /* refined: what the poses are late by against the images (negative: early), as far as rotation and
-                              turns have told; it is taken off. 0 if nothing is known, or without GOE_WITH_MOVERS */
+                              turns have shown; it is corrected. 0 if nothing is known, or without GOE_WITH_MOVERS */
     float residual;        /* window: root mean square residual of (5), in the rows' own unit m/S; refined: 0 */
     float baseline_m;      /* window: root of the summed squared spread of the camera's path over the window; refined:
                               distance of the camera from where the track began */

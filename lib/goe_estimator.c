@@ -127,7 +127,7 @@ static void grow_old(goe_estimator_t *estimator) {
 /*@ requires \valid(estimator) && \valid_read(view); */
 static void drop_contradicted(goe_estimator_t *estimator, const goe_view_t *view) {
     goe_estimate_t *estimate = &estimator->estimate;
-    const float reach_m = estimator->filter.answer.reach_m + estimate->length_m;
+    const float reach_m = goe_larger(estimator->filter.answer.reach_m, 0.5f * estimate->width_m) + estimate->length_m;
     bool ahead = false;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         ahead = ahead || view->point[i].usable;

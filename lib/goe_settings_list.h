@@ -39,13 +39,16 @@
     X(heading_auto, TRUTH, "", 0, 1, 1, "direction of Z: the vehicle's yaw at the first image") \
     X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "direction of Z otherwise, clockwise from north")
 
+/* Of every method: a plan without a sigma of its own takes it. */
+#define GOE_SETTINGS_VELOCITY(X) \
+    X(navigation.velocity_bias_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity")
+
 #if GOE_WITH_REFINED
 #define GOE_SETTINGS_REFINED(X) \
     X(navigation.attitude_bias_deg, REAL, "deg", 1.0e-3f, 30.0f, 0.5f, "constant attitude error, mounting included") \
     X(navigation.attitude_white_deg, REAL, "deg", 1.0e-4f, 30.0f, 0.1f, "attitude error that is new in each image") \
     X(navigation.attitude_drift_deg, REAL, "deg/s^0.5", 0.0f, 30.0f, 0.0f, "random walk of the attitude error") \
     X(navigation.height_bias_m, REAL, "m", 1.0e-3f, 1.0e3f, 0.5f, "constant error of the height above ground") \
-    X(navigation.velocity_bias_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity") \
     X(navigation.position_walk_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the own position") \
     X(navigation.position_white_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of the own position that is new in each image; boxes") \
     X(navigation.height_white_m, REAL, "m", 0.0f, 1.0e3f, 0.0f, "error of the height that is new in each image") \
@@ -83,7 +86,9 @@
 #endif
 /* clang-format on */
 
-#define GOE_SETTINGS(X) GOE_SETTINGS_CAMERA(X) GOE_SETTINGS_GENERAL(X) GOE_SETTINGS_REFINED(X) GOE_SETTINGS_WINDOW(X)
+#define GOE_SETTINGS(X)                                                                                                \
+    GOE_SETTINGS_CAMERA(X)                                                                                             \
+    GOE_SETTINGS_GENERAL(X) GOE_SETTINGS_REFINED(X) GOE_SETTINGS_VELOCITY(X) GOE_SETTINGS_WINDOW(X)
 
 #if GOE_WINDOW_MAX < 8
 #define GOE_WINDOW_DEFAULT GOE_WINDOW_MAX

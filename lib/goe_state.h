@@ -138,6 +138,7 @@ typedef struct {
     goe_flag_t both; /* of two faces */
     uint8_t agreeing;    /* images in a row */
     goe_flag_t stand_in; /* disc: base corners were seen, so that it stands for a box */
+    uint8_t near_images; /* in which a near corner that is not seen still counts as missed */
 } goe_candidate_t;
 
 typedef struct {   /* refined/goe_chord.c: sliding means, sigmas */
@@ -160,6 +161,7 @@ typedef struct {
     float first;    /* information of the height that the filter began with, 1/m^2 */
     float information, moment; /* of the offset, which the filter has been told: 1/m^2, and times its mean */
     uint16_t readings;         /* heights so far, saturating */
+    goe_flag_t boxes;          /* the filter began with an upright box: the obstacle's ground may lie off */
 } goe_datum_t;
 
 /* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell

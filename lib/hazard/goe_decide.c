@@ -24,7 +24,7 @@ void goe_rule_default(goe_rule_t *rule) {
     }
 }
 
-/* What an image tells is the inverse of the time, and to that the sigma belongs: for a small sigma this is the time less two of
+/* What an image measures is the inverse of the time, and to that the sigma belongs: for a small sigma this is the time less two of
  * them, for a sigma of half the time it is half of the time and not none. */
 float goe_soonest_s(const goe_hazard_t *hazard) {
     const bool finite =

@@ -97,12 +97,7 @@ float goe_violation_ahead_s(const goe_estimator_t *estimator, const goe_plan_t *
 
 /*@ requires \valid_read(estimator) && \valid_read(plan); */
 static float velocity_sd_m_s(const goe_estimator_t *estimator, const goe_plan_t *plan) {
-#if GOE_WITH_REFINED
     return plan->velocity_sd_m_s > 0.0f ? plan->velocity_sd_m_s : estimator->settings.navigation.velocity_bias_m_s;
-#else
-    (void)estimator;
-    return plan->velocity_sd_m_s;
-#endif
 }
 
 void goe_violation_add_plan(const goe_estimator_t *estimator, const goe_plan_t *plan, float ahead_s,

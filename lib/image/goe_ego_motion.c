@@ -135,7 +135,7 @@ static void set_mark(goe_motion_t *motion, const float attitude[4], const float 
     motion->mark_us = motion->time_us;
 }
 
-/* What the poses since the mark tell of the motion; body_m: of the vehicle, T axes, as the arms of two cameras differ. A known
+/* The motion by the poses since the mark; body_m: of the vehicle, T axes, as the arms of two cameras differ. A known
  * jump of the autopilot's filter is not in them. first: no image before it fixed T. */
 /*@ requires \valid(motion) && \valid_read(attitude + (0 .. 3)) && \valid_read(body_m + (0 .. 1)); */
 static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2], bool first) {

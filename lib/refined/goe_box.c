@@ -25,12 +25,16 @@
 #define DEPTH_MIN 0.3f      /* sz over |sx| */
 #define EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names, in the state and in the report */
 #define LENGTH_FREED 2.0f   /* one sigma of the length, relative, when its face comes into view */
-#define EARLY 4.0f
+#define EARLY 12.0f         /* (R24) */
 #define EARLY_MAX 4.0f
-#define OUTLINE_RAD 0.04f   /* one sigma of what a box by its outline misses: orientation */
+#define POOR_SHARE 0.3f   /* one sigma of the depth difference, of both depths: two corners may be those of anything */
+#define FACE_RAD 0.14f    /* (R42), one sigma of what two ends are off by if they are those of two faces: orientation */
+#define FACE_WIDTH 0.06f  /* ... width, of itself */
+#define FACE_PLACE 0.1f   /* ... place, of the width */
+#define FACE_ROOF 0.15f   /* ... where the roof's nearest corner stands, of the width */
+#define OUTLINE_RAD 0.04f /* one sigma of what a box by its outline misses: orientation */
 #define OUTLINE_SHARE 0.03f /* ... extents, of width and length together */
 #define SINE2_MIN 1.0e-6f
-#define CLEARLY_PX 4.0f /* sigmas of a pixel by which one reading of the outline must fit better */
 
 enum { FRONT_LEFT, BACK_LEFT, BACK_RIGHT, FRONT_RIGHT, CORNERS }; /* clockwise */
 enum { OUTER_LEFT, NEAR_CORNER, OUTER_RIGHT };
@@ -130,17 +134,15 @@ static void corners_from(size_t left, bool two, size_t corner[3]) {
     corner[OUTER_RIGHT] = (left + (two ? 2u : 3u)) % CORNERS;
 }
 
-/* Sum of what the outer corners are off in the image. */
+/* How much the outer corners are off their distance in the image, which says more than their places: a range or a bearing that
+ * is off moves both alike. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid_read(corner + (0 .. 2));
     requires corner[0] < CORNERS && corner[2] < CORNERS; */
 static float misfit(const goe_observation_t *obs, const outline_t *o, const size_t corner[3]) {
-    float sum = 0.0f;
-    for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i += 2) {
-        const float z = o->corner[corner[i]].z;
-        const float x = o->corner[corner[i]].x / (z > AHEAD_MIN ? z : AHEAD_MIN);
-        sum += goe_absolute(obs->point[GOE_POINT_BASE_LEFT + i].x - x);
-    }
-    return sum;
+    const goe_xz_t *l = &o->corner[corner[OUTER_LEFT]];
+    const goe_xz_t *r = &o->corner[corner[OUTER_RIGHT]];
+    const float wide = r->x / goe_larger(r->z, AHEAD_MIN) - l->x / goe_larger(l->z, AHEAD_MIN);
+    return goe_absolute(obs->point[GOE_POINT_BASE_RIGHT].x - obs->point[GOE_POINT_BASE_LEFT].x - wide);
 }
 
 /* The near corner is seen, or both outer ones are. */
@@ -152,11 +154,10 @@ static void visible_corners(const goe_observation_t *obs, const outline_t *o, si
     const size_t across = o->right ? FRONT_RIGHT : BACK_LEFT;
     corners_from(near_seen ? of_two : o->depth_margin > o->side_margin ? along : across, near_seen, corner);
     if (!near_seen && obs->two_faces && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
-        /* one face, or two and the detector missed the corner between them: whichever fits clearly better */
+        /* one face, or two and the detector missed the corner between them */
         size_t both[3];
         corners_from(of_two, true, both);
-        const float clearly = CLEARLY_PX * goe_observation_pixel(obs);
-        if (misfit(obs, o, both) + clearly < misfit(obs, o, corner)) {
+        if (misfit(obs, o, both) < misfit(obs, o, corner)) {
             memcpy(corner, both, sizeof both);
         }
     }
@@ -242,13 +243,35 @@ static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe
     }
 }
 
-/* (R13): the corner of the roof nearest to the camera; seen from above the highest in the image is the farthest. */
+/* How far down in the raw image a place on the roof is, focal lengths, but for the lens. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(at); */
+static float down_of(const goe_observation_t *obs, const goe_xz_t *at, float top) {
+    const float *r = obs->camera_to_axes;
+    return (r[1] * at->x + r[4] * top + r[7] * at->z) / (r[2] * at->x + r[5] * top + r[8] * at->z);
+}
+
+/* The corner of the roof that is highest in the raw image: seen from above a far one, and under a roll one that stands aside. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(o); */
+static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
+    size_t highest = 0;
+    float least = down_of(obs, &o->corner[0], o->top);
+    for (size_t i = 1; i < CORNERS; i++) {
+        const float down = down_of(obs, &o->corner[i], o->top);
+        if (down < least) {
+            least = down;
+            highest = i;
+        }
+    }
+    return highest;
+}
+
+/* (R13). */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o); */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
-    const bool highest = obs->settings->refined.top_is_highest && o->top > 0.0f;
-    const bool right = o->right != highest;
-    const bool back = o->far_half != highest;
-    return right ? (back ? BACK_RIGHT : FRONT_RIGHT) : (back ? BACK_LEFT : FRONT_LEFT);
+    if (obs->settings->refined.top_is_highest) {
+        return highest_corner(obs, o);
+    }
+    return o->right ? (o->far_half ? BACK_RIGHT : FRONT_RIGHT) : (o->far_half ? BACK_LEFT : FRONT_LEFT);
 }
 
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows); */
@@ -303,7 +326,11 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     outline_t outline;
     size_t corner[3] = {FRONT_LEFT, FRONT_LEFT, FRONT_LEFT};
     describe(obs, &outline);
-    if (obs->base || obs->point[GOE_POINT_BASE_NEAR].usable) {
+    const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
+    if (obs->base && !near_seen && obs->two_faces && obs->depth_variance > goe_square(POOR_SHARE * outline.edges.sum)) {
+        return; /* which corners these are would be a guess, and the box would learn it */
+    }
+    if (obs->base || near_seen) {
         visible_corners(obs, &outline, corner);
         for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i++) {
             if (obs->point[GOE_POINT_BASE_LEFT + i].usable) {
@@ -324,17 +351,21 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 /* ------------------------------------------------------------------------------------------------------------- upkeep -- */
 
+/* Whether the side's depth, the positive root of (R9), is less than that. */
+/*@ requires \valid_read(x + (0 .. GOE_STATES - 1)); */
+static bool side_is_shorter(const float x[GOE_STATES], float depth) {
+    return depth * (depth - x[GOE_DEPTH_DIFFERENCE]) > goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X];
+}
+
 /* Extents of too different size make a box that the next image cannot be linearised at. */
 void goe_box_clip(goe_filter_t *filter) {
-    goe_box_edges_t edges;
     float *x = filter->state;
     const float least = EXTENT_MIN * (goe_absolute(x[GOE_SIDE_X]) + goe_absolute(x[GOE_FRONT_X]) +
                                       goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
     x[GOE_FRONT_X] = goe_larger(x[GOE_FRONT_X], least);
     x[GOE_DEPTH_DIFFERENCE] =
         goe_larger(x[GOE_DEPTH_DIFFERENCE], DEPTH_MIN * goe_absolute(x[GOE_SIDE_X]) - x[GOE_FRONT_X] / DEPTH_MIN);
-    goe_box_edges(x, &edges);
-    if (edges.side.along.z < least) {
+    if (side_is_shorter(x, least)) {
         x[GOE_DEPTH_DIFFERENCE] = least - goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X] / least;
     }
 }
@@ -342,10 +373,12 @@ void goe_box_clip(goe_filter_t *filter) {
 /* While one face is visible the other edge's length is unobservable; if it were free, relinearisation would pull it to zero.
  * So it is held until its face comes into view. */
 /*@ requires \valid(filter); */
-static void free_length(goe_filter_t *filter, float side) {
+static void free_length(goe_filter_t *filter) {
+    goe_box_edges_t edges;
+    goe_box_edges(filter->state, &edges);
     float direction[GOE_STATES] = {0.0f};
     direction[GOE_SIDE_X] = filter->state[GOE_SIDE_X];
-    direction[GOE_DEPTH_DIFFERENCE] = side;
+    direction[GOE_DEPTH_DIFFERENCE] = edges.side.along.z;
     goe_srif_spread(&filter->root, direction, GOE_SIDE_X, GOE_DEPTH_DIFFERENCE, LENGTH_FREED);
     goe_filter_invert(filter);
     filter->phase = GOE_PHASE_BOX; /* the same box: what counts its images goes on */
@@ -400,14 +433,11 @@ static void exchange_names(goe_filter_t *filter) {
 }
 
 bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs) {
-    goe_box_edges_t edges;
-    goe_box_edges(filter->state, &edges);
-    const float side = edges.side.along.z;
     if (filter->phase == GOE_PHASE_BOX_FACE && obs->base && obs->point[GOE_POINT_BASE_NEAR].usable) {
-        free_length(filter, side);
+        free_length(filter);
         return true;
     }
-    if (goe_absolute(filter->state[GOE_SIDE_X]) > EXCHANGE_SLOPE * side) {
+    if (side_is_shorter(filter->state, goe_absolute(filter->state[GOE_SIDE_X]) * (1.0f / EXCHANGE_SLOPE))) {
         exchange_names(filter);
         return true;
     }
@@ -491,6 +521,17 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     set_orientation(&shape->quantity[GOE_ORIENTATION], &e.side, shape->length_axis);
     set_edge(&shape->quantity[exchanged ? GOE_WIDTH : GOE_LENGTH], &e.side, GOE_SIDE_X, shape->scale_m);
     set_edge(&shape->quantity[exchanged ? GOE_LENGTH : GOE_WIDTH], &e.front, GOE_FRONT_X, shape->scale_m);
+}
+
+void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape) {
+    if (filter->phase != GOE_PHASE_BOX_FACE) {
+        return;
+    }
+    const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
+    shape->turned_rad2 = goe_square(FACE_RAD);
+    shape->width_m2 = goe_square(FACE_WIDTH * size_m);
+    shape->place_m2 = goe_square(FACE_PLACE * size_m);
+    shape->roof_m2 = goe_square(FACE_ROOF * size_m);
 }
 
 /* Of the side, seen at a small angle, only the product of length and angle shows. */

@@ -48,6 +48,10 @@ bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs);
 /*@ requires \valid_read(filter) && \valid(shape); */
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
+/* (R42): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
+/*@ requires \valid_read(filter) && \valid(shape); */
+void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape);
+
 /* Variance of orientation (rad^2), width and length (m^2) beyond that of the state, of a box that was found by its outline:
  * corners change unnoticed for some images. camera_m: the camera since the filter's start (goe_filter_camera). *by_orientation: how
  * many times the variance of the orientation (rad^2), this included, comes to it. */

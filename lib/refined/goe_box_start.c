@@ -149,6 +149,15 @@ static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m,
     return middle;
 }
 
+/* How far the foot of the perpendicular from the camera lies beyond the ends, rad. */
+/*@ requires \valid_read(face); */
+static float beyond(const face_t *face, float x, float z, float size_m) {
+    const float mx = 0.5f * (face->left.x + face->right.x);
+    const float mz = 0.5f * (face->left.z + face->right.z);
+    const float along_m = goe_absolute(mx * x + mz * z) / size_m;
+    return (along_m - 0.5f * size_m) / sqrtf(mx * mx + mz * mz);
+}
+
 bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box) {
     face_t face = {{0.0f, 0.0f}, {0.0f, 0.0f}, range_of(obs), 0.0f};
     face.height_m = obs->height_m + obs->state[GOE_GROUND] / obs->state[GOE_INVERSE_RANGE];
@@ -165,6 +174,7 @@ bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box) 
         return false;
     }
     const float size_m = sqrtf(x * x + z * z);
+    box->beyond_rad = beyond(&face, x, z, size_m);
     const goe_xz_t reference = measure_face(&face, x, z, size_m, box);
     return scale(obs, reference, size_m, size_m, face.range_m, box);
 }
@@ -184,8 +194,10 @@ static float difference_rad(float a, float b) {
 /*@ requires \valid(filter) && \valid_read(box); */
 static bool one_face_agrees(goe_filter_t *filter, const goe_footprint_t *box) {
     const float d = difference_rad(box->orientation_rad, filter->candidate.extent[0]);
-    const bool agrees = filter->candidate.agreeing > 0 && goe_square(d) < AGREEING_SIGMAS2 * goe_square(box->sigma_rad);
-    filter->candidate.agreeing = (uint8_t)(agrees ? filter->candidate.agreeing + 1 : 1);
+    const bool alone = box->beyond_rad < box->sigma_rad; /* otherwise a second face would show */
+    const bool agrees =
+        alone && filter->candidate.agreeing > 0 && goe_square(d) < AGREEING_SIGMAS2 * goe_square(box->sigma_rad);
+    filter->candidate.agreeing = (uint8_t)(agrees ? filter->candidate.agreeing + 1 : (alone ? 1 : 0));
     filter->candidate.extent[0] = box->orientation_rad;
     return filter->candidate.agreeing >= ONE_FACE_IMAGES;
 }
@@ -211,6 +223,9 @@ static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, 
 /*@ requires \valid(filter) && goe_observation_is_open(obs) && \valid(box); */
 static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_footprint_t *box) {
     const bool both = obs->point[GOE_POINT_BASE_NEAR].usable;
+    if (!both && filter->candidate.near_images > 0) {
+        return false; /* it was missed: the outer corners are the ends of two faces */
+    }
     if (both != filter->candidate.both) { /* the candidate of the images before is of the other kind */
         filter->candidate.both = both;
         filter->candidate.agreeing = 0;

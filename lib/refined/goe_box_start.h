@@ -8,7 +8,8 @@
 typedef struct {
     float turn_cos, turn_sin;         /* the axes of all that follows: those of the observation turned by this */
     float orientation_rad, sigma_rad; /* of the side; only of one face */
-    float left, right;                /* lateral extents, focal lengths; only of two faces */
+    float beyond_rad;  /* the camera's foot on the face's line beyond the face's ends; only of one face */
+    float left, right; /* lateral extents, focal lengths; only of two faces */
     float sine, cosine;
     float width, length; /* over Z0 */
     float a, q;          /* X0/Z0, 1/Z0 */

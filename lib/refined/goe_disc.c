@@ -15,7 +15,8 @@
 #define TANGENT_AHEAD 0.02f /* third component of a tangent's unit vector */
 #define SINE_MIN 1.0e-5f    /* of half the angle that the disc covers */
 #define SINE_MAX 0.98f
-#define STAND_IN_SHAPE 0.05f /* shape_share that is added while a box is taken for a disc */
+#define STAND_IN_SHAPE 0.1f  /* shape_share that is added while a box is taken for a disc */
+#define STAND_IN_PLACE 0.1f  /* of the width, by which the box's middle may lie off the disc's */
 #define WIDTH_MIN 1.0e-5f    /* between left and right, focal lengths */
 #define RANGE_MIN_M 1.0f     /* of a first guess */
 #define GROUND_SIGMAS 3.0f   /* by which the base must lie below the horizon to tell the range */
@@ -173,8 +174,13 @@ static void add_sides(const goe_observation_t *obs, const circle_t *o, float sha
     const float height = goe_touch_size(obs, GOE_BOX_TOP, solid.ground - solid.roof);
     const float more = goe_square(shape * width);
     const float wide = goe_touch_variance(obs, GOE_BOX_LEFT, width) + more;
-    add_side(obs, &solid, GOE_BOX_LEFT, wide, rows);
-    add_side(obs, &solid, GOE_BOX_RIGHT, wide, rows);
+    if (obs->base) {
+        add_tangent(obs, o, GOE_POINT_BASE_LEFT, -1.0f, more, rows);
+        add_tangent(obs, o, GOE_POINT_BASE_RIGHT, 1.0f, more, rows);
+    } else {
+        add_side(obs, &solid, GOE_BOX_LEFT, wide, rows);
+        add_side(obs, &solid, GOE_BOX_RIGHT, wide, rows);
+    }
     add_side(obs, &solid, GOE_BOX_TOP, goe_touch_variance(obs, GOE_BOX_TOP, height) + more, rows);
 }
 
@@ -196,8 +202,8 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
         return;
     }
     const bool wide = outline_features(obs, &left, &right);
-    const float width = wide ? obs->point[right].x - obs->point[left].x : 0.0f;
-    const float shape = obs->settings->detector.shape_share + (obs->base ? STAND_IN_SHAPE : 0.0f);
+    const float width = wide ? obs->point[right].x - obs->point[left].x : obs->state[GOE_FRONT_X] / circle.center.z;
+    const float shape = obs->settings->detector.shape_share + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
     if (goe_sides_see(obs->sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
         add_sides(obs, &circle, shape, rows);
     } else {
@@ -237,7 +243,8 @@ static void set_first_root(const goe_observation_t *obs, const float state[GOE_S
     *goe_srif_at(root, GOE_BIAS_Y, GOE_BIAS_Y) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Z, GOE_BIAS_Z) =
         1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_m_s));
-    *goe_srif_at(root, GOE_GROUND, GOE_GROUND) = 1.0f / (obs->height_sd_m * state[GOE_INVERSE_RANGE]);
+    *goe_srif_at(root, GOE_GROUND, GOE_GROUND) =
+        1.0f / (sqrtf(goe_observation_height_variance(obs, obs->sides->usable != 0)) * state[GOE_INVERSE_RANGE]);
     *goe_srif_at(root, GOE_BEARING, GOE_BEARING) = 1.0f / BEARING_FREEDOM;
     *goe_srif_at(root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0f / (RANGE_FREEDOM * state[GOE_INVERSE_RANGE]);
     *goe_srif_at(root, GOE_SIDE_X, GOE_SIDE_X) = 1.0f / state[GOE_FRONT_X];
@@ -256,8 +263,11 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
     if (!(width >= WIDTH_MIN)) {
         return false;
     }
-    const float middle = 0.5f * (obs->point[left].x + obs->point[right].x);
-    const float size = width / sqrtf(1.0f + middle * middle);
+    const float to_left = 1.0f / sqrtf(1.0f + goe_square(obs->point[left].x)); /* cosines from Z */
+    const float to_right = 1.0f / sqrtf(1.0f + goe_square(obs->point[right].x));
+    const float ahead = to_left + to_right;
+    const float middle = (obs->point[left].x * to_left + obs->point[right].x * to_right) / ahead;
+    const float size = 2.0f * width * to_left * to_right / ahead;
     const float range_m = first_range_m(obs, size);
     const float z0_m = range_m + obs->camera_m.z;
     if (!(z0_m >= RANGE_MIN_M)) {
@@ -324,7 +334,10 @@ goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t
     const float unlike = unlikeness(filter, variance, goe_shape_turned(filter, camera_m));
     const float width_m = shape->quantity[GOE_WIDTH].value;
     doubt.spread = sqrtf(unlike * (skew2 + variance + goe_square(KINK_SHARE * filter->state[GOE_FRONT_X])));
-    if (!filter->candidate.stand_in) {
+    if (filter->candidate.stand_in) {
+        shape->place_m2 = goe_square(STAND_IN_PLACE * width_m);
+        shape->roof_m2 = shape->place_m2;
+    } else {
         shape->place_m2 = unlike * goe_square(GOE_PLACE_SHARE * width_m);
         shape->roof_m2 = shape->place_m2;
         shape->width_m2 = unlike * goe_square(WIDTH_SHARE * width_m);

@@ -122,7 +122,7 @@ static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
 static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_datum_t *datum = &filter->datum;
     const float q = filter->state[GOE_INVERSE_RANGE];
-    const float information = 1.0f / goe_observation_height_variance(obs, filter->phase == GOE_PHASE_PRISM);
+    const float information = 1.0f / goe_observation_height_variance(obs, filter->datum.boxes);
     const float grown = information - datum->information;
     const float moment = information * datum->mean_m;
     if (rows->count >= GOE_ROWS_MAX || !(grown > GROWN * information)) {
@@ -141,6 +141,9 @@ static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_row
 
 int goe_ground_tell(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     const bool white = obs->settings->navigation.height_white_m > 0.0f;
+    if ((filter->known & GOE_HAS_POSITION) == 0u) {
+        return 0;
+    }
     const int first = add_first(filter, rows);
     return first + (white ? add_grown(filter, obs, rows) : 0);
 }

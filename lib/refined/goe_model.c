@@ -12,6 +12,8 @@
 
 #if GOE_WITH_REFINED
 
+#define NEAR_IMAGES 8u /* in which a near corner that is not seen is a missed one, not one that is not there */
+
 /* Base corners tell more than a box: with them it starts as a disc that stands in for one. */
 /*@ requires \valid_read(settings) && goe_view_is_open(view); */
 static bool shows_prism(const goe_settings_t *settings, const goe_view_t *view) {
@@ -32,7 +34,8 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     }
     goe_filter_enter(filter, prism ? GOE_PHASE_PRISM : GOE_PHASE_DISC);
     memset(filter->side, 0, sizeof filter->side);
-    goe_ground_start(filter, goe_observation_height_variance(obs, prism));
+    filter->datum.boxes = obs->sides->usable != 0;
+    goe_ground_start(filter, goe_observation_height_variance(obs, filter->datum.boxes));
     memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->candidate.stand_in = false;
     goe_srif_invert_diagonal(&filter->root, &filter->inverse);
@@ -40,7 +43,18 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     return true;
 }
 
+/* A near corner between two faces is missed now and then. */
+/*@ requires \valid(filter) && goe_observation_is_open(obs); */
+static void note_near(goe_filter_t *filter, const goe_observation_t *obs) {
+    if (obs->point[GOE_POINT_BASE_NEAR].usable) {
+        filter->candidate.near_images = NEAR_IMAGES;
+    } else if (filter->candidate.near_images > 0) {
+        filter->candidate.near_images--;
+    }
+}
+
 bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
+    note_near(filter, obs);
     filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && obs->settings->model != GOE_MODEL_DISC);
     switch (goe_filter_phase(filter)) {
         case GOE_PHASE_DISC:
@@ -69,6 +83,7 @@ void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *ro
         goe_chord_free_top(filter, obs);
         goe_chord_rows(obs, rows);
     } else {
+        obs->stand_in = filter->candidate.stand_in;
         goe_disc_rows(obs, rows);
     }
 }

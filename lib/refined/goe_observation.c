@@ -14,6 +14,7 @@
 #define WHITE_MIN_DEG 1.0e-4f /* errors of an image: as of the settings */
 #define PIXEL_MIN_PX 0.05f
 #define HEIGHT_SD_MIN_M 1.0e-3f
+#define AHEAD_MIN 0.01f     /* of the reference point, in units of Z0 */
 #define FORWARD_MIN 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
@@ -145,6 +146,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->outline_share = settings->detector.point_share;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
+    obs->stand_in = false;
     note_pace(obs, filter, view->motion);
     return put_in_order(obs);
 }
@@ -220,11 +222,11 @@ goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t 
 float goe_observation_size_variance(const goe_observation_t *obs) {
     const goe_point_t *left = &obs->point[GOE_POINT_LEFT];
     const goe_point_t *right = &obs->point[GOE_POINT_RIGHT];
-    if (!left->usable || !right->usable) {
-        return 0.0f;
-    }
-    const float sigma = obs->outline_share * (right->x - left->x);
-    return sigma * sigma;
+    const bool seen = left->usable && right->usable;
+    const float width = seen ? right->x - left->x
+                             : (obs->state[GOE_FRONT_X] + goe_absolute(obs->state[GOE_SIDE_X])) /
+                                   goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
+    return goe_square(obs->outline_share * width);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ rows -- */

@@ -26,6 +26,7 @@ typedef struct {
     float range_variance; /* of GOE_INVERSE_RANGE */
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;       /* box: both were seen, its length is estimated */
+    bool stand_in;        /* disc: it stands in for a box */
     bool base;            /* both outer base corners are seen */
     bool edge;            /* an edge of the base is seen */
     uint8_t number;       /* of the camera */
@@ -84,10 +85,10 @@ void goe_observation_project_x(const goe_observation_t *obs, float x, float y, f
 /*@ requires goe_observation_is_open(obs) && \valid(of_y); */
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
-/* Variance of the height above the obstacle's ground, m2; of a prism that ground may lie off. */
+/* Variance of the height above the obstacle's ground, m2; of upright boxes that ground may lie off. */
 /*@ requires goe_observation_is_open(obs); */
-static inline float goe_observation_height_variance(const goe_observation_t *obs, bool prism) {
-    const float ground_m = prism ? obs->settings->navigation.ground_m : 0.0f;
+static inline float goe_observation_height_variance(const goe_observation_t *obs, bool boxes) {
+    const float ground_m = boxes ? obs->settings->navigation.ground_m : 0.0f;
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
 

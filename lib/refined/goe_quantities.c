@@ -19,6 +19,7 @@
 
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
+#define FAR_ROOF 2.0f     /* of the width: one sigma of where the farthest corner of the roof stands */
 #define ORIENTATION_MAX_RAD 0.174532925f
 #define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
 #define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
@@ -88,7 +89,7 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
             return share2 * goe_square(shape->quantity[GOE_Z0].value) + drift.walk_m2 + drift.turned_m2 +
                    shape->place_m2;
         case GOE_ORIENTATION:
-            return box ? share2 : 0.0f;
+            return box ? share2 + shape->turned_rad2 : 0.0f;
         case GOE_HEIGHT:
             return share2 * goe_larger(goe_square(value), goe_square(value - motion->height_m)) + shape->top_m2;
         case GOE_WIDTH:
@@ -356,6 +357,19 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 #endif
 }
 
+/* (R42): the highest point of a roof seen from above is a far corner, and no image shows how far while one face is seen, or a disc stands
+ * in for the box. */
+/*@ requires \valid_read(filter) && \valid_read(settings) && \valid(shape); */
+static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *settings, goe_shape_t *shape) {
+    const bool highest = settings->refined.top_is_highest;
+    const bool stands_in = filter->phase == GOE_PHASE_DISC && filter->candidate.stand_in && highest;
+    const bool is_face = filter->phase == GOE_PHASE_BOX_FACE && (filter->datum.boxes || highest);
+    if (stands_in || is_face) {
+        const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
+        shape->roof_m2 = goe_square(FAR_ROOF * size_m);
+    }
+}
+
 /* What the answer is less certain by; of a disc its shape learns of it, too. */
 /*@ requires \valid_read(filter) && \valid_read(settings) && \valid_read(motion) && \valid(shape); */
 static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
@@ -370,6 +384,8 @@ static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *
     if (filter->phase == GOE_PHASE_PRISM && settings->model != GOE_MODEL_DISC) {
         goe_prism_doubt(filter, goe_filter_measured(filter), shape);
     }
+    goe_box_face_doubt(filter, shape);
+    doubt_far_roof(filter, settings, shape);
     shape->top_m2 = shape->roof_m2 > 0.0f ? top_variance(motion, drift, shape) : 0.0f;
     return wider;
 }

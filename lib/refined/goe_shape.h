@@ -33,6 +33,7 @@ typedef struct {
     float scale_m;        /* Z0: the unit of the state */
     float place_m2;       /* variance of the centre beyond that of the state, along X as along Z ... */
     float width_m2;       /* ... of the width ... */
+    float turned_rad2;    /* ... of the orientation ... */
     float roof_m2;        /* ... of the place of the roof's point that the top is over ... */
     float top_m2;         /* ... and, for that, of the height */
     float

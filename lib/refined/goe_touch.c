@@ -84,9 +84,9 @@ static void reach_corner(const goe_solid_t *solid, const float n[3], goe_touch_t
     float farthest = n[0] * corner[0].x + n[2] * corner[0].z;
     t->corner = 0;
     for (size_t i = 1; i < solid->corners; i++) {
-        const float far = n[0] * corner[i].x + n[2] * corner[i].z;
-        if (far > farthest) {
-            farthest = far;
+        const float reach = n[0] * corner[i].x + n[2] * corner[i].z;
+        if (reach > farthest) {
+            farthest = reach;
             t->corner = i;
         }
     }

@@ -6,29 +6,56 @@ an order makes this script fly to the order's target in GUIDED, and back into th
 from AUTO and CRUISE; GO_AROUND only while landing in AUTO. Whoever chooses another mode meanwhile is not fought.
 
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
-companion falls silent, the aircraft stays at the target, circling, and the pilot is told: what is not seen may lie ahead.
+companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead.
 
-The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know. A link's
-signatures are then not checked; only messages of the own system id are taken.
+The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know, without having
+judged its signature. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new
+signature counts. Without a key only an unsigned message counts, and only while the autopilot itself takes unsigned messages from
+the same sender on the same link: its HEARTBEAT shows that. On a signed link the autopilot drops an unsigned HEARTBEAT, so nothing
+counts there; nor on a link on which anybody's signed HEARTBEAT comes.
+
+No target counts that is farther than GOEP_DIST, lower than GOEP_ALT_MIN, far below or above the aircraft, or outside the fence.
 ]]
 
 local HAZARD = { id = 42702, crc_extra = 114, length = 67 }
 local STATUS = { id = 42703, crc_extra = 89, length = 32 }
+local HEARTBEAT = { id = 0, crc_extra = 50, length = 9 } -- the parser knows it: scripts get it only if the link accepts it
+local KINDS = { [HAZARD.id] = HAZARD, [STATUS.id] = STATUS, [HEARTBEAT.id] = HEARTBEAT }
 local ORDER_FLAG = 0x20
-local LEFT, RIGHT, CLIMB, GO_AROUND = 1, 2, 3, 4
+local LEFT, RIGHT, CLIMB, GO_AROUND, HOLD = 1, 2, 3, 4, 5
 local AUTO, CRUISE, GUIDED = 10, 7, 15
 local DO_GO_AROUND = 191
 local NOTHING_KNOWN = 2147483647 -- of latitudes and longitudes
 local HEADER = 12                -- bytes of the message as scripts get it, before its payload
+local SIGNATURE_AT = 279         -- behind room for the longest payload: link, 6 bytes of time in 10 us, 6 bytes of the hash
+local SIGNED_FLAG = 0x01         -- of incompat_flags
 local PERIOD_MS = 100
+local SOON_MS = 10               -- while more is to be done: a part of a hash takes half of SCR_VM_I_COUNT's default
+local QUEUE = 20                 -- messages
+local TAKEN_AT_ONCE = 4          -- messages: the checksum of one takes a tenth of SCR_VM_I_COUNT's default
+local BEAT_MS = 5000             -- after a HEARTBEAT: it comes once a second
 local SILENCE_MS = 3000          -- a link may lose two GOE_STATUS
 local RENEW_MS = 1000            -- the target moves as the estimate does
+local DOWN_FAR_M = 100000        -- a height beyond this is none
+local BELOW_M = 10               -- no order leads down: so far below the aircraft a target may lie by noise
+local ABOVE_M = 150              -- a climb over the highest mast that the companion's defaults expect
 local TEXT_WARNING, TEXT_INFO = 4, 6
+local FENCE_ALT_MAX, FENCE_CIRCLE, FENCE_POLYGON, FENCE_ALT_MIN = 1, 2, 4, 8 -- bits of FENCE_TYPE
+local KEY_FILES = { "APM/goe.key", "goe.key" }                               -- on a board's card, in a simulator's folder
 
 local PREFIX = "GOEP_"
-assert(param:add_table(187, PREFIX, 1), "goe: no table of parameters")
-assert(param:add_param(187, 1, "ENABLE", 1), "goe: no parameter")
-local enable = Parameter(PREFIX .. "ENABLE")
+local TABLE = 187
+assert(param:add_table(TABLE, PREFIX, 4), "goe: no table of parameters")
+
+local function parameter(index, name, value)
+    assert(param:add_param(TABLE, index, name, value), "goe: no parameter")
+    return Parameter(PREFIX .. name)
+end
+
+local enable = parameter(1, "ENABLE", 1)
+local far_m = parameter(2, "DIST", 500)       -- m: no target farther from the aircraft; 0: none at all
+local low_m = parameter(3, "ALT_MIN", 20)     -- m above home: neither a target nor an aircraft below it
+local any_polygon = parameter(4, "POLYGON", 0) -- 1: fly orders although no script can see a polygon fence
 
 local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 
@@ -39,10 +66,20 @@ local standing -- the order: whose, action, lat, lon, down; is_past: that one is
 local heard_ms = uint32_t(0)
 local sent_ms = uint32_t(0)
 local silence_told = false
+local said = {} -- texts that were sent once, and are not sent again
 
 local function say(severity, text)
     gcs:send_text(severity, "GOE: " .. text)
 end
+
+local function say_once(text)
+    if not said[text] then
+        said[text] = true
+        say(TEXT_WARNING, text)
+    end
+end
+
+-- ------------------------------------------------------------------------------------------------------------- whose it is
 
 local function checksum(bytes)
     local crc = 0xFFFF
@@ -54,21 +91,107 @@ local function checksum(bytes)
     return crc
 end
 
--- The payload of a whole message of that kind from the own system, with the zeros that the wire leaves out; nil: it is none.
-local function payload_of(message, kind)
-    local crc, _, length = string.unpack("<HBB", message)
-    if length > kind.length or string.unpack("<B", message, 8) ~= own_system then
-        return nil
-    end
-    if checksum(message:sub(4, HEADER + length) .. string.char(kind.crc_extra)) ~= crc then
-        return nil
-    end
-    return message:sub(HEADER + 1, HEADER + length) .. string.rep("\0", kind.length - length)
-end
-
 local function id_of(message)
     return (string.unpack("<I3", message, 10))
 end
+
+local function is_signed(message)
+    return message:byte(5) & SIGNED_FLAG ~= 0
+end
+
+-- Link, system and component.
+local function sender_of(message, link)
+    return string.char(link) .. message:sub(8, 9)
+end
+
+-- A whole message of that kind: bytes on the wire from the length on, without the checksum. nil: it is none.
+local function frame_of(message, kind)
+    local crc, _, length = string.unpack("<HBB", message)
+    if length > kind.length then
+        return nil
+    end
+    local frame = message:sub(4, HEADER + length)
+    return checksum(frame .. string.char(kind.crc_extra)) == crc and frame or nil
+end
+
+-- The payload, with the zeros that the wire leaves out.
+local function payload_of(message, kind)
+    local length = message:byte(4)
+    return message:sub(HEADER + 1, HEADER + length) .. string.rep("\0", kind.length - length)
+end
+
+-- --------------------------------------------------------------------------------------------------------- signature, FIPS 180-4
+
+local WORD = 0xFFFFFFFF -- integers have 32 bits in ArduPilot, 64 elsewhere: the same code for both
+local ROUND = {
+    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2,
+}
+local BLOCK = 64
+
+-- One block into the eight words of the hash.
+local function hash_block(hash, text, at)
+    local w = { string.unpack(">I4I4I4I4I4I4I4I4I4I4I4I4I4I4I4I4", text, at) }
+    for i = 17, 64 do
+        local x, y = w[i - 15], w[i - 2]
+        w[i] = (w[i - 16] + w[i - 7] + (((x >> 7) | (x << 25)) ~ ((x >> 18) | (x << 14)) ~ (x >> 3)) +
+            (((y >> 17) | (y << 15)) ~ ((y >> 19) | (y << 13)) ~ (y >> 10))) & WORD
+    end
+    local a, b, c, d, e, f, g, h = table.unpack(hash)
+    for i = 1, 64 do
+        local one = h + (((e >> 6) | (e << 26)) ~ ((e >> 11) | (e << 21)) ~ ((e >> 25) | (e << 7))) +
+            (g ~ (e & (f ~ g))) + ROUND[i] + w[i]
+        local two = (((a >> 2) | (a << 30)) ~ ((a >> 13) | (a << 19)) ~ ((a >> 22) | (a << 10))) + ((a & b) | (c & (a | b)))
+        h, g, f, e, d, c, b, a = g, f, e, (d + one) & WORD, c, b, a, (one + two) & WORD
+    end
+    local words = { a, b, c, d, e, f, g, h }
+    for i = 1, 8 do
+        hash[i] = (hash[i] + words[i]) & WORD
+    end
+end
+
+local function new_hash(text)
+    local zeros = (BLOCK - (#text + 9) % BLOCK) % BLOCK
+    return {
+        words = { 0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19 },
+        text = text .. "\x80" .. string.rep("\0", zeros + 4) .. string.pack(">I4", 8 * #text),
+        at = 1,
+    }
+end
+
+-- One block more; true: that was the last one.
+local function go_on_hashing(work)
+    hash_block(work.words, work.text, work.at)
+    work.at = work.at + BLOCK
+    return work.at > #work.text
+end
+
+-- 32 bytes, or 64 hexadecimal digits. nil: there is no file; false: there is one, which is none.
+local function read_key()
+    for _, name in ipairs(KEY_FILES) do
+        local file = io.open(name, "rb")
+        if file then
+            local text = file:read(100) or ""
+            file:close()
+            local digits = text:match("^%s*(%x+)%s*$")
+            if digits and #digits == 64 then
+                return (digits:gsub("%x%x", function(pair) return string.char(tonumber(pair, 16)) end))
+            end
+            return #text == 32 and text
+        end
+    end
+    return nil
+end
+
+local key = read_key()
+
+-- ------------------------------------------------------------------------------------------------------------- what it says
 
 local function take_hazard(payload)
     local lat, lon, _, _, down = string.unpack("<i4i4fff", payload, 13)
@@ -80,7 +203,10 @@ local function take_hazard(payload)
         end
         return
     end
-    if action ~= GO_AROUND and (lat == NOTHING_KNOWN or lon == NOTHING_KNOWN or down ~= down) then
+    if action > HOLD then
+        return
+    end
+    if action ~= GO_AROUND and (lat == NOTHING_KNOWN or lon == NOTHING_KNOWN or not (math.abs(down) < DOWN_FAR_M)) then
         return
     end
     standing = { whose = whose, action = action, lat = lat, lon = lon, down = down }
@@ -96,42 +222,228 @@ local function take_status(payload)
     end
 end
 
-local function receive()
-    while true do
-        local message = mavlink:receive_chan()
-        if not message then
-            return
-        end
-        local kind = id_of(message) == HAZARD.id and HAZARD or STATUS
-        local payload = payload_of(message, kind)
-        if payload then
-            heard_ms = millis()
-            if kind == HAZARD then
-                take_hazard(payload)
-            else
-                take_status(payload)
-            end
-        end
+local function take(payload, kind)
+    heard_ms = millis()
+    if kind == HAZARD then
+        take_hazard(payload)
+    else
+        take_status(payload)
     end
 end
 
-local function fly_to_target()
+local beat_ms = {}   -- by sender: when the autopilot took an unsigned HEARTBEAT of it
+local signed_ms = {} -- by link: when the autopilot took a signed HEARTBEAT of anybody
+local newest = {}    -- by sender: low and high half of the time of its latest right signature
+local judged         -- the signed message that is being hashed
+
+-- A signature's time grows with each message of a sender. An old one is a message that somebody plays once more.
+local function is_new(sender, message)
+    local low, high = string.unpack("<I3I3", message, SIGNATURE_AT + 1)
+    local last = newest[sender]
+    if last and (high < last.high or (high == last.high and low <= last.low)) then
+        return false
+    end
+    return true, { low = low, high = high }
+end
+
+local function begin_judging(message, link, kind, frame)
+    local signature = message:sub(SIGNATURE_AT, SIGNATURE_AT + 12)
+    judged = {
+        message = message,
+        kind = kind,
+        sender = sender_of(message, link) .. signature:sub(1, 1),
+        signature = signature,
+        work = new_hash(key .. message:sub(3, 3) .. frame .. message:sub(1, 2) .. signature:sub(1, 7)),
+    }
+end
+
+local function go_on_judging()
+    local of = judged
+    if not go_on_hashing(of.work) then
+        return
+    end
+    judged = nil
+    local hash = string.pack(">I4I4", of.work.words[1], of.work.words[2])
+    local new, time = is_new(of.sender, of.message)
+    if hash:sub(1, 6) ~= of.signature:sub(8) or not new then
+        say_once("wrong or old signature, ignored")
+        return
+    end
+    newest[of.sender] = time
+    take(payload_of(of.message, of.kind), of.kind)
+end
+
+local function is_recent(when_ms)
+    return when_ms and millis() - when_ms <= BEAT_MS
+end
+
+-- A HEARTBEAT comes only where the autopilot takes it: what it shows is how the link is used.
+local function take_heartbeat(message, link)
+    if not frame_of(message, HEARTBEAT) then
+        return
+    elseif is_signed(message) then
+        signed_ms[link] = millis()
+    else
+        beat_ms[sender_of(message, link)] = millis()
+    end
+end
+
+-- Whether a message may count at all, which costs less to know than its checksum. What the parser does not know comes as it is.
+local function may_count(message, link)
+    local is_open = is_recent(beat_ms[sender_of(message, link)]) and not is_recent(signed_ms[link])
+    if message:byte(8) ~= own_system then
+        return false
+    elseif is_signed(message) and not key then
+        say_once("signed message and no goe.key, ignored")
+        return false
+    elseif not is_signed(message) and (key or not is_open) then
+        say_once("unsigned message, ignored")
+        return false
+    end
+    return true
+end
+
+local function take_message(message, link)
+    local kind = KINDS[id_of(message)]
+    if key == false or not kind then
+        return
+    elseif kind == HEARTBEAT then
+        take_heartbeat(message, link)
+        return
+    end
+    local frame = may_count(message, link) and frame_of(message, kind)
+    if not frame then
+        return
+    elseif key then
+        begin_judging(message, link, kind, frame)
+    else
+        take(payload_of(message, kind), kind)
+    end
+end
+
+-- True: there may be more to do.
+local function receive()
+    if judged then
+        go_on_judging()
+        return true
+    end
+    for _ = 1, TAKEN_AT_ONCE do
+        local message, link = mavlink:receive_chan()
+        if not message then
+            return false
+        end
+        take_message(message, link)
+        if judged then
+            return true
+        end
+    end
+    return true
+end
+
+-- ------------------------------------------------------------------------------------------------------------------ bounds
+
+local function value_of(name)
+    return param:get(name) or 0
+end
+
+local function fence_kinds()
+    if value_of("FENCE_ENABLE") < 1 and value_of("FENCE_AUTOENABLE") < 1 then
+        return 0
+    end
+    return math.floor(value_of("FENCE_TYPE"))
+end
+
+-- Why the fence forbids a height above home; nil: it does not.
+local function fence_forbids_height(up_m)
+    local kinds = fence_kinds()
+    local margin_m = value_of("FENCE_MARGIN")
+    if kinds & FENCE_ALT_MAX ~= 0 and up_m > value_of("FENCE_ALT_MAX") - margin_m then
+        return "above the fence"
+    elseif kinds & FENCE_ALT_MIN ~= 0 and up_m < value_of("FENCE_ALT_MIN") + margin_m then
+        return "below the fence"
+    end
+    return nil
+end
+
+-- The same of a place. What the firmware does at a fence, it still does.
+local function fence_forbids_place(place)
+    local kinds = fence_kinds()
+    local room_m = value_of("FENCE_RADIUS") - value_of("FENCE_MARGIN") - math.abs(value_of("WP_LOITER_RAD"))
+    if kinds & FENCE_CIRCLE ~= 0 and ahrs:get_home():get_distance(place) > room_m then
+        return "outside the fence"
+    elseif kinds & FENCE_POLYGON ~= 0 and value_of("FENCE_TOTAL") > 0 and any_polygon:get() < 1 then
+        return "polygon fence, not visible"
+    end
+    return nil
+end
+
+-- Why no aircraft is led to a place; nil: it may be.
+local function forbids(place)
+    local here = ahrs:get_location()
+    if not here or not ahrs:home_is_set() then
+        return "no position or no home"
+    end
+    local home_cm = ahrs:get_home():alt()
+    local up_m = 0.01 * (place:alt() - home_cm)
+    local rise_m = 0.01 * (place:alt() - here:alt())
+    if not (here:get_distance(place) <= far_m:get()) then
+        return "too far"
+    elseif up_m < low_m:get() or 0.01 * (here:alt() - home_cm) < low_m:get() then
+        return "too low"
+    elseif rise_m < -BELOW_M then
+        return "too far below"
+    elseif rise_m > ABOVE_M then
+        return "too far above"
+    end
+    return fence_forbids_height(up_m) or fence_forbids_place(place)
+end
+
+-- Where the order leads to; nil: nowhere, or not where an aircraft may be led to.
+local function target()
     local place = ahrs:get_origin()
     if not place then
-        return
+        return nil
     end
     place:alt(place:alt() - math.floor(100 * standing.down))
     place:lat(standing.lat)
     place:lng(standing.lon)
-    if vehicle:set_target_location(place) then
+    local why = forbids(place)
+    if why then
+        say_once("order not flown: " .. why)
+        return nil
+    end
+    return place
+end
+
+-- ------------------------------------------------------------------------------------------------------------------ orders
+
+-- A target that is out of bounds meanwhile leaves the aircraft at the one before.
+local function fly_to_target()
+    local place = target()
+    if place and vehicle:set_target_location(place) then
         sent_ms = millis()
     end
+end
+
+-- Above home, over the obstacle's top; nil: the autopilot's own height for an aborted landing.
+local function height_to_climb_m()
+    local place, here = ahrs:get_origin(), ahrs:get_location()
+    if not place or not here or not ahrs:home_is_set() or not (math.abs(standing.down) < DOWN_FAR_M) then
+        return nil
+    end
+    place:alt(place:alt() - math.floor(100 * standing.down))
+    local up_m = 0.01 * (place:alt() - ahrs:get_home():alt())
+    local rise_m = 0.01 * (place:alt() - here:alt())
+    if rise_m < 1 or rise_m > ABOVE_M or fence_forbids_height(up_m) then
+        return nil
+    end
+    return up_m
 end
 
 local function go_around()
     if vehicle:get_mode() == AUTO and vehicle:is_landing() then
         say(TEXT_WARNING, "go around")
-        gcs:run_command_int(DO_GO_AROUND, {})
+        gcs:run_command_int(DO_GO_AROUND, { p1 = height_to_climb_m() })
     end
     overruled = true -- once; the landing sequence goes on from there
 end
@@ -141,7 +453,7 @@ local function begin_order()
     if standing.action == GO_AROUND then
         go_around()
     elseif (mode == AUTO or mode == CRUISE) and not vehicle:is_landing() and not vehicle:is_taking_off() and
-        vehicle:set_mode(GUIDED) then
+        target() and vehicle:set_mode(GUIDED) then
         mode_before = mode
         say(TEXT_WARNING, "flying past an obstacle")
         fly_to_target()
@@ -179,7 +491,7 @@ local function end_order()
             say(TEXT_WARNING, "not surely past, circling: pilot to decide")
         end
     end
-    standing, mode_before, overruled = nil, nil, false
+    standing, mode_before, overruled, said = nil, nil, false, {}
 end
 
 -- Its report without an order may come after the word that there is none.
@@ -199,7 +511,7 @@ local function watch_silence()
 end
 
 local function update()
-    receive()
+    local is_busy = receive()
     if enable:get() < 1 or not arming:is_armed() then
         standing, mode_before, overruled = nil, nil, false
     elseif standing then
@@ -212,12 +524,17 @@ local function update()
             follow_order()
         end
     end
-    return update, PERIOD_MS
+    return update, is_busy and SOON_MS or PERIOD_MS
 end
 
-mavlink:init(20, 2)
+mavlink:init(QUEUE, 3)
 mavlink:register_rx_msgid(HAZARD.id)
 mavlink:register_rx_msgid(STATUS.id)
-say(TEXT_INFO, "script runs")
+mavlink:register_rx_msgid(HEARTBEAT.id)
+if key == false then
+    say(TEXT_WARNING, "goe.key holds no key: nothing is believed")
+else
+    say(TEXT_INFO, key and "script runs, signed messages only" or "script runs")
+end
 
 return update()

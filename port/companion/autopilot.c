@@ -9,7 +9,7 @@
 #define US_PER_MS 1000
 #define US_PER_S 1000000
 #define ASK_US 250000        /* between two questions for the clock */
-#define REQUEST_US 5000000   /* between two requests for rates, while they are not met */
+#define REQUEST_US 5000000   /* between two rounds of requests for rates, while no samples come */
 #define ORIGIN_US 5000000    /* between two requests for the origin */
 #define SILENT_US 3000000    /* without a sample for this long the autopilot is asked for its rates anew */
 #define CLOCK_OFF_US 1000000 /* a sample's time that far from the clock is another clock's */
@@ -86,10 +86,11 @@ static void start_anew(autopilot_t *autopilot) {
     autopilot->has_attitude = autopilot->has_position = false;
     autopilot->has_range_finder = autopilot->has_terrain = false;
     autopilot->has_origin = autopilot->origin_given = autopilot->has_home = autopilot->has_home_alt = false;
-    autopilot->has_odometry_resets = autopilot->landing = autopilot->answered = false;
+    autopilot->has_odometry_resets = autopilot->answered = false;
+    autopilot->landing = autopilot->on_ground = false;
     autopilot->told_us = autopilot->jump_us = 0;
     autopilot->strange_times = 0;
-    autopilot->requests = 0;
+    message_rates_clear(&autopilot->rates);
     autopilot->requested_us = autopilot->origin_asked_us = 0;
 }
 
@@ -430,17 +431,52 @@ static bool is_from_elsewhere(const autopilot_t *autopilot, int64_t now_us) {
            !link_is_answered(autopilot->wire->link);
 }
 
-void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
-    if (is_from_elsewhere(autopilot, now_us)) {
-        autopilot->strangers++;
-        return;
+static void take_landed_state(autopilot_t *autopilot, uint8_t state) {
+    autopilot->landing = state == MAV_LANDED_STATE_LANDING;
+    autopilot->on_ground = state == MAV_LANDED_STATE_ON_GROUND;
+}
+
+/* ArduPlane says so when its avoidance of traffic ends without a pilot. */
+static void take_text(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
+    static const char recovery[] = "Avoid: Resuming";
+    char text[MAVLINK_MSG_STATUSTEXT_FIELD_TEXT_LEN];
+    (void)mavlink_msg_statustext_get_text(message, text);
+    if (memcmp(text, recovery, sizeof recovery - 1u) == 0) {
+        autopilot->recovered_us = now_us;
     }
+}
+
+static void take_target(autopilot_t *autopilot, const mavlink_message_t *message) {
+    autopilot->target_lat_e7 = mavlink_msg_position_target_global_int_get_lat_int(message);
+    autopilot->target_lon_e7 = mavlink_msg_position_target_global_int_get_lon_int(message);
+    autopilot->targets++;
+}
+
+static void take_acknowledgement(autopilot_t *autopilot, const mavlink_message_t *message) {
+    mavlink_command_ack_t answer;
+    mavlink_msg_command_ack_decode(message, &answer);
+    if (answer.command == MAV_CMD_SET_MESSAGE_INTERVAL && wire_is_for_us(autopilot->wire, &answer)) {
+        message_rates_answer(&autopilot->rates, answer.result);
+    }
+}
+
+bool autopilot_is_from(const autopilot_t *autopilot, const mavlink_message_t *message) {
+    return autopilot->heartbeat_us != 0 && message->sysid == autopilot->system &&
+           message->compid == MAV_COMP_ID_AUTOPILOT1;
+}
+
+bool autopilot_is_stranger(autopilot_t *autopilot, int64_t now_us) {
+    const bool is_stranger = is_from_elsewhere(autopilot, now_us);
+    autopilot->strangers += is_stranger ? 1u : 0u;
+    return is_stranger;
+}
+
+void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     if (message->msgid == MAVLINK_MSG_ID_HEARTBEAT) {
         take_heartbeat(autopilot, message, now_us);
         return;
     }
-    if (autopilot->heartbeat_us == 0 || message->sysid != autopilot->system ||
-        message->compid != MAV_COMP_ID_AUTOPILOT1) {
+    if (!autopilot_is_from(autopilot, message)) {
         return;
     }
     switch (message->msgid) {
@@ -471,8 +507,17 @@ void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, in
         case MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN:
             take_origin(autopilot, message);
             break;
+        case MAVLINK_MSG_ID_STATUSTEXT:
+            take_text(autopilot, message, now_us);
+            break;
+        case MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT:
+            take_target(autopilot, message);
+            break;
+        case MAVLINK_MSG_ID_COMMAND_ACK:
+            take_acknowledgement(autopilot, message);
+            break;
         case MAVLINK_MSG_ID_EXTENDED_SYS_STATE:
-            autopilot->landing = mavlink_msg_extended_sys_state_get_landed_state(message) == MAV_LANDED_STATE_LANDING;
+            take_landed_state(autopilot, mavlink_msg_extended_sys_state_get_landed_state(message));
             break;
         default:
             break;
@@ -504,22 +549,47 @@ static void ask_clock(autopilot_t *autopilot, int64_t now_us) {
     wire_send(autopilot->wire, &message);
 }
 
-static void request(autopilot_t *autopilot, uint32_t message, double hz) {
-    command(autopilot, MAV_CMD_SET_MESSAGE_INTERVAL, (float)message, (float)(US_PER_S / hz));
+static void want_messages(autopilot_t *autopilot) {
+    const companion_config_t *config = autopilot->config;
+    message_rates_t *rates = &autopilot->rates;
+    message_rates_want(rates, MAVLINK_MSG_ID_ATTITUDE_QUATERNION, "ATTITUDE_QUATERNION", config->link_attitude_hz);
+    message_rates_want(rates, MAVLINK_MSG_ID_LOCAL_POSITION_NED, "LOCAL_POSITION_NED", config->link_position_hz);
+    message_rates_want(rates, MAVLINK_MSG_ID_DISTANCE_SENSOR, "DISTANCE_SENSOR", 10.0);
+    message_rates_want(rates, MAVLINK_MSG_ID_EXTENDED_SYS_STATE, "EXTENDED_SYS_STATE", 2.0);
+    message_rates_want(rates, MAVLINK_MSG_ID_HOME_POSITION, "HOME_POSITION", 0.5);
+    message_rates_want(rates, MAVLINK_MSG_ID_ODOMETRY, "ODOMETRY", 10.0);
+    message_rates_want(rates, MAVLINK_MSG_ID_GPS_RAW_INT, "GPS_RAW_INT", 2.0);
+    if (autopilot->kind == MAV_AUTOPILOT_PX4) {
+        message_rates_want(rates, MAVLINK_MSG_ID_ESTIMATOR_STATUS, "ESTIMATOR_STATUS", 2.0);
+        message_rates_want(rates, MAVLINK_MSG_ID_ALTITUDE, "ALTITUDE", 10.0);
+        message_rates_want(rates, MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT, "POSITION_TARGET_GLOBAL_INT", 2.0);
+    } else {
+        message_rates_want(rates, MAVLINK_MSG_ID_EKF_STATUS_REPORT, "EKF_STATUS_REPORT", 2.0);
+        message_rates_want(rates, MAVLINK_MSG_ID_TERRAIN_REPORT, "TERRAIN_REPORT", 2.0);
+    }
 }
 
-static void request_rates(autopilot_t *autopilot) {
-    const companion_config_t *config = autopilot->config;
-    request(autopilot, MAVLINK_MSG_ID_ATTITUDE_QUATERNION, config->link_attitude_hz);
-    request(autopilot, MAVLINK_MSG_ID_LOCAL_POSITION_NED, config->link_position_hz);
-    request(autopilot, MAVLINK_MSG_ID_DISTANCE_SENSOR, 10.0);
-    request(autopilot, MAVLINK_MSG_ID_EXTENDED_SYS_STATE, 2.0);
-    request(autopilot, MAVLINK_MSG_ID_HOME_POSITION, 0.5);
-    if (autopilot->kind == MAV_AUTOPILOT_PX4) {
-        request(autopilot, MAVLINK_MSG_ID_ODOMETRY, 10.0);
-        request(autopilot, MAVLINK_MSG_ID_ALTITUDE, 10.0);
-    } else {
-        request(autopilot, MAVLINK_MSG_ID_TERRAIN_REPORT, 2.0);
+/* One round after the other, for as long as samples are missing. */
+static void ask_rates(autopilot_t *autopilot, int64_t now_us) {
+    const bool no_attitude = now_us - autopilot->attitude_us > SILENT_US;
+    const bool no_position = now_us - autopilot->position_us > SILENT_US;
+    if (autopilot->rates.count == 0) {
+        autopilot->requested_us = now_us;
+        want_messages(autopilot);
+    } else if (message_rates_done(&autopilot->rates) && (no_attitude || no_position) &&
+               now_us - autopilot->requested_us >= REQUEST_US) {
+        event("no %s: asked for again", no_attitude ? "ATTITUDE_QUATERNION comes" : "LOCAL_POSITION_NED comes");
+        autopilot->requested_us = now_us;
+        message_rates_repeat(&autopilot->rates);
+    }
+    message_rates_ask(&autopilot->rates, autopilot->wire, autopilot->system, now_us);
+}
+
+static void ask_origin(autopilot_t *autopilot, int64_t now_us) {
+    if (!autopilot->has_origin && now_us - autopilot->origin_asked_us >= ORIGIN_US) {
+        autopilot->origin_asked_us = now_us;
+        command(autopilot, MAV_CMD_REQUEST_MESSAGE, (float)MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, 0.0f);
+        command(autopilot, MAV_CMD_REQUEST_MESSAGE, (float)MAVLINK_MSG_ID_HOME_POSITION, 0.0f);
     }
 }
 
@@ -528,24 +598,14 @@ void autopilot_ask(autopilot_t *autopilot, int64_t now_us) {
     if (autopilot->heartbeat_us == 0) {
         return;
     }
+    if (now_us - autopilot->heartbeat_us >= SILENT_US) { /* it may come back from another address */
+        link_release(autopilot->wire->link);
+    }
     if (now_us - latest_question_us(autopilot) >= ASK_US) {
         ask_clock(autopilot, now_us);
     }
-    const bool no_attitude = now_us - autopilot->attitude_us > SILENT_US;
-    const bool no_position = now_us - autopilot->position_us > SILENT_US;
-    if (autopilot->config->link_request_rates != 0 && (autopilot->requests < 2 || no_attitude || no_position) &&
-        now_us - autopilot->requested_us >= REQUEST_US) {
-        if (autopilot->requests >= 2) {
-            event("no %s: asked for again", no_attitude ? "ATTITUDE_QUATERNION comes" : "LOCAL_POSITION_NED comes");
-        }
-        autopilot->requested_us = now_us;
-        autopilot->requests++;
-        request_rates(autopilot);
-    }
-    if (autopilot->config->link_request_rates != 0 && !autopilot->has_origin &&
-        now_us - autopilot->origin_asked_us >= ORIGIN_US) {
-        autopilot->origin_asked_us = now_us;
-        command(autopilot, MAV_CMD_REQUEST_MESSAGE, (float)MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, 0.0f);
-        command(autopilot, MAV_CMD_REQUEST_MESSAGE, (float)MAVLINK_MSG_ID_HOME_POSITION, 0.0f);
+    if (autopilot->config->link_request_rates != 0) {
+        ask_rates(autopilot, now_us);
+        ask_origin(autopilot, now_us);
     }
 }

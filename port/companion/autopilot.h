@@ -5,6 +5,7 @@
 #include "clock_sync.h"
 #include "companion_config.h"
 #include "goe_flight.h"
+#include "message_rates.h"
 #include "wire.h"
 
 #define AUTOPILOT_QUESTIONS 8 /* that are under way at most: a round trip of two seconds */
@@ -21,9 +22,13 @@ typedef struct {
     uint8_t kind;   /* MAV_AUTOPILOT_... */
     uint32_t custom_mode;
     uint8_t base_mode;
-    bool landing;         /* EXTENDED_SYS_STATE: on approach */
-    int64_t heartbeat_us; /* own time of the latest */
-    unsigned heartbeats;  /* counted */
+    bool landing;         /* EXTENDED_SYS_STATE: on approach ... */
+    bool on_ground;       /* ... or on the ground */
+    int64_t recovered_us; /* own time when ArduPilot reported that it ended an avoidance by itself; 0: never */
+    int32_t target_lat_e7, target_lon_e7; /* where it flies to, as it reports ... */
+    unsigned targets;                     /* ... so many times */
+    int64_t heartbeat_us;                 /* own time of the latest */
+    unsigned heartbeats;                  /* counted */
 
     /* pose */
     mavlink_attitude_quaternion_t attitude;
@@ -57,14 +62,21 @@ typedef struct {
     int64_t asked_us[AUTOPILOT_QUESTIONS]; /* own times of the latest questions for its clock, a ring ... */
     unsigned asked;                        /* ... with so many of them ever */
     bool answered;                         /* one was */
+    message_rates_t rates;
     int64_t requested_us, origin_asked_us; /* own times of the latest requests */
-    unsigned requests;
 
     /* counted; summary and status line tell them */
     unsigned long attitudes, positions, bad_samples, restarts, slips, jumps, strangers;
 } autopilot_t;
 
 void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire);
+
+/* Whether what was read last came from another address than the autopilot's, while that is not silent: then it is counted, and no
+ * message of it is to be taken. */
+bool autopilot_is_stranger(autopilot_t *autopilot, int64_t now_us);
+
+/* Whether a message is of the autopilot that was found. */
+bool autopilot_is_from(const autopilot_t *autopilot, const mavlink_message_t *message);
 
 /* Any message; those that are not the autopilot's, or of no interest, are passed over. */
 void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us);

@@ -11,11 +11,13 @@
 
 #include "events.h"
 #include "goe_mavlink_map.h"
+#include "margins.h"
 
 #define US_PER_S 1000000
 #define WAIT_MS 10           /* longest wait: everything that is due every so often is looked at in between */
 #define READS_MAX 64         /* of the detector's in one turn */
 #define SAME_IMAGE_US 5000u  /* images are farther apart */
+#define DEAF_US 10000000     /* without a heartbeat, after which that is reported */
 #define CLOCK_STEP_US 100000 /* by which the computer's own clock may be set without a word */
 
 static int64_t clock_us(clockid_t clock) {
@@ -195,15 +197,20 @@ static void on_message(void *user, const mavlink_message_t *message) {
     companion_t *c = user;
     const int64_t now_us = clock_us(CLOCK_MONOTONIC);
     const uint32_t arrival_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
+    if (autopilot_is_stranger(&c->autopilot, now_us)) {
+        return;
+    }
     if (c->autopilot.heartbeat_us != 0 && message->sysid == c->autopilot.system) {
         take_detections(c, message, arrival_us);
     }
-    if (link_is_answered(c->autopilot_link)) {
-        orders_take(&c->orders, message);
-    }
+    orders_take(&c->orders, message);
     autopilot_take(&c->autopilot, message, now_us);
+    if (autopilot_is_from(&c->autopilot, message)) {
+        health_take(&c->health, message, now_us);
+    }
     if (c->autopilot.restarts != c->restarts) {
         c->restarts = c->autopilot.restarts;
+        health_restart(&c->health);
         image_queue_clear(&c->queue);
     }
 }
@@ -227,12 +234,42 @@ static void tell_alive(companion_t *c) {
     if (a->detector_alive != c->detector_alive) {
         event(a->detector_alive ? "the detector is alive"
                                 : "the detector is silent: nothing ahead is known to be clear");
+        screen_show(&c->screen, SCREEN_DETECTOR, a->detector_alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING,
+                    a->detector_alive ? "GOE: detector is alive" : "GOE: detector is silent");
     }
     if (a->pose_alive != c->pose_alive) {
         event(a->pose_alive ? "poses come" : "no poses come");
+        screen_show(&c->screen, SCREEN_POSE, a->pose_alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING,
+                    a->pose_alive ? "GOE: poses come" : "GOE: no poses come");
     }
     c->detector_alive = a->detector_alive;
     c->pose_alive = a->pose_alive;
+}
+
+/* Doubt about the own place widens the margins, and is reported. */
+static void watch_health(companion_t *c, int64_t now_us) {
+    const bool was_in_doubt = c->health.doubts != 0;
+    if (!health_judge(&c->health, now_us)) {
+        return;
+    }
+    const bool in_doubt = c->health.doubts != 0;
+    const char *what = health_text(c->health.doubts);
+    event("navigation: %s%s", what, in_doubt ? ": margins are wider" : " again");
+    screen_show(&c->screen, SCREEN_NAVIGATION, in_doubt ? MAV_SEVERITY_WARNING : MAV_SEVERITY_INFO,
+                "GOE: navigation: %s", what);
+    if (in_doubt != was_in_doubt && !margins_set(&c->flight, &c->spare, &c->config, in_doubt)) {
+        event("the margins cannot be changed");
+    }
+}
+
+/* Without reactions the order is advice. */
+static void show_advice(companion_t *c) {
+    const goe_flight_assessment_t *a = &c->assessment;
+    if (c->config.reaction_mode == REACTION_OFF && a->action != c->advised && a->action != GOE_FLIGHT_NONE) {
+        screen_show(&c->screen, SCREEN_ORDER, MAV_SEVERITY_WARNING, "GOE advises %s: obstacle in %.0f s",
+                    goe_flight_action_text(a->action), (double)a->hazard.time_s);
+    }
+    c->advised = a->action;
 }
 
 static bool begin_flight(companion_t *c, const char **bad) {
@@ -248,9 +285,11 @@ static void assess(companion_t *c, int64_t now_us) {
     if (status == GOE_FLIGHT_CORRUPTED) {
         event("its memory was corrupted: obstacles are looked for anew");
         (void)begin_flight(c, NULL);
+        (void)margins_set(&c->flight, &c->spare, &c->config, c->health.doubts != 0);
     }
     if (status == GOE_FLIGHT_OK) { /* without a pose nothing is known, and what stands stands */
         orders_follow(&c->orders, &c->assessment, &own, now_us);
+        show_advice(c);
     }
 }
 
@@ -277,6 +316,16 @@ static void mend_links(companion_t *c, int64_t now_us) {
     c->links_lost = lost;
 }
 
+/* Who listens to this computer alone hears no autopilot of another. */
+static void watch_deafness(companion_t *c, int64_t now_us) {
+    const bool is_deaf = c->autopilot.heartbeat_us == 0 && now_us - c->begun_us > DEAF_US;
+    if (is_deaf && !c->deafness_reported) {
+        event("no autopilot is heard on %s%s", c->config.link_autopilot,
+              link_is_local(c->config.link_autopilot) ? ": udpin:0.0.0.0:PORT listens to other computers, too" : "");
+        c->deafness_reported = true;
+    }
+}
+
 static void end_second(companion_t *c, int64_t now_us) {
     companion_rates_t *rates = &c->rates;
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
@@ -291,13 +340,17 @@ static void end_second(companion_t *c, int64_t now_us) {
     reports_send_status(&c->wire, &c->flight, &c->assessment, &own, &rates->delay, c->self_check);
     (void)memset(&rates->delay, 0, sizeof rates->delay);
     flight_record_flush(&c->record);
+    signing_go_on(&c->signing, &c->wire, clock_us(CLOCK_REALTIME));
     watch_own_clock(c, now_us);
+    watch_deafness(c, now_us);
     mend_links(c, now_us);
 }
 
 static bool do_what_is_due(companion_t *c) {
     const int64_t now_us = clock_us(CLOCK_MONOTONIC);
     autopilot_ask(&c->autopilot, now_us);
+    watch_health(c, now_us);
+    screen_go_on(&c->screen, &c->wire, now_us);
     if (is_due(&c->assessed_us, now_us, c->config.reports_assess_hz)) {
         assess(c, now_us);
     }
@@ -366,11 +419,23 @@ companion_t *companion_new(const companion_config_t *config, char *fault, size_t
     c->wire.link = c->autopilot_link;
     c->wire.system = 1;
     c->wire.component = (uint8_t)config->link_component;
+    if (*config->link_key_file != '\0') {
+        signing_begin(&c->signing, &c->wire, config->link_key_file, config->link_key, clock_us(CLOCK_REALTIME));
+    } else if (link_is_wide(config->link_autopilot)) {
+        event("%s is open to every network, and not signed: who reaches it can steer", config->link_autopilot);
+    }
+    if (link_is_wide(config->detections_from)) {
+        event("%s is open to every network: who reaches it can send obstacles", config->detections_from);
+    }
     c->self_check = goe_self_check();
-    c->assessed_us = c->reported_us = c->second_us = now_us;
+    c->assessed_us = c->reported_us = c->second_us = c->begun_us = now_us;
     c->clock_difference_us = clock_us(CLOCK_REALTIME) - now_us;
     autopilot_init(&c->autopilot, &c->config, &c->flight, &c->wire);
     orders_init(&c->orders, &c->wire, &c->config, &c->autopilot, &c->flight);
+    c->screen.on = config->reports_screen != 0;
+    c->orders.log = &c->record.orders;
+    c->orders.screen = &c->screen;
+    orders_take_over(&c->orders, &c->record.left);
     if (c->self_check != 0) {
         event("the arithmetic of this computer is not right (self-check 0x%02x): no orders are sent", c->self_check);
         c->config.reaction_mode = REACTION_OFF;

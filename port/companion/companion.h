@@ -11,11 +11,14 @@
 #include "detection_text.h"
 #include "flight_record.h"
 #include "goe_flight.h"
+#include "health.h"
 #include "image_queue.h"
 #include "line_reader.h"
 #include "link.h"
 #include "orders.h"
 #include "reports.h"
+#include "screen.h"
+#include "signing.h"
 #include "wire.h"
 
 typedef struct {
@@ -35,15 +38,19 @@ typedef struct {
 
 typedef struct {
     companion_config_t config;
-    goe_flight_t flight;
+    goe_flight_t flight, spare; /* spare: room to change the margins */
     goe_flight_assessment_t assessment;
     link_t *autopilot_link, *detections_link; /* the latter null: detections come over MAVLink alone */
     wire_t wire;
+    signing_t signing;
     autopilot_t autopilot;
     line_reader_t lines;
     image_queue_t queue;
     camera_image_t image; /* that is being read */
     orders_t orders;
+    health_t health;
+    screen_t screen;
+    goe_flight_action_t advised; /* that was shown while reactions are off */
     flight_record_t record;
     companion_counts_t counts;
     companion_rates_t rates;
@@ -51,7 +58,8 @@ typedef struct {
     bool detector_alive, pose_alive; /* as they were told last ... */
     unsigned links_lost;             /* ... and how often the links were lost by then */
     unsigned long restarts;          /* of the autopilot, that were seen here */
-    int64_t assessed_us, reported_us, second_us;
+    int64_t assessed_us, reported_us, second_us, begun_us;
+    bool deafness_reported;
     int64_t clock_difference_us; /* UNIX time minus monotonic time, as it was last */
 } companion_t;
 

@@ -32,12 +32,13 @@ typedef struct {
 
 #define AT(field) offsetof(companion_config_t, field)
 static const config_key_t keys[] = {
-    {"link.autopilot", AT(link_autopilot), KEY_TEXT, 0, 0, 0, "udpin:0.0.0.0:14540"},
+    {"link.autopilot", AT(link_autopilot), KEY_TEXT, 0, 0, 0, "udpin:127.0.0.1:14540"},
+    {"link.key_file", AT(link_key_file), KEY_TEXT, 0, 0, 0, ""},
     {"link.system", AT(link_system), KEY_WHOLE, 0, 255, 0, NULL},
     {"link.component", AT(link_component), KEY_WHOLE, 1, 255, 196, NULL},
     {"link.request_rates", AT(link_request_rates), KEY_WHOLE, 0, 1, 1, NULL},
-    {"link.attitude_hz", AT(link_attitude_hz), KEY_NUMBER, 1, 400, 50, NULL},
-    {"link.position_hz", AT(link_position_hz), KEY_NUMBER, 1, 400, 50, NULL},
+    {"link.attitude_hz", AT(link_attitude_hz), KEY_NUMBER, 1, 400, 25, NULL},
+    {"link.position_hz", AT(link_position_hz), KEY_NUMBER, 1, 400, 25, NULL},
     {"detections.from", AT(detections_from), KEY_TEXT, 0, 0, 0, "udp:127.0.0.1:14600"},
     {"detections.mavlink", AT(detections_mavlink), KEY_LIST, 0, 0, DETECTIONS_GOE_FEATURES,
      "goe_features landing_target tracking"},
@@ -55,6 +56,7 @@ static const config_key_t keys[] = {
     {"reaction.icao", AT(reaction_icao), KEY_WHOLE, 1, 0xFFFFF0, 0xF0E000, NULL},
     {"reports.assess_hz", AT(reports_assess_hz), KEY_NUMBER, 1, 100, 10, NULL},
     {"reports.obstacle_hz", AT(reports_obstacle_hz), KEY_NUMBER, 0.1, 100, 5, NULL},
+    {"reports.screen", AT(reports_screen), KEY_WHOLE, 0, 1, 1, NULL},
     {"reports.standard", AT(reports_standard), KEY_LIST, 0, 0, 0,
      "obstacle_distance obstacle_distance_3d collision target_absolute"},
     {"reports.distance_increment_deg", AT(reports_distance_increment_deg), KEY_WHOLE, 5, 180, 5, NULL},
@@ -354,6 +356,10 @@ static bool resolve(char path[CONFIG_TEXT_MAX], const char *beside) {
     return true;
 }
 
+static bool resolve_if_given(char path[CONFIG_TEXT_MAX], const char *configuration) {
+    return *path == '\0' || resolve(path, configuration);
+}
+
 /* Blanks around each name, so that a name can be looked for as a whole. A line's length leaves room for them. */
 static void pad_classes(char classes[CONFIG_TEXT_MAX]) {
     const size_t length = strlen(classes);
@@ -409,7 +415,7 @@ static void check_whole(config_reader_t *reader) {
     }
 }
 
-bool companion_config_read(const char *path, companion_config_t *config, input_error_t *error) {
+bool companion_config_read(const char *path, const char *link, companion_config_t *config, input_error_t *error) {
     config_reader_t reader;
     (void)memset(&reader, 0, sizeof reader);
     reader.path = path;
@@ -417,15 +423,21 @@ bool companion_config_read(const char *path, companion_config_t *config, input_e
     reader.error = error;
     set_defaults(config);
     read_keys(&reader);
+    if (link != NULL) {
+        (void)snprintf(config->link_autopilot, sizeof config->link_autopilot, "%s", link);
+    }
     if (!reader.failed) {
         check_whole(&reader);
     }
     if (reader.failed) {
         return false;
     }
-    if (!resolve(config->camera_file, path) ||
-        (*config->record_folder != '\0' && !resolve(config->record_folder, path))) {
-        input_error_set(error, path, 0, NULL, "the path of camera.file or record.folder is too long");
+    if (!resolve(config->camera_file, path) || !resolve_if_given(config->record_folder, path) ||
+        !resolve_if_given(config->link_key_file, path)) {
+        input_error_set(error, path, 0, NULL, "the path of camera.file, record.folder or link.key_file is too long");
+        return false;
+    }
+    if (*config->link_key_file != '\0' && !key_file_read(config->link_key_file, config->link_key, error)) {
         return false;
     }
     pad_classes(config->detections_classes);

@@ -8,6 +8,7 @@
 
 #include "goe_flight.h"
 #include "input_error.h"
+#include "key_file.h"
 
 #define CONFIG_TEXT_MAX 512
 
@@ -32,6 +33,8 @@ typedef struct {
     char link_autopilot[CONFIG_TEXT_MAX];
     uint32_t link_system, link_component, link_request_rates;
     double link_attitude_hz, link_position_hz;
+    char link_key_file[CONFIG_TEXT_MAX]; /* path, no longer relative to the configuration; empty: no signatures */
+    uint8_t link_key[KEY_BYTES];
     char detections_from[CONFIG_TEXT_MAX];
     line_clock_t detections_clock;
     unsigned detections_mavlink; /* DETECTIONS_... */
@@ -47,14 +50,17 @@ typedef struct {
     double reaction_adsb_hz;
     double reports_assess_hz, reports_obstacle_hz;
     unsigned reports_standard; /* REPORT_... */
+    uint32_t reports_screen;
     uint32_t reports_distance_increment_deg;
     double reports_distance_max_m;
     char record_folder[CONFIG_TEXT_MAX]; /* empty: no log */
     double record_size_max_mb;
 } companion_config_t;
 
-/* Reads the file and the camera's that it names. False on failure: *error says what is wrong and where. */
-bool companion_config_read(const char *path, companion_config_t *config, input_error_t *error);
+/* Reads the file, and those of the camera and the key that it names.
+ *   link  null, or what replaces link.autopilot
+ * False on failure: *error says what is wrong and where. */
+bool companion_config_read(const char *path, const char *link, companion_config_t *config, input_error_t *error);
 
 /* All keys with their values, as the file would have them. */
 void companion_config_print(FILE *stream, const companion_config_t *config);

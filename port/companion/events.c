@@ -8,8 +8,10 @@
 #include <time.h>
 #include <unistd.h>
 
-#define KINDS 32
+#define KINDS 64
 #define TEXT_MAX 256
+#define TIME_MAX 32
+#define NS_PER_MS 1000000
 
 static int line_stands; /* a status line, on the terminal: it is cleared before the next event */
 
@@ -64,8 +66,19 @@ static void make_printable(char *text) {
     }
 }
 
+/* UTC, to the millisecond. */
+static void put_time(char text[TIME_MAX]) {
+    struct timespec now;
+    struct tm day;
+    char seconds[TIME_MAX];
+    (void)clock_gettime(CLOCK_REALTIME, &now);
+    (void)gmtime_r(&now.tv_sec, &day);
+    (void)strftime(seconds, sizeof seconds, "%Y-%m-%dT%H:%M:%S", &day);
+    (void)snprintf(text, TIME_MAX, "%.20s.%03uZ", seconds, (unsigned)(now.tv_nsec / NS_PER_MS) % 1000u);
+}
+
 void event(const char *format, ...) {
-    char text[TEXT_MAX], line[2 * TEXT_MAX], more[48] = "";
+    char text[TEXT_MAX], line[2 * TEXT_MAX], more[48] = "", time[TIME_MAX];
     unsigned long left_out = 0;
     va_list arguments;
     if (!is_due(format, &left_out)) {
@@ -78,7 +91,8 @@ void event(const char *format, ...) {
     if (left_out > 0) {
         (void)snprintf(more, sizeof more, " (and %lu more)", left_out);
     }
-    (void)snprintf(line, sizeof line, "%sgoe_companion: %s%s\n", line_stands ? "\r\033[K" : "", text, more);
+    put_time(time);
+    (void)snprintf(line, sizeof line, "%s%s goe_companion: %s%s\n", line_stands ? "\r\033[K" : "", time, text, more);
     put(line);
     line_stands = 0;
 }

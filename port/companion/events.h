@@ -4,7 +4,7 @@
 #ifndef EVENTS_H
 #define EVENTS_H
 
-/* Tells a change. Of one kind of text (`format`) at most one line a second; the next one says how many were left out. */
+/* Reports a change, with the time (UTC). Of one kind of text (`format`) at most one line a second; the next one says how many were left out. */
 void event(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* The status line: renewed in place on a terminal, else a line. */

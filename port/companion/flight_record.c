@@ -84,6 +84,11 @@ bool flight_record_open(flight_record_t *record, const companion_config_t *confi
         number++;
         name_folder(folder, config->record_folder, number);
     } while (number < LOGS_MAX && has_log(folder));
+    if (number > 1) {
+        char before[PATH_MAX_LENGTH];
+        name_folder(before, config->record_folder, number - 1);
+        (void)order_log_read(before, &record->left);
+    }
     (void)snprintf(camera, sizeof camera, "%s/camera.ini", folder);
     (void)snprintf(frames, sizeof frames, "%s/frames.csv", folder);
     (void)mkdir(folder, 0777); /* what hinders it hinders the files, too */
@@ -96,6 +101,9 @@ bool flight_record_open(flight_record_t *record, const companion_config_t *confi
     if (record->stream == NULL || fputs(header, record->stream) < 0) {
         (void)snprintf(fault, fault_size, "record.folder: %s: %s", folder, why);
         return false;
+    }
+    if (!order_log_open(&record->orders, folder)) {
+        event("no log of orders: %s", strerror(errno));
     }
     return true;
 }
@@ -196,4 +204,5 @@ void flight_record_close(flight_record_t *record) {
         event("the log could not be written to its end: %s", strerror(errno));
     }
     record->stream = NULL;
+    order_log_close(&record->orders);
 }

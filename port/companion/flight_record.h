@@ -9,9 +9,12 @@
 #include "autopilot.h"
 #include "companion_config.h"
 #include "goe_flight.h"
+#include "order_log.h"
 
 typedef struct {
     FILE *stream; /* null: there is no log, or it has ended */
+    order_log_t orders;
+    order_left_t left; /* what the log before this one leaves of an order */
     unsigned long rows;
     int64_t latest_us,
         shift_us; /* time of the latest row; what is added so that times go on when the autopilot starts anew */
@@ -20,7 +23,7 @@ typedef struct {
 } flight_record_t;
 
 /* Makes the folder, with a copy of the camera's file. An old log there is not overwritten: then it is the first of folder-2,
- * folder-3, ... without one. A folder that cannot be written is a failure. Nothing is done without a folder's name. */
+ * folder-3, ... without one, and of the latest of them is read what it leaves. A folder that cannot be written is a failure. Nothing is done without a folder's name. */
 bool flight_record_open(flight_record_t *record, const companion_config_t *config, char *fault, size_t fault_size);
 
 /* The detections of a frame that was taken, with the pose at its exposure. */

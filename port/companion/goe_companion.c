@@ -45,6 +45,7 @@ static void catch_signals(void) {
 
 typedef struct {
     char *path; /* of the configuration */
+    char *link; /* instead of its link.autopilot; null: none */
     int check, help, version;
 } options_t;
 
@@ -99,7 +100,7 @@ static int run(const companion_config_t *config) {
 static int start(const options_t *options) {
     static companion_config_t config;
     input_error_t error;
-    if (!companion_config_read(options->path, &config, &error)) {
+    if (!companion_config_read(options->path, options->link, &config, &error)) {
         (void)fprintf(stderr, PROGRAM ": %s\n", error.text);
         return EXIT_BAD_INPUT;
     }
@@ -111,10 +112,13 @@ static int start(const options_t *options) {
 }
 
 int main(int count, const char **arguments) {
-    options_t options = {NULL, 0, 0, 0};
+    options_t options = {NULL, NULL, 0, 0, 0};
     const struct poptOption table[] = {
         {"check", 'c', POPT_ARG_NONE, &options.check, 0, "read the configuration, print what it comes to, and end",
          NULL},
+        {"link", 'l', POPT_ARG_STRING, &options.link, 0,
+         "instead of link.autopilot; udpin:0.0.0.0:14540 listens to every network, and not to this computer alone",
+         "WHERE"},
         {"help", 'h', POPT_ARG_NONE, &options.help, 0, "print this text", NULL},
         {"version", 'V', POPT_ARG_NONE, &options.version, 0, "print the version", NULL},
         POPT_TABLEEND,
@@ -134,5 +138,6 @@ int main(int count, const char **arguments) {
     }
     poptFreeContext(context);
     free(options.path);
+    free(options.link);
     return status;
 }

@@ -17,7 +17,8 @@
 #define WHERE_MAX 512
 #define MEND_US 1000000
 #define REST_MAX 512
-#define DEAD_AFTER_MS 3000     /* a TCP peer that acknowledges nothing for so long is lost */
+#define DEAD_AFTER_MS 3000 /* a TCP peer that acknowledges nothing for so long is lost */
+#define DATAGRAM_TRIES 2
 #define RECEIVE_BUFFER 1048576 /* bytes of a UDP socket: a second of everything */
 
 typedef enum { LINK_UDP_IN, LINK_UDP_OUT, LINK_TCP, LINK_SERIAL, LINK_FIFO, LINK_STDIN } link_kind_t;
@@ -27,6 +28,7 @@ struct link {
     char host[WHERE_MAX], service[32]; /* host or path; port or baud rate */
     int descriptor;                    /* -1: not open */
     bool connecting, ended;
+    bool bound; /* udpin: the system refuses whoever is not the peer */
     unsigned losses;
     int64_t tried_us;
     struct addrinfo *addresses, *next;  /* of the host, resolved once; the one to be tried next */
@@ -112,9 +114,9 @@ static int open_address(link_t *link, const struct addrinfo *address) {
             return descriptor;
         }
     } else if (link->kind == LINK_UDP_OUT) {
-        (void)memcpy(&link->peer, address->ai_addr, address->ai_addrlen);
-        link->peer_size = address->ai_addrlen;
-        return descriptor;
+        if (connect(descriptor, address->ai_addr, address->ai_addrlen) == 0) { /* the system refuses strangers */
+            return descriptor;
+        }
     } else if (connect(descriptor, address->ai_addr, address->ai_addrlen) == 0 || errno == EINPROGRESS) {
         link->connecting = true;
         return descriptor;
@@ -268,6 +270,17 @@ bool link_check(const char *where, char *fault, size_t fault_size) {
     return why == NULL;
 }
 
+/* Whether `where` waits on one of these hosts. */
+static bool waits_on(const char *where, const char *one, const char *other) {
+    link_t link;
+    (void)memset(&link, 0, sizeof link);
+    return parse_where(&link, where) && link.kind == LINK_UDP_IN &&
+           (strcmp(link.host, one) == 0 || strcmp(link.host, other) == 0);
+}
+
+bool link_is_wide(const char *where) { return waits_on(where, "0.0.0.0", "::"); }
+bool link_is_local(const char *where) { return waits_on(where, "127.0.0.1", "::1"); }
+
 link_t *link_open(const char *where, char *fault, size_t fault_size) {
     link_t *link = calloc(1, sizeof *link);
     const char *why = "out of memory";
@@ -327,9 +340,27 @@ size_t link_read(link_t *link, uint8_t *bytes, size_t size) {
 }
 
 void link_answer(link_t *link) {
-    if (link->kind == LINK_UDP_IN && link->from_size > 0) {
+    if (link->kind != LINK_UDP_IN || link->from_size == 0 || (link->bound && link_is_answered(link))) {
+        return;
+    }
+    link->peer = link->from;
+    link->peer_size = link->from_size;
+    link->bound = connect(link->descriptor, (const struct sockaddr *)&link->peer, link->peer_size) == 0;
+}
+
+void link_greet(link_t *link) {
+    if (link->kind == LINK_UDP_IN && !link->bound) {
         link->peer = link->from;
         link->peer_size = link->from_size;
+    }
+}
+
+void link_release(link_t *link) {
+    struct sockaddr nobody;
+    (void)memset(&nobody, 0, sizeof nobody);
+    nobody.sa_family = AF_UNSPEC;
+    if (link->bound) {
+        link->bound = connect(link->descriptor, &nobody, sizeof nobody) != 0;
     }
 }
 
@@ -367,6 +398,20 @@ static bool write_stream(link_t *link, const uint8_t *bytes, size_t size) {
     return sent == size;
 }
 
+/* What an earlier datagram met, such as a port that nobody listened to, is reported once, and takes nothing from this one. */
+static bool write_datagram(link_t *link, const uint8_t *bytes, size_t size) {
+    for (int i = 0; i < DATAGRAM_TRIES; i++) {
+        const bool known = link->kind == LINK_UDP_OUT || link->bound;
+        const struct sockaddr *peer = known ? NULL : (const struct sockaddr *)&link->peer;
+        const socklen_t peer_size = known ? 0 : link->peer_size;
+        if ((known || peer_size > 0) &&
+            sendto(link->descriptor, bytes, size, MSG_NOSIGNAL, peer, peer_size) == (ssize_t)size) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool link_write(link_t *link, const uint8_t *bytes, size_t size) {
     if (link->descriptor < 0) {
         return false;
@@ -374,9 +419,7 @@ bool link_write(link_t *link, const uint8_t *bytes, size_t size) {
     if (!link_has_messages(link)) {
         return write_stream(link, bytes, size);
     }
-    const struct sockaddr *peer = (const struct sockaddr *)&link->peer;
-    return link->peer_size > 0 &&
-           sendto(link->descriptor, bytes, size, MSG_NOSIGNAL, peer, link->peer_size) == (ssize_t)size;
+    return write_datagram(link, bytes, size);
 }
 
 void link_mend(link_t *link, int64_t now_us) {

@@ -14,8 +14,12 @@ typedef struct link link_t;
 /* Whether `where` is of one of the forms; nothing is opened. False: fault says why. */
 bool link_check(const char *where, char *fault, size_t fault_size);
 
-/* `where`: udpin:HOST:PORT (receives there, answers to whom link_answer() was called for last), udpout:HOST:PORT,
- * tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH, stdin. Null on failure: fault says why. A TCP peer or device that is not there
+/* Whether `where` waits for whoever comes from any network, or from this computer alone. */
+bool link_is_wide(const char *where);
+bool link_is_local(const char *where);
+
+/* `where`: udpin:HOST:PORT (receives there, answers to whom link_answer() was called for last), udpout:HOST:PORT (hears
+ * nobody else), tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH, stdin. Null on failure: fault says why. A TCP peer or device that is not there
  * yet is no failure. */
 link_t *link_open(const char *where, char *fault, size_t fault_size);
 
@@ -28,8 +32,14 @@ bool link_has_messages(const link_t *link);
 /* Up to `size` bytes; 0: nothing there now. */
 size_t link_read(link_t *link, uint8_t *bytes, size_t size);
 
-/* udpin: answers from now on go to the sender of what was read last. */
+/* udpin: answers from now on go to the sender of what was read last, and the system refuses what others send. */
 void link_answer(link_t *link);
+
+/* udpin: answers go there until the next link_answer(), and everybody is still heard. */
+void link_greet(link_t *link);
+
+/* udpin: whoever sends is heard again; answers go on to the same peer. */
+void link_release(link_t *link);
 
 /* Whether what was read last came from there; true for every other kind of link, and before the first link_answer(). */
 bool link_is_answered(const link_t *link);

@@ -11,16 +11,9 @@
 #define TARGET_EVERY_US 1000000 /* a target that moves is sent at most that often ... */
 #define TARGET_MOVED_M 5.0f     /* ... and only when it has moved by so much */
 #define RESUMES_MAX 5           /* the mode before is asked for as often, until it is acknowledged */
-#define BEATS_TO_LEAD 2u        /* heartbeats after the acknowledgement within which the mode follows */
 #define BEATS_TO_RESUME 2u      /* heartbeats that may still show the mode of the order before */
-#define M_PER_E7 0.0111195f     /* of 1e-7 degrees on a sphere of 6371 km */
-#define RAD_PER_E7 1.7453293e-9f
-
-/* PX4's custom mode: main mode in the third byte, sub mode in the fourth. */
-#define PX4_MODE(main, sub) ((uint32_t)(main) << 16 | (uint32_t)(sub) << 24)
-#define PX4_MAIN(mode) ((mode) >> 16 & 0xFFu)
-#define PX4_SUB(mode) ((mode) >> 24 & 0xFFu)
-#define PX4_AUTO_LOITER PX4_MODE(4, 3) /* where DO_REPOSITION leads to */
+#define LEFT_OFF_US 2000000     /* by which both clocks may disagree on the time since an order that was left */
+#define LEFT_OLD_US 120000000   /* an order that was left longer ago is forgotten */
 
 /* By the bits of reaction.modes. */
 static const uint32_t px4_modes[] = {PX4_MODE(4, 4), PX4_AUTO_LOITER, PX4_MODE(6, 0), PX4_MODE(3, 0),
@@ -37,6 +30,32 @@ void orders_init(orders_t *orders, wire_t *wire, const companion_config_t *confi
     orders->slot = -1;
 }
 
+/* A row of the log. */
+static void put_log(orders_t *orders, const char *what, const char *why) {
+    const goe_flight_assessment_t *a = &orders->assessment;
+    goe_flight_obstacle_t obstacle;
+    (void)goe_flight_obstacle(orders->flight, orders->slot, &obstacle);
+    order_row_t row = {
+        .event = what,
+        .left = orders->stands,
+        .mode = orders->autopilot->custom_mode,
+        .obstacle_id = obstacle.id,
+        .slot = orders->slot,
+        .time_s = a->hazard.time_s,
+        .miss_m = a->hazard.miss_m,
+        .target_lat_e7 = a->target_lat_e7,
+        .target_lon_e7 = a->target_lon_e7,
+        .target_alt_m = orders->autopilot->origin_alt_m - a->target_ned_m[2],
+        .why = why,
+    };
+    row.left.unix_us = orders->unix_us;
+    row.left.boot_us = orders->boot_us;
+    row.left.action = (unsigned)orders->action;
+    row.left.mode_before = orders->watch.mode_before;
+    row.left.stands = orders->stands.stands && !orders->overruled;
+    order_log_put(orders->log, &row);
+}
+
 static bool is_place(goe_flight_action_t action) {
     return action == GOE_FLIGHT_LEFT || action == GOE_FLIGHT_RIGHT || action == GOE_FLIGHT_CLIMB ||
            action == GOE_FLIGHT_HOLD;
@@ -46,6 +65,7 @@ static void send_command(orders_t *orders, uint16_t command, float first, float 
     mavlink_message_t message;
     orders->command = command;
     orders->sent_us = now_us;
+    orders->sent = true;
     (void)mavlink_msg_command_long_pack(orders->wire->system, orders->wire->component, &message,
                                         orders->autopilot->system, MAV_COMP_ID_AUTOPILOT1, command, 0, first, second,
                                         third, 0.0f, 0.0f, 0.0f, 0.0f);
@@ -54,11 +74,6 @@ static void send_command(orders_t *orders, uint16_t command, float first, float 
 
 static bool is_unanswered(const orders_t *orders, uint16_t command, int64_t now_us) {
     return orders->command == command && now_us - orders->sent_us >= REPEAT_US;
-}
-
-static void silence(orders_t *orders) {
-    orders->silenced = true;
-    orders->command = 0;
 }
 
 /* ----------------------------------------------------------------------------------------------------- who may be led -- */
@@ -82,19 +97,23 @@ static bool is_mode_allowed(const orders_t *orders, uint32_t mode, goe_flight_ac
     return false;
 }
 
-/* Why nothing is sent for a new order; null: it is. */
-static const char *why_not(const orders_t *orders, goe_flight_action_t action) {
+/* Why nothing can be sent now; null: it can. Once an order has led to its mode, that in which it was given counts. */
+static const char *find_hindrance(const orders_t *orders, goe_flight_action_t action) {
+    const uint32_t mode = orders->sent ? orders->watch.mode_before : orders->autopilot->custom_mode;
     if (!suits_kind(orders)) {
-        return "reaction.mode is for another kind of autopilot";
+        return "reaction.mode is for others";
     }
     if ((orders->autopilot->base_mode & MAV_MODE_FLAG_SAFETY_ARMED) == 0) {
-        return "it is not armed";
+        return "not armed";
     }
-    if (!is_mode_allowed(orders, orders->mode_before, action)) {
-        return "it is in a mode that reaction.modes does not name";
+    if (orders->autopilot->on_ground) {
+        return "on the ground";
+    }
+    if (!is_mode_allowed(orders, mode, action)) {
+        return "mode is not in reaction.modes";
     }
     if (action != GOE_FLIGHT_GO_AROUND && !orders->autopilot->origin_given) {
-        return "the origin of its local frame is not known";
+        return "no origin of its frame";
     }
     return NULL;
 }
@@ -105,6 +124,7 @@ static void reposition(orders_t *orders, const goe_flight_assessment_t *assessme
     mavlink_message_t message;
     orders->command = MAV_CMD_DO_REPOSITION;
     orders->sent_us = now_us;
+    orders->sent = true;
     orders->target_lat_e7 = assessment->target_lat_e7;
     orders->target_lon_e7 = assessment->target_lon_e7;
     orders->target_alt_m = orders->autopilot->origin_alt_m - assessment->target_ned_m[2];
@@ -113,43 +133,37 @@ static void reposition(orders_t *orders, const goe_flight_assessment_t *assessme
                                        MAV_CMD_DO_REPOSITION, 0, 0, -1.0f, MAV_DO_REPOSITION_FLAGS_CHANGE_MODE, 0.0f,
                                        NAN, orders->target_lat_e7, orders->target_lon_e7, orders->target_alt_m);
     wire_send(orders->wire, &message);
+    put_log(orders, "reposition", "");
 }
 
 static bool has_moved(const orders_t *orders, const goe_flight_assessment_t *assessment, int64_t now_us) {
-    const float north_m = (float)((int64_t)assessment->target_lat_e7 - orders->target_lat_e7) * M_PER_E7;
-    const float east_m = (float)((int64_t)assessment->target_lon_e7 - orders->target_lon_e7) * M_PER_E7 *
-                         cosf((float)assessment->target_lat_e7 * RAD_PER_E7);
+    const float aside_m = mode_watch_apart_m(assessment->target_lat_e7, assessment->target_lon_e7,
+                                             orders->target_lat_e7, orders->target_lon_e7);
     const float up_m = orders->autopilot->origin_alt_m - assessment->target_ned_m[2] - orders->target_alt_m;
-    return now_us - orders->sent_us >= TARGET_EVERY_US && hypotf(hypotf(north_m, east_m), up_m) > TARGET_MOVED_M;
+    return now_us - orders->sent_us >= TARGET_EVERY_US && hypotf(aside_m, up_m) > TARGET_MOVED_M;
 }
 
-/* A pilot, or a failsafe, that chose another mode than the order leads to is not fought. By heartbeats: those that came after the
- * acknowledgement show where the order has led, earlier ones may still show the mode before. */
-static void watch_mode(orders_t *orders) {
-    const autopilot_t *autopilot = orders->autopilot;
-    const uint32_t mode = autopilot->custom_mode;
-    if (orders->judged_at == autopilot->heartbeats) {
-        return;
-    }
-    orders->judged_at = autopilot->heartbeats;
-    const bool may_be_old = orders->command != 0 || autopilot->heartbeats - orders->answered_at <= BEATS_TO_LEAD;
-    if (mode != PX4_AUTO_LOITER && !(may_be_old && mode == orders->mode_before)) {
-        orders->overruled = true;
-        silence(orders);
-        event("another mode was chosen: the order is left to whoever did");
+/* Over home, with the clearance: where the flight layer aims. 0: no top is known, the autopilot's own height counts. */
+static float go_around_height_m(const orders_t *orders, const goe_flight_assessment_t *assessment) {
+    goe_flight_obstacle_t obstacle;
+    const bool has_top = goe_flight_obstacle(orders->flight, orders->slot, &obstacle) == GOE_FLIGHT_OK &&
+                         (obstacle.valid & GOE_HAS_HEIGHT) != 0u;
+    const float height_m = orders->autopilot->home_down_m - assessment->target_ned_m[2];
+    return has_top && orders->autopilot->has_home && height_m > 0.0f ? height_m : 0.0f;
+}
+
+static void go_around(orders_t *orders, const goe_flight_assessment_t *assessment, bool at_once, int64_t now_us) {
+    if (at_once || is_unanswered(orders, MAV_CMD_DO_GO_AROUND, now_us)) {
+        send_command(orders, MAV_CMD_DO_GO_AROUND, go_around_height_m(orders, assessment), 0.0f, 0.0f, now_us);
+        put_log(orders, "go around", "");
     }
 }
 
-static void follow_px4(orders_t *orders, const goe_flight_assessment_t *assessment, bool is_new, int64_t now_us) {
+static void follow_px4(orders_t *orders, const goe_flight_assessment_t *assessment, bool at_once, int64_t now_us) {
     if (assessment->action == GOE_FLIGHT_GO_AROUND) {
-        if (is_new || is_unanswered(orders, MAV_CMD_DO_GO_AROUND, now_us)) {
-            send_command(orders, MAV_CMD_DO_GO_AROUND, 0.0f, 0.0f, 0.0f, now_us);
-        }
-        return;
-    }
-    watch_mode(orders);
-    if (!orders->silenced && is_place(assessment->action) &&
-        (is_new || is_unanswered(orders, MAV_CMD_DO_REPOSITION, now_us) || has_moved(orders, assessment, now_us))) {
+        go_around(orders, assessment, at_once, now_us);
+    } else if (is_place(assessment->action) && (at_once || is_unanswered(orders, MAV_CMD_DO_REPOSITION, now_us) ||
+                                                has_moved(orders, assessment, now_us))) {
         reposition(orders, assessment, now_us);
     }
 }
@@ -158,7 +172,7 @@ static void ask_for_mode_before(orders_t *orders, int64_t now_us) {
     orders->resumes_left--;
     orders->resumed_at = orders->autopilot->heartbeats;
     send_command(orders, MAV_CMD_DO_SET_MODE, (float)MAV_MODE_FLAG_CUSTOM_MODE_ENABLED,
-                 (float)PX4_MAIN(orders->mode_before), (float)PX4_SUB(orders->mode_before), now_us);
+                 (float)PX4_MAIN(orders->watch.mode_before), (float)PX4_SUB(orders->watch.mode_before), now_us);
 }
 
 /* The flight layer ends an order when its obstacle lies behind or the course back is clear, and then still knows where it is; or when it
@@ -174,7 +188,7 @@ static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) 
     const bool is_past = is_obstacle_known(orders) &&
                          (ended == GOE_FLIGHT_LEFT || ended == GOE_FLIGHT_RIGHT || ended == GOE_FLIGHT_CLIMB);
     orders->resumes_left = 0;
-    if (orders->config->reaction_resume == 0 || orders->silenced || orders->mode_before == PX4_AUTO_LOITER ||
+    if (orders->config->reaction_resume == 0 || orders->silenced || orders->watch.mode_before == PX4_AUTO_LOITER ||
         orders->autopilot->custom_mode != PX4_AUTO_LOITER) {
         return;
     }
@@ -195,63 +209,229 @@ static void go_on_resuming(orders_t *orders, int64_t now_us) {
 
 /* --------------------------------------------------------------------------------------------------------- arduplane -- */
 
-/* The obstacle that the order is about; if that was given up, the worst. */
-static void send_traffic(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
-                         int64_t now_us) {
+static void send_one(orders_t *orders, int slot, const goe_mavlink_own_t *own) {
     goe_flight_obstacle_t obstacle;
     goe_mavlink_adsb_vehicle_t traffic;
     uint8_t payload[GOE_MAVLINK_PAYLOAD_MAX];
-    const int slot = assessment->avoided >= 0 ? assessment->avoided : assessment->worst;
-    if ((double)(now_us - orders->sent_us) < US_PER_S / orders->config->reaction_adsb_hz || slot < 0 ||
-        goe_flight_obstacle(orders->flight, slot, &obstacle) != GOE_FLIGHT_OK ||
-        !goe_mavlink_to_adsb_vehicle(&obstacle, slot, orders->config->reaction_icao, own, &traffic)) {
+    if (goe_flight_obstacle(orders->flight, slot, &obstacle) == GOE_FLIGHT_OK &&
+        goe_mavlink_to_adsb_vehicle(&obstacle, slot, orders->config->reaction_icao, own, &traffic)) {
+        wire_send_payload(orders->wire, GOE_MAVLINK_ADSB_VEHICLE, payload,
+                          goe_mavlink_pack_adsb_vehicle(&traffic, payload));
+    }
+}
+
+/* Every obstacle that is known: out of one's way the autopilot may turn into another's. */
+static void send_traffic(orders_t *orders, const goe_mavlink_own_t *own, bool at_once, int64_t now_us) {
+    if (!at_once && (double)(now_us - orders->sent_us) < US_PER_S / orders->config->reaction_adsb_hz) {
         return;
     }
     orders->sent_us = now_us;
-    wire_send_payload(orders->wire, GOE_MAVLINK_ADSB_VEHICLE, payload,
-                      goe_mavlink_pack_adsb_vehicle(&traffic, payload));
+    for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
+        send_one(orders, slot, own);
+    }
+    if (!orders->sent) {
+        orders->sent = true;
+        put_log(orders, "traffic", "");
+    }
 }
 
 static void follow_arduplane(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
-                             bool is_new, int64_t now_us) {
-    if (assessment->action != GOE_FLIGHT_GO_AROUND) {
-        send_traffic(orders, assessment, own, now_us);
-    } else if (is_new || is_unanswered(orders, MAV_CMD_DO_GO_AROUND, now_us)) {
-        send_command(orders, MAV_CMD_DO_GO_AROUND, 0.0f, 0.0f, 0.0f, now_us);
+                             bool at_once, int64_t now_us) {
+    if (assessment->action == GOE_FLIGHT_GO_AROUND) {
+        go_around(orders, assessment, at_once, now_us);
+    } else {
+        send_traffic(orders, own, at_once, now_us);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- silence -- */
+
+static void watch_pilot(orders_t *orders) {
+    const bool leads = orders->action != GOE_FLIGHT_GO_AROUND;
+    const bool is_px4 = orders->config->reaction_mode == REACTION_PX4;
+    if (orders->overruled || !orders->sent) {
+        return;
+    }
+    const bool by_mode = mode_watch_is_overruled(&orders->watch, orders->autopilot, orders->config->reaction_mode,
+                                                 orders->command != 0, leads);
+    const bool by_target =
+        is_px4 && leads && orders->command == 0 &&
+        mode_watch_is_target_another(&orders->watch, orders->autopilot, orders->target_lat_e7, orders->target_lon_e7);
+    if (by_mode || by_target) {
+        orders->overruled = true;
+        event("another %s was chosen: the order is left to whoever did", by_mode ? "mode" : "place");
+        put_log(orders, "overruled", by_mode ? "mode" : "place");
+        screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_NOTICE, "GOE: order left to the pilot");
+    }
+}
+
+/* Both what begins to hinder an order and its end are reported. */
+static void watch_hindrance(orders_t *orders, goe_flight_action_t action, bool is_new) {
+    const char *before = orders->hindrance;
+    orders->hindrance = orders->overruled ? NULL : find_hindrance(orders, action);
+    if (orders->hindrance != NULL && (is_new || orders->hindrance != before)) {
+        event("the order is not sent to the autopilot: %s", orders->hindrance);
+        put_log(orders, "hindered", orders->hindrance);
+        screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_WARNING, "GOE not sent: %s", orders->hindrance);
+    } else if (orders->hindrance == NULL && before != NULL && !is_new && !orders->overruled) {
+        event("nothing hinders the order now: it is sent");
+    }
+}
+
+/* Returns whether what was silent is no more: the order is sent at once. */
+static bool watch(orders_t *orders, goe_flight_action_t action, bool is_new) {
+    const bool was_silenced = orders->silenced;
+    watch_pilot(orders);
+    watch_hindrance(orders, action, is_new);
+    if (!orders->sent) { /* while nothing is sent the mode is the pilot's */
+        const bool may_be_old =
+            orders->resumed_at != 0 && orders->autopilot->heartbeats - orders->resumed_at < BEATS_TO_RESUME;
+        if (!may_be_old) {
+            mode_watch_begin(&orders->watch, orders->autopilot, orders->autopilot->custom_mode);
+        }
+    }
+    orders->silenced = orders->overruled || orders->denied || orders->hindrance != NULL;
+    orders->command = orders->silenced ? 0 : orders->command;
+    return was_silenced && !orders->silenced;
+}
+
+/* --------------------------------------------------------------------------------------------- an order that was left -- */
+
+void orders_take_over(orders_t *orders, const order_left_t *left) { orders->left = *left; }
+
+/* Of this flight: both clocks have gone on by as much, and not by long. */
+static bool is_of_this_flight(const orders_t *orders, const order_left_t *left) {
+    const int64_t unix_us = orders->unix_us - left->unix_us;
+    const int64_t off_us = unix_us - (orders->boot_us - left->boot_us);
+    return unix_us >= 0 && unix_us < LEFT_OLD_US && off_us < LEFT_OFF_US && off_us > -LEFT_OFF_US;
+}
+
+static bool is_behind(const orders_t *orders, const order_left_t *left) {
+    const mavlink_local_position_ned_t *own = &orders->autopilot->position;
+    const float ahead_m =
+        (left->obstacle_ne_m[0] - own->x) * left->course_ne[0] + (left->obstacle_ne_m[1] - own->y) * left->course_ne[1];
+    return ahead_m < -(left->radius_m + orders->config->flight.margin_m);
+}
+
+/* Once; and into this log, for a companion after this one. */
+static void report_left(orders_t *orders) {
+    if (orders->left_reported) {
+        return;
+    }
+    orders->left_reported = true;
+    orders->stands = orders->left;
+    orders->watch.mode_before = orders->left.mode_before;
+    put_log(orders, "taken over", "");
+    event("an order of before the restart stands in the log: %s",
+          goe_flight_action_text((goe_flight_action_t)orders->left.action));
+    screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_NOTICE, "GOE restarted in an order: Hold until passed");
+}
+
+static void end_left(orders_t *orders, const char *how) {
+    orders->left.stands = orders->stands.stands = false;
+    if (orders->left_reported) {
+        put_log(orders, how, "after a restart");
+    }
+}
+
+/* While no order of its own stands: back, once the obstacle of the log lies behind. */
+static void follow_left(orders_t *orders, int64_t now_us) {
+    const order_left_t *left = &orders->left;
+    if (!left->stands) {
+        return;
+    }
+    if (orders->config->reaction_mode != REACTION_PX4 || orders->config->reaction_resume == 0 ||
+        orders->autopilot->custom_mode != PX4_AUTO_LOITER || !is_of_this_flight(orders, left)) {
+        end_left(orders, "end");
+        return;
+    }
+    report_left(orders);
+    if (is_behind(orders, left)) {
+        event("the obstacle of the order before the restart is passed");
+        orders->resumes_left = RESUMES_MAX;
+        ask_for_mode_before(orders, now_us);
+        end_left(orders, "resume");
     }
 }
 
 /* --------------------------------------------------------------------------------------------------------- interface -- */
 
-/* The mode before is the one of the latest heartbeat, unless that may still be of the order that has just ended. */
-static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
-    const unsigned beats = orders->autopilot->heartbeats;
-    const bool may_be_old = orders->resumed_at != 0 && beats - orders->resumed_at < BEATS_TO_RESUME;
-    if (orders->action == GOE_FLIGHT_NONE) {
-        orders->mode_before = may_be_old ? orders->mode_before : orders->autopilot->custom_mode;
-        orders->overruled = false;
-        orders->judged_at = orders->answered_at = beats;
+/* The mode before is the one of the latest heartbeat, unless that may still be of the order that has just ended, or is of an order
+ * before a restart. */
+static uint32_t find_mode_before(orders_t *orders) {
+    const autopilot_t *autopilot = orders->autopilot;
+    const bool may_be_old = orders->resumed_at != 0 && autopilot->heartbeats - orders->resumed_at < BEATS_TO_RESUME;
+    const bool is_left =
+        orders->left.stands && autopilot->custom_mode == PX4_AUTO_LOITER && is_of_this_flight(orders, &orders->left);
+    if (is_left) {
+        return orders->left.mode_before;
     }
-    orders->silenced = orders->overruled; /* a side that the mode forbids says nothing of a go-around */
+    return may_be_old ? orders->watch.mode_before : autopilot->custom_mode;
+}
+
+/* What a restarted companion needs to go back. */
+static void keep(orders_t *orders) {
+    const mavlink_local_position_ned_t *own = &orders->autopilot->position;
+    const float speed_m_s = hypotf(own->vx, own->vy);
+    goe_flight_obstacle_t obstacle;
+    orders->stands.stands = true;
+    if (speed_m_s > 0.0f) {
+        orders->stands.course_ne[0] = own->vx / speed_m_s;
+        orders->stands.course_ne[1] = own->vy / speed_m_s;
+    }
+    if (goe_flight_obstacle(orders->flight, orders->slot, &obstacle) == GOE_FLIGHT_OK) {
+        orders->stands.obstacle_ne_m[0] = obstacle.center_ned_m[0];
+        orders->stands.obstacle_ne_m[1] = obstacle.center_ned_m[1];
+        orders->stands.radius_m = obstacle.radius_m;
+    }
+}
+
+static void begin_first(orders_t *orders) {
+    mode_watch_begin(&orders->watch, orders->autopilot, find_mode_before(orders));
+    orders->sent = orders->left.stands && orders->watch.mode_before == orders->left.mode_before &&
+                   orders->autopilot->custom_mode == PX4_AUTO_LOITER;
+    orders->left.stands = false;
+    orders->overruled = false;
+}
+
+/* ArduPlane turns where its own avoidance leads it: no side is named. */
+static void show_order(orders_t *orders, const goe_flight_assessment_t *assessment) {
+    const bool is_traffic =
+        orders->config->reaction_mode == REACTION_ARDUPLANE && assessment->action != GOE_FLIGHT_GO_AROUND;
+    screen_show(orders->screen, SCREEN_ORDER, assessment->late ? MAV_SEVERITY_CRITICAL : MAV_SEVERITY_WARNING,
+                "GOE order, %s: obstacle in %.0f s%s",
+                is_traffic ? "as traffic" : goe_flight_action_text(assessment->action),
+                (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
+}
+
+static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
+    if (orders->action == GOE_FLIGHT_NONE) {
+        begin_first(orders);
+    }
+    orders->denied = false; /* a side that is denied says nothing of a go-around */
     orders->resumes_left = 0;
     orders->orders++;
     event("order: %s; on this course %.0f m beside it in %.1f s%s", goe_flight_action_text(assessment->action),
           (double)assessment->hazard.miss_m, (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
-    const char *why = orders->silenced ? NULL : why_not(orders, assessment->action);
-    if (why != NULL) {
-        silence(orders);
-        event("the order is not sent to the autopilot: %s", why);
-    }
+    show_order(orders, assessment);
+    orders->action = assessment->action;
+    keep(orders);
+    put_log(orders, "order", assessment->late ? "late" : "");
 }
 
 static void end(orders_t *orders, int64_t now_us) {
     const goe_flight_action_t ended = orders->action;
     event("the order ends");
+    screen_show(orders->screen, SCREEN_ORDER, MAV_SEVERITY_INFO, "GOE: order ends");
     orders->command = 0;
     if (orders->config->reaction_mode == REACTION_PX4) {
         resume(orders, ended, now_us);
     }
+    orders->stands.stands = false;
+    orders->action = GOE_FLIGHT_NONE;
+    put_log(orders, "end", orders->resumes_left > 0 ? "back into the mode before" : "");
     orders->slot = -1;
+    orders->hindrance = NULL;
 }
 
 /* An autopilot that has started anew knows of no order. */
@@ -262,6 +442,7 @@ static void forget_after_restart(orders_t *orders) {
         orders->command = 0;
         orders->resumes_left = 0;
         orders->slot = -1;
+        orders->left.stands = orders->stands.stands = orders->sent = false;
     }
 }
 
@@ -273,24 +454,28 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
     forget_after_restart(orders);
     const bool is_new = assessment->action != orders->action;
     orders->slot = assessment->avoided >= 0 ? assessment->avoided : orders->slot;
+    orders->assessment = *assessment;
+    orders->unix_us = (int64_t)own->unix_usec;
+    orders->boot_us = (int64_t)own->time_usec;
     if (is_new && assessment->action == GOE_FLIGHT_NONE) {
         end(orders, now_us);
     } else if (is_new) {
         begin(orders, assessment);
     }
-    orders->action = assessment->action;
     if (assessment->action == GOE_FLIGHT_NONE) {
         go_on_resuming(orders, now_us);
-    } else if (!orders->silenced && orders->config->reaction_mode == REACTION_PX4) {
-        follow_px4(orders, assessment, is_new, now_us);
-    } else if (!orders->silenced) {
-        follow_arduplane(orders, assessment, own, is_new, now_us);
+        follow_left(orders, now_us);
+        return;
     }
-}
-
-static bool is_for_us(const orders_t *orders, const mavlink_command_ack_t *answer) {
-    return (answer->target_system == 0 || answer->target_system == orders->wire->system) &&
-           (answer->target_component == 0 || answer->target_component == orders->wire->component);
+    const bool at_once = watch(orders, assessment->action, is_new) || is_new;
+    if (orders->silenced) {
+        return;
+    }
+    if (orders->config->reaction_mode == REACTION_PX4) {
+        follow_px4(orders, assessment, at_once, now_us);
+    } else {
+        follow_arduplane(orders, assessment, own, at_once, now_us);
+    }
 }
 
 void orders_take(orders_t *orders, const mavlink_message_t *message) {
@@ -300,17 +485,21 @@ void orders_take(orders_t *orders, const mavlink_message_t *message) {
         return;
     }
     mavlink_msg_command_ack_decode(message, &answer);
-    if (answer.command != orders->command || !is_for_us(orders, &answer)) {
+    if (answer.command != orders->command || !wire_is_for_us(orders->wire, &answer)) {
         return;
     }
     if (answer.result == MAV_RESULT_ACCEPTED || answer.result == MAV_RESULT_IN_PROGRESS) {
         orders->command = 0;
-        orders->answered_at = orders->autopilot->heartbeats;
+        mode_watch_answered(&orders->watch, orders->autopilot);
+        put_log(orders, "acknowledged", "");
         return;
     }
     orders->refused++;
     event("the autopilot refuses the order (result %u)", answer.result);
+    screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_WARNING, "GOE: autopilot refuses the order");
+    put_log(orders, "refused", "");
     if (answer.result == MAV_RESULT_DENIED || answer.result == MAV_RESULT_UNSUPPORTED) {
-        silence(orders); /* it will not think better of it; others may be tried again */
+        orders->denied = orders->silenced = true; /* it will not think better of it; others may be tried again */
+        orders->command = 0;
     }
 }

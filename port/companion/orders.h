@@ -2,8 +2,10 @@
  *
  * px4, an order:  given in a mode that reaction.modes names > DO_REPOSITION until it is acknowledged, again as its target moves >
  *                 the obstacle is passed: back into the mode before; not known to be passed: it stays where it loiters
- *                 another mode was chosen meanwhile: nothing more is sent until the next order
- * arduplane:      ADSB_VEHICLE for as long as the order stands; what comes of it is the autopilot's affair */
+ * arduplane:      ADSB_VEHICLE of all obstacles for as long as the order stands; what comes of it is the autopilot's affair
+ *
+ * What hinders an order (not armed, mode, origin) is looked at for as long as it stands. A mode that the pilot chose (mode_watch.h)
+ * ends what is sent until all orders have ended. */
 #ifndef ORDERS_H
 #define ORDERS_H
 
@@ -11,6 +13,9 @@
 #include "companion_config.h"
 #include "goe_flight.h"
 #include "goe_mavlink_map.h"
+#include "mode_watch.h"
+#include "order_log.h"
+#include "screen.h"
 #include "wire.h"
 
 typedef struct {
@@ -19,25 +24,36 @@ typedef struct {
     const autopilot_t *autopilot;
     const goe_flight_t *flight;
 
-    goe_flight_action_t action; /* that stands */
-    int slot;                   /* what it is about, as last known; -1: none */
-    bool overruled;             /* a pilot chose another mode: nothing is sent until all orders have ended */
-    bool silenced; /* nothing is sent for this action: that, or the autopilot's mode, kind or answer forbids it */
+    goe_flight_action_t action;           /* that stands */
+    int slot;                             /* what it is about, as last known; -1: none */
+    bool overruled;                       /* a pilot chose another mode: nothing is sent until all orders have ended */
+    bool denied;                          /* the autopilot did, for this action */
+    const char *hindrance;                /* why nothing can be sent now; null: nothing hinders */
+    bool silenced;                        /* one of these */
+    bool sent;                            /* a command or traffic, since the first of the orders that stand */
     int32_t target_lat_e7, target_lon_e7; /* as it was sent last ... */
     float target_alt_m;
     int64_t sent_us;
-    uint16_t command;     /* whose acknowledgement is awaited; 0: none */
-    unsigned answered_at; /* count of heartbeats when it came */
-    unsigned judged_at;   /* count of heartbeats by which the mode was looked at last */
-    uint32_t mode_before; /* in which the order was given */
-    int resumes_left;     /* times that it may still be asked for */
-    unsigned resumed_at;  /* count of heartbeats when it was asked for last */
+    uint16_t command; /* whose acknowledgement is awaited; 0: none */
+    mode_watch_t watch;
+    screen_t *screen;    /* null: none */
+    order_log_t *log;    /* null: none */
+    order_left_t stands; /* what of the order that stands the log keeps ... */
+    bool left_reported;
+    order_left_t left;                  /* ... and what of one a companion before this one left */
+    goe_flight_assessment_t assessment; /* the latest */
+    int64_t unix_us, boot_us;           /* ... and when it was, by both clocks */
+    int resumes_left;                   /* times that it may still be asked for */
+    unsigned resumed_at;                /* count of heartbeats when it was asked for last */
     unsigned long restarts_seen;
     unsigned long orders, refused; /* counted */
 } orders_t;
 
 void orders_init(orders_t *orders, wire_t *wire, const companion_config_t *config, const autopilot_t *autopilot,
                  const goe_flight_t *flight);
+
+/* An order that a companion before this one left standing, as its log has it. */
+void orders_take_over(orders_t *orders, const order_left_t *left);
 
 /* After every assessment that succeeded. Sends nothing unless the configuration allows it. */
 void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,

@@ -95,6 +95,9 @@ void status_line_show(const companion_t *c) {
     add_autopilot(&line, c);
     add_images(&line, c);
     add_obstacle(&line, c);
+    if (c->health.doubts != 0) {
+        add(&line, " | %s", health_text(c->health.doubts));
+    }
     add(&line, " | lost %lu", lost_of(c));
     if (on_terminal && (size_t)width_of_terminal() <= line.length) {
         line.text[width_of_terminal() - 1] = '\0';
@@ -115,6 +118,8 @@ void status_line_summary(const companion_t *c) {
     row("messages_unknown", wire->unknown, "of kinds that the companion has no use for");
     row("messages_lost", wire->lost, "of the autopilot's, by their running number");
     row("messages_garbage", wire->garbage, "frames with a wrong checksum");
+    row("messages_unsigned", wire->without_signature, "that were refused on a signed link");
+    row("messages_forged", wire->forged, "with another's signature, or an old one: refused");
     row("bytes_stray", wire->stray, "between frames");
     row("messages_unsent", wire->unsent, "that the link did not take");
     row("links_lost", c->links_lost, "TCP peers and devices that went away");
@@ -131,7 +136,8 @@ void status_line_summary(const companion_t *c) {
     row("images_without_pose", c->queue.given_up, "that waited in vain");
     row("detections_refused", c->flight.counters.refused, "not finite or out of range, samples of the pose included");
     row("tracks_evicted", c->flight.counters.evicted, "for a worse obstacle");
-    row("strangers", c->autopilot.strangers, "messages in the autopilot's name from another address");
+    row("strangers", c->autopilot.strangers,
+        "messages from another address that were read before the system refused them");
     row("orders", c->orders.orders, "begun or changed");
     row("orders_refused", c->orders.refused, "by the autopilot");
     row("log_rows", c->record.rows, c->record.failed ? "the log could not be written to its end" : "written");

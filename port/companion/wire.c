@@ -28,6 +28,17 @@ static void count_lost(wire_t *wire, const mavlink_message_t *message) {
     wire->has_sequence = true;
 }
 
+/* The right key at an old time may be an autopilot that knows no better, such as without GPS: signed messages of the companion's
+ * set its time. Nothing of what it sent is taken. */
+static void refuse(wire_t *wire, const mavlink_message_t *message) {
+    const bool is_signed = (message->incompat_flags & MAVLINK_IFLAG_SIGNED) != 0;
+    wire->counts.forged += is_signed ? 1u : 0u;
+    wire->counts.without_signature += is_signed ? 0u : 1u;
+    if (is_signed && wire->parser.signing->last_status == MAVLINK_SIGNING_STATUS_OLD_TIMESTAMP) {
+        link_greet(wire->link);
+    }
+}
+
 static void take_byte(wire_t *wire, uint8_t byte, message_taker_t take, void *user) {
     mavlink_message_t message;
     mavlink_status_t status;
@@ -39,6 +50,8 @@ static void take_byte(wire_t *wire, uint8_t byte, message_taker_t take, void *us
     } else if (result == MAVLINK_FRAMING_BAD_CRC && mavlink_get_msg_entry(message.msgid) == NULL) {
         wire->counts.unknown++;
         count_lost(wire, &message);
+    } else if (result == MAVLINK_FRAMING_BAD_SIGNATURE) {
+        refuse(wire, &message);
     } else if (result != MAVLINK_FRAMING_INCOMPLETE) {
         wire->counts.garbage++;
     } else if (wire->parser.parse_state == MAVLINK_PARSE_STATE_IDLE ||
@@ -73,23 +86,38 @@ static void send_bytes(wire_t *wire, const uint8_t *bytes, size_t size) {
     }
 }
 
+/* Numbers a message, signs it if the link is signed, and sends it. */
+static void send_numbered(wire_t *wire, mavlink_message_t *message, uint8_t length_min, uint8_t length,
+                          uint8_t crc_extra) {
+    uint8_t bytes[MAVLINK_MAX_PACKET_LEN];
+    (void)mavlink_finalize_message_buffer(message, wire->system, wire->component, &wire->sender, length_min, length,
+                                          crc_extra);
+    send_bytes(wire, bytes, mavlink_msg_to_send_buffer(bytes, message));
+}
+
 /* mavgen's functions number what they pack by a status of each source file's own: it is numbered anew here. */
 void wire_send(wire_t *wire, mavlink_message_t *message) {
-    uint8_t bytes[MAVLINK_MAX_PACKET_LEN];
     const mavlink_msg_entry_t *entry = mavlink_get_msg_entry(message->msgid);
     if (entry != NULL) {
         char *payload = _MAV_PAYLOAD_NON_CONST(message); /* behind it lies the checksum, where zeros were cut off */
         (void)memset(payload + message->len, 0, MAVLINK_MAX_PAYLOAD_LEN - (size_t)message->len);
-        (void)mavlink_finalize_message_buffer(message, wire->system, wire->component, &wire->sender, entry->min_msg_len,
-                                              entry->max_msg_len, entry->crc_extra);
-        send_bytes(wire, bytes, mavlink_msg_to_send_buffer(bytes, message));
+        send_numbered(wire, message, entry->min_msg_len, entry->max_msg_len, entry->crc_extra);
     }
 }
 
 void wire_send_payload(wire_t *wire, goe_mavlink_message_t message, const uint8_t *payload, size_t length) {
-    goe_mavlink_sender_t sender = {wire->system, wire->component, wire->sender.current_tx_seq};
-    uint8_t bytes[GOE_MAVLINK_FRAME_MAX];
-    const size_t size = goe_mavlink_frame(&sender, message, payload, length, bytes);
-    wire->sender.current_tx_seq = sender.sequence;
-    send_bytes(wire, bytes, size);
+    const goe_mavlink_info_t *info = goe_mavlink_info(message);
+    mavlink_message_t packed;
+    if (info == NULL || length == 0 || length > info->length) {
+        return;
+    }
+    (void)memset(&packed, 0, sizeof packed);
+    packed.msgid = info->id & 0xFFFFFFu; /* 24 bits on the wire */
+    (void)memcpy(_MAV_PAYLOAD_NON_CONST(&packed), payload, length);
+    send_numbered(wire, &packed, info->length_min, info->length, info->crc_extra);
+}
+
+bool wire_is_for_us(const wire_t *wire, const mavlink_command_ack_t *answer) {
+    return (answer->target_system == 0 || answer->target_system == wire->system) &&
+           (answer->target_component == 0 || answer->target_component == wire->component);
 }

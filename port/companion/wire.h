@@ -13,12 +13,13 @@
 #include "link.h"
 
 typedef struct {
-    unsigned long messages; /* understood */
-    unsigned long unknown;  /* of a kind that is not in companion.xml */
-    unsigned long garbage;  /* frames with a wrong checksum */
-    unsigned long stray;    /* bytes between frames */
-    unsigned long lost;     /* of the autopilot's, by its running number */
-    unsigned long unsent;   /* did not go out */
+    unsigned long messages;                  /* understood */
+    unsigned long unknown;                   /* of a kind that is not in companion.xml */
+    unsigned long garbage;                   /* frames with a wrong checksum */
+    unsigned long stray;                     /* bytes between frames */
+    unsigned long lost;                      /* of the autopilot's, by its running number */
+    unsigned long unsent;                    /* did not go out */
+    unsigned long without_signature, forged; /* on a signed link: refused */
 } wire_counts_t;
 
 typedef struct {
@@ -44,5 +45,8 @@ void wire_send(wire_t *wire, mavlink_message_t *message);
 
 /* Sends a payload of goe_mavlink's. */
 void wire_send_payload(wire_t *wire, goe_mavlink_message_t message, const uint8_t *payload, size_t length);
+
+/* Whether a command was the companion's: an autopilot may leave out whose. */
+bool wire_is_for_us(const wire_t *wire, const mavlink_command_ack_t *answer);
 
 #endif

@@ -18,8 +18,8 @@ if(CMAKE_LIBRARY_ARCHITECTURE AND CMAKE_INSTALL_LIBDIR MATCHES "/${CMAKE_LIBRARY
 endif()
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "A small C99 library that turns a detector's bounding boxes of a building, a
-truck or a chimney, plus the aircraft's own motion, into where the obstacle
-is, how big it is and how it stands, each with its one sigma, and into the
+truck or a chimney, plus the aircraft's own motion, into the obstacle's
+position, size and orientation, each with a 1-sigma uncertainty, and into the
 figures that a go-around decision needs.
 
 Static libraries, headers, and what CMake and pkg-config look for.")

@@ -97,7 +97,7 @@ void FlownVehicle::send(const goe_mavlink_features_t &features) {
 
 void FlownVehicle::send_image() {
     const int exposed = flown.sample - 1 - delay;
-    if (!sends || goe->flight() == nullptr || exposed < 0 || exposed % FLOWN_IMAGE_EVERY != 0) {
+    if (!sends || goe->_state == nullptr || exposed < 0 || exposed % FLOWN_IMAGE_EVERY != 0) {
         return;
     }
     goe_flight_detection_t detection = flown_detection(&flown, exposed);
@@ -122,13 +122,12 @@ void FlownVehicle::restart_layer() {
     goe_flight_settings_t settings;
     goe_settings_default(&estimator);
     goe_flight_settings_default(&settings);
-    estimator.navigation.attitude_drift_deg = get_parameter(*goe, "ATT_DRIFT");
+    estimator.navigation.attitude_drift_deg = AP_GOE_ATTITUDE_DRIFT;
     estimator.camera.fx_px = estimator.camera.fy_px = flown.scene.camera.fx_px;
     estimator.camera.cx_px = estimator.camera.cy_px = 0.5f * SIZE_PX;
     estimator.camera.width_px = estimator.camera.height_px = SIZE_PX;
     settings.resets = GOE_FLIGHT_RESETS_TIME;
     settings.margin_m = get_parameter(*goe, "MARGIN");
-    settings.forget_s = get_parameter(*goe, "FORGET");
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&layer, sizeof layer, &estimator, &settings, nullptr));
 }
 
@@ -179,8 +178,10 @@ void FlownVehicle::step_layer() {
 
 FlownVehicle::FlownVehicle()
     : compares(true), delay(FLOWN_DELAY), ahead_us(0), sends(true), copies(1), first_us(1000000), images(0),
-      assessed_ms(0) {
+      compared(0), assessed_ms(0) {
     scripted = Scripted();
+    AP::oadatabase()->begin(0);
+    AP::oadatabase()->set_limits(0.01f, 0.0f);
     flown_start(&flown, nullptr);
     goe = new_goe();
     set_parameter(*goe, "ENABLE", 1);
@@ -197,6 +198,7 @@ void FlownVehicle::take_sample() {
     flown_samples(&flown, flown.sample, &attitude, &position);
     scripted.now_us = first_us + uint64_t(flown.sample) * STEP_US;
     scripted.sample_us = uint32_t(scripted.now_us);
+    show_clock();
     scripted.q.q1 = attitude.q[0];
     scripted.q.q2 = attitude.q[1];
     scripted.q.q3 = attitude.q[2];
@@ -214,6 +216,9 @@ void FlownVehicle::step() {
     take_sample();
     send_image();
     goe->update();
+    if (steps_database && AP::oadatabase() != nullptr) {
+        AP::oadatabase()->update();
+    }
     step_layer();
     if (compares) {
         compare();
@@ -255,8 +260,14 @@ static void compare_obstacles(const goe_flight_obstacle_t &expected, const goe_f
     compare_hazards(expected.hazard, actual.hazard);
 }
 
-void FlownVehicle::compare() const {
-    const goe_flight_assessment_t &actual = *goe->assessment();
+/* What the main thread knows is what the thread found at its latest assessment: compared once each. */
+void FlownVehicle::compare() {
+    if (goe->_state->shown.assessed == compared) {
+        return;
+    }
+    compared = goe->_state->shown.assessed;
+    const AP_GOE::Found &found = goe->_state->shown;
+    const goe_flight_assessment_t &actual = found.assessment;
     TEST_ASSERT_EQUAL(assessment.action, actual.action);
     TEST_ASSERT_EQUAL(assessment.worst, actual.worst);
     TEST_ASSERT_EQUAL(assessment.obstacles, actual.obstacles);
@@ -265,10 +276,9 @@ void FlownVehicle::compare() const {
     CHECK_SAME(assessment.needed_s, actual.needed_s);
     compare_hazards(assessment.hazard, actual.hazard);
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
-        goe_flight_obstacle_t expected, found;
-        TEST_ASSERT_EQUAL(goe_flight_obstacle(&layer, slot, &expected),
-                          goe_flight_obstacle(goe->flight(), slot, &found));
-        compare_obstacles(expected, found);
+        goe_flight_obstacle_t expected;
+        TEST_ASSERT_EQUAL(goe_flight_obstacle(&layer, slot, &expected), found.state[slot]);
+        compare_obstacles(expected, found.obstacle[slot]);
     }
-    TEST_ASSERT_EQUAL_MEMORY(&layer.counters, &goe->flight()->counters, sizeof layer.counters);
+    TEST_ASSERT_EQUAL_MEMORY(&layer.counters, &found.counters, sizeof layer.counters);
 }

@@ -2,11 +2,19 @@
  * its own functions. SPDX-License-Identifier: MIT */
 #pragma once
 
-#include <AP_GOE.h>
-
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
+
+#include <AP_Common/AP_Common.h>
+#include <AP_HAL/AP_HAL.h>
+#include <AP_Param/AP_Param.h>
+#include <GCS_MAVLink/GCS_MAVLink.h>
+
+#define private public // the thread's own flight layer is nobody's else
+#include <AP_GOE.h>
+#undef private
 
 extern "C" {
 #include "flown.h"
@@ -37,16 +45,20 @@ class FlownVehicle {
     void fly(double seconds);
 
     /* AP_GOE and the layer beside it know the same. */
-    void compare() const;
+    void compare();
 
     /* The layer beside starts anew with these parameters; as AP_GOE should have. */
     void restart_layer();
+
+    const goe_flight_t &flight() const { return goe->_state->flight; } // the thread's, which waits
+    const goe_flight_assessment_t &seen() const { return goe->_state->shown.assessment; }
 
     AP_GOE *goe;
     goe_flight_t layer;
     goe_flight_assessment_t assessment;
     flown_t flown;
     bool compares;
+    bool steps_database{true};
 
     // the detector
     int delay;         // samples from exposure to arrival
@@ -56,6 +68,7 @@ class FlownVehicle {
     uint64_t first_us; // of the vehicle's clock at sample 0
     Vector3f jump;     // of the position, from now on
     unsigned images;
+    uint32_t compared; // number of the latest assessment that was
 
   private:
     struct Kept {

@@ -1,6 +1,10 @@
 /* Behind the stand-in headers. SPDX-License-Identifier: MIT */
 #include "scripted.h"
 
+#include <unity.h>
+
+#include <AP_GOE.h>
+
 #include <AP_Arming/AP_Arming.h>
 #include <AP_HAL/AP_HAL.h>
 #include <AP_InertialSensor/AP_InertialSensor.h>
@@ -9,10 +13,13 @@
 #include <AP_Terrain/AP_Terrain.h>
 #include <AP_Vehicle/AP_Vehicle.h>
 
+#include <atomic>
+#include <condition_variable>
 #include <cstdarg>
 #include <cstdio>
-#include <memory>
+#include <mutex>
 #include <sstream>
+#include <thread>
 
 Scripted scripted;
 
@@ -21,8 +28,8 @@ Scripted::Scripted()
       down_of_home(0.0f), origin{48800, 473977420, 85455940}, ekf_type(3), core(0), yaw_reset_ms(0),
       horizontal_reset_ms(0), vertical_reset_ms(0), vertical_change(0.0f), has_range_finder(false), has_terrain(false),
       range_finder(RangeFinder::Status::Good), range_m(0.0f), terrain_m(0.0f), armed(false), landing(false),
-      has_memory(true), has_database(true), channel(1), active(1, true), is_private(1, false), txspace(1000),
-      allocations(0) {
+      has_memory(true), has_threads(true), has_database(true), thread_is_late(false), runs_at_once(false), channel(1),
+      active(1, true), is_private(1, false), txspace(1000), allocations(0), thread_stack(0), wakes(0), searches(0) {
     channel[0] = mavlink_status_t{0, nullptr};
 }
 
@@ -35,19 +42,24 @@ bool Scripted::has_said(const char *part) const {
     return false;
 }
 
-std::map<uint32_t, ScriptedPush> Scripted::database() const {
-    std::map<uint32_t, ScriptedPush> latest;
-    for (const ScriptedPush &push : pushes) {
-        latest[push.id] = push;
+std::map<uint32_t, AP_OADatabase::OA_DbItem> Scripted::database() const {
+    std::map<uint32_t, AP_OADatabase::OA_DbItem> found;
+    AP_OADatabase *const database = AP::oadatabase();
+    for (unsigned i = 0; database != nullptr && i < database->database_count(); i++) {
+        const AP_OADatabase::OA_DbItem &item = database->get_item(i);
+        if (item.source == AP_OADatabase::OA_DbItem::Source::camera) {
+            found[item.id] = item;
+        }
     }
-    return latest;
+    return found;
 }
 
 // --------------------------------------------------------------------------------------------------------------- HAL
 
 static AP_HAL::Util util;
 extern const AP_HAL::HAL &hal;
-static const AP_HAL::HAL the_hal{&util};
+static AP_HAL::Scheduler scheduler;
+static const AP_HAL::HAL the_hal{&scheduler, &util};
 const AP_HAL::HAL &hal = the_hal;
 
 int AP_HAL::Util::snprintf(char *text, size_t size, const char *format, ...) {
@@ -58,18 +70,124 @@ int AP_HAL::Util::snprintf(char *text, size_t size, const char *format, ...) {
     return length;
 }
 
-uint32_t AP_HAL::micros() { return uint32_t(scripted.now_us); }
-uint64_t AP_HAL::micros64() { return scripted.now_us; }
-uint32_t AP_HAL::millis() { return uint32_t(scripted.now_us / 1000); }
+static std::atomic<uint64_t> clock_us; // what the thread sees of scripted.now_us
+void show_clock() { clock_us = scripted.now_us; }
+
+static uint64_t seen_us() {
+    if (!scripted.runs_at_once) {
+        show_clock();
+    }
+    return clock_us;
+}
+
+uint32_t AP_HAL::micros() { return uint32_t(seen_us()); }
+uint64_t AP_HAL::micros64() { return seen_us(); }
+uint32_t AP_HAL::millis() { return uint32_t(seen_us() / 1000); }
 
 void *operator new(size_t size, const ScriptedHeap &) noexcept {
-    static std::vector<std::unique_ptr<char[]>> taken; // the firmware never gives it back
+    static std::vector<void *> &taken = *new std::vector<void *>; // what an object that a test has left still holds
     scripted.allocations++;
-    if (!scripted.has_memory) {
+    taken.push_back(scripted.has_memory ? ::operator new(size, std::nothrow) : nullptr);
+    return taken.back();
+}
+
+// -------------------------------------------------------------------------------------------------------------- threads
+
+/* The thread and who wakes it run in turns, so that a test repeats to the last bit. A thread whose object a test has left waits for
+ * ever. */
+struct ScriptedThread {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool runs;
+
+    void wait_for(std::unique_lock<std::mutex> &lock, bool turn) {
+        changed.wait(lock, [&] { return runs == turn; });
+    }
+};
+
+static ScriptedThread *latest_thread;
+static thread_local ScriptedThread *own_thread;
+
+bool AP_HAL::Scheduler::thread_create(MemberProc proc, const char *name, uint32_t stack_size, priority_base, int8_t) {
+    if (!scripted.has_threads) {
+        return false;
+    }
+    ScriptedThread *const made = new ScriptedThread{{}, {}, true};
+    scripted.thread_name = name;
+    scripted.thread_stack = stack_size;
+    latest_thread = made;
+    std::thread([=] {
+        own_thread = made;
+        proc();
+    }).detach();
+    std::unique_lock<std::mutex> lock(made->mutex);
+    made->wait_for(lock, false);
+    return true;
+}
+
+bool ScriptedBinarySemaphore::wait_blocking() {
+    std::unique_lock<std::mutex> lock(own_thread->mutex);
+    own_thread->runs = false;
+    own_thread->changed.notify_all();
+    own_thread->wait_for(lock, true);
+    return true;
+}
+
+void ScriptedBinarySemaphore::signal() {
+    std::unique_lock<std::mutex> lock(latest_thread->mutex);
+    scripted.wakes++;
+    if (scripted.thread_is_late) {
+        return;
+    }
+    latest_thread->runs = true;
+    latest_thread->changed.notify_all();
+    if (!scripted.runs_at_once) {
+        latest_thread->wait_for(lock, false);
+    }
+}
+
+void wait_for_the_thread() {
+    std::unique_lock<std::mutex> lock(latest_thread->mutex);
+    latest_thread->wait_for(lock, false);
+}
+
+void ScriptedSemaphore::take() {
+    if (scripted.runs_at_once) {
+        _mutex.lock();
+    } else if (!_mutex.try_lock()) {
+        abort();
+    }
+}
+
+void ScriptedSemaphore::give() { _mutex.unlock(); }
+
+// ----------------------------------------------------------------------------------------------------------- parameters
+
+static std::map<const AP_Param *, std::string> &names() {
+    static std::map<const AP_Param *, std::string> the_names;
+    return the_names;
+}
+
+/* By name through all of them: a slow search, which is counted. */
+AP_Param *AP_Param::find(const char *name, enum ap_var_type *type, uint16_t *) {
+    static AP_Param found[8];
+    scripted.searches++;
+    if (scripted.parameters.count(name) == 0) {
         return nullptr;
     }
-    taken.emplace_back(new char[size]);
-    return taken.back().get();
+    for (AP_Param &one : found) {
+        if (names()[&one].empty() || names()[&one] == name) {
+            names()[&one] = name;
+            *type = AP_PARAM_INT16;
+            return &one;
+        }
+    }
+    abort();
+}
+
+float AP_Param::cast_to_float(enum ap_var_type type) const {
+    TEST_ASSERT_EQUAL(AP_PARAM_INT16, type);
+    return scripted.parameters.at(names().at(this));
 }
 
 void AP_Param::setup_object_defaults(void *object, const GroupInfo *info) {
@@ -176,11 +294,42 @@ AP_Logger &logger() {
 
 bool AP_Arming::is_armed() const { return scripted.armed; }
 bool AP_Vehicle::is_landing() const { return scripted.landing; }
-bool AP_OADatabase::healthy() const { return true; }
 
-void AP_OADatabase::queue_push(const Vector3f &pos, uint32_t timestamp_ms, float distance, float radius,
-                               OA_DbItem::Source source, uint32_t id) {
-    scripted.pushes.push_back(ScriptedPush{pos, timestamp_ms, id, distance, radius, source});
+static AP_OADatabase::OA_DbItem database_items[5]; // of which one is another's
+
+AP_OADatabase::AP_OADatabase() : _database{database_items, 0, 5}, _radius_min(0.01f), _dist_max(0.0f) {}
+
+void AP_OADatabase::update() { AP::goe()->refresh_database(*this); }
+
+void AP_OADatabase::database_item_add(const OA_DbItem &item) {
+    if (_database.count < _database.size) {
+        _database.items[_database.count] = item;
+        _database.items[_database.count].send_to_gcs = get_send_to_gcs_flags(item.importance);
+        _database.count++;
+    }
+}
+
+uint8_t AP_OADatabase::get_send_to_gcs_flags(OA_DbItemImportance) { return 0xFF; }
+
+void AP_OADatabase::begin(unsigned foreign) {
+    _database.count = 0;
+    for (unsigned i = 0; i < foreign; i++) {
+        OA_DbItem item{};
+        item.source = OA_DbItem::Source::AIS;
+        item.id = 0x474F4500u; // as AP_GOE's first
+        database_item_add(item);
+    }
+}
+
+void AP_OADatabase::note_sent() {
+    for (uint16_t i = 0; i < _database.count; i++) {
+        _database.items[i].send_to_gcs = 0;
+    }
+}
+
+void AP_OADatabase::set_limits(float radius_min, float dist_max) {
+    _radius_min = radius_min;
+    _dist_max = dist_max;
 }
 
 /* Reads the arguments as the format says: an argument of another kind gives nonsense, which a test sees. */

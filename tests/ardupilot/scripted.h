@@ -10,13 +10,6 @@
 #include <string>
 #include <vector>
 
-struct ScriptedPush {
-    Vector3f place;
-    uint32_t timestamp_ms, id;
-    float distance, radius;
-    AP_OADatabase::OA_DbItem::Source source;
-};
-
 struct ScriptedSent {
     mavlink_channel_t channel;
     uint32_t msgid;
@@ -53,21 +46,31 @@ struct Scripted {
     Vector3f range_finder_offset;
 
     // the rest of the vehicle
-    bool armed, landing, has_memory, has_database;
-    std::vector<mavlink_status_t> channel; // links, one each
+    bool armed, landing, has_memory, has_threads, has_database;
+    bool thread_is_late;                     // it gets no turn
+    bool runs_at_once;                       // the thread and the others, on as many cores
+    std::map<std::string, float> parameters; // of the vehicle
+    std::vector<mavlink_status_t> channel;   // links, one each
     std::vector<bool> active, is_private;
     uint16_t txspace;
 
     // what came of it
     std::vector<std::string> texts;
-    std::vector<ScriptedPush> pushes;
     std::vector<ScriptedSent> sent;
     std::map<std::string, std::vector<ScriptedRecord>> log;
     unsigned allocations;
+    std::string thread_name;
+    uint32_t thread_stack;
+    unsigned wakes;
+    unsigned searches; // for parameters, by name
 
     Scripted();
     bool has_said(const char *part) const;
-    std::map<uint32_t, ScriptedPush> database() const; // the latest push of each id
+    std::map<uint32_t, AP_OADatabase::OA_DbItem> database() const; // what AP_GOE put there, by id
 };
 
 extern Scripted scripted;
+
+/* While the threads run at once: the thread sees the clock from here on; and who waits until it waits. */
+void show_clock();
+void wait_for_the_thread();

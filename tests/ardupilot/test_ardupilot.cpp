@@ -6,9 +6,11 @@
 
 #include <fenv.h>
 
+#include <atomic>
 #include <cstring>
 #include <set>
 #include <string>
+#include <thread>
 
 extern "C" {
 #include "goe_settings_list.h"
@@ -21,7 +23,8 @@ void tearDown(void) {}
 
 static goe_flight_obstacle_t obstacle_of(const FlownVehicle &vehicle, int slot) {
     goe_flight_obstacle_t obstacle;
-    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(vehicle.goe->flight(), slot, &obstacle));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, vehicle.goe->_state->shown.state[slot]);
+    obstacle = vehicle.goe->_state->shown.obstacle[slot];
     return obstacle;
 }
 
@@ -39,8 +42,9 @@ static bool may_arm(const FlownVehicle &vehicle, const char *why) {
 static void test_it_knows_what_the_layer_knows(void) {
     FlownVehicle vehicle;
     vehicle.fly(8.0);
-    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
     TEST_ASSERT_GREATER_THAN(60, vehicle.layer.counters.taken);
+    TEST_ASSERT_EQUAL(80, vehicle.compared);
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
 }
 
@@ -49,9 +53,9 @@ static void test_an_early_image_waits_for_its_pose(void) {
     vehicle.delay = 0;
     vehicle.ahead_us = 50000; // exposed between samples that are yet to come
     vehicle.fly(4.0);
-    TEST_ASSERT_GREATER_THAN(20, vehicle.goe->flight()->counters.early);
-    TEST_ASSERT_GREATER_OR_EQUAL(vehicle.images - 1, vehicle.goe->flight()->counters.taken);
-    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+    TEST_ASSERT_GREATER_THAN(20, vehicle.flight().counters.early);
+    TEST_ASSERT_GREATER_OR_EQUAL(vehicle.images - 1, vehicle.flight().counters.taken);
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
 }
 
 static void test_images_of_the_future_hold_up_nobody(void) {
@@ -59,29 +63,29 @@ static void test_images_of_the_future_hold_up_nobody(void) {
     vehicle.compares = false; // a full queue drops the oldest, which the layer beside does not
     vehicle.ahead_us = 40000000;
     vehicle.fly(4.0);
-    TEST_ASSERT_EQUAL(0, vehicle.goe->flight()->counters.taken);
+    TEST_ASSERT_EQUAL(0, vehicle.flight().counters.taken);
     TEST_ASSERT_FALSE(vehicle.goe->healthy());
     vehicle.ahead_us = 0;
     vehicle.fly(4.0);
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
-    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
 }
 
 static void test_a_late_image_is_counted_and_left(void) {
     FlownVehicle vehicle;
     vehicle.delay = 25; // half a second
     vehicle.fly(4.0);
-    TEST_ASSERT_EQUAL(0, vehicle.goe->flight()->counters.taken);
-    TEST_ASSERT_GREATER_THAN(30, vehicle.goe->flight()->counters.late);
+    TEST_ASSERT_EQUAL(0, vehicle.flight().counters.taken);
+    TEST_ASSERT_GREATER_THAN(30, vehicle.flight().counters.late);
     TEST_ASSERT_FALSE(vehicle.goe->healthy());
-    TEST_ASSERT_TRUE(scripted.pushes.empty());
+    TEST_ASSERT_TRUE(scripted.database().empty());
 }
 
 static void test_the_clock_may_wrap(void) {
     FlownVehicle vehicle;
     vehicle.first_us = (uint64_t(1) << 32) - 3000000;
     vehicle.fly(8.0);
-    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
 }
 
 static void test_a_full_table(void) {
@@ -95,7 +99,7 @@ static void test_a_full_table(void) {
         ids.insert(item.first);
     }
     TEST_ASSERT_GREATER_THAN(1, ids.size());
-    TEST_ASSERT_GREATER_THAN(0, vehicle.goe->flight()->counters.full + vehicle.goe->flight()->counters.evicted);
+    TEST_ASSERT_GREATER_THAN(0, vehicle.flight().counters.full + vehicle.flight().counters.evicted);
 }
 
 // ---------------------------------------------------------------------------------------------------------------- resets
@@ -103,16 +107,16 @@ static void test_a_full_table(void) {
 static void test_a_known_jump_moves_the_obstacle_in_the_database(void) {
     FlownVehicle vehicle;
     vehicle.fly(6.0);
-    const Vector3f before = scripted.database().at(ID).place;
+    const Vector3f before = scripted.database().at(ID).pos;
     scripted.horizontal_reset_ms = AP_HAL::millis();
     scripted.horizontal_change = Vector2f(7.0f, -4.0f);
     vehicle.jump = Vector3f(7.0f, -4.0f, 0.0f);
     vehicle.fly(0.3);
-    const Vector3f after = scripted.database().at(ID).place;
+    const Vector3f after = scripted.database().at(ID).pos;
     CHECK_CLOSE(0.5, 7.0, after.x - before.x);
     CHECK_CLOSE(0.5, -4.0, after.y - before.y);
-    TEST_ASSERT_EQUAL(1, vehicle.goe->flight()->counters.resets);
-    TEST_ASSERT_EQUAL(0, vehicle.goe->flight()->counters.lost);
+    TEST_ASSERT_EQUAL(1, vehicle.flight().counters.resets);
+    TEST_ASSERT_EQUAL(0, vehicle.flight().counters.lost);
 }
 
 static void test_a_reset_of_the_heading_ends_all(void) {
@@ -120,11 +124,11 @@ static void test_a_reset_of_the_heading_ends_all(void) {
     vehicle.fly(6.0);
     scripted.yaw_reset_ms = AP_HAL::millis();
     vehicle.step();
-    TEST_ASSERT_EQUAL(1, vehicle.goe->flight()->counters.lost);
+    TEST_ASSERT_EQUAL(1, vehicle.flight().counters.lost);
     vehicle.fly(0.2);
     TEST_ASSERT_TRUE(scripted.has_said("all obstacles given up"));
-    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles); /* kept, suspect, until an image places it again */
-    TEST_ASSERT_TRUE(vehicle.goe->assessment()->suspect);
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles); /* kept, suspect, until an image places it again */
+    TEST_ASSERT_TRUE(vehicle.seen().suspect);
 }
 
 static void test_another_filter_ends_all(void) {
@@ -133,7 +137,7 @@ static void test_another_filter_ends_all(void) {
     vehicle.compares = false;
     scripted.ekf_type = 2;
     vehicle.step();
-    TEST_ASSERT_EQUAL(1, vehicle.goe->flight()->counters.lost);
+    TEST_ASSERT_EQUAL(1, vehicle.flight().counters.lost);
 }
 
 static void test_time_jumps(void) {
@@ -143,7 +147,7 @@ static void test_time_jumps(void) {
         vehicle.first_us += uint64_t(jump_us);
         vehicle.fly(5.0); // compared at each step
         TEST_ASSERT_TRUE(vehicle.goe->healthy());
-        TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
+        TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
     }
 }
 
@@ -168,7 +172,7 @@ static void test_healthy_means_alive_and_not_that_something_is_there(void) {
     vehicle.flown.sees = false;
     vehicle.fly(3.0);
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
-    TEST_ASSERT_EQUAL(0, vehicle.goe->assessment()->obstacles);
+    TEST_ASSERT_EQUAL(0, vehicle.seen().obstacles);
     TEST_ASSERT_TRUE(may_arm(vehicle, ""));
     vehicle.sends = false;
     vehicle.fly(3.0);
@@ -189,7 +193,7 @@ static void test_disabled_it_takes_no_memory_and_keeps_nobody_from_arming(void) 
     vehicle.compares = false;
     vehicle.fly(2.0);
     TEST_ASSERT_EQUAL(0, scripted.allocations);
-    TEST_ASSERT_NULL(vehicle.goe->flight());
+    TEST_ASSERT_NULL(vehicle.goe->_state);
     TEST_ASSERT_TRUE(may_arm(vehicle, ""));
     TEST_ASSERT_TRUE(scripted.sent.empty() && scripted.log.empty() && scripted.texts.empty());
 }
@@ -205,9 +209,9 @@ static void test_switched_off_it_is_not_healthy_and_keeps_nobody_from_arming(voi
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
     vehicle.compares = false;
     set_parameter(*vehicle.goe, "ENABLE", 0);
-    const size_t so_far = scripted.pushes.size();
+    const uint32_t so_far_ms = scripted.database().at(ID).timestamp_ms;
     vehicle.fly(3.0);
-    TEST_ASSERT_EQUAL(so_far, scripted.pushes.size());
+    TEST_ASSERT_EQUAL(so_far_ms, scripted.database().at(ID).timestamp_ms);
     TEST_ASSERT_FALSE(vehicle.goe->healthy());
     TEST_ASSERT_TRUE(may_arm(vehicle, ""));
 }
@@ -219,7 +223,107 @@ static void test_without_memory_it_says_so(void) {
     vehicle.fly(2.0);
     TEST_ASSERT_EQUAL(1, scripted.allocations);
     TEST_ASSERT_FALSE(vehicle.goe->healthy());
-    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no memory"));
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no memory or no thread"));
+}
+
+static void test_without_a_thread_it_says_so(void) {
+    FlownVehicle vehicle;
+    scripted.has_threads = false;
+    vehicle.compares = false;
+    vehicle.fly(2.0);
+    TEST_ASSERT_EQUAL(1, scripted.allocations);
+    TEST_ASSERT_FALSE(vehicle.goe->healthy());
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no memory or no thread"));
+    TEST_ASSERT_TRUE(scripted.has_said("GOE: no thread"));
+}
+
+// ---------------------------------------------------------------------------------------------------------------- thread
+
+static void test_the_scheduler_waits_for_no_estimator(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.fly(6.0);
+    TEST_ASSERT_EQUAL_STRING("goe", scripted.thread_name.c_str());
+    TEST_ASSERT_GREATER_OR_EQUAL(2 * 2136, scripted.thread_stack); // twice the layer's deepest call
+    TEST_ASSERT_EQUAL(300, scripted.wakes);
+    scripted.thread_is_late = true;
+    const unsigned taken = vehicle.flight().counters.taken;
+    vehicle.fly(0.2);
+    TEST_ASSERT_EQUAL(taken, vehicle.flight().counters.taken); // update() touched nothing of it
+}
+
+static void test_the_layer_knows_that_the_vehicle_lands(void) {
+    bool goes_around = false;
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.flown.scene.altitude_m = 9.0; // over a truck of 2.5 m: less than GOE_CLEAR
+    vehicle.flown.scene.x0_m = 0.5;
+    vehicle.flown.scene.z0_m = 260.0;
+    scripted.landing = true;
+    for (int i = 0; i < 12 * FLOWN_POSE_HZ; i++) {
+        vehicle.step();
+        goes_around = goes_around || vehicle.seen().action == GOE_FLIGHT_GO_AROUND;
+    }
+    TEST_ASSERT_TRUE(goes_around);
+}
+
+static void test_a_thread_that_is_late_loses_no_pose_and_no_image(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false; // the layer beside assesses meanwhile
+    vehicle.fly(6.0);
+    for (int i = 0; i < 5; i++) {
+        scripted.thread_is_late = true;
+        vehicle.fly(0.2);
+        scripted.thread_is_late = false;
+        vehicle.fly(0.2);
+    }
+    TEST_ASSERT_EQUAL(vehicle.layer.counters.taken, vehicle.flight().counters.taken);
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
+}
+
+/* The thread, the main loop and the database's thread at once, as fast as they can: what a sanitizer of threads looks at. */
+static void test_the_threads_may_run_at_once(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.fly(3.0);
+    scripted.runs_at_once = true;
+    std::atomic<bool> goes_on(true);
+    std::thread planner([&] {
+        while (goes_on) {
+            AP::oadatabase()->update();
+            std::this_thread::yield();
+        }
+    });
+    for (int i = 0; i < 200; i++) {
+        vehicle.steps_database = false;
+        vehicle.step();
+        if (i % 10 == 0) {
+            char text[42];
+            (void)vehicle.goe->pre_arm_check(text, sizeof text);
+            set_parameter(*vehicle.goe, "OPTIONS", i % 20 == 0 ? 0 : 1);
+        }
+    }
+    goes_on = false;
+    planner.join();
+    wait_for_the_thread();
+    scripted.runs_at_once = false;
+    vehicle.fly(2.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
+    TEST_ASSERT_EQUAL(1, scripted.database().size());
+}
+
+static void test_a_thread_that_stands_still_is_survived(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.copies = 4;
+    vehicle.fly(6.0);
+    scripted.thread_is_late = true;
+    vehicle.fly(3.0); // the inbox is full by then
+    scripted.thread_is_late = false;
+    vehicle.fly(4.0);
+    TEST_ASSERT_TRUE(vehicle.goe->healthy());
+    TEST_ASSERT_GREATER_OR_EQUAL(1, vehicle.seen().obstacles);
 }
 
 // ------------------------------------------------------------------------------------------------------------ parameters
@@ -231,22 +335,22 @@ static void test_parameters_wait_in_flight_until_nothing_is_followed(void) {
     set_parameter(*vehicle.goe, "MARGIN", 25);
     vehicle.fly(3.0); // compared with the layer that has the old ones
     TEST_ASSERT_TRUE(scripted.has_said("parameters wait"));
-    CHECK_CLOSE(0.0, 15.0, vehicle.goe->flight()->settings.margin_m);
+    CHECK_CLOSE(0.0, 15.0, vehicle.flight().settings.margin_m);
     vehicle.flown.sees = false;
     vehicle.fly(1.0);
     vehicle.compares = false;
     vehicle.fly(13.0); // forgotten by then
     TEST_ASSERT_TRUE(scripted.has_said("parameters taken"));
-    CHECK_CLOSE(0.0, 25.0, vehicle.goe->flight()->settings.margin_m);
+    CHECK_CLOSE(0.0, 25.0, vehicle.flight().settings.margin_m);
 }
 
 static void test_on_the_ground_parameters_are_taken_at_once(void) {
     FlownVehicle vehicle;
     vehicle.fly(3.0);
     vehicle.compares = false;
-    set_parameter(*vehicle.goe, "FORGET", 20);
+    set_parameter(*vehicle.goe, "HOME_SD", 8);
     vehicle.fly(1.1);
-    CHECK_CLOSE(0.0, 20.0, vehicle.goe->flight()->settings.forget_s);
+    CHECK_CLOSE(0.0, 8.0, vehicle.flight().settings.home_sd_m);
     vehicle.fly(3.0);
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
 }
@@ -255,17 +359,17 @@ static void test_bad_parameters_are_refused_and_the_good_ones_go_on(void) {
     FlownVehicle vehicle;
     vehicle.fly(3.0);
     vehicle.compares = false;
-    set_parameter(*vehicle.goe, "BANK", 90);
+    set_parameter(*vehicle.goe, "CLEAR", 2000);
     vehicle.fly(4.0);
-    TEST_ASSERT_TRUE(scripted.has_said("GOE: bad setting bank_deg"));
-    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad setting bank_deg"));
+    TEST_ASSERT_TRUE(scripted.has_said("GOE: bad parameter GOE_CLEAR"));
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad parameter GOE_CLEAR"));
     TEST_ASSERT_FALSE(vehicle.goe->healthy());
-    CHECK_CLOSE(0.0, 30.0, vehicle.goe->flight()->settings.bank_deg);
-    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles); // it goes on
-    set_parameter(*vehicle.goe, "BANK", 35);
+    CHECK_CLOSE(0.0, 10.0, vehicle.flight().settings.clearance_m);
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles); // it goes on
+    set_parameter(*vehicle.goe, "CLEAR", 12);
     vehicle.fly(4.0);
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
-    CHECK_CLOSE(0.0, 35.0, vehicle.goe->flight()->settings.bank_deg);
+    CHECK_CLOSE(0.0, 12.0, vehicle.flight().settings.clearance_m);
 }
 
 static void test_without_a_camera_it_names_what_is_missing(void) {
@@ -273,7 +377,94 @@ static void test_without_a_camera_it_names_what_is_missing(void) {
     set_parameter(*vehicle.goe, "FX", 0);
     vehicle.compares = false;
     vehicle.fly(2.0);
-    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad setting camera.fx_px"));
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad parameter GOE_FX"));
+}
+
+static void test_a_bad_parameter_is_named_as_the_ground_station_shows_it(void) {
+    const Parameter bad[] = {
+        {"WIDTH", -1},   {"HEIGHT", -1}, {"FX", -1},      {"FY", -1},      {"CX", 2e5f},    {"CY", 2e5f},
+        {"K1", 200},     {"K2", 200},    {"P1", 200},     {"P2", 200},     {"K3", 200},     {"YAW", 400},
+        {"PITCH", 400},  {"ROLL", 400},  {"POS_X", 2e4f}, {"POS_Y", 2e4f}, {"POS_Z", 2e4f}, {"DELAY", 1},
+        {"HOME_SD", -1}, {"GND_SD", -1}, {"MARGIN", -1},  {"CLEAR", -1},
+    };
+    for (const Parameter &parameter : bad) {
+        FlownVehicle vehicle;
+        vehicle.compares = false;
+        set_parameter(*vehicle.goe, parameter.name, parameter.value);
+        vehicle.fly(0.5);
+        TEST_ASSERT_FALSE(may_arm(vehicle, (std::string("GOE: bad parameter GOE_") + parameter.name).c_str()));
+    }
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    scripted.parameters["ROLL_LIMIT_DEG"] = 2;
+    vehicle.fly(0.5);
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad parameter ROLL_LIMIT_DEG"));
+}
+
+// ------------------------------------------------------------------------------------- what the vehicle's parameters tell
+
+static goe_flight_settings_t settings_of(const std::map<std::string, float> &parameters) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    scripted.parameters = parameters;
+    vehicle.fly(2.5);
+    return vehicle.flight().settings;
+}
+
+static void test_the_loiter_radius_is_the_vehicles(void) {
+    CHECK_CLOSE(0.0, 0.0, settings_of({}).loiter_m); // a copter has none
+    CHECK_CLOSE(0.0, 0.0, settings_of({{"AIRSPEED_CRUISE", 22}}).loiter_m);
+    CHECK_CLOSE(0.0, 120.0, settings_of({{"WP_LOITER_RAD", 120}, {"AIRSPEED_CRUISE", 22}}).loiter_m);
+    CHECK_CLOSE(0.0, 120.0, settings_of({{"WP_LOITER_RAD", -120}}).loiter_m); // to the left
+    TEST_ASSERT_FALSE(scripted.has_said("too small"));
+}
+
+static unsigned words_with(const char *part) {
+    unsigned words = 0;
+    for (const std::string &text : scripted.texts) {
+        words += text.find(part) != std::string::npos;
+    }
+    return words;
+}
+
+static void test_a_circle_that_cannot_be_flown_is_widened_with_a_word(void) {
+    CHECK_CLOSE(0.2, 85.5, settings_of({{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}}).loiter_m); // 22^2 / (g tan 30)
+    TEST_ASSERT_EQUAL(1, words_with("GOE: WP_LOITER_RAD 60 too small, 85 used"));
+    CHECK_CLOSE(0.2, 85.5, settings_of({{"WP_LOITER_RAD", 60}, {"TRIM_ARSPD_CM", 2200}}).loiter_m);
+    CHECK_CLOSE(0.3, 135.6,
+                settings_of({{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}, {"ROLL_LIMIT_DEG", 20}}).loiter_m);
+}
+
+static void test_the_word_about_the_circle_comes_once(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    scripted.parameters = {{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}};
+    vehicle.fly(2.0);
+    set_parameter(*vehicle.goe, "MARGIN", 20);
+    vehicle.fly(2.0);
+    TEST_ASSERT_EQUAL(1, words_with("too small"));
+    scripted.parameters["AIRSPEED_CRUISE"] = 25;
+    vehicle.fly(2.0);
+    TEST_ASSERT_EQUAL(2, words_with("too small"));
+}
+
+static void test_parameters_are_searched_for_once(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    scripted.parameters = {{"WP_LOITER_RAD", 60}, {"AIRSPEED_CRUISE", 22}};
+    vehicle.step();
+    const unsigned searches = scripted.searches;
+    TEST_ASSERT_LESS_OR_EQUAL(6, searches);
+    vehicle.fly(3.0);
+    TEST_ASSERT_EQUAL(searches, scripted.searches);
+}
+
+static void test_bank_and_climb_are_no_more_than_the_vehicles(void) {
+    CHECK_CLOSE(0.0, 20.0, settings_of({{"ROLL_LIMIT_DEG", 20}}).bank_deg);
+    CHECK_CLOSE(1e-4, 25.0, settings_of({{"LIM_ROLL_CD", 2500}}).bank_deg);
+    CHECK_CLOSE(0.0, 30.0, settings_of({{"ROLL_LIMIT_DEG", 55}}).bank_deg);
+    CHECK_CLOSE(0.0, 2.0, settings_of({{"TECS_CLMB_MAX", 2}}).climb_m_s);
+    CHECK_CLOSE(0.0, 2.5, settings_of({{"TECS_CLMB_MAX", 5}}).climb_m_s);
 }
 
 static void test_defaults_are_those_of_the_library(void) {
@@ -287,20 +478,17 @@ static void test_defaults_are_those_of_the_library(void) {
     goe_flight_settings_t expected;
     goe_flight_settings_default(&expected);
     expected.resets = GOE_FLIGHT_RESETS_TIME;
-    const goe_flight_settings_t &actual = goe.flight()->settings;
+    const goe_flight_settings_t &actual = goe._state->flight.settings;
 #define GOE_FLIGHT_SETTING(field, least, most, usual) CHECK_SAME(expected.field, actual.field);
 #include "goe_flight_settings_list.h"
 #undef GOE_FLIGHT_SETTING
     goe_settings_t library;
     goe_settings_default(&library);
-    CHECK_SAME(library.navigation.attitude_bias_deg, get_parameter(goe, "ATT_BIAS"));
-    CHECK_SAME(library.navigation.attitude_white_deg, get_parameter(goe, "ATT_WHITE"));
-    CHECK_CLOSE(1e-6, 0.3, get_parameter(goe, "ATT_DRIFT")); // the library's 0 is of a better filter
-    CHECK_SAME(library.navigation.velocity_bias_m_s, get_parameter(goe, "VEL_BIAS"));
-    CHECK_SAME(library.navigation.ground_m, get_parameter(goe, "GND_SD"));
-    CHECK_SAME(library.detector.box_px, get_parameter(goe, "BOX_PX"));
-    CHECK_SAME(library.detector.box_share, get_parameter(goe, "BOX_SHARE"));
-    CHECK_SAME(library.detector.correlation_s, get_parameter(goe, "BOX_TIME"));
+    library.camera = goe._state->good.estimator.camera;
+    CHECK_CLOSE(1e-6, 0.3,
+                goe._state->good.estimator.navigation.attitude_drift_deg); // the library's 0 is of a better filter
+    library.navigation.attitude_drift_deg = goe._state->good.estimator.navigation.attitude_drift_deg;
+    TEST_ASSERT_EQUAL_MEMORY(&library, &goe._state->good.estimator, sizeof library);
 }
 
 static void test_parameters_fit_into_their_table(void) {
@@ -312,7 +500,7 @@ static void test_parameters_fit_into_their_table(void) {
         TEST_ASSERT_TRUE_MESSAGE(numbers.insert(info->idx).second, info->name);
         TEST_ASSERT_TRUE_MESSAGE(names.insert(info->name).second, info->name);
     }
-    TEST_ASSERT_EQUAL(49, numbers.size());
+    TEST_ASSERT_EQUAL(26, numbers.size());
 }
 
 // -------------------------------------------------------------------------------------------------------------- messages
@@ -330,7 +518,7 @@ static unsigned taken_of(void (*change)(mavlink_message_t &, FlownVehicle &)) {
     change(message, vehicle);
     vehicle.goe->handle_unknown(message, MAVLINK_COMM_0);
     vehicle.fly(0.2);
-    return vehicle.goe->flight()->counters.taken;
+    return vehicle.flight().counters.taken;
 }
 
 static bool accepts_none(const mavlink_status_t *, uint32_t) { return false; }
@@ -393,6 +581,7 @@ static void test_what_it_sends(void) {
     goe_mavlink_read_status(last.payload.data(), last.payload.size(), &status);
     TEST_ASSERT_EQUAL(3, status.alive);
     TEST_ASSERT_INT_WITHIN(3, 100, status.delay_mean);
+    TEST_ASSERT_INT_WITHIN(3, 100, status.delay_max);
     TEST_ASSERT_EQUAL(1, status.obstacles);
 
     const size_t so_far = scripted.sent.size();
@@ -408,25 +597,86 @@ static void test_what_it_sends(void) {
 
 static void test_an_obstacle_in_the_database(void) {
     FlownVehicle vehicle;
+    set_parameter(*vehicle.goe, "OA_SIGMA", 0);
     vehicle.fly(6.0);
     const goe_flight_obstacle_t obstacle = obstacle_of(vehicle, 0);
     TEST_ASSERT_EQUAL(1, scripted.database().size());
-    const ScriptedPush push = scripted.database().at(ID);
-    CHECK_CLOSE(0.0011, obstacle.radius_m, push.radius);
-    CHECK_CLOSE(0.0, obstacle.center_ned_m[0], push.place.x);
-    CHECK_CLOSE(0.0, obstacle.center_ned_m[1], push.place.y);
-    TEST_ASSERT_TRUE(push.source == AP_OADatabase::OA_DbItem::Source::AIS);
-    const float distance = hypotf(push.place.x - scripted.position.x, push.place.y - scripted.position.y);
-    CHECK_CLOSE(3.0, distance, push.distance);
-    TEST_ASSERT_UINT32_WITHIN(300, AP_HAL::millis(), push.timestamp_ms);
-    CHECK_SAME(false, scripted.pushes[scripted.pushes.size() - 2].radius == push.radius); // else it would not move
+    const AP_OADatabase::OA_DbItem item = scripted.database().at(ID);
+    CHECK_SAME(obstacle.radius_m, item.radius);
+    CHECK_SAME(obstacle.center_ned_m[0], item.pos.x);
+    CHECK_SAME(obstacle.center_ned_m[1], item.pos.y);
+    TEST_ASSERT_EQUAL(AP_HAL::millis(), item.timestamp_ms);
+    TEST_ASSERT_EQUAL(0xFF, item.send_to_gcs);
+}
+
+static void test_the_ground_station_sees_an_item_twice_a_second(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    unsigned sent = 0;
+    for (int i = 0; i < 4 * FLOWN_POSE_HZ; i++) {
+        vehicle.step();
+        sent += scripted.database().at(ID).send_to_gcs == 0xFF;
+        AP::oadatabase()->note_sent();
+    }
+    TEST_ASSERT_INT_WITHIN(1, 8, sent);
+}
+
+static void test_others_items_stay_as_they_are(void) {
+    FlownVehicle vehicle;
+    AP::oadatabase()->begin(2);
+    vehicle.fly(6.0);
+    TEST_ASSERT_EQUAL(3, AP::oadatabase()->database_count());
+    for (unsigned i = 0; i < 2; i++) {
+        CHECK_SAME(0.0f, AP::oadatabase()->get_item(i).radius);
+        TEST_ASSERT_EQUAL(0, AP::oadatabase()->get_item(i).timestamp_ms);
+    }
+}
+
+static void test_a_full_database_is_survived(void) {
+    FlownVehicle vehicle;
+    AP::oadatabase()->begin(5);
+    vehicle.fly(6.0);
+    TEST_ASSERT_EQUAL(5, AP::oadatabase()->database_count());
+    TEST_ASSERT_TRUE(scripted.database().empty());
+}
+
+static void test_what_the_database_forgot_comes_back(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    AP::oadatabase()->begin(0);
+    vehicle.step();
+    TEST_ASSERT_EQUAL(1, scripted.database().size());
+}
+
+static void test_the_database_keeps_its_limits(void) {
+    FlownVehicle vehicle;
+    AP::oadatabase()->set_limits(90.0f, 0.0f);
+    vehicle.fly(6.0);
+    CHECK_SAME(90.0f, scripted.database().at(ID).radius);
+    AP::oadatabase()->begin(0);
+    AP::oadatabase()->set_limits(0.01f, 1.0f);
+    vehicle.fly(0.5);
+    TEST_ASSERT_TRUE(scripted.database().empty());
+}
+
+/* What is followed stays fresh; what is not ages, until the database forgets it. */
+static void test_what_is_given_up_is_left_to_the_database(void) {
+    FlownVehicle vehicle;
+    vehicle.fly(6.0);
+    vehicle.flown.sees = false;
+    vehicle.fly(5.0);
+    TEST_ASSERT_EQUAL(AP_HAL::millis(), scripted.database().at(ID).timestamp_ms); // unseen for 5 s, and still followed
+    vehicle.compares = false;
+    vehicle.fly(9.0);
+    TEST_ASSERT_EQUAL(0, vehicle.seen().obstacles);
+    TEST_ASSERT_LESS_THAN(AP_HAL::millis() - 1000, scripted.database().at(ID).timestamp_ms);
 }
 
 static void test_the_sphere_is_at_the_own_height_between_foot_and_top(void) {
     FlownVehicle vehicle;
     vehicle.fly(6.0);
     const goe_flight_obstacle_t obstacle = obstacle_of(vehicle, 0);
-    const float foot = -obstacle.center_ned_m[2], own = -scripted.position.z, up = scripted.database().at(ID).place.z;
+    const float foot = -obstacle.center_ned_m[2], own = -scripted.position.z, up = scripted.database().at(ID).pos.z;
     TEST_ASSERT_TRUE((obstacle.valid & GOE_HAS_HEIGHT) != 0);
     const float top = foot + obstacle.height_m + 2.0f * obstacle.height_sd_m;
     CHECK_CLOSE(0.3, fminf(fmaxf(own, foot), top), up);
@@ -435,12 +685,12 @@ static void test_the_sphere_is_at_the_own_height_between_foot_and_top(void) {
     vehicle.flown.sees = false;
     vehicle.jump = Vector3f(0.0f, 0.0f, -500.0f); // far over it
     vehicle.fly(0.4);
-    TEST_ASSERT_TRUE(scripted.database().at(ID).place.z < own + 100.0f);
+    TEST_ASSERT_TRUE(scripted.database().at(ID).pos.z < own + 100.0f);
 }
 
 static void test_sigmas_widen_the_sphere(void) {
     FlownVehicle vehicle;
-    set_parameter(*vehicle.goe, "OA_SIGMA", 2);
+    CHECK_CLOSE(0.0, 2.0, get_parameter(*vehicle.goe, "OA_SIGMA")); // by default
     vehicle.fly(6.0);
     const goe_flight_obstacle_t obstacle = obstacle_of(vehicle, 0);
     const float worst = sqrtf(fmaxf(obstacle.covariance_ne_m2[0], obstacle.covariance_ne_m2[2]));
@@ -453,8 +703,8 @@ static void test_without_a_database_it_flies_on(void) {
     FlownVehicle vehicle;
     scripted.has_database = false;
     vehicle.fly(5.0);
-    TEST_ASSERT_EQUAL(1, vehicle.goe->assessment()->obstacles);
-    TEST_ASSERT_TRUE(scripted.pushes.empty());
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
+    TEST_ASSERT_TRUE(scripted.database().empty());
 }
 
 // --------------------------------------------------------------------------------------------------------------- heights
@@ -475,7 +725,7 @@ static float height_of_range_finder(float roll_deg, float range_m, const Vector3
     scripted.sample_us += 30000;
     scripted.now_us += 30000;
     vehicle.goe->update();
-    const goe_flight_t &flight = *vehicle.goe->flight();
+    const goe_flight_t &flight = vehicle.flight();
     return flight.ground_source == GOE_FLIGHT_RANGE_FINDER ? flight.ground_down_m - scripted.position.z : -1.0f;
 }
 
@@ -521,7 +771,7 @@ static void test_the_log(void) {
     CHECK_CLOSE(0.0, obstacle.hazard.miss_m, hazard.at("Miss"));
     TEST_ASSERT_EQUAL(0, hazard.at("I"));
     const auto &status = scripted.log["GOES"].back().value;
-    TEST_ASSERT_INT_WITHIN(12, vehicle.goe->flight()->counters.taken, status.at("Tkn"));
+    TEST_ASSERT_INT_WITHIN(12, vehicle.flight().counters.taken, status.at("Tkn"));
     TEST_ASSERT_EQUAL(3, status.at("Al"));
     TEST_ASSERT_INT_WITHIN(3, 100, status.at("Dly"));
     TEST_ASSERT_INT_WITHIN(1, 6, scripted.log["GOES"].size());
@@ -547,15 +797,33 @@ int main(void) {
     RUN_TEST(test_disabled_it_takes_no_memory_and_keeps_nobody_from_arming);
     RUN_TEST(test_switched_off_it_is_not_healthy_and_keeps_nobody_from_arming);
     RUN_TEST(test_without_memory_it_says_so);
+    RUN_TEST(test_without_a_thread_it_says_so);
+    RUN_TEST(test_the_scheduler_waits_for_no_estimator);
+    RUN_TEST(test_the_layer_knows_that_the_vehicle_lands);
+    RUN_TEST(test_a_thread_that_is_late_loses_no_pose_and_no_image);
+    RUN_TEST(test_the_threads_may_run_at_once);
+    RUN_TEST(test_a_thread_that_stands_still_is_survived);
     RUN_TEST(test_parameters_wait_in_flight_until_nothing_is_followed);
     RUN_TEST(test_on_the_ground_parameters_are_taken_at_once);
     RUN_TEST(test_bad_parameters_are_refused_and_the_good_ones_go_on);
     RUN_TEST(test_without_a_camera_it_names_what_is_missing);
+    RUN_TEST(test_a_bad_parameter_is_named_as_the_ground_station_shows_it);
+    RUN_TEST(test_the_loiter_radius_is_the_vehicles);
+    RUN_TEST(test_a_circle_that_cannot_be_flown_is_widened_with_a_word);
+    RUN_TEST(test_the_word_about_the_circle_comes_once);
+    RUN_TEST(test_parameters_are_searched_for_once);
+    RUN_TEST(test_bank_and_climb_are_no_more_than_the_vehicles);
     RUN_TEST(test_defaults_are_those_of_the_library);
     RUN_TEST(test_parameters_fit_into_their_table);
     RUN_TEST(test_only_whole_messages_of_the_own_vehicle_are_taken);
     RUN_TEST(test_what_it_sends);
     RUN_TEST(test_an_obstacle_in_the_database);
+    RUN_TEST(test_the_ground_station_sees_an_item_twice_a_second);
+    RUN_TEST(test_others_items_stay_as_they_are);
+    RUN_TEST(test_a_full_database_is_survived);
+    RUN_TEST(test_what_the_database_forgot_comes_back);
+    RUN_TEST(test_the_database_keeps_its_limits);
+    RUN_TEST(test_what_is_given_up_is_left_to_the_database);
     RUN_TEST(test_the_sphere_is_at_the_own_height_between_foot_and_top);
     RUN_TEST(test_sigmas_widen_the_sphere);
     RUN_TEST(test_without_a_database_it_flies_on);

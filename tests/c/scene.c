@@ -115,6 +115,11 @@ void scene_tell_no_noise(goe_settings_t *settings) {
     settings->navigation.position_walk_m = 0.0f;
 }
 
+void scene_hide_points(goe_image_t *image) {
+    image->left.seen = image->right.seen = image->top.seen = false;
+    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+}
+
 void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px) {
     goe_pixel_t *const all[] = {&image->left,      &image->right,     &image->top,
                                 &image->base_left, &image->base_near, &image->base_right};
@@ -377,8 +382,7 @@ static void see_upright_box(const scene_t *scene, const flight_t *flight, const 
     frame_t f = {0.0f, 0.0f, 0.0f, 0.0f};
     const bool seen = frame_of(scene, flight, at, &f);
     if (scene->boxes) {
-        image->left.seen = image->right.seen = image->top.seen = false;
-        image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+        scene_hide_points(image);
         image->box = (goe_box_t){f.left, f.top, f.right, f.bottom, seen ? GOE_SEES_BOX : 0u};
         return;
     }

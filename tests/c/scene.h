@@ -70,6 +70,9 @@ void scene_make_cylinder(scene_t *scene);
 /* The noise that the scenes have: nothing but the rounding of their numbers is wrong. */
 void scene_tell_no_noise(goe_settings_t *settings);
 
+/* No point is seen; a box may be. */
+void scene_hide_points(goe_image_t *image);
+
 /* Gaussian noise on every point, seen or not. */
 void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px);
 

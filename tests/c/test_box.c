@@ -86,23 +86,38 @@ static bool find_visible(const corner_t corner[4], int visible[4], int *count) {
     return true;
 }
 
-/* Nearest, or farthest, corner; false if two are alike. */
-static bool find_top(const corner_t corner[4], bool farthest, int *found) {
-    bool clear = true;
-    *found = 0;
-    for (int i = 1; i < 4; i++) {
-        *found = (range2(corner[i]) > range2(corner[*found])) == farthest ? i : *found;
-    }
-    for (int i = 0; i < 4; i++) {
-        clear = clear && (i == *found || fabs(range2(corner[i]) - range2(corner[*found])) > 1.0e-4);
-    }
-    return clear;
-}
-
 static double height_of(const double state[GOE_STATES], int feature) {
     const double h = (double)sighting.sight.height_m;
     return feature == GOE_POINT_TOP ? h * state[GOE_INVERSE_RANGE] - state[GOE_TOP]
                                     : h * state[GOE_INVERSE_RANGE] + state[GOE_GROUND];
+}
+
+/* How far down in the raw image a corner of the roof is, focal lengths. */
+static double down_of(corner_t c) {
+    const float *r = sighting.sight.camera_to_axes;
+    const double point[3] = {c.x, height_of(truth, GOE_POINT_TOP), c.z};
+    double seen[2] = {0.0, 0.0};
+    for (int i = 0; i < 3; i++) {
+        seen[0] += (double)r[3 * i + 1] * point[i];
+        seen[1] += (double)r[3 * i + 2] * point[i];
+    }
+    return seen[0] / seen[1];
+}
+
+/* What is least at the corner that the top is over: nearest to the camera, or highest in the raw image. */
+static double rank(corner_t c, bool highest) { return highest ? down_of(c) : range2(c); }
+
+/* False if two are alike. */
+static bool find_top(const corner_t corner[4], bool highest, int *found) {
+    bool clear = true;
+    *found = 0;
+    for (int i = 1; i < 4; i++) {
+        *found = rank(corner[i], highest) < rank(corner[*found], highest) ? i : *found;
+    }
+    for (int i = 0; i < 4; i++) {
+        clear = clear && (i == *found || rank(corner[i], highest) - rank(corner[*found], highest) > 1.0e-4);
+    }
+    return clear;
 }
 
 static void see(const double state[GOE_STATES], int feature, double seen[2]) {
@@ -213,8 +228,8 @@ static void rows_are_those_of_the_corners_that_are_seen(void) {
         int count;
         int top;
         any_box(corner);
-        const bool farthest = sighting.settings.refined.top_is_highest && height_of(truth, GOE_POINT_TOP) > 0.0;
-        if (!find_visible(corner, visible, &count) || !find_top(corner, farthest, &top)) {
+        const bool highest = sighting.settings.refined.top_is_highest;
+        if (!find_visible(corner, visible, &count) || !find_top(corner, highest, &top)) {
             continue;
         }
         expected_rows = 0;
@@ -396,14 +411,14 @@ static void names_move_the_reference_point_and_not_the_middle(void) {
     }
 }
 
-/* (R24): 1 + 4 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
+/* (R24): 1 + 12 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
 static void an_unsure_depth_widens_what_hangs_on_the_corner(void) {
     goe_box_edges_t edges;
     goe_shape_t shape;
     start_at(30.0);
     goe_box_edges(filter.state, &edges);
     static const double share[] = {0.0, 0.25, 1.0, 1.9, 3.0};
-    static const double early[] = {1.0, 1.25, 5.0, 15.44, 17.0};
+    static const double early[] = {1.0, 1.75, 13.0, 44.32, 49.0};
     for (int i = 0; i < 5; i++) {
         memset(&filter.inverse, 0, sizeof filter.inverse);
         filter.inverse.element[goe_inverse_column(GOE_DEPTH_DIFFERENCE) + GOE_DEPTH_DIFFERENCE] =

@@ -153,6 +153,54 @@ static void a_roll_looks_like_a_depth(void) {
     CHECK_CLOSE(0.01 * tilt, tilt, added);
 }
 
+/* The next image shows a face of 8 m that falls back by `back_m` to the right, across the line of sight. Returns how many images agree by now. */
+static int agreeing_after(goe_filter_t *filter, double back_m) {
+    const double across_m = sqrt(64.0 - back_m * back_m);
+    const place_t middle = {-70.0 / 8.0 * back_m, 70.0 / 8.0 * across_m};
+    show_face((place_t){middle.x - 0.5 * across_m, middle.z - 0.5 * back_m},
+              (place_t){middle.x + 0.5 * across_m, middle.z + 0.5 * back_m});
+    sighting.sight.point_px = 0.05f;
+    sighting.settings.navigation.attitude_bias_deg = 0.05f;
+    TEST_ASSERT_FALSE(goe_box_start(filter, &sighting.sight));
+    return filter->candidate.agreeing;
+}
+
+/* GIVEN two ends that stand askew across the line of sight WHEN the camera does not stand before them THEN they are the ends of two faces, and
+ * no image agrees; nor does any while the near corner was seen shortly before. */
+static void ends_that_would_show_a_second_face_are_none_of_one(void) {
+    any = check_random_start("askew");
+    for (int n = 0; n < 2; n++) {
+        goe_filter_t filter;
+        goe_filter_clear(&filter);
+        filter.candidate.near_images = n == 0 ? 0 : 3;
+        for (int k = 0; k < 4; k++) {
+            const double back_m = n == 0 ? 4.0 : 0.0;
+            show_face((place_t){-4.0, 70.0 - back_m}, (place_t){4.0, 70.0 + back_m});
+            sighting.sight.point_px = 0.05f;
+            sighting.settings.navigation.attitude_bias_deg = 0.05f;
+            TEST_ASSERT_FALSE(goe_box_start(&filter, &sighting.sight));
+            TEST_ASSERT_EQUAL_UINT8(0, filter.candidate.agreeing);
+        }
+    }
+}
+
+/* GIVEN a face near 45 degrees, which is the front in one image and the side in the other THEN the two images agree in either order;
+ * a face that has turned by 20 degrees does not agree. */
+static void a_front_that_becomes_a_side_agrees_with_itself(void) {
+    static const double back_m[2] = {5.65, 5.66}; /* a front, and a side: 8 m over the root of 2 is between them */
+    any = check_random_start("exchanged");
+    for (int order = 0; order < 2; order++) {
+        goe_filter_t filter;
+        goe_filter_clear(&filter);
+        TEST_ASSERT_EQUAL_INT(1, agreeing_after(&filter, back_m[order]));
+        const float before = filter.candidate.extent[0];
+        TEST_ASSERT_EQUAL_INT(2, agreeing_after(&filter, back_m[1 - order]));
+        CHECK_CLOSE(0.01, -(double)before, filter.candidate.extent[0]);
+        CHECK_CLOSE(0.01, 45.0 * RAD_PER_DEG, fabs((double)before));
+        TEST_ASSERT_EQUAL_INT(1, agreeing_after(&filter, 8.0 * sin(65.0 * RAD_PER_DEG)));
+    }
+}
+
 /* ----------------------------------------------------------------------------------------------------------- two faces -- */
 
 /* In the axes of the line of sight to the near corner: the left face is left_m wide and as deep as the right one, which is
@@ -278,6 +326,8 @@ int main(void) {
     RUN_TEST(a_side_alone_has_its_near_end_on_the_front);
     RUN_TEST(the_sigma_covers_the_noise);
     RUN_TEST(a_roll_looks_like_a_depth);
+    RUN_TEST(ends_that_would_show_a_second_face_are_none_of_one);
+    RUN_TEST(a_front_that_becomes_a_side_agrees_with_itself);
     RUN_TEST(two_faces_of_equal_depth_are_right_to_first_order);
     RUN_TEST(what_one_face_does_not_tell_is_refused);
     RUN_TEST(what_two_faces_do_not_tell_is_refused);

@@ -42,8 +42,7 @@ static goe_status_t see(int k, bool blind, scene_truth_t *truth) {
         scene_add_noise(&image, &any, NOISE_PX);
     }
     if (blind) {
-        image.left.seen = image.right.seen = image.top.seen = false;
-        image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+        scene_hide_points(&image);
         image.box.seen = 0;
     }
     return goe_update(&estimator, &image, &estimate);

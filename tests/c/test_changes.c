@@ -339,7 +339,8 @@ static void make_disc(bool both, goe_footprint_t *box) {
     const double z = 1.0 / (double)filter.state[GOE_INVERSE_RANGE] - 25.0;
     const double x = check_random_between(&any, -0.2, 0.2);
     const double xs[3] = {x - 0.06, x + 0.01, x + 0.07};
-    const double nearer[3] = {0.04, 0.0, -0.04};
+    /* a face that is seen alone stands across the line of sight: what stands askew shows a second one */
+    const double nearer[3] = {both ? 0.04 : -0.06 * x, 0.0, both ? -0.04 : 0.07 * x};
     filter.phase = GOE_PHASE_DISC;
     filter.state[GOE_FRONT_X] = 0.1f;
     be_uncertain(sigma);

@@ -221,7 +221,7 @@ static void noise_does_not_hide_the_box(void) {
     }
 }
 
-/* A house of 6 to 20 m by 6 to 20 m, 3 to 15 m high, whose outline lies 3 to 40 m beside a straight, level flight. */
+/* A house of 6 to 20 m by 6 to 20 m, 3 to 15 m high, whose outline lies 3 to 40 m to the side of a straight, level flight. */
 static int any_house(void) {
     scene_default(&scene);
     scene.width_m = check_random_between(&any, 6.0, 20.0);
@@ -259,7 +259,7 @@ static double worst_confident(int images) {
     return worst;
 }
 
-/* GIVEN the outlines of typical houses in straight flights THEN hardly one is told wrong by six sigma, though corners change that
+/* GIVEN the outlines of typical houses in straight flights THEN hardly one is reported wrong by six sigma, though corners change that
  * nothing but the sigma can hold. */
 static void outlines_of_houses_are_not_confidently_wrong(void) {
     int wrong = 0;
@@ -268,7 +268,7 @@ static void outlines_of_houses_are_not_confidently_wrong(void) {
         const int images = any_house();
         wrong += worst_confident(images) > 6.0 ? 1 : 0;
     }
-    check_report("houses told wrong by six sigma, of 300", wrong);
+    check_report("houses reported wrong by six sigma, of 300", wrong);
     TEST_ASSERT_TRUE(wrong <= 3); /* one of a hundred; 0.3 % of thousands of flights */
 }
 

@@ -11,6 +11,7 @@
 #include "refined/goe_observation.h"
 #include "refined/goe_refined.h"
 #include "scene.h"
+#include "stated.h"
 
 #define RAD_PER_DEG 0.017453292519943295
 #define SAMPLES 8000
@@ -29,14 +30,7 @@ static goe_estimator_t estimator;
 static check_random_t any;
 
 static void start(void) {
-    goe_settings_t settings;
-    goe_settings_default(&settings);
-    settings.camera.fx_px = settings.camera.fy_px = 900.0f;
-    settings.camera.cx_px = settings.camera.cy_px = 640.0f;
-    settings.method = GOE_METHOD_WINDOW;
-    settings.navigation.velocity_bias_m_s = 0.0f; /* plans are exact, but where a test says otherwise */
-    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
-    estimator.motion.heading_cos = 1.0f;
+    stated_start(&estimator, GOE_METHOD_WINDOW);
     estimator.motion.height_m = 50.0f;
 }
 

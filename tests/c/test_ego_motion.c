@@ -131,7 +131,7 @@ static void a_known_jump_is_in_no_velocity(void) {
     CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
 }
 
-/* GIVEN a track that begins anew with the jump THEN there is no velocity yet. */
+/* GIVEN a new track that begins with the jump THEN there is no velocity yet. */
 static void a_new_track_has_no_velocity(void) {
     follow(0.0);
     follow(0.1);

@@ -533,8 +533,7 @@ static void a_box_out_of_order_does_not_count(void) {
         CHECK_STATUS(GOE_OK, fly(0, 12));
         const int before = estimator.window.disc.count;
         scene_image(&scene, 12, &image, NULL);
-        image.left.seen = image.right.seen = image.top.seen = false;
-        image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+        scene_hide_points(&image);
         image.box = (goe_box_t){500.0f, 500.0f, n == 0 ? 500.0f : 700.0f, n == 1 ? 500.0f : 700.0f, GOE_SEES_BOX};
         (void)update();
         TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_SWAPPED]);

@@ -52,6 +52,7 @@ static void start(float range_m, float height_sd_m) {
         *goe_srif_at(&filter.root, i, i) = 1.0f;
     }
     filter.phase = GOE_PHASE_DISC;
+    filter.known = GOE_HAS_POSITION;
     filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = RANGE_KNOWN * range_m;
     *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) = range_m / height_sd_m;
@@ -140,6 +141,21 @@ static void what_finds_no_room_is_told_later(void) {
     TEST_ASSERT_EQUAL_INT(0, tell());
     CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
     CHECK_CLOSE(0.05, 1.0 - 1.0 / READINGS, filter.state[GOE_GROUND] * RANGE_M);
+}
+
+/* GIVEN a filter that knows no position yet THEN what the heights say waits, as its range may be off by a factor; none of it is lost. */
+static void without_a_position_the_heights_wait(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M, obs.height_sd_m);
+    for (int k = 1; k < READINGS; k++) {
+        read_height(HEIGHT_M + 1.0f, 0.0f);
+    }
+    filter.known = 0;
+    TEST_ASSERT_EQUAL_INT(0, tell());
+    filter.known = GOE_HAS_POSITION;
+    TEST_ASSERT_EQUAL_INT(1, tell());
+    CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
 }
 
 /* GIVEN a first guess of the range that proves wrong THEN the height is known as it was told, in metres: no better when the
@@ -246,6 +262,22 @@ static void the_first_heights_own_error_is_kept(void) {
     CHECK_SAME(0.7f, filter.datum.sd_m);
 }
 
+/* GIVEN heights with a white error and a box in each image WHEN the height is not set THEN no reading counts and the ground's height is
+ * unknown; the first height that is set is the first reading. */
+static void a_height_that_is_not_set_is_no_reading(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    image.box.seen = GOE_SEES_BOX;
+    image.noise.height_m = 0.7f; /* of a height that is not there */
+    read_height(0.0f, 0.0f);
+    read_height(0.0f, 0.0f);
+    TEST_ASSERT_EQUAL_UINT16(0u, filter.datum.readings);
+    TEST_ASSERT_TRUE(filter.datum.sd_m >= 1.0e3f);
+    image.pose.height_m = HEIGHT_M;
+    read_height(HEIGHT_M, 0.0f);
+    TEST_ASSERT_EQUAL_UINT16(1u, filter.datum.readings);
+    CHECK_CLOSE(1.0e-5, (double)HEIGHT_M, filter.datum.height_m);
+}
+
 /* GIVEN a camera on an arm WHEN the aircraft pitches and rolls THEN the camera's height has moved by the arm's end, not by the
  * vehicle's down alone. */
 static void the_arm_moves_the_camera_up_and_down(void) {
@@ -275,11 +307,13 @@ int main(void) {
     RUN_TEST(readings_tell_the_mean_and_no_more);
     RUN_TEST(the_count_of_readings_saturates);
     RUN_TEST(what_finds_no_room_is_told_later);
+    RUN_TEST(without_a_position_the_heights_wait);
     RUN_TEST(a_wrong_first_range_leaves_the_height_as_told);
     RUN_TEST(the_slope_of_the_ground_adds_up_over_the_way);
     RUN_TEST(a_height_that_is_kept_has_no_slope);
     RUN_TEST(sloping_ground_makes_the_height_uncertain);
     RUN_TEST(the_first_heights_own_error_is_kept);
+    RUN_TEST(a_height_that_is_not_set_is_no_reading);
     RUN_TEST(the_arm_moves_the_camera_up_and_down);
     return UNITY_END();
 }

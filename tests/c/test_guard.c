@@ -196,8 +196,7 @@ static void a_track_that_is_nowhere_and_knows_nothing_begins_anew(void) {
     TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
     estimator.motion.origin_ne_m[0] = check_from_bits(0xFF800000u);
     scene_image(&scene, 1, &image, NULL);
-    image.left.seen = image.right.seen = image.top.seen = false;
-    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    scene_hide_points(&image);
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimator.motion.started);
 }

@@ -33,8 +33,7 @@ void setUp(void) {
 void tearDown(void) {}
 
 static void hide_all(void) {
-    image.left.seen = image.right.seen = image.top.seen = false;
-    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    scene_hide_points(&image);
     image.box.seen = 0;
 }
 

@@ -651,8 +651,7 @@ static void an_old_place_moves_on(void) {
     scene_image(&scene, 20 + STEP * (IMAGES - 1), &image, NULL);
     image.pose.position_ned_m[0] += (float)(-12.0 * (20 + STEP * (IMAGES - 1)) / FINE_HZ);
     image.pose.time_us += 2000000; /* the camera stands, the obstacle comes */
-    image.left.seen = image.right.seen = image.top.seen = false;
-    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    scene_hide_points(&image);
     CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &old));
     const double heading = (double)old.trajectory_heading_deg * 0.017453292519943295;
     const double north_m = 2.0 * (double)flight.estimate.velocity_north_m_s;
@@ -697,8 +696,7 @@ static void what_is_followed_goes_on_unseen(void) {
     scene_image(&scene, fine + (int)(2.0 * FINE_HZ), &image, NULL);
     image.pose.position_ned_m[0] += (float)(3.0 * t);
     image.pose.position_ned_m[1] += (float)(-4.0 * t);
-    image.left.seen = image.right.seen = image.top.seen = false;
-    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    scene_hide_points(&image);
     const double dx = (double)estimator.motion.dx_m;
     const double dz = (double)estimator.motion.dz_m;
     CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &now));

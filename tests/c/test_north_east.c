@@ -32,8 +32,7 @@ static goe_estimate_t fly_after(double before_deg, bool blind, double course_deg
     for (int k = 0; k < IMAGES; k++) {
         scene_image(&scene, k, &image, NULL);
         if (k == 0 && blind) {
-            image.left.seen = image.right.seen = image.top.seen = false;
-            image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+            scene_hide_points(&image);
             image.box.seen = 0;
         }
         scene.course_deg = course_deg;

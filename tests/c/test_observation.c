@@ -323,6 +323,18 @@ static void a_noisy_height_is_that_of_all_readings(void) {
     CHECK_CLOSE(1.0e-5, sqrt(9.0 + 64.0 / 4.0), sight.height_sd_m);
 }
 
+/* GIVEN the same altimeter WHEN no height was set so far THEN the unknown height has the noise of one reading, not of infinitely
+ * many or of none. */
+static void a_height_without_a_reading_has_the_noise_of_one(void) {
+    goe_observation_t sight;
+    start();
+    estimator.settings.navigation.height_white_m = 8.0f;
+    estimator.filter.datum.sd_m = 6.0f;
+    estimator.filter.datum.readings = 0;
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    CHECK_CLOSE(1.0e-5, 10.0, sight.height_sd_m);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(derivatives_are_those_of_the_projection);
@@ -340,5 +352,6 @@ int main(void) {
     RUN_TEST(an_image_may_know_its_own_errors);
     RUN_TEST(less_than_the_least_counts_as_that);
     RUN_TEST(a_noisy_height_is_that_of_all_readings);
+    RUN_TEST(a_height_without_a_reading_has_the_noise_of_one);
     return UNITY_END();
 }

@@ -56,8 +56,7 @@ static void see(shape_t shape, int k, goe_image_t *image) {
 static void see_nothing(shape_t shape, const arrival_t *arrival, int images_ahead, goe_image_t *image) {
     const double s = -(double)images_ahead / scene.image_rate_hz;
     see(shape, 0, image);
-    image->left.seen = image->right.seen = image->top.seen = false;
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    scene_hide_points(image);
     image->pose.time_us += (int64_t)(s * 1.0e6);
     image->pose.position_ned_m[0] += (float)(s * arrival->ahead_m_s);
     image->pose.position_ned_m[1] += (float)(s * arrival->aside_m_s);

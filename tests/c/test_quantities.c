@@ -170,7 +170,7 @@ static double early_of(void) {
     goe_box_edges(filter.state, &edges);
     const double sum = (double)edges.sum;
     const double relative = (double)goe_filter_variance(&filter, GOE_DEPTH_DIFFERENCE) / (sum * sum);
-    return is_box(goe_filter_phase(&filter)) ? 1.0 + 4.0 * fmin(relative, 4.0) : 1.0;
+    return is_box(goe_filter_phase(&filter)) ? 1.0 + 12.0 * fmin(relative, 4.0) : 1.0;
 }
 
 static double squared(double x) { return x * x; }
@@ -183,15 +183,17 @@ static void sight_of(double *x_m, double *z_m) {
     *z_m = 1.0 / q - (double)camera.z;
 }
 
-/* On purpose: the middle of what is no disc may lie beside the obstacle's, its ends change, and the roof's corner that the top is over
- * lies beside the middle as well. share: of that, 1 of a chord. */
+/* On purpose: the middle of what is no disc may lie apart from the obstacle's, its ends change, and the roof's corner that the top is over
+ * lies apart from the middle as well. share: of that, 1 of a chord. */
 /* The square of the sine of the angle under which the top is seen from the camera's height. */
 static double below2(void) {
     goe_quantities_t q;
     goe_quantities_find(&filter, &settings, &motion, &q);
     const double below = squared((double)motion.height_m - (double)q.value[GOE_HEIGHT]);
-    const double range =
-        squared((double)q.value[GOE_X0] - (double)motion.dx_m) + squared((double)q.value[GOE_Z0] - (double)motion.dz_m);
+    const double half = q.box ? 0.5 * (double)q.value[GOE_LENGTH] : 0.0; /* from the front to the middle */
+    const double x_m = (double)q.value[GOE_X0] + half * (double)q.length_axis.x - (double)motion.dx_m;
+    const double z_m = (double)q.value[GOE_Z0] + half * (double)q.length_axis.z - (double)motion.dz_m;
+    const double range = squared(x_m) + squared(z_m);
     return below / (range + below);
 }
 
@@ -230,10 +232,30 @@ static double beyond_prism(int value) {
                                             : 0.0;
 }
 
+/* (R42): the ends of one face may be those of two. */
+static double beyond_face(int value) {
+    goe_quantities_t q;
+    goe_quantities_find(&filter, &settings, &motion, &q);
+    const double size = fmax((double)q.value[GOE_WIDTH], (double)q.value[GOE_LENGTH]);
+    switch (value) {
+        case GOE_ORIENTATION:
+            return squared(0.14);
+        case GOE_LENGTH:
+            return 0.0;
+        case GOE_WIDTH:
+            return squared(0.06 * size);
+        case GOE_HEIGHT:
+            return squared((settings.refined.top_is_highest ? 2.0 : 0.15) * size) * below2();
+        default:
+            return squared(0.1 * size);
+    }
+}
+
 static double beyond_of(int value) {
-    return filter.phase == GOE_PHASE_CHORD   ? beyond(value, 1.0, 0.15)
-           : filter.phase == GOE_PHASE_PRISM ? beyond_prism(value)
-                                             : 0.0;
+    return filter.phase == GOE_PHASE_CHORD      ? beyond(value, 1.0, 0.15)
+           : filter.phase == GOE_PHASE_PRISM    ? beyond_prism(value)
+           : filter.phase == GOE_PHASE_BOX_FACE ? beyond_face(value)
+                                                : 0.0;
 }
 
 static bool is_of_corner(int quantity) { return quantity >= GOE_ORIENTATION && quantity <= GOE_LENGTH; }
@@ -253,12 +275,11 @@ static void sigmas_are_those_of_the_state(void) {
         TEST_ASSERT_TRUE(quantities.known & GOE_HAS_POSITION);
         expected_covariance(expected);
         for (int i = 0; i < VALUES; i++) {
-            expected[i][i] += beyond_of(i);
+            expected[i][i] = expected[i][i] * (is_of_corner(i) ? early_of() : 1.0) + beyond_of(i);
         }
         for (int i = 0; i < GOE_QUANTITIES; i++) {
-            const double factor = is_of_corner(i) ? early_of() : 1.0;
             if (expected[i][i] > 0.0) {
-                CHECK_CLOSE(SHARE, 1.0, (double)quantities.sigma[i] / sqrt(expected[i][i] * factor));
+                CHECK_CLOSE(SHARE, 1.0, (double)quantities.sigma[i] / sqrt(expected[i][i]));
             }
         }
         if (quantities.known & GOE_HAS_CENTER) {
@@ -389,15 +410,13 @@ static void covariances_are_those_of_the_state(void) {
         make_any(phases[n % 5]);
         be_uncertain(1.0);
         expected_covariance(expected);
-        for (int i = 0; i < GOE_QUANTITIES; i++) {
-            expected[i][i] += beyond_of(i);
-        }
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, covariance);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             for (int j = 0; j < GOE_QUANTITIES; j++) {
                 const double factor = sqrt((is_of_corner(i) ? early_of() : 1.0) * (is_of_corner(j) ? early_of() : 1.0));
+                const double more = i == j ? beyond_of(i) : 0.0;
                 const double size = sqrt(expected[i][i] * expected[j][j]);
-                CHECK_CLOSE(2.0 * SHARE * factor * size, factor * expected[i][j], covariance[i][j]);
+                CHECK_CLOSE(2.0 * SHARE * (factor * size + more), factor * expected[i][j] + more, covariance[i][j]);
             }
         }
     }
@@ -432,7 +451,8 @@ static void what_the_own_motion_is_off_by_is_in_the_sigmas(void) {
         CHECK_CLOSE(SHARE, wide, quantities.sigma[GOE_WIDTH]);
         CHECK_CLOSE(SHARE, high, quantities.sigma[GOE_HEIGHT]);
         if (quantities.box) {
-            CHECK_CLOSE(SHARE * share, share, quantities.sigma[GOE_ORIENTATION]);
+            const double askew = hypot(share, sqrt(beyond_of(GOE_ORIENTATION)));
+            CHECK_CLOSE(SHARE * askew, askew, quantities.sigma[GOE_ORIENTATION]);
             CHECK_CLOSE(SHARE, share * (double)quantities.value[GOE_LENGTH], quantities.sigma[GOE_LENGTH]);
         }
         CHECK_CLOSE(1.0e-4, 0.2 * 0.2 * 2.0 * 2.0 + 0.01 * 2.0,
@@ -625,6 +645,19 @@ static void what_has_moved_beyond_all_bounds_is_not_told(void) {
     }
 }
 
+/* GIVEN a roof higher than any obstacle's, known to a share of its height, THEN no height is reported; the rest is. */
+static void a_height_beyond_all_bounds_is_not_reported(void) {
+    static const float high_m[] = {9.0e5f, 1.1e6f};
+    any = check_random_start("high");
+    for (size_t i = 0; i < 2; i++) {
+        make_any(GOE_PHASE_BOX);
+        be_uncertain(1.0e-3);
+        filter.state[GOE_TOP] = high_m[i] * filter.state[GOE_INVERSE_RANGE];
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        TEST_ASSERT_EQUAL_HEX(i == 0 ? 0x3Fu : 0x3Fu & ~(unsigned)GOE_HAS_HEIGHT, quantities.known);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
@@ -640,5 +673,6 @@ int main(void) {
     RUN_TEST(what_is_told_was_known_twice);
     RUN_TEST(without_a_range_nothing_is_known);
     RUN_TEST(what_has_moved_beyond_all_bounds_is_not_told);
+    RUN_TEST(a_height_beyond_all_bounds_is_not_reported);
     return UNITY_END();
 }

@@ -159,8 +159,7 @@ static void an_old_answers_centre_moves_along(void) {
     image_after(59, 1, &image);
     tell_jump(&image, 1);
     image.pose.time_us += 100000;
-    image.left.seen = image.right.seen = image.top.seen = false;
-    image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+    scene_hide_points(&image);
     CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&jumped, &image, &estimate_jumped));
     CHECK_CLOSE(1.0e-4, (double)before.center_north_m + (double)jump[0], estimate_jumped.center_north_m);
     CHECK_CLOSE(1.0e-4, (double)before.center_east_m + (double)jump[1], estimate_jumped.center_east_m);

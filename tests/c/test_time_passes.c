@@ -31,8 +31,7 @@ void tearDown(void) {}
 
 /* Nothing is seen from where the aircraft was, that much later. */
 static void wait_s(double s) {
-    last.left.seen = last.right.seen = last.top.seen = false;
-    last.base_left.seen = last.base_near.seen = last.base_right.seen = false;
+    scene_hide_points(&last);
     last.pose.time_us += (int64_t)(s * 1.0e6);
     (void)goe_update(&estimator, &last, &estimate);
 }

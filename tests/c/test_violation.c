@@ -8,31 +8,15 @@
 
 #include "check.h"
 #include "goe_guard.h"
+#include "stated.h"
 
 static goe_estimator_t estimator;
 static goe_hazard_t hazard;
 
-/* A tower of 6 m straight ahead, 100 m away, 20 m high; the camera is 50 m up, and Z is north. */
+/* A tower of 6 m straight ahead, 100 m away, 20 m high; the camera is 50 m up. */
 void setUp(void) {
-    goe_settings_t settings;
-    goe_settings_default(&settings);
-    settings.camera.fx_px = settings.camera.fy_px = 900.0f;
-    settings.camera.cx_px = settings.camera.cy_px = 640.0f;
-    settings.navigation.velocity_bias_m_s = 0.0f; /* plans are exact, but where a test says otherwise */
-    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
-    estimator.motion.heading_cos = 1.0f;
-    estimator.motion.height_m = 50.0f;
-    estimator.motion.time_us = 1000000;
-    estimator.estimate_time_us = 1000000;
-    goe_estimate_t *e = &estimator.estimate;
-    e->model = GOE_MODEL_DISC;
-    e->method = GOE_METHOD_WINDOW;
-    e->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT;
-    e->z_m = e->z0_m = 100.0f;
-    e->width_m = 6.0f;
-    e->height_m = 20.0f;
-    e->sigma.x0_m = e->sigma.z0_m = 2.0f;
-    e->sigma.height_m = 3.0f;
+    const stated_t tower = {0.0f, 100.0f, 6.0f, 20.0f, 2.0f, 3.0f, 50.0f};
+    stated_answer(&estimator, &tower);
 }
 void tearDown(void) {}
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from types import ModuleType
 from typing import Any, Callable
@@ -19,6 +20,9 @@ LOITER = 4 << 16 | 3 << 24  # PX4: AUTO.LOITER
 DO_SET_MODE, DO_GO_AROUND, DO_REPOSITION, SET_MESSAGE_INTERVAL, REQUEST_MESSAGE = 176, 191, 192, 511, 512
 BANK, BANK_RATE = math.radians(30.0), math.radians(60.0)  # of a turn, and of rolling into it
 ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that ask for messages and move nothing
+SIGNING_EPOCH_S = 1_420_070_400  # UNIX time of 2015: times of signatures count from there, in 10 us
+ACCEPTED, REJECTED, DENIED, FAILED = 0, 1, 2, 4  # results of a command
+ATTITUDE, POSITION, ODOMETRY = 31, 32, 331  # messages: ATTITUDE_QUATERNION, LOCAL_POSITION_NED
 
 
 def numbered(message: Any, mavlink: Any) -> bytes:
@@ -154,6 +158,9 @@ class Autopilot:
     """Sends and answers over a wire; `heard` is everything that came.
 
     `ignored` tells how many of a command are neither obeyed nor answered: the companion has to send them again.
+    With `most_hz` a pose comes only once it was asked for, as often as that; more often is refused by `refusal`. The
+    messages of `refused` it does not have. With a `key` it signs, and refuses what is not signed by it; its
+    clock for that may be `late_s`.
     """
 
     def __init__(
@@ -170,6 +177,11 @@ class Autopilot:
         pose_hz: float = 50.0,
         ignored: dict[int, int] | None = None,
         landing: bool = False,
+        most_hz: float | None = None,
+        refused: Sequence[int] = (),
+        refusal: int = FAILED,
+        key: bytes | None = None,
+        late_s: float = 0.0,
     ) -> None:
         self.loop, self.dialect, self.make = loop, dialect, make
         self.aircraft = aircraft or Aircraft(time_s=loop.now_s)
@@ -185,14 +197,24 @@ class Autopilot:
         self.yaw_shift = 0.0
         self.reset_counter: int | None = None  # a number: ODOMETRY is sent as well
         self.asked: list[int] = []
+        self.most_hz, self.refused, self.refusal = most_hz, refused, refusal
+        self.key, self.refused_signatures, self.late_s = key, 0, late_s
+        self.gps_fix: int | None = None  # a number: GPS_RAW_INT is sent, with this fix
+        self.filter_flags: int | None = None  # a number: the state of the filter is sent, as each make has it
         self._fresh()
         loop.every(1.0 / pose_hz, self._pose)
         loop.every(1.0, self._second)
 
     def _fresh(self) -> None:
+        self.intervals: dict[int, float] = {}  # s, of messages that were asked for
+        self.due: dict[int, float] = {}
         self.mavlink = self.dialect.MAVLink(None, srcSystem=1, srcComponent=1)
         self.parser = self.dialect.MAVLink(None)
         self.parser.robust_parsing = True
+        if self.key:
+            signing = self.parser.signing = self.mavlink.signing
+            signing.secret_key, signing.sign_outgoing = self.key, True
+            signing.timestamp = int((self.loop.unix_s - self.late_s - SIGNING_EPOCH_S) * 1e5)
 
     # ------------------------------------------------------------------------------------------------------ sending
 
@@ -210,10 +232,21 @@ class Autopilot:
         ms = int(self.clock.at(now) * 1e3)
         position = [value + shift for value, shift in zip(pose.position, self.shift)]
         q = quaternion(pose.angles[0], pose.angles[1], pose.angles[2] + self.yaw_shift)
-        self.send(self.dialect.MAVLink_attitude_quaternion_message(ms, *q, *pose.rates))
-        self.send(self.dialect.MAVLink_local_position_ned_message(ms, *position, *pose.velocity))
+        if self._is_due(ATTITUDE):
+            self.send(self.dialect.MAVLink_attitude_quaternion_message(ms, *q, *pose.rates))
+        if self._is_due(POSITION):
+            self.send(self.dialect.MAVLink_local_position_ned_message(ms, *position, *pose.velocity))
         if self.reset_counter is not None:
             self._odometry(ms * 1000, position, q, pose)
+
+    def _is_due(self, message: int) -> bool:
+        if self.most_hz is None:
+            return True
+        now, interval = self.loop.now_s + 1e-6, self.intervals.get(message)
+        if interval is None or now < self.due.get(message, 0.0):
+            return False
+        self.due[message] = max(self.due.get(message, now) + interval, now)
+        return True
 
     def _odometry(self, us: int, position: list[float], q: tuple[float, ...], pose: Pose) -> None:
         """Velocity in the body frame; level and northwards both frames are one."""
@@ -236,10 +269,21 @@ class Autopilot:
                 LAT_E7, LON_E7, int(ALT_M * 1e3), *home, [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0, us
             )
         )
+        self._send_health(us)
         if self.landing:
             send(self.dialect.MAVLink_extended_sys_state_message(0, 4))
         self.asked.append(us * 1000)
         send(self.dialect.MAVLink_timesync_message(0, us * 1000))
+
+    def _send_health(self, us: int) -> None:
+        if self.gps_fix is not None:
+            self.send(
+                self.dialect.MAVLink_gps_raw_int_message(us, self.gps_fix, LAT_E7, LON_E7, 0, 100, 100, 2000, 0, 12)
+            )
+        if self.filter_flags is not None and self.make == ARDUPILOT:
+            self.send(self.dialect.MAVLink_ekf_status_report_message(self.filter_flags, 0.1, 0.1, 0.1, 0.1, 0.0))
+        elif self.filter_flags is not None:
+            self.send(self.dialect.MAVLink_estimator_status_message(us, self.filter_flags, *6 * [0.1], 1.0, 1.0))
 
     # ---------------------------------------------------------------------------------------------------- receiving
 
@@ -247,6 +291,9 @@ class Autopilot:
         if self.silent:
             return
         for message in self.parser.parse_buffer(data) or []:
+            if message.get_type() == "BAD_DATA":
+                self.refused_signatures += 1
+                continue
             self.heard.append(Heard(self.loop.now_s, message, self.aircraft.place()))
             handle: Callable[[Any], None] | None = getattr(self, f"_on_{message.get_type().lower()}", None)
             if handle:
@@ -265,12 +312,22 @@ class Autopilot:
         self._command(message, (message.x, message.y))
 
     def _command(self, message: Any, where_e7: tuple[int, int]) -> None:
+        if self.ignored[message.command] > 0:
+            self.ignored[message.command] -= 1
+            return
         if message.command not in ASKING:
-            if self.ignored[message.command] > 0:
-                self.ignored[message.command] -= 1
-                return
             self._obey(message, where_e7)
-        self.send(self.dialect.MAVLink_command_ack_message(message.command, 0))
+        result = self._set_interval(message) if message.command == SET_MESSAGE_INTERVAL else ACCEPTED
+        self.send(self.dialect.MAVLink_command_ack_message(message.command, result))
+
+    def _set_interval(self, message: Any) -> int:
+        asked, interval = int(message.param1), message.param2 * 1e-6
+        if asked in self.refused:
+            return DENIED
+        if self.most_hz is not None and interval * self.most_hz < 0.999:
+            return self.refusal
+        self.intervals[asked] = interval
+        return ACCEPTED
 
     def _obey(self, message: Any, where_e7: tuple[int, int]) -> None:
         if message.command == DO_REPOSITION:

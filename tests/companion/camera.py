@@ -122,7 +122,7 @@ class Image:
     unix_s: float
     boot_s: float
     boxes: tuple[Box, ...]
-    age_s: float = 0.0  # when it is told
+    age_s: float = 0.0  # when it is sent
 
 
 # ------------------------------------------------------------------------------------------------------ lines of JSON

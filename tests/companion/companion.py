@@ -100,6 +100,7 @@ class Companion:
         folder.mkdir(parents=True, exist_ok=True)
         self.loop, self.folder, self.configuration = loop, folder, folder / "companion.ini"
         self.until_us = self.waits = 0
+        self.unix_ahead_us = UNIX_AHEAD_US
         self.control: socket.socket | None = None
         self.on_written: Callable[[int], None] | None = None  # called with all bytes so far that it wrote to terminals
         self.configuration.write_text(ini(settings), encoding="utf-8")
@@ -115,7 +116,7 @@ class Companion:
             **os.environ,
             "LD_PRELOAD": str(stepped_time()),
             "ASAN_OPTIONS": f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0",
-            "GOE_STEPPED_TIME": f"{theirs.fileno()} {self.loop.now_us} {UNIX_AHEAD_US}",
+            "GOE_STEPPED_TIME": f"{theirs.fileno()} {self.loop.now_us} {self.unix_ahead_us}",
         }
         command = [PROGRAM, *arguments, str(self.configuration)]
         with theirs, self._output("out", "wb") as out, self._output("err", "wb") as err:

@@ -1,5 +1,5 @@
 /* Preloaded into goe_companion, so that its clocks show the time of a test and not that of the machine. Where the program would wait
- * in poll() for something to come, it tells the test so, and goes on when the test sends it the time. SPDX-License-Identifier: MIT
+ * in poll() for something to come, it reports that to the test, and continues when the test sends the time. SPDX-License-Identifier: MIT
  *
  * GOE_STEPPED_TIME in the environment: the descriptor of a socket of packets to the test; the time of CLOCK_MONOTONIC in
  * microseconds; by how much CLOCK_REALTIME is ahead of it. Without it nothing is changed. */
@@ -21,7 +21,7 @@
 #define AT_ONCE_MAX 10000 /* calls of poll() at one time: more of them are a busy loop */
 #define ABANDONED 4       /* exit status: the test has ended */
 
-/* What the test is told: stepped.py reads it. */
+/* What the test reads: see stepped.py. */
 typedef struct {
     int64_t until_us; /* the program waits until then, at the longest */
     int64_t waits;    /* so far */

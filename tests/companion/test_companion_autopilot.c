@@ -257,6 +257,63 @@ static void a_range_finder_is_taken_upright(void) {
     CHECK_CLOSE(1e-3, 20.0f, autopilot.range_finder_down_m - autopilot.position.z);
 }
 
+static void show_text(const char *text) {
+    mavlink_message_t message;
+    char field[MAVLINK_MSG_STATUSTEXT_FIELD_TEXT_LEN + 1] = "";
+    (void)strncpy(field, text, sizeof field - 1u);
+    (void)mavlink_msg_statustext_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, MAV_SEVERITY_INFO, field, 0, 0);
+    autopilot_take(&autopilot, &message, own_us);
+}
+
+static void the_end_of_an_avoidance_is_read_from_its_text(void) {
+    show_text("Avoid: Performing action: 3");
+    TEST_ASSERT_EQUAL_INT64(0, autopilot.recovered_us);
+    show_text("Avoid: Resuming with action: 1");
+    TEST_ASSERT_EQUAL_INT64(own_us, autopilot.recovered_us);
+}
+
+static void show_landed_state(uint8_t state) {
+    mavlink_message_t message;
+    (void)mavlink_msg_extended_sys_state_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 0, state);
+    autopilot_take(&autopilot, &message, own_us);
+}
+
+static void approach_and_touchdown_are_read(void) {
+    show_landed_state(MAV_LANDED_STATE_LANDING);
+    TEST_ASSERT_TRUE(autopilot.landing && !autopilot.on_ground);
+    show_landed_state(MAV_LANDED_STATE_ON_GROUND);
+    TEST_ASSERT_TRUE(!autopilot.landing && autopilot.on_ground);
+    show_landed_state(MAV_LANDED_STATE_IN_AIR);
+    TEST_ASSERT_FALSE(autopilot.landing || autopilot.on_ground);
+}
+
+static void the_place_that_it_flies_to_is_kept(void) {
+    mavlink_message_t message;
+    mavlink_position_target_global_int_t target;
+    (void)memset(&target, 0, sizeof target);
+    target.lat_int = 474000000;
+    target.lon_int = 85000000;
+    (void)mavlink_msg_position_target_global_int_encode(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, &target);
+    autopilot_take(&autopilot, &message, own_us);
+    autopilot_take(&autopilot, &message, own_us);
+    TEST_ASSERT_EQUAL_INT32(474000000, autopilot.target_lat_e7);
+    TEST_ASSERT_EQUAL_INT32(85000000, autopilot.target_lon_e7);
+    TEST_ASSERT_EQUAL_UINT(2, autopilot.targets);
+}
+
+/* Its messages are asked for again, each at the rate that is wanted. */
+static void a_restart_of_the_autopilot_asks_for_everything_again(void) {
+    config.link_request_rates = 1;
+    config.link_attitude_hz = config.link_position_hz = 25.0;
+    go_on(20);
+    TEST_ASSERT_TRUE(autopilot.rates.count > 2);
+    autopilot.rates.rate[0].hz = 5.0;
+    boot_ms = 0;
+    go_on(20);
+    TEST_ASSERT_EQUAL_UINT32(1, (uint32_t)autopilot.restarts);
+    CHECK_CLOSE(0.01, 25.0, autopilot.rates.rate[0].hz);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(samples_reach_the_flight_layer_at_their_own_time);
@@ -271,5 +328,9 @@ int main(void) {
     RUN_TEST(odometry_counts_resets_that_show_no_step);
     RUN_TEST(a_counter_that_rises_with_a_step_tells_nothing_new);
     RUN_TEST(a_range_finder_is_taken_upright);
+    RUN_TEST(the_end_of_an_avoidance_is_read_from_its_text);
+    RUN_TEST(approach_and_touchdown_are_read);
+    RUN_TEST(the_place_that_it_flies_to_is_kept);
+    RUN_TEST(a_restart_of_the_autopilot_asks_for_everything_again);
     return UNITY_END();
 }

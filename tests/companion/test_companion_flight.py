@@ -192,7 +192,7 @@ def test_its_frames_are_numbered(plain: Flight) -> None:
 def test_it_asks_for_its_rates(plain: Flight) -> None:
     asked = {m.param1: m.param2 for m in plain.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL}
     for message in (31, 32):  # ATTITUDE_QUATERNION, LOCAL_POSITION_NED
-        assert asked[message] == pytest.approx(20000.0)
+        assert asked[message] == pytest.approx(40000.0)
     assert len([m for m in plain.of("COMMAND_LONG") if m.command in ASKING]) < 60
 
 
@@ -307,7 +307,7 @@ def rows_of(log: Path) -> list[dict[str, str]]:
 
 
 def test_the_log_holds_every_detection(fleet: Fleet, log: Path) -> None:
-    assert {file.name for file in log.iterdir()} == {"camera.ini", "frames.csv"}
+    assert {file.name for file in log.iterdir()} == {"camera.ini", "frames.csv", "orders.csv"}
     rows = rows_of(log)
     assert len(rows) > 0.9 * len(fleet["recorded"].detector.poses) - 5
 

@@ -1,19 +1,20 @@
 /* Orders: when a command goes out, when none does, and when the mode before comes back. SPDX-License-Identifier: MIT */
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include "check.h"
 #include "orders.h"
+#include "receiver.h"
 
 #define SYSTEM 1
 #define MISSION (4u << 16 | 4u << 24)
 #define LOITER (4u << 16 | 3u << 24)
 #define LAND (4u << 16 | 6u << 24)
 #define POSITION (3u << 16)
+#define AUTO 10u /* of ArduPlane */
+#define CRUISE 7u
+#define AVOID 14u
+#define PLANE_LOITER 12u
 #define STEP_US 100000 /* between assessments */
 
 static companion_config_t config;
@@ -24,23 +25,10 @@ static orders_t orders;
 static goe_flight_assessment_t assessment;
 static goe_mavlink_own_t own;
 static int64_t now_us;
-static int receiver;             /* where the companion's messages arrive */
+static receiver_t receiver;      /* where the companion's messages arrive */
 static mavlink_message_t latest; /* command that arrived */
-
-static void open_wire(void) {
-    struct sockaddr_in address;
-    socklen_t size = sizeof address;
-    char where[64], fault[128];
-    (void)memset(&address, 0, sizeof address);
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    receiver = socket(AF_INET, SOCK_DGRAM, 0);
-    TEST_ASSERT_EQUAL_INT(0, bind(receiver, (struct sockaddr *)&address, sizeof address));
-    TEST_ASSERT_EQUAL_INT(0, getsockname(receiver, (struct sockaddr *)&address, &size));
-    (void)snprintf(where, sizeof where, "udpout:127.0.0.1:%d", ntohs(address.sin_port));
-    wire.link = link_open(where, fault, sizeof fault);
-    TEST_ASSERT_NOT_NULL_MESSAGE(wire.link, fault);
-}
+static bool has_arrived[256];    /* traffic, by the last byte of its address */
+static int arrived;              /* messages of traffic */
 
 void setUp(void) {
     const char *bad = NULL;
@@ -56,10 +44,10 @@ void setUp(void) {
     config.reaction_mode = REACTION_PX4;
     config.reaction_modes = 3;
     config.reaction_resume = 1;
+    config.reaction_adsb_hz = 2.0;
+    config.reaction_icao = 0xF0E000;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, &bad));
-    open_wire();
-    wire.system = SYSTEM;
-    wire.component = 196;
+    receiver_open(&receiver, &wire);
     autopilot.system = SYSTEM;
     autopilot.kind = MAV_AUTOPILOT_PX4;
     autopilot.base_mode = MAV_MODE_FLAG_SAFETY_ARMED;
@@ -71,33 +59,35 @@ void setUp(void) {
     orders_init(&orders, &wire, &config, &autopilot, &flight);
 }
 
-void tearDown(void) {
-    link_close(wire.link);
-    (void)close(receiver);
-}
+void tearDown(void) { receiver_close(&receiver, &wire); }
 
 /* How many commands of this number have come since the last call, the latest of them in `latest`. */
 static int count_commands(uint16_t number) {
-    uint8_t bytes[512];
     int count = 0;
-    for (;;) {
-        const ssize_t size = recv(receiver, bytes, sizeof bytes, MSG_DONTWAIT);
-        mavlink_message_t message;
-        mavlink_status_t status;
-        if (size <= 0) {
-            return count;
+    mavlink_message_t message;
+    while (receiver_next(&receiver, &message)) {
+        if (message.msgid == MAVLINK_MSG_ID_ADSB_VEHICLE) {
+            has_arrived[mavlink_msg_adsb_vehicle_get_ICAO_address(&message) & 0xFFu] = true;
+            arrived++;
         }
-        for (ssize_t i = 0; i < size; i++) {
-            if (mavlink_parse_char(MAVLINK_COMM_1, bytes[i], &message, &status) == 0) {
-                continue;
-            }
-            const bool is_int = message.msgid == MAVLINK_MSG_ID_COMMAND_INT;
-            const uint16_t command =
-                is_int ? mavlink_msg_command_int_get_command(&message) : mavlink_msg_command_long_get_command(&message);
-            latest = command == number ? message : latest;
-            count += command == number ? 1 : 0;
+        if (message.msgid != MAVLINK_MSG_ID_COMMAND_INT && message.msgid != MAVLINK_MSG_ID_COMMAND_LONG) {
+            continue;
         }
+        const bool is_int = message.msgid == MAVLINK_MSG_ID_COMMAND_INT;
+        const uint16_t command =
+            is_int ? mavlink_msg_command_int_get_command(&message) : mavlink_msg_command_long_get_command(&message);
+        latest = command == number ? message : latest;
+        count += command == number ? 1 : 0;
     }
+    return count;
+}
+
+/* How many messages of traffic have come since the last call. */
+static int count_traffic(void) {
+    arrived = 0;
+    (void)memset(has_arrived, 0, sizeof has_arrived);
+    (void)count_commands(0);
+    return arrived;
 }
 
 /* The flight layer's order, about the obstacle in slot 0. */
@@ -116,6 +106,7 @@ static void go_on(int assessments, uint32_t mode) {
         if (now_us % 1000000 == 0) {
             autopilot.custom_mode = mode;
             autopilot.heartbeats++;
+            autopilot.heartbeat_us = now_us;
         }
         orders_follow(&orders, &assessment, &own, now_us);
     }
@@ -319,8 +310,380 @@ static void nothing_at_all_goes_out_while_reactions_are_off(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
+/* What forbids an order is looked at again for as long as the order stands. */
+static void what_hinders_an_order_may_end(void) {
+    for (int k = 0; k < 3; k++) {
+        orders_init(&orders, &wire, &config, &autopilot, &flight);
+        autopilot.base_mode = k == 0 ? 0 : MAV_MODE_FLAG_SAFETY_ARMED;
+        autopilot.custom_mode = k == 1 ? POSITION : MISSION;
+        autopilot.origin_given = k != 2;
+        decide(GOE_FLIGHT_LEFT);
+        go_on(20, autopilot.custom_mode);
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+        TEST_ASSERT_TRUE(orders.silenced);
+        autopilot.base_mode = MAV_MODE_FLAG_SAFETY_ARMED;
+        autopilot.origin_given = true;
+        go_on(12, MISSION);
+        TEST_ASSERT_FALSE(orders.silenced);
+        TEST_ASSERT_TRUE(count_commands(MAV_CMD_DO_REPOSITION) >= 1);
+        decide(GOE_FLIGHT_NONE);
+        go_on(1, MISSION);
+        (void)count_commands(0);
+    }
+}
+
+/* Also what begins to hinder it. */
+static void an_order_that_is_disarmed_is_not_repeated(void) {
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    autopilot.base_mode = 0;
+    (void)count_commands(0);
+    go_on(30, MISSION);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+/* After touchdown no landing is broken off; a bounce is a flight again. */
+static void nothing_is_sent_on_the_ground(void) {
+    autopilot.custom_mode = LAND;
+    autopilot.on_ground = true;
+    decide(GOE_FLIGHT_GO_AROUND);
+    go_on(20, LAND);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
+    autopilot.on_ground = false;
+    go_on(1, LAND);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+}
+
+/* GIVEN an order that has led to its mode, WHEN the pilot goes back to the mode before, and the target moves, THEN the order is not
+ * repeated over him, and no mode is asked for. */
+static void the_mode_before_may_be_the_pilots_choice(void) {
+    know_obstacle(true);
+    ordered();
+    assessment.target_lat_e7 += 10000;
+    go_on(11, LOITER); /* sent again, and not acknowledged yet */
+    (void)count_commands(0);
+    go_on(10, MISSION);
+    (void)count_commands(0);
+    go_on(60, MISSION);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+    TEST_ASSERT_TRUE(orders.silenced);
+    decide(GOE_FLIGHT_NONE);
+    go_on(30, MISSION);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+/* GIVEN an order, WHEN the autopilot flies to another place, as of a pilot's Hold or reposition, THEN it is left to him. */
+static void a_place_that_the_pilot_chose_is_left_to_him(void) {
+    ordered();
+    autopilot.target_lat_e7 = assessment.target_lat_e7 + 100; /* a metre: rounding */
+    autopilot.target_lon_e7 = assessment.target_lon_e7;
+    autopilot.targets++;
+    go_on(30, LOITER);
+    TEST_ASSERT_FALSE(orders.silenced);
+    autopilot.target_lat_e7 = assessment.target_lat_e7 + 10000; /* 110 m */
+    for (int k = 0; k < 3; k++) {
+        autopilot.targets++;
+        go_on(5, LOITER);
+    }
+    TEST_ASSERT_TRUE(orders.silenced);
+    assessment.target_lat_e7 -= 10000;
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+/* An autopilot may acknowledge the mode and refuse the place, as for its fence: that is no pilot's choice. */
+static void a_place_that_was_never_flown_to_is_no_choice(void) {
+    ordered();
+    autopilot.target_lat_e7 = assessment.target_lat_e7 + 10000;
+    autopilot.target_lon_e7 = assessment.target_lon_e7;
+    for (int k = 0; k < 5; k++) {
+        autopilot.targets++;
+        go_on(5, LOITER);
+    }
+    TEST_ASSERT_FALSE(orders.silenced);
+}
+
+/* The old place may be reported for a while after another was sent. */
+static void a_place_that_is_reported_late_is_no_choice(void) {
+    ordered();
+    autopilot.target_lat_e7 = assessment.target_lat_e7;
+    autopilot.target_lon_e7 = assessment.target_lon_e7;
+    autopilot.targets++;
+    go_on(5, LOITER);
+    assessment.target_lat_e7 += 10000;
+    go_on(15, LOITER);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    for (int k = 0; k < 4; k++) {
+        autopilot.targets++;
+        go_on(5, LOITER);
+    }
+    TEST_ASSERT_FALSE(orders.silenced);
+}
+
+/* GIVEN an acknowledgement that comes late WHEN the next heartbeat still shows the mode before THEN that is no pilot's choice. */
+static void a_late_acknowledgement_gives_the_mode_its_time(void) {
+    decide(GOE_FLIGHT_LEFT);
+    go_on(60, MISSION);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    go_on(15, MISSION);
+    TEST_ASSERT_FALSE(orders.silenced);
+    go_on(30, MISSION);
+    TEST_ASSERT_TRUE(orders.silenced);
+}
+
+static void another_action_may_be_accepted_where_one_was_denied(void) {
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_DENIED);
+    (void)count_commands(0);
+    decide(GOE_FLIGHT_RIGHT);
+    go_on(1, MISSION);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+/* The top over home, with the clearance: what the flight layer's target holds. */
+static void a_go_around_carries_the_height_that_the_top_requires(void) {
+    know_obstacle(true);
+    flight.slot[0].valid |= GOE_HAS_HEIGHT;
+    autopilot.has_home = true;
+    autopilot.home_down_m = 2.0f;
+    decide(GOE_FLIGHT_GO_AROUND);
+    assessment.target_ned_m[2] = -45.0f;
+    go_on(1, LAND);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+    CHECK_SAME(47.0f, mavlink_msg_command_long_get_param1(&latest));
+    flight.slot[0].valid = GOE_HAS_POSITION; /* no top: the autopilot's own height */
+    go_on(5, LAND);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+    CHECK_SAME(0.0f, mavlink_msg_command_long_get_param1(&latest));
+}
+
+/* ------------------------------------------------------------------------------------------------------- arduplane -- */
+
+static void fly_arduplane(void) {
+    config.reaction_mode = REACTION_ARDUPLANE;
+    autopilot.kind = MAV_AUTOPILOT_ARDUPILOTMEGA;
+    autopilot.custom_mode = AUTO;
+    own.origin_known = true;
+    know_obstacle(true);
+    flight.origin_known = true;
+    flight.slot[3].used = true;
+    flight.slot[3].valid = GOE_HAS_POSITION;
+    flight.slot[5].used = true; /* without a position yet */
+    decide(GOE_FLIGHT_LEFT);
+}
+
+static void every_obstacle_is_traffic(void) {
+    fly_arduplane();
+    go_on(20, AUTO);
+    TEST_ASSERT_EQUAL_INT(8, count_traffic()); /* two obstacles, twice a second */
+    TEST_ASSERT_TRUE(has_arrived[0] && has_arrived[3]);
+    TEST_ASSERT_FALSE(has_arrived[5]);
+}
+
+static void a_pilots_mode_ends_traffic(void) {
+    fly_arduplane();
+    go_on(20, AUTO);
+    go_on(20, CRUISE);
+    (void)count_traffic();
+    go_on(50, CRUISE);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic());
+    go_on(50, AUTO);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic()); /* it is the pilot's, until all orders have ended */
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, AUTO);
+    decide(GOE_FLIGHT_RIGHT);
+    go_on(10, AUTO);
+    TEST_ASSERT_TRUE(count_traffic() > 0);
+}
+
+/* Out of the autopilot's avoidance back into the mode before it. */
+static void a_pilots_way_out_of_avoidance_ends_traffic(void) {
+    fly_arduplane();
+    go_on(20, AUTO);
+    go_on(30, AVOID);
+    TEST_ASSERT_TRUE(count_traffic() > 0);
+    go_on(30, AUTO);
+    (void)count_traffic();
+    go_on(50, AUTO);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic());
+}
+
+/* The autopilot reports when it ends its avoidance by itself: the obstacle may come ahead again. */
+static void an_avoidance_that_the_autopilot_ends_goes_on(void) {
+    fly_arduplane();
+    go_on(20, AUTO);
+    go_on(30, AVOID);
+    autopilot.recovered_us = now_us;
+    go_on(50, AUTO);
+    (void)count_traffic();
+    go_on(10, AUTO);
+    TEST_ASSERT_TRUE(count_traffic() > 0);
+    go_on(20, AVOID);
+    go_on(30, AUTO);
+    (void)count_traffic();
+    go_on(20, AUTO);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic());
+}
+
+/* As AVD_F_RCVRY 3 out of CRUISE: it loiters, and the next avoidance comes from there. */
+static void a_recovery_into_another_mode_is_the_autopilots(void) {
+    fly_arduplane();
+    go_on(20, CRUISE);
+    orders_init(&orders, &wire, &config, &autopilot, &flight);
+    go_on(20, CRUISE);
+    go_on(30, AVOID);
+    autopilot.recovered_us = now_us;
+    go_on(50, PLANE_LOITER);
+    (void)count_traffic();
+    go_on(10, PLANE_LOITER);
+    TEST_ASSERT_TRUE(count_traffic() > 0);
+    go_on(30, CRUISE);
+    (void)count_traffic();
+    go_on(20, CRUISE);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic());
+}
+
+/* --------------------------------------------------------------------------------------------------------- restarts -- */
+
+static const order_left_t left = {.stands = true,
+                                  .action = GOE_FLIGHT_LEFT,
+                                  .mode_before = MISSION,
+                                  .boot_us = 900000,
+                                  .unix_us = 1790000000000000,
+                                  .obstacle_ne_m = {200.0f, 0.0f},
+                                  .radius_m = 5.0f,
+                                  .course_ne = {1.0f, 0.0f}};
+
+static void take_over(float north_m, int64_t since_us) {
+    autopilot.custom_mode = LOITER;
+    autopilot.position.x = north_m;
+    own.time_usec = (uint64_t)left.boot_us + 3000000u;
+    own.unix_usec = (uint64_t)(left.unix_us + since_us);
+    orders_take_over(&orders, &left);
+    decide(GOE_FLIGHT_NONE);
+    go_on(20, LOITER);
+}
+
+static void a_restarted_companion_goes_back_to_the_mode_before(void) {
+    know_obstacle(true);
+    take_over(100.0f, 3000000);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    decide(GOE_FLIGHT_LEFT);
+    go_on(20, LOITER);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    go_on(20, LOITER);
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+    CHECK_SAME(4.0f, mavlink_msg_command_long_get_param2(&latest));
+    CHECK_SAME(4.0f, mavlink_msg_command_long_get_param3(&latest));
+}
+
+static void a_restarted_companion_goes_back_once_the_logged_obstacle_is_passed(void) {
+    take_over(210.0f, 3000000);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    autopilot.position.x = 230.0f; /* behind by its radius and the margin */
+    go_on(5, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+/* Another boot of the autopilot, and a pilot who has taken over meanwhile. */
+static void an_order_of_another_flight_is_not_taken_over(void) {
+    take_over(230.0f, 60000000);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    orders_init(&orders, &wire, &config, &autopilot, &flight);
+    take_over(100.0f, 3000000);
+    go_on(20, POSITION);
+    autopilot.position.x = 230.0f;
+    go_on(20, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+/* An order that was left to the pilot is not resumed; a row that was torn does not count. */
+static void the_log_tells_whether_an_order_stands(void) {
+    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
+    order_log_t log = {NULL};
+    order_left_t read;
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    TEST_ASSERT_TRUE(order_log_open(&log, folder));
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    orders.log = &log;
+    know_obstacle(true);
+    ordered();
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    TEST_ASSERT_EQUAL_UINT32(MISSION, read.mode_before);
+    TEST_ASSERT_EQUAL_UINT(GOE_FLIGHT_LEFT, read.action);
+    go_on(20, POSITION);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, MISSION);
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    (void)fputs("1,2,0,1,3,1,0,5,6,7,en", log.stream);
+    (void)fflush(log.stream);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    (void)fputs("d\n", log.stream);
+    (void)fflush(log.stream);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    orders.log = NULL;
+    order_log_close(&log);
+    (void)remove(path);
+    (void)rmdir(folder);
+}
+
+/* GIVEN a companion that is restarted twice, and no new order between, THEN the second log still has the order; its end is there, too. */
+static void an_order_that_was_taken_over_stands_in_the_next_log(void) {
+    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
+    order_log_t log = {NULL};
+    order_left_t read;
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
+    TEST_ASSERT_TRUE(order_log_open(&log, folder));
+    orders.log = &log;
+    take_over(100.0f, 3000000);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    TEST_ASSERT_EQUAL_UINT32(MISSION, read.mode_before);
+    CHECK_SAME(200.0f, read.obstacle_ne_m[0]);
+    CHECK_SAME(1.0f, read.course_ne[0]);
+    TEST_ASSERT_EQUAL_INT64(left.unix_us + 3000000, read.unix_us);
+    go_on(20, POSITION);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    orders_init(&orders, &wire, &config, &autopilot, &flight);
+    orders.log = &log;
+    take_over(230.0f, 3000000);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read)); /* passed */
+    orders.log = NULL;
+    order_log_close(&log);
+    (void)remove(path);
+    (void)rmdir(folder);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(an_order_that_was_taken_over_stands_in_the_next_log);
+    RUN_TEST(a_recovery_into_another_mode_is_the_autopilots);
+    RUN_TEST(the_log_tells_whether_an_order_stands);
+    RUN_TEST(what_hinders_an_order_may_end);
+    RUN_TEST(an_order_that_is_disarmed_is_not_repeated);
+    RUN_TEST(nothing_is_sent_on_the_ground);
+    RUN_TEST(the_mode_before_may_be_the_pilots_choice);
+    RUN_TEST(a_place_that_the_pilot_chose_is_left_to_him);
+    RUN_TEST(a_place_that_was_never_flown_to_is_no_choice);
+    RUN_TEST(a_place_that_is_reported_late_is_no_choice);
+    RUN_TEST(a_late_acknowledgement_gives_the_mode_its_time);
+    RUN_TEST(another_action_may_be_accepted_where_one_was_denied);
+    RUN_TEST(a_go_around_carries_the_height_that_the_top_requires);
+    RUN_TEST(every_obstacle_is_traffic);
+    RUN_TEST(a_pilots_mode_ends_traffic);
+    RUN_TEST(a_pilots_way_out_of_avoidance_ends_traffic);
+    RUN_TEST(an_avoidance_that_the_autopilot_ends_goes_on);
+    RUN_TEST(a_restarted_companion_goes_back_to_the_mode_before);
+    RUN_TEST(a_restarted_companion_goes_back_once_the_logged_obstacle_is_passed);
+    RUN_TEST(an_order_of_another_flight_is_not_taken_over);
     RUN_TEST(an_order_is_repeated_until_it_is_acknowledged);
     RUN_TEST(a_target_that_moves_is_sent_once_a_second_at_most);
     RUN_TEST(what_is_denied_is_not_asked_for_again);

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import math
+import signal
 import statistics
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -27,19 +30,26 @@ TO_PX4 = {"reaction": {"mode": "px4"}, "flight": STOPS}
 TO_ARDUPLANE = {"reaction": {"mode": "arduplane"}}
 AVOIDS, STAYS, PAST = "px4", "px4 without resume", "px4, mast aside"
 OVERRULED, AT_ONCE = "px4 and its pilot", "px4 and its pilot, at once"
+KILLED, FORGETFUL = "px4, companion killed", "px4, companion killed without a log"
 LANDING, LANDING_PLANE = "px4 on approach", "arduplane on approach"
 TRAFFIC, LOW_TRAFFIC, NO_TRAFFIC = "arduplane", "arduplane, low mast", "arduplane, mast aside"
+PILOT_OUT, BY_ITSELF = "arduplane, its pilot ends the avoidance", "arduplane ends its avoidance by itself"
 PLANE = {"make": ARDUPILOT}
+AVOID_ADSB = 14  # mode of ArduPlane
 PLANS = [
     Plan(AVOIDS, settings=TO_PX4, autopilot={"ignored": {DO_REPOSITION: IGNORED, DO_SET_MODE: 1}}),
     Plan(STAYS, settings={"reaction": {"mode": "px4", "resume": 0}, "flight": STOPS}),
     Plan(OVERRULED, settings=TO_PX4),
     Plan(AT_ONCE, settings=TO_PX4),
+    Plan(KILLED, settings=TO_PX4, recorded=True),
+    Plan(FORGETFUL, settings=TO_PX4),
     Plan(PAST, settings=TO_PX4, obstacles=ASIDE),
     Plan(LANDING, settings=TO_PX4, obstacles=(LOW,), autopilot={"landing": True}),
     Plan(LANDING_PLANE, settings=TO_ARDUPLANE, obstacles=(LOW,), autopilot={**PLANE, "landing": True}),
     Plan(TRAFFIC, settings={"reaction": {"mode": "arduplane", "icao": hex(ICAO)}}, autopilot=PLANE),
     Plan(LOW_TRAFFIC, settings=TO_ARDUPLANE, obstacles=(LOW,), autopilot=PLANE),
+    Plan(PILOT_OUT, settings=TO_ARDUPLANE, autopilot=PLANE),
+    Plan(BY_ITSELF, settings=TO_ARDUPLANE, autopilot=PLANE),
     Plan(NO_TRAFFIC, settings=TO_ARDUPLANE, obstacles=ASIDE, autopilot=PLANE),
 ]
 
@@ -62,18 +72,67 @@ class Pilot:
         self.since_s = self.loop.now_s
 
 
+class Avoidance:
+    """Of ArduPlane's: into AVOID_ADSB when traffic comes, and after 2 s back, once. By itself it says so."""
+
+    def __init__(self, flight: Flight, by_itself: bool) -> None:
+        self.flight, self.by_itself = flight, by_itself
+        self.since_s = math.inf  # of the way back
+        self.seen = False
+        flight.loop.every(0.05, self._look)
+
+    def _look(self) -> None:
+        if not self.seen and self.flight.of("ADSB_VEHICLE"):
+            self.seen = True
+            self.flight.autopilot.set_mode(AVOID_ADSB)
+            self.flight.loop.after(2.0, self._back)
+
+    def _back(self) -> None:
+        autopilot = self.flight.autopilot
+        autopilot.set_mode(MODES[ARDUPILOT])
+        self.since_s = self.flight.loop.now_s
+        if self.by_itself:
+            autopilot.send(autopilot.dialect.MAVLink_statustext_message(6, b"Avoid: Resuming with action: 1"))
+
+
+class Killer:
+    """Kills the companion, once, so long after the order, and starts it again."""
+
+    def __init__(self, flight: Flight, after_s: float) -> None:
+        self.flight, self.after_s = flight, after_s
+        self.seen = False
+        flight.loop.every(0.05, self._look)
+
+    def _look(self) -> None:
+        if self.flight.autopilot.mode == LOITER and not self.seen:
+            self.seen = True
+            self.flight.loop.after(self.after_s, self._strike)
+
+    def _strike(self) -> None:
+        self.flight.companion.stop(signal.SIGKILL)
+        self.flight.companion.start()
+
+
 @pytest.fixture(scope="module", name="pilots")
 def all_pilots() -> dict[str, Pilot]:
     return {}
 
 
+@pytest.fixture(scope="module", name="avoidances")
+def all_avoidances() -> dict[str, Avoidance]:
+    return {}
+
+
 @pytest.fixture(scope="module", name="fleet")
-def flown(make_fleet: MakeFleet, pilots: dict[str, Pilot]) -> Iterator[Fleet]:
+def flown(make_fleet: MakeFleet, pilots: dict[str, Pilot], avoidances: dict[str, Avoidance]) -> Iterator[Fleet]:
     fleet = make_fleet(PLANS)
     fleet.start()
     pilots.update({name: Pilot(fleet[name], after_s) for name, after_s in ((OVERRULED, 2.0), (AT_ONCE, 0.01))})
+    avoidances.update({name: Avoidance(fleet[name], name == BY_ITSELF) for name in (PILOT_OUT, BY_ITSELF)})
+    killers = [Killer(fleet[name], 1.5) for name in (KILLED, FORGETFUL)]
     fleet.run(FLIGHT_S)
     fleet.stop()
+    assert all(killer.seen for killer in killers)
     yield fleet
 
 
@@ -170,6 +229,32 @@ def test_what_the_pilot_chose_is_not_taken_from_him(fleet: Fleet, pilots: dict[s
     assert fleet[name].autopilot.modes == [MODES[PX4], LOITER, POSITION]
 
 
+def test_after_a_restart_in_an_order_the_mode_comes_back(fleet: Fleet) -> None:
+    """By the log of the companion that was killed; without one it stays where it loiters."""
+    assert fleet[KILLED].autopilot.modes == [MODES[PX4], LOITER, MODES[PX4]]
+    assert fleet[FORGETFUL].autopilot.modes == [MODES[PX4], LOITER]
+    assert [m.text for m in fleet[KILLED].of("STATUSTEXT") if "restarted in an order" in m.text]
+
+
+def log_rows(folder: Path) -> list[dict[str, str]]:
+    with open(folder / "orders.csv", encoding="ascii") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_log_has_the_orders(fleet: Fleet) -> None:
+    """With both clocks, the mode before and what was sent."""
+    log = fleet[KILLED].log
+    rows = log_rows(log)
+    assert [row["event"] for row in rows][:3] == ["order", "reposition", "acknowledged"]
+    assert {row["stands"] for row in rows} == {"1"} and rows[0]["action_name"] in ("left", "right")
+    assert {int(row["mode_before"]) for row in rows} == {MODES[PX4]}
+    assert float(rows[0]["obstacle_n_m"]) == pytest.approx(MAST.north_m, abs=25.0)
+    times = [int(row["unix_us"]) for row in rows]
+    assert times == sorted(times) and times[0] > 1_700_000_000 * 1_000_000
+    after = log_rows(log.with_name(log.name + "-2"))
+    assert after[-1]["stands"] == "0" and {"end", "resume"} & {row["event"] for row in after}
+
+
 @pytest.mark.parametrize("name", [PAST, NO_TRAFFIC])
 def test_a_mast_aside_is_passed(fleet: Fleet, name: str) -> None:
     flight = fleet[name]
@@ -183,6 +268,13 @@ def test_on_approach_it_goes_around(fleet: Fleet, name: str) -> None:
     told = fleet[name].autopilot.commands()
     assert [m.command for m in told if m.get_type().startswith("COMMAND")][:1] == [DO_GO_AROUND]
     assert orders(fleet[name]) == []
+
+
+@pytest.mark.parametrize("name", [LANDING, LANDING_PLANE])
+def test_the_go_around_carries_its_height(fleet: Fleet, name: str) -> None:
+    """Over home: the mast's top and the clearance of 10 m, with what the top is uncertain by."""
+    told = [m for m in fleet[name].autopilot.commands() if m.command == DO_GO_AROUND]
+    assert LOW.height_m + 9.0 < told[0].param1 < LOW.height_m + 40.0
 
 
 # ------------------------------------------------------------------------------------------------------------ arduplane
@@ -245,3 +337,17 @@ def test_traffic_ends_behind_the_mast(fleet: Fleet) -> None:
 def test_arduplane_is_given_no_order(fleet: Fleet, name: str) -> None:
     """Its own avoidance turns away."""
     assert fleet[name].autopilot.commands() == []
+
+
+def test_a_pilot_who_ends_the_avoidance_gets_no_more_traffic(fleet: Fleet, avoidances: dict[str, Avoidance]) -> None:
+    """Once two heartbeats have shown it."""
+    since_s = avoidances[PILOT_OUT].since_s
+    times = [heard.time_s for heard in fleet[PILOT_OUT].autopilot.heard_of("ADSB_VEHICLE")]
+    assert since_s < math.inf and max(times) < since_s + 2.3
+    assert any("pilot" in message.text for message in fleet[PILOT_OUT].of("STATUSTEXT"))
+
+
+def test_an_avoidance_that_ends_by_itself_gets_more_traffic(fleet: Fleet, avoidances: dict[str, Avoidance]) -> None:
+    since_s = avoidances[BY_ITSELF].since_s
+    times = [heard.time_s for heard in fleet[BY_ITSELF].autopilot.heard_of("ADSB_VEHICLE")]
+    assert since_s < math.inf and len([time for time in times if time > since_s + 2.5]) > 3

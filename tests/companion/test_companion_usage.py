@@ -279,6 +279,24 @@ def test_nothing_moves_it_to_use_the_processor(make: Make) -> None:
         assert companion.stop().status == 0
 
 
+def test_who_hears_nobody_learns_how_to_listen(make: Make) -> None:
+    """Once, after ten seconds."""
+    companion = make(usual())
+    companion.start()
+    companion.loop.run(13.0)
+    ended = companion.stop()
+    assert ended.err.count("no autopilot is heard") == 1 and "0.0.0.0" in ended.err
+
+
+@pytest.mark.parametrize("host, warnings", [(HOST, 0), ("0.0.0.0", 2)])
+def test_who_listens_to_every_network_is_warned(make: Make, host: str, warnings: int) -> None:
+    link, detections = f"udpin:{host}:{free_port()}", f"udp:{host}:{free_port()}"
+    companion = make({"link": {"autopilot": link}, "detections": {"from": detections}})
+    companion.start()
+    companion.loop.run(0.5)
+    assert companion.stop().err.count("is open to every network") == warnings
+
+
 def test_end_of_standard_input_is_no_end(make: Make) -> None:
     """The autopilot is still told that the detector is silent."""
     companion = make({**usual(), "detections": {"from": "stdin"}})

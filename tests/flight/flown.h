@@ -20,7 +20,7 @@ typedef struct {
     float score;
     bool sees;                 /* the detector sees the obstacle */
     bool points;               /* it gives points and base corners, no box */
-    uint32_t reset_horizontal; /* told by samples from now on ... */
+    uint32_t reset_horizontal; /* in all samples from now on ... */
     uint32_t reset_vertical;
     float jump_ned_m[3];   /* of the latest reset, and added to their positions ... */
     float jumped_ned_m[3]; /* ... as is what the resets before it came to */

@@ -135,7 +135,7 @@ static void a_known_jump_of_down_moves_the_ground_along(void) {
     }
 }
 
-/* GIVEN a descent, and jumps of down in it THEN boxes count by the height that is left, which the changes of down tell. */
+/* GIVEN a descent, and jumps of down in it THEN boxes count by the height that is left, which follows from the changes of down. */
 static void boxes_count_by_the_height_that_is_left(void) {
     goe_image_t image;
     scene_truth_t truth;
@@ -165,7 +165,7 @@ static void a_known_jump_of_down_moves_the_ground_before_the_next_image(void) {
     CHECK_CLOSE(1e-3, before.height_m, after.height_m);
 }
 
-/* Between images that saw nothing, and after them: the jump is told with the next one. */
+/* Between images that saw nothing, and after them: the next one reports the jump. */
 static void a_jump_of_down_between_lost_images_counts(void) {
     flown.scene.glide_deg = other.scene.glide_deg = 3.0;
     (void)flown_fly(&flown, 2.5);
@@ -181,7 +181,7 @@ static void a_jump_of_down_between_lost_images_counts(void) {
 }
 
 /* GIVEN marks of which one changes THEN the delta of the other axes is not read. */
-static void a_mark_tells_of_its_own_axes_alone(void) {
+static void a_mark_counts_in_its_own_axes_only(void) {
     (void)flown_fly(&flown, 3.04);
     const goe_flight_obstacle_t before = obstacle_of(&flown);
     goe_flight_attitude_t attitude;
@@ -301,7 +301,7 @@ int main(void) {
     RUN_TEST(boxes_count_by_the_height_that_is_left);
     RUN_TEST(a_known_jump_of_down_moves_the_ground_before_the_next_image);
     RUN_TEST(a_jump_of_down_between_lost_images_counts);
-    RUN_TEST(a_mark_tells_of_its_own_axes_alone);
+    RUN_TEST(a_mark_counts_in_its_own_axes_only);
     RUN_TEST(a_track_after_the_jump_has_the_ground_of_its_own_time);
     RUN_TEST(an_unknown_jump_takes_no_warning_back);
     RUN_TEST(a_counter_that_skips_is_an_unknown_jump);

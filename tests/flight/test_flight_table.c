@@ -62,7 +62,7 @@ static void valid_says_what_an_obstacle_tells(void) {
     }
 }
 
-/* GIVEN images that do not tell a position yet THEN that makes nothing suspect. */
+/* GIVEN images that show no position yet THEN that makes nothing suspect. */
 static void a_track_without_a_position_is_not_suspect(void) {
     goe_flight_obstacle_t obstacle;
     int images = 0;

@@ -1,8 +1,8 @@
-/* What goe_companion reads, fuzzed: its configuration, detections as JSON, MAVLink. SPDX-License-Identifier: MIT
+/* What goe_companion reads, fuzzed: its configuration, a log of orders, detections as JSON, MAVLink. SPDX-License-Identifier: MIT
  *
- * The first letter of the input says which: c a configuration, d lines of a detector, w bytes of a link; with any other the rest is
- * messages of an autopilot: number, time to wait, length, bytes of each. Messages go the whole way: samples, clock, assessment,
- * orders and reports. The link is this file's own: what is sent goes nowhere. */
+ * The first letter of the input says which: c a configuration, o a log of orders, d lines of a detector, w bytes of a link; with any
+ * other the rest is messages of an autopilot: number, time to wait, length, bytes of each. Messages go the whole way: samples, clock,
+ * health, assessment, orders and reports. The link is this file's own: what is sent goes nowhere. */
 #include <math.h>
 #include <string.h>
 
@@ -12,8 +12,10 @@
 #include "fuzz.h"
 #include "fuzz_file.h"
 #include "fuzz_input.h"
+#include "health.h"
 #include "image_queue.h"
 #include "line_reader.h"
+#include "margins.h"
 #include "orders.h"
 #include "reports.h"
 
@@ -49,6 +51,9 @@ bool link_check(const char *where, char *fault, size_t fault_size) {
     return *where == 'u' || *where == 's';
 }
 
+bool link_is_wide(const char *where) { return where == NULL; }
+bool link_is_local(const char *where) { return where == NULL; }
+
 link_t *link_open(const char *where, char *fault, size_t fault_size) {
     (void)where;
     (void)fault;
@@ -73,6 +78,8 @@ size_t link_read(link_t *link, uint8_t *bytes, size_t size) {
 }
 
 void link_answer(link_t *link) { (void)link; }
+void link_greet(link_t *link) { (void)link; }
+void link_release(link_t *link) { (void)link; }
 bool link_is_answered(const link_t *link) { return link != NULL; }
 
 bool link_write(link_t *link, const uint8_t *bytes, size_t size) {
@@ -93,8 +100,11 @@ void link_close(link_t *link) { (void)link; }
 
 static companion_config_t config;
 static goe_flight_t flight;
+static goe_flight_t spare;
 static autopilot_t autopilot;
 static orders_t orders;
+static health_t health;
+static screen_t screen;
 static wire_t wire;
 static camera_image_t image;
 static image_queue_t queue;
@@ -128,6 +138,10 @@ static void start(void) {
     now_us = INT64_C(5000000000);
     autopilot_init(&autopilot, &config, &flight, &wire);
     orders_init(&orders, &wire, &config, &autopilot, &flight);
+    (void)memset(&health, 0, sizeof health);
+    (void)memset(&screen, 0, sizeof screen);
+    screen.on = true;
+    orders.screen = &screen;
     image_queue_clear(&queue);
 }
 
@@ -146,7 +160,7 @@ static void try_config(const uint8_t *data, size_t size) {
         (void)fuzz_file(1, "camera.ini", camera, sizeof camera - 1u);
     }
     const char *path = fuzz_file(0, "companion.ini", data, size);
-    if (companion_config_read(path, &config, &error)) {
+    if (companion_config_read(path, NULL, &config, &error)) {
         fuzz_counts[CONFIGS].times++;
         companion_config_print(sink, &config);
         FUZZ_HOLDS(goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, NULL) == GOE_FLIGHT_OK);
@@ -155,6 +169,18 @@ static void try_config(const uint8_t *data, size_t size) {
         FUZZ_HOLDS(memchr(error.text, '\0', sizeof error.text) != NULL);
         FUZZ_HOLDS(error.text[0] != '\0' && strchr(error.text, '\n') == NULL);
     }
+}
+
+/* ------------------------------------------------------------------------------------------------------ log of orders -- */
+
+static void try_orders(const uint8_t *data, size_t size) {
+    char folder[FUZZ_PATH_MAX];
+    order_left_t left;
+    (void)snprintf(folder, sizeof folder, "%s", fuzz_file(2, "orders.csv", data, size));
+    *strrchr(folder, '/') = '\0';
+    FUZZ_HOLDS(order_log_read(folder, &left) == left.stands);
+    FUZZ_HOLDS(isfinite(left.obstacle_ne_m[0]) && isfinite(left.obstacle_ne_m[1]) && isfinite(left.radius_m));
+    orders_take_over(&orders, &left);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- detections -- */
@@ -217,6 +243,11 @@ static void follow(void) {
     goe_flight_assessment_t assessment;
     const uint32_t clock_us = (uint32_t)autopilot_clock_us(&autopilot, now_us);
     autopilot_ask(&autopilot, now_us);
+    if (health_judge(&health, now_us)) {
+        FUZZ_HOLDS(*health_text(health.doubts) != '\0');
+        FUZZ_HOLDS(margins_set(&flight, &spare, &config, health.doubts != 0));
+    }
+    screen_go_on(&screen, &wire, now_us);
     if (goe_flight_assess(&flight, clock_us, autopilot.landing, &assessment) == GOE_FLIGHT_OK) {
         const goe_mavlink_own_t own = reports_own(&autopilot, now_us, UNIX_US + now_us);
         const delay_count_t delay = {0.0, 0.0, 0, 0};
@@ -230,7 +261,11 @@ static void follow(void) {
 
 static void on_message(void *user, const mavlink_message_t *message) {
     (void)user;
+    if (autopilot_is_stranger(&autopilot, now_us)) {
+        return;
+    }
     autopilot_take(&autopilot, message, now_us);
+    health_take(&health, message, now_us);
     orders_take(&orders, message);
     fuzz_counts[MESSAGES].times++;
 }
@@ -255,7 +290,12 @@ static const uint32_t kinds[] = {MAVLINK_MSG_ID_ATTITUDE_QUATERNION,
                                  MAVLINK_MSG_ID_HOME_POSITION,
                                  MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN,
                                  MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
-                                 MAVLINK_MSG_ID_COMMAND_ACK};
+                                 MAVLINK_MSG_ID_COMMAND_ACK,
+                                 MAVLINK_MSG_ID_STATUSTEXT,
+                                 MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT,
+                                 MAVLINK_MSG_ID_GPS_RAW_INT,
+                                 MAVLINK_MSG_ID_ESTIMATOR_STATUS,
+                                 MAVLINK_MSG_ID_EKF_STATUS_REPORT};
 
 static void try_messages(const uint8_t *data, size_t size) {
     fuzz_input_t in = {data, size};
@@ -291,6 +331,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     switch (data[0]) {
         case 'c':
             try_config(data + 1, size - 1u);
+            break;
+        case 'o':
+            try_orders(data + 1, size - 1u);
             break;
         case 'd':
             try_detections(data + 1, size - 1u);

@@ -1133,7 +1133,7 @@ def stream(folder: Path, rows: int) -> tuple[int, float]:
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs /proc to measure memory")
 def test_a_million_rows(tmp_path: Path) -> None:
-    """Memory does not grow with the number of rows. How many there are in a second, bench_replay.py tells."""
+    """Memory does not grow with the number of rows. bench_replay.py measures how many there are in a second."""
     little, _ = stream(tmp_path, ROWS // 20)
     much, _ = stream(tmp_path, ROWS)
     assert much < little + 1024

@@ -179,6 +179,7 @@ void proof_settings_camera(void) {
 void proof_settings_general(void) {
     ANY_BITS(settings);
     GOE_SETTINGS_GENERAL(REFUSES)
+    GOE_SETTINGS_VELOCITY(REFUSES)
     GOE_SETTINGS_WINDOW(REFUSES)
 }
 

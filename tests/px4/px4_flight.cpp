@@ -22,9 +22,6 @@ void Px4Flight::begin(uint64_t clock_us, bool set_camera) {
         standin::set("GOE_CAM_W", CAMERA_PX);
         standin::set("GOE_CAM_H", CAMERA_PX);
         standin::set("GOE_CAM_FX", flown.scene.camera.fx_px);
-        standin::set("GOE_CAM_FY", flown.scene.camera.fy_px);
-        standin::set("GOE_CAM_CX", flown.scene.camera.cx_px);
-        standin::set("GOE_CAM_CY", flown.scene.camera.cy_px);
     }
     tells_pose = tells_images = in_step = true;
     follows = set_camera;
@@ -32,10 +29,13 @@ void Px4Flight::begin(uint64_t clock_us, bool set_camera) {
     quat_reset_counter = 0;
     compared = 0;
     _statuses = _obstacles = 0;
+    standin::set_other("NAV_LOITER_RAD", 80.f);
+    standin::set_other("FW_AIRSPD_TRIM", 15.f);
+    set_mode(false, vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER);
     TEST_ASSERT_EQUAL(0, goe_command("start"));
     if (follows) {
         GoeParameters parameters;
-        goe_parameters_read(parameters);
+        goe_parameters_read(parameters, has_wings);
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&reference, sizeof reference, &parameters.estimator,
                                                          &parameters.flight, nullptr));
     }
@@ -141,7 +141,10 @@ void Px4Flight::set_mode(bool armed, uint8_t nav_state) {
     topic.timestamp = standin::now_us();
     topic.arming_state = armed ? vehicle_status_s::ARMING_STATE_ARMED : vehicle_status_s::ARMING_STATE_DISARMED;
     topic.nav_state = nav_state;
-    topic.system_id = topic.component_id = 1;
+    topic.vehicle_type =
+        has_wings ? vehicle_status_s::VEHICLE_TYPE_FIXED_WING : vehicle_status_s::VEHICLE_TYPE_ROTARY_WING;
+    topic.system_id = system;
+    topic.component_id = 1;
     standin::publish(ORB_ID(vehicle_status), &topic);
 }
 

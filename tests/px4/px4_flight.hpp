@@ -40,6 +40,8 @@ class Px4Flight {
     void publish_image(int k, uint64_t capture_us); /* of sample k */
     goe_features_s features_of(int k) const;
     void set_mode(bool armed, uint8_t nav_state);
+    bool has_wings{true};
+    uint8_t system{1}; /* 0: the vehicle does not know its number yet */
 
     goe_status_s status() const;
     bool obstacle(goe_obstacle_s &topic) const; /* the latest one */

@@ -4,7 +4,8 @@
 #include "goe_mavlink.h"
 
 static constexpr uint8_t NO_CAMERA = 255;
-static constexpr uint16_t FEATURES = 42700;
+static constexpr uint16_t FEATURES = 4270;
+static constexpr uint8_t SYSTEM = 1, COMPONENT = 1; /* as Px4Flight::set_mode() has them */
 
 extern "C" void setUp(void) { standin::begin(1000000u); }
 extern "C" void tearDown(void) {}
@@ -147,10 +148,44 @@ static void a_tunnel_that_is_cut_holds_one_less() {
 static void others_tunnels_are_theirs() {
     mavlink_tunnel_s tunnel{};
     goe_mavlink_sighting_t sighting;
-    unsigned offset = 0;
     append(tunnel, features(1));
-    tunnel.payload_type = 0;
-    TEST_ASSERT_FALSE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
+    for (const uint16_t type : {0, 200, 42700}) { /* types above 32767 are for experiments that nobody else sees */
+        unsigned offset = 0;
+        tunnel.payload_type = type;
+        TEST_ASSERT_FALSE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
+    }
+}
+
+/* Images that are taken of one TUNNEL to this system and component, by a vehicle that is system 1, component 1. */
+static unsigned taken_of_tunnel_to(uint8_t system, uint8_t component, bool knows_itself) {
+    static Px4Flight flight;
+    mavlink_tunnel_s tunnel{};
+    flight.system = knows_itself ? SYSTEM : 0;
+    flight.begin();
+    flight.follows = flight.tells_images = false;
+    flight.fly(0.5);
+    goe_mavlink_features_t message = features(1);
+    message.time_usec = standin::now_us() - 50000u;
+    tunnel.timestamp = standin::now_us();
+    tunnel.payload_type = FEATURES;
+    tunnel.target_system = system;
+    tunnel.target_component = component;
+    append(tunnel, message);
+    standin::publish(ORB_ID(mavlink_tunnel), &tunnel);
+    flight.fly(0.5);
+    const unsigned taken = flight.status().taken;
+    flight.end();
+    return taken;
+}
+
+static void a_tunnel_to_another_vehicle_is_not_taken() {
+    TEST_ASSERT_EQUAL(1, taken_of_tunnel_to(SYSTEM, COMPONENT, true));
+    TEST_ASSERT_EQUAL(1, taken_of_tunnel_to(SYSTEM, 0, true)); /* any component */
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(SYSTEM, 191, true));
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(2, COMPONENT, true));
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(0, 0, true)); /* to everybody: boxes are of one vehicle's camera */
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(SYSTEM, COMPONENT, false));
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(0, 0, false));
 }
 
 /* Random bytes, lengths and types: each call moves on or ends, and what is not understood names no camera that there is. */
@@ -166,6 +201,7 @@ static void any_bytes_in_a_tunnel_are_borne() {
         }
         tunnel.timestamp = standin::now_us();
         tunnel.payload_type = FEATURES;
+        tunnel.target_system = SYSTEM;
         tunnel.payload_length = static_cast<uint8_t>(check_random_bits(&random));
         tunnel.payload[0] = static_cast<uint8_t>(check_random_bits(&random) % 80u);
         standin::publish(ORB_ID(mavlink_tunnel), &tunnel);
@@ -202,6 +238,8 @@ static void a_flight_by_tunnel_is_that_by_topic() {
             }
             tunnel.timestamp = standin::now_us();
             tunnel.payload_type = FEATURES;
+            tunnel.target_system = SYSTEM;
+            tunnel.target_component = COMPONENT;
             append(tunnel, message);
             standin::publish(ORB_ID(mavlink_tunnel), &tunnel);
             standin::settle();
@@ -395,7 +433,7 @@ static void set_camera(GoeParameters &parameters) {
     camera.width_px = camera.height_px = 1280.f;
 }
 
-/* Those of the layer, but for what was measured with PX4's filter and what PX4 does at a target. */
+/* Those of the layer, but for what was measured with PX4's filter. */
 static void the_defaults_are_the_layers_but_for_px4s_own() {
     GoeParameters parameters;
     GoeParameters expected;
@@ -405,11 +443,71 @@ static void the_defaults_are_the_layers_but_for_px4s_own() {
     expected.estimator.navigation.attitude_bias_deg = 1.f;
     expected.estimator.navigation.attitude_drift_deg = 0.5f;
     expected.estimator.navigation.attitude_white_deg = 0.3f;
-    expected.flight.loiter_m = 80.f;
-    goe_parameters_read(parameters);
+    standin::begin(1000000u);
+    standin::set_other("NAV_LOITER_RAD", 80.f);
+    goe_parameters_read(parameters, false);
     TEST_ASSERT_FALSE(goe_parameters_differ(expected, parameters));
     TEST_ASSERT_EQUAL(0, parameters.react);
     TEST_ASSERT_EQUAL(0, parameters.resume);
+}
+
+static GoeParameters of_wings(float loiter_m, float speed_m_s, float bank_deg) {
+    GoeParameters parameters;
+    standin::begin(1000000u);
+    standin::set_other("NAV_LOITER_RAD", loiter_m);
+    standin::set_other("FW_AIRSPD_TRIM", speed_m_s);
+    standin::set_other("FW_R_LIM", bank_deg);
+    goe_parameters_read(parameters, true);
+    return parameters;
+}
+
+static void a_fixed_wing_tells_loiter_bank_and_climb() {
+    GoeParameters parameters = of_wings(90.f, 15.f, 50.f);
+    CHECK_SAME(90.f, parameters.flight.loiter_m);
+    CHECK_SAME(30.f, parameters.flight.bank_deg);
+    CHECK_SAME(0.f, parameters.narrow_loiter_m);
+    parameters = of_wings(200.f, 15.f, 20.f);
+    CHECK_SAME(20.f, parameters.flight.bank_deg);
+    standin::set_other("FW_T_CLMB_MAX", 2.f);
+    goe_parameters_read(parameters, true);
+    CHECK_SAME(2.f, parameters.flight.climb_m_s);
+    standin::set_other("FW_T_CLMB_MAX", 5.f);
+    standin::set_other("NAV_LOITER_RAD", NAN);
+    goe_parameters_read(parameters, true);
+    CHECK_SAME(2.5f, parameters.flight.climb_m_s);
+    CHECK_SAME(0.f, parameters.flight.loiter_m);
+    standin::set_other("NAV_LOITER_RAD", 200.f);
+    goe_parameters_read(parameters, false); /* without wings there is no circle */
+    CHECK_SAME(0.f, parameters.flight.loiter_m);
+    CHECK_SAME(30.f, parameters.flight.bank_deg);
+    standin::begin(1000000u); /* a firmware without these */
+    goe_parameters_read(parameters, true);
+    CHECK_SAME(0.f, parameters.flight.loiter_m);
+}
+
+static void a_circle_that_cannot_be_flown_is_widened() {
+    GoeParameters parameters = of_wings(60.f, 22.f, 50.f);
+    CHECK_CLOSE(0.2, 85.5, parameters.flight.loiter_m); /* 22^2 / (g tan 30) */
+    CHECK_SAME(60.f, parameters.narrow_loiter_m);
+    parameters = of_wings(60.f, 22.f, 20.f);
+    CHECK_CLOSE(0.3, 135.6, parameters.flight.loiter_m);
+}
+
+static void a_camera_of_square_pixels_needs_three_numbers() {
+    GoeParameters parameters;
+    standin::begin(1000000u);
+    standin::set("GOE_CAM_W", 1280.f);
+    standin::set("GOE_CAM_H", 720.f);
+    standin::set("GOE_CAM_FX", 900.f);
+    goe_parameters_read(parameters, false);
+    CHECK_SAME(900.f, parameters.estimator.camera.fy_px);
+    CHECK_SAME(640.f, parameters.estimator.camera.cx_px);
+    CHECK_SAME(360.f, parameters.estimator.camera.cy_px);
+    standin::set("GOE_CAM_CY", 350.f);
+    standin::set("GOE_CAM_FY", NAN);
+    goe_parameters_read(parameters, false);
+    CHECK_SAME(350.f, parameters.estimator.camera.cy_px);
+    TEST_ASSERT_TRUE(__builtin_isnan(parameters.estimator.camera.fy_px)); /* which the layer refuses */
 }
 
 /* Each parameter changes four bytes of the settings, and no two the same. */
@@ -417,16 +515,23 @@ static void each_parameter_has_a_place_of_its_own() {
     GoeParameters before;
     GoeParameters after;
     bool taken[sizeof(GoeParameters) / sizeof(float)] = {};
-    goe_parameters_read(before);
+    const auto begin = [] { /* nothing of the camera follows from something else */
+                            standin::begin(1000000u);
+                            for (const char *name : {"GOE_CAM_FY", "GOE_CAM_CX", "GOE_CAM_CY"}) {
+                                standin::set(name, 1.f);
+                            }
+    };
+    begin();
+    goe_parameters_read(before, false);
     for (const auto &parameter : px4::standin_parameter) {
         unsigned changed = 0;
-        standin::begin(1000000u);
+        begin();
         if (parameter.is_int) {
             standin::set(parameter.name, static_cast<int32_t>(parameter.standard) + 1);
         } else {
             standin::set(parameter.name, static_cast<float>(parameter.standard) + 0.5f);
         }
-        goe_parameters_read(after);
+        goe_parameters_read(after, false);
         for (size_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
             const char *const word[] = {reinterpret_cast<const char *>(&before),
                                         reinterpret_cast<const char *>(&after)};
@@ -455,7 +560,7 @@ static void every_range_lies_within_the_layers() {
             } else {
                 standin::set(parameter.name, static_cast<float>(end));
             }
-            goe_parameters_read(parameters);
+            goe_parameters_read(parameters, false);
             if (!must_be_set) {
                 const goe_camera_t camera = parameters.estimator.camera;
                 set_camera(parameters);
@@ -487,6 +592,7 @@ int main() {
     RUN_TEST(a_tunnel_holds_three_boxes);
     RUN_TEST(a_tunnel_that_is_cut_holds_one_less);
     RUN_TEST(others_tunnels_are_theirs);
+    RUN_TEST(a_tunnel_to_another_vehicle_is_not_taken);
     RUN_TEST(any_bytes_in_a_tunnel_are_borne);
     RUN_TEST(a_flight_by_tunnel_is_that_by_topic);
     RUN_TEST(a_landing_target_is_a_box_of_a_calibrated_age);
@@ -500,6 +606,9 @@ int main() {
     RUN_TEST(conflicts_are_told_where_px4_has_the_topic);
 #endif
     RUN_TEST(the_defaults_are_the_layers_but_for_px4s_own);
+    RUN_TEST(a_fixed_wing_tells_loiter_bank_and_climb);
+    RUN_TEST(a_circle_that_cannot_be_flown_is_widened);
+    RUN_TEST(a_camera_of_square_pixels_needs_three_numbers);
     RUN_TEST(each_parameter_has_a_place_of_its_own);
     RUN_TEST(every_range_lies_within_the_layers);
     return UNITY_END();

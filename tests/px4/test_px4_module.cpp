@@ -351,15 +351,62 @@ static void what_costs_no_track_takes_effect_at_once() {
     TEST_ASSERT_FALSE(flight.status().settings_waiting);
 }
 
-static void the_range_of_the_sectors_is_a_parameter() {
+static void the_sectors_reach_two_hundred_metres() {
     obstacle_distance_s topic{};
+    flight.fly(1.5);
+    TEST_ASSERT_TRUE(standin::latest(ORB_ID(obstacle_distance), 0, &topic));
+    TEST_ASSERT_EQUAL(20000, topic.max_distance);
+}
+
+static void a_loiter_radius_that_is_too_small_is_told() {
     flight.follows = false;
-    for (const float range_m : {50.f, 650.f}) {
-        standin::set("GOE_DIST_MAX", range_m);
-        flight.fly(1.5);
-        TEST_ASSERT_TRUE(standin::latest(ORB_ID(obstacle_distance), 0, &topic));
-        TEST_ASSERT_EQUAL(static_cast<int>(100.f * range_m), topic.max_distance);
+    standin::set_other("NAV_LOITER_RAD", 60.f);
+    standin::set_other("FW_AIRSPD_TRIM", 22.f);
+    flight.fly(1.2);
+    TEST_ASSERT_TRUE(says(standin::mavlink_texts(), "goe: NAV_LOITER_RAD 60 too small, 85 used"));
+    const std::string so_far = standin::mavlink_texts();
+    standin::set("GOE_OUT", 0);
+    flight.fly(3.0);
+    TEST_ASSERT_TRUE(so_far == standin::mavlink_texts()); /* once */
+}
+
+static void wings_that_come_later_are_noticed() {
+    flight.end();
+    flight.has_wings = false;
+    flight.begin();
+    flight.follows = false;
+    standin::set_other("NAV_LOITER_RAD", 60.f);
+    standin::set_other("FW_AIRSPD_TRIM", 22.f);
+    flight.fly(2.0);
+    TEST_ASSERT_FALSE(says(standin::mavlink_texts(), "NAV_LOITER_RAD")); /* a multicopter flies no circle */
+    flight.has_wings = true;
+    flight.set_mode(false, vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER);
+    flight.fly(0.5);
+    TEST_ASSERT_TRUE(says(standin::mavlink_texts(), "NAV_LOITER_RAD 60 too small"));
+}
+
+/* As the ground station shows it. */
+static void a_bad_parameter_is_told_by_its_name() {
+    flight.follows = false;
+    for (const auto &parameter : px4::standin_parameter) {
+        if (parameter.is_int || strcmp(parameter.name, "GOE_LT_DELAY") == 0) {
+            continue;
+        }
+        flight.end();
+        flight.begin();
+        flight.follows = false;
+        const bool is_place =
+            strlen(parameter.name) == 9 && strncmp(parameter.name, "GOE_CAM_", 8) == 0 && parameter.name[8] >= 'X';
+        standin::set(parameter.name,
+                     static_cast<float>((is_place ? 200.0 : 1.5) * parameter.most)); /* the layer takes 10 km */
+        flight.fly(1.2);
+        TEST_ASSERT_TRUE_MESSAGE(
+            says(standin::mavlink_texts(), (std::string("not set right: ") + parameter.name).c_str()), parameter.name);
     }
+}
+
+static void a_user_sets_fifteen() {
+    TEST_ASSERT_EQUAL(15 + 12, px4::standin_parameters); /* and the lens, the camera's place, LANDING_TARGET */
 }
 
 static void a_bad_parameter_leaves_the_old_ones() {
@@ -473,7 +520,11 @@ int main() {
     RUN_TEST(a_change_in_flight_waits_for_the_end_of_the_tracks);
     RUN_TEST(one_that_is_taken_back_waits_for_nothing);
     RUN_TEST(what_costs_no_track_takes_effect_at_once);
-    RUN_TEST(the_range_of_the_sectors_is_a_parameter);
+    RUN_TEST(the_sectors_reach_two_hundred_metres);
+    RUN_TEST(a_loiter_radius_that_is_too_small_is_told);
+    RUN_TEST(wings_that_come_later_are_noticed);
+    RUN_TEST(a_bad_parameter_is_told_by_its_name);
+    RUN_TEST(a_user_sets_fifteen);
     RUN_TEST(a_bad_parameter_leaves_the_old_ones);
     RUN_TEST(without_a_camera_nothing_is_done_and_said_so);
     RUN_TEST(all_parameters_are_marked_as_used);

@@ -80,8 +80,23 @@ def test_its_range_is_that_of_the_setting(parameter: Parameter) -> None:
         assert (float(low), float(high)) == ranges()[setting]
 
 
+def test_a_user_sets_fifteen() -> None:
+    users = [parameter.fields["User"] for parameter in parameters()]
+    assert users.count("Standard") == 15
+    assert users.count("Advanced") == len(users) - 15 == 11  # the lens and the camera's place
+
+
+def test_a_bad_setting_has_the_name_of_its_parameter() -> None:
+    names = dict(re.findall(r'\{"([\w.\[\]]+)", "GOE_(\w+)"\}', SOURCE))
+    table = {parameter.member: parameter.name for parameter in parameters()}
+    made = {field: table[member] for member, field in assigned().items()}
+    assert {field.removeprefix("navigation."): name for field, name in names.items()} == {
+        field.removeprefix("navigation."): name for field, name in made.items()
+    }
+
+
 def test_every_parameter_is_read() -> None:
-    assert len(parameters()) == len(re.findall(r"AP_GROUPINFO\w*\(", SOURCE)) == 49
+    assert len(parameters()) == len(re.findall(r"AP_GROUPINFO\w*\(", SOURCE)) == 26
     for parameter in parameters():
         assert sum(parameter.member in path.read_text(encoding="utf-8") for path in (PORT / "AP_GOE").iterdir()) >= 2
 

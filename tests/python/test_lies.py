@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import copy
+import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import goe
 import numpy as np
@@ -28,7 +30,7 @@ from goe_tools.lies import (
     world,
 )
 from goe_tools.lies.decode import decode
-from goe_tools.lies.finds import CAUSES, COLUMNS, KINDS, find
+from goe_tools.lies.finds import CAUSES, COLUMNS, FRESH_MOST_S, GONE_MOST, KINDS, SAFE_MOST, WARNS_LEAST, find
 from goe_tools.lies.genes import BASE, BOXES, MIXES, OUTLINES, POINTS, Params
 from goe_tools.lies.judge import QUANTITIES, judge
 from goe_tools.lies.record import write
@@ -36,9 +38,10 @@ from goe_tools.lies.search import Flown
 from goe_tools.lies.shapes import Solid
 from goe_tools.lies.show import misses
 from goe_tools.lies.shrink import Want
-from goe_tools.lies.tally import tally_of
+from goe_tools.lies.tally import Example, Tally, tally_of
 from goe_tools.logs.obslog import Frame, read_log
 from goe_tools.spread import ALONE
+from goe_tools.view.answers import Options, settings_of
 
 RNG_SEED = 20
 QUIET = ("constant_scale", "pose_scale", "pixel_scale")
@@ -395,6 +398,12 @@ def test_an_unknown_reset_may_end_the_track_and_not_the_truth(honest: Flown) -> 
     flown.world.unknown = np.arange(len(flown.world.flight)) == k
     again = find(flown.world, flown.found, judge(flown.world, flown.found))
     assert CAUSES[again.cause[k, 0]] == "unknown reset" and again.vanished[k, 0]
+    flown.world.unknown = np.arange(len(flown.world.flight)) == k - 1
+    taken = find(flown.world, flown.found, judge(flown.world, flown.found))
+    assert CAUSES[taken.cause[k, 0]] == "other"
+    flown.world.refused = flown.world.unknown  # the next image shows the counter
+    refused = find(flown.world, flown.found, judge(flown.world, flown.found))
+    assert CAUSES[refused.cause[k, 0]] == "unknown reset"
 
 
 # ---------------------------------------------------------------------------------------------- shrinking and breeding
@@ -481,6 +490,47 @@ def test_breeding_goes_on_from_the_worst(monkeypatch: pytest.MonkeyPatch) -> Non
     assert evolve.evolve(1, [BASE], 1, ALONE).keys() >= evolve.evolve(1, [BASE], 0, ALONE).keys()
 
 
+# ------------------------------------------------------------------------------------------------------ recorded finds
+
+LIES = Path(__file__).parents[1] / "data" / "lies"
+KNOWN = {row["find"]: row for row in csv.DictReader((LIES / "known.csv").read_text(encoding="utf-8").splitlines())}
+
+
+def replayed(folder: Path, found: dict[str, Any]) -> list[tuple[goe.Estimate, goe.Hazard | None]]:
+    """The answer to each image of a log, by the options and the plan of its find.json."""
+    log = read_log(folder)
+    words = found["replay"].split()
+    named = dict(word.split("=") for word in words if not word.startswith("--") and "=" in word)
+    model = next((word.partition("=")[2] for word in words if word.startswith("--model=")), "auto")
+    options = Options(model=model, settings={name: float(value) for name, value in named.items()})
+    estimator, plan = goe.Estimator(goe.Settings.from_names(settings_of(log, options))), goe.Plan(**found["plan"])
+    return [(estimator.update(image_of(frame)), estimator.decide(plan)[1]) for frame in log.frames]
+
+
+@pytest.mark.parametrize("folder", sorted(LIES.glob("*/")), ids=lambda folder: str(folder.name))
+def test_a_recorded_find_is_cured_or_listed(folder: Path) -> None:
+    """A find that is cured leaves known.csv; its log stays."""
+    found = json.loads((folder / "find.json").read_text(encoding="utf-8"))
+    answered, k = replayed(folder, found), found["image"]
+    (estimate, now), (_, before) = answered[k], answered[k - 1]
+    figure = "no answer" if now is None else f"{now.violation:.3g}"
+    if found["kind"] == "vanished":
+        warned = before is not None and before.violation >= WARNS_LEAST
+        lie = warned and (now is None or now.violation < GONE_MOST)
+    else:
+        trusted = not estimate.suspect and estimate.age_s <= FRESH_MOST_S
+        lie = now is not None and now.violation < SAFE_MOST and trusted
+    assert lie == (folder.name in KNOWN), f"now {figure}"
+    if lie:
+        recorded = KNOWN[folder.name]["figure"]
+        assert recorded == figure or float(recorded) == pytest.approx(float(figure), abs=0.005)
+
+
+def test_known_finds_have_logs_and_reasons() -> None:
+    assert KNOWN.keys() <= {folder.name for folder in LIES.glob("*/")}
+    assert all(len(row["reason"]) > 20 for row in KNOWN.values())
+
+
 # --------------------------------------------------------------------------------------------------------- the command
 
 
@@ -520,6 +570,16 @@ def test_finds_are_written_as_logs(
         assert found["wrong"] in printed and len(read_log(folder).frames) > found["image"]
 
 
+def test_lost_warnings_are_written_before_frequent_errors() -> None:
+    tally = Tally()
+    for kind, count in (("confident", 9), ("vanished", 1), ("vanished", 2), ("false safety", 5)):
+        key = (kind, "base", f"{count}", "box", "cuboid", "0")
+        tally.examples[key] = Example(0, 0, 0)
+        tally.counts[("class", *key)] = count
+    chosen = command._chosen(tally, 1, [BASE])
+    assert [key[2] for key, _ in chosen.values()] == ["2", "1", "5", "9"]
+
+
 def test_one_mix_for_some_seconds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "one.json"
     words = ["lies", "--mix", "points", "--seconds", "60", "--flights", "50", "--jobs", "1", "--json", str(file)]
@@ -543,7 +603,7 @@ def test_bad_usage(words: list[str], capsys: pytest.CaptureFixture[str]) -> None
     assert "too small" in capsys.readouterr().err
 
 
-def test_the_evidence_tells_the_goals_by_mix() -> None:
+def test_the_evidence_lists_the_goals_by_mix() -> None:
     counts = {"flights|points": 1000, "confident|points|any": 4, "flights|base": 1000, "vanished|base|any": 1}
     rows = {row.what: row for row in evidence_lies.rows_of(counts, ["points", "base"])}
     assert rows["flights"].figure == "2,000"

@@ -1,4 +1,4 @@
-"""No test is about the speed of the machine: none asserts what a clock told; what guards against a hang waits long."""
+"""No test is about the speed of the machine: none asserts what a clock showed; guards against hangs wait long."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ GUARD_S = 300  # at least
 
 
 def reads_a_clock(node: ast.AST, told: set[str]) -> bool:
-    """An expression of a clock, or of what one has told."""
+    """An expression of a clock, or of what one has shown."""
     for part in ast.walk(node):
         if isinstance(part, ast.Attribute):
             of_module = isinstance(part.value, ast.Name) and part.value.id in MODULES
@@ -37,7 +37,7 @@ def assigned(node: ast.AST) -> tuple[list[ast.AST], ast.AST | None]:
 
 
 def names_of_times(function: ast.AST) -> set[str]:
-    """Local names that hold what a clock has told."""
+    """Local names that hold what a clock has shown."""
     told: set[str] = set()
     before = -1
     while len(told) != before:
@@ -65,7 +65,7 @@ def timed(text: str) -> Iterator[int]:
     yield from sorted(lines)
 
 
-def test_no_test_asserts_what_a_clock_told() -> None:
+def test_no_test_asserts_what_a_clock_showed() -> None:
     """Within a function: a time that another function returns is not known for one."""
     paths = sorted(TESTS.rglob("*.py"))
     assert len(paths) > 90

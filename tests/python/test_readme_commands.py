@@ -168,6 +168,7 @@ RUN_BY = {
 # Commands in a tree that no machine of the tests has.
 IN_A_TREE_OF_ZEPHYR = "needs a workspace of Zephyr: tests/rtos builds the same sources among what stands in for it"
 IN_A_TREE_OF_NUTTX = "needs NuttX and its apps: tests/rtos builds the same sources among what stands in for them"
+IN_A_TREE_OF_ARDUPILOT = "needs ArduPilot: tests/ardupilot builds the same sources over headers of its own"
 NOT_RUN = {
     "west ...": IN_A_TREE_OF_ZEPHYR,
     "export EXTRA_ZEPHYR_MODULES=...": IN_A_TREE_OF_ZEPHYR,
@@ -177,6 +178,8 @@ NOT_RUN = {
     "kconfig-tweak ...": IN_A_TREE_OF_NUTTX,
     "make": IN_A_TREE_OF_NUTTX,
     "make olddefconfig": IN_A_TREE_OF_NUTTX,
+    "python3 -m pip install empy==3.3.4 ...": IN_A_TREE_OF_ARDUPILOT,
+    "Tools/environment_install/install-prereqs-ubuntu.sh -y": IN_A_TREE_OF_ARDUPILOT,
 }
 
 

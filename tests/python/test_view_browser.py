@@ -216,7 +216,7 @@ def test_what_it_draws_is_goe_replays(make_page: Callable[..., Path], browser: A
     assert math.dist((x[1], y[1]), (x[2], y[2])) == pytest.approx(float(rows[last]["length_m"]), rel=1e-4)
 
 
-def test_when_to_act_is_told(make_page: Callable[..., Path], browser: Any) -> None:
+def test_when_to_act_is_shown(make_page: Callable[..., Path], browser: Any) -> None:
     act = story_of("boxes", view_logs.boxes(), Options()).tracks[0].answers.act
     opened(browser, make_page("boxes", view_logs.boxes))
     for moment in (int(np.argmin(act)), int(np.argmax(act))):

@@ -14,7 +14,6 @@
 #include <fenv.h>
 #endif
 
-#define ASSESS_MS 100
 #define SECOND_MS 1000
 
 extern const AP_HAL::HAL &hal;
@@ -26,10 +25,6 @@ AP_GOE::AP_GOE()
     _singleton = this;
     AP_Param::setup_object_defaults(this, var_info);
 }
-
-const goe_flight_t *AP_GOE::flight() const { return _state != nullptr ? &_state->flight : nullptr; }
-
-const goe_flight_assessment_t *AP_GOE::assessment() const { return _state != nullptr ? &_state->assessment : nullptr; }
 
 // ------------------------------------------------------------------------------------------------------------- start
 
@@ -55,12 +50,21 @@ bool AP_GOE::start()
         // estimates stay good; they are not those of the host to the last bit
         GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: arithmetic differs (0x%02x)", _self_check);
     }
-    _state = NEW_NOTHROW State;
-    if (_state == nullptr) {
+    State *const state = NEW_NOTHROW State;
+    if (state == nullptr) {
         GCS_SEND_TEXT(MAV_SEVERITY_ERROR, "GOE: no memory");
         return false;
     }
-    memset(_state, 0, sizeof(*_state));
+    memset(state, 0, sizeof(*state));
+    // it waits until update() wakes it
+    if (!hal.scheduler->thread_create(FUNCTOR_BIND_MEMBER(&AP_GOE::thread_main, void), "goe", AP_GOE_STACK,
+                                      AP_HAL::Scheduler::PRIORITY_IO, -1)) {
+        delete state;
+        GCS_SEND_TEXT(MAV_SEVERITY_ERROR, "GOE: no thread");
+        return false;
+    }
+    _state = state;
+    find_vehicle();
     follow_params();
     return true;
 }
@@ -68,9 +72,8 @@ bool AP_GOE::start()
 // any slot in use, with a position or not
 bool AP_GOE::follows_something() const
 {
-    goe_flight_obstacle_t obstacle;
-    for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
-        if (goe_flight_obstacle(&_state->flight, slot, &obstacle) == GOE_FLIGHT_OK) {
+    for (const goe_flight_status_t &state : _state->shown.state) {
+        if (state == GOE_FLIGHT_OK) {
             return true;
         }
     }
@@ -83,40 +86,23 @@ void AP_GOE::follow_params()
 {
     Settings now;
     read_params(now.estimator, now.layer);
-    const bool is_first = !_has_tried;
-    if (!is_first && memcmp(&now, &_state->tried, sizeof(now)) == 0) {
+    const bool is_first = _state->shown.assessed == 0;
+    if (memcmp(&now, &_state->given, sizeof(now)) == 0) {
         return;
     }
     if (!is_first && AP::arming().is_armed() && follows_something()) {
-        if (!_told_waiting) {
+        if (!_reported_waiting) {
             GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: parameters wait until nothing is followed");
-            _told_waiting = true;
+            _reported_waiting = true;
         }
         return;
     }
-    _told_waiting = false;
-    _has_tried = true;
-    _state->tried = now;
-    _bad_field = nullptr;
-    if (init_flight(now, &_bad_field)) {
-        _state->good = now;
-        _has_good = true;
-        if (!is_first) {
-            GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: parameters taken");
-        }
-        return;
-    }
-    GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: bad setting %s", _bad_field != nullptr ? _bad_field : "size");
-    if (_has_good) {
-        (void)init_flight(_state->good, nullptr);
-    }
-}
-
-bool AP_GOE::init_flight(const Settings &settings, const char **bad_field)
-{
-    _told_lost = 0;
-    return goe_flight_init(&_state->flight, sizeof(_state->flight), &settings.estimator, &settings.layer, bad_field) ==
-           GOE_FLIGHT_OK;
+    _reported_waiting = false;
+    _state->given = now;
+    report_loiter(now.layer.loiter_m);
+    WITH_SEMAPHORE(_inbox_sem);
+    _state->inbox.settings = now;
+    _state->inbox.has_settings = true;
 }
 
 // -------------------------------------------------------------------------------------------------------------- life
@@ -133,47 +119,84 @@ void AP_GOE::update()
         return;
     }
     read_pose();
-    take_images();
+    _wake.signal();
+    take_found();
     const uint32_t now_ms = AP_HAL::millis();
-    if (now_ms - _assessed_ms >= ASSESS_MS) {
-        _assessed_ms = now_ms;
-        assess();
-    }
     if (now_ms - _second_ms >= SECOND_MS) {
         _second_ms = now_ms;
         once_a_second();
     }
 }
 
-void AP_GOE::assess()
+void AP_GOE::take_found()
 {
-    const goe_flight_status_t status =
-        goe_flight_assess(&_state->flight, AP_HAL::micros(), AP::vehicle()->is_landing(), &_state->assessment);
-    if (status == GOE_FLIGHT_CORRUPTED && _has_good) {
-        GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: memory was corrupted, begun anew");
-        (void)init_flight(_state->good, nullptr);
+    {
+        WITH_SEMAPHORE(_found_sem);
+        if (_state->found.assessed == _state->shown.assessed) {
+            return;
+        }
+        _state->shown = _state->found;
     }
-    put_obstacles();
-    tell_changes();
+    report();
+}
+
+void AP_GOE::report()
+{
+    log_obstacles();
+    report_settings();
+    report_changes();
     if (is_positive(_report_hz) && (AP_HAL::millis() - _reported_ms) * 0.001f * _report_hz >= 1.0f) {
         _reported_ms = AP_HAL::millis();
         send_obstacles();
     }
 }
 
-void AP_GOE::tell_changes()
+void AP_GOE::report_settings()
 {
-    const goe_flight_assessment_t &now = _state->assessment;
+    const Found &now = _state->shown;
+    if (now.taken_settings != _reported_taken) {
+        if (_reported_taken != 0) {
+            GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: parameters taken");
+        }
+        _reported_taken = now.taken_settings;
+        _reported_lost = 0;
+    }
+    if (now.refused_settings != _reported_refused) {
+        _reported_refused = now.refused_settings;
+        _reported_lost = 0;
+        GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: bad parameter %s", parameter_of(now.bad_field));
+    }
+    if (now.corruptions != _reported_corruptions) {
+        _reported_corruptions = now.corruptions;
+        _reported_lost = 0;
+        GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: memory was corrupted, begun again");
+    }
+}
+
+// A circle that the aircraft cannot fly is none: what it flies instead is wider, and that is what the layer must know.
+void AP_GOE::report_loiter(float used_m)
+{
+    const float set_m = fabsf(_loiter_m.get());
+    if (used_m <= set_m + 0.5f || is_zero(used_m - _reported_loiter_m)) {
+        return;
+    }
+    _reported_loiter_m = used_m;
+    GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: WP_LOITER_RAD %.0f too small, %.0f used", double(set_m), double(used_m));
+}
+
+void AP_GOE::report_changes()
+{
+    const goe_flight_assessment_t &now = _state->shown.assessment;
     const bool alive = now.detector_alive && now.pose_alive;
-    if (alive != _told_alive) {
-        _told_alive = alive;
+    if (alive != _reported_alive) {
+        _reported_alive = alive;
         GCS_SEND_TEXT(alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING, "GOE: %s",
                       alive            ? "alive"
                       : now.pose_alive ? "no images"
                                        : "no pose");
     }
-    if (now.action != _told_action) {
-        _told_action = now.action;
+    if (now.action != _reported_action) {
+        _reported_action = now.action;
         if (now.action == GOE_FLIGHT_NONE) {
             GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: no action any more");
         } else {
@@ -181,9 +204,9 @@ void AP_GOE::tell_changes()
                           goe_flight_action_text(now.action), now.late ? ", late" : "");
         }
     }
-    const uint16_t lost = _state->flight.counters.lost;
-    if (lost != _told_lost) {
-        _told_lost = lost;
+    const uint16_t lost = _state->shown.counters.lost;
+    if (lost != _reported_lost) {
+        _reported_lost = lost;
         GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: pose jumped, all obstacles given up");
     }
 }
@@ -198,8 +221,8 @@ void AP_GOE::once_a_second()
 
 bool AP_GOE::healthy() const
 {
-    return enabled() && _state != nullptr && _bad_field == nullptr && _state->assessment.detector_alive &&
-           _state->assessment.pose_alive;
+    return enabled() && _state != nullptr && _state->shown.bad_field == nullptr &&
+           _state->shown.assessment.detector_alive && _state->shown.assessment.pose_alive;
 }
 
 bool AP_GOE::pre_arm_check(char *failure_msg, uint8_t failure_msg_len) const
@@ -209,15 +232,16 @@ bool AP_GOE::pre_arm_check(char *failure_msg, uint8_t failure_msg_len) const
     }
     const char *why = nullptr;
     if (_state == nullptr) {
-        why = "no memory";
-    } else if (_bad_field != nullptr) {
-        hal.util->snprintf(failure_msg, failure_msg_len, "GOE: bad setting %s", _bad_field);
+        why = "no memory or no thread";
+    } else if (_state->shown.bad_field != nullptr) {
+        hal.util->snprintf(failure_msg, failure_msg_len, "GOE: bad parameter %s",
+                           parameter_of(_state->shown.bad_field));
         return false;
     } else if (!has_option(Option::ARM_NEEDS_IMAGES)) {
         return true;
-    } else if (!_state->assessment.pose_alive) {
+    } else if (!_state->shown.assessment.pose_alive) {
         why = "no pose";
-    } else if (!_state->assessment.detector_alive) {
+    } else if (!_state->shown.assessment.detector_alive) {
         why = "no images";
     }
     if (why != nullptr) {

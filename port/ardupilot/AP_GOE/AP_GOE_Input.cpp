@@ -10,18 +10,16 @@
 #include <AP_InertialSensor/AP_InertialSensor.h>
 #include <AP_RangeFinder/AP_RangeFinder.h>
 #include <AP_Terrain/AP_Terrain.h>
+#include <AP_Vehicle/AP_Vehicle.h>
 #include <GCS_MAVLink/GCS.h>
 
-#define WAIT_US 200000      // an image whose pose has not come by then never gets one
-#define IMAGES_PER_UPDATE 4 // each costs up to one update of an estimator
 #define TILT_MIN 0.7f // cosine: more than 45 degrees of tilt, and a range finder does not look at the ground below
 
 // -------------------------------------------------------------------------------------------------------------- pose
 
 void AP_GOE::read_pose()
 {
-    goe_flight_attitude_t attitude{};
-    goe_flight_position_t position{};
+    Pose pose{};
     const AP_AHRS &ahrs = AP::ahrs();
     const int16_t filter = 16 * ahrs.get_ekf_type() + ahrs.get_primary_core_index();
     if (filter != _filter) {
@@ -29,14 +27,26 @@ void AP_GOE::read_pose()
         _filter = filter;
         _breaks++;
     }
-    read_attitude(attitude);
-    if (!read_position(position)) {
+    read_attitude(pose.attitude);
+    if (!read_position(pose.position)) {
         return;
     }
-    read_heights(position, attitude.q);
-    if (goe_flight_attitude(&_state->flight, &attitude) == GOE_FLIGHT_OK) {
-        (void)goe_flight_position(&_state->flight, &position);
+    read_heights(pose.position, pose.attitude.q);
+    queue_pose(pose);
+}
+
+// a thread that is too late loses the oldest
+void AP_GOE::queue_pose(const Pose &pose)
+{
+    const bool landing = AP::vehicle()->is_landing();
+    WITH_SEMAPHORE(_inbox_sem);
+    Inbox &inbox = _state->inbox;
+    if (inbox.poses == POSES_MAX) {
+        inbox.poses--;
+        memmove(&inbox.pose[0], &inbox.pose[1], inbox.poses * sizeof(Pose));
     }
+    inbox.pose[inbox.poses++] = pose;
+    inbox.landing = landing;
 }
 
 void AP_GOE::read_attitude(goe_flight_attitude_t &sample)
@@ -158,42 +168,15 @@ void AP_GOE::queue_features(const mavlink_message_t &msg)
     if (!enabled() || _state == nullptr || msg.sysid != mavlink_system.sysid) {
         return;
     }
-    if (_state->waiting_count == WAITING_MAX) {
-        memmove(&_state->waiting[0], &_state->waiting[1], (WAITING_MAX - 1) * sizeof(Waiting));
-        _state->waiting_count--;
+    WITH_SEMAPHORE(_inbox_sem);
+    Inbox &inbox = _state->inbox;
+    if (inbox.images == WAITING_MAX) {
+        inbox.images--;
+        memmove(&inbox.image[0], &inbox.image[1], inbox.images * sizeof(Waiting));
     }
-    Waiting &waiting = _state->waiting[_state->waiting_count++];
+    Waiting &waiting = inbox.image[inbox.images++];
     waiting.arrival_us = AP_HAL::micros();
     goe_mavlink_read_features(reinterpret_cast<const uint8_t *>(_MAV_PAYLOAD(&msg)), msg.len, &waiting.features);
-}
-
-// false: its pose has not come yet
-bool AP_GOE::take_image(const Waiting &waiting)
-{
-    goe_mavlink_sighting_t sighting;
-    (void)goe_mavlink_from_features(&waiting.features, waiting.arrival_us, &sighting);
-    const goe_flight_status_t status = goe_flight_frame(&_state->flight, &sighting.frame);
-    if (status == GOE_FLIGHT_TOO_NEW) {
-        return AP_HAL::micros() - waiting.arrival_us > WAIT_US;
-    }
-    const uint32_t delay_us = waiting.arrival_us - _state->flight.capture_us;
-    if (status == GOE_FLIGHT_OK && int32_t(delay_us) >= 0) {
-        _delay_sum_us += delay_us;
-        _delay_max_us = MAX(_delay_max_us, delay_us);
-        _images++;
-    }
-    return true;
-}
-
-void AP_GOE::take_images()
-{
-    uint8_t kept = 0;
-    for (uint8_t i = 0; i < _state->waiting_count; i++) {
-        if (i - kept >= IMAGES_PER_UPDATE || !take_image(_state->waiting[i])) {
-            _state->waiting[kept++] = _state->waiting[i];
-        }
-    }
-    _state->waiting_count = kept;
 }
 
 #endif // AP_GOE_ENABLED

@@ -61,11 +61,11 @@ void AP_GOE::log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const
         return;
     }
     const goe_hazard_t &hazard = obstacle.hazard;
-    AP::logger().WriteStreaming("GOEH", "TimeUS,I,T,TSD,Miss,MSD,Clr,CSD,Vio,Act,Wst", "s#ssmmmm---", "F-000000---",
-                                "QBfffffffBB", AP_HAL::micros64(), unsigned(slot), double(hazard.time_s),
-                                double(hazard.time_sd_s), double(hazard.miss_m), double(hazard.miss_sd_m),
-                                double(hazard.clearance_m), double(hazard.clearance_sd_m), double(hazard.violation),
-                                unsigned(_state->assessment.action), unsigned(slot == _state->assessment.worst));
+    AP::logger().WriteStreaming(
+        "GOEH", "TimeUS,I,T,TSD,Miss,MSD,Clr,CSD,Vio,Act,Wst", "s#ssmmmm---", "F-000000---", "QBfffffffBB",
+        AP_HAL::micros64(), unsigned(slot), double(hazard.time_s), double(hazard.time_sd_s), double(hazard.miss_m),
+        double(hazard.miss_sd_m), double(hazard.clearance_m), double(hazard.clearance_sd_m), double(hazard.violation),
+        unsigned(_state->shown.assessment.action), unsigned(slot == _state->shown.assessment.worst));
 #endif
 }
 

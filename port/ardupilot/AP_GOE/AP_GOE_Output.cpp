@@ -11,20 +11,20 @@
 
 #define DATABASE_ID 0x474F4500U // of slot 0; above every ship's nine digits
 #define TOP_SIGMAS 2.0f
-#define NUDGE_M 0.001f
+#define RESEND_MS 500 // the ground station sees a database item twice a second
 
-void AP_GOE::put_obstacles()
+bool AP_GOE::has_position(const Found &found, int slot) const
 {
-    goe_flight_obstacle_t obstacle;
-    _push_is_odd = !_push_is_odd;
+    return found.state[slot] == GOE_FLIGHT_OK && (found.obstacle[slot].valid & GOE_HAS_POSITION) != 0;
+}
+
+void AP_GOE::log_obstacles() const
+{
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
-        if (goe_flight_obstacle(&_state->flight, slot, &obstacle) != GOE_FLIGHT_OK ||
-            (obstacle.valid & GOE_HAS_POSITION) == 0) {
-            continue;
+        if (has_position(_state->shown, slot)) {
+            log_obstacle(slot, _state->shown.obstacle[slot]);
+            log_hazard(slot, _state->shown.obstacle[slot]);
         }
-        push_to_database(slot, obstacle);
-        log_obstacle(slot, obstacle);
-        log_hazard(slot, obstacle);
     }
 }
 
@@ -40,30 +40,67 @@ static float place_sd_m(const goe_flight_obstacle_t &obstacle)
 }
 #endif
 
-/* The database holds spheres: the obstacle's one is at the vehicle's own height while that is between the obstacle's foot and
- * top, so that what counts is the horizontal distance. Without a known top it always is.
- *
- * The source is the one whose items the database knows by their id, and moves. It moves them if the radius changed or half a
- * second has gone by: every other push differs by a millimetre. */
-void AP_GOE::push_to_database(int slot, const goe_flight_obstacle_t &obstacle)
+/* The item of a slot keeps its id for as long as the slot is followed, and each call moves it. When nothing is followed there any
+ * more, the database forgets it OA_DB_EXPIRE later: what was given up may still stand there. */
+void AP_GOE::refresh_database(AP_OADatabase &database)
 {
 #if AP_OADATABASE_ENABLED
-    AP_OADatabase *database = AP::oadatabase();
-    if (database == nullptr || !database->healthy()) {
+    if (!enabled() || _state == nullptr) {
         return;
     }
+    const bool resend = AP_HAL::millis() - _resent_ms >= RESEND_MS;
+    _resent_ms = resend ? AP_HAL::millis() : _resent_ms;
+    WITH_SEMAPHORE(_found_sem);
+    for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
+        if (has_position(_state->found, slot)) {
+            put_into_database(database, slot, _state->found.obstacle[slot], resend);
+        }
+    }
+#endif
+}
+
+/* The database holds spheres: the obstacle's one is at the vehicle's own height while that is between the obstacle's foot and
+ * top, so that what counts is the horizontal distance. Without a known top it always is. */
+void AP_GOE::put_into_database(AP_OADatabase &database, int slot, const goe_flight_obstacle_t &obstacle, bool resend)
+{
+#if AP_OADATABASE_ENABLED
+    const float *own_ned_m = _state->found.own_ned_m;
     const float foot_m = -obstacle.center_ned_m[2];
-    float up_m = MAX(-_position_ned_m.z, foot_m);
+    float up_m = MAX(-own_ned_m[2], foot_m);
     if ((obstacle.valid & GOE_HAS_HEIGHT) != 0) {
         up_m = MIN(up_m, foot_m + obstacle.height_m + TOP_SIGMAS * obstacle.height_sd_m);
     }
     const float sigmas = _oa_sigma * (obstacle.suspect ? 2.0f : 1.0f);
-    const float radius_m = obstacle.radius_m + sigmas * place_sd_m(obstacle) + (_push_is_odd ? NUDGE_M : 0.0f);
+    const float radius_m = MAX(float(database._radius_min), obstacle.radius_m + sigmas * place_sd_m(obstacle));
     const Vector3f place_neu_m{obstacle.center_ned_m[0], obstacle.center_ned_m[1], up_m};
-    const float distance_m = norm(place_neu_m.x - _position_ned_m.x, place_neu_m.y - _position_ned_m.y);
-    const uint32_t measured_ms = AP_HAL::millis() - uint32_t(obstacle.age_s * 1000.0f);
-    database->queue_push(place_neu_m, measured_ms, distance_m, radius_m, AP_OADatabase::OA_DbItem::Source::AIS,
-                         DATABASE_ID + uint32_t(slot));
+    const float distance_m = norm(place_neu_m.x - own_ned_m[0], place_neu_m.y - own_ned_m[1]) - radius_m;
+    if (is_positive(database._dist_max) && distance_m > database._dist_max) {
+        return;
+    }
+    const uint32_t id = DATABASE_ID + uint32_t(slot);
+    uint16_t index = 0;
+    while (index < database._database.count &&
+           (database._database.items[index].id != id ||
+            database._database.items[index].source != AP_OADatabase::OA_DbItem::Source::camera)) {
+        index++;
+    }
+    if (index == database._database.count) {
+        AP_OADatabase::OA_DbItem item{};
+        item.importance = AP_OADatabase::OA_DbItemImportance::Normal;
+        item.source = AP_OADatabase::OA_DbItem::Source::camera;
+        item.id = id;
+        database.database_item_add(item);
+        if (index == database._database.count) {
+            return; // no room
+        }
+    }
+    AP_OADatabase::OA_DbItem &item = database._database.items[index];
+    item.pos = place_neu_m;
+    item.radius = radius_m;
+    item.timestamp_ms = AP_HAL::millis();
+    if (resend) {
+        item.send_to_gcs = database.get_send_to_gcs_flags(item.importance);
+    }
 #endif
 }
 
@@ -109,17 +146,16 @@ void AP_GOE::send_obstacles()
 {
     const goe_mavlink_own_t here = own();
     uint8_t payload[GOE_MAVLINK_PAYLOAD_MAX];
-    goe_flight_obstacle_t obstacle;
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
-        if (goe_flight_obstacle(&_state->flight, slot, &obstacle) != GOE_FLIGHT_OK ||
-            (obstacle.valid & GOE_HAS_POSITION) == 0) {
+        if (!has_position(_state->shown, slot)) {
             continue;
         }
+        const goe_flight_obstacle_t &obstacle = _state->shown.obstacle[slot];
         goe_mavlink_obstacle_t place;
         goe_mavlink_to_obstacle(&obstacle, slot, &here, &place);
         send_payload(GOE_MAVLINK_OBSTACLE, payload, goe_mavlink_pack_obstacle(&place, payload));
         goe_mavlink_hazard_t hazard;
-        if (goe_mavlink_to_hazard(&obstacle, slot, &_state->assessment, &here, &hazard)) {
+        if (goe_mavlink_to_hazard(&obstacle, slot, &_state->shown.assessment, &here, &hazard)) {
             send_payload(GOE_MAVLINK_HAZARD, payload, goe_mavlink_pack_hazard(&hazard, payload));
         }
     }
@@ -129,13 +165,14 @@ void AP_GOE::send_status()
 {
     const goe_mavlink_own_t here = own();
     goe_mavlink_status_t status;
-    goe_mavlink_to_status(&_state->flight.counters, &_state->assessment, _self_check, &here, &status);
-    if (_images > 0) {
-        status.delay_mean = MIN(_delay_sum_us / _images / 1000U, 65534U);
-        status.delay_max = MIN(_delay_max_us / 1000U, 65534U);
+    goe_mavlink_to_status(&_state->shown.counters, &_state->shown.assessment, _self_check, &here, &status);
+    const uint32_t images = _state->shown.images - _status_images;
+    if (images > 0) {
+        status.delay_mean = MIN((_state->shown.delay_sum_us - _status_delay_us) / images / 1000U, 65534U);
+        status.delay_max = MIN(_state->shown.delay_max_us / 1000U, 65534U);
     }
-    _delay_sum_us = _delay_max_us = 0;
-    _images = 0;
+    _status_images = _state->shown.images;
+    _status_delay_us = _state->shown.delay_sum_us;
     log_status(status);
     if (is_positive(_report_hz)) {
         uint8_t payload[GOE_MAVLINK_PAYLOAD_MAX];

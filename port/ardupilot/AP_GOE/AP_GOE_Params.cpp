@@ -1,5 +1,5 @@
 /* Parameters of AP_GOE. Ranges and defaults are those of goe_settings_list.h and goe_flight_settings_list.h, but for
- * ATT_DRIFT. SPDX-License-Identifier: MIT */
+ * OA_SIGMA and the drift of AP_GOE_config.h. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED
@@ -149,76 +149,6 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
     // @User: Standard
     AP_GROUPINFO("DELAY", 19, AP_GOE, _delay, 0.005f),
 
-    // @Param: DELAY_SD
-    // @DisplayName: Uncertainty of the capture time
-    // @Description: One sigma of the capture time of images whose sender tells none
-    // @Units: s
-    // @Range: 0 0.5
-    // @User: Advanced
-    AP_GROUPINFO("DELAY_SD", 20, AP_GOE, _delay_sd, 0.005f),
-
-    // @Param: DELAY_MAX
-    // @DisplayName: Longest delay of an image
-    // @Description: An image that arrives later after its exposure is refused
-    // @Units: s
-    // @Range: 0.02 0.5
-    // @User: Advanced
-    AP_GROUPINFO("DELAY_MAX", 21, AP_GOE, _delay_max, 0.4f),
-
-    // @Param: SCORE_MIN
-    // @DisplayName: Least score
-    // @Description: A detection of a lesser score is not looked at
-    // @Range: 0 1
-    // @User: Standard
-    AP_GROUPINFO("SCORE_MIN", 22, AP_GOE, _score_min, 0.3f),
-
-    // @Param: CONFIRM
-    // @DisplayName: Images that confirm
-    // @Description: Images that a new obstacle must be seen in before it is followed
-    // @Range: 1 20
-    // @User: Advanced
-    AP_GROUPINFO("CONFIRM", 23, AP_GOE, _confirm, 3),
-
-    // @Param: ALIVE
-    // @DisplayName: Detector's timeout
-    // @Description: Without an image for this long the detector counts as dead
-    // @Units: s
-    // @Range: 0.05 60
-    // @User: Standard
-    AP_GROUPINFO("ALIVE", 24, AP_GOE, _alive, 1.0f),
-
-    // @Param: FORGET
-    // @DisplayName: Time to forget
-    // @Description: An obstacle that was not seen for this long is given up. The database then keeps it no longer than OA_DB_EXPIRE after it was last measured
-    // @Units: s
-    // @Range: 1 600
-    // @User: Standard
-    AP_GROUPINFO("FORGET", 25, AP_GOE, _forget, 10.0f),
-
-    // @Param: RNG_SD
-    // @DisplayName: Range finder's uncertainty
-    // @Description: One sigma of the height above ground by a range finder that looks down
-    // @Units: m
-    // @Range: 0.001 100
-    // @User: Advanced
-    AP_GROUPINFO("RNG_SD", 26, AP_GOE, _rng_sd, 0.3f),
-
-    // @Param: RNG_MAX
-    // @DisplayName: Range finder's reach
-    // @Description: Height up to which the range finder is believed
-    // @Units: m
-    // @Range: 0 1000
-    // @User: Advanced
-    AP_GROUPINFO("RNG_MAX", 27, AP_GOE, _rng_max, 40.0f),
-
-    // @Param: TER_SD
-    // @DisplayName: Terrain's uncertainty
-    // @Description: One sigma of the height above ground by the terrain database
-    // @Units: m
-    // @Range: 0.001 1000
-    // @User: Advanced
-    AP_GROUPINFO("TER_SD", 28, AP_GOE, _ter_sd, 3.0f),
-
     // @Param: HOME_SD
     // @DisplayName: Home's uncertainty as ground
     // @Description: One sigma of the height above home as a height above the obstacle's ground
@@ -243,92 +173,6 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
     // @User: Standard
     AP_GROUPINFO("CLEAR", 31, AP_GOE, _clear, 10.0f),
 
-    // @Param: VIOL_MAX
-    // @DisplayName: Probability that warns
-    // @Description: Probability of violating margin and clearance both from which on there is a warning
-    // @Range: 0.001 1
-    // @User: Advanced
-    AP_GROUPINFO("VIOL_MAX", 32, AP_GOE, _viol_max, 0.1f),
-
-    // @Param: BANK
-    // @DisplayName: Bank of an avoiding turn
-    // @Description: What the vehicle can bank in a turn that avoids; with its speed it tells when a warning comes
-    // @Units: deg
-    // @Range: 5 70
-    // @User: Standard
-    AP_GROUPINFO("BANK", 33, AP_GOE, _bank, 30.0f),
-
-    // @Param: ROLL_IN
-    // @DisplayName: Time to turn
-    // @Description: From the warning to that turn, the pilot's or the script's reaction included
-    // @Units: s
-    // @Range: 0 20
-    // @User: Standard
-    AP_GROUPINFO("ROLL_IN", 34, AP_GOE, _roll_in, 1.5f),
-
-    // @Param: CLIMB
-    // @DisplayName: Avoiding climb
-    // @Description: What the vehicle can climb by
-    // @Units: m/s
-    // @Range: 0.1 50
-    // @User: Standard
-    AP_GROUPINFO("CLIMB", 35, AP_GOE, _climb, 2.5f),
-
-    // @Param: CLIMB_IN
-    // @DisplayName: Time to climb
-    // @Description: From the warning to that climb
-    // @Units: s
-    // @Range: 0 20
-    // @User: Advanced
-    AP_GROUPINFO("CLIMB_IN", 36, AP_GOE, _climb_in, 2.0f),
-
-    // @Param: LOITER
-    // @DisplayName: Loiter radius
-    // @Description: Radius of the circle that is flown about the target of a warning. 0: it is flown through
-    // @Units: m
-    // @Range: 0 10000
-    // @User: Advanced
-    AP_GROUPINFO("LOITER", 37, AP_GOE, _loiter, 0.0f),
-
-    // @Param: RESERVE
-    // @DisplayName: Reserve
-    // @Description: A warning comes this much before its last moment
-    // @Units: s
-    // @Range: 0 60
-    // @User: Standard
-    AP_GROUPINFO("RESERVE", 38, AP_GOE, _reserve, 3.0f),
-
-    // @Param: ATT_BIAS
-    // @DisplayName: Constant error of the attitude
-    // @Description: One sigma, the camera's mounting included
-    // @Units: deg
-    // @Range: 0.001 30
-    // @User: Advanced
-    AP_GROUPINFO("ATT_BIAS", 39, AP_GOE, _att_bias, 0.5f),
-
-    // @Param: ATT_WHITE
-    // @DisplayName: Error of the attitude that is new in each image
-    // @Description: One sigma
-    // @Units: deg
-    // @Range: 0.0001 30
-    // @User: Advanced
-    AP_GROUPINFO("ATT_WHITE", 40, AP_GOE, _att_white, 0.1f),
-
-    // @Param: ATT_DRIFT
-    // @DisplayName: Drift of the attitude
-    // @Description: Random walk of the attitude's error, degrees per square root of a second. The heading of EKF3 wanders by a degree or two after take-off; taken for constant, that makes obstacles narrow
-    // @Range: 0 30
-    // @User: Advanced
-    AP_GROUPINFO("ATT_DRIFT", 41, AP_GOE, _att_drift, 0.3f),
-
-    // @Param: VEL_BIAS
-    // @DisplayName: Constant error of the velocity
-    // @Description: One sigma of the own horizontal velocity, each axis
-    // @Units: m/s
-    // @Range: 0 100
-    // @User: Advanced
-    AP_GROUPINFO("VEL_BIAS", 42, AP_GOE, _vel_bias, 0.05f),
-
     // @Param: GND_SD
     // @DisplayName: Unevenness of the ground
     // @Description: How far the obstacle's ground may lie off that below the vehicle, one sigma
@@ -337,34 +181,12 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
     // @User: Standard
     AP_GROUPINFO("GND_SD", 43, AP_GOE, _gnd_sd, 2.0f),
 
-    // @Param: BOX_PX
-    // @DisplayName: Error of a box that is new in each image
-    // @Description: One sigma of each side in pixels
-    // @Range: 0.05 100
-    // @User: Advanced
-    AP_GROUPINFO("BOX_PX", 44, AP_GOE, _box_px, 1.0f),
-
-    // @Param: BOX_SHARE
-    // @DisplayName: Error of a box that stays alike
-    // @Description: One sigma of each side as a fraction of the box
-    // @Range: 0 1
-    // @User: Advanced
-    AP_GROUPINFO("BOX_SHARE", 45, AP_GOE, _box_share, 0.07f),
-
-    // @Param: BOX_TIME
-    // @DisplayName: How long a box's error stays alike
-    // @Description: Time constant
-    // @Units: s
-    // @Range: 0 100
-    // @User: Advanced
-    AP_GROUPINFO("BOX_TIME", 46, AP_GOE, _box_time, 1.2f),
-
     // @Param: OA_SIGMA
     // @DisplayName: Sigmas in the database
-    // @Description: So many sigmas of the obstacle's place are added to its radius in the avoidance database, twice as many while the estimate is suspect. 0: the measured radius
+    // @Description: So many sigmas of the obstacle's place are added to its radius in the avoidance database, twice as many while the estimate is suspect. At first sight a sigma is 10 to 35 m, near by one. 0: the measured radius, which is not safe
     // @Range: 0 5
     // @User: Standard
-    AP_GROUPINFO("OA_SIGMA", 47, AP_GOE, _oa_sigma, 0.0f),
+    AP_GROUPINFO("OA_SIGMA", 47, AP_GOE, _oa_sigma, 2.0f),
 
     // @Param: REPORT_HZ
     // @DisplayName: Rate of messages
@@ -383,7 +205,89 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     AP_GROUPEND};
 
+#define GRAVITY_M_S2 9.80665f
+#define CM_PER_M 100.0f
+
 static float or_else(float value, float otherwise) { return is_zero(value) ? otherwise : value; }
+
+bool AP_GOE::Foreign::find(const char *name, float its_scale)
+{
+    param = AP_Param::find(name, &type);
+    scale = its_scale;
+    return param != nullptr;
+}
+
+// Once: the search goes through all names of the vehicle. Newer names first.
+void AP_GOE::find_vehicle()
+{
+    if (!_roll_limit_deg.find("ROLL_LIMIT_DEG", 1.0f)) {
+        (void)_roll_limit_deg.find("LIM_ROLL_CD", 1.0f / CM_PER_M);
+    }
+    (void)_climb_max_m_s.find("TECS_CLMB_MAX", 1.0f);
+    (void)_loiter_m.find("WP_LOITER_RAD", 1.0f);
+    if (!_cruise_m_s.find("AIRSPEED_CRUISE", 1.0f)) {
+        (void)_cruise_m_s.find("TRIM_ARSPD_CM", 1.0f / CM_PER_M);
+    }
+}
+
+/* Limits from the vehicle's own parameters. A circle smaller than a turn at cruise speed and that bank is not flown: the layer gets
+ * the one that is. */
+void AP_GOE::read_vehicle(goe_flight_settings_t &layer) const
+{
+    if (is_positive(_roll_limit_deg.get())) {
+        layer.bank_deg = MIN(layer.bank_deg, _roll_limit_deg.get());
+    }
+    if (is_positive(_climb_max_m_s.get())) {
+        layer.climb_m_s = MIN(layer.climb_m_s, _climb_max_m_s.get());
+    }
+    if (_loiter_m.param == nullptr) {
+        return;
+    }
+    layer.loiter_m = fabsf(_loiter_m.get());
+    if (is_positive(layer.loiter_m) && is_positive(_cruise_m_s.get())) {
+        layer.loiter_m = MAX(layer.loiter_m, sq(_cruise_m_s.get()) / (GRAVITY_M_S2 * tanf(radians(layer.bank_deg))));
+    }
+}
+
+/* As the ground station shows it. A setting that no parameter makes is named as it is. */
+const char *AP_GOE::parameter_of(const char *field)
+{
+    static const struct {
+        const char *field, *parameter;
+    } names[] = {
+        {"camera.width_px", "GOE_WIDTH"},
+        {"camera.height_px", "GOE_HEIGHT"},
+        {"camera.fx_px", "GOE_FX"},
+        {"camera.fy_px", "GOE_FY"},
+        {"camera.cx_px", "GOE_CX"},
+        {"camera.cy_px", "GOE_CY"},
+        {"camera.k1", "GOE_K1"},
+        {"camera.k2", "GOE_K2"},
+        {"camera.p1", "GOE_P1"},
+        {"camera.p2", "GOE_P2"},
+        {"camera.k3", "GOE_K3"},
+        {"camera.mount_yaw_deg", "GOE_YAW"},
+        {"camera.mount_pitch_deg", "GOE_PITCH"},
+        {"camera.mount_roll_deg", "GOE_ROLL"},
+        {"camera.offset_m[0]", "GOE_POS_X"},
+        {"camera.offset_m[1]", "GOE_POS_Y"},
+        {"camera.offset_m[2]", "GOE_POS_Z"},
+        {"navigation.ground_m", "GOE_GND_SD"},
+        {"delay_s", "GOE_DELAY"},
+        {"home_sd_m", "GOE_HOME_SD"},
+        {"margin_m", "GOE_MARGIN"},
+        {"clearance_m", "GOE_CLEAR"},
+        {"bank_deg", "ROLL_LIMIT_DEG"},
+        {"climb_m_s", "TECS_CLMB_MAX"},
+        {"loiter_m", "WP_LOITER_RAD"},
+    };
+    for (const auto &name : names) {
+        if (strcmp(name.field, field) == 0) {
+            return name.parameter;
+        }
+    }
+    return field;
+}
 
 void AP_GOE::read_params(goe_settings_t &estimator, goe_flight_settings_t &layer) const
 {
@@ -411,36 +315,15 @@ void AP_GOE::read_params(goe_settings_t &estimator, goe_flight_settings_t &layer
     camera.offset_m[1] = _pos_y;
     camera.offset_m[2] = _pos_z;
 
-    estimator.navigation.attitude_bias_deg = _att_bias;
-    estimator.navigation.attitude_white_deg = _att_white;
-    estimator.navigation.attitude_drift_deg = _att_drift;
-    estimator.navigation.velocity_bias_m_s = _vel_bias;
+    estimator.navigation.attitude_drift_deg = AP_GOE_ATTITUDE_DRIFT;
     estimator.navigation.ground_m = _gnd_sd;
-    estimator.detector.box_px = _box_px;
-    estimator.detector.box_share = _box_share;
-    estimator.detector.correlation_s = _box_time;
 
     layer.resets = GOE_FLIGHT_RESETS_TIME;
-    layer.score_min = _score_min;
-    layer.confirm_images = _confirm.get();
-    layer.alive_s = _alive;
-    layer.forget_s = _forget;
     layer.delay_s = _delay;
-    layer.delay_sd_s = _delay_sd;
-    layer.delay_max_s = _delay_max;
-    layer.range_finder_sd_m = _rng_sd;
-    layer.range_finder_max_m = _rng_max;
-    layer.terrain_sd_m = _ter_sd;
     layer.home_sd_m = _home_sd;
     layer.margin_m = _margin;
     layer.clearance_m = _clear;
-    layer.violation_max = _viol_max;
-    layer.bank_deg = _bank;
-    layer.roll_in_s = _roll_in;
-    layer.climb_m_s = _climb;
-    layer.climb_in_s = _climb_in;
-    layer.loiter_m = _loiter;
-    layer.reserve_s = _reserve;
+    read_vehicle(layer);
 }
 
 #endif // AP_GOE_ENABLED

@@ -10,3 +10,15 @@
 #define AP_GOE_ENABLED (HAL_PROGRAM_SIZE_LIMIT_KB > 1024)
 #endif
 #endif
+
+// Stack of the thread, bytes. The layer's deepest call takes 2,136, by the compiler's call graph for a Cortex-M7; the rest is for the
+// thread's own frames, for interrupts, and a reserve.
+#ifndef AP_GOE_STACK
+#define AP_GOE_STACK 5120
+#endif
+
+// What no user sets. All have the layer's or the library's defaults but for the drift, which is of EKF3: its heading wanders by a
+// degree or two after take-off, and taken for constant that makes obstacles narrow. Degrees per square root of a second.
+#ifndef AP_GOE_ATTITUDE_DRIFT
+#define AP_GOE_ATTITUDE_DRIFT 0.3f
+#endif

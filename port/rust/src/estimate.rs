@@ -41,7 +41,7 @@ pub struct Sigma {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Model {
-    /// An upright cylinder, or the circle that stands for anything else.
+    /// An upright cylinder, or the circle that replaces anything else.
     Disc,
     /// The front edge of a box. Window method.
     Line,
@@ -63,7 +63,7 @@ impl Model {
     }
 }
 
-/// Why an estimate is suspect, the most telling one. Refined method.
+/// Why an estimate is suspect, the most significant one. Refined method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Reason {

@@ -115,7 +115,7 @@ pub struct Image {
     pub base_near: Option<Pixel>,
     /// The last in image order.
     pub base_right: Option<Pixel>,
-    /// What detectors give. It stands for left, right and top, which are not read then.
+    /// What detectors give. It replaces left, right and top, which are not read then.
     pub bounding_box: Option<BoundingBox>,
     /// This image's own errors.
     pub noise: ImageNoise,

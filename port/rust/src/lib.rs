@@ -1,4 +1,4 @@
-//! Where a ground obstacle is, how big it is and how it stands, each with its one sigma, from a detector's boxes or points and the
+//! Position, size and orientation of a ground obstacle, each with a 1-sigma uncertainty, from a detector's boxes or points and the
 //! aircraft's own motion; and what a planned flight will meet. Over the C library goe, which this crate compiles.
 //!
 //! No heap, no `std`, nothing outside an [`Estimator`]. All lengths are metres, angles degrees, times as their names say; axes are

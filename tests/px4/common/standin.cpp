@@ -38,6 +38,7 @@ std::vector<Timer> timers;
 std::vector<Scheduled *> ready;
 std::map<int, uint32_t> values; /* bits of each parameter that was set */
 std::vector<bool> used;
+std::vector<std::pair<std::string, float>> others; /* parameters of other modules */
 std::string console_text, ground_text;
 
 Node &node_of(orb_id_t topic, uint8_t instance) {
@@ -77,6 +78,7 @@ void begin(uint64_t start_us) {
     timers.clear();
     ready.clear();
     values.clear();
+    others.clear();
     used.assign(static_cast<size_t>(px4::standin_parameters), false);
     console_text.clear();
     ground_text.clear();
@@ -193,6 +195,20 @@ void Scheduled::schedule_clear() {
 
 void set(const char *parameter, float value) { set_bits(parameter, &value); }
 void set(const char *parameter, int32_t value) { set_bits(parameter, &value); }
+
+void set_other(const char *parameter, float value) {
+    parameter_update_s update{};
+    const auto known = std::find_if(others.begin(), others.end(),
+                                    [=](const std::pair<std::string, float> &p) { return p.first == parameter; });
+    if (known != others.end()) {
+        known->second = value;
+    } else {
+        others.emplace_back(parameter, value);
+    }
+    update.timestamp = clock_us;
+    publish(ORB_ID(parameter_update), &update);
+}
+
 bool is_used(const char *parameter) { return used[static_cast<size_t>(index_of(parameter))]; }
 
 /* ---------------------------------------------------------------------------------------------------------- console -- */
@@ -233,5 +249,20 @@ template <typename T> static int get(param_t parameter, bool is_int, T *value) {
     return 0;
 }
 
-int param_get(param_t parameter, float *value) { return get(parameter, false, value); }
+param_t param_find(const char *name) {
+    for (size_t i = 0; i < standin::others.size(); i++) {
+        if (standin::others[i].first == name) {
+            return static_cast<param_t>(static_cast<size_t>(px4::standin_parameters) + i);
+        }
+    }
+    return PARAM_INVALID;
+}
+
+int param_get(param_t parameter, float *value) {
+    if (parameter < px4::standin_parameters) {
+        return get(parameter, false, value);
+    }
+    *value = standin::others.at(parameter - static_cast<size_t>(px4::standin_parameters)).second;
+    return 0;
+}
 int param_get(param_t parameter, int32_t *value) { return get(parameter, true, value); }

@@ -53,6 +53,7 @@ class Scheduled {
 /* Parameters of module.yaml, by name; set() tells parameter_update. */
 void set(const char *parameter, float value);
 void set(const char *parameter, int32_t value);
+void set_other(const char *parameter, float value); /* of another module: there is none before */
 bool is_used(const char *parameter);
 
 /* What was printed, and what was sent to ground stations. */

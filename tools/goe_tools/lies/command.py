@@ -17,7 +17,9 @@ from ..spread import Workers
 from . import record, search
 from .decode import decode
 from .evolve import Best, evolve
+from .finds import KINDS
 from .genes import MIXES, Flights
+from .goals import BLOCK, block
 from .show import from_json, show, to_json
 from .shrink import Want, shrink, want_of
 from .tally import Key, Tally
@@ -37,6 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--out", type=Path, metavar="DIR", help="shrink a flight of each class, and write it as a log")
     add("--json", type=Path, metavar="FILE", help="write the counts")
     add("--show", type=Path, metavar="FILE", help="print the table of such a file, and search nothing")
+    add("--page", type=Path, metavar="FILE", help="with --show: write the table of goals into this page")
     spread.add_arguments(parser)
 
 
@@ -51,8 +54,9 @@ def _checked(arguments: argparse.Namespace) -> int:
 
 
 def _chosen(tally: Tally, seed: int, mixes: list[int]) -> dict[str, tuple[Key, Flights]]:
-    """A flight of each of the most frequent classes, by the folder that it goes to."""
-    keys = sorted(tally.examples, key=lambda key: (-tally.counts[("class", *key)], key))[:LOGS_MOST]
+    """A flight of each class, by the folder that it goes to: lost warnings first, then the most frequent classes."""
+    keys = sorted(tally.examples, key=lambda key: (-KINDS.index(key[0]), -tally.counts[("class", *key)], key))
+    keys = keys[:LOGS_MOST]
     found = {}
     for key in keys:
         example = tally.examples[key]
@@ -88,8 +92,12 @@ def _bred(best: dict[Key, Best]) -> None:
 def run(arguments: argparse.Namespace) -> int:
     if arguments.show is not None:
         about, counts = from_json(arguments.show)
+        if arguments.page is not None:
+            BLOCK.write(arguments.page, block(about, counts))
         show(counts, about)
         return 0
+    if arguments.page is not None:
+        raise ValueError("--page: needs --show")
     flights, workers = _checked(arguments), spread.workers_of(arguments)
     mixes = [MIXES.index(name) for name in dict.fromkeys(arguments.mix or MIXES)]
     tally = search.search(arguments.seed, mixes, flights, arguments.seconds, workers)

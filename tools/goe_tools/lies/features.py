@@ -1,4 +1,4 @@
-"""What the detector tells of what is seen: the features of a mix, with their errors, less what is missed or cut."""
+"""What the detector reports: the features of a mix, with their errors, less what is missed or cut."""
 
 from __future__ import annotations
 

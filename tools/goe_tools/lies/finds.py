@@ -46,9 +46,10 @@ def _causes(world: World, found: Answers, judged: Judged) -> np.ndarray:
     """(N, RULES)"""
     e = found.estimates
     before = np.maximum(np.arange(len(e)) - 1, 0)
+    late = world.refused[before] & world.unknown[before]  # the next image shows the counter of a refused one
     moved = np.any(np.abs(judged.met - judged.met[before]) > MOVED_M, -1)
     tests = [
-        world.unknown & (found.hazard_status != 0).all(1),
+        (world.unknown | late) & (found.hazard_status != 0).all(1),
         (found.status >= REFUSED_STATUS[0]) & (found.status <= REFUSED_STATUS[1]), world.known, ~world.detected,
         e["method"] != e["method"][before],
         e["points"] < e["points"][before], e["model"] != e["model"][before], found.status == HELD,

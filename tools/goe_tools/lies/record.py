@@ -104,7 +104,7 @@ def _wrong(flown: Flown, want: Want, k: int) -> tuple[str, int]:
     rule = int(np.argmax(rules))
     miss, clearance = flown.judged.met[k, rule]
     truth = f"truly {miss:.1f} m past the outline and {clearance:.1f} m over the top"
-    now = f"{violation[k, rule]:.3g}"
+    now = "no answer" if flown.found.hazard_status[k, rule] else f"{violation[k, rule]:.3g}"
     if safe:
         return f"violation {now}, {truth}", rule
     return f"violation {violation[k - 1, rule]:.3g}, then {now} ({want.what}); {truth}", rule

@@ -59,7 +59,7 @@ class Facts:
     owner = "the goe authors"
     licence = "MIT"
     sentence = (
-        "Where a ground obstacle is, how big it is and how it stands, from a detector's boxes and the own motion."
+        "Position, size and orientation of a ground obstacle, from a detector's boxes and the own motion."
     )
     paragraph = (
         "A small C99 library for flight controllers: one obstacle takes at most 2.9 KiB, there is no heap, every "

@@ -1,4 +1,4 @@
-"""goe - where a ground obstacle is, how big it is and how it stands, each with its one sigma, from a detector's boxes
+"""goe - position, size and orientation of a ground obstacle, each with a 1-sigma uncertainty, from a detector's boxes
 or points and the aircraft's own motion; and what a planned flight will meet. Over the C library of that name: the same
 bits.
 

@@ -101,7 +101,7 @@ class Image:
     base_right: Pixel | None = None
     """The last in image order."""
     bounding_box: BoundingBox | None = None
-    """What detectors give. It stands for left, right and top, which are not read then."""
+    """What detectors give. It replaces left, right and top, which are not read then."""
     noise: ImageNoise = field(default_factory=ImageNoise)
     """This image's own errors."""
     camera: int = 0

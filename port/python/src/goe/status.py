@@ -97,7 +97,7 @@ class Model(IntEnum):
     """The shape behind an estimate."""
 
     DISC = 2
-    """An upright cylinder, or the circle that stands for anything else."""
+    """An upright cylinder, or the circle that replaces anything else."""
     LINE = 3
     """The front edge of a box. Window method."""
     BOX = 4
@@ -110,7 +110,7 @@ class Model(IntEnum):
 
 
 class Reason(IntEnum):
-    """Why an estimate is suspect, the most telling one. Refined method."""
+    """Why an estimate is suspect, the most significant one. Refined method."""
 
     CONVENTION = 1
     """What is given does not belong together: axes, signs or order of the attitude, the mounting, very late poses."""

@@ -30,4 +30,6 @@ struct Quaternion {
 
 inline bool is_zero(float x) { return std::fabs(x) < 1.1920929e-7f; }
 inline bool is_positive(float x) { return x >= 1.1920929e-7f; }
+inline float sq(float x) { return x * x; }
+inline float radians(float deg) { return deg * 0.01745329252f; }
 inline float norm(float x, float y) { return std::sqrt(x * x + y * y); }

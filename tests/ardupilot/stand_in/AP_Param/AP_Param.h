@@ -33,6 +33,8 @@ class AP_Param {
         uint8_t type;
     };
 
+    static AP_Param *find(const char *name, enum ap_var_type *type, uint16_t *flags = nullptr);
+    float cast_to_float(enum ap_var_type type) const;
     static void setup_object_defaults(void *object, const GroupInfo *info);
 };
 

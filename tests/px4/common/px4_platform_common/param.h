@@ -10,3 +10,6 @@ void param_set_used(param_t parameter);
 /* PX4 tells of a wrong type; here it ends the test. */
 int param_get(param_t parameter, float *value);
 int param_get(param_t parameter, int32_t *value);
+/* Parameters of other modules, by name: standin::set_other(). */
+constexpr param_t PARAM_INVALID = 0xFFFF;
+param_t param_find(const char *name);

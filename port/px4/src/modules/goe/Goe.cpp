@@ -14,6 +14,8 @@ constexpr uint32_t CYCLE_US = 100000; /* assessments and what is published; also
 constexpr uint64_t RANGE_FRESH_US = 300000;
 constexpr float CM_PER_M = 100.f;
 constexpr float US_PER_S = 1.0e6f;
+constexpr float DISTANCE_MAX_M = 200.f; /* of obstacle_distance: what lies farther concerns nobody who reads it */
+constexpr uint32_t TARGET_DELAY_SD_US = 20000; /* one sigma of GOE_LT_DELAY */
 
 uint32_t whole_us(float s) { return static_cast<uint32_t>(US_PER_S * s); }
 
@@ -37,7 +39,8 @@ bool Goe::init() {
     if (_self_check != 0) {
         PX4_ERR("arithmetic is not that of the tests: self check 0x%02x", _self_check);
     }
-    goe_parameters_read(_parameters);
+    (void)_vehicle_status_sub.update(&_vehicle_status);
+    read_parameters();
     use_parameters();
     if (!_attitude_sub.registerCallback() || !_tunnel_sub.registerCallback()) {
         PX4_ERR("no callback");
@@ -48,6 +51,19 @@ bool Goe::init() {
 }
 
 /* ------------------------------------------------------------------------------------------------------- parameters -- */
+
+bool Goe::has_wings() const { return _vehicle_status.vehicle_type == vehicle_status_s::VEHICLE_TYPE_FIXED_WING; }
+
+void Goe::read_parameters() {
+    const float reported_m = _parameters.narrow_loiter_m;
+    _had_wings = has_wings();
+    goe_parameters_read(_parameters, _had_wings);
+    if (_parameters.narrow_loiter_m > 0.f && fabsf(_parameters.narrow_loiter_m - reported_m) > 0.f) {
+        mavlink_log_critical(&_mavlink_log_pub, "goe: NAV_LOITER_RAD %.0f too small, %.0f used",
+                             static_cast<double>(_parameters.narrow_loiter_m),
+                             static_cast<double>(_parameters.flight.loiter_m));
+    }
+}
 
 void Goe::use_parameters() {
     const char *bad_field = nullptr;
@@ -71,9 +87,9 @@ void Goe::use_parameters() {
  * parameter. */
 void Goe::follow_parameters() {
     parameter_update_s update;
-    if (_parameter_update_sub.update(&update)) {
+    if (_parameter_update_sub.update(&update) || _had_wings != has_wings()) {
         const GoeParameters before = _parameters;
-        goe_parameters_read(_parameters);
+        read_parameters();
         if (goe_parameters_differ(_parameters, before)) {
             _waiting = !_in_use || goe_parameters_differ(_parameters, _used);
             _bad_field = _waiting ? _bad_field : nullptr;
@@ -142,7 +158,8 @@ void Goe::take_features(uint32_t now_us) {
 void Goe::take_tunnel(uint32_t now_us) {
     mavlink_tunnel_s topic;
     unsigned offset = 0;
-    if (_tunnel_sub.update(&topic) && (_parameters.inputs & GOE_IN_TUNNEL) != 0) {
+    if (_tunnel_sub.update(&topic) && (_parameters.inputs & GOE_IN_TUNNEL) != 0 &&
+        goe_px4::is_addressed(topic, _vehicle_status.system_id, _vehicle_status.component_id)) {
         while (goe_px4::next_of_tunnel(topic, offset, _images.room())) {
             _images.keep(now_us);
         }
@@ -152,8 +169,8 @@ void Goe::take_tunnel(uint32_t now_us) {
 void Goe::take_landing_target(uint32_t now_us) {
     irlock_report_s topic;
     if (_landing_target_sub.update(&topic) && (_parameters.inputs & GOE_IN_LANDING_TARGET) != 0 &&
-        goe_px4::sighting(topic, _used.estimator, whole_us(_parameters.target_delay_s),
-                          whole_us(_parameters.target_delay_sd_s), _images.room())) {
+        goe_px4::sighting(topic, _used.estimator, whole_us(_parameters.target_delay_s), TARGET_DELAY_SD_US,
+                          _images.room())) {
         _images.keep(now_us);
     }
 }
@@ -205,8 +222,8 @@ void Goe::publish_obstacles(const goe_flight_assessment_t &assessment, uint64_t 
 
 void Goe::publish_distances(uint64_t now_us) {
     if ((_parameters.outputs & GOE_OUT_DISTANCES) != 0) {
-        const float max_cm = CM_PER_M * fminf(fmaxf(_parameters.distance_max_m, 1.f), 650.f);
-        (void)_obstacle_distance_pub.publish(goe_px4::distances(_flight, static_cast<uint16_t>(max_cm), now_us));
+        constexpr uint16_t MAX_CM = static_cast<uint16_t>(CM_PER_M * DISTANCE_MAX_M);
+        (void)_obstacle_distance_pub.publish(goe_px4::distances(_flight, MAX_CM, now_us));
     }
 }
 
@@ -278,7 +295,7 @@ void Goe::assess(uint64_t now_us) {
     goe_flight_assessment_t assessment;
     _assessed_us = now_us;
     if (goe_flight_assess(&_flight, goe_px4::time_us(now_us), _approach, &assessment) == GOE_FLIGHT_CORRUPTED) {
-        mavlink_log_critical(&_mavlink_log_pub, "goe: memory was corrupted, begun anew");
+        mavlink_log_critical(&_mavlink_log_pub, "goe: memory was corrupted, begun again");
         _in_use = goe_flight_init(&_flight, sizeof _flight, &_used.estimator, &_used.flight, nullptr) == GOE_FLIGHT_OK;
     }
     follow_orders(assessment, now_us);
@@ -374,7 +391,7 @@ int Goe::print_usage(const char *reason) {
         "### Description\n"
         "Finds obstacles on the ground in the boxes of a camera's detector: where they are, how big,\n"
         "whether the present course comes too near to them, and what to do about it.\n"
-        "The camera must be set: GOE_CAM_W, GOE_CAM_H, GOE_CAM_FX, GOE_CAM_FY, GOE_CAM_CX, GOE_CAM_CY.\n");
+        "The camera must be set: GOE_CAM_W, GOE_CAM_H, GOE_CAM_FX.\n");
     PRINT_MODULE_USAGE_NAME("goe", "estimator");
     PRINT_MODULE_USAGE_COMMAND("start");
     PRINT_MODULE_USAGE_DEFAULT_COMMANDS();

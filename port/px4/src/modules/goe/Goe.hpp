@@ -59,6 +59,8 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     void leave();
 
     bool is_armed() const;
+    bool has_wings() const;
+    void read_parameters();
     bool is_followed(int slot) const;
     void follow_parameters();
     void use_parameters();
@@ -104,6 +106,7 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     GoeParameters _parameters{};     /* as PX4 has them */
     bool _in_use{false};             /* the layer runs with some ... */
     GoeParameters _used{};           /* ... which are these, for what the layer holds */
+    bool _had_wings{false};          /* when they were read */
     bool _waiting{false};            /* _parameters differ, and wait for the end of the tracks */
     const char *_bad_field{nullptr}; /* of the parameters that were refused */
 

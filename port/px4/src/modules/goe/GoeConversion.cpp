@@ -13,8 +13,7 @@ constexpr double E7_PER_DEG = 1.0e7;
 constexpr double LATITUDE_MAX_DEG = 89.0;
 constexpr double LONGITUDE_MAX_DEG = 180.0;
 constexpr float RAD_PER_DEG = 0.01745329252f;
-constexpr unsigned TUNNEL_FEATURES =
-    42700u; /* payload type: the number of GOE_FEATURES; beyond 32767 is anybody's own */
+constexpr unsigned TUNNEL_FEATURES = 4270u; /* payload type. Above 32767 are experiments that must not be distributed */
 constexpr uint8_t NO_CAMERA = 255u;
 
 static_assert(GOE_FLIGHT_SECTORS == sizeof(obstacle_distance_s::distances) / sizeof(uint16_t), "one to one");
@@ -119,6 +118,11 @@ void sighting(const goe_features_s &topic, goe_mavlink_sighting_t &to) {
         point[i]->v_px = topic.v[i];
         point[i]->seen = (topic.points >> i & 1u) != 0u;
     }
+}
+
+bool is_addressed(const mavlink_tunnel_s &topic, uint8_t system, uint8_t component) {
+    return system != 0u && topic.target_system == system &&
+           (topic.target_component == 0u || topic.target_component == component);
 }
 
 bool next_of_tunnel(const mavlink_tunnel_s &topic, unsigned &offset, goe_mavlink_sighting_t &to) {

@@ -53,7 +53,10 @@ bool home_down(const home_position_s &home, float &down_m);
 
 void sighting(const goe_features_s &topic, goe_mavlink_sighting_t &sighting);
 
-/* TUNNEL with payload type GOE_FEATURES' number: any number of times a length and as many bytes of a GOE_FEATURES payload.
+/* A TUNNEL to this system by its number, and to this component or to any. One to every system is none: boxes belong to one vehicle. */
+bool is_addressed(const mavlink_tunnel_s &topic, uint8_t system, uint8_t component);
+
+/* TUNNEL with payload type 4270: any number of times a length and as many bytes of a GOE_FEATURES payload.
  * Takes the next one from `offset` on, and moves it. False: no more, or not understood. */
 bool next_of_tunnel(const mavlink_tunnel_s &topic, unsigned &offset, goe_mavlink_sighting_t &sighting);
 
@@ -73,7 +76,7 @@ void status(const goe_flight_t &flight, const goe_flight_assessment_t &assessmen
 obstacle_distance_s distances(const goe_flight_t &flight, uint16_t max_cm, uint64_t now_us);
 
 #ifdef GOE_HAS_DETECT_AND_AVOID
-/* Level: LOW from GOE_VIOL_MAX on, HIGH when the order is about it, CRITICAL when that is late. Distances: now, to the nearest
+/* Level: LOW from violation_max on, HIGH when the order is about it, CRITICAL when that is late. Distances: now, to the nearest
  * point of the obstacle. unique_id: the detector's. */
 detect_and_avoid_s detect_and_avoid(const goe_flight_obstacle_t &from, int slot,
                                     const goe_flight_assessment_t &assessment, const float own_ned_m[3],

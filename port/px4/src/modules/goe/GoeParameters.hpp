@@ -15,13 +15,15 @@ struct GoeParameters {
     goe_settings_t estimator;
     goe_flight_settings_t flight;
     /* What takes effect at once. */
-    float distance_max_m;                    /* GOE_DIST_MAX */
-    float target_delay_s, target_delay_sd_s; /* GOE_LT_DELAY, GOE_LT_DEL_SD */
-    int32_t inputs, outputs, react, resume;  /* GOE_IN, GOE_OUT, GOE_REACT, GOE_RESUME */
+    float target_delay_s;                   /* GOE_LT_DELAY */
+    int32_t inputs, outputs, react, resume; /* GOE_IN, GOE_OUT, GOE_REACT, GOE_RESUME */
+    /* NAV_LOITER_RAD, if the circle that is flown is wider than that; else 0. */
+    float narrow_loiter_m;
 };
 
-/* All defaults of the settings, then what the parameters say. Marks them as used, so that ground stations list them. */
-void goe_parameters_read(GoeParameters &parameters);
+/* All defaults of the settings, then what was measured with PX4, what the vehicle's own parameters say, and what the parameters say.
+ * Marks them as used, so that ground stations list them. Without wings there is no loiter circle. */
+void goe_parameters_read(GoeParameters &parameters, bool has_wings);
 
-/* Whether the layer would have to be initialised anew. */
+/* Whether the layer would have to be initialised again. */
 bool goe_parameters_differ(const GoeParameters &a, const GoeParameters &b);

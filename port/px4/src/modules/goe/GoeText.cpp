@@ -150,8 +150,31 @@ void tell_state(const GoeOverview &o, unsigned number_of_line, char *line) {
 
 const char *goe_text_parameter(const char *setting) {
     static const char *const names[][2] = {
-        {"camera.width_px", "GOE_CAM_W"}, {"camera.height_px", "GOE_CAM_H"}, {"camera.fx_px", "GOE_CAM_FX"},
-        {"camera.fy_px", "GOE_CAM_FY"},   {"camera.cx_px", "GOE_CAM_CX"},    {"camera.cy_px", "GOE_CAM_CY"},
+        {"camera.width_px", "GOE_CAM_W"},
+        {"camera.height_px", "GOE_CAM_H"},
+        {"camera.fx_px", "GOE_CAM_FX"},
+        {"camera.fy_px", "GOE_CAM_FY"},
+        {"camera.cx_px", "GOE_CAM_CX"},
+        {"camera.cy_px", "GOE_CAM_CY"},
+        {"camera.k1", "GOE_CAM_K1"},
+        {"camera.k2", "GOE_CAM_K2"},
+        {"camera.k3", "GOE_CAM_K3"},
+        {"camera.p1", "GOE_CAM_P1"},
+        {"camera.p2", "GOE_CAM_P2"},
+        {"camera.mount_yaw_deg", "GOE_CAM_YAW"},
+        {"camera.mount_pitch_deg", "GOE_CAM_PITCH"},
+        {"camera.mount_roll_deg", "GOE_CAM_ROLL"},
+        {"camera.offset_m[0]", "GOE_CAM_X"},
+        {"camera.offset_m[1]", "GOE_CAM_Y"},
+        {"camera.offset_m[2]", "GOE_CAM_Z"},
+        {"navigation.ground_m", "GOE_GROUND_SD"},
+        {"delay_s", "GOE_DELAY"},
+        {"home_sd_m", "GOE_HOME_SD"},
+        {"margin_m", "GOE_MARGIN"},
+        {"clearance_m", "GOE_CLEAR"},
+        {"bank_deg", "FW_R_LIM"},
+        {"climb_m_s", "FW_T_CLMB_MAX"},
+        {"loiter_m", "NAV_LOITER_RAD"},
     };
     for (const auto &name : names) {
         if (strcmp(name[0], setting) == 0) {

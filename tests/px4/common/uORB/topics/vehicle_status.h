@@ -8,8 +8,9 @@ struct vehicle_status_s {
     static constexpr uint8_t NAVIGATION_STATE_POSCTL = 2, NAVIGATION_STATE_AUTO_MISSION = 3,
                              NAVIGATION_STATE_AUTO_LOITER = 4, NAVIGATION_STATE_AUTO_RTL = 5,
                              NAVIGATION_STATE_AUTO_LAND = 18;
+    static constexpr uint8_t VEHICLE_TYPE_UNSPECIFIED = 0, VEHICLE_TYPE_ROTARY_WING = 1, VEHICLE_TYPE_FIXED_WING = 2;
     uint64_t timestamp;
-    uint8_t arming_state, nav_state, system_id, component_id;
+    uint8_t arming_state, nav_state, vehicle_type, system_id, component_id;
 };
 
 STANDIN_TOPIC(vehicle_status, 1)
