@@ -77,7 +77,7 @@ def stated(header: str) -> dict[str, int]:
     """The most instructions of each call, by the paragraph of the manual."""
     (paragraph,) = re.findall(r"^ \* Cost +(.*?)^ \* Failure", header, re.MULTILINE | re.DOTALL)
     numbers = [int(n.replace(",", "")) for n in re.findall(r"\b\d{1,3}(?:,\d{3})+\b|\b\d{3}\b", paragraph)]
-    sample, frame, assessment, obstacle, sectors, slot = numbers
+    sample, frame, assessment, _further, obstacle, sectors, slot = numbers
     return dict(zip(PUBLIC, (SLOTS * slot, sample, sample, frame, assessment, obstacle, sectors)))
 
 
