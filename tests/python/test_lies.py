@@ -492,7 +492,7 @@ def test_breeding_goes_on_from_the_worst(monkeypatch: pytest.MonkeyPatch) -> Non
 
 # ------------------------------------------------------------------------------------------------------ recorded finds
 
-LIES = Path(__file__).parents[1] / "data" / "lies"
+LIES = Path(__file__).parents[1] / "finds"
 KNOWN = {row["find"]: row for row in csv.DictReader((LIES / "known.csv").read_text(encoding="utf-8").splitlines())}
 
 
