@@ -233,6 +233,8 @@ mod flight {
     pub type goe_flight_status_t = c_int;
     /// What to do.
     pub type goe_flight_action_t = c_uint;
+    /// Why it is this action.
+    pub type goe_flight_reason_t = c_uint;
 
     constants! {
         goe_flight_status_t: GOE_FLIGHT_OK = 0, GOE_FLIGHT_TOO_NEW = 1, GOE_FLIGHT_TOO_OLD = -1, GOE_FLIGHT_NO_POSE = -2,
@@ -242,7 +244,10 @@ mod flight {
             GOE_FLIGHT_CORRUPTED = -35;
         goe_flight_action_t: GOE_FLIGHT_NONE = 0, GOE_FLIGHT_LEFT = 1, GOE_FLIGHT_RIGHT = 2, GOE_FLIGHT_CLIMB = 3,
             GOE_FLIGHT_GO_AROUND = 4, GOE_FLIGHT_HOLD = 5;
-        u8: GOE_FLIGHT_AUTOPILOT_CLOCK = 0, GOE_FLIGHT_SENDER_CLOCK = 1, GOE_FLIGHT_AGE = 2;
+        goe_flight_reason_t: GOE_FLIGHT_REASON_NONE = 0, GOE_FLIGHT_REASON_CLEAR = 1, GOE_FLIGHT_REASON_LEAST_BAD = 2,
+            GOE_FLIGHT_REASON_LOW = 3, GOE_FLIGHT_REASON_SLOW = 4, GOE_FLIGHT_REASON_LANDING = 5;
+        u8: GOE_FLIGHT_AUTOPILOT_CLOCK = 0, GOE_FLIGHT_SENDER_CLOCK = 1, GOE_FLIGHT_AGE = 2,
+            GOE_FLIGHT_FLYING = 0, GOE_FLIGHT_APPROACH = 1, GOE_FLIGHT_FLARE = 2, GOE_FLIGHT_LANDED = 3;
         usize: GOE_FLIGHT_SLOTS = 4, GOE_FLIGHT_DETECTIONS = 32, GOE_FLIGHT_SECTORS = 72, GOE_FLIGHT_HEIGHTS = 3;
         u16: GOE_FLIGHT_SECTOR_UNKNOWN = 65535;
     }
@@ -296,6 +301,8 @@ mod flight {
             obstacles: u8,
             needed_s: f32,
             target_ned_m: [f32; 3],
+            reason: goe_flight_reason_t,
+            clear_m: f32,
             target_lat_e7: i32,
             target_lon_e7: i32,
             hazard: goe_hazard_t,
@@ -371,7 +378,7 @@ mod flight {
         pub fn goe_flight_assess(
             flight: *mut goe_flight_t,
             now_us: u32,
-            approach: bool,
+            phase: u8,
             result: *mut goe_flight_assessment_t,
         ) -> goe_flight_status_t;
         /// One obstacle.

@@ -72,6 +72,10 @@ pub struct FlightSettings {
     pub confirm_s: f32,
     /// ... and its end before the order is taken back, s; 0 to 60; default 2.
     pub hold_s: f32,
+    /// No new order below this height above the ground, m; 0 to 1000; default 5.
+    pub order_height_m: f32,
+    /// ... nor below this speed over the ground, m/s; 0 to 100; default 5.
+    pub order_speed_m_s: f32,
 }
 
 impl Default for FlightSettings {
@@ -445,6 +449,62 @@ impl fmt::Display for Action {
     }
 }
 
+/// Why it is this action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum OrderReason {
+    /// No order, and none is withheld.
+    None,
+    /// The order keeps clear of everything known.
+    Clear,
+    /// Nothing is free: the order has the largest clearance that was found.
+    LeastBad,
+    /// An order is due and withheld: the aircraft is lower than `order_height_m`.
+    Low,
+    /// ... slower than `order_speed_m_s`.
+    Slow,
+    /// ... flares, or has touched down.
+    Landing,
+}
+
+impl OrderReason {
+    fn of(reason: ffi::goe_flight_reason_t) -> Self {
+        match reason {
+            ffi::GOE_FLIGHT_REASON_NONE => Self::None,
+            ffi::GOE_FLIGHT_REASON_CLEAR => Self::Clear,
+            ffi::GOE_FLIGHT_REASON_LOW => Self::Low,
+            ffi::GOE_FLIGHT_REASON_SLOW => Self::Slow,
+            ffi::GOE_FLIGHT_REASON_LANDING => Self::Landing,
+            _ => Self::LeastBad,
+        }
+    }
+}
+
+/// What the aircraft does, for [`Flight::assess`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FlightPhase {
+    /// It flies.
+    #[default]
+    Flying,
+    /// It is landing: to go around comes first.
+    Approach,
+    /// No order is given, and one that stands ends.
+    Flare,
+    /// It has touched down: the same. What stands behind the runway is not on its course.
+    Landed,
+}
+
+impl FlightPhase {
+    fn code(self) -> u8 {
+        match self {
+            Self::Flying => ffi::GOE_FLIGHT_FLYING,
+            Self::Approach => ffi::GOE_FLIGHT_APPROACH,
+            Self::Flare => ffi::GOE_FLIGHT_FLARE,
+            Self::Landed => ffi::GOE_FLIGHT_LANDED,
+        }
+    }
+}
+
 /// What [`Flight::assess`] finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assessment {
@@ -468,7 +528,11 @@ pub struct Assessment {
     pub needed_s: f32,
     /// Where to, north, east, down, m; `None` without an action.
     pub target_ned_m: Option<[f32; 3]>,
-    /// The same on the earth, if the origin is known.
+    /// Why it is this action.
+    pub reason: OrderReason,
+    /// Of left, right and hold: the least distance from any known outline, two sigmas taken off, m. Otherwise 0.
+    pub clear_m: f32,
+    /// The target on the earth, if the origin is known.
     pub target: Option<LatLon>,
     /// Of the worst obstacle, from now.
     pub hazard: Option<Hazard>,
@@ -497,6 +561,8 @@ impl Assessment {
             obstacles: c.obstacles,
             needed_s: c.needed_s,
             target_ned_m: (action != Action::None).then_some(c.target_ned_m),
+            reason: OrderReason::of(c.reason),
+            clear_m: c.clear_m,
             target: place(c.target_lat_e7, c.target_lon_e7),
             hazard: worst.map(|_| Hazard::of(&c.hazard)),
         }
@@ -758,15 +824,15 @@ impl Flight {
 
     /// What is ahead from now on, at the velocity of the newest sample, and what to do about it.
     ///
-    /// `now_us`: the autopilot's clock; `approach`: the aircraft is landing.
+    /// `now_us`: the autopilot's clock; `phase`: what the aircraft does.
     ///
     /// # Errors
     /// [`FlightError::NoPose`]; that is not "clear".
-    pub fn assess(&mut self, now_us: u32, approach: bool) -> Result<Assessment, FlightError> {
+    pub fn assess(&mut self, now_us: u32, phase: FlightPhase) -> Result<Assessment, FlightError> {
         let mut result = MaybeUninit::<ffi::goe_flight_assessment_t>::zeroed();
         // SAFETY: zeros are an assessment, which the call writes whole; the layer is a started one.
         let (status, result) = unsafe {
-            let status = ffi::goe_flight_assess(&mut self.c, now_us, approach, result.as_mut_ptr());
+            let status = ffi::goe_flight_assess(&mut self.c, now_us, phase.code(), result.as_mut_ptr());
             (status, result.assume_init())
         };
         taken(status).map(|()| Assessment::of(&result))

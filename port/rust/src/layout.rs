@@ -236,7 +236,7 @@ layout_hazard! {
 }
 
 layout_flight! {
-    goe_flight_assessment_t: 68 {
+    goe_flight_assessment_t: 76 {
         action: 0,
         late: 4,
         suspect: 5,
@@ -247,9 +247,11 @@ layout_flight! {
         obstacles: 10,
         needed_s: 12,
         target_ned_m: 16,
-        target_lat_e7: 28,
-        target_lon_e7: 32,
-        hazard: 36,
+        reason: 28,
+        clear_m: 32,
+        target_lat_e7: 36,
+        target_lon_e7: 40,
+        hazard: 44,
     }
     goe_flight_attitude_t: 24 {
         time_us: 0,
@@ -317,7 +319,7 @@ layout_flight! {
         reset_delta_known: 60,
         reset_delta_ned_m: 64,
     }
-    goe_flight_settings_t: 100 {
+    goe_flight_settings_t: 108 {
         score_min: 0,
         confirm_images: 4,
         alive_s: 8,
@@ -343,6 +345,8 @@ layout_flight! {
         reserve_s: 88,
         confirm_s: 92,
         hold_s: 96,
+        order_height_m: 100,
+        order_speed_m_s: 104,
     }
 }
 

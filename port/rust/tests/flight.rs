@@ -2,8 +2,8 @@
 #![cfg(feature = "flight")]
 
 use goe::flight::{
-    Action, Attitude, Capture, Detection, Flight, FlightError, FlightSettings, Frame, Heights, LatLon, PositionSample,
-    Sector, SLOTS,
+    Action, Attitude, Capture, Detection, Flight, FlightError, FlightPhase, FlightSettings, Frame, Heights, LatLon,
+    PositionSample, Sector, SLOTS,
 };
 use goe::{BoundingBox, Error, Settings};
 
@@ -48,7 +48,7 @@ fn mast(ahead_m: f32) -> Detection {
 #[test]
 fn an_order_comes_in_time() {
     let mut flight = Flight::new(&settings(), &FlightSettings::default()).expect("good settings");
-    assert_eq!(flight.assess(0, false), Err(FlightError::NoPose));
+    assert_eq!(flight.assess(0, FlightPhase::Flying), Err(FlightError::NoPose));
     let start_us = u32::MAX - 2_000_000; // the clock wraps on the way
     let mut ordered_m = None;
     for k in 0..400_u16 {
@@ -60,7 +60,7 @@ fn an_order_comes_in_time() {
         if k > 0 && k % 2 == 0 {
             flight.frame(&frame).expect("a good frame");
         }
-        let seen = flight.assess(time_us, false).expect("a pose");
+        let seen = flight.assess(time_us, FlightPhase::default()).expect("a pose");
         assert_eq!(seen.target_ned_m.is_some(), seen.action != Action::None);
         if seen.action != Action::None {
             assert!(seen.detector_alive && seen.pose_alive && seen.target.is_some());

@@ -4,8 +4,8 @@ use core::mem::MaybeUninit;
 use core::num::NonZeroU32;
 
 use goe::flight::{
-    Action, Assessment, Attitude, Capture, Detection, Flight, FlightError, FlightSettings, Frame, Heights, LatLon,
-    Obstacle, Point, PositionSample, Sector, SECTORS,
+    Action, Assessment, Attitude, Capture, Detection, Flight, FlightError, FlightPhase, FlightSettings, Frame, Heights,
+    LatLon, Obstacle, Point, PositionSample, Sector, SECTORS,
 };
 use goe::{Hazard, Image, Length, Method, Model};
 
@@ -158,7 +158,14 @@ fn detection(image: &Image) -> Detection {
 }
 
 fn read_layer(hash: &mut Hash, flight: &mut Flight, now_us: u32, approach: bool) {
-    let assessed = flight.assess(now_us, approach);
+    let assessed = flight.assess(
+        now_us,
+        if approach {
+            FlightPhase::Approach
+        } else {
+            FlightPhase::Flying
+        },
+    );
     hash.word(code(assessed.map(|_| ())));
     hash_assessment(hash, assessed);
     let obstacle = flight.obstacle(0);
