@@ -241,9 +241,9 @@ static void try_target(const look_t *look, const encounter_t *e, int side, float
     option.side = (int8_t)side;
     const float enough = best->share < FREE ? best->share : FREE;
     option.share = goe_flight_clear_share(&look->at, look->slot, &option.way, enough, &nearest);
-    const int before = look->flight->reaction.side;
+    const bool same_side = look->flight->reaction.side == option.side;
     option.cost_s = option.needed_s + SHARE_S * (WHOLE - goe_flight_smaller(option.share, WHOLE)) -
-                    (before == side ? SAME_SIDE_S : 0.0f);
+                    (same_side ? SAME_SIDE_S : 0.0f);
     prefer(best, &option);
 }
 
@@ -761,6 +761,7 @@ static float answer(goe_flight_t *flight, look_t *look, int about) {
 float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flight_reaction_own_t *own) {
     goe_flight_reaction_t *r = &flight->reaction;
     look_t look;
+    memset(&look, 0, sizeof look);
     mend(r);
     forget_side(r, own->time_us);
     if (own->grounded && r->action != GOE_FLIGHT_NONE) {

@@ -475,7 +475,8 @@ static double turn_keeps_m(const run_t *run, double bank_rad) {
     double north = run->search_at[0], east = run->search_at[1], least = HUGE_VAL;
     double course = atan2(run->search_at[3], run->search_at[2]);
     const double speed = hypot(run->search_at[3], run->search_at[2]);
-    for (double t = 0.0; t < SEARCH_S && least >= SEVERAL_CLEAR_M; t += SEARCH_STEP_S) {
+    for (int k = 0; k * SEARCH_STEP_S < SEARCH_S && least >= SEVERAL_CLEAR_M; k++) {
+        const double t = k * SEARCH_STEP_S;
         course += t < run->search_reach_s ? 0.0 : SEARCH_STEP_S * 9.80665 * tan(bank_rad) / speed;
         north += SEARCH_STEP_S * speed * cos(course);
         east += SEARCH_STEP_S * speed * sin(course);
