@@ -132,6 +132,9 @@ RUN_BY = {
     "build/port/companion/goe_companion port/companion/companion.ini": By(
         "tests/companion/companion.py", '"companion" / "goe_companion"'
     ),
+    "goe_avoid --several": By("tests/sim/test_avoid.py", '"--several"'),
+    "cmake --preset default": By("tools/test.sh", 'cmake --preset "$1"'),
+    "cmake --build --preset default --target goe_companion": By("tools/test.sh", 'cmake --build --preset "$1"'),
     "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
     "python -m goe_tools attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
