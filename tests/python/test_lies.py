@@ -21,6 +21,7 @@ from goe_tools.lies import (
     errors,
     evolve,
     genes,
+    goals,
     motion,
     optics,
     search,
@@ -36,7 +37,7 @@ from goe_tools.lies.judge import QUANTITIES, judge
 from goe_tools.lies.record import write
 from goe_tools.lies.search import Flown
 from goe_tools.lies.shapes import Solid
-from goe_tools.lies.show import misses
+from goe_tools.lies.show import from_json, misses
 from goe_tools.lies.shrink import Want
 from goe_tools.lies.tally import Example, Tally, tally_of
 from goe_tools.logs.obslog import Frame, read_log
@@ -610,3 +611,32 @@ def test_the_evidence_lists_the_goals_by_mix() -> None:
     assert rows["points: flights with a confident error, > 6 sigma"].met is False
     assert rows["base: flights with a confident error, > 6 sigma"].met is True
     assert rows["... with a warning that vanished, of 1,000"].met is False  # of the last mix
+
+
+# --------------------------------------------------------------------------------------------------------- the record
+
+
+def test_the_page_has_the_table_of_the_record() -> None:
+    about, counts = from_json(goals.RECORD)
+    page = Path(goals.__file__).with_name("README.md")
+    assert goals.BLOCK.of(page) == goals.block(about, counts)
+    assert sum(counts["flights", mix] for mix in MIXES) == 1_000_000
+
+
+def test_each_class_of_the_record_has_a_reason_and_each_reason_a_class() -> None:
+    _, counts = from_json(goals.RECORD)
+    assert goals.unexplained(counts) == [] and goals.idle(counts) == []
+    counts["class", "vanished", "base", "invented", "box", "cuboid", "0"] = 1
+    assert goals.unexplained(counts) == [("vanished", "base", "invented")]
+    for key in [key for key in counts if key[:3] == ("class", "confident", "points")]:
+        del counts[key]
+    assert goals.idle(counts) == [("confident", "points", "disc of a cylinder")]
+
+
+def test_the_command_writes_the_table(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("before\n<!-- lies: begin -->\n<!-- lies: end -->\nbehind\n", encoding="utf-8")
+    assert main(["lies", "--show", str(goals.RECORD), "--page", str(page)]) == 0
+    about, counts = from_json(goals.RECORD)
+    assert goals.BLOCK.of(page) == goals.block(about, counts)
+    assert main(["lies", "--page", str(page)]) == 2

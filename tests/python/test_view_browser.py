@@ -234,12 +234,12 @@ def test_both_maps_have_one_scale(make_page: Callable[..., Path], browser: Any) 
     for view in ("whole", "ahead"):
         browser.execute_script("document.querySelector(`input[value=${arguments[0]}]`).click()", view)
         moved(browser, 60 if view == "whole" else 80)
-        for name in ("map", "close"):
-            scales = browser.execute_script(
-                "const l = document.getElementById(arguments[0])._fullLayout; return ['xaxis', 'yaxis'].map("
-                "a => (l[a].range[1] - l[a].range[0]) / l[a]._length)", name,
-            )  # fmt: skip
-            assert scales[0] == pytest.approx(scales[1], rel=3e-3), (view, name)  # ranges are rounded
+        for name in ("map", "close"):  # until it is drawn; ranges are rounded
+            assert waited(
+                browser, "const l = document.getElementById(arguments[0])._fullLayout;"
+                "const scale = axis => (axis.range[1] - axis.range[0]) / axis._length;"
+                "return Math.abs(scale(l.xaxis) / scale(l.yaxis) - 1) < 3e-3", name,
+            ), (view, name)  # fmt: skip
 
 
 # ----------------------------------------------------------------------------------------------------- several at once

@@ -17,17 +17,23 @@ REASONS = Path(__file__).with_name("reasons.csv")
 BLOCK = MarkedBlock("lies")
 CLASS_SHARE = 0.0003  # of a mix's flights: from here on a class of confident errors needs a reason
 CONFIDENT, VANISHED = "confident", "vanished"
+ALL = "all"  # mixes, of a reason
+Class = tuple[str, str, str]  # kind, mix, what: the model of which solid, or the cause of a vanished warning
 
 
-def reasons() -> dict[tuple[str, str, str], str]:
-    """Why, by kind, mix and what: the model of which solid, or the cause of a vanished warning."""
+def reasons() -> dict[Class, str]:
     with REASONS.open(encoding="utf-8", newline="") as file:
         return {(row["kind"], row["mix"], row["what"]): row["why"] for row in csv.DictReader(file)}
 
 
-def classes(counts: Counter[Key]) -> dict[tuple[str, str, str], int]:
+def reason_of(known: dict[Class, str], found: Class) -> str | None:
+    kind, mix, what = found
+    return known.get((kind, mix, what)) or known.get((kind, ALL, what))
+
+
+def classes(counts: Counter[Key]) -> dict[Class, int]:
     """Flights by kind, mix and what: each vanished warning, and the confident errors that are frequent enough."""
-    found: Counter[tuple[str, str, str]] = Counter()
+    found: Counter[Class] = Counter()
     for word, *key in counts:
         if word == "class" and key[0] in (CONFIDENT, VANISHED):
             kind, mix, quantity, model, solid, _ = key
@@ -37,16 +43,25 @@ def classes(counts: Counter[Key]) -> dict[tuple[str, str, str], int]:
     return {key: flights for key, flights in found.items() if key[0] == VANISHED or flights >= least[key[1]]}
 
 
-def unexplained(counts: Counter[Key]) -> list[tuple[str, str, str]]:
-    return sorted(set(classes(counts)) - set(reasons()))
+def unexplained(counts: Counter[Key]) -> list[Class]:
+    known = reasons()
+    return sorted(found for found in classes(counts) if reason_of(known, found) is None)
+
+
+def idle(counts: Counter[Key]) -> list[Class]:
+    """Reasons of what is no longer found."""
+    found = classes(counts)
+    return sorted(
+        known for known in reasons() if known not in found and not any((k, ALL, w) == known for k, _, w in found)
+    )
 
 
 def block(about: dict[str, Any], counts: Counter[Key]) -> str:
     mixes, why = mixes_of(counts), reasons()
     total = sum(counts["flights", mix] for mix in mixes)
     lines = [
-        f"{total:,} flights, seed {about['seed']}; goals: confident errors in at most {100 * CONFIDENT_GOAL:g} % of the flights of "
-        "a mix, no vanished warning.",
+        f"{total:,} flights, seed {about['seed']}; goals: confident errors in at most {100 * CONFIDENT_GOAL:g} % "
+        "of the flights of a mix, no vanished warning.",
         "",
         "| mix | flights | confident error, % | goal | vanished warning, flights | goal |",
         "| --- | ---: | ---: | --- | ---: | --- |",
@@ -58,7 +73,8 @@ def block(about: dict[str, Any], counts: Counter[Key]) -> str:
         lines.append(f"| `{mix}` | {flights:,} | {percent(confident, flights)} | {met[0]} | {gone:,} | {met[1]} |")
     lines += ["", "| class | mix | what | flights, % | why |", "| --- | --- | --- | ---: | --- |"]
     ordered = sorted(classes(counts).items(), key=lambda item: (item[0][0], mixes.index(item[0][1]), -item[1]))
-    for (kind, mix, what), flights in ordered:
-        text = why.get((kind, mix, what), "not explained")
-        lines.append(f"| {kind} | `{mix}` | {what} | {percent(flights, counts['flights', mix])} | {text} |")
+    for found, flights in ordered:
+        kind, mix, what = found
+        share = percent(flights, counts["flights", mix])
+        lines.append(f"| {kind} | `{mix}` | {what} | {share} | {reason_of(why, found) or 'not explained'} |")
     return "\n".join(lines)
