@@ -23,8 +23,8 @@
 #define LATE_VIOLATION                                                                                                 \
     0.5f /* where no action comes in time, a hazard that is less likely than not is no reason for one */
 #define NOBODY (-1)
-#define LEFT (-1)
-#define RIGHT 1
+#define TO_LEFT (-1)
+#define TO_RIGHT 1
 
 /* Shares of the margin. */
 #define FREE 0.75f     /* a way of this much is free: on the way to its target an aircraft cuts the corner */
@@ -65,7 +65,7 @@ typedef struct {
     goe_flight_action_t action;
     float needed_s, cost_s;
     float share;                /* of the margin, least */
-    goe_flight_clear_way_t way; /* of LEFT, RIGHT, HOLD */
+    goe_flight_clear_way_t way; /* of an order to a side, or to hold */
     float down_m;               /* of the target */
     int8_t edge, side;
     bool gap; /* between the obstacle and `edge` */
@@ -89,7 +89,7 @@ void goe_flight_reaction_shift(goe_flight_reaction_t *reaction, const float jump
 
 static bool is_aside(unsigned action) { return action == GOE_FLIGHT_LEFT || action == GOE_FLIGHT_RIGHT; }
 static bool is_up(unsigned action) { return action == GOE_FLIGHT_CLIMB || action == GOE_FLIGHT_GO_AROUND; }
-static float times(int side, float aside_m) { return side == LEFT ? -aside_m : aside_m; }
+static float times(int side, float aside_m) { return side == TO_LEFT ? -aside_m : aside_m; }
 
 static void relate(const float from_ne_m[2], const float course_ne[2], const float place_ne_m[2], float *ahead_m,
                    float *aside_m) {
@@ -227,7 +227,7 @@ static void try_target(const look_t *look, const encounter_t *e, int side, float
     option_t option;
     int nearest;
     memset(&option, 0, sizeof option);
-    option.action = side == LEFT ? GOE_FLIGHT_LEFT : GOE_FLIGHT_RIGHT;
+    option.action = side == TO_LEFT ? GOE_FLIGHT_LEFT : GOE_FLIGHT_RIGHT;
     option.needed_s = turn_time_s(look, times(side, aside_m));
     option.way.target_m[0] = e->ahead_m;
     option.way.target_m[1] = aside_m + times(side, look->circle_m);
@@ -316,11 +316,11 @@ static option_t choose(const look_t *look, int about, const encounter_t *e, int 
             return best;
         }
     }
-    if (side != LEFT && e->ahead_m > 0.0f) {
-        try_side(look, about, e, RIGHT, &best);
+    if (side != TO_LEFT && e->ahead_m > 0.0f) {
+        try_side(look, about, e, TO_RIGHT, &best);
     }
-    if (side != RIGHT && e->ahead_m > 0.0f) {
-        try_side(look, about, e, LEFT, &best);
+    if (side != TO_RIGHT && e->ahead_m > 0.0f) {
+        try_side(look, about, e, TO_LEFT, &best);
     }
     if (side == 0) {
         try_climb(look, about, e, &best);
@@ -328,7 +328,7 @@ static option_t choose(const look_t *look, int about, const encounter_t *e, int 
     if (best.action != GOE_FLIGHT_NONE && best.share >= FREE) {
         return best;
     }
-    const int away = e->aside_m > 0.0f ? LEFT : RIGHT;
+    const int away = e->aside_m > 0.0f ? TO_LEFT : TO_RIGHT;
     if (side == 0 || side == away) {
         try_hold(look, away, &hold);
     }
@@ -649,7 +649,7 @@ static void break_off(goe_flight_t *flight, const look_t *look) {
 /* An order that there is not, or about no slot that there is, is none: the hazard that stands brings another. */
 static void mend(goe_flight_reaction_t *r) {
     if (r->action > GOE_FLIGHT_HOLD || r->slot < NOBODY || r->slot >= GOE_FLIGHT_SLOTS || r->edge < NOBODY ||
-        r->edge >= GOE_FLIGHT_SLOTS || r->side < LEFT || r->side > RIGHT) {
+        r->edge >= GOE_FLIGHT_SLOTS || r->side < TO_LEFT || r->side > TO_RIGHT) {
         goe_flight_reaction_clear(r);
     }
 }
