@@ -661,11 +661,14 @@ static goe_flight_reason_t withheld(const goe_flight_t *flight, const goe_flight
     if (own->grounded) {
         return GOE_FLIGHT_REASON_LANDING;
     }
-    if (flight->ground_down_m - own->ned_m[2] < flight->settings.order_height_m &&
-        flight->settings.order_height_m > 0.0f) {
+    const goe_flight_settings_t *settings = &flight->settings;
+    const float above_m = flight->ground_down_m - own->ned_m[2];
+    const bool is_above =
+        above_m > -SURE_SIGMA * settings->home_sd_m; /* otherwise the ground lies lower than it is taken for */
+    if (is_above && above_m < settings->order_height_m && settings->order_height_m > 0.0f) {
         return GOE_FLIGHT_REASON_LOW;
     }
-    return speed_m_s < flight->settings.order_speed_m_s ? GOE_FLIGHT_REASON_SLOW : GOE_FLIGHT_REASON_NONE;
+    return speed_m_s < settings->order_speed_m_s ? GOE_FLIGHT_REASON_SLOW : GOE_FLIGHT_REASON_NONE;
 }
 
 /* What the simplest turn past an obstacle takes, whatever else stands there. */

@@ -201,6 +201,16 @@ static void no_order_is_given_too_low(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
 }
 
+/* In a valley the height above the home is negative: that is no height above the ground, and withholds nothing. */
+static void a_height_below_the_ground_withholds_no_order(void) {
+    own.ned_m[2] = 2.0f * flight.settings.home_sd_m - 0.1f;
+    put(0, 100.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LOW, flight.reaction.reason);
+    own.ned_m[2] = 2.0f * flight.settings.home_sd_m + 0.1f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+}
+
 static void a_height_of_zero_gives_orders_at_any_height(void) {
     flight.settings.order_height_m = 0.0f;
     own.ned_m[2] = 30.0f; /* below the origin */
@@ -367,6 +377,7 @@ int main(void) {
     RUN_TEST(an_order_turns_to_the_next_one_on_its_line);
     RUN_TEST(an_order_stands_while_the_way_back_is_not_clear);
     RUN_TEST(no_order_is_given_too_low);
+    RUN_TEST(a_height_below_the_ground_withholds_no_order);
     RUN_TEST(a_height_of_zero_gives_orders_at_any_height);
     RUN_TEST(no_order_is_given_too_slow);
     RUN_TEST(no_order_is_given_in_flare_or_after_touchdown);
