@@ -125,9 +125,9 @@ typedef struct {
     float reserve_s;   /* an order comes this much before its last moment; 0 to 60; 3 */
     float confirm_s;   /* the hazard must stay for this long before an order, unless none is left; 0 to 10; 0.3 */
     float hold_s;      /* ... and its end before the order is taken back; 0 to 60; 2 */
-    /* where no order is given; hazards are reported all the same */
-    float order_height_m;  /* no new order below this height above the ground; 0: at any; 0 to 1000; 5. A height below the ground by
-                              twice home_sd_m, as in a valley, withholds nothing */
+    /* where no order is given; hazards are reported all the same. A height below the ground by twice home_sd_m, as in a valley,
+       withholds nothing */
+    float order_height_m;  /* no new order below this height above the ground; 0: at any; 0 to 1000; 5 */
     float order_speed_m_s; /* ... nor below this speed over the ground; 0 to 100; 5 */
 } goe_flight_settings_t;
 
