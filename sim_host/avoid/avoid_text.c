@@ -4,6 +4,8 @@
 #include <inttypes.h>
 #include <math.h>
 
+#include "flown.h"
+
 const avoid_outcome_t *avoid_run_ordered(const avoid_run_t *run) {
     return avoid_is_pass(&run->setup) ? &run->without : &run->with;
 }
@@ -37,7 +39,7 @@ void avoid_text_row(FILE *stream, const avoid_run_t *run, double margin_m) {
     (void)fprintf(stream, "%s,%s,%" PRIu64, AVOID_NAMES[setup->kind], pass ? "pass" : "collision", setup->seed);
     put(stream, setup->delay_s);
     put(stream, margin_m);
-    put(stream, AVOID_COLLISION_M);
+    put(stream, FLOWN_COLLISION_M);
     put(stream, pass ? setup->pass_m : (double)NAN);
     (void)fprintf(stream, ",%s", goe_flight_action_text(orders->action));
     put(stream, orders->ordered ? orders->ahead_s : (double)NAN);

@@ -6,9 +6,7 @@
  *   truck            a landing approach of 3 degrees that ends at the truck's middle; the order is to go around
  *
  * The aircraft meets the obstacle's middle, up to 2 m aside of it; or passes its outline at a distance that is asked for, on either
- * side. Errors: boxes as measured on recorded feeds of detectors; attitude, position, velocity, height and lost frames as
- * `--noise field` of goe_sim has them; light wind and turbulence; half of the aircraft roll by 10 degrees; for half of them the
- * detector sees nothing for two seconds of every five. An order is carried out half a second after it was given.
+ * side. Errors as flown.h has them. An order is carried out half a second after it was given.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -18,10 +16,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "aircraft.h"
 #include "goe_flight.h"
-
-#define AVOID_COLLISION_M (0.5 * AIRCRAFT_SPAN_M) /* the aircraft's middle nearer than this: a collision */
 
 #define AVOID_WRONG_SIGMAS 5.0
 #define AVOID_WRONG_TIMES 5
@@ -40,7 +35,7 @@ typedef struct {
 
 typedef struct {
     double closest_m; /* of the aircraft's middle from the obstacle's walls and top, in space; 0: inside */
-    bool collided;    /* closer than AVOID_COLLISION_M, or into the ground */
+    bool collided;    /* closer than FLOWN_COLLISION_M, or into the ground */
     bool ordered, late;
     goe_flight_action_t action; /* the first */
     double ahead_s;             /* the first order came this long before the obstacle would be reached */

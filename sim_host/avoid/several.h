@@ -9,7 +9,7 @@
  *   field    one to nine anywhere ahead
  *   between  two, one on each side at twice the margin: no order is due
  *
- * Errors as in avoidance.h. An order is obeyed after a delay, by one of two autopilots: one flies beside its line, the other flies
+ * Errors as flown.h has them. An order is obeyed after a delay, by one of two autopilots: one flies beside its line, the other flies
  * to the target and circles it, and the layer is set to its radius.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
@@ -22,7 +22,6 @@
 
 #include "goe_flight.h"
 
-#define SEVERAL_MAX 9
 #define SEVERAL_CLEAR_M 5.0 /* wanted from the nearest wall, wherever a search finds it */
 
 typedef enum {

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "flown.h"
+
 #define FALSE_SHARE_MAX 0.02
 #define CHANGES_MAX 1
 
@@ -77,7 +79,7 @@ static bool print_goal(const char *what, int missed, int of, double most_share) 
 }
 
 bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bool *met) {
-    static tally_t all, by_kind[SEVERAL_KINDS], by_number[SEVERAL_MAX + 1], by_obey[OBEYS], by_autopilot[2];
+    static tally_t all, by_kind[SEVERAL_KINDS], by_number[FLOWN_MAX + 1], by_obey[OBEYS], by_autopilot[2];
     memset(&all, 0, sizeof all);
     memset(by_kind, 0, sizeof by_kind);
     memset(by_number, 0, sizeof by_number);
@@ -108,7 +110,7 @@ bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bo
     for (int kind = 0; kind < SEVERAL_KINDS; kind++) {
         print_row("", SEVERAL_NAMES[kind], &by_kind[kind]);
     }
-    for (int number = 1; number <= SEVERAL_MAX; number++) {
+    for (int number = 1; number <= FLOWN_MAX; number++) {
         char name[24];
         (void)snprintf(name, sizeof name, "%d", number);
         print_row("obstacles: ", name, &by_number[number]);
