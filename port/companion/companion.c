@@ -257,7 +257,7 @@ static void watch_health(companion_t *c, int64_t now_us) {
     event("navigation: %s%s", what, in_doubt ? ": margins are wider" : " again");
     screen_show(&c->screen, SCREEN_NAVIGATION, in_doubt ? MAV_SEVERITY_WARNING : MAV_SEVERITY_INFO,
                 "GOE: navigation: %s", what);
-    if (in_doubt != was_in_doubt && !margins_set(&c->flight, &c->spare, &c->config, in_doubt)) {
+    if (in_doubt != was_in_doubt && !margins_set(&c->flight, &c->config, in_doubt)) {
         event("the margins cannot be changed");
     }
 }
@@ -293,7 +293,7 @@ static void assess(companion_t *c, int64_t now_us) {
     if (status == GOE_FLIGHT_CORRUPTED) {
         event("its memory was corrupted: obstacles are looked for anew");
         (void)begin_flight(c, NULL);
-        (void)margins_set(&c->flight, &c->spare, &c->config, c->health.doubts != 0);
+        (void)margins_set(&c->flight, &c->config, c->health.doubts != 0);
     }
     if (status == GOE_FLIGHT_OK) { /* without a pose nothing is known, and what stands stands */
         orders_follow(&c->orders, &c->assessment, &own, now_us);

@@ -38,7 +38,7 @@ typedef struct {
 
 typedef struct {
     companion_config_t config;
-    goe_flight_t flight, spare; /* spare: room to change the margins */
+    goe_flight_t flight;
     goe_flight_assessment_t assessment;
     link_t *autopilot_link, *detections_link; /* the latter null: detections come over MAVLink alone */
     wire_t wire;

@@ -1,8 +1,6 @@
 /* Margins that follow the doubt about where the aircraft is. SPDX-License-Identifier: MIT */
 #include "margins.h"
 
-#include <string.h>
-
 #define MARGIN_MAX_M 1000.0f /* range of both settings */
 
 static float widened_m(float margin_m, float doubt) {
@@ -10,16 +8,11 @@ static float widened_m(float margin_m, float doubt) {
     return wide_m < MARGIN_MAX_M ? wide_m : MARGIN_MAX_M;
 }
 
-/* The settings lie before what the flight layer knows, and under one seal: those of a fresh one take their place. */
-bool margins_set(goe_flight_t *flight, goe_flight_t *spare, const companion_config_t *config, bool in_doubt) {
+bool margins_set(goe_flight_t *flight, const companion_config_t *config, bool in_doubt) {
     goe_flight_settings_t settings = config->flight;
     if (in_doubt) {
         settings.margin_m = widened_m(settings.margin_m, settings.doubt);
         settings.clearance_m = widened_m(settings.clearance_m, settings.doubt);
     }
-    if (goe_flight_init(spare, sizeof *spare, &config->estimator, &settings, NULL) != GOE_FLIGHT_OK) {
-        return false;
-    }
-    (void)memcpy(flight, spare, offsetof(goe_flight_t, history));
-    return true;
+    return goe_flight_change_settings(flight, &settings, NULL) == GOE_FLIGHT_OK;
 }

@@ -6,8 +6,7 @@
 #include "goe_flight.h"
 
 /* Margin and clearance of the configuration, times flight.doubt while there is doubt. All that the flight layer knows stays.
- *   spare  room for a second flight layer
  * False: the margins stay as they were. */
-bool margins_set(goe_flight_t *flight, goe_flight_t *spare, const companion_config_t *config, bool in_doubt);
+bool margins_set(goe_flight_t *flight, const companion_config_t *config, bool in_doubt);
 
 #endif

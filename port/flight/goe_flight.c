@@ -162,6 +162,26 @@ static goe_flight_status_t check_sealed(const goe_flight_t *flight) {
     return ready == GOE_FLIGHT_OK && !goe_flight_is_sealed(flight) ? GOE_FLIGHT_CORRUPTED : ready;
 }
 
+goe_flight_status_t goe_flight_change_settings(goe_flight_t *flight, const goe_flight_settings_t *settings,
+                                               const char **bad_field) {
+    const goe_flight_status_t sealed = check_sealed(flight);
+    goe_flight_settings_t wanted;
+    goe_flight_settings_default(&wanted);
+    if (settings) {
+        wanted = *settings;
+    }
+    const char *bad = find_bad(&wanted);
+    if (bad_field) {
+        *bad_field = sealed == GOE_FLIGHT_OK ? bad : NULL;
+    }
+    if (sealed != GOE_FLIGHT_OK || bad) {
+        return sealed != GOE_FLIGHT_OK ? sealed : GOE_FLIGHT_BAD_SETTINGS;
+    }
+    flight->settings = wanted;
+    goe_flight_seal(flight);
+    return GOE_FLIGHT_OK;
+}
+
 goe_flight_status_t goe_flight_restart(goe_flight_t *flight) {
     const goe_flight_status_t status = check_ready(flight);
     if (status == GOE_FLIGHT_OK) {

@@ -404,6 +404,15 @@ void goe_flight_settings_default(goe_flight_settings_t *settings);
 GOE_NODISCARD goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t flight_size, const goe_settings_t *estimator,
                                                   const goe_flight_settings_t *settings, const char **bad_field);
 
+/* Changes the layer's settings in flight: poses, clocks, obstacles and a standing order stay, and the next assessment judges by the new
+ * settings. What the estimators were initialised with stays too.
+ *   settings   null: the defaults
+ *   bad_field  as for goe_flight_init
+ * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _BAD_SETTINGS, _NOT_INITIALISED, or _CORRUPTED: then call goe_flight_init(). On failure the
+ * settings stay as they were. */
+GOE_NODISCARD goe_flight_status_t goe_flight_change_settings(goe_flight_t *flight, const goe_flight_settings_t *settings,
+                                                             const char **bad_field);
+
 /* Take a sample of the pose. Samples closer than 20 ms are thinned.
  * Return GOE_FLIGHT_OK, _BAD_TIME, _NOT_FINITE, _OUT_OF_RANGE, _BAD_ATTITUDE, _BAD_ARGUMENT, _NOT_INITIALISED. */
 goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_attitude_t *sample);

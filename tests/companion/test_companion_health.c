@@ -177,7 +177,7 @@ static void a_restart_of_the_autopilot_ends_its_faults(void) {
 /* ---------------------------------------------------------------------------------------------------------- margins -- */
 
 static void margins_follow_the_doubt_and_nothing_else_changes(void) {
-    static goe_flight_t flight, spare, before;
+    static goe_flight_t flight, before;
     static companion_config_t config;
     goe_settings_default(&config.estimator);
     goe_flight_settings_default(&config.flight);
@@ -188,17 +188,17 @@ static void margins_follow_the_doubt_and_nothing_else_changes(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flight, &attitude));
     flight.slot[1].used = true;
     before = flight;
-    TEST_ASSERT_TRUE(margins_set(&flight, &spare, &config, true));
+    TEST_ASSERT_TRUE(margins_set(&flight, &config, true));
     CHECK_SAME(1.5f * config.flight.margin_m, flight.settings.margin_m);
     CHECK_SAME(1.5f * config.flight.clearance_m, flight.settings.clearance_m);
     TEST_ASSERT_EQUAL_MEMORY(&before.history, &flight.history, sizeof flight - offsetof(goe_flight_t, history));
     goe_flight_assessment_t assessment;
     TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_CORRUPTED, goe_flight_assess(&flight, 5000000, false, &assessment)); /* sealed */
     flight = before;
-    TEST_ASSERT_TRUE(margins_set(&flight, &spare, &config, false));
+    TEST_ASSERT_TRUE(margins_set(&flight, &config, false));
     TEST_ASSERT_EQUAL_MEMORY(&before, &flight, sizeof flight);
     config.flight.margin_m = 900.0f;
-    TEST_ASSERT_TRUE(margins_set(&flight, &spare, &config, true));
+    TEST_ASSERT_TRUE(margins_set(&flight, &config, true));
     CHECK_SAME(1000.0f, flight.settings.margin_m);
 }
 

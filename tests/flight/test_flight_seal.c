@@ -40,6 +40,60 @@ static void every_flip_of_the_settings_is_told(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(&now));
 }
 
+/* GIVEN an obstacle that violates WHEN settings change in flight THEN it stays known and is judged by the new ones. */
+static void settings_change_in_flight_and_nothing_is_lost(void) {
+    goe_flight_settings_t settings = flown.flight.settings;
+    goe_flight_assessment_t before;
+    goe_flight_assessment_t after;
+    static goe_flight_t twin;
+    (void)flown_fly(&flown, 4.0);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(&before));
+    TEST_ASSERT_TRUE(before.worst >= 0);
+    twin = flown.flight;
+    settings.margin_m = 1.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(&flown.flight, &settings, NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&twin.attitude_white_deg, &flown.flight.attitude_white_deg,
+                             sizeof twin - offsetof(goe_flight_t, attitude_white_deg));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(&after));
+    TEST_ASSERT_EQUAL_INT(before.worst, after.worst);
+    TEST_ASSERT_TRUE(after.hazard.violation < before.hazard.violation); /* a smaller margin is violated less surely */
+    settings.margin_m = twin.settings.margin_m;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(&flown.flight, &settings, NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&twin.settings, &flown.flight.settings, sizeof twin.settings);
+    TEST_ASSERT_EQUAL_MEMORY(&twin.seal, &flown.flight.seal, sizeof twin.seal);
+}
+
+/* GIVEN settings out of range, no layer or a flipped bit WHEN they are to change THEN all stays as it was. */
+static void refused_settings_change_nothing(void) {
+    goe_flight_settings_t settings = flown.flight.settings;
+    const char *bad = "";
+    static goe_flight_t twin;
+    twin = flown.flight;
+    settings.hold_s = -1.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_SETTINGS, goe_flight_change_settings(&flown.flight, &settings, &bad));
+    TEST_ASSERT_EQUAL_STRING("hold_s", bad);
+    TEST_ASSERT_EQUAL_MEMORY(&twin, &flown.flight, sizeof twin);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT, goe_flight_change_settings(NULL, NULL, &bad));
+    TEST_ASSERT_NULL(bad);
+    flip(&flown.flight.settings, 9);
+    twin = flown.flight;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, goe_flight_change_settings(&flown.flight, NULL, NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&twin, &flown.flight, sizeof twin);
+    memset(&flown.flight, 0, sizeof flown.flight);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALISED, goe_flight_change_settings(&flown.flight, NULL, NULL));
+}
+
+/* GIVEN changed settings WHEN none are passed THEN the defaults hold. */
+static void no_settings_are_the_defaults(void) {
+    goe_flight_settings_t settings;
+    goe_flight_settings_default(&settings);
+    settings.hold_s += 1.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(&flown.flight, &settings, NULL));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(&flown.flight, NULL, NULL));
+    goe_flight_settings_default(&settings);
+    TEST_ASSERT_EQUAL_MEMORY(&settings, &flown.flight.settings, sizeof settings);
+}
+
 /* One sample and a frame on, whatever becomes of them. */
 static void step_anyhow(void) {
     goe_flight_attitude_t attitude;
@@ -137,6 +191,9 @@ static void indices_stay_in_their_arrays(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(settings_change_in_flight_and_nothing_is_lost);
+    RUN_TEST(refused_settings_change_nothing);
+    RUN_TEST(no_settings_are_the_defaults);
     RUN_TEST(every_flip_of_the_settings_is_told);
     RUN_TEST(a_warning_outlasts_its_estimators_settings);
     RUN_TEST(a_warning_outlasts_its_track);

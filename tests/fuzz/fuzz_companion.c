@@ -100,7 +100,6 @@ void link_close(link_t *link) { (void)link; }
 
 static companion_config_t config;
 static goe_flight_t flight;
-static goe_flight_t spare;
 static autopilot_t autopilot;
 static orders_t orders;
 static health_t health;
@@ -245,7 +244,7 @@ static void follow(void) {
     autopilot_ask(&autopilot, now_us);
     if (health_judge(&health, now_us)) {
         FUZZ_HOLDS(*health_text(health.doubts) != '\0');
-        FUZZ_HOLDS(margins_set(&flight, &spare, &config, health.doubts != 0));
+        FUZZ_HOLDS(margins_set(&flight, &config, health.doubts != 0));
     }
     screen_go_on(&screen, &wire, now_us);
     if (goe_flight_assess(&flight, clock_us, autopilot.landing, &assessment) == GOE_FLIGHT_OK) {
