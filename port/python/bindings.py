@@ -48,9 +48,9 @@ FUNCTIONS = {
     "goe_flight.h": (
         "goe_flight_attitude", "goe_flight_position", "goe_flight_pose", "goe_flight_timesync", "goe_flight_frame",
         "goe_flight_assess", "goe_flight_obstacle", "goe_flight_sectors", "goe_flight_restart",
-        "goe_flight_action_text",
+        "goe_flight_action_text", "goe_flight_reason_text",
     ),
-    "goe_python_flight.h": ("goe_python_flight_setting", "goe_python_flight_init"),
+    "goe_python_flight.h": ("goe_python_flight_setting", "goe_python_flight_init", "goe_python_flight_change"),
 }  # fmt: skip
 OWN_MEMORY = {  # structs of which Python reads these fields only
     "goe.h": "typedef struct { uint32_t causes[GOE_CAUSES]; ...; } goe_estimator_t;",

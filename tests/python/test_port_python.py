@@ -521,7 +521,8 @@ def test_the_flight_layer_from_samples_to_an_order() -> None:
     start = 2**32 - 3_000_000
     assert layer.assess(start) is None and layer.sectors(20000) is None and layer.obstacles() == {}
     assert layer.frame(flight.Frame(start, start)) == flight.FlightStatus.NO_POSE
-    orders = []
+    orders, first = [], None
+    assert layer.change_settings(goe.FlightSettings(margin_m=15.0, hold_s=1.5)) == flight.FlightStatus.OK
     for k in range(90):
         t = start + 125_000 * k
         north = 2.0 * k
@@ -533,11 +534,17 @@ def test_the_flight_layer_from_samples_to_an_order() -> None:
         assert layer.frame(frame) == (flight.FlightStatus.OK if k else flight.FlightStatus.NO_POSE) or k < 2
         told = layer.assess(t)
         orders.append(told.action)
+        if first is None and told.action:
+            first = told
     ((slot, mast),) = layer.obstacles().items()
     assert mast.id == 7 and layer.obstacle(slot) == mast and layer.obstacle(slot + 1) is None
     assert mast.place.center_ned_m[0] == pytest.approx(200.0, abs=10.0) and mast.hazard is not None
     assert orders[0] == flight.Action.NONE and orders[-1] != flight.Action.NONE
     assert told.worst == slot and told.pose_alive and told.detector_alive and told.target_ned_m is not None
+    assert first.reason == flight.OrderReason.CLEAR and first.clear_m > 0.0 and str(first.reason)
+    assert told.reason == flight.OrderReason.LEAST_BAD and told.clear_m < 0.0  # nobody turned
+    landed = layer.assess(t, flight.Phase.LANDED)
+    assert (landed.action, landed.reason) == (flight.Action.NONE, flight.OrderReason.LANDING)
     sectors = layer.sectors(20000)
     assert sectors.shape == (72,) and sectors[0] < 2500 and sectors[36] == flight.SECTOR_UNKNOWN
     pose, sd_deg = layer.pose(t - 50_000)
@@ -552,6 +559,8 @@ def test_the_flight_layer_from_samples_to_an_order() -> None:
 
 def test_the_flight_layer_refuses() -> None:
     layer = goe.Flight(settings())
+    with pytest.raises(goe.SettingError, match="bank_deg"):
+        layer.change_settings(goe.FlightSettings(bank_deg=89.0))
     with pytest.raises(ValueError, match="q: 3 numbers, not 4"):
         layer.attitude(flight.Attitude(0, (1.0, 0.0, 0.0)))
     with pytest.raises(ValueError, match="max_cm = 0"):

@@ -24,3 +24,9 @@ goe_flight_status_t goe_python_flight_init(goe_flight_t *flight, const double *v
     memcpy(&settings, flight_values, sizeof settings);
     return goe_flight_init(flight, sizeof *flight, &estimator, &settings, bad_field);
 }
+
+goe_flight_status_t goe_python_flight_change(goe_flight_t *flight, const float *flight_values, const char **bad_field) {
+    goe_flight_settings_t settings;
+    memcpy(&settings, flight_values, sizeof settings);
+    return goe_flight_change_settings(flight, &settings, bad_field);
+}

@@ -12,4 +12,7 @@ const goe_python_setting_t *goe_python_flight_setting(int row);
 goe_flight_status_t goe_python_flight_init(goe_flight_t *flight, const double *values, int cameras,
                                            const float *flight_values, const char **bad_field);
 
+/* goe_flight_change_settings() likewise. */
+goe_flight_status_t goe_python_flight_change(goe_flight_t *flight, const float *flight_values, const char **bad_field);
+
 #endif /* GOE_PYTHON_FLIGHT_H */

@@ -393,6 +393,12 @@ mod flight {
             max_cm: u32,
             sector_cm: *mut [u16; GOE_FLIGHT_SECTORS],
         ) -> goe_flight_status_t;
+        /// Changes the layer's settings in flight.
+        pub fn goe_flight_change_settings(
+            flight: *mut goe_flight_t,
+            settings: *const goe_flight_settings_t,
+            bad_field: *mut *const c_char,
+        ) -> goe_flight_status_t;
         /// Forgets poses, clocks, obstacles and the reaction.
         pub fn goe_flight_restart(flight: *mut goe_flight_t) -> goe_flight_status_t;
         /// A short name for an action.

@@ -868,6 +868,21 @@ impl Flight {
         }))
     }
 
+    /// Changes the layer's settings in flight: poses, clocks, obstacles and a standing order stay.
+    ///
+    /// # Errors
+    /// [`Error::BadSetting`]: its name; [`Error::Corrupted`]: the layer's memory was. The settings stay as they were.
+    pub fn change_settings(&mut self, settings: &FlightSettings) -> Result<(), Error> {
+        let mut bad: *const c_char = ptr::null();
+        // SAFETY: the pointers are to places of the right types; the layer is a started one.
+        let status = unsafe { ffi::goe_flight_change_settings(&mut self.c, settings, &mut bad) };
+        match status {
+            ffi::GOE_FLIGHT_OK => Ok(()),
+            ffi::GOE_FLIGHT_CORRUPTED => Err(Error::Corrupted),
+            _ => Err(bad_setting(bad)),
+        }
+    }
+
     /// Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. After a restart of the autopilot.
     pub fn restart(&mut self) {
         // SAFETY: the layer is a started one, so that the call cannot fail.

@@ -119,6 +119,22 @@ fn what_is_refused_is_told_and_counted() {
 }
 
 #[test]
+fn settings_change_in_flight() {
+    let mut flight = Flight::new(&settings(), &FlightSettings::default()).expect("good settings");
+    for k in 1..=50 {
+        samples(&mut flight, 20_000 * k, 0.0).expect("good samples");
+    }
+    let wide = FlightSettings {
+        margin_m: 40.0,
+        ..FlightSettings::default()
+    };
+    assert_eq!(flight.change_settings(&wide), Ok(()));
+    assert!(flight.pose(980_000, 0).is_ok());
+    let bad = FlightSettings { bank_deg: 89.0, ..wide };
+    assert_eq!(flight.change_settings(&bad), Err(Error::BadSetting("bank_deg")));
+}
+
+#[test]
 fn bad_settings_are_named() {
     let mut unsized_image = settings();
     unsized_image.camera.width_px = 0.0;

@@ -85,6 +85,39 @@ class Action(IntEnum):
         return ffi.string(lib.goe_flight_action_text(int(self))).decode()
 
 
+class OrderReason(IntEnum):
+    """Why ``Flight.assess`` gives this action."""
+
+    NONE = 0
+    """No action, and none is withheld."""
+    CLEAR = 1
+    """The action keeps clear of everything known."""
+    LEAST_BAD = 2
+    """Nothing is free: the action has the largest clearance that was found."""
+    LOW = 3
+    """An action is due and withheld: the aircraft is lower than ``order_height_m``."""
+    SLOW = 4
+    """... slower than ``order_speed_m_s``."""
+    LANDING = 5
+    """... flares, or has touched down."""
+
+    def __str__(self) -> str:
+        return ffi.string(lib.goe_flight_reason_text(int(self))).decode()
+
+
+class Phase(IntEnum):
+    """What the aircraft does, for ``Flight.assess``."""
+
+    FLYING = 0
+    """It flies."""
+    APPROACH = 1
+    """It is landing: to go around comes first."""
+    FLARE = 2
+    """No action is given, and one that stands ends."""
+    LANDED = 3
+    """It has touched down: the same. What stands behind the runway is not on its course."""
+
+
 class TimeBase(IntEnum):
     """The clock of ``Frame.capture_us``."""
 
@@ -212,6 +245,11 @@ class Assessment:
     """The same on the earth, if the origin is known."""
     hazard: Hazard | None
     """Of the worst obstacle, from now."""
+    reason: OrderReason
+    """Why this action, or why none."""
+    clear_m: float
+    """Least distance that the action's path keeps from any known obstacle's circle, with two sigma of its place
+    taken off; -50 to 50 m; 0 without an action to a side."""
 
 
 class Place(NamedTuple):
@@ -301,7 +339,7 @@ def _assessment_of(c: Any) -> Assessment:
     return Assessment(
         action, c.late, c.suspect, c.detector_alive, c.pose_alive, _slot(c.worst), _slot(c.avoided), c.obstacles,
         c.needed_s, tuple(c.target_ned_m) if action else None, _lat_lon(c.target_lat_e7, c.target_lon_e7),
-        hazard_of(c.hazard) if c.worst >= 0 else None,
+        hazard_of(c.hazard) if c.worst >= 0 else None, OrderReason(c.reason), c.clear_m,
     )  # fmt: skip
 
 
@@ -421,12 +459,12 @@ class Flight:
         with self._lock:
             return FlightStatus(lib.goe_flight_frame(self._c, c))
 
-    def assess(self, now_us: int, approach: bool = False) -> Assessment | None:
+    def assess(self, now_us: int, phase: Phase = Phase.FLYING) -> Assessment | None:
         """What is ahead from now on, at the velocity of the newest sample, and what to do about it. ``approach``: the
         aircraft is landing, and to go around comes first. None: there is no pose, which is not "clear"."""
         c = ffi.new("goe_flight_assessment_t *")
         with self._lock:
-            status = lib.goe_flight_assess(self._c, now_us & TIME_BITS, approach, c)
+            status = lib.goe_flight_assess(self._c, now_us & TIME_BITS, phase, c)
         return _assessment_of(c) if status == FlightStatus.OK else None
 
     def obstacle(self, slot: int) -> Obstacle | None:
@@ -453,6 +491,19 @@ class Flight:
         with self._lock:
             status = lib.goe_flight_sectors(self._c, max_cm, ffi.from_buffer("uint16_t[]", result))
         return result if status == FlightStatus.OK else None
+
+    def change_settings(self, settings: FlightSettings) -> FlightStatus:
+        """Changes the layer's settings in flight: poses, clocks, obstacles and a standing action stay.
+
+        OK or CORRUPTED. SettingError: one is outside its range; the settings stay as they were.
+        """
+        values = settings.numbers()
+        bad = ffi.new("const char **")
+        with self._lock:
+            status = lib.goe_python_flight_change(self._c, ffi.from_buffer("float[]", values), bad)
+        if bad[0] != ffi.NULL:
+            raise SettingError(ffi.string(bad[0]).decode(), ": refused by the flight layer")
+        return FlightStatus(status)
 
     def restart(self) -> None:
         """Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. If the autopilot restarts."""
