@@ -1,14 +1,26 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs every test. Says at the end what was skipped. Exit status 0: nothing failed.
+# Sets up, builds and runs the tests. Names at the end what was skipped and which steps took longest. Exit status 0: nothing
+# failed.
 #
 #   tools/test.sh           everything
+#   tools/test.sh --quick   build, unit tests, golden hashes, and the Python tests that the latest changes affect: those
+#                           since the branch main, or since GOE_SINCE; on main since the commit before
 #
-# Two steps run at a time; a step's line stands when it has ended, with its own time and that of the processors. Every
-# step's full output is kept in .cache/test/. Ctrl-C ends all that runs. GOE_KITTI_DIR names a folder of recorded flights to compare
-# goe_replay with the references on; UNITY_DIR the sources of the Unity test framework, where they are not to be fetched.
+# Two steps run at a time. A line for each appears when it has ended, with its own time and that of the processors. Every step's full
+# output is kept in .cache/test/. Ctrl-C ends all that runs. GOE_KITTI_DIR names a folder of recorded flights to compare goe_replay
+# with the references on; UNITY_DIR the sources of the Unity test framework, where they are not to be fetched. CI=true: a missing
+# tool is a failure.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root" || exit 1
+quick=false
+case ${1:-} in
+    --quick) quick=true ;;
+    '') ;;
+    *)
+        sed -n '2,/^set/ { /^#/ s/^# \{0,1\}//p }' "$0" >&2
+        exit 2 ;;
+esac
 logs=.cache/test
 rm -rf $logs
 mkdir -p $logs
@@ -24,7 +36,9 @@ steps=()
 declare -A command_of=() after_of=() tells_of=() start_of=()
 declare -A state_of=() # waiting, running, ok, failed, left out
 declare -A name_of_process=() # those that run
+declare -A wall_of=() processor_of=()
 skipped=()
+missing=()
 side_by_side=2
 tail_lines=60
 
@@ -101,6 +115,8 @@ report() {
     fi
     [ ! -t 1 ] || printf '\r\033[K'
     printf '%-7s %-46s %4d s   processor %4d s\n' $word "$name" $wall $((user + system))
+    wall_of[$name]=$wall
+    processor_of[$name]=$((user + system))
     processor_s=$((processor_s + user + system))
     if [ $word = FAILED ]; then
         echo "--------------------------------------------------------------------------- last lines of $log"
@@ -179,7 +195,21 @@ trap interrupted INT TERM HUP
 
 skip() { skipped+=("$1"); }
 
+# A step that a missing tool leaves out.
+lacks() {
+    skip "$1"
+    [ "${CI:-}" != true ] || missing+=("$1")
+}
+
 has() { command -v "$1" >/dev/null; }
+
+show_slowest() {
+    local name
+    echo "slowest steps, and their share of the processors:"
+    for name in "${!wall_of[@]}"; do
+        printf '%6d s %6d s   %s\n' "${wall_of[$name]}" "${processor_of[$name]}" "$name"
+    done | sort -rn | head -n 5
+}
 
 finish() {
     local name failed=()
@@ -187,16 +217,17 @@ finish() {
         [[ ${state_of[$name]} == ok || ${state_of[$name]} == "left out" ]] || failed+=("$name")
     done
     echo
-    if [ ${#skipped[@]} != 0 ]; then
-        printf 'skipped: %s\n' "${skipped[@]}"
-    else
-        echo "skipped: nothing"
-    fi
+    show_slowest
+    [ ${#skipped[@]} = 0 ] || printf 'skipped: %s\n' "${skipped[@]}"
+    [ ${#missing[@]} = 0 ] || printf 'FAILED, as CI must skip nothing: %s\n' "${missing[@]}"
     if [ ${#failed[@]} != 0 ]; then
         printf 'FAILED: %s\n' "${failed[@]}"
+    fi
+    if [ ${#failed[@]} != 0 ] || [ ${#missing[@]} != 0 ]; then
+        echo "failed in $SECONDS s; ${#skipped[@]} skipped"
         exit 1
     fi
-    echo "all tests passed in $SECONDS s, $processor_s s of the processors"
+    echo "all tests passed in $SECONDS s, $processor_s s of the processors; ${#skipped[@]} skipped"
     exit 0
 }
 
@@ -205,6 +236,21 @@ finish() {
 configure() { cmake --preset "$1" -DGOE_BUILD_TESTS=ON ${UNITY_DIR:+-DUNITY_DIR="$UNITY_DIR"}; }
 build() { configure "$1" && cmake --build --preset "$1"; }
 build_and_ctest() { build "$1" && ctest --preset "$1" -j "$jobs"; }
+
+# Subjects of the newest commits: at most 72 characters, an imperative, no full stop.
+subject_rule='^[A-Z][a-z-]+ .*[^.]$'
+not_imperative='^(The|An?|This|That|It|What|Some|[A-Z][a-z]*(ing|ions?)) '
+check_subjects() {
+    local line bad=0
+    git rev-parse --is-inside-work-tree >/dev/null 2>&1 || return 0
+    while read -r line; do
+        if [ ${#line} -gt 72 ] || ! [[ $line =~ $subject_rule ]] || [[ $line =~ $not_imperative ]]; then
+            echo "subject of a commit: '$line': at most 72 characters, an imperative, no full stop" >&2
+            bad=1
+        fi
+    done < <(git log --no-merges -n 50 --format=%s)
+    return $bad
+}
 
 sources() { find lib port sim_host tests -name target -prune -o \( -name '*.[ch]' -o -name '*.[ch]pp' \) -print; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
@@ -225,6 +271,15 @@ test_replay_sanitized() { GOE_REPLAY=$root/build-asan/sim_host/goe_replay run_py
 test_companion_sanitized() {
     GOE_COMPANION=$root/build-asan/port/companion/goe_companion run_pytest tests/companion/test_companion_disturbed.py
 }
+pytest_affected() {
+    local files
+    mapfile -t files < <("$python" -m ci.affected)
+    if [ ${#files[@]} = 0 ]; then
+        echo "the change affects no test in Python"
+    else
+        run_pytest "${files[@]}"
+    fi
+}
 run_pytest() { "$python" -m pytest -q -rs -p no:cacheprovider -c tools/pyproject.toml "$@"; }
 
 # ---------------------------------------------------------------------------------------------------------------- run
@@ -232,6 +287,7 @@ run_pytest() { "$python" -m pytest -q -rs -p no:cacheprovider -c tools/pyproject
 jobs=$(nproc)
 export CMAKE_BUILD_PARALLEL_LEVEL=$jobs
 processor_s=0
+check_subjects || exit 1
 tools/setup.sh || exit 1
 
 add "build" build default
@@ -241,17 +297,26 @@ if [ "${state_of[build]}" != ok ]; then
     finish
 fi
 
+if $quick; then
+    add "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests port/python
+    tells='tests passed' add "unit tests" ctest --preset default -L unit -j "$jobs"
+    add "golden hashes" ctest --test-dir build/tests/targets --output-on-failure -R '^(flight_)?replay$'
+    tells='(passed|failed|skipped).* in [0-9.]+|affects no test' add "affected Python tests" pytest_affected
+    run_steps
+    finish
+fi
+
 # What takes a moment comes first, then what takes longest.
 add "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests port/python
 if has clang-format-19; then
     add "clang-format" check_format
 else
-    skip "clang-format (not installed)"
+    lacks "clang-format (not installed)"
 fi
 if has shellcheck; then
     add "shellcheck" shellcheck tools/*.sh tests/flags/*.sh tests/targets/*.sh .ci/run
 else
-    skip "shellcheck (not installed)"
+    lacks "shellcheck (not installed)"
 fi
 add "golden data are what their generator makes" "$python" -m goe_tools golden --check tests/c/golden
 add "embedded logs are what their generator makes" \
@@ -266,12 +331,12 @@ fi
 if has cppcheck && has gcc; then
     tells='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m goe_tools evidence --quick --only misra --only analyzers --jobs 1
 else
-    skip "MISRA C:2012 and gcc -fanalyzer (no cppcheck or gcc)"
+    lacks "MISRA C:2012 and gcc -fanalyzer (no cppcheck or gcc)"
 fi
 if has frama-c; then
     add "proof: quick part" "$python" -m goe_tools evidence --quick --only proof --jobs 1
 else
-    skip "proof (no frama-c)"
+    lacks "proof (no frama-c)"
 fi
 tells='tests passed|Total Test time' add "ctest: targets" \
     ctest --test-dir build/tests/targets --output-on-failure -j "$jobs" # every target under QEMU
@@ -279,7 +344,7 @@ if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc &
     after="ctest: targets" add "cost ledger" "$python" -m goe_tools ledger --check # of the builds that ctest has made
     after="cost ledger" add "cost of the flight layer" "$python" -m goe_tools flight_cost
 else
-    skip "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
+    lacks "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
 fi
 tells='(passed|failed|skipped).* in [0-9.]+' add "pytest" run_pytest tests
 tells='tests passed|Total Test time' add "ctest: all but targets" ctest --preset default -LE targets -j "$jobs"
@@ -290,19 +355,19 @@ tells=passed after="sanitizers" add "sanitizers: goe_companion and hostile sende
 if has clang-19; then
     tells='tests passed' add "clang" build_and_ctest clang
 else
-    skip "clang: unit tests and the firmwares' flags (no clang-19)"
+    lacks "clang: unit tests and the firmwares' flags (no clang-19)"
 fi
 if has clang-19 && has llvm-cov-19 && has llvm-profdata-19 &&
     find "$(clang-19 --print-resource-dir)/" -name 'libclang_rt.profile*' | grep -q .; then
     tells='^\| coverage' add "coverage of the unit tests" \
         "$python" -m goe_tools evidence --quick --only coverage --jobs "$jobs"
 else
-    skip "coverage of the unit tests (needs clang-19, llvm-19 and libclang-rt-19-dev)"
+    lacks "coverage of the unit tests (needs clang-19, llvm-19 and libclang-rt-19-dev)"
 fi
 if has clang-19 && has clang-tidy-19; then
     after="clang" add "clang-tidy" tidy
 else
-    skip "clang-tidy (needs clang-19 and clang-tidy-19)"
+    lacks "clang-tidy (needs clang-19 and clang-tidy-19)"
 fi
 run_steps
 
