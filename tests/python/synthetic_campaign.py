@@ -255,7 +255,7 @@ def write_avoid(path: Path, rows_told: list[dict[str, Any]] | None = None) -> Pa
 
 
 def write_goals(path: Path, hostile: bool = False) -> Path:
-    told = {"quick": True, "goals": goals() + (hostile_goals() if hostile else [])}
+    told = {"quick": False, "date": "2026-11-01", "goals": goals() + (hostile_goals() if hostile else [])}
     path.write_text(json.dumps(told), encoding="utf-8")
     return path
 

@@ -531,7 +531,7 @@ def test_tables_of_the_page_tell_what_the_goals_found(
         _goal("hazard", f"corners: {approach.FALSE}", {"passes": 4.6}),
     ]
     file, page = tmp_path / "goals.json", tmp_path / "README.md"
-    file.write_text(json.dumps({"quick": True, "goals": found}), encoding="utf-8")
+    file.write_text(json.dumps({"quick": False, "goals": found}), encoding="utf-8")
     page.write_text("before\n<!-- attack: begin -->\nold\n<!-- attack: end -->\nafter\n", encoding="utf-8")
     monkeypatch.setattr(attack_command, "PAGE", page)
     assert main(["attack_tables", str(file)]) == 0

@@ -395,9 +395,9 @@ def test_goals_of_table3(built: None, tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["goals", "--quick", "--only", "table3", "--json", str(out)]) == 0
     assert "cylinder" in capsys.readouterr().out
     rows = json.loads(out.read_text())["goals"]
-    asked = [row for row in rows if row["asked"]]
-    assert len(asked) == 4 and set(asked[0]) == {"group", "name", "unit", "wanted", "asked", "values", "met"}
-    assert all(row["values"]["Z0"] > 5.0 for row in asked)
+    assert set(rows[0]) == {"group", "name", "unit", "wanted", "asked", "values", "met"}
+    assert sum((row["values"].get("Z0") or 0.0) > 5.0 for row in rows) >= 4
+    assert not any(row["asked"] for row in rows)  # a quick run has no verdict
 
 
 def test_goals_says_what_it_does_not_know(built: None, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from goe_tools.logs.obslog import LogError
 from goe_tools.optimum import paper_table3 as t3
-from goe_tools.report import attacks, boxes, page, terminal
+from goe_tools.report import attacks, avoid, boxes, page, terminal
 from goe_tools.report import refined as rf
 from goe_tools.report import statistics as st
 from goe_tools.report.data import Campaign, Cases, read_campaign
@@ -26,6 +26,7 @@ from goe_tools.report.prose import misses, table3
 from goe_tools.report.prose import refined as refined_prose
 from goe_tools.report.rare_record import flights, read_record
 from goe_tools.report.style import number
+from goe_tools.report.summary import summary
 from rich.console import Console
 from synthetic_campaign import write_avoid, write_campaign, write_goals
 
@@ -239,7 +240,7 @@ def test_refined_sentences(campaign: Campaign) -> None:
     goals = campaign.goals
     assert goals is not None
     verdict = " ".join(refined_prose.verdict(goals))
-    assert "4 of 6 goals are met. 2 are missed" in verdict and "quick run" in verdict
+    assert "4 of 6 goals are met, as recorded on 2026-11-01. 2 are missed" in verdict
     assert "Recorded flights".lower() in verdict.lower()  # not in this run, and told so
     assert refined_prose.missed(goals) == [
         "Gaussian pixel noise, 1 px, within 2 sigma, boxes, all answers: W 81.7\u00a0% (wanted 90\u00a0…\u00a098).",
@@ -358,6 +359,28 @@ def test_bad_goals_are_named(text: str, message: str, tmp_path: Path) -> None:
         read_goals(file)
     with pytest.raises(LogError, match=r"none\.json"):
         read_goals(tmp_path / "none.json")
+
+
+def test_few_flights_have_no_verdict(campaign: Campaign, tmp_path: Path) -> None:
+    file = write_goals(tmp_path / "goals.json")
+    file.write_text(file.read_text(encoding="utf-8").replace('"quick": false', '"quick": true'), encoding="utf-8")
+    goals = read_goals(file)
+    assert goals.quick and goals.asked == () and len(goals.rows) > 5
+    assert summary(replace(campaign, goals=goals))[-1].startswith("False orders")
+    assert "too few flights for a verdict" in " ".join(refined_prose.verdict(goals))
+
+
+def test_summary(campaign: Campaign) -> None:
+    paper, orders, false, goals = summary(campaign)
+    cells = rf.papers(campaign)
+    better = sum(cell.factor >= 1.0 for cell in cells)
+    assert f"better in {better} of {len(cells)} numbers (simulation)" in paper
+    courses = avoid.courses(campaign.avoid)
+    collided = sum(row.collided_with for row in courses)
+    assert f"and {collided} with them" in orders and f"of {sum(row.runs for row in courses)} collision" in orders
+    assert false.startswith(f"False orders: {sum(row.false for row in avoid.passes(campaign.avoid))} of ")
+    assert goals == "Goals, recorded on 2026-11-01: 4 of 6 met; the report lists the others."
+    assert summary(replace(campaign, refined=None, avoid=None, goals=None)) == []
 
 
 def test_terminal_table(campaign: Campaign) -> None:

@@ -37,7 +37,7 @@ def is_hostile(row: GoalRow) -> bool:
 
 def without(goals: Goals) -> Goals:
     """The other groups' lines."""
-    return Goals(tuple(row for row in goals.rows if not is_hostile(row)), goals.quick)
+    return Goals(tuple(row for row in goals.rows if not is_hostile(row)), goals.quick, goals.date)
 
 
 def _taken(lines: Iterable[GoalRow], sections: bool) -> list[Attack]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +40,7 @@ class GoalRow:
 class Goals:
     rows: tuple[GoalRow, ...]
     quick: bool  # fewer flights than the full count
+    date: str = ""  # of the run
 
     @property
     def asked(self) -> tuple[GoalRow, ...]:
@@ -62,7 +63,10 @@ def read_goals(path: Path) -> Goals:
     if not isinstance(content, dict) or not isinstance(content.get("goals"), list) or not content["goals"]:
         raise LogError(path, 1, "goals", "no list of goals; goals --json writes one")
     rows = tuple(_row(path, number, told) for number, told in enumerate(content["goals"], start=1))
-    return Goals(rows, bool(content.get("quick", False)))
+    quick = bool(content.get("quick", False))
+    if quick:
+        rows = tuple(replace(row, asked=(), met=None) for row in rows)  # too few flights for a verdict
+    return Goals(rows, quick, str(content.get("date", "")))
 
 
 def _row(path: Path, number: int, told: Any) -> GoalRow:

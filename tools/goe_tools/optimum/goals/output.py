@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from datetime import date
 
 import numpy as np
 
@@ -65,7 +66,7 @@ def _plain(value: float) -> float | None:
 
 
 def as_json(goals: Sequence[Goal], quick: bool) -> dict[str, object]:
-    """For the report: {"quick", "goals": [{group, name, unit, wanted: [low, high], asked, values, met}]}."""
+    """For the report: {"quick", "date", "goals": [{group, name, unit, wanted: [low, high], asked, values, met}]}."""
     rows = [
         {
             "group": goal.group,
@@ -78,4 +79,4 @@ def as_json(goals: Sequence[Goal], quick: bool) -> dict[str, object]:
         }
         for goal in goals
     ]
-    return {"quick": quick, "goals": rows}
+    return {"quick": quick, "date": date.today().isoformat(), "goals": rows}

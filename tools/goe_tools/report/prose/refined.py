@@ -119,7 +119,8 @@ def _with_goal_unit(row: GoalRow, value: float) -> str:
 
 def verdict(goals: Goals) -> list[str]:
     met = sum(bool(row.met) for row in goals.asked)
-    said = [f"{met} of {len(goals.asked)} goals are met."] if goals.asked else []
+    recorded = f", as recorded on {goals.date}" if goals.date else ""
+    said = [f"{met} of {len(goals.asked)} goals are met{recorded}."] if goals.asked else []
     short = len(goals.asked) - met
     if short:
         groups = dict.fromkeys(rf.group_title(row.group) for row in goals.asked if not row.met)
@@ -131,7 +132,7 @@ def verdict(goals: Goals) -> list[str]:
             "the recorded paths."
         )
     if goals.quick:
-        said.append("This was a quick run, of fewer flights: shares and percentiles are coarse.")
+        said.append("This was a quick run: too few flights for a verdict.")
     absent = [title for start, title in rf.GROUPS.items() if not any(g.startswith(start) for g in goals.groups)]
     if absent:
         said.append(f"Not in this run: {'; '.join(absent)}.")
