@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 from goe_tools.__main__ import main
 from goe_tools.evidence import command
 from goe_tools.evidence.parts import Amount, NotHereError
-from goe_tools.evidence.record import Result, Row, read
+from goe_tools.evidence.record import Kept, Result, Row, read
 
 ROOT = Path(__file__).resolve().parents[2]
 GOOD = Result([Row("lines", "10 of 10", "all", True), Row("seconds", "3", "", None)], "why")
@@ -62,6 +64,63 @@ def test_a_record_that_is_none(made_up: Path, capsys: pytest.CaptureFixture[str]
     made_up.write_text(json.dumps([{"part": "good"}]))
     assert main(["evidence", "--show", "--record", str(made_up)]) == 2
     assert f"{made_up}: not a record of evidence" in capsys.readouterr().err
+
+
+def recorded(commit: str = 40 * "a", amount: str = "long") -> list[dict[str, object]]:
+    entry = Kept("good", amount, "2026-01-01", "0", 1.0, "a machine", GOOD.rows, commit, 2)
+    return [asdict(entry), {**asdict(entry), "part": "bad"}, {**asdict(entry), "part": "absent"}]
+
+
+def test_a_release_is_one_file_of_one_commit(
+    made_up: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(command, "RELEASES", tmp_path / "releases")
+    made_up.write_text(json.dumps(recorded()))
+    assert main(["evidence", "--release", "0.10.0", "--record", str(made_up)]) == 0
+    written = json.loads((tmp_path / "releases" / "0.10.0.json").read_text())
+    assert (written["version"], written["commit"], written["cores"]) == ("0.10.0", 40 * "a", 2)
+    assert [part["part"] for part in written["parts"]] == ["good", "bad", "absent"] and written["parts"][0]["seconds"]
+    (tmp_path / "releases" / "0.9.0.json").write_text("{")  # older, though it comes later in the alphabet
+    capsys.readouterr()
+    monkeypatch.setattr(command, "RECORD", tmp_path / "none.json")
+    assert main(["evidence", "--show"]) == 0
+    assert "| good | lines | 10 of 10 |" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("version", "record", "message"),
+    [
+        ("0.4", recorded(), "not a version"),
+        ("0.4.0", recorded()[:2], "no long run of absent"),
+        ("0.4.0", recorded(amount="quick"), "no long run of good, bad, absent"),
+        ("0.4.0", recorded("b+"), "parts ran on b\\+"),
+        ("0.4.0", recorded("b")[:1] + recorded("c")[1:], "parts ran on b, c"),
+    ],
+)
+def test_no_release_of_a_mixed_record(
+    version: str, record: list[object], message: str, made_up: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made_up.write_text(json.dumps(record))
+    assert main(["evidence", "--release", version, "--record", str(made_up)]) == 2
+    assert re.search(message, capsys.readouterr().err)
+    assert not (command.RELEASES / f"{version}.json").exists()
+
+
+def test_the_commit_names_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(command, "ROOT", tmp_path)
+    assert command.commit() == ""
+    for words in (["init"], ["-c", "user.name=a", "-c", "user.email=a@b", "commit", "--allow-empty", "-m", "Begin"]):
+        subprocess.run(["git", *words], cwd=tmp_path, check=True, capture_output=True)
+    assert re.fullmatch("[0-9a-f]{40}", command.commit())
+    (tmp_path / "new").write_text("")
+    assert re.fullmatch("[0-9a-f]{40}\\+", command.commit())
+
+
+def test_the_releases_that_are_here_can_be_read() -> None:
+    files = list(command.RELEASES.glob("*.json"))
+    assert files
+    for file in files:
+        assert re.fullmatch("[0-9a-f]{40}", json.loads(file.read_text())["commit"]) and read(file)
 
 
 def test_the_script_is_the_command(tmp_path: Path) -> None:

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import pytest
 from goe_tools.__main__ import main
-from goe_tools.evidence import testing_page
 from goe_tools.evidence.parts import Amount
-from goe_tools.evidence.record import Kept, Row
+from goe_tools.evidence.record import Row
 from goe_tools.evidence.requirements import breaks, check, names, part, rows, sentences
 from goe_tools.logs.obslog import LogError
 
@@ -55,10 +54,6 @@ def test_a_break_of_each_room_is_tried() -> None:
     assert len(rows.breaks()) >= 60
     for room in ("image", "window", "refined", "hazard", "maths"):
         assert any(file.startswith(f"lib/{room}/") for file in files), room
-
-
-def test_the_page_tells_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["evidence", "--check-page", str(ROOT / "tests" / "README.md")]) == 0, capsys.readouterr().out
 
 
 # -------------------------------------------------------------------------------------------------------- a small tree
@@ -202,23 +197,3 @@ def test_a_broken_line_is_noticed_or_told(tmp_path: Path, monkeypatch: pytest.Mo
     assert "does not compile" in outcomes[2].told
     _, failing = breaks.try_all([rows.Break("", "lib/add.c", "a + b", "a - b", f"{test}_twice", 2)], 1)
     assert failing == [f"{test}_twice"]
-
-
-# ---------------------------------------------------------------------------------------------------------------- page
-
-
-def test_a_page_that_is_stale_is_told(tmp_path: Path) -> None:
-    kept = {"fuzz": Kept("fuzz", "long", "2026-01-01", "0", 1.0, "", [Row("updates", "10", "9", True)])}
-    page = tmp_path / "page.md"
-    page.write_text(f"before\n{testing_page.FIGURES.begin}\n{testing_page.FIGURES.end}\nbehind\n")
-    assert main(["evidence", "--page", str(page), "--record", str(tmp_path / "none.json")]) == 0
-    assert "Not on record yet: " in page.read_text()
-    testing_page.write(page, kept)
-    block = testing_page.FIGURES.of(page)
-    assert "<b>fuzz</b>: 1 of 1 goals met (long, 2026-01-01, 0)</summary>\n\n" in block
-    assert "| updates | 10 | 9 | met |" in block
-    assert list(testing_page.stale(block, kept)) == []
-    assert list(testing_page.stale(block, {})) == ["its figures are not those of the record"]
-    (lines,) = [numbers for what, _, numbers in testing_page.counts() if what == "the library"]
-    few = block.replace(f"{lines[0]:,} lines", f"{lines[0] // 2:,} lines")
-    assert "now it is the library" in next(testing_page.stale(few, kept))

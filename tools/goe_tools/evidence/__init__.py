@@ -3,5 +3,4 @@
 record.py   rows of the table, the file that keeps them
 parts.py    which parts there are; each is a module here with ``run(amount) -> Result``
 command.py  ``python -m goe_tools evidence``
-testing_page.py  what tests/README.md tells of the tests: counts, and the record
 """

@@ -1,4 +1,4 @@
-"""Rows of the table of evidence, and the file that keeps those of long runs."""
+"""Rows of the table of evidence, the file that keeps those of long runs, and the file of a release."""
 
 from __future__ import annotations
 
@@ -39,15 +39,28 @@ class Kept:
     seconds: float
     machine: str  # processor, compiler
     rows: list[Row] = field(default_factory=list)
+    commit: str = ""  # of the sources; with "+" at its end: changed since
+    cores: int = 0
+
+
+@dataclass(frozen=True)
+class Release:
+    version: str
+    commit: str
+    date: str
+    machine: str
+    cores: int
+    parts: list[Kept]
 
 
 def read(path: Path) -> dict[str, Kept]:
-    """By part. An absent file holds none."""
+    """By part, of a record or of a release's file. An absent file holds none."""
     if not path.exists():
         return {}
     text = read_text(path, JSON_BYTES_MAX)
     try:
-        told: list[dict[str, Any]] = json.loads(text)
+        content = json.loads(text)
+        told: list[dict[str, Any]] = content["parts"] if isinstance(content, dict) else content
         kept = [Kept(**{**entry, "rows": [Row(**row) for row in entry["rows"]]}) for entry in told]
     except (KeyError, TypeError, ValueError) as error:
         raise LogError(path, 0, "", f"not a record of evidence: {error}") from None
@@ -57,6 +70,17 @@ def read(path: Path) -> dict[str, Kept]:
 def write(path: Path, kept: Iterable[Kept]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, json.dumps([asdict(entry) for entry in kept], indent=1) + "\n")
+
+
+def write_release(path: Path, release: Release) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, json.dumps(asdict(release), indent=1) + "\n")
+
+
+def newest_release(folder: Path) -> Path | None:
+    """The file VERSION.json of the highest version."""
+    found = {tuple(map(int, path.stem.split("."))): path for path in folder.glob("*.*.*.json")}
+    return found[max(found)] if found else None
 
 
 WORDS = {True: "met", False: "MISSED", None: ""}
