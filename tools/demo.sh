@@ -30,8 +30,11 @@ orders=build/avoid.csv
 build/sim_host/goe_avoid --runs 20 --csv $orders
 echo
 .venv/bin/python -m goe_tools view tests/data/corner --out build/view.html
-.venv/bin/python -m goe_tools report $campaign --table --out build/report.html --avoid $orders \
-    --goals tests/data/goals.json --approach tests/data/corner --rare tests/data/rare_events.json --summary
+recorded=tests/evidence/goals.json # a release's
+goals=()
+[ ! -e $recorded ] || goals=(--goals $recorded)
+.venv/bin/python -m goe_tools report $campaign --table --out build/report.html --avoid $orders "${goals[@]}" \
+    --approach tests/data/corner --rare tests/data/rare_events.json --summary
 echo
 echo "Every image's estimate of the replay: $root/$out"
 echo "The campaign's statistics:            $root/$campaign/cases.csv"

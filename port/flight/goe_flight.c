@@ -593,7 +593,7 @@ goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uin
     own.grounded = phase == GOE_FLIGHT_FLARE || phase == GOE_FLIGHT_LANDED;
     bury(flight, now);
     catch_up(flight, now);
-    const int worst = goe_flight_lookout_assess(flight, now);
+    const int worst = goe_flight_lookout_assess(flight, own.ned_m, now);
     flight->assessed_us = now;
     result->needed_s = goe_flight_reaction_decide(flight, worst, &own);
     report(flight, worst, now, result);

@@ -4,6 +4,8 @@
  * (goe_flight_table_follow), is less than a metre. */
 #include "goe_lookout.h"
 
+#include <math.h>
+
 #include "goe_flight_maths.h"
 #include "goe_slot.h"
 
@@ -11,6 +13,11 @@
 #define ANY_TIME_S 1.0e4f
 #define VELOCITY_MAX_M_S 1.0e3f
 #define SINCE_MAX_S 1.0e3f
+#define SPREAD_SIGMA 2.5f /* beyond which a kept place is taken for certain */
+#define SD_MIN_M2 0.25f
+#define SHORT_M2 1.0e-6f
+#define SLOW_M2_S2 0.01f
+#define SOON_S 0.01f /* left before what lies ahead is reached */
 
 float goe_flight_lookout_doubt(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     return slot->suspect ? flight->settings.doubt : 1.0f;
@@ -24,10 +31,55 @@ float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_sl
     return flight->settings.drift_m_s * goe_flight_lookout_age_s(slot, now_us);
 }
 
-/* The hazard as it was, nearer by what has passed. */
-static void count_down(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t now_us) {
-    const float passed_s = goe_flight_larger(goe_flight_between_s(now_us, flight->assessed_us), 0.0f);
-    slot->hazard.time_s = goe_flight_larger(slot->hazard.time_s - passed_s, 0.0f);
+/* One sigma of the kept place along a vector. */
+static float sd_along_m(const goe_flight_slot_t *slot, float north_m, float east_m) {
+    const float *ne_m2 = slot->covariance_ne_m2;
+    const float square = goe_flight_square(north_m) + goe_flight_square(east_m);
+    const float most_m2 = ne_m2[0] + ne_m2[2];
+    const float along_m2 = goe_flight_square(north_m) * ne_m2[0] + 2.0f * north_m * east_m * ne_m2[1] +
+                           goe_flight_square(east_m) * ne_m2[2];
+    return sqrtf(goe_flight_larger(square > SHORT_M2 ? along_m2 / square : most_m2, SD_MIN_M2));
+}
+
+/* Probability that a distance lies below a limit; never less than that of a normal distribution from 0.5 up to 0.99. */
+static float below(float limit_m, float distance_m, float sd_m) {
+    return goe_flight_clamped(0.5f + (limit_m - distance_m) / (2.0f * SPREAD_SIGMA * sd_m), 0.0f, 1.0f);
+}
+
+/* The clearance over the kept top at the closest approach, and what it leaves of the violation. */
+static void pass_over(const goe_flight_t *flight, const goe_flight_slot_t *slot, float own_down_m,
+                      goe_hazard_t *hazard) {
+    const float limit_m = goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
+    hazard->has_clearance = true;
+    hazard->clearance_m = slot->ground_down_m - slot->top_m - own_down_m;
+    hazard->clearance_sd_m = sqrtf(goe_flight_larger(goe_flight_square(slot->top_sd_m), SD_MIN_M2));
+    hazard->violation *= below(limit_m, hazard->clearance_m, hazard->clearance_sd_m);
+}
+
+/* The hazard of a place that is kept while the estimator knows none: from now on, at the velocity of the newest sample. */
+static void foresee_kept(const goe_flight_t *flight, const goe_flight_slot_t *slot, const float own_ned_m[3],
+                         uint32_t now_us, goe_hazard_t *hazard) {
+    const float *v = flight->velocity_ned_m_s;
+    const float north_m = slot->center_ne_m[0] - own_ned_m[0];
+    const float east_m = slot->center_ne_m[1] - own_ned_m[1];
+    const float speed2 = goe_flight_larger(goe_flight_square(v[0]) + goe_flight_square(v[1]), SLOW_M2_S2);
+    const float closest_s = goe_flight_clamped((north_m * v[0] + east_m * v[1]) / speed2, 0.0f, ANY_TIME_S);
+    const float off_n_m = north_m - closest_s * v[0];
+    const float off_e_m = east_m - closest_s * v[1];
+    const float radius_m = goe_flight_slot_radius_m(slot);
+    const float off_m = sqrtf(goe_flight_square(off_n_m) + goe_flight_square(off_e_m)) - radius_m;
+    const float limit_m = goe_flight_lookout_doubt(flight, slot) * flight->settings.margin_m +
+                          goe_flight_lookout_drift_m(flight, slot, now_us);
+    const float speed_m_s = sqrtf(speed2);
+    memset(hazard, 0, sizeof *hazard);
+    hazard->time_s = goe_flight_larger(closest_s - radius_m / speed_m_s, closest_s > 0.0f ? SOON_S : 0.0f);
+    hazard->time_sd_s = closest_s > 0.0f ? sd_along_m(slot, v[0], v[1]) / speed_m_s : 0.0f;
+    hazard->miss_m = goe_flight_larger(off_m, 0.0f);
+    hazard->miss_sd_m = closest_s > 0.0f ? sd_along_m(slot, -v[1], v[0]) : sd_along_m(slot, off_n_m, off_e_m);
+    hazard->violation = below(limit_m, off_m, hazard->miss_sd_m);
+    if ((slot->valid & GOE_HAS_HEIGHT) != 0u) {
+        pass_over(flight, slot, own_ned_m[2] + closest_s * v[2], hazard);
+    }
 }
 
 static goe_decision_t decide(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us,
@@ -46,7 +98,7 @@ static goe_decision_t decide(const goe_flight_t *flight, const goe_flight_slot_t
 }
 
 /* The time that an action takes is for the reaction to know; here the rule's distances and probability count. */
-static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t now_us) {
+static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, const float own_ned_m[3], uint32_t now_us) {
     goe_hazard_t hazard;
     if (!slot->used || !(slot->valid & GOE_HAS_POSITION)) {
         slot->assessed = false;
@@ -58,19 +110,18 @@ static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, uint32_t
         goe_flight_slot_lose(slot);
     }
     if (slot->remembered) {
-        count_down(flight, slot, now_us);
-        return;
+        foresee_kept(flight, slot, own_ned_m, now_us, &hazard);
     }
     slot->hazard = hazard;
     slot->assessed = true;
 }
 
-int goe_flight_lookout_assess(goe_flight_t *flight, uint32_t now_us) {
+int goe_flight_lookout_assess(goe_flight_t *flight, const float own_ned_m[3], uint32_t now_us) {
     int worst = -1;
     float most = -1.0f;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
-        assess(flight, slot, now_us);
+        assess(flight, slot, own_ned_m, now_us);
         const float urgency = slot->hazard.violation / (1.0f + URGENCY_PER_S * slot->hazard.time_s);
         if (slot->assessed && urgency > most) {
             most = urgency;

@@ -545,6 +545,14 @@ static float farthest_aside_m(const look_t *look, float own_aside_m) {
     return (sine > 0.0f) == (own_aside_m > 0.0f) ? own_aside_m + (sine > 0.0f ? way_m : -way_m) : own_aside_m;
 }
 
+/* Whether the aircraft flies between the line of the order and this obstacle: on the side of the order it would be turned into it. */
+static bool is_outside(const look_t *look, const goe_flight_reaction_t *r, int i) {
+    float ahead_m;
+    float aside_m;
+    relate(look->own->ned_m, r->course_ne, look->flight->slot[i].center_ne_m, &ahead_m, &aside_m);
+    return is_aside(r->action) && i != r->slot && times(r->side, aside_m) > 0.0f;
+}
+
 /* Whether the line of the order may be flown again: every obstacle lies behind on it, or surely aside of it, or is unknown; and the way
  * back to it is clear. The order turns to the nearest obstacle that is left. */
 static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) {
@@ -553,19 +561,23 @@ static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) 
     float least_m = TIME_MAX_S;
     int next = NOBODY;
     bool left = false;
+    bool waits = false;
     relate(r->from_ne_m, r->course_ne, look->own->ned_m, &own_ahead_m, &own_aside_m);
     own_aside_m = is_up(r->action) ? 0.0f : farthest_aside_m(look, own_aside_m);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const float ahead_m = look->slot[i].at_m[0];
         if (look->slot[i].counts && is_in_the_way(look, i, own_aside_m)) {
             left = left || i == r->slot;
-            next = ahead_m < least_m ? i : next;
-            least_m = goe_flight_smaller(ahead_m, least_m);
+            waits = true;
+            if (ahead_m < least_m && !is_outside(look, r, i)) {
+                next = i;
+                least_m = ahead_m;
+            }
         }
     }
     *behind = false;
-    if (next != NOBODY) {
-        if (!left && r->slot != NOBODY) { /* past the one, before the next */
+    if (waits) {
+        if (!left && r->slot != NOBODY && next != NOBODY) { /* past the one, before the next */
             r->slot = (int8_t)next;
             r->edge = is_aside(r->action) ? (int8_t)next : NOBODY;
             r->gap = false;

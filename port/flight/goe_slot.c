@@ -124,9 +124,11 @@ static void note_outline(goe_flight_slot_t *slot, const goe_estimate_t *estimate
     }
 }
 
-static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
+/* since_s: since the image before. */
+static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate, float since_s) {
     const bool placed = (estimate->valid & GOE_HAS_POSITION) != 0u;
     if (slot->remembered && !placed) {
+        slot->age_s += goe_flight_larger(since_s, 0.0f);
         return;
     }
     slot->remembered = false;
@@ -185,13 +187,14 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     }
     const bool taken = GOE_IMAGE_TAKEN(status) != 0;
     if (taken) {
+        const float since_s = goe_flight_between_s(view->time_us, slot->taken_us);
         slot->taken_us = view->time_us;
         slot->seen_us = seen ? view->time_us : slot->seen_us;
         slot->reset_count = image.pose.reset_count;
         slot->camera = number;
         memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
         slot->fresh_track = false;
-        note(slot, camera_ned_m, &estimate);
+        note(slot, camera_ned_m, &estimate, since_s);
         if (seen) {
             (void)goe_flight_slot_box_of(seen, slot->box_px);
         }

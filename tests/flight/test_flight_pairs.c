@@ -23,6 +23,8 @@
 typedef struct {
     double mast_m[2][2]; /* ahead, right */
     double obey_s, loiter_m;
+    double wide_m, sd_m; /* radius of both, 0: a mast's; one sigma of each place */
+    double known_m;      /* the second is known from this distance on; 0: always */
 } pair_t;
 
 typedef struct {
@@ -45,6 +47,8 @@ static void start(double loiter_m) {
 void setUp(void) { start(0.0); }
 void tearDown(void) {}
 
+static double radius_m(const pair_t *pair) { return pair->wide_m > 0.0 ? pair->wide_m : MAST_RADIUS_M; }
+
 /* As an estimator that knows both places tells it, on the present course. */
 static int look(const pair_t *pair, const double at_m[2], double course, uint32_t now_us) {
     int worst = -1;
@@ -54,13 +58,17 @@ static int look(const pair_t *pair, const double at_m[2], double course, uint32_
         const double north = pair->mast_m[i][0] - at_m[0], east = pair->mast_m[i][1] - at_m[1];
         const double ahead_m = cos(course) * north + sin(course) * east,
                      aside_m = cos(course) * east - sin(course) * north;
-        const bool meets = ahead_m > 0.0 && fabs(aside_m) < MAST_RADIUS_M + (double)flight.settings.margin_m;
+        const bool meets = ahead_m > 0.0 && fabs(aside_m) < radius_m(pair) + (double)flight.settings.margin_m;
         memset(&s->hazard, 0, sizeof s->hazard);
-        s->used = s->assessed = true;
+        s->used = s->assessed = i == 0 || !(pair->known_m > 0.0) || hypot(north, east) < pair->known_m;
+        if (!s->used) {
+            continue;
+        }
         s->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT;
         s->center_ne_m[0] = (float)pair->mast_m[i][0];
         s->center_ne_m[1] = (float)pair->mast_m[i][1];
-        s->width_m = (float)(2.0 * MAST_RADIUS_M);
+        s->width_m = (float)(2.0 * radius_m(pair));
+        s->covariance_ne_m2[0] = s->covariance_ne_m2[2] = (float)(pair->sd_m * pair->sd_m);
         s->top_m = 80.0f;
         s->taken_us = s->seen_us = now_us;
         s->hazard.violation = meets ? 1.0f : 0.0f;
@@ -121,7 +129,7 @@ static flight_t fly(const pair_t *pair) {
         at_m[0] += STEP_S * SPEED_M_S * cos(course);
         at_m[1] += STEP_S * SPEED_M_S * sin(course);
         for (int i = 0; i < 2; i++) {
-            const double away_m = hypot(at_m[0] - pair->mast_m[i][0], at_m[1] - pair->mast_m[i][1]) - MAST_RADIUS_M;
+            const double away_m = hypot(at_m[0] - pair->mast_m[i][0], at_m[1] - pair->mast_m[i][1]) - radius_m(pair);
             result.closest_m = fmin(result.closest_m, away_m);
         }
     }
@@ -148,7 +156,8 @@ static void fly_offsets(double first_m, double last_m, double loiter_m) {
     for (int delay = 0; delay < 4; delay++) {
         for (double aside_m = first_m; aside_m <= last_m + 0.1; aside_m += 5.0) {
             for (int row = -1; row <= 2; row++) {
-                pair_t pair = {{{AHEAD_M, 0.5}, {AHEAD_M + 30.0 * row, aside_m}}, obey_s[delay], loiter_m};
+                pair_t pair = {
+                    {{AHEAD_M, 0.5}, {AHEAD_M + 30.0 * row, aside_m}}, obey_s[delay], loiter_m, 0.0, 0.0, 0.0};
                 check(&pair);
             }
         }
@@ -164,8 +173,30 @@ static void a_second_mast_behind_the_first_one_is_passed_too(void) {
     for (int delay = 0; delay < 4; delay++) {
         for (double apart_m = 30.0; apart_m < 200.0; apart_m += 10.0) {
             for (double aside_m = -8.0; aside_m < 9.0; aside_m += 4.0) {
-                pair_t pair = {{{AHEAD_M - 100.0, 0.5}, {AHEAD_M - 100.0 + apart_m, aside_m}}, obey_s[delay], 0.0};
+                pair_t pair = {
+                    {{AHEAD_M - 100.0, 0.5}, {AHEAD_M - 100.0 + apart_m, aside_m}}, obey_s[delay], 0.0, 0.0, 0.0, 0.0};
                 check(&pair);
+            }
+        }
+    }
+}
+
+/* GIVEN a wide obstacle beyond the first one and beside the line WHEN the first is passed THEN the aircraft, which passes the second
+ * already, is not turned into it. */
+static void past_the_first_nothing_beside_is_flown_into(void) {
+    for (int sd = 0; sd <= 2; sd++) {
+        for (int known = 1; known <= 3; known++) {
+            for (double beyond_m = 60.0; beyond_m < 170.0; beyond_m += 20.0) {
+                for (double right_m = 60.0; right_m <= 115.0; right_m += 5.0) {
+                    const pair_t pair = {
+                        {{AHEAD_M, 0.0}, {AHEAD_M + beyond_m, right_m}}, 0.6, 0.0, 18.0, 8.0 * sd, 80.0 * known};
+                    const flight_t flown = fly(&pair);
+                    char text[120];
+                    (void)snprintf(text, sizeof text, "second at %.0f, %.0f, sigma %.0f m, known from %.0f m: %.1f m",
+                                   beyond_m, right_m, pair.sd_m, pair.known_m, flown.closest_m);
+                    TEST_ASSERT_TRUE_MESSAGE(flown.ordered && flown.closest_m >= CLEAR_M, text);
+                    TEST_ASSERT_TRUE_MESSAGE(flown.changes <= 1, text);
+                }
             }
         }
     }
@@ -176,6 +207,7 @@ int main(void) {
     RUN_TEST(no_order_leads_into_a_second_mast_on_the_right);
     RUN_TEST(no_order_leads_into_a_second_mast_on_the_left);
     RUN_TEST(no_circle_about_a_target_leads_into_a_second_mast);
+    RUN_TEST(past_the_first_nothing_beside_is_flown_into);
     RUN_TEST(a_second_mast_behind_the_first_one_is_passed_too);
     return UNITY_END();
 }
