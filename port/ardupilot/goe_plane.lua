@@ -3,7 +3,8 @@ goe_plane.lua: ArduPlane flies past what goe_companion has found. SPDX-License-I
 
 The companion (reaction mode "off", reports on) sends GOE_HAZARD for each obstacle and GOE_STATUS once a second. An obstacle with
 an order makes this script fly to the order's target in GUIDED, and back into the mode before when the obstacle is passed. Only
-from AUTO and CRUISE; GO_AROUND only while landing in AUTO. Whoever chooses another mode meanwhile is not fought.
+from AUTO and CRUISE; GO_AROUND only while landing in AUTO. A landing is not gone on with after a side: from there the way to
+the runway is another one. Whoever chooses another mode meanwhile is not fought.
 
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
 companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead.
@@ -60,6 +61,7 @@ local any_polygon = parameter(4, "POLYGON", 0) -- 1: fly orders although no scri
 local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 
 local mode_before -- while this script has changed the mode
+local from_landing = false -- it was landing then
 local overruled = false
 local standing -- the order: whose, action, lat, lon, down; is_past: that one is reported without an order; over_ms: since then
 -- the companion gives none
@@ -450,13 +452,15 @@ end
 
 local function begin_order()
     local mode = vehicle:get_mode()
+    local is_landing = mode == AUTO and vehicle:is_landing()
     if standing.action == GO_AROUND then
         go_around()
-    elseif (mode == AUTO or mode == CRUISE) and not vehicle:is_landing() and not vehicle:is_taking_off() and
-        target() and vehicle:set_mode(GUIDED) then
-        mode_before = mode
+    elseif (mode == AUTO or mode == CRUISE) and not vehicle:is_taking_off() and target() and vehicle:set_mode(GUIDED) then
+        mode_before, from_landing = mode, is_landing
         say(TEXT_WARNING, "flying past an obstacle")
         fly_to_target()
+    elseif is_landing then -- to its target no side may be flown: up at least
+        go_around()
     end
 end
 
@@ -479,7 +483,7 @@ end
 
 local function is_passed()
     local action = standing.action
-    return standing.is_past and (action == LEFT or action == RIGHT or action == CLIMB)
+    return standing.is_past and not from_landing and (action == LEFT or action == RIGHT or action == CLIMB)
 end
 
 local function end_order()
@@ -487,6 +491,8 @@ local function end_order()
         if is_passed() then
             say(TEXT_INFO, "past it")
             vehicle:set_mode(mode_before)
+        elseif from_landing then
+            say(TEXT_WARNING, "broke off landing, circling: pilot to decide")
         else
             say(TEXT_WARNING, "not surely past, circling: pilot to decide")
         end

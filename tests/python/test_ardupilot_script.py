@@ -82,7 +82,7 @@ ahrs = { get_origin = function() return somewhere(473977420, 85455940, 48800) en
          get_location = function() if py.has_position then return somewhere(473977420, 85455940, py.own_alt) end end }
 vehicle = { get_mode = function() return py.mode end,
             set_mode = function(_, mode) py.mode = mode; py.led(mode); return true end,
-            is_landing = function() return py.landing end, is_taking_off = function() return false end,
+            is_landing = function() return py.landing end, is_taking_off = function() return py.taking_off end,
             set_target_location = function(_, place)
                 if py.mode ~= 15 then return false end
                 py.fly_to(place.values.lat, place.values.lng, place.values.alt)
@@ -113,6 +113,7 @@ class Plane:
     mode: int = AUTO
     armed: bool = True
     landing: bool = False
+    taking_off: bool = False
     now_ms: int = 1000
     kinds: int = 3
     home_set: bool = True
@@ -387,6 +388,34 @@ def test_going_around_climbs_over_the_top(
     plane.run(1.0, status=GO_AROUND)
     assert plane.commands == [DO_GO_AROUND]
     assert plane.heights == [height_m]
+
+
+def test_a_side_breaks_a_landing_off(plane: Plane) -> None:
+    """The top cannot be cleared in time: what is ahead is flown around, and no landing goes on from beside the runway."""
+    plane.landing = True
+    plane.send(plane.hazard())
+    plane.run(0.2, status=LEFT)
+    assert plane.mode == GUIDED and len(plane.places) == 1 and plane.commands == []
+    plane.landing = False
+    plane.pass_by()
+    assert plane.mode == GUIDED
+    assert any("broke off landing" in text for text in plane.texts)
+
+
+def test_a_landing_is_broken_off_where_no_side_may_be_flown(plane: Plane) -> None:
+    plane.landing = True
+    plane.own_alt = ORIGIN[2] + 1500  # below GOEP_ALT_MIN
+    for _ in range(3):
+        plane.send(plane.hazard(down=-15.0))
+        plane.run(0.5, status=LEFT)
+    assert plane.modes == [] and plane.commands == [DO_GO_AROUND] and plane.heights == [None]
+
+
+def test_a_take_off_is_left_alone(plane: Plane) -> None:
+    plane.taking_off = True
+    plane.send(plane.hazard())
+    plane.run(0.5, status=LEFT)
+    assert plane.modes == [] and plane.commands == []
 
 
 def test_holding_is_flown_like_the_others(plane: Plane) -> None:
