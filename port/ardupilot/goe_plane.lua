@@ -28,7 +28,8 @@ local AUTO, CRUISE, GUIDED = 10, 7, 15
 local DO_GO_AROUND = 191
 local NOTHING_KNOWN = 2147483647 -- of latitudes and longitudes
 local HEADER = 12                -- bytes of the message as scripts get it, before its payload
-local SIGNATURE_AT = 279         -- behind room for the longest payload: link, 6 bytes of time in 10 us, 6 bytes of the hash
+local CHECKSUM_AT = 277         -- as it was received, behind room for the longest payload
+local SIGNATURE_AT = 279         -- behind that: link, 6 bytes of time in 10 us, 6 bytes of the hash
 local SIGNED_FLAG = 0x01         -- of incompat_flags
 local PERIOD_MS = 100
 local SOON_MS = 10               -- while more is to be done: a part of a hash takes half of SCR_VM_I_COUNT's default
@@ -106,9 +107,10 @@ local function sender_of(message, link)
     return string.char(link) .. message:sub(8, 9)
 end
 
--- A whole message of that kind: bytes on the wire from the length on, without the checksum. nil: it is none.
+-- A whole message of that kind: bytes on the wire from the length on, without the checksum. nil: it is none. The checksum at the
+-- beginning is the parser's own where a message is signed: without the seed of a kind that it does not know.
 local function frame_of(message, kind)
-    local crc, _, length = string.unpack("<HBB", message)
+    local crc, length = string.unpack("<H", message, CHECKSUM_AT), message:byte(4)
     if length > kind.length then
         return nil
     end
@@ -237,6 +239,8 @@ local beat_ms = {}   -- by sender: when the autopilot took an unsigned HEARTBEAT
 local signed_ms = {} -- by link: when the autopilot took a signed HEARTBEAT of anybody
 local newest = {}    -- by sender: low and high half of the time of its latest right signature
 local judged         -- the signed message that is being hashed
+local latest         -- its signature, or that of the one before: the parser hands an unknown signed message over once more when
+-- the next one's checksum comes
 
 -- A signature's time grows with each message of a sender. An old one is a message that somebody plays once more.
 local function is_new(sender, message)
@@ -250,12 +254,16 @@ end
 
 local function begin_judging(message, link, kind, frame)
     local signature = message:sub(SIGNATURE_AT, SIGNATURE_AT + 12)
+    if signature == latest then
+        return
+    end
+    latest = signature
     judged = {
         message = message,
         kind = kind,
         sender = sender_of(message, link) .. signature:sub(1, 1),
         signature = signature,
-        work = new_hash(key .. message:sub(3, 3) .. frame .. message:sub(1, 2) .. signature:sub(1, 7)),
+        work = new_hash(key .. message:sub(3, 3) .. frame .. message:sub(CHECKSUM_AT, CHECKSUM_AT + 1) .. signature:sub(1, 7)),
     }
 end
 
