@@ -9,8 +9,8 @@ the runway is another one. Whoever chooses another mode meanwhile is not fought.
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
 companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead.
 
-The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know, without having
-judged its signature. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new
+The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know, unsigned also
+where the link is signed. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new
 signature counts. Without a key only an unsigned message counts, and only while the autopilot itself takes unsigned messages from
 the same sender on the same link: its HEARTBEAT shows that. On a signed link the autopilot drops an unsigned HEARTBEAT, so nothing
 counts there; nor on a link on which anybody's signed HEARTBEAT comes.

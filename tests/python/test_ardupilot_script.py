@@ -209,8 +209,8 @@ class Plane:
 
     @staticmethod
     def checksum_field(frame: bytes, end: int) -> int:
-        """The received one where the parser takes it for wrong. An unknown message that is signed is handed over once its signature
-        is found right, with the sum that the parser has run up: without the seed that it does not know."""
+        """The received one where the parser takes it for wrong. An unknown message that is signed is handed over once
+        its signature is found right, with the parser's own sum, which lacks the seed that it does not know."""
         if frame[2] & 1:
             return int(x25crc(frame[1:end]).crc)
         return frame[end + 1] << 8 | frame[end]
@@ -400,7 +400,7 @@ def test_going_around_climbs_over_the_top(
 
 
 def test_a_side_breaks_a_landing_off(plane: Plane) -> None:
-    """The top cannot be cleared in time: what is ahead is flown around, and no landing goes on from beside the runway."""
+    """The top cannot be cleared in time: it is flown around, and no landing goes on from beside the runway."""
     plane.landing = True
     plane.send(plane.hazard())
     plane.run(0.2, status=LEFT)
@@ -503,8 +503,8 @@ def test_a_harmed_signature_is_none(goe: ModuleType, harm: int) -> None:
 
 
 def test_a_message_that_the_parser_hands_over_twice_is_no_fault(goe: ModuleType) -> None:
-    """ArduPilot's parser takes the checksum of an unknown signed message for wrong before it has read its signature: the script then gets
-    what its buffer holds, the message before."""
+    """ArduPilot's parser takes the checksum of an unknown signed message for wrong before it has read its signature:
+    the script then gets what its buffer holds, the message before."""
     plane = Plane(goe, key=KEY, files={"goe.key": KEY})
     whole = plane.send(plane.hazard())
     plane.hand_over(whole)
