@@ -558,6 +558,20 @@ static void an_avoidance_that_the_autopilot_ends_goes_on(void) {
     TEST_ASSERT_EQUAL_INT(0, count_traffic());
 }
 
+/* ArduPlane reports the end of its avoidance also where a pilot has taken the aircraft out of it before: to a mode that no recovery
+ * leads to. */
+static void a_pilots_mode_before_the_report_of_the_end_is_the_pilots(void) {
+    fly_arduplane();
+    go_on(20, AUTO);
+    go_on(30, AVOID);
+    autopilot.recovered_us = now_us;
+    go_on(10, CRUISE);
+    (void)count_traffic();
+    go_on(60, CRUISE);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic());
+    TEST_ASSERT_TRUE(orders.overruled);
+}
+
 /* As AVD_F_RCVRY 3 out of CRUISE: it loiters, and the next avoidance comes from there. */
 static void a_recovery_into_another_mode_is_the_autopilots(void) {
     fly_arduplane();
@@ -715,6 +729,7 @@ int main(void) {
     RUN_TEST(a_pilots_mode_ends_traffic);
     RUN_TEST(a_pilots_way_out_of_avoidance_ends_traffic);
     RUN_TEST(an_avoidance_that_the_autopilot_ends_goes_on);
+    RUN_TEST(a_pilots_mode_before_the_report_of_the_end_is_the_pilots);
     RUN_TEST(a_restarted_companion_goes_back_to_the_mode_before);
     RUN_TEST(a_restarted_companion_goes_back_once_the_logged_obstacle_is_passed);
     RUN_TEST(an_order_of_another_flight_is_not_taken_over);
