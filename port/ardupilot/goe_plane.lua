@@ -3,13 +3,14 @@ goe_plane.lua: ArduPlane flies past what goe_companion has found. SPDX-License-I
 
 The companion (reaction mode "off", reports on) sends GOE_HAZARD for each obstacle and GOE_STATUS once a second. An obstacle with
 an order makes this script fly to the order's target in GUIDED, and back into the mode before when the obstacle is passed. Only
-from AUTO and CRUISE; GO_AROUND only while landing in AUTO. Whoever chooses another mode meanwhile is not fought.
+from AUTO and CRUISE; GO_AROUND only while landing in AUTO. A landing is not gone on with after a side: from there the way to
+the runway is another one. Whoever chooses another mode meanwhile is not fought.
 
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
 companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead.
 
-The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know, without having
-judged its signature. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new
+The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know, unsigned also
+where the link is signed. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new
 signature counts. Without a key only an unsigned message counts, and only while the autopilot itself takes unsigned messages from
 the same sender on the same link: its HEARTBEAT shows that. On a signed link the autopilot drops an unsigned HEARTBEAT, so nothing
 counts there; nor on a link on which anybody's signed HEARTBEAT comes.
@@ -27,7 +28,8 @@ local AUTO, CRUISE, GUIDED = 10, 7, 15
 local DO_GO_AROUND = 191
 local NOTHING_KNOWN = 2147483647 -- of latitudes and longitudes
 local HEADER = 12                -- bytes of the message as scripts get it, before its payload
-local SIGNATURE_AT = 279         -- behind room for the longest payload: link, 6 bytes of time in 10 us, 6 bytes of the hash
+local CHECKSUM_AT = 277         -- as it was received, behind room for the longest payload
+local SIGNATURE_AT = 279         -- behind that: link, 6 bytes of time in 10 us, 6 bytes of the hash
 local SIGNED_FLAG = 0x01         -- of incompat_flags
 local PERIOD_MS = 100
 local SOON_MS = 10               -- while more is to be done: a part of a hash takes half of SCR_VM_I_COUNT's default
@@ -60,6 +62,7 @@ local any_polygon = parameter(4, "POLYGON", 0) -- 1: fly orders although no scri
 local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 
 local mode_before -- while this script has changed the mode
+local from_landing = false -- it was landing then
 local overruled = false
 local standing -- the order: whose, action, lat, lon, down; is_past: that one is reported without an order; over_ms: since then
 -- the companion gives none
@@ -104,9 +107,10 @@ local function sender_of(message, link)
     return string.char(link) .. message:sub(8, 9)
 end
 
--- A whole message of that kind: bytes on the wire from the length on, without the checksum. nil: it is none.
+-- A whole message of that kind: bytes on the wire from the length on, without the checksum. nil: it is none. The checksum at the
+-- beginning is the parser's own where a message is signed: without the seed of a kind that it does not know.
 local function frame_of(message, kind)
-    local crc, _, length = string.unpack("<HBB", message)
+    local crc, length = string.unpack("<H", message, CHECKSUM_AT), message:byte(4)
     if length > kind.length then
         return nil
     end
@@ -235,6 +239,8 @@ local beat_ms = {}   -- by sender: when the autopilot took an unsigned HEARTBEAT
 local signed_ms = {} -- by link: when the autopilot took a signed HEARTBEAT of anybody
 local newest = {}    -- by sender: low and high half of the time of its latest right signature
 local judged         -- the signed message that is being hashed
+local latest         -- its signature, or that of the one before: the parser hands an unknown signed message over once more when
+-- the next one's checksum comes
 
 -- A signature's time grows with each message of a sender. An old one is a message that somebody plays once more.
 local function is_new(sender, message)
@@ -248,12 +254,16 @@ end
 
 local function begin_judging(message, link, kind, frame)
     local signature = message:sub(SIGNATURE_AT, SIGNATURE_AT + 12)
+    if signature == latest then
+        return
+    end
+    latest = signature
     judged = {
         message = message,
         kind = kind,
         sender = sender_of(message, link) .. signature:sub(1, 1),
         signature = signature,
-        work = new_hash(key .. message:sub(3, 3) .. frame .. message:sub(1, 2) .. signature:sub(1, 7)),
+        work = new_hash(key .. message:sub(3, 3) .. frame .. message:sub(CHECKSUM_AT, CHECKSUM_AT + 1) .. signature:sub(1, 7)),
     }
 end
 
@@ -450,13 +460,15 @@ end
 
 local function begin_order()
     local mode = vehicle:get_mode()
+    local is_landing = mode == AUTO and vehicle:is_landing()
     if standing.action == GO_AROUND then
         go_around()
-    elseif (mode == AUTO or mode == CRUISE) and not vehicle:is_landing() and not vehicle:is_taking_off() and
-        target() and vehicle:set_mode(GUIDED) then
-        mode_before = mode
+    elseif (mode == AUTO or mode == CRUISE) and not vehicle:is_taking_off() and target() and vehicle:set_mode(GUIDED) then
+        mode_before, from_landing = mode, is_landing
         say(TEXT_WARNING, "flying past an obstacle")
         fly_to_target()
+    elseif is_landing then -- to its target no side may be flown: up at least
+        go_around()
     end
 end
 
@@ -479,7 +491,7 @@ end
 
 local function is_passed()
     local action = standing.action
-    return standing.is_past and (action == LEFT or action == RIGHT or action == CLIMB)
+    return standing.is_past and not from_landing and (action == LEFT or action == RIGHT or action == CLIMB)
 end
 
 local function end_order()
@@ -487,6 +499,8 @@ local function end_order()
         if is_passed() then
             say(TEXT_INFO, "past it")
             vehicle:set_mode(mode_before)
+        elseif from_landing then
+            say(TEXT_WARNING, "broke off landing, circling: pilot to decide")
         else
             say(TEXT_WARNING, "not surely past, circling: pilot to decide")
         end

@@ -87,7 +87,7 @@ static void start_anew(autopilot_t *autopilot) {
     autopilot->has_range_finder = autopilot->has_terrain = false;
     autopilot->has_origin = autopilot->origin_given = autopilot->has_home = autopilot->has_home_alt = false;
     autopilot->has_odometry_resets = autopilot->answered = false;
-    autopilot->landing = autopilot->on_ground = false;
+    autopilot->landing = autopilot->flaring = autopilot->on_ground = false;
     autopilot->told_us = autopilot->jump_us = 0;
     autopilot->strange_times = 0;
     message_rates_clear(&autopilot->rates);
@@ -434,16 +434,31 @@ static bool is_from_elsewhere(const autopilot_t *autopilot, int64_t now_us) {
 static void take_landed_state(autopilot_t *autopilot, uint8_t state) {
     autopilot->landing = state == MAV_LANDED_STATE_LANDING;
     autopilot->on_ground = state == MAV_LANDED_STATE_ON_GROUND;
+    autopilot->flaring = autopilot->flaring && autopilot->landing;
 }
 
-/* ArduPlane says so when its avoidance of traffic ends without a pilot. */
+/* ArduPlane reports by a text alone that its avoidance of traffic ends without a pilot, and that it flares. Its landed state is
+ * LANDING from the approach until it stands still. */
 static void take_text(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     static const char recovery[] = "Avoid: Resuming";
+    static const char flare[] = "Flare ";
     char text[MAVLINK_MSG_STATUSTEXT_FIELD_TEXT_LEN];
     (void)mavlink_msg_statustext_get_text(message, text);
     if (memcmp(text, recovery, sizeof recovery - 1u) == 0) {
         autopilot->recovered_us = now_us;
+    } else if (memcmp(text, flare, sizeof flare - 1u) == 0) {
+        autopilot->flaring = autopilot->landing;
     }
+}
+
+uint8_t autopilot_phase(const autopilot_t *autopilot) {
+    if (autopilot->on_ground) {
+        return GOE_FLIGHT_LANDED;
+    }
+    if (autopilot->flaring) {
+        return GOE_FLIGHT_FLARE;
+    }
+    return autopilot->landing ? GOE_FLIGHT_APPROACH : GOE_FLIGHT_FLYING;
 }
 
 static void take_target(autopilot_t *autopilot, const mavlink_message_t *message) {

@@ -22,8 +22,9 @@ typedef struct {
     uint8_t kind;   /* MAV_AUTOPILOT_... */
     uint32_t custom_mode;
     uint8_t base_mode;
-    bool landing;         /* EXTENDED_SYS_STATE: on approach ... */
-    bool on_ground;       /* ... or on the ground */
+    bool landing;   /* EXTENDED_SYS_STATE: on approach, in the flare or rolling ... */
+    bool on_ground; /* ... or on the ground */
+    bool flaring; /* ArduPlane's text of a landing: the flare has begun; until EXTENDED_SYS_STATE shows another state */
     int64_t recovered_us; /* own time when ArduPilot reported that it ended an avoidance by itself; 0: never */
     int32_t target_lat_e7, target_lon_e7; /* where it flies to, as it reports ... */
     unsigned targets;                     /* ... so many times */
@@ -83,6 +84,9 @@ void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, in
 
 /* Asks for its clock, its rates and its origin, as often as is due. */
 void autopilot_ask(autopilot_t *autopilot, int64_t now_us);
+
+/* GOE_FLIGHT_FLYING, _APPROACH, _FLARE or _LANDED, for goe_flight_assess(). */
+uint8_t autopilot_phase(const autopilot_t *autopilot);
 
 /* Its clock now, us since its boot; 0 while not known. */
 int64_t autopilot_clock_us(const autopilot_t *autopilot, int64_t now_us);

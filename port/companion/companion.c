@@ -276,18 +276,10 @@ static bool begin_flight(companion_t *c, const char **bad) {
     return goe_flight_init(&c->flight, sizeof c->flight, &c->config.estimator, &c->config.flight, bad) == GOE_FLIGHT_OK;
 }
 
-/* On the ground nothing behind the runway is on the course. */
-static uint8_t phase_of(const autopilot_t *autopilot) {
-    if (autopilot->on_ground) {
-        return GOE_FLIGHT_LANDED;
-    }
-    return autopilot->landing ? GOE_FLIGHT_APPROACH : GOE_FLIGHT_FLYING;
-}
-
 static void assess(companion_t *c, int64_t now_us) {
     const uint32_t autopilot_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
-    const uint8_t phase = phase_of(&c->autopilot);
+    const uint8_t phase = autopilot_phase(&c->autopilot);
     const goe_flight_status_t status = goe_flight_assess(&c->flight, autopilot_us, phase, &c->assessment);
     tell_alive(c);
     if (status == GOE_FLIGHT_CORRUPTED) {

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #define PLANE_AVOID_ADSB 14u
+#define PLANE_RTL 11u
+#define PLANE_LOITER 12u
 #define BEATS_TO_LEAD 2u    /* heartbeats after the acknowledgement within which the mode follows */
 #define BEATS_TO_EXPLAIN 2u /* heartbeats after AVOID_ADSB within which the autopilot's report of its end comes */
 #define TARGET_OFF_M 20.0f  /* from there on a target is another's: far above rounding */
@@ -39,6 +41,11 @@ static bool is_overruled_px4(mode_watch_t *watch, const autopilot_t *autopilot, 
     return mode != watch->mode_before || (leads && (watch->led || is_late));
 }
 
+/* AVD_F_RCVRY: ArduPlane reports the end of its avoidance also where a pilot has chosen a mode before. */
+static bool is_of_recovery(const mode_watch_t *watch, uint32_t mode) {
+    return mode == watch->mode_before || mode == PLANE_RTL || mode == PLANE_LOITER;
+}
+
 static bool is_overruled_plane(mode_watch_t *watch, const autopilot_t *autopilot) {
     if (autopilot->custom_mode == PLANE_AVOID_ADSB) {
         watch->led = true;
@@ -48,6 +55,9 @@ static bool is_overruled_plane(mode_watch_t *watch, const autopilot_t *autopilot
     }
     if (!watch->led) {
         return autopilot->custom_mode != watch->mode_before;
+    }
+    if (!is_of_recovery(watch, autopilot->custom_mode)) {
+        return true;
     }
     if (autopilot->recovered_us != 0 && autopilot->recovered_us >= watch->avoided_us) { /* by itself: no choice */
         watch->led = false;

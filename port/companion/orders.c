@@ -12,6 +12,7 @@
 #define TARGET_MOVED_M 5.0f     /* ... and only when it has moved by so much */
 #define RESUMES_MAX 5           /* the mode before is asked for as often, until it is acknowledged */
 #define BEATS_TO_RESUME 2u      /* heartbeats that may still show the mode of the order before */
+#define SURE_SIGMA 2.0f         /* of a top */
 #define LEFT_OFF_US 2000000     /* by which both clocks may disagree on the time since an order that was left */
 #define LEFT_OLD_US 120000000   /* an order that was left longer ago is forgotten */
 
@@ -143,12 +144,17 @@ static bool has_moved(const orders_t *orders, const goe_flight_assessment_t *ass
     return now_us - orders->sent_us >= TARGET_EVERY_US && hypotf(aside_m, up_m) > TARGET_MOVED_M;
 }
 
-/* Over home, with the clearance: where the flight layer aims. 0: no top is known, the autopilot's own height counts. */
+/* Over home, with the clearance: where the flight layer aims; the target of a side only keeps the present height, there the top at
+ * two sigma counts. 0: no top is known, the autopilot's own height counts. */
 static float go_around_height_m(const orders_t *orders, const goe_flight_assessment_t *assessment) {
     goe_flight_obstacle_t obstacle;
     const bool has_top = goe_flight_obstacle(orders->flight, orders->slot, &obstacle) == GOE_FLIGHT_OK &&
                          (obstacle.valid & GOE_HAS_HEIGHT) != 0u;
-    const float height_m = orders->autopilot->home_down_m - assessment->target_ned_m[2];
+    const float over_top_m = orders->config->flight.clearance_m + SURE_SIGMA * obstacle.height_sd_m;
+    const float down_m = assessment->action == GOE_FLIGHT_GO_AROUND
+                             ? assessment->target_ned_m[2]
+                             : obstacle.center_ned_m[2] - obstacle.height_m - over_top_m;
+    const float height_m = orders->autopilot->home_down_m - down_m;
     return has_top && orders->autopilot->has_home && height_m > 0.0f ? height_m : 0.0f;
 }
 
@@ -222,10 +228,10 @@ static void send_one(orders_t *orders, int slot, const goe_mavlink_own_t *own) {
 
 /* Every obstacle that is known: out of one's way the autopilot may turn into another's. */
 static void send_traffic(orders_t *orders, const goe_mavlink_own_t *own, bool at_once, int64_t now_us) {
-    if (!at_once && (double)(now_us - orders->sent_us) < US_PER_S / orders->config->reaction_adsb_hz) {
+    if (!at_once && (double)(now_us - orders->traffic_us) < US_PER_S / orders->config->reaction_adsb_hz) {
         return;
     }
-    orders->sent_us = now_us;
+    orders->traffic_us = now_us;
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         send_one(orders, slot, own);
     }
@@ -235,11 +241,21 @@ static void send_traffic(orders_t *orders, const goe_mavlink_own_t *own, bool at
     }
 }
 
+/* While it lands ArduPlane takes no notice of traffic. */
+static void break_off_landing(orders_t *orders, const goe_flight_assessment_t *assessment, int64_t now_us) {
+    const bool is_landing = orders->autopilot->landing;
+    if (is_landing) {
+        go_around(orders, assessment, !orders->broke_off, now_us);
+    }
+    orders->broke_off = is_landing;
+}
+
 static void follow_arduplane(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
                              bool at_once, int64_t now_us) {
     if (assessment->action == GOE_FLIGHT_GO_AROUND) {
         go_around(orders, assessment, at_once, now_us);
     } else {
+        break_off_landing(orders, assessment, now_us);
         send_traffic(orders, own, at_once, now_us);
     }
 }
@@ -388,6 +404,7 @@ static void keep(orders_t *orders) {
 
 static void begin_first(orders_t *orders) {
     mode_watch_begin(&orders->watch, orders->autopilot, find_mode_before(orders));
+    orders->broke_off = false;
     orders->sent = orders->left.stands && orders->watch.mode_before == orders->left.mode_before &&
                    orders->autopilot->custom_mode == PX4_AUTO_LOITER;
     orders->left.stands = false;

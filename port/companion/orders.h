@@ -33,8 +33,10 @@ typedef struct {
     bool sent;                            /* a command or traffic, since the first of the orders that stand */
     int32_t target_lat_e7, target_lon_e7; /* as it was sent last ... */
     float target_alt_m;
-    int64_t sent_us;
-    uint16_t command; /* whose acknowledgement is awaited; 0: none */
+    int64_t sent_us;    /* a command ... */
+    int64_t traffic_us; /* ... and traffic */
+    bool broke_off;     /* arduplane: the landing that is under way was asked to be broken off */
+    uint16_t command;   /* whose acknowledgement is awaited; 0: none */
     mode_watch_t watch;
     screen_t *screen;    /* null: none */
     order_log_t *log;    /* null: none */

@@ -39,10 +39,18 @@ static void refuse(wire_t *wire, const mavlink_message_t *message) {
     }
 }
 
+/* A wrong checksum is reported twice of a signed message: also before its signature, when `message` holds nothing yet. */
+static bool is_half(const wire_t *wire, uint8_t result) {
+    return result == MAVLINK_FRAMING_BAD_CRC && wire->parser.parse_state != MAVLINK_PARSE_STATE_IDLE;
+}
+
 static void take_byte(wire_t *wire, uint8_t byte, message_taker_t take, void *user) {
     mavlink_message_t message;
     mavlink_status_t status;
     const uint8_t result = mavlink_frame_char_buffer(&wire->buffer, &wire->parser, byte, &message, &status);
+    if (is_half(wire, result)) {
+        return;
+    }
     if (result == MAVLINK_FRAMING_OK) {
         wire->counts.messages++;
         count_lost(wire, &message);

@@ -287,6 +287,37 @@ static void approach_and_touchdown_are_read(void) {
     TEST_ASSERT_FALSE(autopilot.landing || autopilot.on_ground);
 }
 
+/* ArduPlane's texts and states in the order in which they come. */
+static void the_flare_is_read_from_its_text(void) {
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_FLYING, autopilot_phase(&autopilot));
+    show_landed_state(MAV_LANDED_STATE_LANDING);
+    show_text("Landing approach start at 43.7m");
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_APPROACH, autopilot_phase(&autopilot));
+    show_text("Flare 3.8m sink=1.27 speed=14.1 dist=38.9");
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_FLARE, autopilot_phase(&autopilot));
+    show_landed_state(MAV_LANDED_STATE_LANDING); /* it rolls */
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_FLARE, autopilot_phase(&autopilot));
+    show_landed_state(MAV_LANDED_STATE_ON_GROUND);
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_LANDED, autopilot_phase(&autopilot));
+}
+
+static void a_flare_that_is_broken_off_is_none(void) {
+    show_landed_state(MAV_LANDED_STATE_LANDING);
+    show_text("Flare 3.8m sink=1.27 speed=14.1 dist=38.9");
+    show_landed_state(MAV_LANDED_STATE_IN_AIR);
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_FLYING, autopilot_phase(&autopilot));
+    show_landed_state(MAV_LANDED_STATE_LANDING); /* the next approach */
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_APPROACH, autopilot_phase(&autopilot));
+}
+
+/* Without EXTENDED_SYS_STATE nothing would end it. */
+static void a_flare_without_a_landing_is_none(void) {
+    show_text("Flare 3.8m sink=1.27 speed=14.1 dist=38.9");
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_FLYING, autopilot_phase(&autopilot));
+    show_landed_state(MAV_LANDED_STATE_LANDING);
+    TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_APPROACH, autopilot_phase(&autopilot));
+}
+
 static void the_place_that_it_flies_to_is_kept(void) {
     mavlink_message_t message;
     mavlink_position_target_global_int_t target;
@@ -330,6 +361,9 @@ int main(void) {
     RUN_TEST(a_range_finder_is_taken_upright);
     RUN_TEST(the_end_of_an_avoidance_is_read_from_its_text);
     RUN_TEST(approach_and_touchdown_are_read);
+    RUN_TEST(the_flare_is_read_from_its_text);
+    RUN_TEST(a_flare_that_is_broken_off_is_none);
+    RUN_TEST(a_flare_without_a_landing_is_none);
     RUN_TEST(the_place_that_it_flies_to_is_kept);
     RUN_TEST(a_restart_of_the_autopilot_asks_for_everything_again);
     return UNITY_END();

@@ -125,6 +125,34 @@ static uint64_t begin(signing_t *signing, int64_t unix_us) {
     return signing->state.timestamp;
 }
 
+static void pass_over(void *user, const mavlink_message_t *message) {
+    (void)user;
+    (void)message;
+}
+
+/* Its checksum is not known, and the parser says so before it has read the signature: that is half a frame. */
+static void a_signed_message_of_an_unknown_kind_counts_once(void) {
+    static wire_t wire;
+    uint8_t frame[MAVLINK_NUM_HEADER_BYTES + 1u + 2u + MAVLINK_SIGNATURE_BLOCK_LEN] = {
+        MAVLINK_STX, 1, MAVLINK_IFLAG_SIGNED, 0, 0, 1, MAV_COMP_ID_AUTOPILOT1, 0xFF, 0xFF, 0x7F, 'x'};
+    struct sockaddr_in to;
+    (void)memset(&to, 0, sizeof to);
+    (void)memset(&wire, 0, sizeof wire);
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons((uint16_t)own_port);
+    wire.link = own;
+    wire.heard = 1;
+    for (uint8_t number = 0; number < 3; number++) {
+        frame[4] = number;
+        (void)sendto(friend_socket, frame, sizeof frame, 0, (struct sockaddr *)&to, sizeof to);
+    }
+    while (wire_receive(&wire, pass_over, NULL)) {
+    }
+    TEST_ASSERT_EQUAL_UINT32(3, (uint32_t)wire.counts.unknown);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)(wire.counts.garbage + wire.counts.lost + wire.counts.messages));
+}
+
 static void times_of_signatures_never_go_back(void) {
     signing_t signing;
     wire_t wire;
@@ -173,6 +201,7 @@ int main(void) {
     RUN_TEST(what_lay_there_before_is_known_as_a_strangers);
     RUN_TEST(a_link_that_is_released_hears_everybody_again);
     RUN_TEST(who_is_greeted_is_answered_and_not_alone_heard);
+    RUN_TEST(a_signed_message_of_an_unknown_kind_counts_once);
     RUN_TEST(times_of_signatures_never_go_back);
     RUN_TEST(a_time_that_is_none_is_passed_over);
     RUN_TEST(a_time_that_cannot_be_kept_holds_nothing_up);

@@ -473,6 +473,38 @@ static void fly_arduplane(void) {
     decide(GOE_FLIGHT_LEFT);
 }
 
+/* ArduPlane's avoidance does nothing in its landing: that is broken off first, up to over the top, and traffic turns it away then. */
+static void a_side_breaks_a_landing_off(void) {
+    fly_arduplane();
+    flight.slot[0].valid |= GOE_HAS_HEIGHT;
+    flight.slot[0].top_m = 45.0f;
+    flight.slot[0].top_sd_m = 1.5f;
+    flight.slot[0].ground_down_m = 1.0f;
+    autopilot.has_home = autopilot.landing = true;
+    autopilot.home_down_m = 2.0f;
+    assessment.target_ned_m[2] = -20.0f; /* of a side: the present height */
+    go_on(12, AUTO);
+    TEST_ASSERT_EQUAL_INT(3, count_commands(MAV_CMD_DO_GO_AROUND)); /* at once and each half second */
+    CHECK_CLOSE(1e-3, 2.0f - 1.0f + 45.0f + 2.0f * 1.5f + config.flight.clearance_m,
+                mavlink_msg_command_long_get_param1(&latest));
+    TEST_ASSERT_TRUE(arrived > 0);
+    answer(MAV_CMD_DO_GO_AROUND, MAV_RESULT_ACCEPTED);
+    go_on(20, AUTO);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
+    autopilot.landing = false;
+    go_on(20, AUTO);
+    TEST_ASSERT_EQUAL_INT(8, count_traffic());
+    autopilot.landing = true; /* it lands again, under the same order */
+    go_on(1, AUTO);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+}
+
+static void a_side_outside_a_landing_is_traffic_alone(void) {
+    fly_arduplane();
+    go_on(20, AUTO);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
+}
+
 static void every_obstacle_is_traffic(void) {
     fly_arduplane();
     go_on(20, AUTO);
@@ -524,6 +556,20 @@ static void an_avoidance_that_the_autopilot_ends_goes_on(void) {
     (void)count_traffic();
     go_on(20, AUTO);
     TEST_ASSERT_EQUAL_INT(0, count_traffic());
+}
+
+/* ArduPlane reports the end of its avoidance also where a pilot has taken the aircraft out of it before: to a mode that no recovery
+ * leads to. */
+static void a_pilots_mode_before_the_report_of_the_end_is_the_pilots(void) {
+    fly_arduplane();
+    go_on(20, AUTO);
+    go_on(30, AVOID);
+    autopilot.recovered_us = now_us;
+    go_on(10, CRUISE);
+    (void)count_traffic();
+    go_on(60, CRUISE);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic());
+    TEST_ASSERT_TRUE(orders.overruled);
 }
 
 /* As AVD_F_RCVRY 3 out of CRUISE: it loiters, and the next avoidance comes from there. */
@@ -677,10 +723,13 @@ int main(void) {
     RUN_TEST(a_late_acknowledgement_gives_the_mode_its_time);
     RUN_TEST(another_action_may_be_accepted_where_one_was_denied);
     RUN_TEST(a_go_around_carries_the_height_that_the_top_requires);
+    RUN_TEST(a_side_breaks_a_landing_off);
+    RUN_TEST(a_side_outside_a_landing_is_traffic_alone);
     RUN_TEST(every_obstacle_is_traffic);
     RUN_TEST(a_pilots_mode_ends_traffic);
     RUN_TEST(a_pilots_way_out_of_avoidance_ends_traffic);
     RUN_TEST(an_avoidance_that_the_autopilot_ends_goes_on);
+    RUN_TEST(a_pilots_mode_before_the_report_of_the_end_is_the_pilots);
     RUN_TEST(a_restarted_companion_goes_back_to_the_mode_before);
     RUN_TEST(a_restarted_companion_goes_back_once_the_logged_obstacle_is_passed);
     RUN_TEST(an_order_of_another_flight_is_not_taken_over);
