@@ -33,6 +33,8 @@
 #define GAIN 0.2f      /* by which that must be better */
 #define NEVER (-2.0f * GOE_FLIGHT_CLEAR_MAX)
 
+#define CLIMB_SLACK 0.5f /* of the clearance: a climb that lacks less than this is not left for another order */
+
 #define SIDE_REMEMBERED_S 10.0f
 #define LATEST 1.2f      /* of roll_in_s: an autopilot may obey so late */
 #define TURNED 0.99f     /* cosine of 8 degrees: from there on the aircraft obeys */
@@ -191,6 +193,10 @@ static void prefer(option_t *best, const option_t *option) {
     }
 }
 
+static bool is_on_course(const encounter_t *e) {
+    return e->ahead_m > 0.0f && goe_flight_absolute(e->aside_m) < e->keep_m;
+}
+
 /* Of a climb straight on everything in the way is to be cleared: to the highest top, each in time. */
 static void try_climb(const look_t *look, int about, const encounter_t *e, option_t *best) {
     option_t option;
@@ -203,8 +209,13 @@ static void try_climb(const look_t *look, int about, const encounter_t *e, optio
             continue;
         }
         meet(look, i, &other);
-        if (other.ahead_m > 0.0f && other.ahead_m < e->ahead_m + 2.0f * look->at.turn_m &&
-            goe_flight_absolute(other.aside_m) < other.keep_m) {
+        if (!is_on_course(&other)) {
+            continue;
+        }
+        if (other.has_top) {
+            rise_m = goe_flight_larger(rise_m, other.rise_m);
+        }
+        if (other.ahead_m < e->ahead_m + 2.0f * look->at.turn_m) {
             const float there_s = goe_flight_larger(other.ahead_m - look->slot[i].radius_m, 0.0f) / look->speed_m_s;
             rise_m = goe_flight_larger(rise_m, rise_of(look, &other));
             possible = (other.has_top || approach) && climb_time_s(look, rise_of(look, &other)) <= there_s;
@@ -356,7 +367,8 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
     const float right_m = aside ? option->way.target_m[1] : 0.0f;
     r->target_ned_m[0] = look->own->ned_m[0] + course[0] * ahead_m - course[1] * right_m;
     r->target_ned_m[1] = look->own->ned_m[1] + course[1] * ahead_m + course[0] * right_m;
-    r->target_ned_m[2] = option->down_m;
+    r->target_ned_m[2] =
+        r->action == GOE_FLIGHT_NONE ? option->down_m : goe_flight_smaller(r->target_ned_m[2], option->down_m);
     memcpy(r->along_ne, course, sizeof r->along_ne);
     r->ordered_us = r->action == (uint8_t)option->action ? r->ordered_us : look->own->time_us;
     r->action = (uint8_t)option->action;
@@ -486,6 +498,9 @@ static void review(goe_flight_t *flight, look_t *look) {
     }
     const float share = share_of_order(look, r, &nearest);
     r->clear_m = goe_flight_clamped(share * flight->settings.margin_m, -CLEAR_MAX_M, CLEAR_MAX_M);
+    if (share < 0.0f) {
+        r->reason = GOE_FLIGHT_REASON_LEAST_BAD;
+    }
     if (share >= KEPT || nearest == NOBODY) {
         r->rising = false;
         return;
@@ -577,7 +592,7 @@ static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) 
     }
     *behind = false;
     if (waits) {
-        if (!left && r->slot != NOBODY && next != NOBODY) { /* past the one, before the next */
+        if (!left && r->slot != NOBODY && next != NOBODY && !is_up(r->action)) { /* past the one, before the next */
             r->slot = (int8_t)next;
             r->edge = is_aside(r->action) ? (int8_t)next : NOBODY;
             r->gap = false;
@@ -632,8 +647,7 @@ static void rise(goe_flight_t *flight, const look_t *look) {
             continue;
         }
         meet(look, i, &e);
-        const bool on_course = e.ahead_m > 0.0f && goe_flight_absolute(e.aside_m) < e.keep_m;
-        if (e.has_top && on_course && (i == r->slot || e.ahead_m < look->at.late_m + 2.0f * look->at.turn_m)) {
+        if (e.has_top && is_on_course(&e)) {
             r->target_ned_m[2] = goe_flight_smaller(r->target_ned_m[2], e.top_down_m);
         }
     }
@@ -742,6 +756,16 @@ static bool is_flying_back(look_t *look) {
     return clear;
 }
 
+/* Whether a climb that stands does not reach the height over this obstacle before it. */
+static bool is_too_low(const look_t *look, const encounter_t *e) {
+    const goe_flight_settings_t *settings = &look->flight->settings;
+    const float since_s = goe_flight_between_s(look->own->time_us, look->flight->reaction.ordered_us);
+    const float begins_s = goe_flight_larger(settings->climb_in_s - since_s, 0.0f);
+    const float keeps_m = CLIMB_SLACK * settings->clearance_m; /* what is left of the clearance is enough to go on */
+    const float rise_m = goe_flight_larger(rise_of(look, e) - keeps_m, 0.0f);
+    return begins_s + rise_m / settings->climb_m_s > e->soonest_s;
+}
+
 /* What to do about one obstacle; an order, once it is due. */
 static float answer(goe_flight_t *flight, look_t *look, int about) {
     goe_flight_reaction_t *r = &flight->reaction;
@@ -751,7 +775,10 @@ static float answer(goe_flight_t *flight, look_t *look, int about) {
     const bool reviewed = r->side != 0 && !is_up(r->action) && r->action != GOE_FLIGHT_NONE;
     meet(look, about, &e);
     if (reviewed) {
-        return simplest_s(look, &e);
+        const float needed_s = simplest_s(look, &e);
+        const bool into = r->clear_m < 0.0f && violation >= LATE_VIOLATION && e.ahead_m > 0.0f;
+        r->late = r->late || (into && needed_s > e.soonest_s);
+        return needed_s;
     }
     if (!(violation >= settings->violation_max) || !(e.ahead_m > 0.0f)) {
         r->rising = false;
@@ -761,7 +788,8 @@ static float answer(goe_flight_t *flight, look_t *look, int about) {
     const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, settings->violation_max)
                                                      : settings->violation_max;
     const bool is_hazard = violation >= most && !is_flying_back(look);
-    const bool is_new = r->action == GOE_FLIGHT_NONE || (is_up(r->action) && r->slot != about);
+    const bool is_new =
+        r->action == GOE_FLIGHT_NONE || (is_up(r->action) && (r->slot != about || is_too_low(look, &e)));
     if (is_due(r, settings, &e, option.needed_s, is_hazard && is_new, look->own->time_us)) {
         const goe_flight_reason_t why = withheld(flight, look->own, look->speed_m_s);
         if (why == GOE_FLIGHT_REASON_NONE) {
