@@ -49,7 +49,7 @@ OPERATORS: dict[str, tuple[str, ...]] = {
     "&=": ("|=",),
 }
 LARGER = ("goe_larger", "goe_larger_bits")
-ORDER_IS_FREE = (*LARGER, "goe_xz_dot")
+ORDER_IS_FREE = (*LARGER, "goe_xz_dot", "goe_flight_larger", "goe_flight_smaller", "dot")
 UNREAD = ("StaticAssertDecl", "UnaryExprOrTypeTraitExpr", "OffsetOfExpr", "TypedefDecl", "RecordDecl", "EnumDecl")
 REMOVED = ("BinaryOperator", "CompoundAssignOperator", "CallExpr", "UnaryOperator", "CStyleCastExpr")
 JUMPS = ("ReturnStmt", "ContinueStmt", "BreakStmt")

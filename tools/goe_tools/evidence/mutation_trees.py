@@ -42,6 +42,7 @@ class Layer:
     listed: str  # in tests/mutation: its mutants that no test kills, with reasons
     flags: tuple[str, ...]
     programs: dict[str, str] = field(default_factory=dict)  # in the environment of the tests: target, by path
+    slow: tuple[str, ...] = ()  # tests in Python that run last
 
     @property
     def folder(self) -> Path:
@@ -70,6 +71,7 @@ COMPANION = Layer(
         *("-isystem", "build/port/companion/headers"),
     ),
     {"GOE_COMPANION": "port/companion/goe_companion", "GOE_REPLAY": "sim_host/goe_replay"},
+    ("test_companion_flight", "test_companion_security", "test_companion_disturbed", "test_companion_load"),
 )
 LAYERS = (FLIGHT, COMPANION)
 
@@ -79,10 +81,11 @@ class Tree:
 
     def __init__(self, layer: Layer, number: int) -> None:
         self.layer = layer
-        self.folder = CACHE / f"tree_{number}"
+        self.folder = CACHE / f"{Path(layer.name).name}_{number}"
         self.build = self.folder / "build"
         self.tests = sorted(path.stem for path in (ROOT / layer.tests).glob("test_*.c"))
-        self.python_tests = sorted((ROOT / layer.tests).glob("test_*.py")) if layer.programs else []
+        found = sorted((ROOT / layer.tests).glob("test_*.py")) if layer.programs else []
+        self.python_tests = sorted(found, key=lambda path: path.stem in layer.slow and layer.slow.index(path.stem) + 1)
         self.seconds: dict[str, float] = {}
 
     def prepare(self) -> None:
