@@ -263,6 +263,43 @@ static void an_order_that_has_ended_reports_nothing(void) {
     }
 }
 
+/* What comes within 10 s of the end of an order is the same encounter, with its side and its changes of it; later neither counts. */
+static void the_side_of_an_order_is_remembered_for_ten_seconds(void) {
+    for (int later = 0; later < 2; later++) {
+        goe_flight_reaction_clear(&flight.reaction);
+        flight.reaction.side = 1;
+        flight.reaction.changes = 2u;
+        flight.reaction.falling_us = 5000000u;
+        own.time_us = later ? 15100000u : 14900000u;
+        (void)goe_flight_reaction_decide(&flight, -1, &own);
+        TEST_ASSERT_EQUAL(later ? 0 : 1, flight.reaction.side);
+        TEST_ASSERT_EQUAL(later ? 0 : 2, flight.reaction.changes);
+    }
+}
+
+/* Memory that flipped: an action that there is not, or an order about a slot that there is not, is no order. */
+static void an_order_about_no_slot_is_none(void) {
+    static const int beyond[] = {-2, GOE_FLIGHT_SLOTS, GOE_FLIGHT_SLOTS + 1, 127};
+    for (int kind = 0; kind < 4; kind++) {
+        for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
+            goe_flight_reaction_t *r = &flight.reaction;
+            goe_flight_reaction_clear(r);
+            put(0, 300.0f, 0.0f);
+            flight.slot[0].hazard.violation = 0.0f;
+            r->action = kind == 0 ? (uint8_t)(GOE_FLIGHT_HOLD + 1 + (int)i) : GOE_FLIGHT_LEFT;
+            r->side = kind == 1 ? (int8_t)beyond[i] : -1;
+            r->slot = kind == 2 ? (int8_t)beyond[i] : 0;
+            r->edge = kind == 3 ? (int8_t)beyond[i] : 0;
+            r->course_ne[0] = r->along_ne[0] = 1.0f;
+            (void)goe_flight_reaction_decide(&flight, -1, &own);
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, r->action);
+            TEST_ASSERT_EQUAL(-1, r->slot);
+            TEST_ASSERT_EQUAL(-1, r->edge);
+            TEST_ASSERT_EQUAL(0, r->side);
+        }
+    }
+}
+
 static void the_point_of_a_side_follows_the_estimate(void) {
     put(0, 100.0f, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
@@ -315,6 +352,8 @@ int main(void) {
     RUN_TEST(an_order_that_proves_wrong_is_taken_back);
     RUN_TEST(an_obstacle_that_is_given_up_ends_its_order);
     RUN_TEST(an_order_that_has_ended_reports_nothing);
+    RUN_TEST(the_side_of_an_order_is_remembered_for_ten_seconds);
+    RUN_TEST(an_order_about_no_slot_is_none);
     RUN_TEST(the_point_of_a_side_follows_the_estimate);
     RUN_TEST(another_obstacle_replaces_the_order_but_not_the_line);
     RUN_TEST(every_action_has_a_name);
