@@ -112,7 +112,7 @@ class Tree:
 
     def make(self) -> bool:
         targets = [*self.tests, *(Path(program).name for program in self.layer.programs.values())]
-        command = ["nice", "ninja", "-C", str(self.build), "-j1", *targets]
+        command = ["ninja", "-C", str(self.build), "-j1", *targets]
         return subprocess.run(command, capture_output=True, check=False).returncode == 0
 
     def object_code(self) -> dict[str, bytes]:
@@ -140,7 +140,7 @@ class Tree:
         limit = SPARE_S + SPARE * self.seconds[name] if name in self.seconds else None
         nothing = subprocess.DEVNULL
         process = subprocess.Popen(
-            ["nice", *command], cwd=self.folder, env=environment, stdout=nothing, stderr=nothing, start_new_session=True
+            command, cwd=self.folder, env=environment, stdout=nothing, stderr=nothing, start_new_session=True
         )
         try:
             return process.wait(limit) == 0
