@@ -197,6 +197,22 @@ static void messages_that_come_twice_or_late_change_nothing(void) {
     TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)(autopilot.jumps + autopilot.restarts));
 }
 
+/* One sample from the future does not reach the flight layer, which would refuse all that follow until then. */
+static void a_time_ahead_of_the_clock_is_not_taken(void) {
+    fly(20);
+    const uint64_t attitudes = autopilot.attitudes, positions = autopilot.positions;
+    boot_ms += 60000u;
+    send_attitude(SYSTEM, 1.0f, 0.0f);
+    send_position(SYSTEM, north_m, -30.0f);
+    boot_ms -= 60000u;
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)attitudes, (uint32_t)autopilot.attitudes);
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)positions, (uint32_t)autopilot.positions);
+    fly(5);
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)positions + 5u, (uint32_t)autopilot.positions);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.restarts);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)flight.counters.refused);
+}
+
 static void tell_resets(uint8_t resets) {
     mavlink_message_t message;
     mavlink_odometry_t odometry;
@@ -325,6 +341,7 @@ int main(void) {
     RUN_TEST(a_clock_that_slips_ends_nothing);
     RUN_TEST(what_is_not_finite_is_refused_and_counted);
     RUN_TEST(messages_that_come_twice_or_late_change_nothing);
+    RUN_TEST(a_time_ahead_of_the_clock_is_not_taken);
     RUN_TEST(odometry_counts_resets_that_show_no_step);
     RUN_TEST(a_counter_that_rises_with_a_step_tells_nothing_new);
     RUN_TEST(a_range_finder_is_taken_upright);
