@@ -235,6 +235,28 @@ static void doubt_about_the_place_is_taken_off(void) {
     }
 }
 
+/* ... abeam of a turn along the line from its centre: half of a variance that lies ahead. */
+static void doubt_abeam_of_a_turn_lies_along_its_radius(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        any_encounter();
+        own.early_m = own.late_m = 0.0f;
+        own.turn_m = 60.0f;
+        way.turns_away = true;
+        way.target_m[0] = -100.0f;
+        way.target_m[1] = 120.0f * (float)side;
+        slots[0].at_m[0] = 90.0f * 0.70710678f; /* 30 m outside of the turn, ahead and on its outer side */
+        slots[0].at_m[1] = (60.0f - 90.0f * 0.70710678f) * (float)side;
+        slots[0].radius_m = 0.0f;
+        CHECK_CLOSE(0.01, 30.0, spare_m());
+        slots[0].variance_m2[0] = 8.0f;
+        way.sigmas = 1.0f;
+        CHECK_CLOSE(0.01, 28.0, spare_m());
+        slots[0].variance_m2[0] = 0.0f;
+        slots[0].variance_m2[2] = 18.0f;
+        CHECK_CLOSE(0.01, 27.0, spare_m());
+    }
+}
+
 /* The share is that of the margin wanted; the nearest is of the least share, and none is named where all is clear. */
 static void the_nearest_is_that_of_the_least_share(void) {
     int nearest;
@@ -320,6 +342,7 @@ int main(void) {
     RUN_TEST(a_circle_is_flown_about_the_target);
     RUN_TEST(a_turn_away_is_flown_from_either_delay);
     RUN_TEST(doubt_about_the_place_is_taken_off);
+    RUN_TEST(doubt_abeam_of_a_turn_lies_along_its_radius);
     RUN_TEST(the_nearest_is_that_of_the_least_share);
     RUN_TEST(the_frame_is_that_of_the_course);
     RUN_TEST(the_covariance_turns_with_the_course);
