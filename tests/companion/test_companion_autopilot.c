@@ -132,6 +132,40 @@ static void a_turn_that_no_rate_explains_ends_the_tracks(void) {
     TEST_ASSERT_EQUAL_UINT16(1, flight.counters.lost);
 }
 
+/* GIVEN an attitude about any axis, which is held, by either sign of the quaternion THEN there is no jump, and the heading is its own;
+ * another one about that axis is a jump. */
+static void an_attitude_about_any_axis_is_compared(void) {
+    static const float none[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    for (int axis = 1; axis < 4; axis++) {
+        tearDown();
+        setUp();
+        for (int k = 0; k < 20; k++) {
+            const float half = k < 15 ? 0.3f : 0.6f;
+            const float sign = k % 2 == 0 ? 1.0f : -1.0f;
+            float q[4] = {sign * cosf(half), 0.0f, 0.0f, 0.0f};
+            mavlink_message_t message;
+            q[axis] = sign * sinf(half);
+            own_us += 1000 * PERIOD_MS;
+            boot_ms += PERIOD_MS;
+            (void)mavlink_msg_attitude_quaternion_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, boot_ms, q[0], q[1],
+                                                       q[2], q[3], 0.0f, 0.0f, 0.0f, none);
+            autopilot_take(&autopilot, &message, own_us);
+            TEST_ASSERT_EQUAL_UINT32(k < 15 ? 0 : 1, (uint32_t)autopilot.jumps);
+        }
+        TEST_ASSERT_EQUAL_UINT32(20, (uint32_t)autopilot.attitudes);
+        CHECK_CLOSE(0.01, axis == 3 ? 1.2 * 57.29578 : 0.0, autopilot_heading_deg(&autopilot));
+    }
+}
+
+static void every_autopilot_has_a_name(void) {
+    autopilot.kind = MAV_AUTOPILOT_ARDUPILOTMEGA;
+    TEST_ASSERT_EQUAL_STRING("ArduPilot", autopilot_kind_text(&autopilot));
+    autopilot.kind = MAV_AUTOPILOT_PX4;
+    TEST_ASSERT_EQUAL_STRING("PX4", autopilot_kind_text(&autopilot));
+    autopilot.kind = MAV_AUTOPILOT_GENERIC;
+    TEST_ASSERT_EQUAL_STRING("autopilot", autopilot_kind_text(&autopilot));
+}
+
 static void a_restart_of_the_autopilot_begins_a_new_clock(void) {
     fly(50);
     boot_ms = 3000;
@@ -337,6 +371,8 @@ int main(void) {
     RUN_TEST(a_step_of_the_position_is_a_known_jump);
     RUN_TEST(losses_and_turns_of_an_aircraft_are_no_steps);
     RUN_TEST(a_turn_that_no_rate_explains_ends_the_tracks);
+    RUN_TEST(an_attitude_about_any_axis_is_compared);
+    RUN_TEST(every_autopilot_has_a_name);
     RUN_TEST(a_restart_of_the_autopilot_begins_a_new_clock);
     RUN_TEST(a_clock_that_slips_ends_nothing);
     RUN_TEST(what_is_not_finite_is_refused_and_counted);
