@@ -157,6 +157,35 @@ static void an_attitude_about_any_axis_is_compared(void) {
     }
 }
 
+/* Home lies at its own down, as PX4 sends it; of ArduPilot, whose down counts from there, at the difference of the altitudes of origin and
+ * home. What is too far off is no ground. */
+static void home_is_the_ground_by_the_autopilots_own_count(void) {
+    static const float none[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    for (int kind = 0; kind < 2; kind++) {
+        for (int far = 0; far < 2; far++) {
+            mavlink_message_t message;
+            tearDown();
+            setUp();
+            autopilot.kind = kind == 0 ? MAV_AUTOPILOT_PX4 : MAV_AUTOPILOT_ARDUPILOTMEGA;
+            const int32_t home_mm = far ? -400000000 : 480000;
+            (void)mavlink_msg_gps_global_origin_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 470000000, 80000000,
+                                                     500000, 0);
+            autopilot_take(&autopilot, &message, own_us);
+            (void)mavlink_msg_home_position_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 470000000, 80000000, home_mm,
+                                                 0.0f, 0.0f, far ? 1.0e6f : 7.0f, none, 0.0f, 0.0f, 0.0f, 0);
+            autopilot_take(&autopilot, &message, own_us);
+            TEST_ASSERT_EQUAL(!far, autopilot.has_home);
+            if (!far) {
+                CHECK_CLOSE(1.0e-3, kind == 0 ? 7.0 : 20.0, autopilot.home_down_m);
+                goe_pose_t pose;
+                fly(5);
+                TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flight, boot_ms * 1000u, 0u, &pose, NULL));
+                CHECK_CLOSE(1.0e-3, kind == 0 ? 37.0 : 50.0, pose.height_m);
+            }
+        }
+    }
+}
+
 static void every_autopilot_has_a_name(void) {
     autopilot.kind = MAV_AUTOPILOT_ARDUPILOTMEGA;
     TEST_ASSERT_EQUAL_STRING("ArduPilot", autopilot_kind_text(&autopilot));
@@ -372,6 +401,7 @@ int main(void) {
     RUN_TEST(losses_and_turns_of_an_aircraft_are_no_steps);
     RUN_TEST(a_turn_that_no_rate_explains_ends_the_tracks);
     RUN_TEST(an_attitude_about_any_axis_is_compared);
+    RUN_TEST(home_is_the_ground_by_the_autopilots_own_count);
     RUN_TEST(every_autopilot_has_a_name);
     RUN_TEST(a_restart_of_the_autopilot_begins_a_new_clock);
     RUN_TEST(a_clock_that_slips_ends_nothing);

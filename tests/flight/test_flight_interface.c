@@ -293,6 +293,21 @@ static void an_obstacle_turns_with_the_course(void) {
     }
 }
 
+/* A track that begins in a slot that another one had used keeps nothing of it. */
+static void a_new_track_begins_with_nothing(void) {
+    (void)flown_fly(&flown, 4.0);
+    goe_flight_slot_t *slot = &flown.flight.slot[0];
+    TEST_ASSERT_TRUE(slot->assessed && slot->in_view && slot->valid != 0u && slot->hazard.time_s > 0.0f);
+    slot->remembered = slot->suspect = true;
+    goe_flight_slot_begin(slot, 9u, 5000000u);
+    TEST_ASSERT_EQUAL_UINT32(9u, slot->id);
+    TEST_ASSERT_TRUE(slot->used && slot->fresh_track);
+    TEST_ASSERT_FALSE(slot->assessed || slot->in_view || slot->remembered || slot->suspect);
+    TEST_ASSERT_EQUAL_HEX(0u, slot->valid);
+    CHECK_CLOSE(0.0, 0.0, slot->hazard.time_s);
+    CHECK_CLOSE(0.0, 0.0, slot->hazard.violation);
+}
+
 /* -------------------------------------------------------------------------------------------------------------- boxes -- */
 
 /* The box of points: from the least to the largest of those that are seen, in any order; nothing without any. */
@@ -355,6 +370,7 @@ int main(void) {
     RUN_TEST(an_obstacle_is_reported_as_the_header_says);
     RUN_TEST(the_nearest_point_of_an_obstacle_below_lies_on_its_top);
     RUN_TEST(an_obstacle_turns_with_the_course);
+    RUN_TEST(a_new_track_begins_with_nothing);
     RUN_TEST(points_make_a_box);
     RUN_TEST(a_box_of_another_size_claims_nothing);
     return UNITY_END();
