@@ -486,7 +486,7 @@ static void find_better(goe_flight_t *flight, look_t *look, float share, int nea
 static void review(goe_flight_t *flight, look_t *look) {
     goe_flight_reaction_t *r = &flight->reaction;
     int nearest;
-    if (r->side == 0 || is_up(r->action)) {
+    if (r->action == GOE_FLIGHT_NONE || r->side == 0 || is_up(r->action)) { /* it may have ended just now */
         return;
     }
     follow(look, r);

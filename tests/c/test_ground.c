@@ -112,6 +112,29 @@ static void readings_tell_the_mean_and_no_more(void) {
     }
 }
 
+/* GIVEN a filter that was told the mean of its heights WHEN it starts again, as a track does that begins afresh at a place THEN it is
+ * told the same mean once more, and nothing of what it was told before counts. */
+static void a_filter_that_starts_again_is_told_the_same_mean(void) {
+    settings.navigation.height_white_m = WHITE_M;
+    for (int flight = 0; flight < FLIGHTS; flight++) {
+        goe_filter_clear(&filter);
+        read_height(HEIGHT_M, 0.0f);
+        const float first_sd_m = obs.height_sd_m;
+        start(RANGE_M, first_sd_m);
+        for (int k = 1; k < READINGS; k++) {
+            read_height(HEIGHT_M + 5.0f + WHITE_M * (float)check_random_normal(&any), 0.0f);
+            (void)tell();
+        }
+        const double told_m = (double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE];
+        const double told_sd_m = ground_sd_m();
+        filter.state[GOE_GROUND] = 0.0f;
+        start(RANGE_M, first_sd_m);
+        TEST_ASSERT_EQUAL_INT(1, tell());
+        CHECK_CLOSE(0.02 * told_sd_m, told_m, filter.state[GOE_GROUND] / filter.state[GOE_INVERSE_RANGE]);
+        CHECK_CLOSE(0.01 * told_sd_m, told_sd_m, ground_sd_m());
+    }
+}
+
 /* GIVEN more readings than are counted THEN the mean goes on as that of so many, and the count does not begin anew. */
 static void the_count_of_readings_saturates(void) {
     settings.navigation.height_white_m = WHITE_M;
@@ -305,6 +328,7 @@ static void the_arm_moves_the_camera_up_and_down(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(readings_tell_the_mean_and_no_more);
+    RUN_TEST(a_filter_that_starts_again_is_told_the_same_mean);
     RUN_TEST(the_count_of_readings_saturates);
     RUN_TEST(what_finds_no_room_is_told_later);
     RUN_TEST(without_a_position_the_heights_wait);

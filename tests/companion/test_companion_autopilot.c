@@ -132,6 +132,69 @@ static void a_turn_that_no_rate_explains_ends_the_tracks(void) {
     TEST_ASSERT_EQUAL_UINT16(1, flight.counters.lost);
 }
 
+/* GIVEN an attitude about any axis, which is held, by either sign of the quaternion THEN there is no jump, and the heading is its own;
+ * another one about that axis is a jump. */
+static void an_attitude_about_any_axis_is_compared(void) {
+    static const float none[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    for (int axis = 1; axis < 4; axis++) {
+        tearDown();
+        setUp();
+        for (int k = 0; k < 20; k++) {
+            const float half = k < 15 ? 0.3f : 0.6f;
+            const float sign = k % 2 == 0 ? 1.0f : -1.0f;
+            float q[4] = {sign * cosf(half), 0.0f, 0.0f, 0.0f};
+            mavlink_message_t message;
+            q[axis] = sign * sinf(half);
+            own_us += 1000 * PERIOD_MS;
+            boot_ms += PERIOD_MS;
+            (void)mavlink_msg_attitude_quaternion_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, boot_ms, q[0], q[1],
+                                                       q[2], q[3], 0.0f, 0.0f, 0.0f, none);
+            autopilot_take(&autopilot, &message, own_us);
+            TEST_ASSERT_EQUAL_UINT32(k < 15 ? 0 : 1, (uint32_t)autopilot.jumps);
+        }
+        TEST_ASSERT_EQUAL_UINT32(20, (uint32_t)autopilot.attitudes);
+        CHECK_CLOSE(0.01, axis == 3 ? 1.2 * 57.29578 : 0.0, autopilot_heading_deg(&autopilot));
+    }
+}
+
+/* Home lies at its own down, as PX4 sends it; of ArduPilot, whose down counts from there, at the difference of the altitudes of origin and
+ * home. What is too far off is no ground. */
+static void home_is_the_ground_by_the_autopilots_own_count(void) {
+    static const float none[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    for (int kind = 0; kind < 2; kind++) {
+        for (int far = 0; far < 2; far++) {
+            mavlink_message_t message;
+            tearDown();
+            setUp();
+            autopilot.kind = kind == 0 ? MAV_AUTOPILOT_PX4 : MAV_AUTOPILOT_ARDUPILOTMEGA;
+            const int32_t home_mm = far ? -400000000 : 480000;
+            (void)mavlink_msg_gps_global_origin_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 470000000, 80000000,
+                                                     500000, 0);
+            autopilot_take(&autopilot, &message, own_us);
+            (void)mavlink_msg_home_position_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 470000000, 80000000, home_mm,
+                                                 0.0f, 0.0f, far ? 1.0e6f : 7.0f, none, 0.0f, 0.0f, 0.0f, 0);
+            autopilot_take(&autopilot, &message, own_us);
+            TEST_ASSERT_EQUAL(!far, autopilot.has_home);
+            if (!far) {
+                CHECK_CLOSE(1.0e-3, kind == 0 ? 7.0 : 20.0, autopilot.home_down_m);
+                goe_pose_t pose;
+                fly(5);
+                TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flight, boot_ms * 1000u, 0u, &pose, NULL));
+                CHECK_CLOSE(1.0e-3, kind == 0 ? 37.0 : 50.0, pose.height_m);
+            }
+        }
+    }
+}
+
+static void every_autopilot_has_a_name(void) {
+    autopilot.kind = MAV_AUTOPILOT_ARDUPILOTMEGA;
+    TEST_ASSERT_EQUAL_STRING("ArduPilot", autopilot_kind_text(&autopilot));
+    autopilot.kind = MAV_AUTOPILOT_PX4;
+    TEST_ASSERT_EQUAL_STRING("PX4", autopilot_kind_text(&autopilot));
+    autopilot.kind = MAV_AUTOPILOT_GENERIC;
+    TEST_ASSERT_EQUAL_STRING("autopilot", autopilot_kind_text(&autopilot));
+}
+
 static void a_restart_of_the_autopilot_begins_a_new_clock(void) {
     fly(50);
     boot_ms = 3000;
@@ -195,6 +258,22 @@ static void messages_that_come_twice_or_late_change_nothing(void) {
     fly(5);
     TEST_ASSERT_EQUAL_UINT32(25, (uint32_t)autopilot.positions);
     TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)(autopilot.jumps + autopilot.restarts));
+}
+
+/* One sample from the future does not reach the flight layer, which would refuse all that follow until then. */
+static void a_time_ahead_of_the_clock_is_not_taken(void) {
+    fly(20);
+    const uint64_t attitudes = autopilot.attitudes, positions = autopilot.positions;
+    boot_ms += 60000u;
+    send_attitude(SYSTEM, 1.0f, 0.0f);
+    send_position(SYSTEM, north_m, -30.0f);
+    boot_ms -= 60000u;
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)attitudes, (uint32_t)autopilot.attitudes);
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)positions, (uint32_t)autopilot.positions);
+    fly(5);
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)positions + 5u, (uint32_t)autopilot.positions);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.restarts);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)flight.counters.refused);
 }
 
 static void tell_resets(uint8_t resets) {
@@ -352,10 +431,14 @@ int main(void) {
     RUN_TEST(a_step_of_the_position_is_a_known_jump);
     RUN_TEST(losses_and_turns_of_an_aircraft_are_no_steps);
     RUN_TEST(a_turn_that_no_rate_explains_ends_the_tracks);
+    RUN_TEST(an_attitude_about_any_axis_is_compared);
+    RUN_TEST(home_is_the_ground_by_the_autopilots_own_count);
+    RUN_TEST(every_autopilot_has_a_name);
     RUN_TEST(a_restart_of_the_autopilot_begins_a_new_clock);
     RUN_TEST(a_clock_that_slips_ends_nothing);
     RUN_TEST(what_is_not_finite_is_refused_and_counted);
     RUN_TEST(messages_that_come_twice_or_late_change_nothing);
+    RUN_TEST(a_time_ahead_of_the_clock_is_not_taken);
     RUN_TEST(odometry_counts_resets_that_show_no_step);
     RUN_TEST(a_counter_that_rises_with_a_step_tells_nothing_new);
     RUN_TEST(a_range_finder_is_taken_upright);

@@ -91,6 +91,17 @@ static void a_side_that_is_not_clear_is_not_taken(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
 }
 
+/* Behind the target the line is flown on: for the turn's radius and what is flown while an order is obeyed, 71 + 90 m. */
+static void what_stands_on_the_line_behind_a_target_blocks_it(void) {
+    for (int blocked = 0; blocked < 2; blocked++) {
+        goe_flight_reaction_clear(&flight.reaction);
+        put(0, 100.0f, 2.0f);
+        put(1, blocked ? 250.0f : 340.0f, -16.0f);
+        flight.slot[1].hazard.violation = 0.0f;
+        TEST_ASSERT_EQUAL(blocked ? GOE_FLIGHT_RIGHT : GOE_FLIGHT_LEFT, decide(0.5));
+    }
+}
+
 static void no_side_and_no_climb_is_a_reason_to_hold(void) {
     put(0, 100.0f, 2.0f);
     put(1, 100.0f, -20.0f);
@@ -235,6 +246,60 @@ static void an_obstacle_that_is_given_up_ends_its_order(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.5));
 }
 
+/* After an order that has ended nothing of it is reported: no target, no clearance. */
+static void an_order_that_has_ended_reports_nothing(void) {
+    put(0, 100.0f, 0.5f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    flight.slot[0].hazard.violation = 0.0f;
+    own.ned_m[0] = 130.0f;
+    own.ned_m[1] = -20.0f;
+    while (decide(0.0) != GOE_FLIGHT_NONE) {
+        TEST_ASSERT_TRUE(own.time_us < 10000000u);
+    }
+    TEST_ASSERT_EQUAL(-1, flight.reaction.slot);
+    CHECK_SAME(0.0f, flight.reaction.clear_m);
+    for (int i = 0; i < 3; i++) {
+        CHECK_SAME(0.0f, flight.reaction.target_ned_m[i]);
+    }
+}
+
+/* What comes within 10 s of the end of an order is the same encounter, with its side and its changes of it; later neither counts. */
+static void the_side_of_an_order_is_remembered_for_ten_seconds(void) {
+    for (int later = 0; later < 2; later++) {
+        goe_flight_reaction_clear(&flight.reaction);
+        flight.reaction.side = 1;
+        flight.reaction.changes = 2u;
+        flight.reaction.falling_us = 5000000u;
+        own.time_us = later ? 15100000u : 14900000u;
+        (void)goe_flight_reaction_decide(&flight, -1, &own);
+        TEST_ASSERT_EQUAL(later ? 0 : 1, flight.reaction.side);
+        TEST_ASSERT_EQUAL(later ? 0 : 2, flight.reaction.changes);
+    }
+}
+
+/* Memory that flipped: an action that there is not, or an order about a slot that there is not, is no order. */
+static void an_order_about_no_slot_is_none(void) {
+    static const int beyond[] = {-2, GOE_FLIGHT_SLOTS, GOE_FLIGHT_SLOTS + 1, 127};
+    for (int kind = 0; kind < 4; kind++) {
+        for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
+            goe_flight_reaction_t *r = &flight.reaction;
+            goe_flight_reaction_clear(r);
+            put(0, 300.0f, 0.0f);
+            flight.slot[0].hazard.violation = 0.0f;
+            r->action = kind == 0 ? (uint8_t)(GOE_FLIGHT_HOLD + 1 + (int)i) : GOE_FLIGHT_LEFT;
+            r->side = kind == 1 ? (int8_t)beyond[i] : -1;
+            r->slot = kind == 2 ? (int8_t)beyond[i] : 0;
+            r->edge = kind == 3 ? (int8_t)beyond[i] : 0;
+            r->course_ne[0] = r->along_ne[0] = 1.0f;
+            (void)goe_flight_reaction_decide(&flight, -1, &own);
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, r->action);
+            TEST_ASSERT_EQUAL(-1, r->slot);
+            TEST_ASSERT_EQUAL(-1, r->edge);
+            TEST_ASSERT_EQUAL(0, r->side);
+        }
+    }
+}
+
 static void the_point_of_a_side_follows_the_estimate(void) {
     put(0, 100.0f, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
@@ -271,6 +336,7 @@ int main(void) {
     RUN_TEST(a_range_that_is_hardly_known_orders_earlier_but_not_at_once);
     RUN_TEST(the_nearer_side_is_taken);
     RUN_TEST(a_side_that_is_not_clear_is_not_taken);
+    RUN_TEST(what_stands_on_the_line_behind_a_target_blocks_it);
     RUN_TEST(no_side_and_no_climb_is_a_reason_to_hold);
     RUN_TEST(a_wide_obstacle_is_a_reason_to_hold);
     RUN_TEST(a_low_top_is_climbed_over);
@@ -285,6 +351,9 @@ int main(void) {
     RUN_TEST(the_order_stands_until_the_obstacle_lies_behind);
     RUN_TEST(an_order_that_proves_wrong_is_taken_back);
     RUN_TEST(an_obstacle_that_is_given_up_ends_its_order);
+    RUN_TEST(an_order_that_has_ended_reports_nothing);
+    RUN_TEST(the_side_of_an_order_is_remembered_for_ten_seconds);
+    RUN_TEST(an_order_about_no_slot_is_none);
     RUN_TEST(the_point_of_a_side_follows_the_estimate);
     RUN_TEST(another_obstacle_replaces_the_order_but_not_the_line);
     RUN_TEST(every_action_has_a_name);

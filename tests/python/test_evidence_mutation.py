@@ -1,4 +1,4 @@
-"""Single-token changes of C, which of them are chosen, how they are counted; and the list of those that survive."""
+"""Small changes of C, which of them are chosen, how they are counted; and the lists of those that survive."""
 
 from __future__ import annotations
 
@@ -9,9 +9,19 @@ from pathlib import Path
 
 import pytest
 from goe_tools.evidence import mutants as made
-from goe_tools.evidence import mutation, survivors
+from goe_tools.evidence import mutation, mutation_counts, mutation_trees, survivors
 from goe_tools.evidence.mutants import Mutant
-from goe_tools.evidence.mutation import BY_HASH, EQUIVALENT, KILLED, NO_CODE, SURVIVED, Kept, Outcome
+from goe_tools.evidence.mutation import Kept
+from goe_tools.evidence.mutation_counts import (
+    BY_HASH,
+    EQUIVALENT,
+    KILLED,
+    KILLED_BY_PROGRAM,
+    NO_CODE,
+    SAME_CODE,
+    SURVIVED,
+    Outcome,
+)
 from goe_tools.logs.obslog import LogError
 
 needs_clang = pytest.mark.skipif(shutil.which(made.CLANG) is None, reason=f"no {made.CLANG}")
@@ -30,6 +40,26 @@ float sum(const float *x, int n, float a, float b) {
     }
     all = all / 7.0f;
     return larger(a, b) - all;
+}
+enum side { LEFT, RIGHT, AHEAD };
+typedef int flag;
+static flag is_any(void) { return 1; }
+static void empty(float *x) { *x = 0.0f; }
+int side_of(float *x) {
+    (void)larger(*x, 1.0f);
+    while (is_any()) {
+        if (*x > LIMIT) {
+            continue;
+        }
+        if (is_any()) {
+            break;
+        }
+        if (*x < 0.0f) {
+            return LEFT;
+        }
+    }
+    empty(x);
+    return RIGHT;
 }
 """
 
@@ -68,6 +98,18 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> list[Mutant]:
         ("sum", "7.0f", "7.1f"),
         ("sum", "7.0f", "(-7.0f)"),
         ("sum", "all = 0.0f", "all = 1.0f"),
+        ("sum", "larger(x[i], -b)", "(x[i])"),
+        ("sum", "return larger(a, b)", "return (a)"),
+        ("sum", "LIMIT", "(2 * LIMIT)"),
+        ("sum", "LIMIT", "(LIMIT + 1)"),
+        ("side_of", "(void)larger(*x, 1.0f);", ";"),
+        ("side_of", "empty(x);", ";"),
+        ("side_of", "is_any()", "0"),
+        ("side_of", "continue;", ";"),
+        ("side_of", "break;", ";"),
+        ("side_of", "return LEFT;", ";"),
+        ("side_of", "return LEFT;", "return RIGHT;"),
+        ("side_of", "return RIGHT;", "return AHEAD;"),
         ("", "{0.5f, 2.0e-3f}", "{1.0f, 2.0e-3f}"),
         ("", "{0.5f, 2.0e-3f}", "{0.5f, 2.1e-3f}"),
     ],
@@ -76,6 +118,24 @@ def test_a_token_is_changed(found: list[Mutant], function: str, source: str, mut
     """Each kind of change is made, in its place, and in the text of its line."""
     there = [m for m in found if m.function == function and source in m.source]
     assert any(m.source.replace(source, mutation, 1) == m.mutation for m in there)
+
+
+@needs_clang
+def test_no_function_loses_its_value(found: list[Mutant]) -> None:
+    """The last return stays; and a call without a value is removed, not replaced."""
+    assert not any(m.source == "return RIGHT;" and m.mutation == ";" for m in found)
+    assert {m.mutation for m in found if m.source == "empty(x);"} == {";"}
+    assert "0" not in {m.text for m in found if m.kind == "dropped call" and "larger" in m.source}
+
+
+@needs_clang
+def test_each_change_has_its_family(found: list[Mutant]) -> None:
+    families = {(m.source, m.mutation): m.family for m in found}
+    assert families["return RIGHT;", "return AHEAD;"] == "enumerator or flag inverted"
+    assert families["continue;", ";"] == "return, continue or break removed"
+    assert families["all = all / 7.0f;", ";"] == "statement removed"
+    assert families["all = all / 7.0f;", "all = all * 7.0f;"] == "arithmetic and logic"
+    assert families["all = all / 7.0f;", "all = all / 14.0f;"] == "constant"
 
 
 @needs_clang
@@ -115,6 +175,17 @@ def test_the_chosen_are_spread_and_always_the_same() -> None:
     assert {mutant.text for mutant in groups[1] if mutant.begin == 37} == {"-", "--"}
 
 
+def test_every_family_gets_as_many_as_it_has() -> None:
+    """Up to its share; the same ones for the same seed."""
+    kinds = ["removed statement"] * 50 + ["operator <"] * 3 + ["operator +"] * 50
+    every = [Mutant("box.c", "f", i, i + 1, "-", kind, f"a{i};", f"b{i};") for i, kind in enumerate(kinds)]
+    chosen = mutation_trees.sampled(every, 23, seed=1)
+    assert [sum(m.family == family for m in chosen) for family in ("statement removed", "comparison")] == [10, 3]
+    assert len(chosen) == 23
+    assert chosen == mutation_trees.sampled(every, 23, seed=1)
+    assert chosen != mutation_trees.sampled(every, 23, seed=2)
+
+
 def outcomes() -> list[Outcome]:
     ends = [KILLED] * 17 + [BY_HASH] * 2 + [SURVIVED] + [EQUIVALENT] * 3 + [NO_CODE]
     return [Outcome(some_mutant(i), end, "box" if end == KILLED else "") for i, end in enumerate(ends)]
@@ -123,8 +194,8 @@ def outcomes() -> list[Outcome]:
 def test_what_changes_nothing_counts_as_nothing() -> None:
     """19 of 20 that change something are killed, 17 without the hash; equivalent ones and those that do not compile are
     in neither."""
-    told = {row.what: row for row in mutation.rows(outcomes(), {})}
-    assert told["single-token mutants of lib/ that compile"].figure == "23"
+    told = {row.what: row for row in mutation_counts.rows(outcomes(), {})}
+    assert told["mutants of lib/ that compile"].figure == "23"
     assert told["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
     assert told["... of these, killed by the unit tests"].met is True
     assert told["... ... without the hash over the refined method's bits"].figure == "85.0 % (17 of 20)"
@@ -132,12 +203,32 @@ def test_what_changes_nothing_counts_as_nothing() -> None:
     assert told["mutants that survive: with a written reason, and without"].met is False
 
 
+def test_what_the_probe_does_not_see_is_counted() -> None:
+    told = {row.what: row for row in mutation_counts.rows(outcomes(), {})}
+    assert told["mutants that neither a unit test nor the probe notices"].figure == "3"
+    assert told["killed, where those count as alive"].figure == "82.6 % (19 of 23)"
+
+
+def test_in_a_layer_all_that_changes_the_object_code_counts() -> None:
+    """18 of 20 killed: one survivor of three has its reason."""
+    ends = [KILLED] * 10 + [KILLED_BY_PROGRAM] * 8 + [SURVIVED] * 3 + [SAME_CODE] * 2 + [NO_CODE]
+    found = [Outcome(some_mutant(i), end) for i, end in enumerate(ends)]
+    reasons = {found[18].mutant.key: "twice the same"}
+    made, ended, killed = mutation_counts.rows_of_layer("port/flight", found, reasons)
+    assert made.figure == "24; 1; 2"
+    assert ended.figure == "10; 8; 1; 2"
+    assert killed.figure == "90.0 % (18 of 20)"
+    assert killed.met is False
+    table = mutation_counts.by_family(found, reasons)
+    assert table[-1].split() == ["together", "24", "1", "2", "0", "10", "8", "1", "2"]
+
+
 def test_a_survivor_with_a_reason_is_explained_but_not_killed() -> None:
     reasons = {outcomes()[19].mutant.key: "twice the same"}
-    told = {row.what: row for row in mutation.rows(outcomes(), reasons)}
+    told = {row.what: row for row in mutation_counts.rows(outcomes(), reasons)}
     assert told["mutants that survive: with a written reason, and without"].figure == "1 and 0"
     assert told["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
-    assert "reason: twice the same" in mutation.report(outcomes(), reasons, 1.0)
+    assert "reason: twice the same" in mutation_counts.report(outcomes(), reasons, 1.0)
 
 
 def test_what_was_found_holds_as_long_as_its_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -165,6 +256,13 @@ def test_what_was_found_holds_as_long_as_its_test(tmp_path: Path, monkeypatch: p
 def test_every_listed_survivor_is_a_mutant_of_the_present_sources() -> None:
     """A line that is not there any more, or is another, is no reason."""
     assert survivors.strangers(survivors.read()) == []
+
+
+@needs_clang
+def test_every_listed_survivor_of_the_flight_layer_is_a_mutant() -> None:
+    """Those of the companion need its build: the evidence asks for them."""
+    layer = mutation_trees.FLIGHT
+    assert survivors.strangers(survivors.read(layer.reasons), layer.folder, layer.flags) == []
 
 
 @needs_clang

@@ -1,7 +1,7 @@
-"""Single-token changes of the library's sources, found in clang's syntax tree.
+"""Small changes of C sources, found in clang's syntax tree.
 
 What the preprocessor made, declarations, static asserts and comments are left alone: a change stands in a function's
-body or in a table of numbers, in text that is written there.
+body or in a table of numbers, in text that is written there. A named constant is changed where it is used.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import json
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -49,9 +49,22 @@ OPERATORS: dict[str, tuple[str, ...]] = {
     "&=": ("|=",),
 }
 LARGER = ("goe_larger", "goe_larger_bits")
-ORDER_IS_FREE = (*LARGER, "goe_xz_dot")
+ORDER_IS_FREE = (*LARGER, "goe_xz_dot", "goe_flight_larger", "goe_flight_smaller", "dot")
 UNREAD = ("StaticAssertDecl", "UnaryExprOrTypeTraitExpr", "OffsetOfExpr", "TypedefDecl", "RecordDecl", "EnumDecl")
-REMOVED = ("BinaryOperator", "CompoundAssignOperator", "CallExpr", "UnaryOperator")
+REMOVED = ("BinaryOperator", "CompoundAssignOperator", "CallExpr", "UnaryOperator", "CStyleCastExpr")
+JUMPS = ("ReturnStmt", "ContinueStmt", "BreakStmt")
+NUMBERS = re.compile(r"_Bool|float|double|(unsigned |signed )?(char|short|int|long|long long)|unsigned")
+TOP_BEGIN, TOP_END = "    {\n", ("    },\n", "    }\n")  # of a declaration of the file, in clang's JSON
+FAMILIES = {  # by the first word of a kind; operators that do not compare: "arithmetic and logic"
+    "removed statement": "statement removed",
+    "removed jump": "return, continue or break removed",
+    "swapped arguments": "arguments swapped",
+    "dropped call": "call dropped",
+    "negated condition": "condition negated",
+    "other enumerator": "enumerator or flag inverted",
+    "inverted flag": "enumerator or flag inverted",
+    **{f"operator {sign}": "comparison" for sign in ("<", "<=", ">", ">=", "==", "!=")},
+}
 
 
 @dataclass(frozen=True)
@@ -72,6 +85,10 @@ class Mutant:
         """What it is known by as long as nobody touches its lines."""
         return self.file, self.function, self.source, self.mutation
 
+    @property
+    def family(self) -> str:
+        return "constant" if self.kind.startswith("constant") else FAMILIES.get(self.kind, "arithmetic and logic")
+
 
 def sources(folder: Path = LIBRARY) -> list[str]:
     """Files that hold functions, in a fixed order."""
@@ -79,21 +96,60 @@ def sources(folder: Path = LIBRARY) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in [*folder.rglob("*.c"), *headers])
 
 
-def syntax_tree(file: str, folder: Path = LIBRARY) -> Node:
-    """clang's, of one source or header of the library."""
+def declarations(file: str, folder: Path = LIBRARY, flags: Sequence[str] = ()) -> tuple[list[Node], dict[str, str]]:
+    """clang's syntax tree of one source or header: its own declarations; and for each enumerator another one of its
+    enumeration. Headers of others, of which the tree is 200 MB in some files, are not decoded."""
     if shutil.which(CLANG) is None:
         raise NotHereError(CLANG)
-    command = [CLANG, *FLAGS[:1], f"-I{folder}", *FLAGS[2:], "-w", "-fsyntax-only", "-Xclang", "-ast-dump=json"]
-    told = subprocess.run([*command, "-x", "c", str(folder / file)], capture_output=True, text=True, check=True).stdout
-    tree: Node = json.loads(told)
-    return tree
+    command = [CLANG, *FLAGS[:1], f"-I{folder}", *(flags or FLAGS[2:]), "-w", "-fsyntax-only"]
+    command += ["-Xclang", "-ast-dump=json", "-x", "c", str(folder / file)]
+    found: list[Node] = []
+    others: dict[str, str] = {}
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as clang:
+        assert clang.stdout
+        for text in top_level(clang.stdout):
+            if "EnumConstantDecl" in text or not is_of_another_file(text):
+                node: Node = json.loads(text)
+                others.update(neighbours(node))
+                found.append(node)
+    if clang.returncode:
+        raise RuntimeError(f"{CLANG} refuses {folder / file}")
+    return found, others
 
 
-def mutants(file: str, folder: Path = LIBRARY) -> list[Mutant]:
+def top_level(lines: Iterable[str]) -> Iterator[str]:
+    """The text of each declaration of a translation unit."""
+    text: list[str] = []
+    for line in lines:
+        if line == TOP_BEGIN:
+            text = [line]
+        elif line in TOP_END and text:
+            yield "".join([*text, "    }"])
+            text = []
+        elif text:
+            text.append(line)
+
+
+def is_of_another_file(text: str) -> bool:
+    """By the range, which stands before what the declaration is made of; where a macro begins it, it is decoded."""
+    place = text.partition('"kind"')[2].partition('"inner"')[0]
+    return "includedFrom" in place and "expansionLoc" not in place
+
+
+def neighbours(node: Node) -> dict[str, str]:
+    """Of an enumeration: of each name the next one."""
+    if node.get("kind") != "EnumDecl":
+        return {}
+    names = [part["name"] for part in node.get("inner", []) if part.get("kind") == "EnumConstantDecl"]
+    return dict(zip(names, [*names[1:], names[0]])) if len(names) > 1 else {}
+
+
+def mutants(file: str, folder: Path = LIBRARY, flags: Sequence[str] = ()) -> list[Mutant]:
     """All of a file, by place, then by kind."""
     text = (folder / file).read_text(encoding="ascii")
-    found = Finder(file, text)
-    for node in syntax_tree(file, folder).get("inner", []):
+    nodes, others = declarations(file, folder, flags)
+    found = Finder(file, text, others)
+    for node in nodes:
         found.top(node)
     unique = {(m.begin, m.end, m.text): m for m in found.mutants}
     return sorted(unique.values(), key=lambda m: (m.begin, m.end, m.kind, m.text))
@@ -106,9 +162,10 @@ def apply(mutant: Mutant, text: str) -> str:
 class Finder:
     """Walks the tree of one file."""
 
-    def __init__(self, file: str, text: str) -> None:
+    def __init__(self, file: str, text: str, other_enumerators: dict[str, str]) -> None:
         self.file = file
         self.text = text
+        self.other_enumerators = other_enumerators
         self.function = ""
         self.mutants: list[Mutant] = []
 
@@ -119,7 +176,7 @@ class Finder:
             self.function = node["name"]
             for part in node.get("inner", []):
                 if part.get("kind") == "CompoundStmt":
-                    self.walk(part)
+                    self.walk(part, node)
         elif node.get("kind") == "VarDecl":
             self.function = ""
             self.walk(node)
@@ -175,6 +232,9 @@ class Finder:
             made(node, parent)
         if kind == "CompoundStmt":
             self.removals(node)
+            self.jumps(node, ends_function=(parent or {}).get("kind") == "FunctionDecl")
+        elif kind == "CaseStmt":
+            self.jumps(node, ends_function=False)
         for condition in conditions(node):
             if self.is_written(condition):
                 self.negate(condition)
@@ -192,6 +252,14 @@ class Finder:
             begin, end = self.span(statement)
             if self.text[end : end + 1] == ";":
                 self.add("removed statement", begin, end, "")
+
+    def jumps(self, block: Node, ends_function: bool) -> None:
+        """Removed; not the one that ends a function, which has no value then."""
+        statements = block.get("inner", [])
+        for statement in statements[:-1] if ends_function else statements:
+            if statement.get("kind") in JUMPS and self.is_written(statement):
+                begin, end = self.span(statement)
+                self.add("removed jump", begin, end, "")
 
     def of_BinaryOperator(self, node: Node, _parent: Node | None) -> None:
         left, right = node["inner"]
@@ -228,10 +296,22 @@ class Finder:
         self.constants(node)
 
     def constants(self, node: Node) -> None:
+        begin, end = self.span(node)
+        text = self.text[begin:end]
         if self.is_written(node):
+            for kind, other in other_numbers(text):
+                self.add(kind, begin, end, other)
+        elif text in ("true", "false"):
+            self.add("inverted flag", begin, end, "false" if text == "true" else "true")
+        elif re.fullmatch(r"[A-Z][A-Z0-9_]*", text):
+            self.add("constant x 2", begin, end, f"(2 * {text})")
+            self.add("constant + 1", begin, end, f"({text} + 1)")
+
+    def of_DeclRefExpr(self, node: Node, _parent: Node | None) -> None:
+        name = node.get("referencedDecl", {}).get("name", "")
+        if name in self.other_enumerators and self.is_written(node):
             begin, end = self.span(node)
-            for kind, text in other_numbers(self.text[begin:end]):
-                self.add(kind, begin, end, text)
+            self.add("other enumerator", begin, end, self.other_enumerators[name])
 
     def of_ArraySubscriptExpr(self, node: Node, _parent: Node | None) -> None:
         index = node["inner"][1]
@@ -242,7 +322,7 @@ class Finder:
         self.add("index + 1", begin, end, f"{written} + 1")
         self.add("index - 1", begin, end, f"{written} - 1")
 
-    def of_CallExpr(self, node: Node, _parent: Node | None) -> None:
+    def of_CallExpr(self, node: Node, parent: Node | None) -> None:
         callee, *arguments = node["inner"]
         if not self.is_written(node) or not all(self.is_here(argument) for argument in arguments):
             return
@@ -252,6 +332,8 @@ class Finder:
         if name in LARGER:
             begin, end = self.span(node)
             self.add("smaller for larger", begin, end, "({0} < {1} ? {0} : {1})".format(*texts))
+        if is_value_used(parent):
+            self.drop_call(node, arguments, texts)
         if name in ORDER_IS_FREE:
             return
         for i in range(len(arguments) - 1):
@@ -259,6 +341,14 @@ class Finder:
                 (begin, middle), (after, end) = spans[i], spans[i + 1]
                 swapped = texts[i + 1] + self.text[middle:after] + texts[i]
                 self.add("swapped arguments", begin, end, swapped)
+
+    def drop_call(self, node: Node, arguments: list[Node], texts: list[str]) -> None:
+        """Its first argument for its value, or 0."""
+        begin, end = self.span(node)
+        if arguments and type_of(arguments[0]) == type_of(node):
+            self.add("dropped call", begin, end, f"({texts[0]})")
+        elif NUMBERS.fullmatch(type_of(node)):
+            self.add("dropped call", begin, end, "false" if type_of(node) == "_Bool" else "0")
 
 
 def at(end: Node) -> Node:
@@ -274,6 +364,12 @@ def one_line(text: str) -> str:
 def type_of(node: Node) -> str:
     told = node.get("type", {})
     return str(told.get("desugaredQualType", told.get("qualType", id(node))))
+
+
+def is_value_used(parent: Node | None) -> bool:
+    """Of a call within the parent."""
+    kind = (parent or {}).get("kind")
+    return kind != "CompoundStmt" and not (kind == "CStyleCastExpr" and type_of(parent or {}) == "void")
 
 
 def callee_name(node: Node) -> str:

@@ -1,9 +1,9 @@
-"""Whether the unit tests notice a change of a single token of lib/: the part ``mutation`` of the evidence.
+"""Whether the tests notice small changes of lib/, port/flight and port/companion: the part ``mutation``.
 
-A mutant counts if it changes something that can be noticed: a unit test fails, or the hash over all outputs of the
-probe (tests/mutation/probe.c) is another. It is killed if a unit test of tests/c fails, ends by a signal, or takes
+A mutant of lib/ counts if it changes something that can be noticed: a unit test fails, or the hash over all outputs of
+the probe (tests/mutation/probe.c) is another. It is killed if a unit test of tests/c fails, ends by a signal, or takes
 several times as long. What each mutant came to is kept in .cache/evidence, so that a long run may be ended and begun
-again.
+again. For the other two folders see mutation_trees.
 """
 
 from __future__ import annotations
@@ -15,42 +15,35 @@ import os
 import re
 import shutil
 import time
-from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from ..places import ROOT
-from . import survivors
+from . import mutation_trees, survivors
 from .mutants import LIBRARY, Mutant, mutants, sources
 from .mutation_bench import BITS, PROBE, Bench, hash_of, library_hash, test_hash, unit_tests
+from .mutation_counts import (
+    BY_HASH,
+    EQUIVALENT,
+    KILLED,
+    NO_CODE,
+    SAME_CODE,
+    SURVIVED,
+    Outcome,
+    report,
+    rows,
+    rows_of_layer,
+)
 from .parts import Amount
 from .record import Result, Row
 
 LONG = 500
+LONG_OF_LAYER = 200
 QUICK = 15
+SEED = 1  # of the mutants of port/flight and port/companion
 TRIES = 6  # neighbours that are tried where a compiler refuses a mutant
-GOAL = 0.95
 CACHE = ROOT / ".cache" / "evidence" / "mutation"
-NO_CODE, SAME_CODE, EQUIVALENT, KILLED, BY_HASH, SURVIVED = (
-    "no code",
-    "same code",
-    "no output bit changed",
-    "killed",
-    "killed by the hash alone",
-    "survived",
-)
-COUNTED = (KILLED, BY_HASH, SURVIVED)
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What a mutant came to. ``test``: the unit test that killed it."""
-
-    mutant: Mutant
-    came_to: str
-    test: str = ""
-    why: str = ""
 
 
 # ------------------------------------------------------------------------------------------------------------- choosing
@@ -195,67 +188,34 @@ def try_all(groups: list[list[Mutant]], jobs: int) -> list[Outcome]:
     return outcomes
 
 
-# -------------------------------------------------------------------------------------------------------------- telling
+def of_layer(layer: mutation_trees.Layer, amount: Amount) -> Result:
+    begun = time.monotonic()
+    trees = mutation_trees.prepared(layer, amount.jobs)
+    every = layer.mutants()
+    count = LONG_OF_LAYER if amount.long else QUICK
+    outcomes = mutation_trees.try_all(trees, mutation_trees.sampled(every, count, SEED))
+    entries = survivors.read(layer.reasons)
+    reasons = {entry.key: entry.reason for entry in entries}
+    known = {mutant.key for mutant in every}
+    made = rows_of_layer(layer.name, outcomes, reasons)
+    made.append(row_of_strangers(layer.reasons, [entry for entry in entries if entry.key not in known]))
+    return Result(made, report(outcomes, reasons, time.monotonic() - begun))
 
 
-def percent(part: int, whole: int) -> str:
-    return f"{100.0 * part / whole:.1f} % ({part} of {whole})" if whole else "none"
+def row_of_strangers(listed: Path, wrong: Sequence[survivors.Survivor]) -> Row:
+    told = ", ".join(f"line {entry.line}" for entry in wrong) or "none"
+    return Row(f"entries of {listed.relative_to(ROOT)} that fit no mutant", told, "none", not wrong)
 
 
-def rows(outcomes: Iterable[Outcome], reasons: dict[tuple[str, str, str, str], str]) -> list[Row]:
-    outcomes = list(outcomes)
-    count = Counter(outcome.came_to for outcome in outcomes)
-    changed = sum(count[name] for name in COUNTED)
-    killed = count[KILLED] + count[BY_HASH]
-    alive = [outcome for outcome in outcomes if outcome.came_to == SURVIVED]
-    unexplained = sum(outcome.mutant.key not in reasons for outcome in alive)
-    tried = len(outcomes) - count[NO_CODE]
-    return [
-        Row("single-token mutants of lib/ that compile", str(tried), "", None),
-        Row("... that change a unit test's result or an output bit of the probe", str(changed), "", None),
-        Row(
-            "... of these, killed by the unit tests",
-            percent(killed, changed),
-            f">= {100 * GOAL:.0f} %",
-            killed >= GOAL * changed,
-        ),
-        Row("... ... without the hash over the refined method's bits", percent(count[KILLED], changed), "", None),
-        Row("... ... by that hash alone", str(count[BY_HASH]), "", None),
-        Row(
-            "mutants that survive: with a written reason, and without",
-            f"{len(alive) - unexplained} and {unexplained}",
-            "none without",
-            unexplained == 0,
-        ),
-    ]
-
-
-def report(outcomes: Iterable[Outcome], reasons: dict[tuple[str, str, str, str], str], seconds: float) -> str:
-    """Survivors first, then what only the hash notices, then all that killed."""
-    outcomes = sorted(outcomes, key=lambda o: (o.mutant.file, o.mutant.begin, o.mutant.text))
-    lines = [f"{len(outcomes)} mutants in {seconds:.0f} s"]
-    for title, name in (("Survivors", SURVIVED), ("Killed by the hash alone", BY_HASH), ("Equivalent", EQUIVALENT)):
-        lines += ["", title, "-" * len(title)]
-        for outcome in outcomes:
-            if outcome.came_to == name:
-                m = outcome.mutant
-                lines += [f"{m.file} {m.function}: {m.kind} {outcome.why}", f"    {m.source}", f"    {m.mutation}"]
-                if m.key in reasons:
-                    lines.append(f"    reason: {reasons[m.key]}")
-    killers = Counter(outcome.test for outcome in outcomes if outcome.came_to == KILLED)
-    lines += ["", "Killed, by unit test"] + [f"{count:5d} {name}" for name, count in killers.most_common()]
-    kinds = Counter((outcome.mutant.kind, outcome.came_to) for outcome in outcomes)
-    lines += ["", "By kind"] + [f"{count:5d} {kind}: {came_to}" for (kind, came_to), count in sorted(kinds.items())]
-    return "\n".join(lines)
+def of_library(amount: Amount) -> Result:
+    begun = time.monotonic()
+    entries = survivors.read()
+    reasons = {entry.key: entry.reason for entry in entries}
+    outcomes = try_all(chosen(LONG if amount.long else QUICK), amount.jobs)
+    made = [*rows(outcomes, reasons), row_of_strangers(survivors.LIST, survivors.strangers(entries))]
+    return Result(made, report(outcomes, reasons, time.monotonic() - begun))
 
 
 def run(amount: Amount) -> Result:
-    begun = time.monotonic()
-    entries = survivors.read()
-    wrong = survivors.strangers(entries)
-    reasons = {entry.key: entry.reason for entry in entries}
-    outcomes = try_all(chosen(LONG if amount.long else QUICK), amount.jobs)
-    made = rows(outcomes, reasons)
-    told = ", ".join(f"line {entry.line}" for entry in wrong) or "none"
-    made.append(Row("entries of tests/mutation/survivors.csv that fit no mutant", told, "none", not wrong))
-    return Result(made, report(outcomes, reasons, time.monotonic() - begun))
+    parts = [of_library(amount), *(of_layer(layer, amount) for layer in mutation_trees.LAYERS)]
+    return Result([row for part in parts for row in part.rows], "\n\n\n".join(part.report for part in parts))

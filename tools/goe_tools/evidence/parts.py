@@ -20,7 +20,7 @@ MODULES: dict[str, str] = {  # name: what it asks; the module of that name has r
     "reproducible": "whether two builds of the same sources give the same bits",
     "sbom": "the bill of materials: what the tests and tools install, and that the library holds nothing but itself",
     "requirements": "has every promise its code and its tests, and every test its promise",
-    "mutation": "which changes of a single token of lib/ the unit tests notice",
+    "mutation": "which small changes of lib/, port/flight and port/companion the tests notice",
     "lies": "confident errors, and warnings that vanish, in random flights that the manual allows",
     "proof": "is no call undefined, whatever bits it is given",
     "misra": "is each violation of MISRA C:2012 one that has its reason",

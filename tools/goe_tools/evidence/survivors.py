@@ -1,4 +1,5 @@
-"""Mutants that no unit test kills, and the reason why none should: tests/mutation/survivors.csv.
+"""Mutants that no test kills, and the reason why none should: survivors.csv, flight.csv and companion.csv in
+tests/mutation, of lib/, port/flight and port/companion.
 
 Columns: file, function, source, mutation, reason. ``source`` and ``mutation`` are the touched lines before and after,
 as the report of the part ``mutation`` writes them. An entry that fits no mutant of the present sources is wrong.
@@ -7,7 +8,7 @@ as the report of the part ``mutation`` writes them. An entry that fits no mutant
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,11 +40,15 @@ def read(path: Path = LIST) -> list[Survivor]:
     return found
 
 
-def strangers(entries: Iterable[Survivor], folder: Path = LIBRARY) -> list[Survivor]:
+def reasons_of(path: Path) -> dict[tuple[str, str, str, str], str]:
+    return {entry.key: entry.reason for entry in read(path)}
+
+
+def strangers(entries: Iterable[Survivor], folder: Path = LIBRARY, flags: Sequence[str] = ()) -> list[Survivor]:
     """Entries that fit no mutant."""
     entries = list(entries)
     known: set[tuple[str, str, str, str]] = set()
     for file in sorted({entry.key[0] for entry in entries}):
         if (folder / file).exists():
-            known.update(mutant.key for mutant in mutants(file, folder))
+            known.update(mutant.key for mutant in mutants(file, folder, flags))
     return [entry for entry in entries if entry.key not in known]
