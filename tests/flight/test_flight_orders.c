@@ -176,6 +176,18 @@ static void an_order_turns_to_the_next_one_on_its_line(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.0));
 }
 
+/* What an aircraft sinks by in the turn is not the height that another way of the same order keeps. */
+static void an_order_that_finds_another_way_does_not_sink_with_the_aircraft(void) {
+    put(0, 130.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    CHECK_CLOSE(0.01, -20.0, flight.reaction.target_ned_m[2]);
+    own.ned_m[2] = -15.0f;
+    put(1, 150.0f, -20.0f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    TEST_ASSERT_TRUE(flight.reaction.target_ned_m[1] < -37.0f);
+    CHECK_CLOSE(0.01, -20.0, flight.reaction.target_ned_m[2]);
+}
+
 /* The way back to the line leads past a mast beside the line, which the line itself passes. */
 static void an_order_stands_while_the_way_back_is_not_clear(void) {
     put(0, 100.0f, 0.5f, 50.0f);
@@ -375,6 +387,7 @@ int main(void) {
     RUN_TEST(a_standing_order_evades_to_its_own_side_first);
     RUN_TEST(an_order_stands_while_another_one_stands_on_its_line);
     RUN_TEST(an_order_turns_to_the_next_one_on_its_line);
+    RUN_TEST(an_order_that_finds_another_way_does_not_sink_with_the_aircraft);
     RUN_TEST(an_order_stands_while_the_way_back_is_not_clear);
     RUN_TEST(no_order_is_given_too_low);
     RUN_TEST(a_height_below_the_ground_withholds_no_order);
