@@ -278,7 +278,7 @@ static goe_flight_status_t check_position(const goe_flight_position_t *p) {
             within = within && goe_flight_within(p->height_m[i], HEIGHT_MAX_M);
         }
     }
-    if (p->origin_known) {
+    if (goe_flight_is_set(&p->origin_known)) {
         within = within && p->origin_lat_e7 >= -LATITUDE_MAX_E7 && p->origin_lat_e7 <= LATITUDE_MAX_E7 &&
                  p->origin_lon_e7 >= -LONGITUDE_MAX_E7 && p->origin_lon_e7 <= LONGITUDE_MAX_E7;
     }
@@ -289,7 +289,8 @@ static goe_flight_status_t check_position(const goe_flight_position_t *p) {
 static bool has_bad_delta(const goe_flight_t *flight, const goe_flight_position_t *p) {
     const bool changed = flight->marks.position_known && (flight->marks.horizontal != p->reset_horizontal ||
                                                           flight->marks.vertical != p->reset_vertical);
-    return changed && p->reset_delta_known && !goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M);
+    return changed && goe_flight_is_set(&p->reset_delta_known) &&
+           !goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M);
 }
 
 /* How far the position lies from where the velocity would have led it: an unknown jump, as near as that can be known. What is kept of
@@ -360,9 +361,9 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
     flight->history.stale = 0;
     memcpy(flight->velocity_ned_m_s, sample->velocity_ned_m_s, sizeof flight->velocity_ned_m_s);
     note_ground(flight, sample);
-    flight->origin_known = sample->origin_known;
-    flight->origin_lat_e7 = sample->origin_known ? sample->origin_lat_e7 : 0;
-    flight->origin_lon_e7 = sample->origin_known ? sample->origin_lon_e7 : 0;
+    flight->origin_known = goe_flight_is_set(&sample->origin_known);
+    flight->origin_lat_e7 = flight->origin_known ? sample->origin_lat_e7 : 0;
+    flight->origin_lon_e7 = flight->origin_known ? sample->origin_lon_e7 : 0;
     return GOE_FLIGHT_OK;
 }
 
@@ -382,6 +383,13 @@ static float height_sd_m(const goe_flight_t *flight) {
     return flight->ground_source == GOE_FLIGHT_RANGE_FINDER ? settings->range_finder_sd_m : terrain_sd_m;
 }
 
+/* Only flipped bits make it otherwise. */
+static bool is_finite_view(const goe_flight_slot_view_t *view) {
+    return goe_flight_all_finite(view->pose.ned_m, 3) && goe_flight_all_finite(view->pose.q, 4) &&
+           goe_flight_finite(view->attitude_sd_deg) && goe_flight_finite(view->ground_down_m) &&
+           goe_flight_finite(view->height_sd_m);
+}
+
 static goe_flight_status_t look_back(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us,
                                      goe_flight_slot_view_t *view) {
     memset(view, 0, sizeof *view);
@@ -392,6 +400,10 @@ static goe_flight_status_t look_back(const goe_flight_t *flight, uint32_t time_u
         view->attitude_sd_deg = attitude_sd_deg(flight, &view->pose, time_sd_us);
         view->ground_down_m = flight->ground_down_m;
         view->height_sd_m = height_sd_m(flight);
+        if (!is_finite_view(view)) {
+            memset(view, 0, sizeof *view);
+            return GOE_FLIGHT_NO_POSE;
+        }
     }
     return status;
 }
@@ -421,6 +433,10 @@ goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us
     memcpy(pose->position_ned_m, view.pose.ned_m, sizeof pose->position_ned_m);
     memcpy(pose->attitude, view.pose.q, sizeof pose->attitude);
     pose->height_m = view.ground_down_m - view.pose.ned_m[2] - arm[2];
+    if (!goe_flight_finite(pose->height_m)) { /* a flipped bit */
+        memset(pose, 0, sizeof *pose);
+        return GOE_FLIGHT_NO_POSE;
+    }
     if (sd_deg) {
         *sd_deg = view.attitude_sd_deg;
     }
@@ -570,14 +586,30 @@ static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_f
     report_action(flight, result);
 }
 
+static bool is_finite_hazard(const goe_hazard_t *hazard) {
+    const float number[] = {hazard->time_s,    hazard->miss_m,         hazard->clearance_m, hazard->time_sd_s,
+                            hazard->miss_sd_m, hazard->clearance_sd_m, hazard->violation};
+    return goe_flight_all_finite(number, (int)(sizeof number / sizeof number[0]));
+}
+
+/* Only flipped bits make it otherwise. */
+static bool is_finite_assessment(const goe_flight_assessment_t *a) {
+    return goe_flight_all_finite(a->target_ned_m, 3) && goe_flight_finite(a->needed_s) &&
+           goe_flight_finite(a->clear_m) && is_finite_hazard(&a->hazard);
+}
+
+static void know_nothing(goe_flight_assessment_t *result) {
+    memset(result, 0, sizeof *result);
+    result->worst = result->avoided = NOBODY;
+}
+
 goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uint8_t phase,
                                       goe_flight_assessment_t *result) {
     goe_flight_reaction_own_t own;
     if (!result) {
         return GOE_FLIGHT_BAD_ARGUMENT;
     }
-    memset(result, 0, sizeof *result);
-    result->worst = result->avoided = NOBODY;
+    know_nothing(result);
     const goe_flight_status_t status = check_sealed(flight);
     if (status != GOE_FLIGHT_OK) {
         return status;
@@ -597,6 +629,10 @@ goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uin
     flight->assessed_us = now;
     result->needed_s = goe_flight_reaction_decide(flight, worst, &own);
     report(flight, worst, now, result);
+    if (!is_finite_assessment(result)) {
+        know_nothing(result);
+        return GOE_FLIGHT_CORRUPTED;
+    }
     return GOE_FLIGHT_OK;
 }
 
@@ -639,6 +675,15 @@ static void report_place(const goe_flight_t *flight, const goe_flight_slot_t *sl
     report_nearest(flight, slot, obstacle);
 }
 
+static bool is_finite_obstacle(const goe_flight_obstacle_t *o) {
+    const float number[] = {o->age_s,   o->radius_m, o->height_m,          o->height_sd_m,
+                            o->width_m, o->length_m, o->length_heading_deg};
+    return goe_flight_all_finite(number, (int)(sizeof number / sizeof number[0])) &&
+           goe_flight_all_finite(o->center_ned_m, 3) && goe_flight_all_finite(o->covariance_ne_m2, 3) &&
+           goe_flight_all_finite(o->nearest_ned_m, 3) && goe_flight_all_finite(o->nearest_body_m, 3) &&
+           is_finite_hazard(&o->hazard);
+}
+
 goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, goe_flight_obstacle_t *obstacle) {
     if (!obstacle) {
         return GOE_FLIGHT_BAD_ARGUMENT;
@@ -667,6 +712,10 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
     if (one->valid & GOE_HAS_POSITION) {
         obstacle->age_s = goe_flight_lookout_age_s(one, flight->assessed_us);
         report_place(flight, one, obstacle);
+    }
+    if (!is_finite_obstacle(obstacle)) {
+        memset(obstacle, 0, sizeof *obstacle);
+        return GOE_FLIGHT_CORRUPTED;
     }
     return GOE_FLIGHT_OK;
 }
@@ -708,7 +757,7 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
     open_sectors(flight, max_cm, sector_cm);
-    for (int i = 0; i < GOE_FLIGHT_SLOTS && own; i++) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude && own; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, slot)) {
             const float away[2] = {slot->center_ne_m[0] - own->ned_m[0], slot->center_ne_m[1] - own->ned_m[1]};

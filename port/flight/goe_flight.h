@@ -447,7 +447,8 @@ goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uin
                                       goe_flight_assessment_t *result);
 
 /* One obstacle, slot 0 to GOE_FLIGHT_SLOTS - 1, as of the latest image, with the hazard of the latest assessment.
- * Returns GOE_FLIGHT_OK, _NOTHING, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED; all zero unless _OK. */
+ * Returns GOE_FLIGHT_OK, _NOTHING, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED, _CORRUPTED (a flipped bit made a number of it infinite);
+ * all zero unless _OK. */
 goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, goe_flight_obstacle_t *obstacle);
 
 /* Nearest obstacle by bearing: sector i is centred on 5 i degrees from north; cm, at most max_cm; max_cm + 1: nothing there as

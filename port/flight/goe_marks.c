@@ -43,7 +43,8 @@ goe_flight_marks_change_t goe_flight_marks_position(goe_flight_marks_t *marks, c
     if (first || (horizontal == GOE_FLIGHT_MARKS_SAME && vertical == GOE_FLIGHT_MARKS_SAME)) {
         return GOE_FLIGHT_MARKS_SAME;
     }
-    if (horizontal == GOE_FLIGHT_MARKS_UNKNOWN || vertical == GOE_FLIGHT_MARKS_UNKNOWN || !sample->reset_delta_known) {
+    if (horizontal == GOE_FLIGHT_MARKS_UNKNOWN || vertical == GOE_FLIGHT_MARKS_UNKNOWN ||
+        !goe_flight_is_set(&sample->reset_delta_known)) {
         return GOE_FLIGHT_MARKS_UNKNOWN;
     }
     for (int i = 0; i < 3; i++) {

@@ -674,8 +674,12 @@ static void break_off(goe_flight_t *flight, const look_t *look) {
 
 /* An order that there is not, or about no slot that there is, is none: the hazard that stands brings another. */
 static void mend(goe_flight_reaction_t *r) {
-    if (r->action > GOE_FLIGHT_HOLD || r->slot < NOBODY || r->slot >= GOE_FLIGHT_SLOTS || r->edge < NOBODY ||
-        r->edge >= GOE_FLIGHT_SLOTS || r->side < TO_LEFT || r->side > TO_RIGHT) {
+    const bool finite = goe_flight_all_finite(r->target_ned_m, 3) && goe_flight_all_finite(r->from_ne_m, 2) &&
+                        goe_flight_all_finite(r->course_ne, 2) && goe_flight_all_finite(r->along_ne, 2) &&
+                        goe_flight_finite(r->clear_m);
+    if (!finite || r->reason > GOE_FLIGHT_REASON_LANDING || r->action > GOE_FLIGHT_HOLD || r->slot < NOBODY ||
+        r->slot >= GOE_FLIGHT_SLOTS || r->edge < NOBODY || r->edge >= GOE_FLIGHT_SLOTS || r->side < TO_LEFT ||
+        r->side > TO_RIGHT) {
         goe_flight_reaction_clear(r);
     }
 }

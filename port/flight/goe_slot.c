@@ -62,14 +62,14 @@ static void keep_inside(goe_image_t *image, const goe_flight_camera_t *camera) {
     for (int i = 0; i < 3; i++) {
         const float pixel[2] = {side[i]->u_px, side[i]->v_px};
         bool inside = true;
-        for (int axis = 0; axis < 2 && side[i]->seen; axis++) {
+        for (int axis = 0; axis < 2 && goe_flight_is_set(&side[i]->seen); axis++) {
             const float half = 0.5f * camera->size_px[axis];
             inside = inside && goe_flight_within(pixel[axis] - half, goe_flight_larger(half - camera->border_px, 0.0f));
         }
-        side[i]->seen = side[i]->seen && inside;
+        side[i]->seen = goe_flight_is_set(&side[i]->seen) && inside;
         all = all && inside;
     }
-    image->top.seen = image->top.seen && all;
+    image->top.seen = goe_flight_is_set(&image->top.seen) && all;
 }
 
 static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, const goe_flight_detection_t *seen) {
@@ -222,7 +222,7 @@ bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box
         widen(extent, box->right_px, box->bottom_px, &any);
     } else {
         for (int i = 0; i < 6; i++) {
-            if (points[i]->seen) {
+            if (goe_flight_is_set(&points[i]->seen)) {
                 widen(extent, points[i]->u_px, points[i]->v_px, &any);
             }
         }

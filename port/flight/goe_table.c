@@ -15,7 +15,8 @@
 /* ------------------------------------------------------------------------------------------------------- detections -- */
 
 static bool is_good_pixel(const goe_pixel_t *p) {
-    return !p->seen || (goe_flight_within(p->u_px, COORDINATE_MAX_PX) && goe_flight_within(p->v_px, COORDINATE_MAX_PX));
+    return !goe_flight_is_set(&p->seen) ||
+           (goe_flight_within(p->u_px, COORDINATE_MAX_PX) && goe_flight_within(p->v_px, COORDINATE_MAX_PX));
 }
 
 static bool is_good_box(const goe_box_t *b) {

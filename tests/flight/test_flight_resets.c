@@ -72,7 +72,9 @@ static void an_unknown_jump_takes_no_warning_back(void) {
     TEST_ASSERT_EQUAL(0, now.worst);
     TEST_ASSERT_TRUE(now.suspect);
     TEST_ASSERT_TRUE(now.hazard.violation >= before.hazard.violation);
-    CHECK_CLOSE(0.03, (double)before.hazard.time_s - 0.1, now.hazard.time_s);
+    const double due_s =
+        (double)before.hazard.time_s - 0.1; /* to the outline; now to the circle about it, which is entered sooner */
+    TEST_ASSERT_TRUE((double)now.hazard.time_s < due_s + 0.03 && (double)now.hazard.time_s > due_s - 0.3);
     const goe_flight_obstacle_t kept = obstacle_of(&flown);
     CHECK_CLOSE(1.0, at.center_ned_m[0] + 50.0f, kept.center_ned_m[0]);
     CHECK_CLOSE(1.0, at.center_ned_m[1] - 30.0f, kept.center_ned_m[1]);
