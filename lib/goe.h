@@ -535,7 +535,6 @@ typedef struct {
  * usual sensors; the paper's values for the window; no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are 0 and
  * must be set by the caller. A null pointer is ignored.
  * Cost: at most 1010 instructions, 40 bytes of stack. */
-/*@ requires settings == \null || \valid(settings); */
 void goe_settings_default(goe_settings_t *settings);
 
 /* Checks *settings, copies them and starts with an empty track and zeroed counters.
@@ -545,9 +544,6 @@ void goe_settings_default(goe_settings_t *settings);
  * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS (a method that was left out among these); on failure the estimator is
  * left as it was.
  * Cost: at most 7900 instructions, 160 bytes of stack. */
-/*@ requires estimator == \null || \valid(estimator);
-    requires settings == \null || \valid_read(settings);
-    requires bad_field == \null || \valid(bad_field); */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 
@@ -560,9 +556,6 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
  * Cost: at most 48000 instructions, 1408 bytes of stack; 70000 with lens distortion; window: 5500. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */
-/*@ requires estimator == \null || \valid(estimator);
-    requires image == \null || \valid_read(image);
-    requires estimate == \null || \valid(estimate); */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
 /* The quantities of goe_covariance, in this order. */
@@ -575,8 +568,6 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  *   covariance  written by every call unless null; all zero on failure
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 10600 instructions, 880 bytes of stack. */
-/*@ requires estimator == \null || \valid_read(estimator);
-    requires covariance == \null || \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
 /* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over the ground, or relative to an obstacle
@@ -620,9 +611,6 @@ typedef struct {
  * GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 21300 instructions, 1110 bytes of stack. No loop runs longer than 10. */
 #if GOE_WITH_HAZARD
-/*@ requires estimator == \null || \valid_read(estimator);
-    requires plan == \null || \valid_read(plan);
-    requires hazard == \null || \valid(hazard); */
 GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard);
 
 /* When to act. goe_plan_t holds margin and clearance. */
@@ -646,7 +634,6 @@ typedef enum {
 
 /* Sets *rule to its defaults. A null pointer is ignored.
  * Cost: at most 40 instructions, 16 bytes of stack. */
-/*@ requires rule == \null || \valid(rule); */
 void goe_rule_default(goe_rule_t *rule);
 
 /* The decision rule: goe_hazard() with the plan's margin and clearance widened by doubt and age, and the rule's thresholds. Only
@@ -656,23 +643,17 @@ void goe_rule_default(goe_rule_t *rule);
  * Returns GOE_DECISION_KEEP for a bad argument, a plan or rule that is not finite or out of range, and an estimator that is not
  * initialised or corrupted.
  * Cost: at most 21800 instructions, 1200 bytes of stack. */
-/*@ requires estimator == \null || \valid_read(estimator);
-    requires plan == \null || \valid_read(plan);
-    requires rule == \null || \valid_read(rule);
-    requires hazard == \null || \valid(hazard); */
 GOE_NODISCARD goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_plan_t *plan, const goe_rule_t *rule,
                                         goe_hazard_t *hazard);
 
 /* The earliest time of the closest approach at two sigma, s: time^2 / (time + 2 sigma). 0 if *hazard is null or not finite.
  * Cost: at most 30 instructions, 16 bytes of stack. */
-/*@ requires hazard == \null || \valid_read(hazard); */
 float goe_soonest_s(const goe_hazard_t *hazard);
 #endif
 
 /* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
  * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 1640 instructions, 64 bytes of stack. */
-/*@ requires estimator == \null || \valid(estimator); */
 goe_status_t goe_reset(goe_estimator_t *estimator);
 
 /* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number.
