@@ -2,16 +2,16 @@
  * goe - Ground Obstacle Estimator
  *
  * From one camera's view of a static ground obstacle (a building, a truck, a chimney) and the aircraft's own motion:
- * the position, size and orientation of the obstacle, each with a 1-sigma uncertainty.
+ * the position, size and orientation of the obstacle, each with a 1-sigma uncertainty. [A1]
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  *
  * Two methods, chosen by goe_settings_t.method:
  *   refined  (default) a square-root information filter over the whole track: maximum likelihood in fixed memory. The errors of
  *            the sensors (goe_navigation_t, goe_detector_t) are its weights and nuisance states, so that its sigmas are of the
- *            true error. lib/refined/README.md holds its theory.
+ *            true error. [A2] lib/refined/README.md holds its theory.
  *   window   the paper: P. Bauer, "Position, Size and Orientation Estimation of Ground Obstacles in Sense and Avoid", IFAC
- *            ACA 2019, equation by equation (lib/window/README.md). Where both methods are compiled in it answers while the
+ *            ACA 2019, equation by equation (lib/window/README.md). [A3] Where both methods are compiled in it answers while the
  *            refined one cannot start, until that first answers.
  * "(1)" to "(8)" below and in the .c files are the equations of that paper.
  *
@@ -25,7 +25,7 @@
  *   body        forward, right, down (FRD); attitude = Hamilton quaternion (w, x, y, z) that turns body into NED
  *   camera      x right, y down, z along the optical axis; pixel (u, v) = (right, down) from the top left corner
  *   trajectory  "T": X right, Y down, Z forward along the intended flight direction, ALWAYS LEVEL, also on a glide slope;
- *               its origin moves with the camera. By default Z is where the nose points at the track's first image,
+ *               its origin moves with the camera. [A4] By default Z is where the nose points at the track's first image,
  *               which in a crosswind is not the course: set heading_deg to know T exactly
  *
  *   seen from above, north up; the aircraft flies along Z, an obstacle on its left has X < 0
@@ -52,44 +52,44 @@
  *   After 50 m of flight: Z = 150 m, X = -30 m, and X0, Z0 stay as they were.
  *
  *   The track begins with the first image that shows a feature: that image fixes T and its origin. Images without a feature fix
- *   nothing. What lies more than 87 degrees from Z cannot be used. With heading_auto the track begins again, by itself, while no
+ *   nothing. [A5] What lies more than 87 degrees from Z cannot be used. [A6] With heading_auto the track begins again, by itself, while no
  *   position is known and the nose has turned by more than 45 degrees: if every feature then lies more than 60 degrees from Z.
  *   Once a position is known T stays: after a turn of more than 60 degrees call goe_reset when the obstacle is in view again. Until
- *   then the last answer, stale, follows the motion.
+ *   then the last answer, stale, follows the motion. [A7]
  *
  *   Jumps: x0, z0, x and z move by half the obstacle's size when a disc becomes a line or box. Refined: front and side keep
  *   their names until the side lies more than 52 degrees (tan b = 1.3) from Z; then width and length, their sigmas,
- *   orientation, both axes and the reference point change at once. The centre does neither.
+ *   orientation, both axes and the reference point change at once. [A8] The centre does neither.
  *
  * ---------------------------------------------------------------------------------------------------------------------
  * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 2.9 KiB at the default window, 2.3 KiB without
- *             GOE_WITH_MOVERS), and all there is: no heap, no hidden statics, no recursion. One estimator follows one
+ *             GOE_WITH_MOVERS) [A9], and all there is: no heap, no hidden statics, no recursion. [A10] One estimator follows one
  *             obstacle; several obstacles take several estimators, which share nothing.
  * Threads     Every function touches only what its arguments point at. Two threads may work on two estimators; one
- *             estimator needs the caller's lock.
- * Arithmetic  float only; of the C library sqrtf, memcpy and memset, no more. sqrtf must be correctly rounded, as IEEE 754
+ *             estimator needs the caller's lock. [A11]
+ * Arithmetic  float only; of the C library sqrtf, memcpy and memset, no more. [A12] sqrtf must be correctly rounded, as IEEE 754
  *             asks: goe_self_check() tries it. Compiled with the library's own flags (-ffp-contract=off) the results are
- *             bit-identical on every IEEE 754 target; goe_self_check() verifies it at run time.
- *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity.
+ *             bit-identical on every IEEE 754 target; goe_self_check() verifies it at run time. [A13]
+ *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity. [A14]
  *             What float rounds, against double precision, stays below one and a half sigma of any quantity of the refined method
  *             with positions within 10 km of their origin, for lever arms of metres, 300 to 3000 px of focal length and sensors'
- *             usual noise, until a decision falls otherwise: the worst that a search found is 1.1, of an obstacle that moves. The
+ *             usual noise, until a decision falls otherwise: the worst that a search found is 1.1, of an obstacle that moves. [A15] The
  *             window's sigmas are of its residuals alone, and rounding may be several of them. At the ends of the ranges stated
  *             below, all at once, it is hundreds to thousands: choose an origin near the flight, and give no less noise than the
  *             sensors have.
- * Safety      Every output is finite. Input that is not finite is refused by its exponent bits, so also under -ffast-math.
- *             No argument leads to a trap, an endless loop or a write outside the estimator. A bool that is given as neither 0
- *             nor 1 counts as 1.
+ * Safety      Every output is finite. [A16] Input that is not finite is refused by its exponent bits, so also under -ffast-math. [A17]
+ *             No argument leads to a trap, an endless loop or a write outside the estimator. [A18] A bool that is given as neither 0
+ *             nor 1 counts as 1. [A19]
  * Bit flips   One flipped bit anywhere in goe_estimator_t, between two calls, leads to none of these either, nor to an output
  *             that is not finite or not of its enumeration. Settings and mounting are sealed by goe_init(): GOE_CORRUPTED. In the
  *             rest most flips are found by the images that follow (suspect, a new start, GOE_CORRUPTED); some are not, and the
- *             answer is wrong: tests/flips counts them, field by field.
+ *             answer is wrong: tests/flips counts them, field by field. [A20]
  * Failure     A call that returns a negative status changed nothing in the estimator but its counters, unless the
- *             status says "image taken" below. The last good estimate is kept and marked stale. Two things end a track, as
- *             goe_reset does: a filter reset of unknown size (goe_pose_t), and GOE_CORRUPTED.
+ *             status says "image taken" below. [A21] The last good estimate is kept and marked stale. Two things end a track, as
+ *             goe_reset does: a filter reset of unknown size (goe_pose_t), and GOE_CORRUPTED. [A22]
  * Cost        is stated at each function: the most that a call can take on a Cortex-M4F with gcc -O2, in instructions (not
  *             cycles) and bytes of stack, proved by the longest path through the machine code, at a window of 8, with one
- *             camera and intact memory. Measured, it is less: tests/targets has that, for every processor and compiler.
+ *             camera and intact memory. [A23] Measured, it is less: tests/targets has that, for every processor and compiler.
  */
 #ifndef GOE_H
 #define GOE_H
@@ -104,7 +104,7 @@
 
 /* ------------------------------------------------------------------------------------------------- compile-time limits -- */
 
-/* They may come from a header of the firmware's own: -DGOE_CONFIG_HEADER='"my_goe_config.h"'. All translation units of a
+/* They may come from a header of the firmware's own: -DGOE_CONFIG_HEADER='"my_goe_config.h"'. [A24] All translation units of a
  * program must agree; goe_init() refuses an estimator of another size. */
 #ifdef GOE_CONFIG_HEADER
 #include GOE_CONFIG_HEADER
@@ -159,7 +159,7 @@ extern "C" {
  * solution. Negative: no new solution. "Image taken": the image was stored although the status is negative, because the
  * next images build on it; otherwise it was refused whole.
  * Numbers that are free: 5 to 31 for images that were good, -16 to -31 for faults of images, from -36 on for calls. A later
- * version may use them, and renumbers nothing. */
+ * version may use them, and renumbers nothing. [A25] */
 typedef enum {
     GOE_OK = 0,             /* solved from this image and those before it */
     GOE_PARTIAL = 1,        /* solved, but a part of the image was refused or could not be used: see the counters */
@@ -231,7 +231,7 @@ typedef enum {
 typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2 } goe_method_t;
 
 /* Each field: its meaning; its range; its default. goe_settings_list.h has the same as one table, which sets the defaults and
- * checks the ranges. Fields of a part that was left out are neither read nor checked. */
+ * checks the ranges. Fields of a part that was left out are neither read nor checked. [A26] */
 
 /* Pinhole camera with Brown-Conrady lens, in OpenCV's conventions, and how it sits on the aircraft.
  * Mounting: the un-mounted camera looks along body x with image x = body y and image y = body z; it is turned by yaw
@@ -348,7 +348,7 @@ typedef struct {
 #define GOE_TIME_UNKNOWN INT64_MIN
 
 /* Where the aircraft was AT THE TIME OF EXPOSURE, not when the image arrived.
- * A jump of the autopilot's own filter is not motion. Whenever the filter resets, increment reset_count; give the
+ * A jump of the autopilot's own filter is not motion. [A27] Whenever the filter resets, increment reset_count; give the
  * position it jumped by, when it is known: new minus old, summed over all resets since the last image that was taken,
  * that is, not refused whole (GOE_NOT_FINITE to GOE_BAD_ATTITUDE): after a refusal the same delta must be given again.
  * Known: compensated, the track goes on. Unknown, and also when heading or attitude jumped: reset_delta_known = false,
@@ -358,7 +358,7 @@ typedef struct {
  * nearer one. If height_m jumped, goe takes the jump off every height_m of the rest of the track. So the camera's height, the
  * obstacle's height and the clearance go on above the ground as it was known before the jump. If the errors of height_m in that image
  * and in the one before differ by more than half the delta, goe may take the wrong one: the heights of the rest of the track are
- * then off by the delta. */
+ * then off by the delta. [A28] */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* vehicle's reference point, each +-1e6, in steps of 6 cm out there and of 1 mm within 1e4;
@@ -408,11 +408,11 @@ typedef struct {
  * Box: what detectors give. It is exact at any attitude, as every side is a plane through the camera that touches the obstacle
  * at its roof or at its foot. A box replaces left, right and top, which are not read then; base corners are. With base
  * corners, too, left, right and top of the box touch roof or foot, wherever the solid ends in the raw image: the top is the
- * highest point of the roof in it, not the one over the nearest corner. The box's bottom is not used then.
+ * highest point of the roof in it, not the one over the nearest corner. The box's bottom is not used then. [A29]
  * Disc: left and right. Line and box: two or three base corners; refined also finds a box by left and right alone when one of
  * its faces turns away in flight: before that it is reported as a disc about its middle, whose width is the lateral extent of
  * what has been seen of it, which changes on the way. The sigmas of such a disc include that it may be something else, and are
- * wider for that, until the images show that it is none; those of goe_settings_t.model disc are a disc's alone. Height: top,
+ * wider for that, until the images show that it is none; those of goe_settings_t.model disc are a disc's alone. [A30] Height: top,
  * and a solution of any model.
  * Do not give the middles of a box's sides as points: when the camera rolls, the sides touch the top and the foot of a tall
  * obstacle, and the width comes out too large (a mast of 6 m by 30 m: 11 m at 10 degrees of roll). */
@@ -449,10 +449,10 @@ typedef struct {
  * the track itself scatters more than they say, or its residuals are alike from image to image, as those of late poses are. A
  * quantity is valid once its sigma, without that, was below refined.range_share (25 %; x0, z0: of the range at the filter's
  * start), 30 % (width, length, height) or 10 degrees in two images in a row; of a prism (GOE_MODEL_PRISM) without what no image
- * can show.
+ * can show. [A31]
  * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
  * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:
- * then the orientation's is 0, and those of length and height hold only what the solution gives them. */
+ * then the orientation's is 0, and those of length and height hold only what the solution gives them. [A32] */
 typedef struct {
     float x0_m, z0_m, x_m, z_m, width_m, length_m, height_m, orientation_deg, center_north_m, center_east_m;
     float velocity_north_m_s, velocity_east_m_s, latency_s;
@@ -526,7 +526,7 @@ typedef struct {
 /* ----------------------------------------------------------------------------------------------------------- state -- */
 
 /* goe_estimator_t, transparent so that it can be placed and counted: its fields are private to the library, except causes,
- * which may be read. */
+ * which may be read. [A33] */
 #include "goe_state.h"
 
 /* ------------------------------------------------------------------------------------------------------- functions -- */
@@ -535,7 +535,6 @@ typedef struct {
  * usual sensors; the paper's values for the window; no lens distortion, no lever arm. fx_px, fy_px, cx_px and cy_px are 0 and
  * must be set by the caller. A null pointer is ignored.
  * Cost: at most 1010 instructions, 40 bytes of stack. */
-/*@ requires settings == \null || \valid(settings); */
 void goe_settings_default(goe_settings_t *settings);
 
 /* Checks *settings, copies them and starts with an empty track and zeroed counters.
@@ -545,9 +544,6 @@ void goe_settings_default(goe_settings_t *settings);
  * Returns GOE_OK, GOE_BAD_ARGUMENT or GOE_BAD_SETTINGS (a method that was left out among these); on failure the estimator is
  * left as it was.
  * Cost: at most 7900 instructions, 160 bytes of stack. */
-/*@ requires estimator == \null || \valid(estimator);
-    requires settings == \null || \valid_read(settings);
-    requires bad_field == \null || \valid(bad_field); */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 
@@ -560,9 +556,6 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * Use the estimate by its own valid, fresh, age_s and sigma, whatever the status.
  * Cost: at most 48000 instructions, 1408 bytes of stack; 70000 with lens distortion; window: 5500. No loop runs longer than
  * GOE_WINDOW_MAX or 20. */
-/*@ requires estimator == \null || \valid(estimator);
-    requires image == \null || \valid_read(image);
-    requires estimate == \null || \valid(estimate); */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
 /* The quantities of goe_covariance, in this order. */
@@ -575,8 +568,6 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
  *   covariance  written by every call unless null; all zero on failure
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 10600 instructions, 880 bytes of stack. */
-/*@ requires estimator == \null || \valid_read(estimator);
-    requires covariance == \null || \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
 /* What the aircraft is about to do: fly on at constant velocity. Slower than 0.1 m/s over the ground, or relative to an obstacle
@@ -614,15 +605,12 @@ typedef struct {
  * as far as it is known: without orientation or length the circle of its width about the reference point, refined also while
  * the width is not valid yet; window, without width: that point alone, so that margin_m has to cover the obstacle's size. An image
  * without a detection changes nothing but the time, and a new start of the filter keeps position and size until a new answer
- * replaces them: uncertainty only grows. A suspect or stale estimate needs wider margins, not silence: goe_decide().
+ * replaces them: uncertainty only grows. [A34] A suspect or stale estimate needs wider margins, not silence: goe_decide().
  *   hazard  written by every call unless null; all zero on failure: violation = 0 is not "safe" then
  * Returns GOE_OK, GOE_COLLECTING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the plan,
  * GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 21300 instructions, 1110 bytes of stack. No loop runs longer than 10. */
 #if GOE_WITH_HAZARD
-/*@ requires estimator == \null || \valid_read(estimator);
-    requires plan == \null || \valid_read(plan);
-    requires hazard == \null || \valid(hazard); */
 GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_hazard_t *hazard);
 
 /* When to act. goe_plan_t holds margin and clearance. */
@@ -646,7 +634,6 @@ typedef enum {
 
 /* Sets *rule to its defaults. A null pointer is ignored.
  * Cost: at most 40 instructions, 16 bytes of stack. */
-/*@ requires rule == \null || \valid(rule); */
 void goe_rule_default(goe_rule_t *rule);
 
 /* The decision rule: goe_hazard() with the plan's margin and clearance widened by doubt and age, and the rule's thresholds. Only
@@ -656,23 +643,17 @@ void goe_rule_default(goe_rule_t *rule);
  * Returns GOE_DECISION_KEEP for a bad argument, a plan or rule that is not finite or out of range, and an estimator that is not
  * initialised or corrupted.
  * Cost: at most 21800 instructions, 1200 bytes of stack. */
-/*@ requires estimator == \null || \valid_read(estimator);
-    requires plan == \null || \valid_read(plan);
-    requires rule == \null || \valid_read(rule);
-    requires hazard == \null || \valid(hazard); */
 GOE_NODISCARD goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_plan_t *plan, const goe_rule_t *rule,
                                         goe_hazard_t *hazard);
 
 /* The earliest time of the closest approach at two sigma, s: time^2 / (time + 2 sigma). 0 if *hazard is null or not finite.
  * Cost: at most 30 instructions, 16 bytes of stack. */
-/*@ requires hazard == \null || \valid_read(hazard); */
 float goe_soonest_s(const goe_hazard_t *hazard);
 #endif
 
 /* Forgets the track: windows, orientation, filter, estimate. Keeps settings and counters. For another obstacle, or a new
  * view of the same one. Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALISED or GOE_CORRUPTED.
  * Cost: at most 1640 instructions, 64 bytes of stack. */
-/*@ requires estimator == \null || \valid(estimator); */
 goe_status_t goe_reset(goe_estimator_t *estimator);
 
 /* A short lower-case name for a status ("ok", "no_baseline", ...), never null; "unknown" for any other number.

@@ -10,7 +10,6 @@
 
 #define LOST_CORRELATION 2.0f
 
-/*@ requires \valid_read(sigma) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
     const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
                                       sigma->width_m, sigma->length_m, sigma->height_m};
@@ -20,7 +19,6 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
 }
 
 #if GOE_WITH_REFINED
-/*@ requires \valid_read(estimator); */
 static bool is_refined_answer(const goe_estimator_t *estimator) {
     return estimator->estimate.method == GOE_METHOD_REFINED;
 }
@@ -28,7 +26,6 @@ static bool is_refined_answer(const goe_estimator_t *estimator) {
 static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
                                                 GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
 
-/*@ requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void keep_valid(unsigned valid, goe_covariance_t covariance) {
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         for (int j = 0; j < GOE_QUANTITIES; j++) {
@@ -41,7 +38,6 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
 }
 
 /* Of a stale answer: no variance below the one that was reported, whatever path was flown since. */
-/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void keep_at_least(const goe_estimator_t *estimator, goe_covariance_t covariance) {
     const goe_sigma_t *sigma = &estimator->estimate.sigma;
     const float least[GOE_QUANTITIES] = {sigma->x_m,     sigma->z_m,      sigma->orientation_deg,
@@ -53,7 +49,6 @@ static void keep_at_least(const goe_estimator_t *estimator, goe_covariance_t cov
 
 /* False if the estimate is not the filter's, or the filter has learned something else since. An image without a detection
  * changes nothing but the time. */
-/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
     if (!is_refined_answer(estimator) || estimator->filter.answer.outdated) {
@@ -81,7 +76,6 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
     return is_refined_answer(estimator) ? estimator->filter.answer.reach_m : 0.0f;
 }
 #else
-/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
     (void)estimator;
@@ -106,7 +100,6 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
 
 /* Of an answer that the filter has left: the sigmas, and what the age adds. How the errors go together is lost; twice the variance
  * covers any two that add up, which is for a hazard to know. */
-/*@ requires \valid_read(estimator) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static void covariance_of_answer(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
     const bool lost = for_hazard && estimator->estimate.method == GOE_METHOD_REFINED;

@@ -16,14 +16,11 @@ goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool for_ha
 
 /* Height of the camera at the latest image, m, that the latest estimate's own height is counted with, and the constant
  * error of it that the estimate has been freed from (0 if none): their sum is the height above the obstacle's ground. */
-/*@ requires \valid_read(estimator); */
 float goe_latest_camera_height(const goe_estimator_t *estimator);
-/*@ requires \valid_read(estimator); */
 float goe_latest_height_bias(const goe_estimator_t *estimator);
 
 /* Half of the obstacle's extent about its reference point as far as it is seen, m, also while the width is not valid; 0: not
  * known. An image without a detection, or a new start of the filter, does not make it less. */
-/*@ requires \valid_read(estimator); */
 float goe_latest_reach(const goe_estimator_t *estimator);
 
 #endif

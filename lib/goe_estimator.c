@@ -35,7 +35,6 @@ typedef struct __attribute__((may_alias)) {
     uint32_t word[BLOCK_BYTES / 4u];
 } block_t;
 
-/*@ requires \valid(to) && \valid_read(from); */
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) {
     block_t *t = (block_t *)to;
     const block_t *f = (const block_t *)from;
@@ -46,12 +45,10 @@ static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from)
     memcpy((unsigned char *)to + copied, (const unsigned char *)from + copied, sizeof *to - copied);
 }
 #else
-/*@ requires \valid(to) && \valid_read(from); */
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) { *to = *from; }
 #endif
 
 /* The estimate grows old while images are refused, too, as far as their times can be believed. */
-/*@ requires \valid_read(estimator) && \valid(estimate); */
 static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     estimate->age_s = 0.0f;
     if (goe_is_set(&estimate->fresh) || !(estimate->valid & GOE_HAS_POSITION)) {
@@ -63,7 +60,6 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
 }
 
 /* What every answer is told with, also a refused image's. */
-/*@ requires \valid_read(estimator) && \valid(estimate); */
 static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     set_age(estimator, image_us, estimate);
     estimate->trajectory_heading_deg = goe_motion_heading_deg(&estimator->motion);
@@ -74,7 +70,6 @@ static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_est
     }
 }
 
-/*@ requires \valid(estimator); */
 static void forget_track(goe_estimator_t *estimator) {
     memset(&estimator->motion, 0, sizeof estimator->motion);
     estimator->motion.time_us = GOE_TIME_UNKNOWN;
@@ -92,7 +87,6 @@ static void forget_track(goe_estimator_t *estimator) {
 
 #if GOE_WITH_WINDOW
 /* Of the window, which tells by its answer alone whether it solved. */
-/*@ requires \valid(estimator); */
 static void note_solved(goe_estimator_t *estimator) {
     if (estimator->estimate.fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
@@ -104,7 +98,6 @@ static void note_solved(goe_estimator_t *estimator) {
 
 #if GOE_WITH_REFINED
 /* No new answer: the last one grows old, and follows the motion. */
-/*@ requires \valid(estimator); */
 static void grow_old(goe_estimator_t *estimator) {
     goe_estimate_t *estimate = &estimator->estimate;
     const goe_motion_t *motion = &estimator->motion;
@@ -138,7 +131,6 @@ static void drop_contradicted(goe_estimator_t *estimator, const goe_view_t *view
     }
 }
 
-/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
                                    bool measured) {
     const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
@@ -163,7 +155,6 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
 }
 
 /* North and east of an older answer are those of the autopilot's filter before its reset. */
-/*@ requires \valid(estimate) && \valid_read(delta_ned_m + (0 .. 2)); */
 static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
     if (estimate->valid & GOE_HAS_CENTER) {
         estimate->center_north_m += delta_ned_m[0];
@@ -172,7 +163,6 @@ static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
 }
 
 /* Points out of order: pairs that the refined method found, once for each. */
-/*@ requires \valid(estimator) && goe_faults_are_open(faults); */
 static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_faults_t *faults) {
     for (unsigned i = 0; i < swapped; i++) {
         goe_count_cause(estimator->causes, GOE_SWAPPED);
@@ -185,7 +175,6 @@ static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_fault
 #if GOE_WITH_WINDOW
 /* The window answers until the filter first has: a filter that stops keeps its answer, and one that starts in this image takes over
  * an older answer. */
-/*@ requires \valid_read(estimator); */
 static bool window_answers(const goe_estimator_t *estimator, bool reported, bool reports) {
     const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
     const bool refined = known && estimator->estimate.method == GOE_METHOD_REFINED;
@@ -193,7 +182,6 @@ static bool window_answers(const goe_estimator_t *estimator, bool reported, bool
 }
 #endif
 
-/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_settings_t *settings = &estimator->settings;
     unsigned swapped;
@@ -223,7 +211,6 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     return report_refined(estimator, view, faults, measured && reports);
 }
 
-/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     if (goe_ground_lacks_height(view->image)) {
         goe_fault_count(faults, GOE_NO_HEIGHT);
@@ -237,7 +224,6 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
 /* The autopilot's filter jumped: by a known amount the answer moves along, by an unknown one the track ends. */
-/*@ requires \valid(estimator) && \valid_read(pose); */
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
     if (!goe_is_set(&pose->reset_delta_known)) {
         forget_track(estimator);
@@ -254,7 +240,6 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 
 /* Whether the track may begin again: it began with an earlier image, T's heading is the nose's, no position is known, and the nose
  * has turned by more than 45 degrees from Z. */
-/*@ requires \valid_read(estimator) && \valid_read(view) && goe_view_is_open(view); */
 static bool may_begin_again(const goe_estimator_t *estimator, const goe_view_t *view) {
     const float *to_trajectory = view->camera_to_trajectory;
     const float *nose = view->camera_to_body; /* its first row: the nose in the camera's axes */
@@ -276,7 +261,6 @@ static bool lies_aside(const goe_view_t *view) {
 
 /* After a turn: what lies aside of T's Z axis would give little or nothing, and of the obstacle nothing is known yet that the track
  * could lose. It begins here, and the faults of this image are counted once. */
-/*@ requires \valid(estimator) && \valid(view) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static GOE_NOINLINE void align_after_turn(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
     uint32_t causes[GOE_CAUSES];
     memcpy(causes, faults->causes, sizeof causes);
@@ -307,7 +291,6 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     estimator->motion.sighted = estimator->motion.sighted || view->seen;
 }
 
-/*@ requires \valid(estimator) && \valid_read(image) && \valid_read(camera); */
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
     goe_view_t view;
     goe_faults_t faults = {estimator->causes, GOE_OK};
@@ -361,7 +344,6 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
 }
 
 /* Nothing changes but a counter; the answer is the older one. */
-/*@ requires \valid(estimator) && \valid(estimate); */
 static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, goe_estimate_t *estimate) {
     goe_count_cause(estimator->causes, status);
     *estimate = estimator->estimate;
@@ -369,7 +351,6 @@ static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status,
 }
 
 /* Whether nothing but numbers leaves, and nothing but numbers is left to place what comes. */
-/*@ requires \valid_read(estimator) && \valid_read(estimate); */
 static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
     const uint32_t place =
         goe_larger_bits(goe_magnitude(estimator->motion.dx_m), goe_magnitude(estimator->motion.dz_m));
@@ -377,7 +358,6 @@ static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *est
 }
 
 /* The track's memory is not what the library left there. */
-/*@ requires \valid(estimator) && \valid(estimate); */
 static GOE_NOINLINE goe_status_t give_up(goe_estimator_t *estimator, goe_estimate_t *estimate) {
     forget_track(estimator);
     memset(estimate, 0, sizeof *estimate);

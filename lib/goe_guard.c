@@ -41,14 +41,12 @@ GOE_STATIC_ASSERT(SEALED_FROM % WORD == 0 && SEALED_TO % WORD == 0, what_is_seal
 
 /* The sum finds every change of one word, and of two bits unless they are the same bit of two words; the turned one then finds these,
  * unless the words lie a multiple of 32 apart. */
-/*@ requires \valid(seal); */
 static inline void add(goe_seal_t *seal, uint32_t word) {
     seal->sum += word;
     seal->turned = word ^ (seal->turned << 1 | seal->turned >> 31);
 }
 
 /* Partly written out: done by every call. */
-/*@ requires \valid_read(estimator); */
 static goe_seal_t seal_of(const goe_estimator_t *estimator) {
     const unsigned char *from = (const unsigned char *)estimator + SEALED_FROM;
     goe_seal_t seal = {SEED, SEED};
@@ -88,7 +86,6 @@ goe_status_t goe_guard_judge(const goe_estimator_t *estimator) {
 /* ----------------------------------------------------------------------------------------------------------- answers -- */
 
 /* Bit 31: the exponent is that of infinities and NaNs. */
-/*@ requires \valid_read(at); */
 static inline uint32_t overflow(const float *at) { return (goe_bits_at(at) & GOE_INFINITY_BITS) + EXPONENT_STEP; }
 
 /* Partly written out, too. */
@@ -117,7 +114,6 @@ GOE_STATIC_ASSERT((BETWEEN - FIRST) % sizeof(float) == 0 && (sizeof(goe_estimate
                   the_floats_of_an_estimate_are_checked);
 GOE_STATIC_ASSERT(sizeof(bool) == 1, a_truth_value_is_a_byte);
 
-/*@ requires \valid_read(truth); */
 static bool is_truth(const bool *truth) { return *(const unsigned char *)truth <= 1u; }
 
 static bool is_count(int count) { return count >= 0 && count <= INT16_MAX; }

@@ -6,13 +6,11 @@
 #include "goe.h"
 
 /* Seals mounting and settings. Call this when they are set: from then on they change no more. */
-/*@ requires \valid(estimator); */
 void goe_guard_seal(goe_estimator_t *estimator);
 
 /* GOE_OK; GOE_NOT_INITIALISED; or GOE_CORRUPTED, if mounting, settings or what tells that they are set are not what
  * goe_guard_seal() left. It finds every change of one word, and of two bits anywhere but the same bit of two words that lie 32
  * words apart. */
-/*@ requires \valid_read(estimator); */
 goe_status_t goe_guard_judge(const goe_estimator_t *estimator);
 
 /* The same; GOE_BAD_ARGUMENT of a null pointer. */
@@ -26,7 +24,6 @@ static inline goe_status_t goe_guard_check(const goe_estimator_t *estimator) {
 bool goe_guard_finite(const float *floats, size_t count);
 
 /* Whether every number of an estimate is finite, and every enumeration, count and truth value one that goe.h lists. */
-/*@ requires \valid_read(estimate); */
 bool goe_guard_estimate(const goe_estimate_t *estimate);
 
 #endif

@@ -6,7 +6,6 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 
-/*@ requires \valid_read(estimator); */
 static inline bool goe_is_refined(const goe_estimator_t *estimator) {
 #if GOE_WITH_WINDOW && GOE_WITH_REFINED
     return estimator->settings.method == GOE_METHOD_REFINED;
@@ -17,14 +16,12 @@ static inline bool goe_is_refined(const goe_estimator_t *estimator) {
 }
 
 /* From the image behind the estimate to a later time, s. */
-/*@ requires \valid_read(estimator); */
 static inline float goe_latest_since_s(const goe_estimator_t *estimator, int64_t now_us) {
     return goe_time_between_s(estimator->estimate_time_us, now_us, GOE_TIME_MAX_US);
 }
 
 /* Variance that the place relative to the camera gains in a time without a new answer, m2, along X as along Z: by the velocity
  * of an obstacle that moves and, refined, by the errors of the own motion. */
-/*@ requires \valid_read(estimator); */
 static inline float goe_latest_grown_m2(const goe_estimator_t *estimator, float since_s) {
     const goe_sigma_t *sigma = &estimator->estimate.sigma;
     const float north = goe_square(sigma->velocity_north_m_s);

@@ -104,7 +104,6 @@ static const char *first_bad(const unsigned char *from, size_t count) {
 
 GOE_STATIC_ASSERT(offsetof(goe_settings_t, camera) == 0, the_settings_of_the_camera_come_first);
 
-/*@ requires \valid_read(settings); */
 static const char *first_bad_camera(const goe_settings_t *settings) {
     const char *bad = NULL;
     for (size_t i = 0; !bad && i + 1 < GOE_CAMERAS_MAX; i++) {
@@ -116,7 +115,6 @@ static const char *first_bad_camera(const goe_settings_t *settings) {
     return bad;
 }
 #else
-/*@ requires \valid_read(settings); */
 static const char *first_bad_camera(const goe_settings_t *settings) {
     (void)settings;
     return NULL;

@@ -5,11 +5,9 @@
 #include "goe.h"
 
 /* Name of the first setting outside its range, null if there is none. */
-/*@ requires \valid_read(settings); */
 const char *goe_settings_first_bad(const goe_settings_t *settings);
 
 /* Copies settings that are good. What lies between their fields becomes 0: the seal is over every byte. */
-/*@ requires \valid(to) && \valid_read(from); */
 void goe_settings_copy(goe_settings_t *to, const goe_settings_t *from);
 
 #endif

@@ -11,18 +11,14 @@ typedef struct {
 } goe_affine_t;
 
 /* The number over a divisor that is exact. */
-/*@ requires \valid(affine); */
 void goe_affine_divide(goe_affine_t *affine, float divisor);
 
 /* Covariance of two such numbers. */
-/*@ requires \valid_read(a) && \valid_read(b) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 float goe_affine_covariance(const goe_affine_t *a, const goe_affine_t *b, goe_covariance_t covariance);
 
-/*@ requires \valid_read(affine) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 float goe_affine_sigma(const goe_affine_t *affine, goe_covariance_t covariance);
 
 /* Probability that the number lies below the limit. */
-/*@ requires \valid_read(affine) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 float goe_affine_below(const goe_affine_t *affine, float limit, goe_covariance_t covariance);
 
 /* Within what may be reported. */

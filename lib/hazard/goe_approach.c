@@ -35,8 +35,6 @@ void goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan, goe
 
 /* Time to the closest approach, and the time at which the clearance counts: over the outline it is the lower end of the
  * flight. Value and derivatives are 0 for what is now. */
-/*@ requires \valid_read(o) && \valid_read(course) && \valid(covariance + (0 .. GOE_QUANTITIES - 1));
-    requires \valid_read(approach) && \valid(first) && \valid(lowest); */
 static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance,
                        const goe_approach_t *approach, goe_affine_t *first, goe_affine_t *lowest) {
     const goe_affine_t *side = approach->side;
@@ -61,7 +59,6 @@ static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_c
 
 /* What bounds the spread of the time whatever the derivatives say: the outline is met between its near and its far end.
  * They do at a grazed edge, where the entry moves at once from one end to the other. */
-/*@ requires \valid_read(o) && \valid_read(course) && \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static float time_sd_most(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance) {
     goe_affine_t far_end;
     goe_affine_t near_end;
@@ -72,7 +69,6 @@ static float time_sd_most(const goe_outline_t *o, const goe_course_t *course, go
 
 /* Variance of the time along an edge which, as far as the orientation is known, may lean either way from the course: then
  * the closest corner is its other end, if the outline is passed at all. */
-/*@ requires \valid_read(course) && \valid_read(edge); */
 static float edge_variance(const goe_course_t *course, const goe_xz_t *edge, float length_m, float sigma_rad,
                            float passes) {
     const float lean = goe_absolute(goe_xz_dot(*edge, course->side[GOE_RIGHT]));
@@ -82,8 +78,6 @@ static float edge_variance(const goe_course_t *course, const goe_xz_t *edge, flo
     return other * (1.0f - other) * between_s * between_s;
 }
 
-/*@ requires \valid_read(o) && \valid_read(course) && \valid_read(a) && \valid_read(time);
-    requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static float time_sd(const goe_outline_t *o, const goe_course_t *course, const goe_approach_t *a,
                      const goe_affine_t *time, goe_covariance_t covariance) {
     float sd = goe_affine_sigma(time, covariance);
@@ -101,7 +95,6 @@ static float time_sd(const goe_outline_t *o, const goe_course_t *course, const g
 }
 
 /* The clearance at the time of `lowest`, sharing what the derivatives of a time do not tell of its sigma. */
-/*@ requires \valid_read(course) && \valid_read(lowest) && \valid(clearance); */
 static void find_clearance(const goe_course_t *course, const goe_affine_t *lowest, float share, float height_m,
                            goe_affine_t *clearance) {
     clearance->value = height_m + course->climb_m_s * lowest->value;

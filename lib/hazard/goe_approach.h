@@ -14,19 +14,15 @@ typedef struct {
 } goe_approach_t;
 
 /* The course of a plan, T axes. */
-/*@ requires \valid_read(motion) && \valid_read(plan) && \valid(course); */
 void goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan, goe_course_t *course);
 
 /* The side on which the outline is passed, or crossed less deep. */
-/*@ requires \valid_read(approach); */
 static inline const goe_affine_t *goe_approach_side(const goe_approach_t *approach) {
     const goe_affine_t *side = approach->side;
     return side[GOE_RIGHT].value > side[GOE_LEFT].value ? &side[GOE_RIGHT] : &side[GOE_LEFT];
 }
 
 /* height_m: of the camera over the top now. */
-/*@ requires \valid_read(o) && \valid_read(course) && \valid(covariance + (0 .. GOE_QUANTITIES - 1));
-    requires \valid(approach); */
 void goe_approach_find(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance, float height_m,
                        goe_approach_t *approach);
 

@@ -35,7 +35,6 @@ float goe_soonest_s(const goe_hazard_t *hazard) {
 
 static bool is_between(float value, float least, float most) { return goe_within(value, most) && value >= least; }
 
-/*@ requires \valid_read(rule); */
 static bool is_rule(const goe_rule_t *rule) {
     return is_between(rule->violation_max, 0.0f, 1.0f) && is_between(rule->act_s, 0.0f, TIME_MAX_S) &&
            is_between(rule->doubt, 1.0f, DOUBT_MAX) && is_between(rule->drift_m_s, 0.0f, DRIFT_MAX_M_S);
@@ -43,7 +42,6 @@ static bool is_rule(const goe_rule_t *rule) {
 
 /* An estimate that is suspect, or that no image has renewed for a while, may be wrong towards the obstacle: both distances grow. A
  * plan that is not finite stays so, and is refused. */
-/*@ requires \valid_read(estimator) && \valid_read(rule) && \valid(plan); */
 static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_plan_t *plan) {
     const goe_estimate_t *estimate = &estimator->estimate;
     const bool suspect = goe_is_set(&estimate->suspect);
@@ -61,7 +59,6 @@ static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_
 
 /* A probability is also small where nothing is known: the wider the sigmas, the less of them lies within the distances. So a clear
  * answer has one of the two distances kept by a sigma. */
-/*@ requires \valid_read(hazard) && \valid_read(plan); */
 static bool is_outside(const goe_hazard_t *hazard, const goe_plan_t *plan) {
     const bool aside = hazard->miss_m - hazard->miss_sd_m >= plan->margin_m;
     const bool above = hazard->has_clearance && hazard->clearance_m - hazard->clearance_sd_m >= plan->clearance_m;
@@ -69,7 +66,6 @@ static bool is_outside(const goe_hazard_t *hazard, const goe_plan_t *plan) {
 }
 
 /* Whether detections came for a while without an answer: the old one may be of something else. Silence is another matter. */
-/*@ requires \valid_read(estimator); */
 static bool is_superseded(const goe_estimator_t *estimator) {
 #if GOE_WITH_REFINED
     const bool left = estimator->filter.answer.outdated != 0u || estimator->estimate.method == GOE_METHOD_WINDOW;
@@ -82,7 +78,6 @@ static bool is_superseded(const goe_estimator_t *estimator) {
 }
 
 /* Between the two bounds of the time, and between a small probability and a distance that is kept, too little is known to clear. */
-/*@ requires \valid_read(met) && \valid_read(plan) && \valid_read(rule); */
 static goe_decision_t decision_of(const goe_hazard_t *met, const goe_plan_t *plan, const goe_rule_t *rule) {
     if (met->violation < rule->violation_max) {
         return is_outside(met, plan) ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;

@@ -17,7 +17,6 @@ GOE_STATIC_ASSERT(offsetof(goe_hazard_t, violation) + sizeof(float) == offsetof(
                   the_numbers_of_a_hazard_come_first);
 
 /* GOE_OK, or why the plan is refused. */
-/*@ requires \valid_read(plan); */
 static goe_status_t check_plan(const goe_plan_t *plan) {
     const uint32_t velocity = goe_largest_of_three(plan->velocity_ned_m_s);
     const uint32_t margin = goe_magnitude(plan->margin_m);

@@ -45,7 +45,6 @@ void goe_outline_corner_along(const goe_outline_t *o, const goe_xz_t *m, float s
 }
 
 /* m k at the corner of a box that lies on that side across and along its axes; at the centre of a disc. */
-/*@ requires \valid_read(o) && \valid_read(m) && \valid(at); */
 GOE_NOINLINE static void corner_on(const goe_outline_t *o, const goe_xz_t *m, float across, float along,
                                    goe_affine_t *at) {
     const float side = across < 0.0f ? -0.5f : 0.5f;
@@ -77,7 +76,6 @@ void goe_outline_along(const goe_outline_t *o, const goe_xz_t *ahead, const goe_
 
 /* Along the course into (way -1) or out of (way 1) a disc that it crosses. sigma_m: of how deep. Near the rim the chord
  * grows with the root of the depth, and its derivative is taken a sigma inside. */
-/*@ requires \valid_read(o) && \valid_read(course) && \valid(end); */
 static void chord_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m, goe_affine_t *end) {
     const goe_xz_t *right = &course->side[GOE_RIGHT];
     const float off = goe_xz_dot(*right, o->reference);
@@ -97,7 +95,6 @@ static goe_xz_t normal_of(const goe_outline_t *o, int face) {
 }
 
 /* Along the course to the line of the face with the outward normal m; slope = m u, not 0. */
-/*@ requires \valid_read(o) && \valid_read(course) && \valid_read(m) && \valid(line); */
 static void face_line(const goe_outline_t *o, const goe_course_t *course, const goe_xz_t *m, float slope,
                       goe_affine_t *line) {
     goe_outline_reach(o, m, line);
@@ -108,7 +105,6 @@ static void face_line(const goe_outline_t *o, const goe_course_t *course, const 
 }
 
 /* The same for a box: the last of the faces that it enters by, the first of those that it leaves by. */
-/*@ requires \valid_read(o) && \valid_read(course) && \valid(end); */
 static void face_end(const goe_outline_t *o, const goe_course_t *course, float way, goe_affine_t *end) {
     bool any = false;
     memset(end, 0, sizeof *end);
@@ -137,7 +133,6 @@ void goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float w
 /* -------------------------------------------------------------------------------------------------- where it stands -- */
 
 /* The way out of a box that the camera is in, other than to the sides of the course. */
-/*@ requires \valid_read(o) && \valid_read(course); */
 static goe_xz_t way_out_of_box(const goe_outline_t *o, const goe_course_t *course) {
     goe_affine_t depth;
     goe_xz_t best = course->ahead;
@@ -154,7 +149,6 @@ static goe_xz_t way_out_of_box(const goe_outline_t *o, const goe_course_t *cours
 }
 
 /* From the outline to the camera now, or out of it by the shortest way. */
-/*@ requires \valid_read(o) && \valid_read(course); */
 static goe_xz_t way_from_box(const goe_outline_t *o, const goe_course_t *course) {
     const float across = -goe_xz_dot(o->width_axis, o->reference);
     const float along = -goe_xz_dot(o->length_axis, o->reference);
@@ -169,7 +163,6 @@ static goe_xz_t way_from_box(const goe_outline_t *o, const goe_course_t *course)
     return m;
 }
 
-/*@ requires \valid_read(o) && \valid_read(course); */
 static goe_xz_t way_from_disc(const goe_outline_t *o, const goe_course_t *course) {
     const goe_xz_t c = o->reference;
     const float norm = sqrtf(goe_xz_dot(c, c));

@@ -31,33 +31,26 @@ static inline goe_xz_t goe_outline_right_of(goe_xz_t v) {
 }
 
 /* The box as far as it is known, otherwise a disc. */
-/*@ requires \valid_read(estimate) && \valid(o); */
 void goe_outline_of(const goe_estimate_t *estimate, goe_outline_t *o);
 
 /* *at = m k at a corner k of a box, m held in the derivatives: side -0.5 or 0.5 of the width, end 0 or 1 of the length. At the
  * reference point both are 0. */
-/*@ requires \valid_read(o) && \valid_read(m) && \valid(at); */
 void goe_outline_corner_along(const goe_outline_t *o, const goe_xz_t *m, float side, float end, goe_affine_t *at);
 
 /* h(m), |m| = 1. */
-/*@ requires \valid_read(o) && \valid_read(m) && \valid(reach); */
 void goe_outline_reach(const goe_outline_t *o, const goe_xz_t *m, goe_affine_t *reach);
 
 /* Signed distance to the half-plane beyond which the outline does not reach towards m. */
-/*@ requires \valid_read(o) && \valid_read(m) && \valid(distance); */
 void goe_outline_distance(const goe_outline_t *o, const goe_xz_t *m, goe_affine_t *distance);
 
 /* Along the course to where the outline reaches farthest towards m, a side of the course; of a whole edge that does, to
  * its first end. */
-/*@ requires \valid_read(o) && \valid_read(ahead) && \valid_read(m) && \valid(along); */
 void goe_outline_along(const goe_outline_t *o, const goe_xz_t *ahead, const goe_xz_t *m, goe_affine_t *along);
 
 /* Along the course into (way -1) or out of (way 1) the outline, which it crosses. sigma_m: of how deep. */
-/*@ requires \valid_read(o) && \valid_read(course) && \valid(end); */
 void goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m, goe_affine_t *end);
 
 /* Unit vector from the outline to the camera now, or out of it by the shortest way. */
-/*@ requires \valid_read(o) && \valid_read(course); */
 goe_xz_t goe_outline_way_from(const goe_outline_t *o, const goe_course_t *course);
 
 #endif

@@ -12,7 +12,6 @@
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
 
-/*@ requires \valid_read(a); */
 static const goe_affine_t *largest(const goe_approach_t *a) {
     const goe_affine_t *side = goe_approach_side(a);
     return a->moves && side->value > a->ahead.value ? side : &a->ahead;
@@ -20,8 +19,6 @@ static const goe_affine_t *largest(const goe_approach_t *a) {
 
 /* Probability that the obstacle is not passed on a side of the course. Each corner may spoil it, and the one that is likeliest
  * to is not always the nearest: the orientation moves some more than others. */
-/*@ requires \valid_read(o) && \valid_read(nearest) && \valid_read(away);
-    requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static float side_violation(const goe_outline_t *o, const goe_affine_t *nearest, const goe_xz_t *away, float margin_m,
                             goe_covariance_t covariance) {
     float most = goe_affine_below(nearest, margin_m, covariance);
@@ -34,8 +31,6 @@ static float side_violation(const goe_outline_t *o, const goe_affine_t *nearest,
 }
 
 /* Each is necessary for the margin to be violated: not passed on either side, and not out of the way along the course. */
-/*@ requires \valid_read(o) && \valid_read(course) && \valid_read(a);
-    requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 static float margin_violation(const goe_outline_t *o, const goe_course_t *course, const goe_approach_t *a,
                               float margin_m, goe_covariance_t covariance) {
     const float out = goe_affine_below(&a->ahead, margin_m, covariance);
@@ -56,8 +51,6 @@ static float both(float p, float q, float correlation) {
     return independent + share * ((p < q ? p : q) - independent);
 }
 
-/*@ requires \valid_read(o) && \valid_read(course) && \valid_read(a) && \valid_read(plan);
-    requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)) && \valid(hazard); */
 static void report(const goe_outline_t *o, const goe_course_t *course, const goe_approach_t *a, const goe_plan_t *plan,
                    goe_covariance_t covariance, goe_hazard_t *hazard) {
     const goe_affine_t *miss = largest(a);
@@ -95,7 +88,6 @@ float goe_violation_ahead_s(const goe_estimator_t *estimator, const goe_plan_t *
     return goe_larger(ahead_s < AHEAD_MAX_S ? ahead_s : AHEAD_MAX_S, relative->since_image_s);
 }
 
-/*@ requires \valid_read(estimator) && \valid_read(plan); */
 static float velocity_sd_m_s(const goe_estimator_t *estimator, const goe_plan_t *plan) {
     return plan->velocity_sd_m_s > 0.0f ? plan->velocity_sd_m_s : estimator->settings.navigation.velocity_bias_m_s;
 }
@@ -109,7 +101,6 @@ void goe_violation_add_plan(const goe_estimator_t *estimator, const goe_plan_t *
 }
 
 /* The obstacle from where the camera is now. */
-/*@ requires \valid_read(course) && \valid(outline); */
 static void fly_on(const goe_course_t *course, float s, goe_outline_t *outline) {
     outline->reference.x -= course->speed_m_s * s * course->ahead.x;
     outline->reference.z -= course->speed_m_s * s * course->ahead.z;

@@ -11,8 +11,6 @@
 #define FORWARD_MIN 0.05f /* third component of a unit ray in T: farther aside than 87 degrees nothing can be aligned */
 
 /* The points of an image that has a box. */
-/*@ requires \valid_read(camera) && \valid(view) && goe_view_is_open(view);
-    requires \valid(pixels + (0 .. GOE_FEATURES - 1)) && goe_faults_are_open(faults); */
 static void replace_points(const goe_camera_t *camera, goe_view_t *view, goe_pixel_t pixels[GOE_FEATURES],
                            goe_faults_t *faults) {
     memcpy(pixels, goe_image_pixels(view->image), GOE_FEATURES * sizeof pixels[0]);

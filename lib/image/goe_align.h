@@ -8,7 +8,6 @@
 /* Sets view->point, view->sides and view->seen from view->image and view->camera_to_trajectory. A box stands for left, right and
  * top. A feature that is not seen, or that meets
  * GOE_BEHIND_CAMERA or GOE_LENS_FAILED, is not usable. */
-/*@ requires \valid_read(camera) && \valid(view) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults);
 
 #endif

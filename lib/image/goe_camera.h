@@ -6,7 +6,6 @@
 #include "maths/goe_scalar.h"
 
 /* The camera of that number; null if there is none. */
-/*@ requires \valid_read(settings); */
 static inline const goe_camera_t *goe_camera_of(const goe_settings_t *settings, unsigned number) {
     const goe_camera_t *camera = &settings->camera;
 #if GOE_CAMERAS_MAX > 1
@@ -21,11 +20,9 @@ static inline const goe_camera_t *goe_camera_of(const goe_settings_t *settings, 
 }
 
 /* Camera -> body (FRD) of the mounting angles. */
-/*@ requires \valid_read(camera) && \valid(camera_to_body + (0 .. 8)); */
 void goe_camera_mounting(const goe_camera_t *camera, float camera_to_body[9]);
 
 /* Whether any distortion coefficient is not 0. */
-/*@ requires \valid_read(camera); */
 static inline bool goe_camera_distorts(const goe_camera_t *camera) {
     return ((goe_bits(camera->k1) | goe_bits(camera->k2) | goe_bits(camera->p1) | goe_bits(camera->p2) |
              goe_bits(camera->k3)) &
@@ -38,11 +35,9 @@ typedef struct {
     float xx, xy, yy; /* of x by x; of x by y, which is that of y by x; of y by y */
 } goe_distorted_t;
 
-/*@ requires \valid_read(camera); */
 goe_distorted_t goe_camera_distort(const goe_camera_t *camera, float x, float y);
 
 /* Inverts the lens model at the distorted ray (*ray_x, *ray_y, 1). False, with the ray untouched, if it cannot be. */
-/*@ requires \valid_read(camera) && \valid(ray_x) && \valid(ray_y); */
 bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y);
 
 #endif

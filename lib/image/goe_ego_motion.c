@@ -16,7 +16,6 @@
 #define LEVEL_NOSE_MIN 1.0e-3f   /* horizontal part of the nose's unit vector below which it has no heading */
 
 /* T's Z axis in (north, east): the set heading, or where the nose points. */
-/*@ requires \valid(motion) && \valid_read(settings) && \valid_read(body_to_ned + (0 .. 8)); */
 static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9]) {
     const float north = body_to_ned[0];
     const float east = body_to_ned[3];
@@ -45,8 +44,6 @@ float goe_motion_heading_deg(const goe_motion_t *motion) {
     return s >= 0.0f ? 180.0f - half_deg : -180.0f - half_deg;
 }
 
-/*@ requires \valid_read(camera) && \valid_read(pose) && \valid_read(body_to_ned + (0 .. 8));
-    requires \valid(position + (0 .. 2)); */
 static void camera_position(const goe_camera_t *camera, const goe_pose_t *pose, const float body_to_ned[9],
                             float position[3]) {
     float arm[3];
@@ -57,8 +54,6 @@ static void camera_position(const goe_camera_t *camera, const goe_pose_t *pose, 
 }
 
 /* An image that shows a feature fixes T and its origin; until one comes every image does, for as long. */
-/*@ requires \valid(motion) && \valid_read(settings) && \valid_read(body_to_ned + (0 .. 8));
-    requires \valid_read(position + (0 .. 2)); */
 static void begin_track(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9],
                         const float position[3]) {
     fix_heading(motion, settings, body_to_ned);
@@ -71,7 +66,6 @@ static void begin_track(goe_motion_t *motion, const goe_settings_t *settings, co
 /* jump_m: known jump of the autopilot's down, 0 if there is none. The given height and down place the ground. If the ground
  * stays, the height jumped with down, and the jump is taken off it from now on. If the ground jumps with down, the height did
  * not jump: it is a range finder's. The nearer of both counts. */
-/*@ requires \valid(motion) && \valid_read(pose); */
 static void follow_height(goe_motion_t *motion, const goe_pose_t *pose, float camera_down_m, float jump_m) {
     const float ground_m = pose->height_m + camera_down_m;
     const float step_m = ground_m - motion->ground_m;
@@ -84,8 +78,6 @@ static void follow_height(goe_motion_t *motion, const goe_pose_t *pose, float ca
 
 /* (NED -> T) (body -> NED) (camera -> body), column by column. Rows of NED -> T: X = (-sin, cos, 0), Y = (0, 0, 1),
  * Z = (cos, sin, 0): level, whatever the glide slope. */
-/*@ requires \valid_read(motion) && \valid_read(body_to_ned + (0 .. 8));
-    requires \valid(view) && goe_view_is_open(view); */
 static void turn_into_trajectory(const goe_motion_t *motion, const float body_to_ned[9], goe_view_t *view) {
     const float *b = body_to_ned;
     float *turned = view->camera_to_trajectory;
@@ -104,7 +96,6 @@ static void turn_into_trajectory(const goe_motion_t *motion, const float body_to
 
 #if GOE_BESIDE
 /* now = turn mark, in NED: the vector part of `turn` over its scalar part, which is half the angle. */
-/*@ requires \valid_read(now + (0 .. 3)) && \valid_read(mark + (0 .. 3)) && \valid(half_ned + (0 .. 2)); */
 static bool half_turn(const float now[4], const float mark[4], float half_ned[3]) {
     const float scalar = now[0] * mark[0] + now[1] * mark[1] + now[2] * mark[2] + now[3] * mark[3];
     const float north = now[1] * mark[0] - now[0] * mark[1] + now[3] * mark[2] - now[2] * mark[3];
@@ -119,7 +110,6 @@ static bool half_turn(const float now[4], const float mark[4], float half_ned[3]
     return true;
 }
 
-/*@ requires \valid(motion) && \valid_read(half_ned + (0 .. 2)); */
 static void turn_rate(goe_motion_t *motion, const float half_ned[3], float since_s) {
     const float c = motion->heading_cos;
     const float s = motion->heading_sin;
@@ -128,7 +118,6 @@ static void turn_rate(goe_motion_t *motion, const float half_ned[3], float since
     motion->rate_rad_s[2] = 2.0f * (c * half_ned[0] + s * half_ned[1]) / since_s;
 }
 
-/*@ requires \valid(motion) && \valid_read(attitude + (0 .. 3)) && \valid_read(body_m + (0 .. 1)); */
 static void set_mark(goe_motion_t *motion, const float attitude[4], const float body_m[2]) {
     memcpy(motion->mark_attitude, attitude, sizeof motion->mark_attitude);
     memcpy(motion->mark_m, body_m, sizeof motion->mark_m);
@@ -137,7 +126,6 @@ static void set_mark(goe_motion_t *motion, const float attitude[4], const float 
 
 /* The motion by the poses since the mark; body_m: of the vehicle, T axes, as the arms of two cameras differ. A known
  * jump of the autopilot's filter is not in them. first: no image before it fixed T. */
-/*@ requires \valid(motion) && \valid_read(attitude + (0 .. 3)) && \valid_read(body_m + (0 .. 1)); */
 static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2], bool first) {
     float half[3];
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);

@@ -7,21 +7,17 @@
 /* Takes the pose of view->image: fixes T and its origin up to the first image that shows a feature, compensates a reset of known
  * delta, and sets dx_m, dz_m (displacement of the camera since that image, T axes). view->camera and its rotation must be set;
  * view->camera_to_trajectory is set: the rotation of this image's rays into T. */
-/*@ requires \valid(motion) && \valid_read(settings) && \valid(view) && goe_view_is_open(view); */
 void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
 
 /* Of T's Z axis, clockwise from north, -180 to 180 degrees; 0 before the track's first image. */
-/*@ requires \valid_read(motion); */
 float goe_motion_heading_deg(const goe_motion_t *motion);
 
 /* Whether the autopilot's filter jumped since the image before. */
-/*@ requires \valid_read(motion) && \valid_read(pose); */
 static inline bool goe_motion_reset(const goe_motion_t *motion, const goe_pose_t *pose) {
     return motion->started && pose->reset_count != motion->reset_count;
 }
 
 /* (X, Z) in T, relative to T's origin, to north and east. */
-/*@ requires \valid_read(motion) && \valid(north_m) && \valid(east_m); */
 static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float z_m, float *north_m, float *east_m) {
     const float c = motion->heading_cos;
     const float s = motion->heading_sin;
@@ -30,14 +26,12 @@ static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float
 }
 
 /* A direction (X, Z) in T to (north, east). */
-/*@ requires \valid_read(motion) && \valid_read(axis + (0 .. 1)) && \valid(axis_ne + (0 .. 1)); */
 static inline void goe_motion_turn(const goe_motion_t *motion, const float axis[2], float axis_ne[2]) {
     axis_ne[0] = motion->heading_cos * axis[1] - motion->heading_sin * axis[0];
     axis_ne[1] = motion->heading_sin * axis[1] + motion->heading_cos * axis[0];
 }
 
 /* The estimate's reference point relative to the camera at the latest image, if it is known. */
-/*@ requires \valid_read(motion) && \valid(estimate); */
 static inline void goe_motion_relate(const goe_motion_t *motion, goe_estimate_t *estimate) {
     if ((estimate->valid & GOE_HAS_POSITION) != 0u) {
         estimate->x_m = estimate->x0_m - motion->dx_m;

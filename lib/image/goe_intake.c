@@ -14,14 +14,12 @@
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
-/*@ requires \valid_read(pixel); */
 static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
     const uint32_t largest = goe_larger_bits(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px));
     return goe_is_set(&pixel->seen) ? goe_larger_bits(so_far, largest) : so_far;
 }
 
 /* Written out: this is done for every image, by every method. */
-/*@ requires \valid_read(image); */
 static uint32_t largest_pixel(const goe_image_t *image) {
     uint32_t largest = with_pixel(0u, &image->left);
     largest = with_pixel(largest, &image->right);
@@ -33,12 +31,10 @@ static uint32_t largest_pixel(const goe_image_t *image) {
 
 GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_is_checked);
 
-/*@ requires \valid_read(box); */
 static uint32_t with_side(uint32_t so_far, const goe_box_t *box, unsigned side, float px) {
     return (box->seen & side) != 0 ? goe_larger_bits(so_far, goe_magnitude(px)) : so_far;
 }
 
-/*@ requires \valid_read(box); */
 static uint32_t largest_side(const goe_box_t *box) {
     uint32_t largest = with_side(0u, box, GOE_SEES_LEFT, box->left_px);
     largest = with_side(largest, box, GOE_SEES_TOP, box->top_px);
@@ -47,7 +43,6 @@ static uint32_t largest_side(const goe_box_t *box) {
 }
 
 /* Not finite outranks out of range, which outranks a bad attitude. */
-/*@ requires \valid_read(image); */
 static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {
     const goe_pose_t *pose = &image->pose;
     const uint32_t height = goe_magnitude(pose->height_m);
@@ -67,7 +62,6 @@ static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, b
     return within ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
-/*@ requires \valid_read(q + (0 .. 3)); */
 static bool is_unit(const float q[4], uint32_t largest) {
     if (largest > goe_magnitude(ATTITUDE_MAX)) {
         return false;

@@ -5,11 +5,9 @@
 #include "goe.h"
 
 /* GOE_OK, or why the whole image is refused: GOE_NOT_FINITE, GOE_OUT_OF_RANGE, GOE_BAD_TIME, GOE_BAD_ATTITUDE. */
-/*@ requires \valid_read(motion) && \valid_read(image); */
 goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *image);
 
 /* The same of what only the refined method reads: GOE_OK, GOE_NOT_FINITE or GOE_OUT_OF_RANGE. */
-/*@ requires \valid_read(noise); */
 goe_status_t goe_intake_check_noise(const goe_image_noise_t *noise);
 
 #endif

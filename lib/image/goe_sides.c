@@ -18,7 +18,6 @@ static bool is_near(float px, float size_px, float distance_px) {
     return size_px > 0.0f && (px < distance_px || px > size_px - 1.0f - distance_px);
 }
 
-/*@ requires \valid_read(camera) && \valid_read(sides); */
 static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides, float share) {
     const float distance_px = share * camera->width_px;
     unsigned set = 0;
@@ -58,7 +57,6 @@ typedef struct {
     float x, y, half_width, half_height, down_x, down_y;
 } box_frame_t;
 
-/*@ requires goe_view_is_open(view) && \valid(frame); */
 static bool find_down(const goe_view_t *view, box_frame_t *frame) {
     const float *r = view->camera_to_trajectory;
     const float x = r[3] - frame->x * r[5];
@@ -73,7 +71,6 @@ static bool find_down(const goe_view_t *view, box_frame_t *frame) {
 }
 
 /* An upright box about a leaning rectangle: half width = w c + h s, half height = w s + h c. */
-/*@ requires \valid(frame); */
 static bool turn_back(box_frame_t *frame, bool has_height) {
     const float c = goe_absolute(frame->down_y);
     const float s = goe_absolute(frame->down_x);
@@ -90,7 +87,6 @@ static bool turn_back(box_frame_t *frame, bool has_height) {
     return frame->half_width > 0.0f && frame->half_height > 0.0f;
 }
 
-/*@ requires \valid_read(camera); */
 static goe_pixel_t pixel_at(const goe_camera_t *camera, float x, float y) {
     const goe_pixel_t pixel = {x * camera->fx_px + camera->cx_px, y * camera->fy_px + camera->cy_px, true};
     return pixel;

@@ -34,7 +34,6 @@ typedef struct {
 } goe_sides_t;
 
 /* Whether all of these sides (GOE_SEES_...) are measured. */
-/*@ requires \valid_read(sides); */
 static inline bool goe_sides_see(const goe_sides_t *sides, unsigned set) { return (sides->usable & set) == set; }
 
 typedef struct {
@@ -61,7 +60,6 @@ GOE_STATIC_ASSERT(GOE_PIXEL_LIES_AT(right, GOE_POINT_RIGHT) && GOE_PIXEL_LIES_AT
                   the_pixels_of_an_image_follow_each_other);
 
 /* The pixels of an image, by goe_feature_t. */
-/*@ requires \valid_read(image); */
 static inline const goe_pixel_t *goe_image_pixels(const goe_image_t *image) {
     return (const goe_pixel_t *)(const void *)((const unsigned char *)image + offsetof(goe_image_t, left));
 }

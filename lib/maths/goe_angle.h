@@ -9,7 +9,6 @@
 float goe_arctan_rad(float y, float x);
 
 /* Sine and cosine of an angle in degrees; one beyond 1e6, or not finite, counts as 0. Error at most 2e-7 for |deg| <= 720. */
-/*@ requires \valid(sine) && \valid(cosine); */
 void goe_sincos_deg(float angle_deg, float *sine, float *cosine);
 
 /* The angle of the same undirected line in (-90, 90] degrees, for -270 < deg <= 270. */

@@ -3,7 +3,6 @@
 #define GOE_ROTATION_H
 
 /* Body -> NED of a Hamilton quaternion (w, x, y, z) of any non-zero norm. */
-/*@ requires \valid_read(q + (0 .. 3)) && \valid(r + (0 .. 8)); */
 static inline void goe_rotation_from_quaternion(const float q[4], float r[9]) {
     const float w = q[0];
     const float x = q[1];
@@ -23,7 +22,6 @@ static inline void goe_rotation_from_quaternion(const float q[4], float r[9]) {
 }
 
 /* Rotation by yaw about z, then pitch about the new y, then roll about the newest x, in degrees. */
-/*@ requires \valid(r + (0 .. 8)); */
 void goe_rotation_from_euler(float yaw_deg, float pitch_deg, float roll_deg, float r[9]);
 
 /* turned = r v; turned may not overlap v. */

@@ -16,7 +16,6 @@ static inline uint32_t goe_bits(float x) {
 }
 
 /* The same of one that lies in memory, without a detour by a register of floats. */
-/*@ requires \valid_read(at); */
 static inline uint32_t goe_bits_at(const float *at) {
     uint32_t bits;
     memcpy(&bits, at, sizeof bits);
@@ -30,7 +29,6 @@ static inline uint32_t goe_magnitude(float x) { return goe_bits(x) & GOE_MAGNITU
 static inline uint32_t goe_larger_bits(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
 /* The largest magnitude of a vector's elements. */
-/*@ requires \valid_read(v + (0 .. 2)); */
 static inline uint32_t goe_largest_of_three(const float v[3]) {
     return goe_larger_bits(goe_larger_bits(goe_magnitude(v[0]), goe_magnitude(v[1])), goe_magnitude(v[2]));
 }
@@ -53,7 +51,6 @@ static inline bool goe_within(float x, float limit) { return goe_magnitude(x) <=
 static inline float goe_larger(float a, float b) { return a > b ? a : b; }
 
 /* Whether a truth value is set that others wrote. One that is neither 0 nor 1 counts as set; as a bool it would be undefined. */
-/*@ requires \valid_read(truth); */
 static inline bool goe_is_set(const bool *truth) { return *(const unsigned char *)truth != 0u; }
 
 static inline float goe_square(float x) { return x * x; }

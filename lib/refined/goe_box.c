@@ -90,7 +90,6 @@ void goe_box_enter(goe_filter_t *filter, goe_phase_t phase) {
 
 /* ------------------------------------------------------------------------------------------------------------ outline -- */
 
-/*@ requires \valid(o); */
 static void place_corners(outline_t *o) {
     const goe_xz_t side = o->edges.side.along;
     const goe_xz_t front = o->edges.front.along;
@@ -100,7 +99,6 @@ static void place_corners(outline_t *o) {
     }
 }
 
-/*@ requires goe_observation_is_open(obs) && \valid(o); */
 static void describe(const goe_observation_t *obs, outline_t *o) {
     const float *x = obs->state;
     goe_box_edges_t *e = &o->edges;
@@ -146,7 +144,6 @@ static float misfit(const goe_observation_t *obs, const outline_t *o, const size
 }
 
 /* The near corner is seen, or both outer ones are. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid(corner + (0 .. 2)); */
 static void visible_corners(const goe_observation_t *obs, const outline_t *o, size_t corner[3]) {
     const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
     const size_t of_two = o->front ? (o->right ? FRONT_LEFT : BACK_LEFT) : (o->right ? FRONT_RIGHT : BACK_RIGHT);
@@ -164,7 +161,6 @@ static void visible_corners(const goe_observation_t *obs, const outline_t *o, si
 }
 
 /* Without base corners: those of least and greatest X/Z. */
-/*@ requires \valid_read(o) && \valid(corner + (0 .. 2)); */
 static void widest_corners(const outline_t *o, size_t corner[3]) {
     float least = 0.0f;
     float most = 0.0f;
@@ -244,14 +240,12 @@ static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe
 }
 
 /* How far down in the raw image a place on the roof is, focal lengths, but for the lens. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(at); */
 static float down_of(const goe_observation_t *obs, const goe_xz_t *at, float top) {
     const float *r = obs->camera_to_axes;
     return (r[1] * at->x + r[4] * top + r[7] * at->z) / (r[2] * at->x + r[5] * top + r[8] * at->z);
 }
 
 /* The corner of the roof that is highest in the raw image: seen from above a far one, and under a roll one that stands aside. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(o); */
 static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
     size_t highest = 0;
     float least = down_of(obs, &o->corner[0], o->top);
@@ -266,7 +260,6 @@ static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
 }
 
 /* (R13). */
-/*@ requires goe_observation_is_open(obs) && \valid_read(o); */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
     if (obs->settings->refined.top_is_highest) {
         return highest_corner(obs, o);
@@ -274,7 +267,6 @@ static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
     return o->right ? (o->far_half ? BACK_RIGHT : FRONT_RIGHT) : (o->far_half ? BACK_LEFT : FRONT_LEFT);
 }
 
-/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows); */
 static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t *rows) {
     goe_gradient_t g;
     const size_t corner = top_corner(obs, o);
@@ -352,7 +344,6 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 /* ------------------------------------------------------------------------------------------------------------- upkeep -- */
 
 /* Whether the side's depth, the positive root of (R9), is less than that. */
-/*@ requires \valid_read(x + (0 .. GOE_STATES - 1)); */
 static bool side_is_shorter(const float x[GOE_STATES], float depth) {
     return depth * (depth - x[GOE_DEPTH_DIFFERENCE]) > goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X];
 }
@@ -372,7 +363,6 @@ void goe_box_clip(goe_filter_t *filter) {
 
 /* While one face is visible the other edge's length is unobservable; if it were free, relinearisation would pull it to zero.
  * So it is held until its face comes into view. */
-/*@ requires \valid(filter); */
 static void free_length(goe_filter_t *filter) {
     goe_box_edges_t edges;
     goe_box_edges(filter->state, &edges);
@@ -385,7 +375,6 @@ static void free_length(goe_filter_t *filter) {
 }
 
 /* Front and side with each other's names. Doing it again undoes it. */
-/*@ requires \valid(x + (0 .. GOE_STATES - 1)); */
 static void exchange_state(float x[GOE_STATES]) {
     const float sign = sign_of(x[GOE_SIDE_X]);
     const float scale = 1.0f / (1.0f + 0.5f * x[GOE_DEPTH_DIFFERENCE]);
@@ -400,7 +389,6 @@ static void exchange_state(float x[GOE_STATES]) {
 }
 
 /* (R21): the derivative of the old states by the new ones is that of the exchange back. */
-/*@ requires \valid(filter) && \valid_read(was + (0 .. GOE_STATES - 1)); */
 static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     goe_substitution_t old;
     const float *is = filter->state;
@@ -422,7 +410,6 @@ static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     goe_srif_substitute(&filter->root, &old, &filter->rows);
 }
 
-/*@ requires \valid(filter); */
 static void exchange_names(goe_filter_t *filter) {
     float was[GOE_STATES];
     memcpy(was, filter->state, sizeof was);
@@ -458,7 +445,6 @@ void goe_box_name(goe_filter_t *filter) {
 }
 
 /* The reference point, and across fronts and along sides from there. */
-/*@ requires \valid_read(x + (0 .. GOE_STATES - 1)) && \valid_read(e) && \valid(spot); */
 static void find_spot(const float x[GOE_STATES], const goe_box_edges_t *e, float across, float along,
                       goe_spot_t *spot) {
     spot->at.x = x[GOE_BEARING] + across * e->front.along.x + along * e->side.along.x;
@@ -484,7 +470,6 @@ static void set_edge(goe_linear_t *length, const goe_box_edge_t *edge, goe_state
 }
 
 /* Both edges turn together. */
-/*@ requires \valid(orientation) && \valid_read(side); */
 static void set_orientation(goe_linear_t *orientation, const goe_box_edge_t *side, goe_xz_t length_axis) {
     const float scale = 1.0f / (side->length * side->length);
     const float by_depth = -side->along.x * scale;
@@ -495,7 +480,6 @@ static void set_orientation(goe_linear_t *orientation, const goe_box_edge_t *sid
     orientation->by[GOE_SIDE_X] += side->along.z * scale;
 }
 
-/*@ requires \valid_read(filter) && \valid_read(e); */
 static float early_factor(const goe_filter_t *filter, const goe_box_edges_t *e) {
     const float relative = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE) / goe_square(e->sum);
     return 1.0f + EARLY * (relative < EARLY_MAX ? relative : EARLY_MAX);
@@ -535,7 +519,6 @@ void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape) {
 }
 
 /* Of the side, seen at a small angle, only the product of length and angle shows. */
-/*@ requires \valid_read(filter); */
 static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
     const float *x = filter->state;
     goe_box_edges_t e;

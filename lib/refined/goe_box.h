@@ -20,11 +20,9 @@ typedef struct {
     float sign;                 /* of side.along.x: the front comes nearer to the right (+) or to the left (-) */
 } goe_box_edges_t;
 
-/*@ requires \valid_read(state + (0 .. GOE_STATES - 1)) && \valid(edges); */
 void goe_box_edges(const float state[GOE_STATES], goe_box_edges_t *edges);
 
 /* Enters one of the phases of a box, whose edges have no names yet. */
-/*@ requires \valid(filter); */
 void goe_box_enter(goe_filter_t *filter, goe_phase_t phase);
 
 /* Appends the rows of a box. */
@@ -33,23 +31,18 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After an update: keeps the extents where the next image can be linearised, and names the edges: front and side keep their
  * names until the side lies clearly across T's Z. */
-/*@ requires \valid(filter); */
 void goe_box_clip(goe_filter_t *filter);
-/*@ requires \valid(filter); */
 void goe_box_name(goe_filter_t *filter);
 
 /* Frees the length when a second face comes into view, and exchanges front and side if the side lies across. Returns whether
  * there was a change; the image that brings it is not used for more. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Quantities. Orientation, width and length depend on the square of the corner: while GOE_DEPTH_DIFFERENCE is not known well
  * their true error is larger than to first order, by goe_shape_t.early, (R24). */
-/*@ requires \valid_read(filter) && \valid(shape); */
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 /* (R42): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
-/*@ requires \valid_read(filter) && \valid(shape); */
 void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape);
 
 /* Variance of orientation (rad^2), width and length (m^2) beyond that of the state, of a box that was found by its outline:

@@ -37,7 +37,6 @@
 
 /* Into the state's scale; reference: middle of the front edge from the camera, in the footprint's axes. False if it is out of
  * bounds. */
-/*@ requires goe_observation_is_open(obs) && \valid(box); */
 static bool scale(const goe_observation_t *obs, goe_xz_t reference, float width_m, float length_m, float range_m,
                   goe_footprint_t *box) {
     const float c = box->turn_cos;
@@ -53,7 +52,6 @@ static bool scale(const goe_observation_t *obs, goe_xz_t reference, float width_
     return true;
 }
 
-/*@ requires goe_observation_is_open(obs); */
 static float range_of(const goe_observation_t *obs) { return 1.0f / obs->state[GOE_INVERSE_RANGE] - obs->camera_m.z; }
 
 /* ----------------------------------------------------------------------------------------------------------- two faces -- */
@@ -94,7 +92,6 @@ typedef struct {
 } face_t;
 
 /* False if an end lies in no possible place. */
-/*@ requires \valid_read(point) && \valid_read(face) && \valid(end); */
 static bool place_end(const goe_point_t *point, float mean_y, const face_t *face, goe_xz_t *end) {
     const float nearness = 1.0f / face->range_m;
     const float inverse = nearness + (point->y - mean_y) / face->height_m;
@@ -106,7 +103,6 @@ static bool place_end(const goe_point_t *point, float mean_y, const face_t *face
     return true;
 }
 
-/*@ requires goe_observation_is_open(obs) && \valid(face); */
 static bool place_face(const goe_observation_t *obs, face_t *face) {
     const goe_point_t left = goe_observation_unbiased(obs, GOE_POINT_BASE_LEFT);
     const goe_point_t right = goe_observation_unbiased(obs, GOE_POINT_BASE_RIGHT);
@@ -115,7 +111,6 @@ static bool place_face(const goe_observation_t *obs, face_t *face) {
 }
 
 /* One sigma of the orientation by an edge, rad. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(face); */
 static float edge_sigma(const goe_observation_t *obs, const face_t *face, float x, float z) {
     const float pixel = goe_observation_pixel(obs) * POINT_NOISE;
     const float deep = face->range_m * face->range_m / face->height_m * pixel;
@@ -128,7 +123,6 @@ static float edge_sigma(const goe_observation_t *obs, const face_t *face, float 
 }
 
 /* An edge that lies more across than along is the front, any other the side. */
-/*@ requires \valid_read(face) && \valid(box); */
 static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m, goe_footprint_t *box) {
     const bool front = goe_absolute(x) > goe_absolute(z);
     const float across = front ? -z : x;
@@ -150,7 +144,6 @@ static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m,
 }
 
 /* How far the foot of the perpendicular from the camera lies beyond the ends, rad. */
-/*@ requires \valid_read(face); */
 static float beyond(const face_t *face, float x, float z, float size_m) {
     const float mx = 0.5f * (face->left.x + face->right.x);
     const float mz = 0.5f * (face->left.z + face->right.z);
@@ -191,7 +184,6 @@ static float difference_rad(float a, float b) {
 }
 
 /* One image alone may be lucky. */
-/*@ requires \valid(filter) && \valid_read(box); */
 static bool one_face_agrees(goe_filter_t *filter, const goe_footprint_t *box) {
     const float d = difference_rad(box->orientation_rad, filter->candidate.extent[0]);
     const bool alone = box->beyond_rad < box->sigma_rad; /* otherwise a second face would show */
@@ -203,7 +195,6 @@ static bool one_face_agrees(goe_filter_t *filter, const goe_footprint_t *box) {
 }
 
 /* An outlier must not become the start, and range and depth multiply in the image: the range must be known. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs) && \valid_read(box); */
 static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, const goe_footprint_t *box) {
     const float q = filter->state[GOE_INVERSE_RANGE];
     const float most = RANGE_SHARE * q * goe_observation_reference(obs).z;
@@ -220,7 +211,6 @@ static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, 
     return filter->candidate.agreeing >= TWO_FACES_IMAGES;
 }
 
-/*@ requires \valid(filter) && goe_observation_is_open(obs) && \valid(box); */
 static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_footprint_t *box) {
     const bool both = obs->point[GOE_POINT_BASE_NEAR].usable;
     if (!both && filter->candidate.near_images > 0) {
@@ -241,7 +231,6 @@ static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_foo
 
 /* GOE_BEARING and GOE_INVERSE_RANGE of a covariance, about axes turned by the angle of c, s:
  * a' = (a c - s) m, q' = q m, m = 1/(a s + c). */
-/*@ requires \valid_read(x + (0 .. GOE_STATES - 1)) && \valid(covariance + (0 .. GOE_KEPT - 1)); */
 static void turn_covariance(const float x[GOE_STATES], float c, float s, float covariance[GOE_KEPT][GOE_KEPT]) {
     const float m = 1.0f / (x[GOE_BEARING] * s + c);
     const float shear = x[GOE_INVERSE_RANGE] * s * m;
@@ -259,7 +248,6 @@ static void turn_covariance(const float x[GOE_STATES], float c, float s, float c
 }
 
 /* GOE_GROUND is counted in another Z0. */
-/*@ requires \valid(covariance + (0 .. GOE_KEPT - 1)); */
 static void scale_ground(float scale, float covariance[GOE_KEPT][GOE_KEPT]) {
     for (size_t i = 0; i < GOE_GROUND; i++) {
         covariance[i][GOE_GROUND] *= scale;
@@ -272,7 +260,6 @@ static void scale_ground(float scale, float covariance[GOE_KEPT][GOE_KEPT]) {
 
 /* From a disc to the box of the footprint. The nuisances and the range keep their covariance; the reference moves by up to
  * the box's size, and the disc was only a stand-in. both: two faces are seen. */
-/*@ requires \valid(filter) && \valid_read(box); */
 static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool both) {
     float c[GOE_KEPT][GOE_KEPT];
     float *x = filter->state;

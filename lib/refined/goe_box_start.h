@@ -18,19 +18,16 @@ typedef struct {
 /* From the lateral extents of two faces, with the depth of both taken as the same: in the axes of the line of sight to the
  * near corner, (R19). The range is the state's. False if a corner is not seen, or a face is too narrow to stand out of the
  * noise. */
-/*@ requires goe_observation_is_open(obs) && \valid(box); */
 bool goe_footprint_two_faces(const goe_observation_t *obs, goe_footprint_t *box);
 
 /* From the direction of the one face that is seen, which becomes the front or the side, whichever it is nearer to; the
  * other extent is guessed, (R20). The range is the state's, the corners' y give differences: the pitch bias drops out.
  * False if the image does not show it: no two outer base corners, corners in no possible place, or orientation known worse
  * than to 0.2 rad. */
-/*@ requires goe_observation_is_open(obs) && \valid(box); */
 bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box);
 
 /* Of a disc or a chord: becomes a box when two images agree on two faces and the range is known, or three on the direction
  * of one. Returns whether it did; the image that brings it is not used for more. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 bool goe_box_start(goe_filter_t *filter, const goe_observation_t *obs);
 
 #endif

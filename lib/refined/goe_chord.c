@@ -35,13 +35,11 @@
 #define ZETA_MIN 0.3f
 #define SIGMA_MIN 1.0e-6f
 
-/*@ requires \valid_read(x + (0 .. GOE_STATES - 1)); */
 static float chord_length(const float x[GOE_STATES]) {
     return sqrtf(goe_square(x[GOE_SIDE_X]) + goe_square(x[GOE_FRONT_X]));
 }
 
 /* Aligned y of the top over the chord's middle. */
-/*@ requires goe_observation_is_open(obs); */
 static float top_y(const goe_observation_t *obs) {
     return goe_observation_roof(obs) / goe_larger(goe_observation_reference(obs).z, AHEAD_TINY);
 }
@@ -54,7 +52,6 @@ static void inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) 
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
 /* (R8): an end of the chord, from the camera now, units of Z0. side: of the chord's middle, -1/2 left, +1/2 right. */
-/*@ requires goe_observation_is_open(obs); */
 static goe_xz_t end_of(const goe_observation_t *obs, float side) {
     const goe_xz_t middle = goe_observation_reference(obs);
     const goe_xz_t end = {middle.x + side * obs->state[GOE_FRONT_X],
@@ -62,7 +59,6 @@ static goe_xz_t end_of(const goe_observation_t *obs, float side) {
     return end;
 }
 
-/*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs) && \valid_read(g); */
 static void set_end(float by[GOE_UNKNOWNS], const goe_observation_t *obs, float side, const goe_gradient_t *g) {
     goe_rows_place(by, obs, g->x, g->z);
     by[GOE_SIDE_X] = side * g->z;
@@ -81,7 +77,6 @@ static void add_end(const goe_observation_t *obs, goe_feature_t feature, float s
 }
 
 /* Over the nearer end; seen from above the highest in the image is over the farther one. */
-/*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows); */
 static void add_top(const goe_observation_t *obs, goe_rows_t *rows) {
     goe_gradient_t g;
     const goe_point_t *left = &obs->point[GOE_POINT_LEFT];
@@ -221,7 +216,6 @@ static bool find_corner(const goe_observation_t *obs, goe_feature_t feature, goe
 }
 
 /* The front is the edge that lies more across. */
-/*@ requires \valid_read(x + (0 .. GOE_STATES - 1)); */
 static faces_t faces_at(const float x[GOE_STATES], goe_xz_t corner) {
     const goe_xz_t half = {0.5f * x[GOE_FRONT_X], 0.5f * x[GOE_SIDE_X]};
     const goe_xz_t from_left = {corner.x + half.x, corner.z + half.z};
@@ -243,7 +237,6 @@ static faces_t faces_at(const float x[GOE_STATES], goe_xz_t corner) {
 }
 
 /* False if these are no faces of a box. */
-/*@ requires \valid_read(faces) && \valid(x + (0 .. GOE_STATES - 1)); */
 static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
     const float zeta = 1.0f + faces->shift.z;
     if (!(zeta >= ZETA_MIN) || !(faces->front.x > 0.0f) || !(faces->side.z > 0.0f)) {
@@ -262,7 +255,6 @@ static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
 
 /* (R21): derivatives of the chord by the box. The chord's middle lies half a side behind that of the front; its idle state stands
  * for the corner's place on the circle: twice the angle between chord and front, tan = side over front. */
-/*@ requires \valid_read(was + (0 .. GOE_STATES - 1)) && \valid_read(is + (0 .. GOE_STATES - 1)) && \valid(old); */
 static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES], float side_sign,
                           goe_substitution_t *old) {
     goe_box_edges_t box;
@@ -289,7 +281,6 @@ static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES
     old->by[GOE_OF_TOP][GOE_OF_TOP] = scale;
 }
 
-/*@ requires \valid(filter) && \valid_read(was + (0 .. GOE_STATES - 1)); */
 static void become_box(goe_filter_t *filter, const float was[GOE_STATES], float side_sign, float top) {
     goe_substitution_t old;
     const float length = chord_length(was);
@@ -325,7 +316,6 @@ static bool turn_face_away(goe_filter_t *filter, const goe_observation_t *obs, g
     return true;
 }
 
-/*@ requires \valid(filter); */
 static void learn_anew(goe_filter_t *filter) {
     const float sigma = END_FREEDOM * chord_length(filter->state);
     inflate(filter, GOE_SIDE_X, sigma);

@@ -13,16 +13,13 @@
 /* Both return whether there was a change; the image that brings it is not used for more.
  *
  * Of a disc: takes it for a chord if that is clear. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Of a chord: when one of its ends has left the chord it learns that end anew (a face came into view) or becomes a box (a
  * face turned away). */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Before the rows of an image: the roof's nearest corner may stand before the chord, and must not give the range. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 void goe_chord_free_top(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Appends the rows of a chord. */
@@ -30,14 +27,11 @@ void goe_chord_free_top(goe_filter_t *filter, const goe_observation_t *obs);
 void goe_chord_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After the gate: keeps in mind by how much the ends leave the chord. */
-/*@ requires \valid(filter) && \valid_read(verdict); */
 void goe_chord_follow(goe_filter_t *filter, const goe_verdict_t *verdict);
 
 /* Whether an end is leaving the chord, so that its refusal says nothing against the state. */
-/*@ requires \valid_read(filter); */
 bool goe_chord_is_leaving(const goe_filter_t *filter);
 
-/*@ requires \valid_read(filter) && \valid(shape); */
 void goe_chord_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 #endif

@@ -41,7 +41,6 @@ typedef struct {
     float sine, cosine; /* of half the angle that the disc covers */
 } circle_t;
 
-/*@ requires goe_observation_is_open(obs) && \valid(o); */
 static bool describe(const goe_observation_t *obs, circle_t *o) {
     o->center = goe_observation_reference(obs);
     if (!(o->center.z >= AHEAD_MIN)) {
@@ -57,7 +56,6 @@ static bool describe(const goe_observation_t *obs, circle_t *o) {
 }
 
 /* Which features give the width; false if none do. */
-/*@ requires goe_observation_is_open(obs) && \valid(left) && \valid(right); */
 static bool outline_features(const goe_observation_t *obs, goe_feature_t *left, goe_feature_t *right) {
     const bool silhouette = obs->point[GOE_POINT_LEFT].usable && obs->point[GOE_POINT_RIGHT].usable;
     *left = silhouette || !obs->base ? GOE_POINT_LEFT : GOE_POINT_BASE_LEFT;
@@ -94,7 +92,6 @@ static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_fea
 }
 
 /* (R6): the nearest point of the upper rim; seen from above the highest in the image is the farthest. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows); */
 static void add_top(const goe_observation_t *obs, const circle_t *o, float more, goe_rows_t *rows) {
     goe_gradient_t g;
     const float y = goe_observation_roof(obs);
@@ -218,7 +215,6 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 /* -------------------------------------------------------------------------------------------------------------- start -- */
 
 /* (R18): flat ground, if the base lies clearly below the horizon; otherwise the typical size. */
-/*@ requires goe_observation_is_open(obs); */
 static float first_range_m(const goe_observation_t *obs, float size) {
     const goe_navigation_t *navigation = &obs->settings->navigation;
     if (obs->base && obs->height_m > 0.0f) {
@@ -232,7 +228,6 @@ static float first_range_m(const goe_observation_t *obs, float size) {
     return obs->settings->refined.typical_size_m / size;
 }
 
-/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 static void set_first_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
     const float bias = settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG;
@@ -287,7 +282,6 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
 /* Of the skew, on which the condition is. */
-/*@ requires \valid_read(filter); */
 static float skew_variance_of(const goe_filter_t *filter) {
     return goe_larger(goe_filter_variance(filter, GOE_SIDE_X), VARIANCE_MIN);
 }
@@ -297,7 +291,6 @@ bool goe_disc_is_skewed(const goe_filter_t *filter) {
 }
 
 /* (R7): conditions the state on zero skew, which is what a disc has. */
-/*@ requires \valid_read(filter) && \valid(x + (0 .. GOE_STATES - 1)); */
 static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
     const float *v = filter->inverse.element;
     const float share = filter->state[GOE_SIDE_X] / skew_variance_of(filter);
@@ -312,7 +305,6 @@ static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
 
 /* (R39): the probability that it is no disc, by the skew, which a disc has none of, and which anything else shows sooner or later
  * as the line of sight turns. */
-/*@ requires \valid_read(filter); */
 static float unlikeness(const goe_filter_t *filter, float variance, float turned) {
     const float width2 = goe_square(filter->state[GOE_FRONT_X]);
     const float chance = variance / (variance + goe_square(SKEW_SHARE) * width2);

@@ -6,7 +6,6 @@
 #include "refined/goe_shape.h"
 
 /* First guess: state and root from one image. False if it shows no width, or the guess is out of range. */
-/*@ requires goe_observation_is_open(obs) && \valid(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
 
 /* Appends the rows of a disc. If base corners are seen, what is taken for a disc is a box whose orientation is not known
@@ -15,11 +14,9 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
 void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
 /* Whether the ends of what is taken for a disc lie at different depths: it is no disc. */
-/*@ requires \valid_read(filter); */
 bool goe_disc_is_skewed(const goe_filter_t *filter);
 
 /* Quantities, under the condition that the disc has no skew (GOE_SIDE_X = 0). */
-/*@ requires \valid_read(filter) && \valid(shape); */
 void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 /* What the condition leaves open: the obstacle may be no disc. */
@@ -29,12 +26,10 @@ typedef struct {
 } goe_disc_doubt_t;
 
 /* (R40), of the latest image; the shape's place and width learn of it. asked: the settings ask for a disc, and it is one. */
-/*@ requires \valid_read(filter) && \valid(shape); */
 goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t camera_m, goe_shape_t *shape);
 
 /* The same condition on a derivative in terms of independent unit errors (goe_srif_project). Returns what it moves the quantity
  * by, one sigma, if the obstacle is no disc. */
-/*@ requires \valid_read(filter) && \valid_read(doubt) && \valid(projected + (0 .. GOE_STATES - 1)); */
 float goe_disc_condition(const goe_filter_t *filter, const goe_disc_doubt_t *doubt, float projected[GOE_STATES]);
 
 #endif

@@ -73,25 +73,19 @@ typedef enum {
     GOE_PHASE_BOX_OUTLINE /* a box by its silhouette alone */
 } goe_phase_t;
 
-/*@ requires \valid_read(filter); */
 static inline goe_phase_t goe_filter_phase(const goe_filter_t *filter) { return (goe_phase_t)filter->phase; }
-/*@ requires \valid_read(filter); */
 static inline bool goe_filter_is_box(const goe_filter_t *filter) { return filter->phase >= GOE_PHASE_BOX_FACE; }
 
 /* Whether the phase is one that the settings let be reported: a forced line is a box, and no disc before it. */
-/*@ requires \valid_read(filter) && \valid_read(settings); */
 bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings);
 
 /* Forgets the track. */
-/*@ requires \valid(filter); */
 void goe_filter_clear(goe_filter_t *filter);
 
 /* Enters a phase: what counts images of the phase begins anew. */
-/*@ requires \valid(filter); */
 void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase);
 
 /* Images in a row; saturates. Returns the new count. */
-/*@ requires \valid(count); */
 static inline unsigned goe_count_image(uint8_t *count) {
     *count = (uint8_t)(*count < UINT8_MAX ? *count + 1 : UINT8_MAX);
     return *count;
@@ -100,11 +94,9 @@ static inline unsigned goe_count_image(uint8_t *count) {
 /* ------------------------------------------------------------------------------------------------ root and inverse -- */
 
 /* Declares the inverse up to date: drift_rad2 and walk2, which stand beside it, begin at 0 again. */
-/*@ requires \valid(filter); */
 void goe_filter_settle(goe_filter_t *filter);
 
 /* Brings the inverse up to date with R. */
-/*@ requires \valid(filter); */
 void goe_filter_invert(goe_filter_t *filter);
 
 /* Adds the variance sigma^2 to a state; sigma > 0. */
@@ -119,36 +111,29 @@ static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_in
 /* ------------------------------------------------------------------------------------------------------------ axes -- */
 
 /* The state's axes become T's, with their origin at the camera now. */
-/*@ requires \valid(filter) && \valid_read(motion); */
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);
 
 /* The camera since the filter's start in the latest image that gave rows, the state's axes, m: what images have shown, they have shown
  * up to there. */
-/*@ requires \valid_read(filter); */
 static inline goe_xz_t goe_filter_measured(const goe_filter_t *filter) {
     const goe_xz_t camera_m = {filter->measured.dx_m, filter->measured.dz_m};
     return camera_m;
 }
 
 /* Seconds since the filter's start; at most 4000. */
-/*@ requires \valid_read(filter) && \valid_read(motion); */
 float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motion);
 
 /* goe_filter_camera(): the camera since the filter's start, the state's axes, m: as an obstacle sees it that moves, and freed of
  * what the poses are late by. */
 #if GOE_BESIDE
-/*@ requires \valid_read(filter) && \valid_read(motion); */
 goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion);
 
 /* The own velocity less that at the filter's start, m/s, the state's axes. */
-/*@ requires \valid_read(filter) && \valid_read(motion); */
 goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion);
 
 /* Takes the own velocity at the filter's start, as soon as it is known. */
-/*@ requires \valid(filter) && \valid_read(motion); */
 void goe_filter_pace(goe_filter_t *filter, const goe_motion_t *motion);
 #else
-/*@ requires \valid_read(filter) && \valid_read(motion); */
 static inline goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion) {
     const goe_xz_t since = {motion->dx_m - filter->axes.start_dx_m, motion->dz_m - filter->axes.start_dz_m};
     return goe_xz_into(since, filter->axes.turn_cos, filter->axes.turn_sin);
@@ -156,11 +141,9 @@ static inline goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_m
 #endif
 
 /* What the obstacle has moved by since the filter's start, m, T axes. */
-/*@ requires \valid_read(filter) && \valid_read(motion); */
 goe_xz_t goe_filter_moved(const goe_filter_t *filter, const goe_motion_t *motion);
 
 /* A direction out of the state's axes into T's. */
-/*@ requires \valid_read(filter); */
 static inline goe_xz_t goe_filter_into_trajectory(const goe_filter_t *filter, goe_xz_t v) {
     return goe_xz_out_of(v, filter->axes.turn_cos, filter->axes.turn_sin);
 }

@@ -26,7 +26,6 @@ static bool is_along_x(const goe_rows_t *rows, size_t row) {
     return goe_absolute(rows->matrix->row[row][0]) > goe_absolute(rows->matrix->row[row][1]);
 }
 
-/*@ requires goe_rows_hold(rows) && \valid(group); */
 static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
     group->count = 0;
     for (size_t i = 0; i < rows->count; i++) {
@@ -60,7 +59,6 @@ static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, f
 
 #if GOE_BESIDE
 /* Of what is estimated beside the state. It moves the points of an image nearly alike, and is left out of their differences. */
-/*@ requires \valid_read(filter) && \valid_read(row) && \valid_read(weight + (0 .. GOE_STATES - 1)); */
 static float beside_variance(const goe_filter_t *filter, const float *row, const float weight[GOE_STATES]) {
     float part[GOE_BESIDE];
     goe_srif_beside(&filter->inverse, weight, &row[GOE_BESIDE_COLUMN], part);
@@ -122,7 +120,6 @@ static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, f
     verdict->odd_outward = more == (verdict->odd == GOE_POINT_RIGHT);
 }
 
-/*@ requires \valid_read(settings) && \valid_read(filter) && goe_rows_hold(rows) && \valid(belief); */
 static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
                   belief_t *belief) {
     group_t group;
@@ -150,7 +147,6 @@ static void judge(const goe_settings_t *settings, const goe_filter_t *filter, co
 GOE_STATIC_ASSERT((GOE_COLUMNS - GOE_BESIDE) % 7 == 0, a_row_is_scaled_by_seven_columns_at_a_time);
 
 /* Partly written out: done for every row of every image, counting costs as much as multiplying. */
-/*@ requires \valid(row + (0 .. GOE_COLUMNS - 1)); */
 static void scale_row(float row[GOE_COLUMNS], float weight) {
     for (float *c = row; c < row + (GOE_COLUMNS - GOE_BESIDE); c += 7) {
         c[0] *= weight;

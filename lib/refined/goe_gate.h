@@ -15,12 +15,10 @@ typedef struct {
 } goe_verdict_t;
 
 /* Factor on the variances for errors that are alike from image to image: of points; a prism remembers them instead. */
-/*@ requires \valid_read(settings) && \valid_read(filter); */
 float goe_gate_repeated(const goe_settings_t *settings, const goe_filter_t *filter);
 
 /* Whitens the rows: each divided by its sigma, less if it is suspicious, 0 if its point is refused; that factor takes the
  * place of rows->variance. */
-/*@ requires \valid_read(settings) && \valid_read(filter) && goe_rows_hold(rows); */
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows);
 
 #endif

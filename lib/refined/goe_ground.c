@@ -16,7 +16,6 @@
 /* ----------------------------------------------------------------------------------------------------------- readings -- */
 
 /* Down in the camera's axes is a row of camera -> T, as T is level. */
-/*@ requires goe_view_is_open(view); */
 static float camera_down_m(const goe_view_t *view) {
     const float *down = &view->camera_to_trajectory[3];
     float arm_m = 0.0f;
@@ -29,7 +28,6 @@ static float camera_down_m(const goe_view_t *view) {
 }
 
 /* Before the filter starts the ground is where the mean of the heights puts it. */
-/*@ requires \valid(datum); */
 static void average(goe_datum_t *datum, bool started, float down_m, float height_m) {
     const float off_m = height_m + down_m - datum->ground_m;
     datum->readings = (uint16_t)(datum->readings < UINT16_MAX ? datum->readings + 1 : UINT16_MAX);
@@ -101,7 +99,6 @@ void goe_ground_widen(goe_filter_t *filter) {
 }
 
 /* Of what is told first. */
-/*@ requires \valid(filter) && goe_rows_hold(rows); */
 static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
     const float scale = filter->ground_scale;
     if (filter->phase == GOE_PHASE_PRISM || !(scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
@@ -118,7 +115,6 @@ static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
 
 /* All heights so far tell the offset of the first with the information 1/(constant error^2 + white^2/n). Of that a row adds
  * what it has grown by; the constant error is in all of them, and is not counted twice. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs) && goe_rows_hold(rows); */
 static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_datum_t *datum = &filter->datum;
     const float q = filter->state[GOE_INVERSE_RANGE];

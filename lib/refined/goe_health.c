@@ -24,7 +24,6 @@
 
 /* ---------------------------------------------------------------------------------------------------------- means -- */
 
-/*@ requires \valid(mean); */
 static void average(float *mean, float ratio, float memory) {
     *mean += ((ratio < RATIO_MAX ? ratio : RATIO_MAX) - *mean) * memory;
 }
@@ -42,7 +41,6 @@ static bool is_poor(goe_verdict_t verdict) {
     return verdict.measured != 0 && 2u * bits_of(verdict.refused) >= bits_of(verdict.measured);
 }
 
-/*@ requires \valid(health); */
 static void average_track(goe_health_t *health, float ratio) {
     const int before = health->images > 0 ? health->images : 0;
     health->images = (int16_t)(before < INT16_MAX ? before + 1 : INT16_MAX);
@@ -78,7 +76,6 @@ void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict) {
 /* ----------------------------------------------------------------------------------------------------------- recovery -- */
 
 /* A point that is refused image after image: the state was captured by an outlier, not the other way round. */
-/*@ requires \valid(filter); */
 static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
     const bool chord = filter->phase == GOE_PHASE_CHORD;
@@ -105,7 +102,6 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
 }
 
 /* The top alone hangs on nothing else. */
-/*@ requires \valid(filter); */
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
     const bool prism = filter->phase == GOE_PHASE_PRISM;
@@ -116,7 +112,6 @@ static void free_top(goe_filter_t *filter) {
     filter->health.refused[GOE_POINT_TOP] = 0;
 }
 
-/*@ requires \valid_read(filter); */
 static bool is_sane(const goe_filter_t *filter) {
     bool sane = filter->state[GOE_FRONT_X] > 0.0f;
     for (size_t i = 0; i < GOE_STATES; i++) {
@@ -128,7 +123,6 @@ static bool is_sane(const goe_filter_t *filter) {
 
 /* A box of base corners that proved wrong more than once: they are those of something else. Residuals alone do not decide:
  * noise that is given too small must not cost a true box its corners. */
-/*@ requires \valid(filter) && \valid_read(settings); */
 static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) {
     const bool by_corners = filter->phase == GOE_PHASE_BOX || filter->phase == GOE_PHASE_BOX_FACE;
     if (by_corners && settings->model == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
@@ -137,7 +131,6 @@ static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) 
 }
 
 /* One restart is an outlier's, or a crossing's; two of them so soon are none of a good track. */
-/*@ requires \valid(health); */
 static void count_restart(goe_health_t *health) {
     health->adrift = health->adrift || (health->steady > 0 && health->steady < RESTART_IMAGES);
     health->steady = 1;

@@ -6,22 +6,18 @@
 #include "refined/goe_gate.h"
 
 /* Before an image: it has given nothing yet. */
-/*@ requires \valid(health); */
 void goe_health_expect(goe_health_t *health);
 
 /* After the update by an image: its normalised innovation squared, of verdict->rows rows. */
-/*@ requires \valid(health); */
 void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis);
 
 /* ... or, if every point of it was refused: nothing could fit worse. */
-/*@ requires \valid(health); */
 void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict);
 
 /* Judges the filter after an image: counts what was refused, frees the top if that alone was refused for some images. Returns
  * whether the filter has to start anew: points that
  * are refused image after image captured the state when they were outliers, or the state is none of an obstacle. A box of base
  * corners that proved wrong so more than once loses them. */
-/*@ requires \valid(filter) && \valid_read(settings); */
 bool goe_health_judge(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict);
 
 #endif

@@ -15,7 +15,6 @@
 #define NEAR_IMAGES 8u /* in which a near corner that is not seen is a missed one, not one that is not there */
 
 /* Base corners tell more than a box: with them it starts as a disc that stands in for one. */
-/*@ requires \valid_read(settings) && goe_view_is_open(view); */
 static bool shows_prism(const goe_settings_t *settings, const goe_view_t *view) {
     const goe_point_t *p = view->point;
     return view->sides.usable != 0 && settings->model != GOE_MODEL_LINE &&
@@ -44,7 +43,6 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
 }
 
 /* A near corner between two faces is missed now and then. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 static void note_near(goe_filter_t *filter, const goe_observation_t *obs) {
     if (obs->point[GOE_POINT_BASE_NEAR].usable) {
         filter->candidate.near_images = NEAR_IMAGES;

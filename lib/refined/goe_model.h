@@ -7,16 +7,13 @@
 #include "refined/goe_shape.h"
 
 /* Places the filter's axes for a start by this image. Returns whether that would be a prism. */
-/*@ requires \valid(filter) && \valid_read(settings) && goe_view_is_open(view); */
 bool goe_model_place(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view);
 
 /* Starts the filter by the first model, a disc or a prism. False if the image does not show enough. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool prism);
 
 /* Changes the model if the image shows that another fits. Returns whether it did; the image that brings a change is not used
  * for more, because it costs as much as a measurement. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Prepares the filter for the rows of an image, and appends them. */
@@ -25,20 +22,16 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs);
 void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows);
 
 /* Before the gate. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs) && goe_rows_hold(rows); */
 void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After the gate. */
-/*@ requires \valid(filter) && goe_rows_hold(rows) && \valid_read(verdict); */
 void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t *verdict);
 
 /* The update by whitened rows, and what follows the change of the state. change: of it and of what is beside it. Returns the
  * normalised innovation squared. */
-/*@ requires \valid(filter) && goe_rows_hold(rows) && \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
 float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows, float change[GOE_UNKNOWNS]);
 
 /* Quantities with their derivatives. */
-/*@ requires \valid_read(filter) && \valid(shape); */
 void goe_model_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 #endif

@@ -35,7 +35,6 @@ static float *beside_at(goe_triangle_t *root, size_t i, size_t j) {
     return goe_srif_at(root, GOE_STATES + i, GOE_STATES + j);
 }
 
-/*@ requires \valid(root); */
 static void forget_beside(goe_triangle_t *root) {
     const size_t first = goe_srif_beside_row();
     memset(&root->element[first], 0, sizeof root->element - first * sizeof root->element[0]);
@@ -132,7 +131,6 @@ typedef struct {
     float wider;                       /* by what the variance of the residuals is larger than told */
 } fit_t;
 
-/*@ requires \valid_read(filter) && goe_observation_is_open(obs) && \valid(fit); */
 static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs, fit_t *fit) {
     const float *r = &filter->root.element[goe_srif_beside_row()];
     const float t[GOE_BESIDE][GOE_BESIDE] = {{r[0], r[1], r[2]}, {0.0f, r[3], r[4]}, {0.0f, 0.0f, r[5]}};
@@ -167,7 +165,6 @@ static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs,
 }
 
 /* Something in the image tells a scale that does not hang on the obstacle standing still: its foot, by the height. */
-/*@ requires \valid_read(filter) && goe_observation_is_open(obs); */
 static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
     return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SEES_BOTTOM) : obs->base;
 }
@@ -178,7 +175,6 @@ static float determinant_of(float x, float both, float z) {
 }
 
 /* Whether that velocity is one that no static obstacle shows, and no latency. */
-/*@ requires \valid_read(fit); */
 static bool is_unlike_static(const fit_t *fit, float least) {
     const goe_xz_t v = fit->velocity_m_s;
     const float determinant = determinant_of(fit->spread[0], fit->spread[1], fit->spread[2]);
@@ -187,7 +183,6 @@ static bool is_unlike_static(const fit_t *fit, float least) {
            fit->rest_latency > REST_CHI2 * fit->wider && fit->rest_velocity < REST_SHARE * fit->rest_latency;
 }
 
-/*@ requires \valid(filter) && \valid_read(fit); */
 static bool is_seen_to_move(goe_filter_t *filter, const fit_t *fit, float since_s) {
     goe_mover_t *m = &filter->mover;
     if (!(m->heard_s > SETTLED_S) ||
@@ -202,7 +197,6 @@ static bool is_seen_to_move(goe_filter_t *filter, const fit_t *fit, float since_
 
 /* (R37): from the velocity that the images spoke of, as uncertain as it was, and more, as it was linearised at a place that was
  * wrong; the latency is open again. */
-/*@ requires \valid(filter) && \valid_read(fit); */
 static void follow(goe_filter_t *filter, const fit_t *fit) {
     goe_mover_t *m = &filter->mover;
     goe_triangle_t *root = &filter->root;
@@ -226,7 +220,6 @@ static void follow(goe_filter_t *filter, const fit_t *fit) {
 }
 
 /* From here on it is estimated with the state. */
-/*@ requires \valid(filter) && \valid_read(fit); */
 static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
     const float least = LATE_SIGMAS * LATE_SIGMAS * fit->wider;
     const bool late = goe_absolute(fit->latency_s) > LATE_MIN_S && fit->by_latency > least;
@@ -237,7 +230,6 @@ static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
 }
 
 /* Late poses in a turn look like a motion at first; followed, what moves and what is late come apart. */
-/*@ requires \valid(filter); */
 static void judge_followed(goe_filter_t *filter) {
     goe_mover_t *m = &filter->mover;
     const goe_xz_t v = {m->beside[GOE_BESIDE_VELOCITY_X], m->beside[GOE_BESIDE_VELOCITY_Z]};
@@ -250,12 +242,10 @@ static void judge_followed(goe_filter_t *filter) {
 }
 
 /* An outline that is of another shape drifts, too, but fits. */
-/*@ requires \valid_read(filter) && goe_observation_is_open(obs); */
 static bool is_misfit(const goe_filter_t *filter, const goe_observation_t *obs) {
     return filter->health.mean_nis > obs->settings->refined.misfit_max;
 }
 
-/*@ requires \valid_read(filter); */
 static bool is_sound(const goe_filter_t *filter) {
     const float *corner = &filter->root.element[goe_srif_beside_row()];
     uint32_t largest = 0;

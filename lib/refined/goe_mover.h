@@ -11,33 +11,26 @@
 #if GOE_BESIDE
 
 /* A new track: the poses are in time, as far as is known, and nothing moves. */
-/*@ requires \valid(filter); */
 void goe_mover_clear(goe_filter_t *filter);
 
 /* The model proved to be another: what it said of a velocity is forgotten. */
-/*@ requires \valid(filter); */
 void goe_mover_doubt(goe_filter_t *filter);
 
 /* The columns of what is beside the state. They hold the derivatives by the place until then; after goe_rows_end(). */
-/*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows); */
 void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After an image's update: follows what it changed beside the state, and decides what is late and what moves. True if the filter
  * is to begin anew, as the obstacle has been found to move. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs) && \valid_read(change + (0 .. GOE_UNKNOWNS - 1)); */
 bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
                      float since_s);
 
 /* Variance of the velocity of an obstacle that is followed, along a unit vector in T, m2/s2; of the images alone. */
-/*@ requires \valid_read(filter); */
 float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along);
 
 /* Variance of the autopilot's own velocity over a time, each axis, m2/s2. */
-/*@ requires \valid_read(navigation); */
 float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s);
 
 /* One sigma of the latency, s. */
-/*@ requires \valid_read(filter); */
 float goe_mover_latency_sd(const goe_filter_t *filter);
 
 #endif

@@ -18,7 +18,6 @@
 #define FORWARD_MIN 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
-/*@ requires \valid(left) && \valid(right); */
 static bool in_order(goe_point_t *left, goe_point_t *right) {
     if (left->usable && right->usable && !(left->x < right->x)) {
         left->usable = false;
@@ -57,7 +56,6 @@ static void turn_points(goe_observation_t *obs, const goe_filter_t *filter, cons
     }
 }
 
-/*@ requires \valid_read(from + (0 .. 8)) && \valid(to + (0 .. 8)); */
 static void turn_rotation(const float from[9], float c, float s, float to[9]) {
     for (size_t j = 0; j < 3; j++) {
         to[j] = c * from[j] - s * from[6 + j];
@@ -99,7 +97,6 @@ static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const
 }
 
 #if GOE_BESIDE
-/*@ requires \valid_read(filter) && \valid_read(rate + (0 .. 2)) && \valid(turned + (0 .. 2)); */
 static void turn_rate(const goe_filter_t *filter, const float rate[3], float turned[3]) {
     const goe_xz_t level = {rate[0], rate[2]};
     const goe_xz_t into = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
@@ -165,7 +162,6 @@ void goe_observation_linearise(goe_observation_t *obs) {
 }
 
 /* 1/Z of the point as the given attitude shows it. */
-/*@ requires goe_observation_is_open(obs); */
 static float nearness(const goe_observation_t *obs, float x, float y, float z) {
     const float turned_z = z + obs->ex * y - obs->ey * x;
     return 1.0f / (turned_z < FORWARD_MIN ? FORWARD_MIN : turned_z);
@@ -254,12 +250,10 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, flo
 
 /* Y/Z at which the edge was measured, with the attitude bias taken off, and what its derivatives by the bias add to those
  * of x. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(p); */
 static float edge_height(const goe_observation_t *obs, const goe_point_t *p) {
     return p->y + obs->ex * (1.0f + p->y * p->y) - obs->ez * p->x - obs->ey * p->x * p->y;
 }
 
-/*@ requires \valid_read(p) && \valid(of_x); */
 static void add_height_of_edge(const goe_point_t *p, float z, goe_gradient_t *of_x) {
     const float by_height = of_x->y * z;
     of_x->ex += by_height * (1.0f + p->y * p->y);

@@ -76,28 +76,22 @@ typedef struct {
 /*@ requires \valid(obs) && \valid_read(settings) && \valid_read(filter) && goe_view_is_open(view); */
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view);
-/*@ requires \valid(obs) && goe_observation_is_open(obs); */
 void goe_observation_linearise(goe_observation_t *obs);
 
 /* (R3): where the point (X, Y, Z), in units of Z0 or any other, is seen along x, and along y. */
-/*@ requires goe_observation_is_open(obs) && \valid(of_x); */
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x);
-/*@ requires goe_observation_is_open(obs) && \valid(of_y); */
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
 /* Variance of the height above the obstacle's ground, m2; of upright boxes that ground may lie off. */
-/*@ requires goe_observation_is_open(obs); */
 static inline float goe_observation_height_variance(const goe_observation_t *obs, bool boxes) {
     const float ground_m = boxes ? obs->settings->navigation.ground_m : 0.0f;
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
 
 /* One sigma of a pixel, focal lengths. */
-/*@ requires goe_observation_is_open(obs); */
 static inline float goe_observation_pixel(const goe_observation_t *obs) { return obs->point_px / obs->camera->fx_px; }
 
 /* (R1): the state's reference point relative to the camera now, units of Z0. */
-/*@ requires goe_observation_is_open(obs); */
 static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {
     const float q = obs->state[GOE_INVERSE_RANGE];
     const goe_xz_t reference = {obs->state[GOE_BEARING] - obs->camera_m.x * q, 1.0f - obs->camera_m.z * q};
@@ -105,7 +99,6 @@ static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {
 }
 
 /* (R2): Y of the roof, units of Z0. */
-/*@ requires goe_observation_is_open(obs); */
 static inline float goe_observation_roof(const goe_observation_t *obs) {
     return obs->height_m * obs->state[GOE_INVERSE_RANGE] - obs->state[GOE_TOP];
 }
@@ -118,7 +111,6 @@ goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t
 goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature);
 
 /* Variance of left, right or top beyond the pixel noise: outline_share. */
-/*@ requires goe_observation_is_open(obs); */
 float goe_observation_size_variance(const goe_observation_t *obs);
 
 /* ------------------------------------------------------------------------------------------------------------ rows -- */
@@ -169,7 +161,6 @@ static inline void goe_rows_place(float *by, const goe_observation_t *obs, float
 
 /* After the last row: the columns of the attitude bias follow from those of the image's own attitude error; unused rows become
  * 0. */
-/*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs); */
 void goe_rows_end(goe_rows_t *rows, const goe_observation_t *obs);
 
 #endif

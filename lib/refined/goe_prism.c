@@ -184,7 +184,6 @@ void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]) {
 /* -------------------------------------------------------------------------------------------------------------- start -- */
 
 /* Aligned ray, in the state's axes, of the raw point (x, y) focal lengths. False if it does not point ahead. */
-/*@ requires \valid_read(camera) && \valid_read(camera_to_axes + (0 .. 8)) && \valid(ray); */
 static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], float x, float y, goe_point_t *ray) {
     float undistorted[2] = {x, y};
     if (goe_camera_distorts(camera) && !goe_camera_undistort(camera, &undistorted[0], &undistorted[1])) {
@@ -200,7 +199,6 @@ static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], fl
 }
 
 /* Of the box, as far as it is seen. */
-/*@ requires \valid_read(camera) && \valid_read(sides) && \valid(x) && \valid(y); */
 static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
     *x =
         0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_LEFT) + goe_touch_coordinate(camera, sides, GOE_BOX_RIGHT));
@@ -227,11 +225,9 @@ bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view) {
     return true;
 }
 
-/*@ requires goe_observation_is_open(obs); */
 static float height_sd_m(const goe_observation_t *obs) { return sqrtf(goe_observation_height_variance(obs, true)); }
 
 /* From flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. size: angular. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(foot); */
 static float first_range_m(const goe_observation_t *obs, float size, const goe_point_t *foot) {
     const goe_settings_t *s = obs->settings;
     const float attitude = goe_square(s->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
@@ -243,7 +239,6 @@ static float first_range_m(const goe_observation_t *obs, float size, const goe_p
                     : s->refined.typical_size_m / goe_larger(size, BOX_SIZE_MIN);
 }
 
-/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;

@@ -14,15 +14,12 @@
 #include "refined/goe_shape.h"
 
 /* Turns the filter's axes so that Z points at the obstacle. False if left and right are not measured. */
-/*@ requires \valid(filter) && goe_view_is_open(view); */
 bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view);
 
 /* First guess: state and root from one image, in axes that face the obstacle. False if it is out of range. */
-/*@ requires goe_observation_is_open(obs) && \valid(state + (0 .. GOE_STATES - 1)) && \valid(root); */
 bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
 
 /* Whether an image comes so soon after the one before that its errors are the same: it is not used. */
-/*@ requires \valid_read(filter) && \valid_read(settings) && \valid_read(motion); */
 bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion);
 
 /* Appends the rows of a box. */
@@ -40,16 +37,13 @@ void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_ro
 void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows);
 
 /* After the update. */
-/*@ requires \valid(filter) && \valid_read(change + (0 .. GOE_UNKNOWNS - 1)); */
 void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 
 /* Quantities. */
-/*@ requires \valid_read(filter) && \valid(shape); */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 /* What the width and the height are uncertain by as the footprint is no ellipse across the first line of sight, (R41): unless a disc
  * was asked for. camera_m: since the filter's start. */
-/*@ requires \valid_read(filter) && \valid(shape); */
 void goe_prism_doubt(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape);
 
 #endif

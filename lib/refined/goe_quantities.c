@@ -40,14 +40,12 @@ typedef struct {
     float turned_m2; /* a path that leads back on itself is not scaled: what of the drift is left */
 } drift_t;
 
-/*@ requires \valid_read(filter) && \valid_read(motion); */
 static float path_over_ground(const goe_filter_t *filter, const goe_motion_t *motion) {
     const float dx_m = motion->dx_m - filter->axes.start_dx_m;
     const float dz_m = motion->dz_m - filter->axes.start_dz_m;
     return sqrtf(dx_m * dx_m + dz_m * dz_m);
 }
 
-/*@ requires \valid_read(filter) && \valid_read(navigation) && \valid_read(motion); */
 static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
     drift_t drift;
     const float s = goe_filter_elapsed_s(filter, motion);
@@ -61,7 +59,6 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
 }
 
 /* (R23), from the track's first image to the filter's start: X0 and Z0 alone count from there. */
-/*@ requires \valid_read(filter) && \valid_read(navigation) && \valid_read(motion); */
 static float early_variance(const goe_filter_t *filter, const goe_navigation_t *navigation,
                             const goe_motion_t *motion) {
     const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, GOE_TIME_MAX_US);
@@ -70,7 +67,6 @@ static float early_variance(const goe_filter_t *filter, const goe_navigation_t *
 
 /* The roof's corner that the top is over stands beside the middle; seen from above or from below it seems lower or higher, by the
  * tangent of that angle, which from nearby is taken as its sine. */
-/*@ requires \valid_read(motion) && \valid_read(shape); */
 static float top_variance(const goe_motion_t *motion, drift_t drift, const goe_shape_t *shape) {
     const float x_m = shape->middle.at.x * shape->scale_m - drift.camera_m.x;
     const float z_m = shape->middle.at.z * shape->scale_m - drift.camera_m.z;
@@ -109,13 +105,11 @@ typedef struct {
 
 /* Derivatives become those in terms of independent unit errors: their squared norm is the variance. Returns what the condition
  * that makes a disc moved the quantity by, (R7). */
-/*@ requires \valid_read(filter) && \valid_read(wider) && \valid(by + (0 .. GOE_STATES - 1)); */
 static float project(const goe_filter_t *filter, const widening_t *wider, float by[GOE_STATES]) {
     goe_srif_project(&filter->inverse, by);
     return filter->phase == GOE_PHASE_DISC ? goe_disc_condition(filter, &wider->doubt, by) : 0.0f;
 }
 
-/*@ requires \valid_read(a + (0 .. GOE_STATES - 1)) && \valid_read(b + (0 .. GOE_STATES - 1)); */
 static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
     for (size_t k = 0; k < GOE_STATES; k++) {
         sum += a[k] * b[k];
@@ -126,7 +120,6 @@ static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum
 GOE_STATIC_ASSERT(GOE_GROUND == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
 
 /* The derivatives are used up. *moved: what a disc's condition moves it by, see project(). */
-/*@ requires \valid_read(filter) && \valid_read(wider) && \valid(by + (0 .. GOE_STATES - 1)) && \valid(moved); */
 static float variance_of(const goe_filter_t *filter, const widening_t *wider, float by[GOE_STATES], float *moved) {
     *moved = 0.0f;
     if (filter->phase != GOE_PHASE_DISC) {
@@ -145,22 +138,18 @@ typedef struct {
     float part[GOE_BESIDE];
 } beside_t;
 
-/*@ requires \valid_read(filter) && \valid_read(motion); */
 static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motion) {
     return goe_filter_elapsed_s(filter, motion);
 }
 
-/*@ requires \valid_read(filter) && \valid_read(by + (0 .. GOE_STATES - 1)) && \valid(beside); */
 static void beside_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
                       beside_t *beside) {
     const float direct[GOE_BESIDE] = {0.0f, x * at_s, z * at_s};
     goe_srif_beside(&filter->inverse, by, filter->mover.followed ? direct : NULL, beside->part);
 }
 
-/*@ requires \valid_read(a) && \valid_read(b); */
 static float beside_dot(const beside_t *a, const beside_t *b) { return goe_srif_beside_dot(a->part, b->part); }
 
-/*@ requires \valid(beside); */
 static void beside_scale(beside_t *beside, float factor) {
     for (size_t i = 0; i < GOE_BESIDE; i++) {
         beside->part[i] *= factor;
@@ -169,14 +158,12 @@ static void beside_scale(beside_t *beside, float factor) {
 #else
 typedef char beside_t; /* nothing is */
 
-/*@ requires \valid_read(filter) && \valid_read(motion); */
 static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motion) {
     (void)filter;
     (void)motion;
     return 0.0f;
 }
 
-/*@ requires \valid_read(filter) && \valid_read(by + (0 .. GOE_STATES - 1)) && \valid(beside); */
 static void beside_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
                       beside_t *beside) {
     (void)filter;
@@ -187,14 +174,12 @@ static void beside_of(const goe_filter_t *filter, const float by[GOE_STATES], fl
     *beside = 0;
 }
 
-/*@ requires \valid_read(a) && \valid_read(b); */
 static float beside_dot(const beside_t *a, const beside_t *b) {
     (void)a;
     (void)b;
     return 0.0f;
 }
 
-/*@ requires \valid_read(beside); */
 static void beside_scale(const beside_t *beside, float factor) {
     (void)beside;
     (void)factor;
@@ -223,7 +208,6 @@ static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
 }
 
 /* from: where the values count from, in T. */
-/*@ requires \valid_read(q); */
 static bool is_position(const goe_quantities_t *q, goe_xz_t from, float share) {
     return goe_within(q->value[GOE_X0] + from.x, METRES_MAX) && goe_within(q->value[GOE_Z0] + from.z, METRES_MAX) &&
            goe_within(q->sigma[GOE_X0], METRES_MAX) && goe_within(q->sigma[GOE_Z0], METRES_MAX) &&
@@ -232,13 +216,11 @@ static bool is_position(const goe_quantities_t *q, goe_xz_t from, float share) {
 }
 
 /* The extents of a box by its outline count only after some images, and if these fit. */
-/*@ requires \valid_read(filter); */
 static bool knows_extents(const goe_filter_t *filter) {
     return filter->phase != GOE_PHASE_BOX_OUTLINE ||
            !(filter->phase_images < OUTLINE_IMAGES || filter->health.recent_nis > OUTLINE_NIS);
 }
 
-/*@ requires \valid_read(filter) && \valid_read(q); */
 static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t *q) {
     unsigned known = 0;
     if ((q->box || !filter->candidate.stand_in) && is_extent(q, GOE_WIDTH, 0.0f)) {
@@ -254,7 +236,6 @@ static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t
 }
 
 /* Which of the quantities this image knows well enough; values count from the filter's start, which lies at `from`. */
-/*@ requires \valid_read(filter) && \valid_read(q); */
 static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q, goe_xz_t from, float range_share) {
     if (!is_position(q, from, range_share)) {
         return 0;
@@ -266,14 +247,12 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
 /* What is no ellipse adds to a prism's sigmas. */
-/*@ requires \valid_read(shape); */
 static float doubt_of(const goe_shape_t *shape, int quantity) {
     return quantity == GOE_WIDTH ? shape->width_m2 : (quantity == GOE_HEIGHT ? shape->top_m2 : 0.0f);
 }
 
 /* What the scatter adds widens the sigmas; what is known is decided without it, as doubt must
  * not silence an answer. */
-/*@ requires \valid_read(filter) && \valid_read(motion) && \valid(shape) && \valid_read(wider) && \valid(q); */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            const widening_t *wider, goe_quantities_t *q) {
     const float elapsed_s = since_start_s(filter, motion);
@@ -297,8 +276,6 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
 }
 
 /* The middle of the base, in north and east. */
-/*@ requires \valid_read(filter) && \valid_read(motion) && \valid_read(shape) && \valid_read(wider);
-    requires \valid(q); */
 static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape, drift_t drift,
                        const widening_t *wider, goe_quantities_t *q) {
     const goe_xz_t place = goe_filter_into_trajectory(filter, shape->middle.at);
@@ -333,8 +310,6 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
     }
 }
 
-/*@ requires \valid_read(filter) && \valid_read(settings) && \valid_read(motion) && \valid_read(wider);
-    requires \valid(q); */
 static void set_velocity(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          const widening_t *wider, goe_quantities_t *q) {
     q->moves = false;
@@ -359,7 +334,6 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 
 /* (R42): the highest point of a roof seen from above is a far corner, and no image shows how far while one face is seen, or a disc stands
  * in for the box. */
-/*@ requires \valid_read(filter) && \valid_read(settings) && \valid(shape); */
 static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *settings, goe_shape_t *shape) {
     const bool highest = settings->refined.top_is_highest;
     const bool stands_in = filter->phase == GOE_PHASE_DISC && filter->candidate.stand_in && highest;
@@ -371,7 +345,6 @@ static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *set
 }
 
 /* What the answer is less certain by; of a disc its shape learns of it, too. */
-/*@ requires \valid_read(filter) && \valid_read(settings) && \valid_read(motion) && \valid(shape); */
 static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                               drift_t drift, goe_shape_t *shape) {
     widening_t wider;

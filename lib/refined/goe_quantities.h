@@ -21,14 +21,11 @@ typedef struct {
 } goe_quantities_t;
 
 /* What the latest image that the filter took knows. */
-/*@ requires \valid_read(filter) && \valid_read(settings) && \valid_read(motion) && \valid(quantities); */
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          goe_quantities_t *quantities);
 
 /* (R22): covariance of the six quantities, metres and radians, of the filter's present state. from_datum: the top's height
  * is counted from the altimeter's zero, not from the ground: its constant error cancels between camera and top. */
-/*@ requires \valid_read(filter) && \valid_read(settings) && \valid_read(motion);
-    requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                                bool from_datum, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 

@@ -34,7 +34,6 @@
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
 /* (R14). A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
-/*@ requires \valid(filter); */
 static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     float direction[GOE_STATES];
     memcpy(direction, filter->state, sizeof direction);
@@ -46,7 +45,6 @@ static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
 }
 
 /* Along X and Z in turn, image by image: each time for as long as it has not been. */
-/*@ requires \valid(filter); */
 static void walk(goe_filter_t *filter, float walk_m, float since_s) {
     const float q = filter->state[GOE_INVERSE_RANGE];
     filter->walk_s[0] += since_s;
@@ -66,7 +64,6 @@ static void walk(goe_filter_t *filter, float walk_m, float since_s) {
 }
 
 /* Along the path, which in a turn is longer than the way to where it began. */
-/*@ requires \valid(filter) && \valid_read(motion); */
 static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     const float dx_m = motion->dx_m - filter->last.dx_m;
     const float dz_m = motion->dz_m - filter->last.dz_m;
@@ -79,7 +76,6 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 }
 
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
-/*@ requires \valid(filter) && \valid_read(navigation); */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s, int64_t time_us) {
     const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
     filter->time_us = time_us;
@@ -96,7 +92,6 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
 /* ------------------------------------------------------------------------------------------------------------- update -- */
 
 /* (R15): what linearising at an uncertain range may miss, the second order of 1/Z. */
-/*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows); */
 static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) {
     const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
     const float missed = obs->camera_m.z * obs->range_variance / ahead;
@@ -105,8 +100,6 @@ static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) 
     }
 }
 
-/*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs) && \valid(verdict);
-    requires \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict, float change[GOE_UNKNOWNS]) {
     goe_rows_t rows;
     goe_ground_widen(filter);
@@ -141,7 +134,6 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
 
 /* Points that stand for the sides of a box have its errors; as they are not remembered, the variance counts
  * (1 + fade)/(1 - fade) times, which for a first-order process is that of a long mean. */
-/*@ requires \valid_read(detector); */
 static float outline_share(const goe_detector_t *detector, float fade) {
     const float kept = fade < FADE_MAX ? fade : FADE_MAX;
     return detector->box_share * sqrtf((1.0f + kept) / (1.0f - kept));
@@ -149,7 +141,6 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
  * the uncertain range adds. */
-/*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs); */
 static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
@@ -183,7 +174,6 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
 }
 
 /* Whether the obstacle has just been found to move. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs) && \valid_read(change + (0 .. GOE_UNKNOWNS - 1)); */
 static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
                            float since_s) {
 #if GOE_BESIDE
@@ -197,7 +187,6 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
-/*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs); */
 GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs, float since_s) {
     goe_verdict_t verdict;
     float change[GOE_UNKNOWNS];
@@ -248,7 +237,6 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
 /* ------------------------------------------------------------------------------------------------------------- answer -- */
 
 /* Half of the extent about the reference point as far as it is seen, m, also while the width is not valid. */
-/*@ requires \valid_read(filter); */
 static float reach_of(const goe_filter_t *filter) {
     const float *x = filter->state;
     if (filter->phase == GOE_PHASE_PRISM) {
@@ -263,7 +251,6 @@ typedef struct {
     float value, sigma;
 } place_t;
 
-/*@ requires \valid_read(now) && \valid_read(before); */
 static bool agrees(const place_t *now, const place_t *before, float reach_m) {
     const float sigma = sqrtf(goe_square(now->sigma) + goe_square(before->sigma));
     return goe_absolute(now->value - before->value) <= AGREE_SIGMA * sigma + reach_m;
@@ -271,7 +258,6 @@ static bool agrees(const place_t *now, const place_t *before, float reach_m) {
 
 /* Whether the answer from before a new start of the filter stands: the new one says the same, and knows it less well. One that
  * disagrees, or that is of an obstacle that moves, takes over; after some seconds any does. */
-/*@ requires \valid_read(filter) && \valid_read(motion) && \valid_read(quantities) && \valid_read(estimate); */
 static bool previous_stands(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
                             const goe_estimate_t *estimate) {
     const place_t now[2] = {{quantities->value[GOE_X0], quantities->sigma[GOE_X0]},
@@ -287,7 +273,6 @@ static bool previous_stands(const goe_filter_t *filter, const goe_motion_t *moti
 }
 
 /* Keeps what goe_hazard() needs of an answer when no new one follows. */
-/*@ requires \valid(filter) && \valid_read(navigation); */
 static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation, unsigned valid) {
     goe_answer_t *answer = &filter->answer;
     const float reach_m = reach_of(filter);
@@ -302,7 +287,6 @@ static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation
 }
 
 /* Whether a position lies behind the camera, with all of its extent, in an image that shows the obstacle ahead. */
-/*@ requires \valid_read(filter) && \valid_read(quantities) && \valid_read(motion); */
 static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quantities, const goe_motion_t *motion) {
     const float reach_m = reach_of(filter) + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f);
     return quantities->value[GOE_Z0] - motion->dz_m < -reach_m;

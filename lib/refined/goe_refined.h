@@ -7,14 +7,12 @@
 
 /* Takes one image. swapped: how many pairs of points are out of their order, left to right. Returns whether the image gave
  * the filter anything. */
-/*@ requires \valid(filter) && \valid_read(settings) && goe_view_is_open(view) && \valid(swapped); */
 bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                         unsigned *swapped);
 
 /* After an update that returned true: sets *estimate from what the filter knows. A quantity is known only if the image before
  * knew it, too: sigma and value come from the same linearisation, so one image alone may be lucky. Returns as
  * goe_report_quantities(). */
-/*@ requires \valid(filter) && \valid_read(settings) && \valid_read(motion) && \valid(estimate); */
 bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                         goe_estimate_t *estimate);
 

@@ -14,7 +14,6 @@
 
 #define SUSPECT_IMAGES 8 /* fewer say nothing */
 
-/*@ requires \valid_read(q) && \valid_read(motion) && \valid(estimate); */
 static void report_position(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
     estimate->x0_m = q->value[GOE_X0];
     estimate->z0_m = q->value[GOE_Z0];
@@ -26,7 +25,6 @@ static void report_position(const goe_quantities_t *q, const goe_motion_t *motio
     estimate->baseline_m = sqrtf(goe_square(motion->dx_m) + goe_square(motion->dz_m));
 }
 
-/*@ requires \valid_read(q) && \valid(estimate); */
 static void report_orientation(const goe_quantities_t *q, goe_estimate_t *estimate) {
     estimate->orientation_deg = goe_fold_deg(q->value[GOE_ORIENTATION] * GOE_DEG_PER_RAD);
     estimate->sigma.orientation_deg = q->sigma[GOE_ORIENTATION] * GOE_DEG_PER_RAD;
@@ -38,7 +36,6 @@ static void report_orientation(const goe_quantities_t *q, goe_estimate_t *estima
     estimate->width_axis[1] = -q->length_axis.x;
 }
 
-/*@ requires \valid_read(q) && \valid_read(motion) && \valid(estimate); */
 static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
     estimate->model = q->box ? GOE_MODEL_BOX : (q->prism ? GOE_MODEL_PRISM : GOE_MODEL_DISC);
     estimate->fresh = true;
@@ -69,7 +66,6 @@ static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, 
 }
 
 /* Of an obstacle that is followed. As the place, it is no better known than the own motion. */
-/*@ requires \valid_read(q) && \valid(estimate); */
 static void report_velocity(const goe_quantities_t *q, goe_estimate_t *estimate) {
     if (!q->moves) {
         return;
@@ -94,18 +90,15 @@ bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_
     return is_known;
 }
 
-/*@ requires \valid_read(health) && \valid_read(settings); */
 static bool is_misfit(const goe_health_t *health, const goe_settings_t *settings) {
     return health->images >= SUSPECT_IMAGES && health->mean_nis > settings->refined.misfit_max;
 }
 
 /* A disc was asked for, and it is none. */
-/*@ requires \valid_read(filter) && \valid_read(settings); */
 static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings) {
     return settings->model == GOE_MODEL_DISC && filter->phase == GOE_PHASE_DISC && goe_disc_is_skewed(filter);
 }
 
-/*@ requires \valid_read(filter); */
 static bool moves(const goe_filter_t *filter) {
 #if GOE_BESIDE
     return filter->mover.moves;
@@ -115,7 +108,6 @@ static bool moves(const goe_filter_t *filter) {
 #endif
 }
 
-/*@ requires \valid_read(filter); */
 static bool is_late(const goe_filter_t *filter) {
 #if GOE_BESIDE
     return filter->mover.late;
@@ -125,7 +117,6 @@ static bool is_late(const goe_filter_t *filter) {
 #endif
 }
 
-/*@ requires \valid_read(filter) && \valid_read(settings); */
 static goe_reason_t reason_of(const goe_filter_t *filter, const goe_settings_t *settings) {
     const goe_health_t *health = &filter->health;
     if (moves(filter)) {

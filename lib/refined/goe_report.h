@@ -6,15 +6,12 @@
 
 /* Sets *estimate, fresh, from the quantities if the position is known; otherwise keeps the last valid estimate and returns
  * false. */
-/*@ requires \valid_read(quantities) && \valid_read(motion) && \valid(estimate); */
 bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_t *motion, goe_estimate_t *estimate);
 
 /* How the latest image fits: nis to misfit, suspect, points. */
-/*@ requires \valid_read(filter) && \valid_read(settings) && \valid(estimate); */
 void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, goe_estimate_t *estimate);
 
 /* What the filter doubts of any answer, also of the window's: motion, base corners. */
-/*@ requires \valid_read(filter) && \valid(estimate); */
 void goe_report_doubt(const goe_filter_t *filter, goe_estimate_t *estimate);
 
 #endif

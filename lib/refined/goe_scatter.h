@@ -6,12 +6,10 @@
 #include "refined/goe_observation.h"
 
 /* Takes the whitened rows of an image, before the update. */
-/*@ requires \valid(scatter) && goe_rows_hold(rows); */
 void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows);
 
 /* (R34): factor on the variance of what the filter found, at least 1. repeated: (1 + c)/(1 - c) of the correlation c that was
  * told and counts already. */
-/*@ requires \valid_read(filter); */
 float goe_scatter_factor(const goe_filter_t *filter, float repeated);
 
 #endif

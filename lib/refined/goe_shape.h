@@ -42,22 +42,17 @@ typedef struct {
 } goe_shape_t;
 
 /* Sets by[] to the derivatives of by_x X + by_z Z of a spot, metres, X and Z in the state's axes. */
-/*@ requires \valid_read(spot) && \valid(by + (0 .. GOE_STATES - 1)); */
 void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]);
 
 /* What all models have alike, from the state x (the filter's own, or that under a condition): scale, height, and X0, Z0 of
  * the reference point. The rest becomes 0. */
-/*@ requires \valid_read(filter) && \valid_read(x + (0 .. GOE_STATES - 1)) && \valid_read(reference);
-    requires \valid(shape); */
 void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], const goe_spot_t *reference,
                      goe_shape_t *shape);
 
 /* Sine of what the line of sight has turned by since the filter's start. camera_m: the camera since then (goe_filter_camera). */
-/*@ requires \valid_read(filter); */
 float goe_shape_turned(const goe_filter_t *filter, goe_xz_t camera_m);
 
 /* ... and of a disc or a chord: the width, and the middle, which is the reference point. */
-/*@ requires \valid_read(filter) && \valid_read(x + (0 .. GOE_STATES - 1)) && \valid(shape); */
 void goe_shape_line(const goe_filter_t *filter, const float x[GOE_STATES], goe_shape_t *shape);
 
 #endif

@@ -8,20 +8,16 @@
 #include "refined/goe_observation.h"
 
 /* Over the time that an image's share of the error fades to `fade`. variance: s^2 now. */
-/*@ requires \valid(side); */
 void goe_side_memory_fade(goe_side_memory_t *side, float fade, float variance);
 
 /* Takes what is known of the error out of a row: its residual, its derivatives, its variance. */
-/*@ requires \valid_read(side) && \valid(row + (0 .. GOE_COLUMNS - 1)) && \valid(variance); */
 void goe_side_memory_recall(const goe_side_memory_t *side, float row[GOE_COLUMNS], float *variance);
 
 /* What the row tells of the error. row: after the gate, times its weight; common: variance, in units of the row's, of what all
  * rows of the image share (attitude, position). */
-/*@ requires \valid(side) && \valid_read(row + (0 .. GOE_COLUMNS - 1)); */
 void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float common);
 
 /* After the state has changed. */
-/*@ requires \valid(side) && \valid_read(change + (0 .. GOE_UNKNOWNS - 1)); */
 void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_UNKNOWNS]);
 
 #endif

@@ -96,7 +96,6 @@ static inline void apply(goe_matrix_t *matrix, size_t j, const reflection_t *to,
 
 /* Nothing is known of the nuisances beforehand but their sigma: their rows of the triangle are 0 until they are reached, and
  * are not needed afterwards. */
-/*@ requires \valid(matrix); */
 static void remove_nuisances(float root, goe_matrix_t *matrix) {
     reflection_t to;
     float none = 0.0f;
@@ -125,7 +124,6 @@ static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t 
 }
 
 /* R x = right, in place; what is not estimated is 0. */
-/*@ requires \valid_read(root) && \valid(right + (0 .. GOE_UNKNOWNS - 1)); */
 static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
     for (size_t i = count; i-- > 0;) {
@@ -139,7 +137,6 @@ static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
 }
 
 #if GOE_BESIDE
-/*@ requires \valid(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
 static void reflect_beside(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_beside_count(root);
     reflect_unknowns(root, matrix, GOE_STATES, GOE_UNKNOWNS, root->right);
@@ -361,7 +358,6 @@ void goe_srif_marginal(const goe_inverse_t *inverse, float covariance[GOE_KEPT][
 }
 
 /* Cholesky from the last column, C = U U' with U upper triangular: U is the inverse of R. */
-/*@ requires \valid(c + (0 .. GOE_KEPT - 1)) && \valid(inverse); */
 static void factorise(float c[GOE_KEPT][GOE_KEPT], goe_inverse_t *inverse) {
     for (size_t j = GOE_KEPT; j-- > 0;) {
         float pivot = c[j][j];
@@ -385,7 +381,6 @@ static void factorise(float c[GOE_KEPT][GOE_KEPT], goe_inverse_t *inverse) {
 }
 
 /* The inverse of U, row by row. */
-/*@ requires \valid(u + (0 .. GOE_KEPT - 1)) && \valid(root); */
 static void invert_kept(float u[GOE_KEPT][GOE_KEPT], goe_triangle_t *root) {
     for (size_t j = 0; j < GOE_KEPT; j++) {
         root->element[goe_srif_row(j) + j] = 1.0f / u[j][j];

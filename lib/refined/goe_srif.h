@@ -26,7 +26,6 @@ static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
 /* How many of what is beside the state are estimated; never more than there are. */
-/*@ requires \valid_read(r); */
 static inline size_t goe_srif_beside_count(const goe_triangle_t *r) {
 #if GOE_BESIDE
     return r->estimated < GOE_BESIDE ? r->estimated : GOE_BESIDE;
@@ -36,7 +35,6 @@ static inline size_t goe_srif_beside_count(const goe_triangle_t *r) {
 #endif
 }
 
-/*@ requires \valid_read(inverse); */
 static inline size_t goe_inverse_beside(const goe_inverse_t *inverse) {
 #if GOE_BESIDE
     return inverse->estimated < GOE_BESIDE ? inverse->estimated : GOE_BESIDE;
@@ -47,9 +45,7 @@ static inline size_t goe_inverse_beside(const goe_inverse_t *inverse) {
 }
 
 /* ... and with the state. */
-/*@ requires \valid_read(r); */
 static inline size_t goe_srif_count(const goe_triangle_t *r) { return GOE_STATES + goe_srif_beside_count(r); }
-/*@ requires \valid_read(inverse); */
 static inline size_t goe_inverse_count(const goe_inverse_t *inverse) {
     return GOE_STATES + goe_inverse_beside(inverse);
 }
@@ -72,19 +68,16 @@ static inline void goe_srif_zero(float by[GOE_UNKNOWNS], size_t first) {
 }
 
 /* Forgets the state; what is beside it stays known. */
-/*@ requires \valid(root); */
 void goe_srif_clear(goe_triangle_t *root);
 
 /* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state and of what is estimated
  * beside it. nuisance_root:
  * 1/sigma of the nuisances. *matrix is used up. Returns the squared norm that is left of the residuals: the normalised
  * innovation squared. */
-/*@ requires \valid(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
 float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]);
 
 /* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if it were
  * known to be 0, and what is known of it stays as it was; the inverse then holds its part in the variances of the others. */
-/*@ requires \valid(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)); */
 float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
                                   float change[GOE_UNKNOWNS]);
 
@@ -93,11 +86,9 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma);
 
 /* *inverse = R^-1. */
-/*@ requires \valid_read(root) && \valid(inverse); */
 void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse);
 
 /* The same of a diagonal R, for less. */
-/*@ requires \valid_read(root) && \valid(inverse); */
 void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse);
 
 /* Variance of one state. */
@@ -105,12 +96,10 @@ void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse
 float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
 
 /* Variance of w' x, as if what is beside the state were known. */
-/*@ requires \valid_read(inverse) && \valid_read(weight + (0 .. GOE_STATES - 1)); */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
 /* The same if the first GOE_UNWEIGHTED weights are 0, for half of that. */
 #define GOE_UNWEIGHTED 3
-/*@ requires \valid_read(inverse) && \valid_read(weight + (0 .. GOE_STATES - 1)); */
 float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
 #if GOE_BESIDE
@@ -122,7 +111,6 @@ void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES
                      float part[GOE_BESIDE]);
 
 /* Covariance of two such sums, or the variance of one. */
-/*@ requires \valid_read(a + (0 .. GOE_BESIDE - 1)) && \valid_read(b + (0 .. GOE_BESIDE - 1)); */
 static inline float goe_srif_beside_dot(const float a[GOE_BESIDE], const float b[GOE_BESIDE]) {
     float sum = 0.0f;
     for (size_t i = 0; i < GOE_BESIDE; i++) {
@@ -133,23 +121,18 @@ static inline float goe_srif_beside_dot(const float a[GOE_BESIDE], const float b
 #endif
 
 /* The part of it that is the last state's own. */
-/*@ requires \valid_read(inverse) && \valid_read(weight + (0 .. GOE_STATES - 1)); */
 float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
 /* w becomes R^-1' w, whose squared norm is that variance: the derivative in terms of independent unit errors. Of a w whose
  * first GOE_UNWEIGHTED elements are 0, and remain so. */
-/*@ requires \valid_read(inverse) && \valid(weight + (0 .. GOE_STATES - 1)); */
 void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]);
 
 /* Covariance of the first GOE_KEPT states; upper half. */
 #define GOE_KEPT 6
-/*@ requires \valid_read(inverse) && \valid(covariance + (0 .. GOE_KEPT - 1)); */
 void goe_srif_marginal(const goe_inverse_t *inverse, float covariance[GOE_KEPT][GOE_KEPT]);
 
 /* R and its inverse from the covariance of the first states, which is used up, and the sigmas of the others, which are
  * independent of them. */
-/*@ requires \valid(covariance + (0 .. GOE_KEPT - 1)) && \valid_read(sigma + (0 .. GOE_STATES - GOE_KEPT - 1));
-    requires \valid(root) && \valid(inverse); */
 void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],
                               goe_triangle_t *root, goe_inverse_t *inverse);
 
@@ -160,7 +143,6 @@ typedef struct {
 } goe_substitution_t;
 
 /* (R21): R in the new states; *rows is used up. */
-/*@ requires \valid(root) && \valid_read(old) && \valid(rows); */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows);
 
 #endif

@@ -70,7 +70,6 @@ void goe_touch_open(const goe_observation_t *obs, goe_solid_t *solid) {
 }
 
 /* A vector of the camera's axes in those of a rotation. */
-/*@ requires \valid_read(r + (0 .. 8)) && \valid_read(v + (0 .. 2)) && \valid(to + (0 .. 2)); */
 static inline void turn(const float r[9], const float v[3], float to[3]) {
     to[0] = r[0] * v[0] + r[1] * v[1] + r[2] * v[2];
     to[1] = r[3] * v[0] + r[4] * v[1] + r[5] * v[2];
@@ -95,7 +94,6 @@ static void reach_corner(const goe_solid_t *solid, const float n[3], goe_touch_t
 }
 
 /* ... and the point of an ellipse that does. */
-/*@ requires goe_solid_is_closed(solid) && \valid(t) && \valid_read(n + (0 .. 2)); */
 static void reach_rim(const goe_solid_t *solid, const float n[3], goe_touch_t *t) {
     const float level = sqrtf(n[0] * n[0] + n[2] * n[2]);
     const bool tilts = level > LEVEL_MIN;
@@ -112,7 +110,6 @@ typedef enum { FOOT, HEAD, EITHER } end_t;
 
 /* The touching point on the side of the outward normal, which is given in the camera's axes. (R26), (R27). False if it is not
  * ahead. */
-/*@ requires goe_solid_is_closed(solid) && \valid_read(normal + (0 .. 2)) && \valid(t); */
 static bool touch(const goe_solid_t *solid, const float normal[3], end_t end, goe_touch_t *t) {
     const float *r = solid->unbiased_from_camera;
     float n[3];

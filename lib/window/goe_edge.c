@@ -14,7 +14,6 @@ static bool in_order(const goe_view_t *view, goe_feature_t left, goe_feature_t r
 
 /* (1). The edge through a and b meets the horizon y = 0 at x_a - y_a (x_b - x_a)/(y_b - y_a) = x/z of the vector below,
  * which needs no division: an edge parallel to the horizon simply has no Z component. */
-/*@ requires \valid_read(a) && \valid_read(b); */
 static float heading_deg(const goe_point_t *a, const goe_point_t *b) {
     const float x = a->x * b->y - a->y * b->x;
     const float z = b->y - a->y;
@@ -23,7 +22,6 @@ static float heading_deg(const goe_point_t *a, const goe_point_t *b) {
 }
 
 /* edge->left and edge->right are usable; from and to are their pixels. */
-/*@ requires \valid_read(settings) && \valid_read(from) && \valid_read(to) && \valid(edge); */
 static void measure_edge(const goe_settings_t *settings, float fx_px, const goe_pixel_t *from, const goe_pixel_t *to,
                          goe_edge_t *edge) {
     const goe_point_t *left = edge->left;

@@ -18,7 +18,6 @@ typedef struct {
 
 /* Finds the edges between the usable base corners. GOE_OK, or GOE_SWAPPED if the corners are not in image order: then
  * there are no edges. The edges point into view. */
-/*@ requires \valid_read(settings) && goe_view_is_open(view) && \valid(edges); */
 goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_view_t *view, goe_edges_t *edges);
 
 #endif

@@ -13,12 +13,10 @@ typedef struct {
 
 /* (6), (7). GOE_OK, or GOE_EDGE_ON if an end of the side edge is within min_x (of the focal length) of x' = 0, where the
  * side cannot be seen. faces must have a front and a side. */
-/*@ requires \valid_read(faces) && \valid_read(front) && \valid_read(reference) && \valid(length); */
 goe_status_t goe_extent_length(const goe_faces_t *faces, const goe_span_t *front, goe_turn_t turn,
                                const goe_estimate_t *reference, float min_x, goe_extent_t *length);
 
 /* (8). GOE_OK, or GOE_BAD_HEIGHT if the camera is not above ground. */
-/*@ requires \valid_read(top) && \valid_read(reference) && \valid(height); */
 static inline goe_status_t goe_extent_height(const goe_point_t *top, float height_m, const goe_estimate_t *reference,
                                              goe_extent_t *height) {
     if (height_m <= 0.0f) {

@@ -26,7 +26,6 @@ static float hypothesis_deg(const goe_edge_t *side, const goe_edge_t *front) {
 
 static float distance_deg(float a_deg, float b_deg) { return goe_absolute(goe_fold_deg(a_deg - b_deg)); }
 
-/*@ requires \valid_read(orientation); */
 static bool prefers_first(const goe_orientation_t *orientation, float first_deg, float second_deg) {
     const float first = goe_absolute(first_deg);
     const float second = goe_absolute(second_deg);
@@ -50,7 +49,6 @@ static void low_pass(goe_orientation_t *orientation, float measured_deg, int mem
 }
 
 /* What no image can have left begins anew. */
-/*@ requires \valid(orientation); */
 static void mend(goe_orientation_t *orientation, int memory) {
     if (orientation->count < 0 || orientation->count > memory ||
         !goe_within(orientation->filtered_deg, FOLDED_MAX_DEG)) {

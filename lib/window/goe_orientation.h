@@ -18,7 +18,6 @@ typedef struct {
 void goe_orientation_update(goe_orientation_t *orientation, const goe_edges_t *edges, int memory, goe_faces_t *faces);
 
 /* One-sigma of the filtered orientation, degrees. */
-/*@ requires \valid_read(orientation); */
 static inline float goe_orientation_sigma_deg(const goe_orientation_t *orientation) {
     return orientation->count > 0 ? sqrtf(orientation->variance_deg2 / (float)orientation->count) : 0.0f;
 }

@@ -26,17 +26,14 @@ typedef struct {
 } goe_turn_t;
 
 /* (2), b = 0. GOE_OK, or GOE_SWAPPED if left is not left of right. */
-/*@ requires \valid_read(left) && \valid_read(right) && \valid(row); */
 goe_status_t goe_projection_disc(const goe_point_t *left, const goe_point_t *right, goe_row_t *row);
 
 /* (3), (4) of the front edge from its left to its right end. GOE_OK, or GOE_EDGE_ON if it is seen from its end or from
  * behind. */
-/*@ requires \valid_read(left) && \valid_read(right) && \valid(span) && \valid(row); */
 goe_status_t goe_projection_line(const goe_point_t *left, const goe_point_t *right, goe_turn_t turn, goe_span_t *span,
                                  goe_row_t *row);
 
 /* The virtual rotation (4) of an aligned point. False if the point is not ahead of the turned camera. */
-/*@ requires \valid_read(point) && \valid(turned_x); */
 static inline bool goe_projection_turn(const goe_point_t *point, goe_turn_t turn, float *turned_x) {
     const float forward = turn.c + point->x * turn.s;
     if (!(forward > GOE_FORWARD_MIN * sqrtf(1.0f + point->x * point->x))) {

@@ -38,12 +38,10 @@ void goe_window_clear(goe_window_t *window) { memset(window, 0, sizeof *window);
 
 /* ------------------------------------------------------------------------------------------------- rows of one image -- */
 
-/*@ requires \valid(ring) && \valid_read(frame); */
 static inline void add_row(goe_fit_ring_t *ring, const frame_t *frame, goe_row_t row) {
     goe_fit_add(ring, frame->settings->window.points, frame->motion->dx_m, frame->motion->dz_m, row);
 }
 
-/*@ requires \valid(window) && \valid(frame); */
 static goe_status_t add_disc_row(goe_window_t *window, frame_t *frame) {
     goe_row_t row;
     const goe_point_t *left = &frame->view->point[GOE_POINT_LEFT];
@@ -59,7 +57,6 @@ static goe_status_t add_disc_row(goe_window_t *window, frame_t *frame) {
     return fault;
 }
 
-/*@ requires \valid(frame); */
 static void clear_faces(frame_t *frame) {
     frame->edges.count = 0;
     frame->faces.measured = false;
@@ -67,7 +64,6 @@ static void clear_faces(frame_t *frame) {
     frame->turn.c = 1.0f;
 }
 
-/*@ requires \valid(window) && \valid(frame); */
 static void find_faces(goe_window_t *window, frame_t *frame) {
     if (frame->settings->model == GOE_MODEL_DISC) {
         clear_faces(frame);
@@ -79,7 +75,6 @@ static void find_faces(goe_window_t *window, frame_t *frame) {
     goe_sincos_deg(window->orientation.filtered_deg, &frame->turn.s, &frame->turn.c);
 }
 
-/*@ requires \valid(window) && \valid(frame); */
 static void add_line_row(goe_window_t *window, frame_t *frame) {
     goe_row_t row;
     if (!frame->faces.measured || !frame->faces.front || !frame->faces.front->counts) {
@@ -96,14 +91,12 @@ static void add_line_row(goe_window_t *window, frame_t *frame) {
 
 /* ------------------------------------------------------------------------------------------------------- solution -- */
 
-/*@ requires \valid_read(settings); */
 static int line_points_needed(const goe_settings_t *settings) {
     return settings->window.line_points > settings->window.points ? settings->window.line_points
                                                                   : settings->window.points;
 }
 
 /* The model to report: Section 4 of the paper, disc until enough line points are there. */
-/*@ requires \valid_read(window) && \valid_read(settings); */
 static goe_model_t reported_model(const goe_window_t *window, const goe_settings_t *settings) {
     if (settings->model != GOE_MODEL_AUTO) {
         return settings->model;
@@ -111,7 +104,6 @@ static goe_model_t reported_model(const goe_window_t *window, const goe_settings
     return window->line.count >= line_points_needed(settings) ? GOE_MODEL_LINE : GOE_MODEL_DISC;
 }
 
-/*@ requires \valid_read(frame); */
 static void take_fit(const frame_t *frame, goe_model_t model) {
     goe_estimate_t *estimate = frame->estimate;
     estimate->method = GOE_METHOD_WINDOW;
@@ -122,7 +114,6 @@ static void take_fit(const frame_t *frame, goe_model_t model) {
 }
 
 /* GOE_OK: solved. GOE_COLLECTING, GOE_HELD: nothing to solve. Otherwise why there is no solution. */
-/*@ requires \valid(window) && \valid_read(frame); */
 static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
     const goe_model_t model = reported_model(window, frame->settings);
     const goe_fit_ring_t *ring = model == GOE_MODEL_LINE ? &window->line : &window->disc;
@@ -143,7 +134,6 @@ static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
 /* ------------------------------------------------------------------------------------------- what hangs on a solution -- */
 
 /* Takes one image's length or height into its sliding mean. A mean that is not positive is no answer. */
-/*@ requires \valid(mean) && \valid_read(extent) && \valid(valid) && \valid(value_m) && \valid(sigma_m); */
 static void take_extent(goe_mean_t *mean, int length, const goe_extent_t *extent, unsigned has, unsigned *valid,
                         float *value_m, float *sigma_m) {
     const goe_average_t average = goe_mean_add(mean, length, extent->value_m);
@@ -153,7 +143,6 @@ static void take_extent(goe_mean_t *mean, int length, const goe_extent_t *extent
     *valid = answers ? *valid | has : *valid & ~has;
 }
 
-/*@ requires \valid(window) && \valid(frame); */
 static void measure_length(goe_window_t *window, frame_t *frame) {
     goe_estimate_t *estimate = frame->estimate;
     goe_extent_t extent;
@@ -169,7 +158,6 @@ static void measure_length(goe_window_t *window, frame_t *frame) {
     }
 }
 
-/*@ requires \valid(window) && \valid(frame); */
 static void measure_height(goe_window_t *window, frame_t *frame) {
     goe_estimate_t *estimate = frame->estimate;
     const goe_point_t *top = &frame->view->point[GOE_POINT_TOP];
@@ -185,7 +173,6 @@ static void measure_height(goe_window_t *window, frame_t *frame) {
     }
 }
 
-/*@ requires \valid_read(orientation) && \valid_read(frame); */
 static void report_orientation(const goe_orientation_t *orientation, const frame_t *frame) {
     const goe_turn_t turn = frame->turn;
     goe_estimate_t *estimate = frame->estimate;
@@ -203,7 +190,6 @@ static void report_orientation(const goe_orientation_t *orientation, const frame
     estimate->sigma.orientation_deg = goe_orientation_sigma_deg(orientation);
 }
 
-/*@ requires \valid(estimate); */
 static void clear_center(goe_estimate_t *estimate) {
     estimate->valid &= ~GOE_HAS_CENTER;
     estimate->center_north_m = 0.0f;
@@ -214,7 +200,6 @@ static void clear_center(goe_estimate_t *estimate) {
 }
 
 /* Middle of the base: a disc's reference point; half a length behind a box's front edge. */
-/*@ requires \valid(estimate) && \valid_read(motion); */
 static void report_center(goe_estimate_t *estimate, const goe_motion_t *motion) {
     const goe_sigma_t *sigma = &estimate->sigma;
     const float c = motion->heading_cos;
@@ -246,7 +231,6 @@ static void report_center(goe_estimate_t *estimate, const goe_motion_t *motion) 
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
 /* What to say of an image that was taken. */
-/*@ requires \valid_read(frame); */
 static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
     if (solving == GOE_OK) {
         return frame->faults.first == GOE_OK ? GOE_OK : GOE_PARTIAL;

@@ -11,7 +11,6 @@ typedef enum {
 } goe_window_task_t;
 
 /* Forgets the track. */
-/*@ requires \valid(window); */
 void goe_window_clear(goe_window_t *window);
 
 /* Takes one image and, if it solves, brings *estimate, the window's own or an empty one, up to date. Returns what to say of the

@@ -1,4 +1,5 @@
 /* Alignment of pixels into T. SPDX-License-Identifier: MIT */
+/* tests: lib/image/goe_align.c */
 #include <string.h>
 
 #include "check.h"
@@ -73,7 +74,8 @@ static void what_is_not_seen_is_not_usable(void) {
     CHECK_STATUS(GOE_OK, faults.first);
 }
 
-/* GIVEN a camera turned by yaw 20, pitch -10, roll 5 WHEN it sees a point THEN the point's aligned coordinates are X/Z,
+/* [A4, camera.cx_px, camera.cy_px]
+ * GIVEN a camera turned by yaw 20, pitch -10, roll 5 WHEN it sees a point THEN the point's aligned coordinates are X/Z,
  * Y/Z in T, whatever the turn. */
 static void own_rotation_is_taken_out(void) {
     const float point_in_t[3] = {-12.0f, 20.0f, 100.0f};
@@ -94,7 +96,7 @@ static void own_rotation_is_taken_out(void) {
     check_point(-0.12f, 0.2f, &view.point[GOE_POINT_TOP]);
 }
 
-/* The third component in T may be 0.05 of the norm: 87.13 degrees aside. */
+/* [A6] The third component in T may be 0.05 of the norm: 87.13 degrees aside. */
 static void a_ray_too_far_aside_is_behind_the_camera(void) {
     float to_the_right[9];
     goe_rotation_from_euler(0.0f, 90.0f, 0.0f, to_the_right); /* about image y: the optical axis becomes T's X */
@@ -121,6 +123,7 @@ static void a_lens_that_cannot_be_inverted_loses_its_pixel_only(void) {
     TEST_ASSERT_EQUAL_UINT32(1u, causes[-GOE_LENS_FAILED]);
 }
 
+/* [GOE_CAUSES, goe_fault.c] */
 static void counters_saturate(void) {
     causes[-GOE_LENS_FAILED] = UINT32_MAX;
     camera.k1 = -0.5f;

@@ -1,5 +1,6 @@
 /* Arctangent, sine and cosine, folding: exact places, symmetries, continuity. SPDX-License-Identifier: MIT
  * The error bounds are tested against double in test_double_angle.c. */
+/* tests: lib/maths/goe_angle.c */
 #include "check.h"
 #include "maths/goe_angle.h"
 
@@ -85,6 +86,7 @@ static void sine_and_cosine_of_no_angle_are_those_of_none(void) {
     }
 }
 
+/* [goe_estimate_t.orientation_deg] */
 static void folding_names_the_same_undirected_line(void) {
     TEST_ASSERT_EQUAL_FLOAT(90.0f, goe_fold_deg(90.0f));
     TEST_ASSERT_EQUAL_FLOAT(90.0f, goe_fold_deg(-90.0f));

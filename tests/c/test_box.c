@@ -1,4 +1,5 @@
 /* Rows of a box against a brute-force projection of its corners in double. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_box.c */
 #include "refined/goe_box.h"
 
 #include <math.h>
@@ -217,7 +218,8 @@ static void check_rows(void) {
 
 static const int faces_to_feature[3] = {GOE_POINT_BASE_LEFT, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_RIGHT};
 
-/* GIVEN boxes of any size, side and orientation WHEN all that can be seen is measured where brute force puts it THEN all
+/* [goe_image_t.base_left, goe_image_t.pose, goe_image_t.top, (R1), (R10), (R11), (R12), (R13), (R2), (R9)]
+ * GIVEN boxes of any size, side and orientation WHEN all that can be seen is measured where brute force puts it THEN all
  * residuals are 0, so that the same corners were taken, and all derivatives are those of the projection. */
 static void rows_are_those_of_the_corners_that_are_seen(void) {
     int faces[3] = {0, 0, 0};
@@ -255,7 +257,7 @@ static void rows_are_those_of_the_corners_that_are_seen(void) {
     TEST_ASSERT_TRUE(faces[1] > CASES / 20 && faces[2] > CASES / 2);
 }
 
-/* GIVEN a silhouette alone THEN its corners are the outermost ones. */
+/* [(R12)] GIVEN a silhouette alone THEN its corners are the outermost ones. */
 static void a_silhouette_alone_takes_the_outermost_corners(void) {
     any = check_random_start("silhouette");
     for (int n = 0; n < CASES; n++) {
@@ -276,7 +278,8 @@ static void a_silhouette_alone_takes_the_outermost_corners(void) {
     }
 }
 
-/* GIVEN two faces of which the detector missed the corner between them WHEN the length is estimated THEN the outer corners
+/* [goe_image_t.base_left]
+ * GIVEN two faces of which the detector missed the corner between them WHEN the length is estimated THEN the outer corners
  * are those of both faces all the same, if that fits clearly better. */
 static void a_missed_near_corner_is_told_from_a_single_face(void) {
     int checked = 0;
@@ -317,7 +320,7 @@ static void a_missed_near_corner_is_told_from_a_single_face(void) {
     TEST_ASSERT_TRUE(checked > 50);
 }
 
-/* The depths solve their two equations for any sign and size of their difference. */
+/* [(R9)] The depths solve their two equations for any sign and size of their difference. */
 static void depths_solve_their_equations(void) {
     any = check_random_start("depths");
     for (int n = 0; n < CASES; n++) {
@@ -363,7 +366,7 @@ static void start_at(double deg) {
     lay(deg);
 }
 
-/* GIVEN a box THEN its side is the edge nearer to Z at first, and keeps that name until it lies more than 52 degrees (tan b = 1.3)
+/* [A8] GIVEN a box THEN its side is the edge nearer to Z at first, and keeps that name until it lies more than 52 degrees (tan b = 1.3)
  * from Z; so does the other edge then. */
 static void an_edge_keeps_its_name_until_it_lies_clearly_across(void) {
     static const double all_deg[] = {52.3, -52.3, 30.0, 52.6, 45.0, 37.7, 60.0, 37.3, 52.3};
@@ -380,7 +383,8 @@ static void an_edge_keeps_its_name_until_it_lies_clearly_across(void) {
     }
 }
 
-/* GIVEN a box WHEN its edges exchange their names THEN width, length, orientation and the reference point are those of the other
+/* [A8, goe_estimate_t.center_north_m, goe_shape.c, (R10)]
+ * GIVEN a box WHEN its edges exchange their names THEN width, length, orientation and the reference point are those of the other
  * edge, and the middle of the base is where it was. */
 static void names_move_the_reference_point_and_not_the_middle(void) {
     for (int deg = -70; deg <= 70; deg += 10) {
@@ -411,7 +415,7 @@ static void names_move_the_reference_point_and_not_the_middle(void) {
     }
 }
 
-/* (R24): 1 + 12 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
+/* [(R24)] 1 + 12 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
 static void an_unsure_depth_widens_what_hangs_on_the_corner(void) {
     goe_box_edges_t edges;
     goe_shape_t shape;

@@ -1,4 +1,5 @@
 /* First guess of a box from exact base corners. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_box_start.c */
 #include "refined/goe_box_start.h"
 
 #include <math.h>
@@ -60,7 +61,7 @@ static void show_face(place_t left, place_t right) {
     measure(GOE_POINT_BASE_RIGHT, right);
 }
 
-/* GIVEN the front of any box, exact corners and range THEN orientation, width and reference point are exact. */
+/* [(R20)] GIVEN the front of any box, exact corners and range THEN orientation, width and reference point are exact. */
 static void a_front_alone_is_exact(void) {
     any = check_random_start("front");
     for (int n = 0; n < CASES; n++) {
@@ -84,7 +85,7 @@ static void a_front_alone_is_exact(void) {
     }
 }
 
-/* GIVEN a face that lies more along than across THEN it is the side, and its near end is a corner of the front: the right one
+/* [(R20)] GIVEN a face that lies more along than across THEN it is the side, and its near end is a corner of the front: the right one
  * if the side lies to the right of it, seen from outside. */
 static void a_side_alone_has_its_near_end_on_the_front(void) {
     any = check_random_start("side");
@@ -111,7 +112,7 @@ static void a_side_alone_has_its_near_end_on_the_front(void) {
     }
 }
 
-/* GIVEN noise THEN the told sigma of the orientation is at least what the noise makes of it. */
+/* [(R20)] GIVEN noise THEN the told sigma of the orientation is at least what the noise makes of it. */
 static void the_sigma_covers_the_noise(void) {
     const int draws = 2000;
     double sum2 = 0.0;
@@ -217,7 +218,7 @@ static void show_two_faces(double left_m, double right_m, double range_m, double
     }
 }
 
-/* GIVEN a box whose faces reach equally deep, as the guess takes all boxes WHEN it is small against its range THEN the guess is
+/* [(R19)] GIVEN a box whose faces reach equally deep, as the guess takes all boxes WHEN it is small against its range THEN the guess is
  * right to twice its size over its range. */
 static void two_faces_of_equal_depth_are_right_to_first_order(void) {
     any = check_random_start("two faces");
@@ -266,6 +267,7 @@ static void good_box(void) {
     TEST_ASSERT_TRUE(two_faces());
 }
 
+/* [(R20)] */
 static void what_one_face_does_not_tell_is_refused(void) {
     any = check_random_start("refusals");
     good_face();
@@ -297,6 +299,7 @@ static void what_one_face_does_not_tell_is_refused(void) {
     TEST_ASSERT_TRUE(box.sigma_rad < 0.2f);
 }
 
+/* [(R19)] */
 static void what_two_faces_do_not_tell_is_refused(void) {
     any = check_random_start("refusals");
     good_box();

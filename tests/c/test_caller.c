@@ -57,7 +57,8 @@ static void foresee(void) {
     CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
 }
 
-/* GIVEN a detector that falls silent for three seconds, images without features coming THEN the estimate is stale, says how old
+/* [goe_hazard]
+ * GIVEN a detector that falls silent for three seconds, images without features coming THEN the estimate is stale, says how old
  * it is, follows the own motion, and the hazard goes on; WHEN it sees again THEN the track goes on, too. */
 static void a_silent_detector(void) {
     scene_truth_t truth;
@@ -104,7 +105,8 @@ static void a_number_that_passes_to_another(void) {
     TEST_ASSERT_TRUE(fabs((double)estimate.z_m - truth.z_m) < 4.0 * (double)estimate.sigma.z_m + 2.0);
 }
 
-/* GIVEN an obstacle that is passed, and is seen no more THEN the hazard is over when it lies behind, though the estimate is old. */
+/* [goe_estimate_t.x_m, goe_hazard]
+ * GIVEN an obstacle that is passed, and is seen no more THEN the hazard is over when it lies behind, though the estimate is old. */
 static void an_obstacle_that_is_passed(void) {
     scene_truth_t truth;
     for (int k = 0; k < 136; k++) {
@@ -126,8 +128,11 @@ static void by_boxes(void (*test)(void)) {
     test();
 }
 
+/* [goe_estimate_t.age_s] */
 static void a_silent_detector_of_boxes(void) { by_boxes(a_silent_detector); }
+/* [goe_estimate_t.suspect] */
 static void a_number_of_boxes_that_passes_to_another(void) { by_boxes(a_number_that_passes_to_another); }
+/* [goe_estimate_t.x_m] */
 static void an_obstacle_of_boxes_that_is_passed(void) { by_boxes(an_obstacle_that_is_passed); }
 
 int main(void) {

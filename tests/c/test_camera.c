@@ -1,4 +1,5 @@
 /* Mounting and lens. SPDX-License-Identifier: MIT */
+/* tests: lib/image/goe_camera.c */
 #include <string.h>
 
 #include "check.h"
@@ -27,6 +28,7 @@ static void check_axes(const float x_axis[3], const float y_axis[3], const float
     }
 }
 
+/* [camera.mount_yaw_deg] */
 static void an_unmounted_camera_looks_ahead(void) {
     check_axes((const float[]){0.0f, 1.0f, 0.0f}, (const float[]){0.0f, 0.0f, 1.0f}, (const float[]){1.0f, 0.0f, 0.0f});
 }
@@ -37,12 +39,14 @@ static void negative_yaw_looks_left(void) {
                (const float[]){0.866025404f, -0.5f, 0.0f});
 }
 
+/* [camera.mount_yaw_deg] */
 static void negative_pitch_looks_down(void) {
     camera.mount_pitch_deg = -90.0f;
     check_axes((const float[]){0.0f, 1.0f, 0.0f}, (const float[]){-1.0f, 0.0f, 0.0f},
                (const float[]){0.0f, 0.0f, 1.0f});
 }
 
+/* [camera.mount_yaw_deg] */
 static void positive_roll_turns_the_image_clockwise(void) {
     camera.mount_roll_deg = 90.0f;
     check_axes((const float[]){0.0f, 0.0f, 1.0f}, (const float[]){0.0f, -1.0f, 0.0f},
@@ -64,6 +68,7 @@ static bool ray_of(float u, float v, float *x, float *y) {
     return !goe_camera_distorts(&camera) || goe_camera_undistort(&camera, x, y);
 }
 
+/* [camera.fx_px, camera.fy_px] */
 static void a_pinhole_camera_divides_by_its_focal_lengths(void) {
     float x;
     float y;
@@ -139,6 +144,7 @@ static void a_pincushion_lens_is_inverted(void) {
     check_round_trip(1.0e-6f);
 }
 
+/* [A23, GOE_LENS_FAILED] */
 static void a_pixel_outside_the_lens_is_refused(void) {
     float x;
     float y;
@@ -152,7 +158,7 @@ static void a_pixel_outside_the_lens_is_refused(void) {
     TEST_ASSERT_FALSE(ray_of(640.0f + 900.0f, 480.0f, &x, &y));
 }
 
-/* GIVEN lenses good and bad THEN a ray that is given is one that the lens does put there, and it is finite. */
+/* [A23] GIVEN lenses good and bad THEN a ray that is given is one that the lens does put there, and it is finite. */
 static void no_wrong_ray_is_given(void) {
     check_random_t random = check_random_start("lenses");
     double worst = 0.0;

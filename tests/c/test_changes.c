@@ -2,6 +2,7 @@
  *
  * The covariance after a change, less what the change adds on purpose, must be the one before, by the derivatives of the old states
  * by the new ones, which are taken here as differences, in double. */
+/* tests: lib/refined/goe_box_start.c */
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* Boxes by their silhouette alone, and what is no box or no disc. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_chord.c */
 #include "refined/goe_chord.h"
 
 #include <math.h>
@@ -125,7 +126,8 @@ static void measure(size_t feature) {
     kind[expected_rows++] = feature;
 }
 
-/* GIVEN chords of any place, slope and length THEN the residuals are 0 at the truth and the derivatives those of its ends; base
+/* [refined.top_is_highest, (R8)]
+ * GIVEN chords of any place, slope and length THEN the residuals are 0 at the truth and the derivatives those of its ends; base
  * corners give no rows. */
 static void rows_are_those_of_the_ends(void) {
     any = check_random_start("chords");
@@ -181,7 +183,7 @@ static void check_box(double share) {
     TEST_ASSERT_TRUE(center_off() < 2.0);
 }
 
-/* ... and WHEN its front turns away THEN as the box that it is. */
+/* [A30, GOE_MODEL_BOX, (R21)] ... and WHEN its front turns away THEN as the box that it is. */
 static void a_box_comes_out_of_its_silhouette(void) {
     static const double alpha_deg[] = {40.0, 42.0, 44.0};
     for (int i = 0; i < 3; i++) {
@@ -259,7 +261,8 @@ static double worst_confident(int images) {
     return worst;
 }
 
-/* GIVEN the outlines of typical houses in straight flights THEN hardly one is reported wrong by six sigma, though corners change that
+/* [A30, (R40)]
+ * GIVEN the outlines of typical houses in straight flights THEN hardly one is reported wrong by six sigma, though corners change that
  * nothing but the sigma can hold. */
 static void outlines_of_houses_are_not_confidently_wrong(void) {
     int wrong = 0;
@@ -384,7 +387,7 @@ static void faces_of_no_box_are_left_a_chord(void) {
 
 /* ---------------------------------------------------------------------------------------------------------- cylinders -- */
 
-/* GIVEN cylinders, noise-free and noisy THEN they stay discs and are not suspect, also if a disc was asked for. */
+/* [GOE_REASON_SHAPE, (R7)] GIVEN cylinders, noise-free and noisy THEN they stay discs and are not suspect, also if a disc was asked for. */
 static void a_cylinder_stays_a_disc(void) {
     any = check_random_start("cylinders");
     for (int i = 0; i < 12; i++) {
@@ -406,7 +409,7 @@ static void a_cylinder_stays_a_disc(void) {
     }
 }
 
-/* GIVEN a long box WHEN a disc is asked for THEN it is told, and told as suspect. */
+/* [goe_report.c, (R7)] GIVEN a long box WHEN a disc is asked for THEN it is told, and told as suspect. */
 static void a_disc_by_force_is_suspect(void) {
     any = check_random_start("force");
     scene.length_m = 18.0;
@@ -476,7 +479,8 @@ static void refused_corners_are_told_with_every_answer(void) {
     }
 }
 
-/* GIVEN noise larger than told by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
+/* [goe_estimate_t.suspect, refined.misfit_max]
+ * GIVEN noise larger than told by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
 static void noise_does_not_make_corners_false(void) {
     any = check_random_start("large noise");
     start();

@@ -1,6 +1,7 @@
 /* The latest estimate's covariance, and what goe_hazard asks beside it. SPDX-License-Identifier: MIT
  *
  * Estimates and states are written into the estimator, so that every number is known. */
+/* tests: lib/goe_covariance.c */
 #include "goe_covariance.h"
 
 #include <math.h>
@@ -103,7 +104,7 @@ static void the_place_of_what_moves_grows_uncertain(void) {
     }
 }
 
-/* GIVEN an answer of the filter's, fresh or not THEN reach, height and what its height is freed of are as they were with it; of an
+/* [A34] GIVEN an answer of the filter's, fresh or not THEN reach, height and what its height is freed of are as they were with it; of an
  * answer of the window's the filter has no part. */
 static void what_a_hazard_needs_is_kept_with_the_answer(void) {
     goe_answer_t *answer = &estimator.filter.answer;
@@ -239,7 +240,7 @@ static int check_diagonal(const goe_estimate_t *e) {
     return valid;
 }
 
-/* GIVEN flights that go through all models, and scatter THEN sigma and covariance agree for every quantity, in images that
+/* [goe_covariance] GIVEN flights that go through all models, and scatter THEN sigma and covariance agree for every quantity, in images that
  * show the obstacle and in those that do not. */
 static void sigmas_and_covariance_agree_in_flight(void) {
     unsigned models = 0;

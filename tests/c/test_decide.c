@@ -1,6 +1,7 @@
 /* The decision rule. SPDX-License-Identifier: MIT
  *
  * Answers are written into the estimator, so that every number is known. */
+/* tests: lib/hazard/goe_decide.c */
 #include <math.h>
 #include <string.h>
 
@@ -31,7 +32,8 @@ void tearDown(void) {}
 
 static goe_decision_t decide(void) { return goe_decide(&estimator, &plan, &rule, &hazard); }
 
-/* GIVEN an obstacle on the course THEN the rule acts from the probability and from the time on that it is given, and not before. */
+/* [goe_decide]
+ * GIVEN an obstacle on the course THEN the rule acts from the probability and from the time on that it is given, and not before. */
 static void probability_and_time_decide(void) {
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
     TEST_ASSERT_TRUE(hazard.violation > 0.99f);
@@ -102,7 +104,8 @@ static void an_old_answer_clears_nothing_after_new_detections(void) {
 #endif
 }
 
-/* GIVEN a suspect estimate THEN margin and clearance count `doubt` times; GIVEN one that is some seconds old, by its own age and the
+/* [goe_decide]
+ * GIVEN a suspect estimate THEN margin and clearance count `doubt` times; GIVEN one that is some seconds old, by its own age and the
  * plan's THEN they have grown by the drift. The hazard is that of these distances. */
 static void doubt_and_age_widen(void) {
     static const float seconds[] = {0.0f, 4.0f};
@@ -127,7 +130,7 @@ static void doubt_and_age_widen(void) {
     }
 }
 
-/* GIVEN an estimator without a position THEN the decision is that nothing is known. */
+/* [goe_decide] GIVEN an estimator without a position THEN the decision is that nothing is known. */
 static void without_a_position_nothing_is_known(void) {
     estimator.estimate.valid = 0u;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
@@ -150,7 +153,8 @@ static float *field(int i) {
     return fields[i];
 }
 
-/* GIVEN anything that the rule cannot work with: a number that is none, or out of range, in each field; no plan, no estimator, one that was
+/* [goe_plan_t.velocity_sd_m_s, goe_rule_t.act_s, goe_rule_t.violation_max]
+ * GIVEN anything that the rule cannot work with: a number that is none, or out of range, in each field; no plan, no estimator, one that was
  * not set or whose settings have changed THEN the decision is to keep the previous one, and the hazard is all zero. */
 static void every_failure_keeps_the_decision(void) {
     static const uint32_t bits[] = {0x7FC00000u, 0xFFC00001u, 0x7F800000u, 0xFF800000u, 0x7F000000u, 0xFF000000u};
@@ -191,7 +195,7 @@ static void no_rule_is_the_default(void) {
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, decide());
 }
 
-/* GIVEN distances at the end of their range THEN doubt and age do not push them out of it. */
+/* [goe_decide, goe_rule_t.doubt] GIVEN distances at the end of their range THEN doubt and age do not push them out of it. */
 static void the_widest_distances_are_taken(void) {
     plan.margin_m = plan.clearance_m = 1.0e4f;
     estimator.estimate.suspect = true;

@@ -1,4 +1,5 @@
 /* Rows of a disc against its exact tangents in double. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_disc.c */
 #include "refined/goe_disc.h"
 
 #include <math.h>
@@ -96,7 +97,8 @@ static void check_rows(void) {
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
-/* GIVEN discs of any size and place, with the roof below or above the camera THEN residuals are 0 at the truth and all
+/* [goe_image_t.top, refined.top_is_highest, (R1), (R2), (R5), (R6)]
+ * GIVEN discs of any size and place, with the roof below or above the camera THEN residuals are 0 at the truth and all
  * derivatives are those of tangents and rim; with base corners, of the ground below the centre, too. */
 static void rows_are_those_of_tangents_and_rim(void) {
     any = check_random_start("discs");
@@ -113,6 +115,7 @@ static void rows_are_those_of_tangents_and_rim(void) {
     }
 }
 
+/* [goe_image_t.pose] */
 static void each_feature_alone_gives_its_row(void) {
     static const size_t features[] = {GOE_POINT_LEFT, GOE_POINT_RIGHT, GOE_POINT_TOP};
     any = check_random_start("alone");
@@ -146,7 +149,8 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
     }
 }
 
-/* GIVEN a disc of the typical size, noise-free and seen from a level camera WHEN the filter starts on it THEN the state is the
+/* [goe_image_t.left, (R18)]
+ * GIVEN a disc of the typical size, noise-free and seen from a level camera WHEN the filter starts on it THEN the state is the
  * truth; of another size, only the direction is. */
 static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
     any = check_random_start("start");
@@ -178,7 +182,7 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
 /* Twice the sine of half the angle between tangents at -0.05 and 0.05. */
 #define SEEN_WIDTH (0.1 / sqrt(1.0 + 0.05 * 0.05))
 
-/* (R18): GIVEN base corners clearly below the horizon THEN flat ground tells the first range; GIVEN ones that are not, or a camera
+/* [(R18)] GIVEN base corners clearly below the horizon THEN flat ground tells the first range; GIVEN ones that are not, or a camera
  * below the ground THEN the typical size does. */
 static void flat_ground_tells_the_first_range(void) {
     static const struct {
@@ -286,6 +290,7 @@ static void a_start_is_as_uncertain_as_one_image(void) {
     CHECK_CLOSE(1.0e-3, 1.0, 10.0 * (double)x[GOE_FRONT_X] * (double)*goe_srif_at(&root, GOE_TOP, GOE_TOP));
 }
 
+/* [goe_image_t.left] */
 static void no_width_is_no_start(void) {
     goe_triangle_t root;
     float state[GOE_STATES];

@@ -1,4 +1,5 @@
 /* The error bounds of the angle functions, against the C library's double ones. SPDX-License-Identifier: MIT */
+/* tests: lib/maths/goe_angle.c */
 #include <math.h>
 
 #include "check.h"

@@ -1,4 +1,5 @@
 /* The closed-form window fit against the dense 2N x 3 system in double, and its sigmas. SPDX-License-Identifier: MIT */
+/* tests: lib/window/goe_fit.c */
 #include <math.h>
 #include <string.h>
 
@@ -38,7 +39,7 @@ static void make_rows(const case_t *given, double noise, check_random_t *random,
     }
 }
 
-/* GIVEN random obstacles, motions, orientations and residuals THEN the fit is that of the dense system, and so are the
+/* [(5)] GIVEN random obstacles, motions, orientations and residuals THEN the fit is that of the dense system, and so are the
  * sigmas. Rounding of the rows to float, relative to what the parallax moves them, sets the limit. */
 static void the_fit_is_that_of_the_dense_system(void) {
     check_random_t random = check_random_start("dense system");
@@ -74,7 +75,7 @@ static void the_fit_is_that_of_the_dense_system(void) {
     TEST_ASSERT_TRUE(worst_sigma < 1.0e-3);
 }
 
-/* GIVEN one geometry and white noise on the rows WHEN it is solved 4000 times THEN the estimates scatter as the sigmas
+/* [A32] GIVEN one geometry and white noise on the rows WHEN it is solved 4000 times THEN the estimates scatter as the sigmas
  * say: 4000 draws know a standard deviation to 1.1 %, so 5 % are four and a half of it. */
 static void the_sigmas_are_the_scatter(void) {
     check_random_t random = check_random_start("scatter");

@@ -172,6 +172,7 @@ static obstacle_t random_obstacle(check_random_t *random, bool box) {
     return o;
 }
 
+/* [goe_approach.c, goe_hazard, goe_outline.c] */
 static void any_obstacle_is_met_as_brute_force_says(void) {
     check_random_t random = check_random_start("closest approach");
     double worst_time = 0.0;
@@ -215,6 +216,7 @@ static void a_chimney_ahead_is_reached_at_its_near_side(void) {
     CHECK_CLOSE(0.0, 1.0, hazard.violation); /* no sigma, no doubt */
 }
 
+/* [goe_outline.c] */
 static void turning_t_turns_the_answer_along(void) {
     /* GIVEN T at 30 degrees from north THEN the same flight relative to T meets the same obstacle */
     const obstacle_t o = {true, -15.0, 80.0, 8.0, 20.0, 25.0, 12.0};
@@ -246,6 +248,7 @@ static void what_lies_behind_is_as_far_as_now(void) {
     CHECK_CLOSE(1e-6, 0.0, hazard.violation);
 }
 
+/* [goe_hazard_t.clearance_m] */
 static void over_the_roof_the_distance_is_none(void) {
     const obstacle_t o = {true, 0.0, -10.0, 20.0, 30.0, 0.0, 45.0};
     const goe_plan_t level = plan_of(10.0, 0.0, 0.0);
@@ -260,6 +263,7 @@ static void over_the_roof_the_distance_is_none(void) {
     CHECK_CLOSE(1e-4, 5.0 - 4.0, foresee(&descending).clearance_m);
 }
 
+/* [goe_plan_t.velocity_ned_m_s] */
 static void standing_still_the_distance_is_that_of_now(void) {
     const obstacle_t boxes[2] = {{true, 30.0, 0.0, 20.0, 40.0, 0.0, 20.0}, {false, 26.0, 0.0, 12.0, 0.0, 0.0, 20.0}};
     const goe_plan_t still = plan_of(0.0, 0.0, -3.0);
@@ -276,7 +280,7 @@ static void standing_still_the_distance_is_that_of_now(void) {
     }
 }
 
-/* GIVEN less than 0.1 m/s over the ground THEN the aircraft stands still; GIVEN more THEN it moves. */
+/* [goe_plan_t.velocity_ned_m_s] GIVEN less than 0.1 m/s over the ground THEN the aircraft stands still; GIVEN more THEN it moves. */
 static void a_creep_is_taken_as_standing_still(void) {
     const obstacle_t chimney = {false, 0.0, 103.0, 6.0, 0.0, 0.0, 60.0};
     const goe_plan_t creeping = plan_of(0.0999, 0.0, 1.0);
@@ -303,6 +307,7 @@ static void since_the_image_the_aircraft_has_flown_on(void) {
     CHECK_CLOSE(1e-4, 14.0, foresee(&plan).miss_m);
 }
 
+/* [goe_hazard_t.time_s] */
 static void a_camera_in_the_middle_of_a_disc_has_an_answer(void) {
     const obstacle_t o = {false, 0.0, 0.0, 10.0, 0.0, 0.0, 45.0};
     const goe_plan_t plans[2] = {plan_of(0.0, 0.0, 0.0), plan_of(0.0, 15.0, 0.0)};
@@ -314,6 +319,7 @@ static void a_camera_in_the_middle_of_a_disc_has_an_answer(void) {
     }
 }
 
+/* [goe_hazard] */
 static void what_is_not_known_leaves_a_circle_or_a_point(void) {
     const obstacle_t o = {true, 20.0, 100.0, 10.0, 40.0, 0.0, 12.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
@@ -332,6 +338,7 @@ static void what_is_not_known_leaves_a_circle_or_a_point(void) {
     CHECK_CLOSE(1e-4, 20.0, foresee(&plan).miss_m);
 }
 
+/* [goe_hazard_t.clearance_sd_m] */
 static void without_a_height_the_margin_alone_counts(void) {
     const obstacle_t o = {false, 14.0, 100.0, 10.0, 0.0, 0.0, 12.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
@@ -406,6 +413,7 @@ static void give_sigmas(double position, double range, double extent, double ori
 /* Within 5 % or 2 cm: what is left of the curvature of corners and circles, and of the draw. */
 static void check_sd(double expected, float actual) { CHECK_CLOSE(fmax(0.05 * expected, 0.02), expected, actual); }
 
+/* [goe_affine.c] */
 static void sigmas_of_a_miss_are_those_of_random_truths(void) {
     static const obstacle_t missed[4] = {{false, 30.0, 150.0, 10.0, 0.0, 0.0, 30.0},
                                          {true, -40.0, 120.0, 12.0, 30.0, 25.0, 45.0},
@@ -423,6 +431,7 @@ static void sigmas_of_a_miss_are_those_of_random_truths(void) {
     }
 }
 
+/* [goe_approach.c, goe_hazard_t.miss_sd_m] */
 static void sigmas_of_a_crossing_are_those_of_random_truths(void) {
     static const obstacle_t crossed[3] = {{false, 5.0, 150.0, 60.0, 0.0, 0.0, 30.0},
                                           {true, -2.0, 120.0, 40.0, 50.0, 25.0, 45.0},
@@ -461,7 +470,8 @@ static void a_grazed_edge_does_not_blow_the_sigma_of_the_time_up(void) {
     }
 }
 
-/* The probability told may exceed the drawn one, by what goe.h says, but hardly fall short of it. */
+/* [goe_hazard, goe_plan_t.clearance_m, goe_plan_t.margin_m, goe_violation.c]
+ * The probability told may exceed the drawn one, by what goe.h says, but hardly fall short of it. */
 static void the_probability_is_that_of_random_truths(void) {
     check_random_t random = check_random_start("violation");
     double least = 0.0;
@@ -596,6 +606,7 @@ static void fly_towards_a_tower(float told_too_high_m) {
     TEST_ASSERT_TRUE(estimate.fresh);
 }
 
+/* [goe_violation.c] */
 static void correlated_errors_are_accounted_for(void) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     fly_towards_a_tower(0.0f);
@@ -630,6 +641,7 @@ static void correlated_errors_are_accounted_for(void) {
     }
 }
 
+/* [goe_covariance.c] */
 static void the_altimeters_bias_does_not_part_camera_and_top(void) {
     /* GIVEN a height that is told 1 m too large THEN the clearance is the true one all the same */
     goe_plan_t plan = plan_of(0.0, 0.0, 0.0);
@@ -656,6 +668,7 @@ static void check_refused(goe_status_t expected, const goe_estimator_t *e, const
     TEST_ASSERT_EQUAL_MEMORY(&zero, &hazard, sizeof zero);
 }
 
+/* [goe_hazard.c] */
 static void a_refusal_leaves_zeros(void) {
     const obstacle_t o = {false, 0.0, 100.0, 6.0, 0.0, 0.0, 12.0};
     const goe_plan_t good = plan_of(20.0, 0.0, 0.0);

@@ -1,4 +1,5 @@
 /* The normal distribution, against the C library's double error function. SPDX-License-Identifier: MIT */
+/* tests: lib/maths/goe_normal.c */
 #include <math.h>
 
 #include "check.h"

@@ -6,6 +6,7 @@
  *
  * Height. (8) takes the top point to be as far as the reference point, at Z: h_T = h - y_T Z with the true y_T of the
  * point that is highest in the image. */
+/* tests: lib/window/goe_projection.c */
 #include <math.h>
 #include <string.h>
 
@@ -81,6 +82,7 @@ static void fly_cylinder(const scene_t *scene, worst_t *worst) {
     }
 }
 
+/* [(2)] */
 static void cylinders_come_out_as_equation_2_says(void) {
     static const double asides_m[] = {0.0, -12.0, 30.0, -45.0};
     worst_t worst;
@@ -136,6 +138,7 @@ static void fly_box(const scene_t *scene, worst_t *worst) {
     }
 }
 
+/* [(8)] */
 static void heights_of_boxes_come_out_as_equation_8_says(void) {
     static const double alphas_deg[] = {-30.0, 0.0, 20.0};
     worst_t worst;

@@ -1,4 +1,5 @@
 /* The self-check notices another mode of the floating-point unit. SPDX-License-Identifier: MIT */
+/* tests: lib/goe_self_check.c */
 #include <fenv.h>
 
 #include "check.h"

@@ -1,6 +1,7 @@
 /* The self-check notices a C library whose sqrtf is not correctly rounded. SPDX-License-Identifier: MIT
  *
  * Embedded C libraries have such: Newton's method with too few steps is off by an ulp for a quarter of all arguments. */
+/* tests: lib/goe_self_check.c */
 #include <math.h>
 #include <string.h>
 
@@ -53,8 +54,10 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
+/* [goe_self_check] */
 static void a_right_root_passes(void) { TEST_ASSERT_EQUAL_HEX32(0u, self_check_with_some_root()); }
 
+/* [goe_self_check] */
 static void a_root_that_is_off_for_a_quarter_is_found(void) {
     kind = ROOT_OFF_FOR_A_QUARTER;
     for (seed = 0; seed < 100; seed++) {
@@ -62,11 +65,13 @@ static void a_root_that_is_off_for_a_quarter_is_found(void) {
     }
 }
 
+/* [goe_self_check] */
 static void a_root_that_is_off_for_subnormals_is_found(void) {
     kind = ROOT_OFF_FOR_SUBNORMALS;
     TEST_ASSERT_EQUAL_HEX32(GOE_SELF_ROUNDING, self_check_with_some_root());
 }
 
+/* [goe_self_check] */
 static void a_root_that_is_off_for_odd_exponents_is_found(void) {
     kind = ROOT_OFF_FOR_ODD_EXPONENTS;
     TEST_ASSERT_EQUAL_HEX32(GOE_SELF_ROUNDING, self_check_with_some_root());

@@ -1,4 +1,5 @@
 /* Edges of the base: heading (1) and the gates. SPDX-License-Identifier: MIT */
+/* tests: lib/window/goe_edge.c */
 #include <math.h>
 #include <string.h>
 
@@ -35,6 +36,7 @@ static void set_right(float x, float y) { set_corner(&image.base_right, &view.po
 
 static goe_status_t find(void) { return goe_edge_find(&settings, &view, &edges); }
 
+/* [goe_image_t.base_left] */
 static void two_edges_meet_at_the_near_corner(void) {
     set_left(-0.2f, 0.1f);
     set_near(0.0f, 0.2f);
@@ -47,6 +49,7 @@ static void two_edges_meet_at_the_near_corner(void) {
     TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_RIGHT], edges.edge[1].right);
 }
 
+/* [window.edge_min_px] */
 static void without_a_near_corner_there_is_one_edge(void) {
     set_left(-0.2f, 0.1f);
     set_right(0.1f, 0.15f);
@@ -56,6 +59,7 @@ static void without_a_near_corner_there_is_one_edge(void) {
     TEST_ASSERT_EQUAL_PTR(&view.point[GOE_POINT_BASE_RIGHT], edges.edge[0].right);
 }
 
+/* [window.edge_min_px] */
 static void an_edge_needs_both_its_ends(void) {
     CHECK_STATUS(GOE_OK, find());
     TEST_ASSERT_EQUAL_INT(0, edges.count);
@@ -71,6 +75,7 @@ static void an_edge_needs_both_its_ends(void) {
     TEST_ASSERT_EQUAL_INT(0, edges.count);
 }
 
+/* [goe_image_t.base_left] */
 static void corners_out_of_order_give_no_edge(void) {
     set_left(-0.2f, 0.1f);
     set_near(-0.3f, 0.2f);
@@ -85,7 +90,8 @@ static void corners_out_of_order_give_no_edge(void) {
     CHECK_STATUS(GOE_SWAPPED, find());
 }
 
-/* GIVEN the gate of 10 px WHEN the ends are exactly 10 px apart THEN the edge does not count, WHEN a bit more it does. */
+/* [window.edge_min_px]
+ * GIVEN the gate of 10 px WHEN the ends are exactly 10 px apart THEN the edge does not count, WHEN a bit more it does. */
 static void the_length_gate_is_exact(void) {
     set_left(0.0f, 0.1f);
     set_right(0.1f, 0.2f);
@@ -106,7 +112,7 @@ static void the_length_gate_is_exact(void) {
     TEST_ASSERT_TRUE(edges.edge[0].counts);
 }
 
-/* The orientation gate of 2 px, in aligned y times fx. */
+/* [window.edge_min_px, window.orientation_min_px] The orientation gate of 2 px, in aligned y times fx. */
 static void the_orientation_gate_is_exact(void) {
     const float rise = 2.0f / 1024.0f;
     set_left(0.0f, 0.0f);
@@ -122,6 +128,7 @@ static void the_orientation_gate_is_exact(void) {
     TEST_ASSERT_TRUE(edges.edge[0].has_heading);
 }
 
+/* [GOE_NO_EDGE] */
 static void the_gates_are_settings(void) {
     settings.window.edge_min_px = 50.0f;
     settings.window.orientation_min_px = 30.0f;
@@ -138,7 +145,8 @@ static void the_gates_are_settings(void) {
     TEST_ASSERT_TRUE(edges.edge[0].has_heading);
 }
 
-/* GIVEN a horizontal edge on flat ground h below the camera, of any heading g and at any place THEN (1) finds g. */
+/* [goe_estimate_t.orientation_deg, (1)]
+ * GIVEN a horizontal edge on flat ground h below the camera, of any heading g and at any place THEN (1) finds g. */
 static void the_heading_is_that_of_the_vanishing_point(void) {
     check_random_t random = check_random_start("edges");
     double worst = 0.0;
@@ -171,7 +179,7 @@ static void the_heading_is_that_of_the_vanishing_point(void) {
     TEST_ASSERT_TRUE(worst < 0.05);
 }
 
-/* An edge parallel to the horizon has no heading by the gate; where the gate lets it through it has 90 degrees. */
+/* [(1)] An edge parallel to the horizon has no heading by the gate; where the gate lets it through it has 90 degrees. */
 static void an_edge_along_the_horizon_heads_aside(void) {
     settings.window.orientation_min_px = 0.0f;
     set_left(-0.1f, 0.2f);

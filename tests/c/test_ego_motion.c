@@ -1,4 +1,5 @@
 /* What two poses tell of the own motion between them, and what a late pose makes of it. SPDX-License-Identifier: MIT */
+/* tests: lib/image/goe_ego_motion.c */
 #include "image/goe_ego_motion.h"
 
 #include <math.h>

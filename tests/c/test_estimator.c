@@ -48,6 +48,7 @@ static void hide_all(goe_image_t *of) {
 
 /* ------------------------------------------------------------------------------------------------- the normal course -- */
 
+/* [goe_init] */
 static void a_new_estimator_knows_nothing(void) {
     start();
     CHECK_STATUS(GOE_COLLECTING, fly(0, 1));
@@ -59,7 +60,8 @@ static void a_new_estimator_knows_nothing(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.width_m);
 }
 
-/* GIVEN a cylinder WHEN it is flown past THEN seven images collect and each one from the eighth on solves. */
+/* [A3, goe_estimator.c, goe_image_t.top]
+ * GIVEN a cylinder WHEN it is flown past THEN seven images collect and each one from the eighth on solves. */
 static void the_disc_solves_from_the_eighth_image_on(void) {
     scene_make_cylinder(&scene);
     start();
@@ -73,7 +75,7 @@ static void the_disc_solves_from_the_eighth_image_on(void) {
     }
 }
 
-/* GIVEN a box whose corners are seen only from the 5th image on WHEN flown in auto THEN the disc is reported from the 8th
+/* [GOE_MODEL_AUTO] GIVEN a box whose corners are seen only from the 5th image on WHEN flown in auto THEN the disc is reported from the 8th
  * image, and the line from the 8th line point, which is the 13th image. */
 static void the_line_takes_over_at_the_eighth_line_point(void) {
     start();
@@ -91,6 +93,7 @@ static void the_line_takes_over_at_the_eighth_line_point(void) {
     }
 }
 
+/* [GOE_MODEL_AUTO] */
 static void the_number_of_line_points_is_a_setting(void) {
     settings.window.line_points = 11;
     start();
@@ -113,6 +116,7 @@ static void the_number_of_line_points_is_a_setting(void) {
     }
 }
 
+/* [GOE_MODEL_AUTO] */
 static void the_window_is_a_setting(void) {
     settings.window.points = 3;
     settings.window.line_points = 3;
@@ -140,7 +144,8 @@ static void a_forced_model_is_never_left(void) {
 
 /* ------------------------------------------------------------------------------------ images that do not solve anew -- */
 
-/* GIVEN a solution WHEN nothing is in view THEN the image's pose is followed, the answer ages, and nothing is at fault. */
+/* [goe_estimate_t.x_m]
+ * GIVEN a solution WHEN nothing is in view THEN the image's pose is followed, the answer ages, and nothing is at fault. */
 static void nothing_seen_is_no_fault(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 16));
@@ -163,7 +168,7 @@ static void nothing_seen_is_no_fault(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.age_s);
 }
 
-/* GIVEN the line is reported WHEN an image shows the silhouette alone THEN the line's solution is held. */
+/* [GOE_MODEL_AUTO, goe_window.c] GIVEN the line is reported WHEN an image shows the silhouette alone THEN the line's solution is held. */
 static void an_image_without_corners_holds_the_line(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 16));
@@ -208,6 +213,7 @@ static void an_estimate_grows_old_while_images_are_refused(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.age_s);
 }
 
+/* [goe_estimator.c] */
 static void times_may_start_anywhere(void) {
     start();
     for (int k = 0; k < 10; k++) {
@@ -254,7 +260,7 @@ static void swapped_left_and_right_are_told(void) {
     CHECK_STATUS(GOE_OK, fly(11, 12));
 }
 
-/* The camera looks back: every ray is behind. */
+/* [A21, GOE_CAUSES, GOE_IMAGE_TAKEN, goe_update] The camera looks back: every ray is behind. */
 static void what_lies_behind_is_told(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
@@ -317,7 +323,7 @@ static void a_height_that_is_not_positive_is_none(void) {
     }
 }
 
-/* GIVEN a truck flown past so that its side points at the camera THEN lengths are skipped and it is told. */
+/* [window.side_min_px] GIVEN a truck flown past so that its side points at the camera THEN lengths are skipped and it is told. */
 static void a_side_seen_edge_on_gives_no_length(void) {
     scene.x0_m = -1.9; /* the plane of the right side passes 0.65 m from the camera */
     scene.z0_m = 80.0;
@@ -331,6 +337,7 @@ static void a_side_seen_edge_on_gives_no_length(void) {
 
 /* ------------------------------------------------------------------------------------------- failures of the solution -- */
 
+/* [GOE_IMAGE_TAKEN] */
 static void hovering_has_no_baseline(void) {
     scene_make_cylinder(&scene);
     scene.speed_mps = 0.0;
@@ -360,7 +367,8 @@ static void stopping_keeps_the_last_answer(void) {
     CHECK_SAME(last.width_m, estimate.width_m);
 }
 
-/* GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is told;
+/* [goe_update]
+ * GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is told;
  * before there is one to solve, the feature's fault is. */
 static void a_failed_solution_is_told_before_a_feature_s_fault(void) {
     scene.speed_mps = 0.0;
@@ -435,6 +443,7 @@ static void check_refused(goe_status_t expected) {
     CHECK_SAME(told.sigma.height_m, estimate.sigma.height_m);
 }
 
+/* [A17, A21, GOE_CAUSES, goe_intake.c] */
 static void every_number_read_is_checked(void) {
     static const uint32_t patterns[] = {0x7F800000u, 0xFF800000u, 0x7FC00000u, 0xFFFFFFFFu, 0x7F800001u};
     goe_image_t good;
@@ -485,7 +494,8 @@ static void every_number_read_is_checked(void) {
     CHECK_STATUS(GOE_OK, update()); /* none of them left a trace */
 }
 
-/* GIVEN numbers just at the ends of their ranges THEN the image is taken: the header gives them as the ends, not beyond. */
+/* [goe_estimator.c]
+ * GIVEN numbers just at the ends of their ranges THEN the image is taken: the header gives them as the ends, not beyond. */
 static void the_ends_of_ranges_are_within(void) {
     goe_image_t good;
     start();
@@ -501,7 +511,8 @@ static void the_ends_of_ranges_are_within(void) {
     }
 }
 
-/* GIVEN a box and points, one of both bad THEN the image is refused, whichever it is: the checks of the one do not stand for those of the
+/* [goe_estimator.c]
+ * GIVEN a box and points, one of both bad THEN the image is refused, whichever it is: the checks of the one do not stand for those of the
  * other. */
 static void points_and_boxes_are_both_checked(void) {
     goe_image_t good;
@@ -526,7 +537,8 @@ static void points_and_boxes_are_both_checked(void) {
     }
 }
 
-/* GIVEN a box whose left is not left of its right, or whose top not above its bottom THEN none of its sides counts, and that is told. */
+/* [goe_estimator.c]
+ * GIVEN a box whose left is not left of its right, or whose top not above its bottom THEN none of its sides counts, and that is told. */
 static void a_box_out_of_order_does_not_count(void) {
     for (int n = 0; n < 2; n++) {
         start();
@@ -541,6 +553,7 @@ static void a_box_out_of_order_does_not_count(void) {
     }
 }
 
+/* [goe_pixel_t.seen] */
 static void what_is_not_seen_is_not_read(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
@@ -551,6 +564,7 @@ static void what_is_not_seen_is_not_read(void) {
     CHECK_STATUS(GOE_OK, update());
 }
 
+/* [A21] */
 static void time_must_run_on(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
@@ -565,7 +579,8 @@ static void time_must_run_on(void) {
     CHECK_STATUS(GOE_OK, update());
 }
 
-/* GIVEN settings that change after goe_init, and an estimator of which every byte is set THEN the estimator keeps what it was given,
+/* [goe_init]
+ * GIVEN settings that change after goe_init, and an estimator of which every byte is set THEN the estimator keeps what it was given,
  * and begins with zeroed counters. */
 static void the_settings_are_copied_and_the_counters_zeroed(void) {
     memset(&estimator, 0xA5, sizeof estimator);
@@ -609,7 +624,8 @@ static void a_quaternion_may_be_off_by_one_percent(void) {
     }
 }
 
-/* GIVEN a number of a camera that the settings do not have THEN the image is refused whole: there is no mounting to turn it by. */
+/* [goe_estimator.c]
+ * GIVEN a number of a camera that the settings do not have THEN the image is refused whole: there is no mounting to turn it by. */
 static void an_image_of_no_camera_is_refused(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
@@ -622,7 +638,7 @@ static void an_image_of_no_camera_is_refused(void) {
     CHECK_STATUS(GOE_OK, update());
 }
 
-/* The order of the checks, each over the whole image. */
+/* [goe_fault.c, goe_update] The order of the checks, each over the whole image. */
 static void the_first_fault_is_told(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
@@ -636,7 +652,7 @@ static void the_first_fault_is_told(void) {
     check_refused(GOE_NOT_FINITE);
 }
 
-/* Counters stop at their largest value. */
+/* [GOE_CAUSES] Counters stop at their largest value. */
 static void counters_saturate(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
@@ -645,6 +661,7 @@ static void counters_saturate(void) {
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, estimator.causes[-GOE_BAD_TIME]);
 }
 
+/* [A18] */
 static void null_pointers_are_refused(void) {
     goe_estimate_t nothing;
     start();
@@ -661,6 +678,7 @@ static void null_pointers_are_refused(void) {
     TEST_ASSERT_FALSE(estimator.motion.started);
 }
 
+/* [goe_update] */
 static void an_estimator_must_be_initialised(void) {
     static const int fills[] = {0x00, 0xFF, 0xA5};
     goe_estimate_t nothing;
@@ -703,7 +721,7 @@ static void the_covariance_is_the_sigmas_squared(void) {
 
 /* ------------------------------------------------------------------------------------------------------------- tracks -- */
 
-/* GIVEN a track WHEN it is reset THEN the estimator goes on as a new one, but keeps its counters. */
+/* [A7] GIVEN a track WHEN it is reset THEN the estimator goes on as a new one, but keeps its counters. */
 static void a_reset_forgets_the_track_and_keeps_the_counters(void) {
     static goe_estimator_t other;
     start();
@@ -721,7 +739,7 @@ static void a_reset_forgets_the_track_and_keeps_the_counters(void) {
     }
 }
 
-/* GIVEN two obstacles in the same images WHEN two estimators take turns THEN each is what it is alone. */
+/* [A11] GIVEN two obstacles in the same images WHEN two estimators take turns THEN each is what it is alone. */
 static void estimators_share_nothing(void) {
     static goe_estimator_t second;
     static goe_estimate_t alone[24];
@@ -747,7 +765,7 @@ static void estimators_share_nothing(void) {
     TEST_ASSERT_FLOAT_WITHIN(0.1f, 25.0f, of_second.x0_m);
 }
 
-/* A copy of an estimator is an estimator: nothing in it points into itself. */
+/* [A33] A copy of an estimator is an estimator: nothing in it points into itself. */
 static void an_estimator_may_be_moved(void) {
     static goe_estimator_t copy;
     goe_estimate_t of_copy;
@@ -772,7 +790,8 @@ static void a_set_heading_turns_the_trajectory_frame(void) {
     TEST_ASSERT_FLOAT_WITHIN(0.05f, -10.0f, estimate.orientation_deg);
 }
 
-/* GIVEN images without a feature, on another heading WHEN something is seen for the first time THEN the track begins there, with
+/* [A5, goe_estimator.c]
+ * GIVEN images without a feature, on another heading WHEN something is seen for the first time THEN the track begins there, with
  * heading, origin and time of that image. */
 static void a_track_begins_at_first_sight(void) {
     start();
@@ -791,7 +810,8 @@ static void a_track_begins_at_first_sight(void) {
     TEST_ASSERT_TRUE(estimator.motion.start_time_us == 1000000 + 5 * 125000);
 }
 
-/* GIVEN a track that began before a turn, and no position yet WHEN everything that is seen lies more than 60 degrees from Z and the nose
+/* [A7]
+ * GIVEN a track that began before a turn, and no position yet WHEN everything that is seen lies more than 60 degrees from Z and the nose
  * has turned by more than 45 THEN the track begins again; one feature nearer to Z is enough to go on. The image's faults count once. */
 static void a_track_begins_again_after_a_turn(void) {
     goe_pixel_t *const features[] = {&image.left,      &image.right,     &image.top,
@@ -822,7 +842,7 @@ static void a_track_begins_again_after_a_turn(void) {
     }
 }
 
-/* GIVEN a position that is known WHEN the nose turns THEN T stays. */
+/* [A7] GIVEN a position that is known WHEN the nose turns THEN T stays. */
 static void a_turn_leaves_a_known_track_alone(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 20));
@@ -835,7 +855,7 @@ static void a_turn_leaves_a_known_track_alone(void) {
     TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
 }
 
-/* A nose that points straight up has no heading: T looks north. */
+/* [heading_auto] A nose that points straight up has no heading: T looks north. */
 static void a_vertical_nose_takes_north(void) {
     start();
     scene_image(&scene, 0, &image, NULL);

@@ -1,4 +1,5 @@
 /* The exponential against the C library's in double. SPDX-License-Identifier: MIT */
+/* tests: lib/maths/goe_exp.c */
 #include "maths/goe_exp.h"
 
 #include <math.h>
@@ -22,6 +23,7 @@ static double worst_share(double limit) {
     return worst;
 }
 
+/* [detector.correlation_s] */
 static void it_is_as_right_as_told(void) {
     TEST_ASSERT_TRUE(worst_share(6.0) < 1.0e-5);
     TEST_ASSERT_TRUE(worst_share(LIMIT) < 1.0e-3);

@@ -1,4 +1,5 @@
 /* Length (6), (7) and height (8). SPDX-License-Identifier: MIT */
+/* tests: lib/window/goe_extent.c */
 #include <math.h>
 
 #include "check.h"
@@ -46,6 +47,7 @@ static goe_status_t measure(double x, double z, double w, double l, double b_deg
     return goe_extent_length(&faces, &span, turn, &reference, MIN_X, &extent);
 }
 
+/* [goe_estimate_t.length_m, (6), (7)] */
 static void length_is_exact_on_both_sides(void) {
     for (int b = -25; b <= 25; b += 5) {
         CHECK_STATUS(GOE_OK, measure(-60.0, 80.0, 2.5, 7.0, b, true));
@@ -55,7 +57,7 @@ static void length_is_exact_on_both_sides(void) {
     }
 }
 
-/* d L/d(X_side) = 1/x3 - 1/x2, and X_side = X c - Z s +- W/2. */
+/* [A32] d L/d(X_side) = 1/x3 - 1/x2, and X_side = X c - Z s +- W/2. */
 static void length_variance_is_that_of_the_solution(void) {
     const double b = 20.0;
     CHECK_STATUS(GOE_OK, measure(-30.0, 80.0, 2.5, 7.0, b, true));
@@ -67,6 +69,7 @@ static void length_variance_is_that_of_the_solution(void) {
     CHECK_CLOSE(1.0e-3 * gain * gain * across, gain * gain * across, extent.variance_m2);
 }
 
+/* [window.side_min_px] */
 static void a_side_that_points_at_the_camera_has_no_length(void) {
     /* the side plane passes within MIN_X of the camera, or the camera is between its ends' bearings */
     CHECK_STATUS(GOE_EDGE_ON, measure(-1.25 - 0.79, 80.0, 2.5, 7.0, 0.0, true));
@@ -76,6 +79,7 @@ static void a_side_that_points_at_the_camera_has_no_length(void) {
     CHECK_STATUS(GOE_EDGE_ON, measure(-1.25 - 0.86, 80.0, 2.5, 7.0, 0.0, true)); /* ... at 0.0099 */
 }
 
+/* [(6)] */
 static void ends_on_both_sides_of_the_axis_have_no_length(void) {
     const goe_point_t near = {-0.1f, 0.0f, true};
     const goe_point_t far = {0.1f, 0.0f, true};
@@ -88,6 +92,7 @@ static void ends_on_both_sides_of_the_axis_have_no_length(void) {
     TEST_ASSERT_EQUAL_FLOAT(-1.0f, extent.value_m);
 }
 
+/* [(6)] */
 static void an_end_behind_the_turned_camera_has_no_length(void) {
     const goe_point_t near = {-1.0f, 0.0f, true};
     const goe_point_t far = {-2.0f, 0.0f, true};
@@ -99,6 +104,7 @@ static void an_end_behind_the_turned_camera_has_no_length(void) {
     CHECK_STATUS(GOE_EDGE_ON, goe_extent_length(&faces, &span, turn, &reference, MIN_X, &extent));
 }
 
+/* [goe_estimate_t.height_m, goe_pose_t.height_m, (8)] */
 static void height_is_below_or_above_the_camera(void) {
     const goe_estimate_t reference = solved(0.0f, 100.0f, 2.5f);
     const goe_point_t below = {0.0f, 0.175f, true};
@@ -110,6 +116,7 @@ static void height_is_below_or_above_the_camera(void) {
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5f, 60.0f, extent.value_m);
 }
 
+/* [goe_pose_t.height_m] */
 static void height_needs_a_camera_above_ground(void) {
     const goe_estimate_t reference = solved(0.0f, 100.0f, 2.5f);
     const goe_point_t top = {0.0f, -0.1f, true};

@@ -1,5 +1,6 @@
 /* Window least squares: exact data, failures, sliding. SPDX-License-Identifier: MIT
  * Against the dense system and for its sigmas: test_double_window.c. */
+/* tests: lib/window/goe_fit.c */
 #include <string.h>
 
 #include "check.h"
@@ -31,6 +32,7 @@ static void check_failure(goe_status_t expected) {
     TEST_ASSERT_EQUAL_MEMORY(&untouched, &fit, sizeof fit);
 }
 
+/* [(5)] */
 static void exact_rows_are_solved_exactly(void) {
     for (int k = 0; k < LENGTH; k++) {
         add(-12.0f, 150.0f, 2.5f, 0.25f * (float)k, 2.0f * (float)k);
@@ -44,7 +46,7 @@ static void exact_rows_are_solved_exactly(void) {
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 0.0f, fit.sigma.width_m);
 }
 
-/* The slope is shared: motion aside alone tells the width as well as motion ahead. */
+/* [(5)] The slope is shared: motion aside alone tells the width as well as motion ahead. */
 static void motion_aside_is_a_baseline_too(void) {
     for (int k = 0; k < LENGTH; k++) {
         add(30.0f, 100.0f, 6.0f, (float)k - 3.0f, 0.0f);
@@ -61,7 +63,8 @@ static void no_motion_is_no_baseline(void) {
     check_failure(GOE_NO_BASELINE);
 }
 
-/* Root of the summed squared spread, 6.48074 for unit steps, just below and just above the limit. */
+/* [goe_estimate_t.baseline_m, window.min_baseline_m]
+ * Root of the summed squared spread, 6.48074 for unit steps, just below and just above the limit. */
 static void the_baseline_limit_is_where_it_is_said_to_be(void) {
     for (int above = 0; above < 2; above++) {
         const float step = above ? 0.0155f : 0.0154f;
@@ -84,6 +87,7 @@ static void an_image_that_does_not_grow_is_no_parallax(void) {
     check_failure(GOE_NO_PARALLAX);
 }
 
+/* [window.min_baseline_m] */
 static void an_image_that_shrinks_is_no_parallax(void) {
     for (int k = 0; k < LENGTH; k++) { /* it flies ahead, faster than we do */
         goe_fit_add(&window, LENGTH, 0.0f, 2.0f * (float)k, (goe_row_t){1.0f, 60.0f + (float)k});
@@ -111,6 +115,7 @@ static void an_obstacle_abeam_or_behind_is_passed(void) {
     CHECK_STATUS(GOE_OK, solve());
 }
 
+/* [window.min_baseline_m] */
 static void what_is_too_far_to_be_an_obstacle_is_no_parallax(void) {
     for (int k = 0; k < LENGTH; k++) { /* W = 2e6 m, and the camera moves 1e6 m: above the rounding limit */
         goe_fit_add(&window, LENGTH, 0.0f, 1.0e6f * (float)k, (goe_row_t){0.0f, 10.0f - 0.5f * (float)k});
@@ -118,7 +123,7 @@ static void what_is_too_far_to_be_an_obstacle_is_no_parallax(void) {
     check_failure(GOE_NO_PARALLAX);
 }
 
-/* GIVEN an obstacle that was elsewhere before WHEN the window is full of new rows THEN nothing of the old is left. */
+/* [(5)] GIVEN an obstacle that was elsewhere before WHEN the window is full of new rows THEN nothing of the old is left. */
 static void the_oldest_rows_leave(void) {
     for (int k = 0; k < 5; k++) {
         add(50.0f, 90.0f, 20.0f, 0.0f, 1.5f * (float)k);
@@ -160,7 +165,7 @@ static void the_count_of_points_saturates(void) {
     TEST_ASSERT_EQUAL_INT(INT16_MAX, window.count);
 }
 
-/* GIVEN a window of three in the room for more THEN only three rows count. */
+/* [(5)] GIVEN a window of three in the room for more THEN only three rows count. */
 static void a_shorter_window_uses_its_own_length(void) {
     for (int k = 0; k < 7; k++) {
         const float wrong = k < 4 ? 9.0f : 0.0f;
@@ -172,7 +177,7 @@ static void a_shorter_window_uses_its_own_length(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, window.point[3].dz_m);
 }
 
-/* Whatever the residuals, a sigma is finite. */
+/* [A32] Whatever the residuals, a sigma is finite. */
 static void hopeless_rows_have_a_finite_sigma(void) {
     for (int k = 0; k < LENGTH; k++) {
         const float wild = k % 2 == 0 ? 4.0e6f : -4.0e6f;

@@ -1,4 +1,5 @@
 /* Outlier gate and Huber weights. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_gate.c */
 #include "refined/goe_gate.h"
 
 #include <math.h>
@@ -81,6 +82,7 @@ static void check_weights(const goe_matrix_t *before, size_t but_feature, double
     }
 }
 
+/* [goe_estimate_t.nis_rows] */
 static void rows_without_suspicion_are_divided_by_their_sigma(void) {
     for (size_t i = 0; i < rows.count; i++) {
         *residual(i) = (float)((i % 2 ? 0.8 : -0.8) * SIGMA);
@@ -96,7 +98,7 @@ static void rows_without_suspicion_are_divided_by_their_sigma(void) {
     }
 }
 
-/* GIVEN one point that is 15 px off, whichever it is, along one coordinate or both THEN it alone is refused, and all of its
+/* [(R16)] GIVEN one point that is 15 px off, whichever it is, along one coordinate or both THEN it alone is refused, and all of its
  * rows are 0. */
 static void one_outlier_is_refused_alone(void) {
     for (size_t feature = 0; feature < GOE_FEATURES; feature++) {
@@ -124,7 +126,7 @@ static void one_outlier_is_refused_alone(void) {
     }
 }
 
-/* GIVEN an attitude error of twice its sigma about each axis in turn, which is many pixels THEN no point is suspicious;
+/* [(R16)] GIVEN an attitude error of twice its sigma about each axis in turn, which is many pixels THEN no point is suspicious;
  * GIVEN four times THEN still none is refused. */
 static void a_shift_of_all_points_refuses_none(void) {
     for (int axis = 0; axis < 3; axis++) {
@@ -142,7 +144,7 @@ static void a_shift_of_all_points_refuses_none(void) {
     }
 }
 
-/* ... and an outlier is found in a shifted image, too. */
+/* [(R16)] ... and an outlier is found in a shifted image, too. */
 static void an_outlier_is_found_in_a_shifted_image(void) {
     for (size_t feature = 0; feature < GOE_FEATURES; feature++) {
         setUp();
@@ -155,7 +157,8 @@ static void an_outlier_is_found_in_a_shifted_image(void) {
     }
 }
 
-/* GIVEN a point between Huber's limit and the gate THEN its weight is that of a residual on the limit, for both of its rows:
+/* [refined.huber_sigma, (R16)]
+ * GIVEN a point between Huber's limit and the gate THEN its weight is that of a residual on the limit, for both of its rows:
  * weight^2 = huber / residual. */
 static void a_suspicious_point_counts_less(void) {
     static const double normalised[] = {2.4, 3.0, 4.0, 4.9};
@@ -201,7 +204,7 @@ static void correlated_errors_count_less(void) {
     }
 }
 
-/* GIVEN a state that is not sure of what moves one point THEN that point may be far off; the same for what the state gained
+/* [(R16)] GIVEN a state that is not sure of what moves one point THEN that point may be far off; the same for what the state gained
  * since it was inverted. */
 static void an_unsure_state_opens_the_gate(void) {
     for (int n = 0; n < 3; n++) {

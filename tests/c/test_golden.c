@@ -1,5 +1,6 @@
 /* Committed reference data: what golden/ holds was made by `python -m goe_tools golden`. SPDX-License-Identifier: MIT
  * A change of one bit anywhere on the committed flight shows here, with the image and the quantity. */
+/* tests: lib/window/goe_window.c */
 #include <math.h>
 #include <string.h>
 
@@ -35,6 +36,7 @@ static void sines_and_cosines(void) {
     }
 }
 
+/* [camera.k3] */
 static void rays(void) {
     for (size_t i = 0; i < COUNT_OF(golden_lens); i++) {
         const golden_lens_t *g = &golden_lens[i];
@@ -56,7 +58,7 @@ static void rays(void) {
     }
 }
 
-/* Rounding of a row is 2^-24 of Z0/W; the parallax moves it by baseline/W over the window. Sigmas hang on the residuals,
+/* [(5)] Rounding of a row is 2^-24 of Z0/W; the parallax moves it by baseline/W over the window. Sigmas hang on the residuals,
  * which rounding disturbs by 2^-24 of Z0/W as well. */
 static void windows(void) {
     for (size_t i = 0; i < COUNT_OF(golden_window); i++) {
@@ -118,7 +120,8 @@ static void print_place(size_t image, const char *name) {
     UNITY_PRINT_EOL();
 }
 
-/* GIVEN the committed flight WHEN it is replayed THEN every status and every bit of every number is as committed. */
+/* [A3, A13, goe_estimate_t.residual, window.points, (1)]
+ * GIVEN the committed flight WHEN it is replayed THEN every status and every bit of every number is as committed. */
 static void a_whole_flight_bit_by_bit(void) {
     goe_settings_t settings;
     goe_estimator_t estimator;

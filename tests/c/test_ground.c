@@ -1,5 +1,6 @@
 /* The height above the obstacle's ground: what its readings tell, and what stays told as the range becomes known, against the
  * same worked out at once in double. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_ground.c */
 #include "refined/goe_ground.h"
 
 #include <math.h>
@@ -85,7 +86,8 @@ static void read_height(float height_m, float sunk_m) {
     obs.height_sd_m = sqrtf(CONSTANT_M * CONSTANT_M + WHITE_M * WHITE_M / (float)filter.datum.readings);
 }
 
-/* GIVEN heights with a constant and a white error, of a flight that sinks THEN their offset is told as the mean of all, with the
+/* [goe_pose_t.height_m]
+ * GIVEN heights with a constant and a white error, of a flight that sinks THEN their offset is told as the mean of all, with the
  * constant error counted once; a mean that moves is told as it stands. */
 static void readings_tell_the_mean_and_no_more(void) {
     settings.navigation.height_white_m = WHITE_M;
@@ -181,7 +183,8 @@ static void without_a_position_the_heights_wait(void) {
     CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
 }
 
-/* GIVEN a first guess of the range that proves wrong THEN the height is known as it was told, in metres: no better when the
+/* [navigation.height_bias_m]
+ * GIVEN a first guess of the range that proves wrong THEN the height is known as it was told, in metres: no better when the
  * obstacle is nearer, and no worse when it is farther. */
 static void a_wrong_first_range_leaves_the_height_as_told(void) {
     static const float factor[] = {0.2f, 0.5f, 0.9f, 1.0f, 1.2f, 2.0f, 5.0f};

@@ -1,4 +1,5 @@
 /* The seal over settings and mounting, and the check of what leaves. SPDX-License-Identifier: MIT */
+/* tests: lib/goe_guard.c */
 #include "goe_guard.h"
 
 #include <string.h>
@@ -54,7 +55,8 @@ static void check_corrupted(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
 }
 
-/* GIVEN a flight WHEN any one bit of settings, mounting, seal or readiness flips THEN every call says so, answers nothing and changes
+/* [goe_reset]
+ * GIVEN a flight WHEN any one bit of settings, mounting, seal or readiness flips THEN every call says so, answers nothing and changes
  * nothing; and the bit flipped back, everything is as it was. */
 static void every_flip_of_the_settings_is_found(void) {
     const size_t first = 8u * offsetof(goe_estimator_t, ready);
@@ -88,7 +90,7 @@ static void two_flips_are_found(void) {
     }
 }
 
-/* GIVEN settings with anything between their fields THEN the same settings give the same memory. */
+/* [A19] GIVEN settings with anything between their fields THEN the same settings give the same memory. */
 static void what_lies_between_the_settings_counts_for_nothing(void) {
     goe_settings_t settings;
     static goe_estimator_t first;
@@ -106,7 +108,7 @@ static void what_lies_between_the_settings_counts_for_nothing(void) {
 
 /* ------------------------------------------------------------------------------------------------------------ answers -- */
 
-/* GIVEN any number of floats WHEN one of them is an infinity or a NaN THEN it is found, wherever it lies; the largest float is
+/* [A20] GIVEN any number of floats WHEN one of them is an infinity or a NaN THEN it is found, wherever it lies; the largest float is
  * none. */
 static void what_is_not_finite_is_found(void) {
     static const uint32_t bad[] = {0x7F800000u, 0xFF800000u, 0x7FC00000u, 0xFFFFFFFFu, 0x7F800001u};
@@ -127,7 +129,7 @@ static void what_is_not_finite_is_found(void) {
     }
 }
 
-/* GIVEN a good estimate WHEN a field of it is none that goe.h lists THEN that is found. */
+/* [A20] GIVEN a good estimate WHEN a field of it is none that goe.h lists THEN that is found. */
 static void what_is_not_defined_is_found(void) {
     start();
     TEST_ASSERT_TRUE(goe_guard_estimate(&estimate));
@@ -163,7 +165,7 @@ static void what_is_not_defined_is_found(void) {
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
 }
 
-/* GIVEN a stale answer that was flipped to none WHEN an image comes THEN nothing is handed out, and the next image begins a track. */
+/* [A22] GIVEN a stale answer that was flipped to none WHEN an image comes THEN nothing is handed out, and the next image begins a track. */
 static void a_corrupted_track_begins_anew(void) {
     static const goe_estimate_t nothing;
     start();
@@ -201,7 +203,7 @@ static void a_track_that_is_nowhere_and_knows_nothing_begins_anew(void) {
     TEST_ASSERT_FALSE(estimator.motion.started);
 }
 
-/* GIVEN covariance and hazard of an answer that is no number THEN they are none, either. */
+/* [A20] GIVEN covariance and hazard of an answer that is no number THEN they are none, either. */
 static void no_call_hands_out_what_is_no_number(void) {
     static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -214,7 +216,7 @@ static void no_call_hands_out_what_is_no_number(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.time_s);
 }
 
-/* GIVEN truth values of an image that are neither 0 nor 1 THEN they count as 1. */
+/* [A19] GIVEN truth values of an image that are neither 0 nor 1 THEN they count as 1. */
 static void any_truth_but_none_is_one(void) {
     goe_estimate_t first;
     goe_image_t odd;

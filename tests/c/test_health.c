@@ -1,4 +1,5 @@
 /* How well images fit, and when the filter begins anew. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_health.c */
 #include "refined/goe_health.h"
 
 #include <math.h>

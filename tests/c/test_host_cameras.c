@@ -122,7 +122,8 @@ static double center_off_m(void) {
                  (double)estimate.center_east_m - truth.center_east_m);
 }
 
-/* GIVEN what two cameras see one after the other WHEN it is exact THEN the track goes on from the first to the second, and the
+/* [GOE_CAMERAS_MAX, goe_image_t.camera]
+ * GIVEN what two cameras see one after the other WHEN it is exact THEN the track goes on from the first to the second, and the
  * obstacle is where it is. */
 static void a_track_passes_from_one_camera_to_the_other(void) {
     for (int method = 0; method < 2; method++) {
@@ -146,7 +147,8 @@ static void a_track_passes_from_one_camera_to_the_other(void) {
     }
 }
 
-/* GIVEN noise THEN the second camera makes the answer better, and the sigma tells so; the error stays within three of it. */
+/* [GOE_CAMERAS_MAX]
+ * GIVEN noise THEN the second camera makes the answer better, and the sigma tells so; the error stays within three of it. */
 static void the_second_camera_adds_to_the_first(void) {
     for (int sight = 0; sight < SIGHTS; sight++) {
         setUp();
@@ -164,7 +166,7 @@ static void the_second_camera_adds_to_the_first(void) {
     }
 }
 
-/* GIVEN an image that names a camera which there is not THEN it is refused, and changes nothing but a counter. */
+/* [GOE_CAMERAS_MAX] GIVEN an image that names a camera which there is not THEN it is refused, and changes nothing but a counter. */
 static void a_camera_that_is_not_there_is_refused(void) {
     goe_image_t image;
     goe_estimator_t before;
@@ -184,7 +186,7 @@ static void a_camera_that_is_not_there_is_refused(void) {
     TEST_ASSERT_TRUE(goe_update(&estimator, &image, &estimate) >= GOE_OK);
 }
 
-/* GIVEN a second camera with a bad setting THEN it is named; GIVEN none THEN nothing of it is asked. */
+/* [GOE_CAMERAS_MAX] GIVEN a second camera with a bad setting THEN it is named; GIVEN none THEN nothing of it is asked. */
 static void a_bad_second_camera_is_named(void) {
     const char *bad = NULL;
     settings.more_cameras[0].mount_pitch_deg = 400.0f;

@@ -1,5 +1,6 @@
 /* What the library is shown of a row of frames.csv: boxes, resets and cameras. SPDX-License-Identifier: MIT
  * The columns' way through goe_replay is tested in tests/host. */
+/* tests: sim_host/log/frame.c */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>

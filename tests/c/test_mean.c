@@ -1,4 +1,5 @@
 /* Sliding mean. SPDX-License-Identifier: MIT */
+/* tests: lib/window/goe_mean.c */
 #include <math.h>
 #include <string.h>
 
@@ -10,12 +11,14 @@ static goe_mean_t mean;
 void setUp(void) { memset(&mean, 0, sizeof mean); }
 void tearDown(void) {}
 
+/* [A32] */
 static void the_first_value_is_its_own_mean(void) {
     const goe_average_t a = goe_mean_add(&mean, 8, 3.5f);
     TEST_ASSERT_EQUAL_FLOAT(3.5f, a.mean);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, a.variance);
 }
 
+/* [window.points] */
 static void the_newest_values_are_averaged(void) {
     float value[30];
     check_random_t random = check_random_start("means");
@@ -50,6 +53,7 @@ static void a_place_that_is_none_is_the_first(void) {
     }
 }
 
+/* [window.points] */
 static void an_outlier_leaves_without_a_trace(void) {
     goe_average_t a = {0.0f, 0.0f};
     (void)goe_mean_add(&mean, 4, 1.0e12f);

@@ -96,7 +96,8 @@ static kind_t draw(int flight) {
     return kind;
 }
 
-/* GIVEN random flights by any features, and an answer WHEN the next image shows nothing THEN the hazard is that which was predicted for that
+/* [A34]
+ * GIVEN random flights by any features, and an answer WHEN the next image shows nothing THEN the hazard is that which was predicted for that
  * moment: its probability falls by no more than the time explains, and distance and time are the same; ten such images in a row, too. */
 static void an_image_without_a_detection_takes_no_warning_back(void) {
     static goe_estimator_t kept;
@@ -139,7 +140,8 @@ static void an_image_without_a_detection_takes_no_warning_back(void) {
     TEST_ASSERT_TRUE(moved_sigma < 0.1);
 }
 
-/* GIVEN a warning WHEN the filter starts again, whatever comes next THEN the warning stays for as long as the truth is a violation: position
+/* [A34]
+ * GIVEN a warning WHEN the filter starts again, whatever comes next THEN the warning stays for as long as the truth is a violation: position
  * and size are kept until an answer replaces them that is better or says otherwise. */
 static void a_new_start_of_the_filter_takes_no_warning_back(void) {
     int warned = 0;
@@ -174,7 +176,8 @@ static void a_new_start_of_the_filter_takes_no_warning_back(void) {
     TEST_ASSERT_TRUE(least > 0.5);
 }
 
-/* GIVEN a building 36 m wide, by points and base corners without noise, every eighth detection missed WHEN the width is not valid THEN the
+/* [A34]
+ * GIVEN a building 36 m wide, by points and base corners without noise, every eighth detection missed WHEN the width is not valid THEN the
  * probability stays: once it was 1.0000 with the detection, and 0.0000 an image later. */
 static void a_wide_building_stays_wide(void) {
     scene.width_m = scene.length_m = 36.0;
@@ -214,7 +217,8 @@ static double reach_by_state(void) {
     return 0.5 * ((double)x[GOE_FRONT_X] + side) / q;
 }
 
-/* GIVEN flights by any features THEN a hazard reaches as far as the filter's own guess of the extent, valid or not; after a new start no
+/* [A34]
+ * GIVEN flights by any features THEN a hazard reaches as far as the filter's own guess of the extent, valid or not; after a new start no
  * less far than before, until a width is valid. */
 static void the_reach_is_that_of_the_state(void) {
     unsigned phases = 0u;
@@ -243,7 +247,8 @@ static void the_reach_is_that_of_the_state(void) {
     TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_BOX));
 }
 
-/* GIVEN a first answer of a new start that agrees with the last one before it THEN it takes over once it knows the place as well; after
+/* [A34]
+ * GIVEN a first answer of a new start that agrees with the last one before it THEN it takes over once it knows the place as well; after
  * three seconds whatever it knows; one that disagrees takes over at once. */
 static void a_worse_answer_waits_and_another_one_does_not(void) {
     for (int moved = 0; moved < 2; moved++) {
@@ -278,7 +283,7 @@ static void a_worse_answer_waits_and_another_one_does_not(void) {
 
 /* ---------------------------------------------------------------------------------------------- traps of the interface -- */
 
-/* GIVEN images without a feature, then a turn of 88 degrees, then a mast dead ahead THEN it is answered for within a second: the empty
+/* [A5] GIVEN images without a feature, then a turn of 88 degrees, then a mast dead ahead THEN it is answered for within a second: the empty
  * images have fixed no direction. */
 static void a_turn_before_first_sight_costs_nothing(void) {
     scene_make_cylinder(&scene);

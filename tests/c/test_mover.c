@@ -1,5 +1,6 @@
 /* Late poses and obstacles that move: the columns against differences, the estimates against flights whose poses are late or
  * whose obstacle moves, and none of it where nothing is late or moves. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_mover.c */
 #include "refined/goe_mover.h"
 
 #include <math.h>
@@ -64,7 +65,7 @@ static void add_rows(const goe_matrix_t *matrix, normal_t *n) {
     }
 }
 
-/* GIVEN any triangle, with what is beside the state, and any rows WHEN some of it is estimated THEN information and right-hand
+/* [(R35)] GIVEN any triangle, with what is beside the state, and any rows WHEN some of it is estimated THEN information and right-hand
  * side are those of the normal equations, and what is estimated solves these with the others as they are. */
 static void what_is_beside_the_state_is_solved_with_it(void) {
     for (unsigned c = 0; c < CASES; c++) {
@@ -112,7 +113,7 @@ static void what_is_beside_the_state_is_solved_with_it(void) {
     }
 }
 
-/* GIVEN a latency that is about to be estimated WHEN the states change by a substitution THEN what it is to move by is kept. */
+/* [(R21)] GIVEN a latency that is about to be estimated WHEN the states change by a substitution THEN what it is to move by is kept. */
 static void a_change_of_states_keeps_what_is_beside_them(void) {
     goe_triangle_t root;
     goe_matrix_t rows;
@@ -134,7 +135,7 @@ static void a_change_of_states_keeps_what_is_beside_them(void) {
     CHECK_CLOSE(1.0e-6, 0.5 * 2.0, *goe_srif_at(&root, GOE_TOP, GOE_STATES) * *goe_srif_at(&root, GOE_TOP, GOE_TOP));
 }
 
-/* GIVEN an estimate with something beside it THEN the variance of a quantity, on which the attitude's bias has
+/* [(R35), (R37)] GIVEN an estimate with something beside it THEN the variance of a quantity, on which the attitude's bias has
  * no part, is that of the whole inverse. */
 static void the_variance_holds_what_is_beside_the_state(void) {
     goe_triangle_t root;
@@ -244,7 +245,7 @@ static void check_columns(model_t model) {
     }
 }
 
-/* GIVEN a disc and a chord anywhere THEN the columns are the derivatives by the latency and by the velocity. */
+/* [(R35)] GIVEN a disc and a chord anywhere THEN the columns are the derivatives by the latency and by the velocity. */
 static void the_columns_are_derivatives(void) {
     for (int c = 0; c < CASES; c++) {
         check_columns(goe_disc_rows);
@@ -585,7 +586,7 @@ static void rate_and_velocity_are_those_of_the_flight(void) {
     }
 }
 
-/* GIVEN a static obstacle and poses in time THEN nothing moves, nothing is late, and nothing is suspect. */
+/* [goe_report.c, (R36)] GIVEN a static obstacle and poses in time THEN nothing moves, nothing is late, and nothing is suspect. */
 static void nothing_moves_that_does_not(void) {
     for (int n = 0; n < FLIGHTS; n++) {
         const flight_t flight = fly(0, 0.0, 0.0);
@@ -598,7 +599,8 @@ static void nothing_moves_that_does_not(void) {
     }
 }
 
-/* GIVEN poses of a tenth of a second before, of an aircraft that sways THEN they are told as late, by about as much, and nothing
+/* [GOE_WITH_MOVERS, goe_ego_motion.c, (R36)]
+ * GIVEN poses of a tenth of a second before, of an aircraft that sways THEN they are told as late, by about as much, and nothing
  * moves. */
 static void late_poses_are_told_and_taken_off(void) {
     double worst = 0.0;
@@ -612,7 +614,7 @@ static void late_poses_are_told_and_taken_off(void) {
     TEST_ASSERT_TRUE(worst < 0.03);
 }
 
-/* GIVEN an obstacle that moves THEN that is told, and its velocity, within four sigma. */
+/* [GOE_WITH_MOVERS, (R36), (R37)] GIVEN an obstacle that moves THEN that is told, and its velocity, within four sigma. */
 static void an_obstacle_that_moves_is_followed(void) {
     static const double velocity[][2] = {{0.0, 5.0}, {3.0, -4.0}, {-12.0, 0.0}, {0.0, -10.0}};
     for (size_t i = 0; i < sizeof velocity / sizeof velocity[0]; i++) {
@@ -662,7 +664,7 @@ static void an_old_place_moves_on(void) {
     CHECK_SAME(flight.estimate.z0_m, old.z0_m);
 }
 
-/* GIVEN an outline alone, which shows directions and no scale WHEN it moves THEN it is never followed. */
+/* [GOE_REASON_MOVES, (R38)] GIVEN an outline alone, which shows directions and no scale WHEN it moves THEN it is never followed. */
 static void an_outline_that_moves_is_not_followed(void) {
     int suspect = 0;
     scene_make_cylinder(&scene);
@@ -717,7 +719,8 @@ static void what_is_followed_goes_on_unseen(void) {
 }
 
 #if GOE_WITH_HAZARD
-/* GIVEN traffic on the own course, oncoming or slower WHEN it has been warned of THEN no image takes the warning back, also not when
+/* [GOE_REASON_MOVES, (R37)]
+ * GIVEN traffic on the own course, oncoming or slower WHEN it has been warned of THEN no image takes the warning back, also not when
  * it begins to be followed. */
 static void what_begins_to_be_followed_is_warned_of(void) {
     static const double north_m_s[] = {-12.0, 8.0};
@@ -754,7 +757,7 @@ static void what_begins_to_be_followed_is_warned_of(void) {
     }
 }
 
-/* GIVEN oncoming traffic WHEN it is followed THEN the time to it is that of both, not of the aircraft alone. */
+/* [GOE_REASON_MOVES] GIVEN oncoming traffic WHEN it is followed THEN the time to it is that of both, not of the aircraft alone. */
 static void the_hazard_counts_with_both_velocities(void) {
     const flight_t flight = fly(0, -12.0, 0.0);
     goe_plan_t plan;

@@ -108,7 +108,8 @@ static void stand_askew(void) {
     scene.x0_m = check_random_between(&any, -10.0, 10.0);
 }
 
-/* GIVEN two faces WHEN the corner between them is seen in every sixth image alone THEN they are never taken for one. */
+/* [goe_image_t.base_near]
+ * GIVEN two faces WHEN the corner between them is seen in every sixth image alone THEN they are never taken for one. */
 static void a_missed_corner_makes_no_face_of_two(void) {
     start("now and then");
     for (int n = 0; n < FLIGHTS; n++) {
@@ -120,7 +121,8 @@ static void a_missed_corner_makes_no_face_of_two(void) {
     TEST_ASSERT_TRUE(worst < SIGMAS_MAX);
 }
 
-/* GIVEN two faces WHEN the corner between them is never seen THEN their ends are taken for a face only where one could stand, across the
+/* [(R42)]
+ * GIVEN two faces WHEN the corner between them is never seen THEN their ends are taken for a face only where one could stand, across the
  * line of sight; and what is reported then has that in its sigmas. */
 static void two_ends_are_no_sure_face(void) {
     start("never");
@@ -133,7 +135,8 @@ static void two_ends_are_no_sure_face(void) {
     TEST_ASSERT_TRUE(worst < 6.0); /* a diagonal is up to 45 degrees off */
 }
 
-/* GIVEN one face WHEN a turn brings the second into view THEN orientation, width and length are right within their sigmas. */
+/* [goe_image_t.base_near]
+ * GIVEN one face WHEN a turn brings the second into view THEN orientation, width and length are right within their sigmas. */
 static void a_second_face_comes_late_in_a_turn(void) {
     start("turn");
     int beyond = 0;
@@ -157,7 +160,8 @@ static void a_second_face_comes_late_in_a_turn(void) {
     TEST_ASSERT_TRUE(beyond <= FLIGHTS / 20); /* a length that is first seen at a grazing angle */
 }
 
-/* GIVEN a truck that is met end on, seen from above WHEN its top is the highest point of the roof in the image, which is over the far end
+/* [(R42)]
+ * GIVEN a truck that is met end on, seen from above WHEN its top is the highest point of the roof in the image, which is over the far end
  * THEN the height is uncertain by the length that no image shows. */
 static void a_truck_seen_end_on_hides_its_length(void) {
     start("truck");

@@ -50,7 +50,7 @@ static goe_estimate_t fly_after_turn(double before_deg, double after_deg) {
 /* Angle of b from a, folded into -180 to 180. */
 static double between_deg(double a, double b) { return remainder(b - a, 360.0); }
 
-/* GIVEN a course WHEN an image was taken THEN T's heading is told, also while nothing else is known. */
+/* [heading_auto] GIVEN a course WHEN an image was taken THEN T's heading is told, also while nothing else is known. */
 static void the_heading_is_told_from_the_first_image_on(void) {
     for (double course = -170.0; course <= 180.0; course += 25.0) {
         goe_estimate_t estimate;
@@ -87,7 +87,8 @@ static void check_axes(const goe_estimate_t *e) {
     CHECK_CLOSE(1.0e-5, cos(azimuth), e->width_axis_ne[1]);
 }
 
-/* GIVEN a box on any course, by either method THEN its axes in north and east are the heading and the orientation together. */
+/* [goe_estimate_t.length_axis_ne, goe_estimate_t.width_axis_ne]
+ * GIVEN a box on any course, by either method THEN its axes in north and east are the heading and the orientation together. */
 static void the_axes_point_north_and_east(void) {
     for (double course = -180.0; course < 180.0; course += 40.0) {
         const goe_estimate_t refined = fly(course);
@@ -192,6 +193,7 @@ static void check_spread_turns(void) {
     }
 }
 
+/* [goe_estimate_t.center_ne_m2] */
 static void the_spread_of_the_centre_turns_with_the_course(void) {
     check_spread_turns();
     scene_make_cylinder(&scene);
@@ -205,7 +207,8 @@ static void the_spread_of_the_centre_turns_with_the_course(void) {
 #endif
 }
 
-/* GIVEN a first image without a feature, before a turn THEN T is that of the first image with one, by points and by boxes; with a heading
+/* [A5, A7]
+ * GIVEN a first image without a feature, before a turn THEN T is that of the first image with one, by points and by boxes; with a heading
  * that is set, T has that. */
 static void a_track_that_began_before_a_turn_sees_what_is_ahead(void) {
     for (int boxes = 0; boxes < 2; boxes++) {
@@ -224,7 +227,8 @@ static void a_track_that_began_before_a_turn_sees_what_is_ahead(void) {
     CHECK_CLOSE(1.0e-3, 20.0, told.trajectory_heading_deg);
 }
 
-/* GIVEN a place known in X and in Z to 800 km each, the two errors alike WHEN the course leads to the north-east THEN that makes
+/* [goe_quantities.c]
+ * GIVEN a place known in X and in Z to 800 km each, the two errors alike WHEN the course leads to the north-east THEN that makes
  * more than 1000 km along one of north and east, and no centre is told, whichever it is; the place is. */
 static void a_centre_that_is_nowhere_is_not_told(void) {
     static const float errors_alike[] = {1.0f, -1.0f};

@@ -1,4 +1,5 @@
 /* Projection under an attitude bias, and noise of the points, against differences in double. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_observation.c */
 #include "refined/goe_observation.h"
 
 #include <math.h>
@@ -29,7 +30,7 @@ static void project(const double e[3], const double p[3], double seen[2]) {
     seen[1] = (p[1] + e[2] * p[0] - e[0] * p[2]) / z;
 }
 
-/* GIVEN any point and bias THEN place and all twelve derivatives are those of the projection. */
+/* [(R3)] GIVEN any point and bias THEN place and all twelve derivatives are those of the projection. */
 static void derivatives_are_those_of_the_projection(void) {
     any = check_random_start("projection");
     for (int n = 0; n < CASES; n++) {
@@ -85,6 +86,7 @@ static void a_point_is_freed_of_the_bias(void) {
     }
 }
 
+/* [navigation.attitude_bias_deg, (R3)] */
 static void the_bias_is_turned_from_body_axes(void) {
     any = check_random_start("bias");
     for (int n = 0; n < CASES; n++) {
@@ -100,7 +102,7 @@ static void the_bias_is_turned_from_body_axes(void) {
     }
 }
 
-/* GIVEN a point beside or behind the camera THEN everything stays finite. */
+/* [(R3)] GIVEN a point beside or behind the camera THEN everything stays finite. */
 static void points_behind_the_camera_stay_finite(void) {
     static const float z[] = {1.0e-5f, 0.0f, -1.0e-5f, -1.0f, -1.0e6f};
     any = check_random_start("behind");
@@ -143,7 +145,8 @@ static void differentiate(const sighting_t *s, double u_px, double v_px, double 
     by_v[1] = (up[1] - down[1]) / (2.0 * step);
 }
 
-/* GIVEN a pixel anywhere in the image of a turned camera THEN the spread of its aligned point is the pixel's variance through
+/* [detector.point_px, (R4)]
+ * GIVEN a pixel anywhere in the image of a turned camera THEN the spread of its aligned point is the pixel's variance through
  * the derivative of the alignment. */
 static void the_spread_is_that_of_the_alignment(void) {
     any = check_random_start("spread");
@@ -169,6 +172,7 @@ static void the_spread_is_that_of_the_alignment(void) {
     }
 }
 
+/* [detector.point_share] */
 static void size_noise_is_a_share_of_the_width(void) {
     any = check_random_start("size");
     sighting_start(&sighting, &any);
@@ -217,7 +221,8 @@ static void the_body_is_where_the_mounting_puts_it(void) {
 }
 
 #if GOE_BESIDE
-/* GIVEN poses that are late WHEN an image is linearised THEN the attitude is that of the exposure: what the body turned by since is
+/* [GOE_REASON_LATE]
+ * GIVEN poses that are late WHEN an image is linearised THEN the attitude is that of the exposure: what the body turned by since is
  * taken off the bias. */
 static void what_the_poses_are_late_by_is_taken_off(void) {
     any = check_random_start("late");

@@ -1,4 +1,5 @@
 /* Which edge is the side, and the low-pass. SPDX-License-Identifier: MIT */
+/* tests: lib/window/goe_orientation.c */
 #include <math.h>
 #include <string.h>
 
@@ -50,6 +51,7 @@ static void no_measurement_has_no_sigma(void) {
     TEST_ASSERT_EQUAL_FLOAT(1.5f, goe_orientation_sigma_deg(&orientation));
 }
 
+/* [W1] */
 static void the_side_is_the_edge_nearer_to_the_flight_direction(void) {
     goe_faces_t faces = see_two(-80.0f, 10.0f);
     TEST_ASSERT_TRUE(faces.measured && faces.side_is_right);
@@ -81,6 +83,7 @@ static void what_no_image_left_begins_anew(void) {
     }
 }
 
+/* [W1] */
 static void the_front_tells_the_orientation_if_the_side_cannot(void) {
     (void)see_two(70.0f, none);
     TEST_ASSERT_EQUAL_FLOAT(-20.0f, orientation.raw_deg);
@@ -90,6 +93,7 @@ static void the_front_tells_the_orientation_if_the_side_cannot(void) {
     TEST_ASSERT_EQUAL_FLOAT(30.0f, orientation.raw_deg);
 }
 
+/* [W1] */
 static void a_single_edge_is_a_front_beyond_45_degrees(void) {
     goe_faces_t faces = see_one(46.0f);
     TEST_ASSERT_EQUAL_PTR(&edges.edge[0], faces.front);
@@ -109,6 +113,7 @@ static void a_single_edge_is_a_front_beyond_45_degrees(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, orientation.raw_deg);
 }
 
+/* [W1] */
 static void no_heading_leaves_everything_as_it_is(void) {
     (void)see_two(-80.0f, 10.0f);
     const goe_orientation_t before = orientation;
@@ -121,7 +126,7 @@ static void no_heading_leaves_everything_as_it_is(void) {
     TEST_ASSERT_FALSE(update(MEMORY).measured);
 }
 
-/* GIVEN a box at 44 degrees and noise of 3 degrees, which often makes the other edge's angle the smaller one
+/* [W1] GIVEN a box at 44 degrees and noise of 3 degrees, which often makes the other edge's angle the smaller one
  * WHEN 500 images are seen THEN front and side never change places and the filtered angle stays near 44. */
 static void noise_near_45_degrees_does_not_swap_the_faces(void) {
     check_random_t random = check_random_start("near 45 degrees");
@@ -138,7 +143,7 @@ static void noise_near_45_degrees_does_not_swap_the_faces(void) {
     TEST_ASSERT_GREATER_THAN_INT(50, would_swap);
 }
 
-/* GIVEN an estimate that was wrong at first WHEN the edges say clearly otherwise THEN they win over the low-pass. */
+/* [W1] GIVEN an estimate that was wrong at first WHEN the edges say clearly otherwise THEN they win over the low-pass. */
 static void clear_edges_win_over_the_low_pass(void) {
     (void)see_two(-30.0f, 60.0f);
     TEST_ASSERT_EQUAL_FLOAT(-30.0f, orientation.raw_deg);
@@ -147,7 +152,8 @@ static void clear_edges_win_over_the_low_pass(void) {
     TEST_ASSERT_EQUAL_FLOAT(10.0f, orientation.raw_deg);
 }
 
-/* b_k = b_{k-1} + (g_k - b_{k-1})/min(k, memory), and the mean squared step, in double. */
+/* [goe_estimate_t.orientation_raw_deg, window.orientation_memory]
+ * b_k = b_{k-1} + (g_k - b_{k-1})/min(k, memory), and the mean squared step, in double. */
 static void the_low_pass_follows_its_formula(void) {
     check_random_t random = check_random_start("low-pass");
     double b = 0.0;
@@ -166,6 +172,7 @@ static void the_low_pass_follows_its_formula(void) {
     }
 }
 
+/* [window.orientation_memory] */
 static void a_memory_of_one_does_not_filter(void) {
     edges.count = 2;
     for (int k = 0; k < 5; k++) {
@@ -176,7 +183,8 @@ static void a_memory_of_one_does_not_filter(void) {
     }
 }
 
-/* GIVEN single edges that scatter about the boundary WHEN filtered THEN the angle stays within (-90, 90] and is averaged
+/* [window.orientation_memory]
+ * GIVEN single edges that scatter about the boundary WHEN filtered THEN the angle stays within (-90, 90] and is averaged
  * as an undirected line: 44 and -44 of the other face are two degrees apart, not 88. */
 static void lines_are_averaged_without_a_direction(void) {
     (void)see_one(44.0f);
@@ -195,6 +203,7 @@ static void a_mean_of_more_is_more_certain(void) {
     TEST_ASSERT_EQUAL_FLOAT(1.5f, goe_orientation_sigma_deg(&orientation));
 }
 
+/* [A32] */
 static void nothing_measured_has_no_spread(void) {
     orientation.variance_deg2 = 9.0f;
     TEST_ASSERT_EQUAL_FLOAT(0.0f, goe_orientation_sigma_deg(&orientation));

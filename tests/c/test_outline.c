@@ -1,6 +1,7 @@
 /* Reach, ends and ways of an outline: each derivative against differences of the value. SPDX-License-Identifier: MIT
  *
  * A wrong derivative moves no distance, but the sigmas of time and miss, and with them the probability of a violation. */
+/* tests: lib/hazard/goe_outline.c */
 #include "hazard/goe_outline.h"
 
 #include <math.h>

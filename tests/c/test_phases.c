@@ -1,6 +1,7 @@
 /* The phases of the filter: every transition by its name, and that there are no others. SPDX-License-Identifier: MIT
  *
  * The diagram stands above goe_phase_t in refined/goe_filter.h. */
+/* tests: lib/refined/goe_filter.c */
 #include <math.h>
 #include <string.h>
 
@@ -159,12 +160,14 @@ static void base_corners_alone_start_a_disc(void) {
     CHECK_CLOSE(0.1 * scene.z0_m, scene.z0_m, 1.0 / (double)estimator.filter.state[GOE_INVERSE_RANGE]);
 }
 
+/* [GOE_MODEL_AUTO, (R19)] */
 static void two_faces_make_a_box_of_a_disc(void) {
     fly(SEE_ALL, 40);
     TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_BOX]);
     TEST_ASSERT_FALSE(happened[GOE_PHASE_DISC][GOE_PHASE_BOX_FACE]);
 }
 
+/* [GOE_MODEL_AUTO] */
 static void one_face_makes_a_box_whose_length_is_held(void) {
     make_wall_ahead();
     fly(SEE_ALL, 60);
@@ -185,6 +188,7 @@ static void a_skewed_outline_makes_a_chord_of_a_disc(void) {
     TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_CHORD]);
 }
 
+/* [A30] */
 static void a_face_that_turns_away_makes_a_box_of_a_chord(void) {
     make_box_beside(44.0);
     fly(SEE_OUTLINE, IMAGES);
@@ -213,6 +217,7 @@ static void a_chord_learns_an_end_anew_when_a_face_comes_into_view(void) {
     TEST_ASSERT_FALSE(happened[GOE_PHASE_CHORD][GOE_PHASE_BOX_OUTLINE]);
 }
 
+/* [A8, (R21)] */
 static void a_side_that_lies_across_takes_the_name_of_the_front(void) {
     scene.width_m = 3.1;
     scene.length_m = 15.3;
@@ -227,6 +232,7 @@ static void a_side_that_lies_across_takes_the_name_of_the_front(void) {
     TEST_ASSERT_TRUE(exchanged);
 }
 
+/* [T1] */
 static void what_does_not_fit_starts_the_filter_anew(void) {
     scene_make_cylinder(&scene);
     fly(SEE_LEAPS, 60);
@@ -362,6 +368,7 @@ static void make_any_scene(void) {
     scene.image_rate_hz = check_random_between(&any, 8.0, 20.0);
 }
 
+/* [goe_model.c] */
 static void no_other_transition_happens(void) {
     any = check_random_start("phases");
     memset(happened, 0, sizeof happened);

@@ -130,22 +130,26 @@ static void fly_all(goe_method_t method, shape_t shape) {
 
 static bool was_in(goe_phase_t phase) { return (phases >> phase & 1u) != 0u; }
 
+/* [A5, A34, navigation.velocity_bias_m_s, (R23)] */
 static void they_change_no_disc(void) {
     fly_all(GOE_METHOD_REFINED, SHAPE_DISC);
     TEST_ASSERT_TRUE(was_in(GOE_PHASE_DISC));
 }
 
+/* [A5] */
 static void they_change_no_box(void) {
     fly_all(GOE_METHOD_REFINED, SHAPE_BOX);
     TEST_ASSERT_TRUE(was_in(GOE_PHASE_BOX));
 }
 
+/* [A5] */
 static void they_change_no_chord_and_no_box_by_its_outline(void) {
     fly_all(GOE_METHOD_REFINED, SHAPE_OUTLINE);
     TEST_ASSERT_TRUE(was_in(GOE_PHASE_CHORD) && was_in(GOE_PHASE_BOX_OUTLINE));
     TEST_ASSERT_TRUE(lengths > 20);
 }
 
+/* [A5] */
 static void they_change_nothing_in_the_window(void) {
     fly_all(GOE_METHOD_WINDOW, SHAPE_BOX);
     setUp();

@@ -1,4 +1,5 @@
 /* Rows of a prism against the extremes of an ellipse's rims in double. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_prism.c */
 #include "refined/goe_prism.h"
 
 #include <math.h>
@@ -68,7 +69,8 @@ static void make_rows(void) {
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
-/* GIVEN ellipses of any size, place and proportion, a camera above or below the roof, rolled by any angle, under an attitude bias
+/* [A29, GOE_MODEL_PRISM, goe_image_t.box, goe_touch.c, (R25), (R26), (R27), (R29)]
+ * GIVEN ellipses of any size, place and proportion, a camera above or below the roof, rolled by any angle, under an attitude bias
  * THEN the sides of the upright box leave no residual, and the derivatives are those of the extremes of the rims. */
 static void rows_are_those_of_the_touching_planes(void) {
     double truth[GOE_STATES];
@@ -97,7 +99,8 @@ static bool is_within_lens(void) {
     return farthest < 0.45;
 }
 
-/* GIVEN a wide lens (k1 = -0.3) THEN a straight side of the raw image, linearised where it touches, is off by less than a
+/* [goe_image_t.box, (R28)]
+ * GIVEN a wide lens (k1 = -0.3) THEN a straight side of the raw image, linearised where it touches, is off by less than a
  * tenth of a pixel at 914 px in 98 of 100 sides, and by less than one in all. */
 static void a_lens_is_linearised_where_a_side_touches(void) {
     double truth[GOE_STATES];
@@ -426,7 +429,8 @@ static double fly_with_corners(bool corners, double roll_deg, goe_model_t *model
     return fabs((double)estimate.z0_m - scene.z0_m) / (double)estimate.sigma.z0_m;
 }
 
-/* GIVEN a box and base corners THEN the box stands for left, right and top, and the corners make a box of it; without corners
+/* [A1, goe_box_t.seen, goe_image_t.box, goe_model.c]
+ * GIVEN a box and base corners THEN the box stands for left, right and top, and the corners make a box of it; without corners
  * it is a prism. */
 static void a_box_goes_with_base_corners(void) {
     goe_model_t model;
@@ -497,7 +501,8 @@ static goe_estimate_t fly_box(height_t height) {
     return estimate;
 }
 
-/* GIVEN boxes THEN the noise of the altimeter after the first image changes nothing, not even the last bit. */
+/* [camera.offset_m, goe_pose_t.height_m]
+ * GIVEN boxes THEN the noise of the altimeter after the first image changes nothing, not even the last bit. */
 static void an_altimeter_s_noise_is_in_one_image_only(void) {
     any = check_random_start("altimeter");
     const goe_estimate_t steady = fly_box(STEADY);
@@ -507,7 +512,8 @@ static void an_altimeter_s_noise_is_in_one_image_only(void) {
     TEST_ASSERT_EQUAL_FLOAT(steady.sigma.z0_m, noisy.sigma.z0_m);
 }
 
-/* GIVEN a jump of the autopilot's filter, down among it, of known size THEN the answer is that of a flight without one. */
+/* [goe_pose_t.reset_delta_known]
+ * GIVEN a jump of the autopilot's filter, down among it, of known size THEN the answer is that of a flight without one. */
 static void a_jump_of_the_filter_moves_the_datum(void) {
     any = check_random_start("jump");
     const goe_estimate_t steady = fly_box(STEADY);
@@ -803,7 +809,7 @@ static void errors_of_an_image_are_checked(void) {
 #endif
 }
 
-/* GIVEN a side of the box that is no number, or out of range THEN the image is refused; one that is not seen is not read. */
+/* [goe_intake.c] GIVEN a side of the box that is no number, or out of range THEN the image is refused; one that is not seen is not read. */
 static void every_side_that_is_seen_is_checked(void) {
     scene_t scene;
     goe_estimator_t estimator;
@@ -879,7 +885,8 @@ static double width_across(const scene_t *scene, const goe_estimator_t *estimato
     return scene->width_m * fabs(cos(turn)) + scene->length_m * fabs(sin(turn));
 }
 
-/* GIVEN exact boxes of slender things, whose width changes as the line of sight turns, and of which no image shows how deep they are,
+/* [GOE_MODEL_PRISM, (R41)]
+ * GIVEN exact boxes of slender things, whose width changes as the line of sight turns, and of which no image shows how deep they are,
  * THEN no width is reported that is wrong by six sigma, suspect or not. */
 static void the_width_of_slender_things_is_not_confidently_wrong(void) {
     int wrong = 0;
@@ -907,7 +914,8 @@ static void the_width_of_slender_things_is_not_confidently_wrong(void) {
     TEST_ASSERT_EQUAL_INT(0, wrong);
 }
 
-/* GIVEN an image that knows the error of its height THEN it counts in the first image with a box, and in no other. */
+/* [goe_image_noise_t.height_m]
+ * GIVEN an image that knows the error of its height THEN it counts in the first image with a box, and in no other. */
 static void a_height_s_own_error_counts_in_the_first_image(void) {
     goe_estimate_t estimate;
     const float plain = height_sigma_with(0.0f, 0.0f, GOE_MODEL_AUTO, &estimate);
@@ -917,7 +925,7 @@ static void a_height_s_own_error_counts_in_the_first_image(void) {
     CHECK_SAME(plain, height_sigma_with(0.0f, 3.0f, GOE_MODEL_AUTO, &estimate));
 }
 
-/* GIVEN the same boxes WHEN a disc is asked for THEN the range is known better: a prism's sigma holds what no image can show of its
+/* [(R33)] GIVEN the same boxes WHEN a disc is asked for THEN the range is known better: a prism's sigma holds what no image can show of its
  * depth, and that keeps no answer back. */
 static void a_prism_is_told_with_what_no_image_shows(void) {
     goe_estimate_t prism;
@@ -930,7 +938,8 @@ static void a_prism_is_told_with_what_no_image_shows(void) {
     TEST_ASSERT_TRUE(prism.sigma.z0_m > 1.1f * disc.sigma.z0_m);
 }
 
-/* (R33): GIVEN a share of the range that the whole sigma passes, and what an image can show does not THEN the position is told, with
+/* [(R33)]
+ * GIVEN a share of the range that the whole sigma passes, and what an image can show does not THEN the position is told, with
  * the whole sigma. */
 static void what_no_image_shows_keeps_no_answer_back(void) {
     static const float share[] = {0.02f, 0.01f};

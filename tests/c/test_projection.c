@@ -1,4 +1,5 @@
 /* The projection models (2), (3) and the virtual rotation (4). SPDX-License-Identifier: MIT */
+/* tests: lib/window/goe_projection.c */
 #include <math.h>
 
 #include "check.h"
@@ -25,7 +26,7 @@ static goe_status_t disc_row(double x, double z, double r, goe_row_t *row) {
     return goe_projection_disc(&left, &right, row);
 }
 
-/* (2) is exact on the axis: zeta = Z/(2r), xi = 0. */
+/* [(2)] (2) is exact on the axis: zeta = Z/(2r), xi = 0. */
 static void the_disc_is_exact_ahead(void) {
     for (double z = 20.0; z < 400.0; z *= 1.3) {
         goe_row_t row;
@@ -35,7 +36,7 @@ static void the_disc_is_exact_ahead(void) {
     }
 }
 
-/* The position row of (2), x = xi/zeta = X/Z: with half-angle a, sin a = r/d, and bearing p it is short of tan p by
+/* [(2)] The position row of (2), x = xi/zeta = X/Z: with half-angle a, sin a = r/d, and bearing p it is short of tan p by
  * 2 sin^4 a tan^3 p/cos^2 p to first order, which is rounding for any disc that is not filling the view. */
 static void the_disc_has_a_nearly_exact_bearing_everywhere(void) {
     check_random_t random = check_random_start("discs");
@@ -59,7 +60,7 @@ static void the_disc_has_a_nearly_exact_bearing_everywhere(void) {
     TEST_ASSERT_TRUE(worst_small < 2.0e-6);
 }
 
-/* Off the axis the size row 2/S of (2) is off Z/W by the relative error r^2 X^2/(Z^2 d^2), to first order. */
+/* [(2)] Off the axis the size row 2/S of (2) is off Z/W by the relative error r^2 X^2/(Z^2 d^2), to first order. */
 static void the_disc_size_has_the_error_of_equation_2(void) {
     static const double bearings[] = {-1.0, -0.5, -0.2, 0.1, 0.4, 0.8};
     for (int i = 0; i < 6; i++) {
@@ -86,7 +87,7 @@ static void a_disc_needs_left_on_the_left(void) {
     CHECK_STATUS(GOE_OK, goe_projection_disc(&a, &b, &row));
 }
 
-/* (3), (4): a front edge of width w, middle (x, z), turned by b, gives xi = x/w and zeta = z/w exactly. */
+/* [GOE_MODEL_LINE, (3)] (3), (4): a front edge of width w, middle (x, z), turned by b, gives xi = x/w and zeta = z/w exactly. */
 static void the_line_is_exact_everywhere(void) {
     check_random_t random = check_random_start("lines");
     double worst = 0.0;
@@ -127,7 +128,7 @@ static void a_line_seen_from_its_end_or_from_behind_is_edge_on(void) {
     CHECK_STATUS(GOE_OK, goe_projection_line(&a, &b, turn_of(60.0), &span, &row));
 }
 
-/* (4): turning the camera by b moves a ray at bearing a to bearing a - b. */
+/* [(4)] turning the camera by b moves a ray at bearing a to bearing a - b. */
 static void a_virtual_rotation_subtracts_from_the_bearing(void) {
     for (int a = -60; a <= 60; a += 10) {
         for (int b = -80; b <= 80; b += 10) {
@@ -146,7 +147,7 @@ static void a_virtual_rotation_subtracts_from_the_bearing(void) {
     }
 }
 
-/* The limit of the alignment, 0.05 of a unit ray or 87.13 degrees, holds for the turned camera as well. */
+/* [(4)] The limit of the alignment, 0.05 of a unit ray or 87.13 degrees, holds for the turned camera as well. */
 static void a_virtual_rotation_stops_where_the_alignment_does(void) {
     float x = 0.0f;
     const goe_point_t inside = at(tan(27.0 * RAD_PER_DEG));

@@ -109,7 +109,8 @@ static int fly_all_ways(const scene_t *box, goe_model_t model, worst_t *worst) {
     return flights;
 }
 
-/* GIVEN noise-free flights past a truck and a building: straight, curved, weaving, speeding up; on both sides; level and
+/* [A4, A8, goe_estimate_t.center_north_m, goe_estimate_t.width_m, (3), (7)]
+ * GIVEN noise-free flights past a truck and a building: straight, curved, weaving, speeding up; on both sides; level and
  * down a 6 degree slope; at three orientations
  * THEN every solution of every image has X0, Z0, W, L within 0.1 % and the orientation within 0.05 degrees. */
 static void boxes_are_recovered_exactly(void) {
@@ -134,7 +135,7 @@ static void boxes_are_recovered_exactly(void) {
     TEST_ASSERT_GREATER_THAN_INT(1200, worst.lengths);
 }
 
-/* ... with a camera that looks 30 degrees left, sits off the reference point and has a lens, on an aircraft that rolls,
+/* [goe_estimator.c] ... with a camera that looks 30 degrees left, sits off the reference point and has a lens, on an aircraft that rolls,
  * pitches and yaws by 8 degrees. */
 static void own_attitude_and_mounting_are_taken_out(void) {
     worst_t worst;
@@ -185,7 +186,7 @@ static void check_same_estimate(const step_t *a, const step_t *b, double toleran
     CHECK_CLOSE(0.01, a->estimate.orientation_deg, b->estimate.orientation_deg);
 }
 
-/* GIVEN one flight WHEN the world is turned about the vertical THEN nothing changes in T, and NED turns along. */
+/* [goe_ego_motion.c] GIVEN one flight WHEN the world is turned about the vertical THEN nothing changes in T, and NED turns along. */
 static void turning_the_world_changes_nothing_in_the_trajectory_frame(void) {
     static const double courses_deg[] = {37.0, 90.0, 180.0, 211.0, 300.0, -5.0};
     scene_t scene;
@@ -233,7 +234,8 @@ static void the_heading_in_the_world_does_not_depend_on_the_trajectory_frame(voi
     }
 }
 
-/* GIVEN a flight WHEN it is mirrored left to right THEN X0 and the orientation change sign and nothing else changes. */
+/* [goe_estimate_t.x0_m]
+ * GIVEN a flight WHEN it is mirrored left to right THEN X0 and the orientation change sign and nothing else changes. */
 static void left_and_right_are_alike(void) {
     for (int shape = 0; shape < 2; shape++) {
         for (int path = 0; path < 3; path++) {
@@ -298,7 +300,8 @@ static void doubling_all_lengths_doubles_the_answer(void) {
     }
 }
 
-/* GIVEN a flight WHEN the origin of NED lies elsewhere THEN nothing changes but the centre, which moves along; far away
+/* [goe_pose_t.position_ned_m]
+ * GIVEN a flight WHEN the origin of NED lies elsewhere THEN nothing changes but the centre, which moves along; far away
  * floats hold positions to 0.1 mm at 1 km and to 4 mm at 100 km, which is what the tolerances grow with. */
 static void the_origin_of_ned_does_not_matter(void) {
     static const double distances_m[] = {100.0, 1000.0, 10000.0, 100000.0};
@@ -328,7 +331,7 @@ static void the_origin_of_ned_does_not_matter(void) {
     }
 }
 
-/* One estimate says the same thing in several ways. */
+/* [goe_estimate_t.x_m] One estimate says the same thing in several ways. */
 static void an_estimate_agrees_with_itself(void) {
     scene_t scene;
     scene_default(&scene);

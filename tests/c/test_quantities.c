@@ -2,6 +2,7 @@
  *
  * Each variance must be that of the state's covariance, by derivatives that are taken here as differences of the values
  * themselves; to it comes, on purpose, what no image can show. */
+/* tests: lib/refined/goe_quantities.c */
 #include "refined/goe_quantities.h"
 
 #include <math.h>
@@ -262,7 +263,8 @@ static bool is_of_corner(int quantity) { return quantity >= GOE_ORIENTATION && q
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
-/* GIVEN any state of any phase and an own motion that is exact THEN the sigma of each quantity, of the centre in north and east, and
+/* [A30, (R41), (R42)]
+ * GIVEN any state of any phase and an own motion that is exact THEN the sigma of each quantity, of the centre in north and east, and
  * the covariance of the two are those of the state. */
 static void sigmas_are_those_of_the_state(void) {
     any = check_random_start("sigmas");
@@ -329,7 +331,8 @@ static double unlikeness_of(double *spread) {
     return unlike;
 }
 
-/* GIVEN a disc that was not asked for THEN by as much as it may be something else its sigmas, its covariance and that of its centre
+/* [A30, (R39), (R40)]
+ * GIVEN a disc that was not asked for THEN by as much as it may be something else its sigmas, its covariance and that of its centre
  * hold what the condition on no skew moves, where the middle and the roof's corner may lie, and how the width may change. */
 static void a_disc_may_be_something_else(void) {
     double most = 0.0;
@@ -561,7 +564,8 @@ static void scatter(void) {
     filter.scatter.squares = 400.0f;
 }
 
-/* GIVEN any state of any phase, a track that scatters and an own motion that is off THEN each sigma squared is its quantity's variance in
+/* [goe_covariance]
+ * GIVEN any state of any phase, a track that scatters and an own motion that is off THEN each sigma squared is its quantity's variance in
  * the covariance, to rounding; X0 and Z0 with what came before the filter's start. */
 static void sigmas_are_the_roots_of_the_diagonal(void) {
     any = check_random_start("diagonal");

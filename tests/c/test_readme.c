@@ -39,8 +39,10 @@ static void fly_the_worked_example(goe_method_t method, int first) {
     TEST_ASSERT_TRUE(estimate.fresh);
 }
 
-/* The refined method answers once the range is known to 25 %, the window when it is full. */
+/* [GOE_COLLECTING, GOE_HAS_POSITION, goe_estimate_t.x0_m, goe_estimate_t.x_m, goe_estimate_t.z0_m]
+ * The refined method answers once the range is known to 25 %, the window when it is full. */
 static void the_worked_example_of_the_manual(void) { fly_the_worked_example(GOE_METHOD_REFINED, 6); }
+/* [GOE_COLLECTING, goe_estimate_t.z0_m, method] */
 static void the_worked_example_by_the_window(void) { fly_the_worked_example(GOE_METHOD_WINDOW, 7); }
 
 int main(void) {

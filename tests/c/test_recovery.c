@@ -1,4 +1,5 @@
 /* How well the images fit, and when the filter has to start anew. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_health.c */
 #include "refined/goe_health.h"
 
 #include <string.h>
@@ -43,7 +44,8 @@ static bool judge(unsigned refused) { return goe_health_judge(&filter, &settings
 
 /* ------------------------------------------------------------------------------------------------------------- means -- */
 
-/* GIVEN images whose NIS is that of their rows THEN the misfit is their mean with eight zeros before, of 64 images from then on. */
+/* [GOE_REASON_NOISE, goe_estimate_t.misfit]
+ * GIVEN images whose NIS is that of their rows THEN the misfit is their mean with eight zeros before, of 64 images from then on. */
 static void the_misfit_begins_with_eight_zeros_and_remembers_64_images(void) {
     double expected = 0.0;
     for (int n = 1; n <= 200; n++) {
@@ -86,6 +88,7 @@ static void one_image_does_not_decide(void) {
     TEST_ASSERT_EQUAL_INT(0, filter.health.images);
 }
 
+/* [goe_estimate_t.points] */
 static void the_count_of_images_saturates(void) {
     filter.health.images = INT16_MAX - 1;
     take(1.0f);
@@ -96,7 +99,7 @@ static void the_count_of_images_saturates(void) {
 
 /* ---------------------------------------------------------------------------------------------------------- recovery -- */
 
-/* GIVEN one point that is refused in 4 images in a row, of a chord in 8 THEN the filter starts anew; an image between in which it
+/* [T1] GIVEN one point that is refused in 4 images in a row, of a chord in 8 THEN the filter starts anew; an image between in which it
  * fits begins the count again, one in which it is not measured does not. */
 static void a_point_refused_again_and_again_starts_the_filter_anew(void) {
     for (int chord = 0; chord < 2; chord++) {
@@ -118,6 +121,7 @@ static void a_point_refused_again_and_again_starts_the_filter_anew(void) {
     }
 }
 
+/* [T1] */
 static void half_of_the_points_refused_three_times_start_the_filter_anew(void) {
     TEST_ASSERT_FALSE(judge(HALF));
     TEST_ASSERT_FALSE(judge(HALF));
@@ -127,6 +131,7 @@ static void half_of_the_points_refused_three_times_start_the_filter_anew(void) {
     TEST_ASSERT_TRUE(judge(HALF));
 }
 
+/* [T1] */
 static void images_that_do_not_fit_start_the_filter_anew(void) {
     filter.health.recent_nis = 6.0f;
     TEST_ASSERT_FALSE(judge(0u));
@@ -139,6 +144,7 @@ static void images_that_do_not_fit_start_the_filter_anew(void) {
     CHECK_CLOSE(1.0e-6, 2.0, filter.health.recent_nis);
 }
 
+/* [T1] */
 static void a_state_of_no_obstacle_starts_the_filter_anew(void) {
     filter.state[GOE_FRONT_X] = 0.0f;
     TEST_ASSERT_TRUE(judge(0u));
@@ -153,7 +159,7 @@ static void a_state_of_no_obstacle_starts_the_filter_anew(void) {
     TEST_ASSERT_TRUE(judge(0u));
 }
 
-/* GIVEN the top alone refused 3 times THEN it is freed, and the filter goes on. */
+/* [T2] GIVEN the top alone refused 3 times THEN it is freed, and the filter goes on. */
 static void a_top_that_is_refused_is_freed(void) {
     for (int i = 0; i < 3; i++) {
         TEST_ASSERT_EQUAL_FLOAT(1.0f, *goe_srif_at(&filter.root, GOE_TOP, GOE_TOP));
@@ -171,7 +177,8 @@ static void fail_once(void) {
     filter.state[GOE_FRONT_X] = 0.1f;
 }
 
-/* GIVEN a box of base corners that fails twice, late in its track THEN these are given up; a disc's failures, a box's in the first
+/* [GOE_REASON_BASE]
+ * GIVEN a box of base corners that fails twice, late in its track THEN these are given up; a disc's failures, a box's in the first
  * 32 images, or one that was asked for, say nothing of them. */
 static void base_corners_that_fail_twice_are_given_up(void) {
     for (int phase = GOE_PHASE_DISC; phase <= GOE_PHASE_BOX_OUTLINE; phase++) {
@@ -191,7 +198,8 @@ static void base_corners_that_fail_twice_are_given_up(void) {
     }
 }
 
-/* GIVEN two restarts within 24 images THEN what is given does not belong together; farther apart they are an outlier's. */
+/* [GOE_REASON_CONVENTION]
+ * GIVEN two restarts within 24 images THEN what is given does not belong together; farther apart they are an outlier's. */
 static void two_restarts_soon_are_one_too_many(void) {
     for (int between = 22; between < 26; between++) {
         setUp();

@@ -135,7 +135,9 @@ static void check_center(void) {
     CHECK_CLOSE(0.01, quantity[GOE_Z0] - truth.dz_m, estimate.z_m);
 }
 
-/* GIVEN boxes of any orientation on either side WHEN nothing but rounding is wrong THEN all six quantities and the centre
+/* [A1, A8, GOE_HAS_ORIENTATION, goe_estimate_t.center_north_m, goe_estimate_t.height_m, goe_estimate_t.length_m,
+ * goe_estimate_t.orientation_deg, goe_estimate_t.width_m, goe_estimate_t.x0_m, goe_image_t.top, goe_refined.c]
+ * GIVEN boxes of any orientation on either side WHEN nothing but rounding is wrong THEN all six quantities and the centre
  * come out to 1e-4, whichever edge is called the side. */
 static void boxes_come_out_as_they_are(void) {
     static const double aside_m[] = {-25.0, -12.0, 15.0};
@@ -159,6 +161,7 @@ static void boxes_come_out_as_they_are(void) {
     }
 }
 
+/* [A1, A8, goe_estimate_t.width_m, goe_image_t.top, (R7)] */
 static void cylinders_come_out_as_they_are(void) {
     static const double aside_m[] = {-25.0, -12.0, 15.0};
     static const double height_m[] = {4.0, 30.0}; /* below and above the camera */
@@ -182,7 +185,7 @@ static void cylinders_come_out_as_they_are(void) {
     }
 }
 
-/* GIVEN the usual noise settings and drifts off WHEN images come THEN no sigma of a started model ever grows. */
+/* [goe_quantities.c] GIVEN the usual noise settings and drifts off WHEN images come THEN no sigma of a started model ever grows. */
 static void sigmas_shrink_with_every_image(void) {
     float before[GOE_QUANTITIES];
     float value[GOE_QUANTITIES];
@@ -228,7 +231,8 @@ static double information_gained(const goe_estimator_t *before, double share) {
     return information;
 }
 
-/* GIVEN a range that is hardly known WHEN an image comes after a good part of the way THEN it tells less of it than the same image where
+/* [goe_refined.c]
+ * GIVEN a range that is hardly known WHEN an image comes after a good part of the way THEN it tells less of it than the same image where
  * the range is known: what the state is linearised at may be wrong by then. */
 static void an_uncertain_range_makes_an_image_count_less(void) {
     scene_make_cylinder(&scene);
@@ -364,6 +368,7 @@ static double check_covariance(int *freedoms) {
     return whitened_square(n, c, error);
 }
 
+/* [GOE_X0, goe_covariance, goe_covariance.c, goe_shape.c, (R22)] */
 static void the_covariance_is_positive_and_holds_the_sigmas(void) {
     int freedoms;
     any = check_random_start("covariance");
@@ -408,7 +413,8 @@ static void fly_once(honesty_t *honesty, double sigma_px) {
     honesty->runs++;
 }
 
-/* GIVEN 80 boxes and 80 cylinders, Gaussian noise of 0.5 px and nothing else wrong, and told so THEN the truth lies within
+/* [A1, A2, goe_covariance, goe_estimate_t.sigma, goe_estimate_t.suspect, goe_quantities.c, (R24)]
+ * GIVEN 80 boxes and 80 cylinders, Gaussian noise of 0.5 px and nothing else wrong, and told so THEN the truth lies within
  * 2 sigma in 88 % of the flights or more for each quantity, the error squared by the covariance is that of its number of
  * quantities (of cylinders 3/4 of it: a little too careful), the innovations are as told, and none is suspected. */
 static void sigmas_tell_the_error(void) {
@@ -461,7 +467,8 @@ static void jump_by_then(bool known) {
     }
 }
 
-/* GIVEN a straight flight of which all positions are exact floats WHEN the autopilot's filter jumps by a known delta THEN the
+/* [goe_pose_t.reset_delta_known]
+ * GIVEN a straight flight of which all positions are exact floats WHEN the autopilot's filter jumps by a known delta THEN the
  * answer is the same in all bits but for the centre, which moves along. */
 static void a_known_jump_is_compensated(void) {
     scene.path = SCENE_STRAIGHT;
@@ -491,7 +498,8 @@ static void a_known_jump_is_compensated(void) {
     TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[RESETS]);
 }
 
-/* GIVEN an answer that is old WHEN the filter jumps by a known delta, and nothing is seen THEN the centre moves along. */
+/* [goe_pose_t.reset_delta_known]
+ * GIVEN an answer that is old WHEN the filter jumps by a known delta, and nothing is seen THEN the centre moves along. */
 static void a_jump_moves_an_old_centre_along(void) {
     start();
     fly(0, 25);
@@ -507,7 +515,7 @@ static void a_jump_moves_an_old_centre_along(void) {
     CHECK_CLOSE(1.0e-4, before.center_east_m + jump[1], estimate.center_east_m);
 }
 
-/* GIVEN a jump of unknown size THEN the track is that of an estimator which starts with this image. */
+/* [A22, goe_pose_t.reset_delta_known] GIVEN a jump of unknown size THEN the track is that of an estimator which starts with this image. */
 static void an_unknown_jump_starts_anew(void) {
     goe_estimator_t fresh;
     goe_estimate_t from_fresh;
@@ -528,6 +536,7 @@ static void an_unknown_jump_starts_anew(void) {
     TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[RESETS]);
 }
 
+/* [A7] */
 static void a_reset_forgets_the_track(void) {
     start();
     fly(0, 20);
@@ -544,7 +553,7 @@ static void a_reset_forgets_the_track(void) {
 
 /* ------------------------------------------------------------------------------------------------------------ outliers -- */
 
-/* GIVEN single wild points WHEN they come now and then THEN the answer hardly moves. */
+/* [goe_refined.c, (R16)] GIVEN single wild points WHEN they come now and then THEN the answer hardly moves. */
 static void single_outliers_are_left_out(void) {
     any = check_random_start("outliers");
     scene_tell_no_noise(&settings);
@@ -563,7 +572,7 @@ static void single_outliers_are_left_out(void) {
     check_truth(4.0, 0.02);
 }
 
-/* GIVEN a feature that is wrong from the start, and later is right WHEN the flight ends THEN the answer has recovered,
+/* [T1] GIVEN a feature that is wrong from the start, and later is right WHEN the flight ends THEN the answer has recovered,
  * whichever feature it was. */
 static void a_track_that_began_with_an_outlier_recovers(void) {
     any = check_random_start("capture");
@@ -593,7 +602,7 @@ static void a_track_that_began_with_an_outlier_recovers(void) {
     }
 }
 
-/* GIVEN a detector that finds another top from an image on, 3 m higher WHEN that was refused for a while THEN the height
+/* [T2] GIVEN a detector that finds another top from an image on, 3 m higher WHEN that was refused for a while THEN the height
  * follows, and neither the track nor the range starts anew. */
 static void another_top_costs_the_height_alone(void) {
     any = check_random_start("another top");
@@ -611,7 +620,8 @@ static void another_top_costs_the_height_alone(void) {
     CHECK_CLOSE(0.3, scene.height_m, estimate.height_m);
 }
 
-/* GIVEN an attitude whose error drifts WHEN nothing is seen for a while THEN each of the biases is less certain by the variance of a
+/* [goe_refined.c]
+ * GIVEN an attitude whose error drifts WHEN nothing is seen for a while THEN each of the biases is less certain by the variance of a
  * random walk over that time, and the gate counts with it before the filter is inverted again. */
 static void the_attitude_s_error_drifts_with_time(void) {
     const double drift_rad = 0.2 * RAD_PER_DEG; /* per root second */
@@ -638,7 +648,8 @@ static void the_attitude_s_error_drifts_with_time(void) {
     }
 }
 
-/* GIVEN a cylinder, of which nothing shows how high the camera is above the ground THEN the told sigma of that is in the
+/* [goe_estimate_t.height_m]
+ * GIVEN a cylinder, of which nothing shows how high the camera is above the ground THEN the told sigma of that is in the
  * height's, and only there. */
 static void the_error_of_the_altitude_is_in_the_height(void) {
     float sigma[2][2];
@@ -657,7 +668,7 @@ static void the_error_of_the_altitude_is_in_the_height(void) {
     CHECK_CLOSE(1.0e-3 * (double)sigma[0][1], sigma[0][1], sigma[1][1]);
 }
 
-/* GIVEN eight images of another obstacle, 15 m aside and half as far THEN the track ends up at the one that is seen. */
+/* [T1] GIVEN eight images of another obstacle, 15 m aside and half as far THEN the track ends up at the one that is seen. */
 static void a_track_that_began_at_another_obstacle_recovers(void) {
     scene_tell_no_noise(&settings);
     settings.detector.point_px = 0.5f;
@@ -672,7 +683,7 @@ static void a_track_that_began_at_another_obstacle_recovers(void) {
     check_truth(5.0, 0.02);
 }
 
-/* (R15): GIVEN a cylinder much narrower or wider than the first guess, near, and pixels that are nearly exact THEN what
+/* [(R15)] GIVEN a cylinder much narrower or wider than the first guess, near, and pixels that are nearly exact THEN what
  * linearising at a wrong range leaves out neither captures the filter nor makes it sure of a wrong one. */
 static void a_first_guess_that_is_far_off_comes_right(void) {
     static const double width_m[] = {1.0, 3.0, 12.0, 25.0};
@@ -703,7 +714,8 @@ static void a_first_guess_that_is_far_off_comes_right(void) {
     }
 }
 
-/* (R14): GIVEN images in which nothing is seen THEN what the bias and the bearing gain in them is kept beside the inverse, and is in
+/* [(R14)]
+ * GIVEN images in which nothing is seen THEN what the bias and the bearing gain in them is kept beside the inverse, and is in
  * the root. */
 static void time_adds_to_the_bias_and_the_bearing(void) {
     const double dt_s = 0.125;
@@ -737,7 +749,7 @@ static void time_adds_to_the_bias_and_the_bearing(void) {
     TEST_ASSERT_TRUE((double)goe_inverse_variance(&filter->inverse, GOE_BEARING) > was + 0.4 * walk2);
 }
 
-/* (R23): GIVEN the same filter WHEN the own velocity and position are given as less well known THEN the covariance grows by what no
+/* [(R23)] GIVEN the same filter WHEN the own velocity and position are given as less well known THEN the covariance grows by what no
  * image shows: shares of range and sizes, and the walk. */
 static void what_no_image_shows_of_the_own_motion_is_added(void) {
     float before[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -793,7 +805,8 @@ static int fly_past_a_mover(double vx, double vz, double swing_m) {
     return suspicious;
 }
 
-/* GIVEN a truck that crosses, comes, or swings from side to side THEN it is suspected; standing it never is. One that comes
+/* [GOE_REASON_MOVES, goe_estimate_t.suspect]
+ * GIVEN a truck that crosses, comes, or swings from side to side THEN it is suspected; standing it never is. One that comes
  * at constant speed looks like a standing one of another size but for its height on the ground, which the attitude's error
  * may explain for a while. */
 static void a_moving_obstacle_is_suspected(void) {
@@ -833,7 +846,8 @@ static void a_wrong_convention_is_told(void) {
     }
 }
 
-/* GIVEN a noisy flight THEN a quantity is told only after two images in a row that knew it: the one before, and this one. */
+/* [A31, goe_quantities.c, refined.range_share]
+ * GIVEN a noisy flight THEN a quantity is told only after two images in a row that knew it: the one before, and this one. */
 static void known_in_two_images_in_a_row(void) {
     int held_back = 0;
     any = check_random_start("two in a row");
@@ -942,7 +956,7 @@ static void a_stand_in_tells_no_width(void) {
     TEST_ASSERT_TRUE(stood_in);
 }
 
-/* GIVEN a track of more images than are counted THEN the count stays at the most that it may tell. */
+/* [goe_refined.c] GIVEN a track of more images than are counted THEN the count stays at the most that it may tell. */
 static void the_count_of_images_saturates(void) {
     start();
     fly(0, 20);
@@ -981,7 +995,7 @@ static void the_window_answers_before_the_start_only(void) {
 
 /* ------------------------------------------------------------------------------------------------------- nothing in view -- */
 
-/* GIVEN a solution WHEN nothing is seen any more THEN it grows old, follows the motion, and is not changed. */
+/* [A7, A34] GIVEN a solution WHEN nothing is seen any more THEN it grows old, follows the motion, and is not changed. */
 static void an_answer_follows_the_motion_while_nothing_is_seen(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 25));
@@ -1047,7 +1061,7 @@ static void the_covariance_of_an_old_answer_only_grows(void) {
     }
 }
 
-/* GIVEN a bounding box alone, or base corners alone THEN the track goes on. */
+/* [goe_image_t.pose] GIVEN a bounding box alone, or base corners alone THEN the track goes on. */
 static void any_subset_of_the_features_will_do(void) {
     start();
     fly(0, 20);
@@ -1074,7 +1088,7 @@ static void spoil_range(void) { image.top.v_px = 2.0e5f; }
 static void spoil_time(void) { image.pose.time_us -= 1000000; }
 static void spoil_attitude(void) { image.pose.attitude[0] *= 1.05f; }
 
-/* GIVEN a refused image WHEN it comes THEN no byte but one counter changes, and the answer is told as a stale one. */
+/* [A21] GIVEN a refused image WHEN it comes THEN no byte but one counter changes, and the answer is told as a stale one. */
 static void a_refused_image_changes_one_counter(void) {
     static const spoil_t spoils[] = {spoil_pose, spoil_pixel, spoil_range, spoil_time, spoil_attitude};
     static const goe_status_t statuses[] = {GOE_NOT_FINITE, GOE_NOT_FINITE, GOE_OUT_OF_RANGE, GOE_BAD_TIME,

@@ -6,6 +6,7 @@
  *
  * When a change of results is meant, the failing test prints the new hash of each flight: put it into `flights` in the commit that
  * says why the results changed. A change that is not meant to change results must leave them. */
+/* tests: lib/refined/goe_refined.c */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>

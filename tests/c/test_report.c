@@ -1,4 +1,5 @@
 /* Why an estimate is suspect, and what is told beside it. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_report.c */
 #include "refined/goe_report.h"
 
 #include <math.h>

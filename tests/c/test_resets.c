@@ -58,7 +58,7 @@ static void check_same_but_for_the_origin(int times) {
     }
 }
 
-/* GIVEN a flight in which the filter jumps at the 12th image by a known amount
+/* [A27, goe_ego_motion.c, goe_pose_t.reset_delta_known] GIVEN a flight in which the filter jumps at the 12th image by a known amount
  * WHEN the same flight is flown without a jump THEN both estimates are the same in every bit, but for NED. */
 static void a_known_jump_is_compensated(void) {
     for (int k = 0; k < 30; k++) {
@@ -76,7 +76,7 @@ static void a_known_jump_is_compensated(void) {
     TEST_ASSERT_EQUAL_UINT32(0u, jumped.causes[RESETS]);
 }
 
-/* The sum is told if the filter jumped more than once between two images, the counter then skips. */
+/* [goe_pose_t.reset_delta_ned_m] The sum is told if the filter jumped more than once between two images, the counter then skips. */
 static void several_jumps_between_two_images_are_one_sum(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;
@@ -109,7 +109,8 @@ static void the_counter_wraps(void) {
     TEST_ASSERT_EQUAL_UINT32(0u, jumped.causes[RESETS]);
 }
 
-/* GIVEN a track with a solution WHEN the filter jumps by an unknown amount THEN the track starts anew with this image:
+/* [A22, A27, GOE_CAUSES, goe_pose_t.reset_delta_known]
+ * GIVEN a track with a solution WHEN the filter jumps by an unknown amount THEN the track starts anew with this image:
  * as a new estimator's, and the jump is counted. */
 static void an_unknown_jump_starts_a_new_track(void) {
     for (int k = 0; k < 30; k++) {
@@ -127,6 +128,7 @@ static void an_unknown_jump_starts_a_new_track(void) {
     TEST_ASSERT_EQUAL_UINT32(0u, plain.causes[RESETS]);
 }
 
+/* [A22] */
 static void an_unknown_jump_leaves_no_old_answer(void) {
     goe_image_t image;
     for (int k = 0; k < 12; k++) {
@@ -143,7 +145,8 @@ static void an_unknown_jump_leaves_no_old_answer(void) {
 }
 
 #if GOE_WITH_REFINED
-/* GIVEN an answer of the refined method WHEN the filter jumps while nothing is seen THEN the old answer's centre, told in the autopilot's
+/* [goe_estimator.c]
+ * GIVEN an answer of the refined method WHEN the filter jumps while nothing is seen THEN the old answer's centre, told in the autopilot's
  * north and east, moves along with them; what counts from the camera stays. */
 static void an_old_answers_centre_moves_along(void) {
     goe_image_t image;
@@ -167,7 +170,7 @@ static void an_old_answers_centre_moves_along(void) {
 }
 
 #endif
-/* GIVEN a camera that hovers WHEN its filter jumps by a known amount again and again THEN there is still no baseline. */
+/* [A27] GIVEN a camera that hovers WHEN its filter jumps by a known amount again and again THEN there is still no baseline. */
 static void jumps_are_never_motion(void) {
     goe_image_t image;
     goe_status_t status = GOE_OK;
@@ -189,7 +192,8 @@ static void jumps_are_never_motion(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, jumped.motion.dx_m);
 }
 
-/* A jump is told "since the image before", so one that comes with a refused image is told again with the next. */
+/* [goe_pose_t.reset_delta_ned_m]
+ * A jump is told "since the image before", so one that comes with a refused image is told again with the next. */
 static void a_refused_image_does_not_use_up_a_jump(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;
@@ -214,7 +218,7 @@ static void a_refused_image_does_not_use_up_a_jump(void) {
     }
 }
 
-/* A jump with an image in which nothing is seen counts as well. */
+/* [A27] A jump with an image in which nothing is seen counts as well. */
 static void a_jump_without_a_feature_is_compensated(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;

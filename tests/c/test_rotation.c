@@ -1,4 +1,5 @@
 /* Rotation matrices. SPDX-License-Identifier: MIT */
+/* tests: lib/maths/goe_rotation.c */
 #include "check.h"
 #include "maths/goe_rotation.h"
 
@@ -17,6 +18,7 @@ static void check_turns(const float r[9], float x, float y, float z, float to_x,
     TEST_ASSERT_FLOAT_WITHIN(EPS, to_z, turned[2]);
 }
 
+/* [goe_pose_t.attitude] */
 static void quaternion_turns_body_into_ned(void) {
     const float level[4] = {1.0f, 0.0f, 0.0f, 0.0f};
     const float heading_east[4] = {HALF_SQRT2, 0.0f, 0.0f, HALF_SQRT2};
@@ -34,6 +36,7 @@ static void quaternion_turns_body_into_ned(void) {
     check_turns(r, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f);
 }
 
+/* [goe_pose_t.attitude] */
 static void quaternion_norm_and_sign_do_not_matter(void) {
     const float q[4] = {0.5f, -0.1f, 0.7f, 0.3f};
     const float opposite[4] = {-0.5f, 0.1f, -0.7f, -0.3f};
@@ -62,6 +65,7 @@ static void check_orthonormal(const float r[9]) {
     TEST_ASSERT_FLOAT_WITHIN(1.0e-6f, 1.0f, volume); /* a mirror image would be -1 */
 }
 
+/* [camera.mount_yaw_deg] */
 static void every_rotation_is_proper(void) {
     check_random_t random = check_random_start("rotations");
     for (int i = 0; i < 500; i++) {
@@ -83,7 +87,7 @@ static void every_rotation_is_proper(void) {
     }
 }
 
-/* Z-Y'-X'': the product of the three single turns in this order. */
+/* [camera.mount_yaw_deg] Z-Y'-X'': the product of the three single turns in this order. */
 static void euler_angles_turn_yaw_then_pitch_then_roll(void) {
     float yaw[9];
     float pitch[9];

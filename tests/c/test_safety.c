@@ -481,7 +481,8 @@ static void note_statuses(const char *what) {
     UNITY_PRINT_EOL();
 }
 
-/* GIVEN images of which every number is a random bit pattern, NaNs and infinities among them */
+/* [A11, A16, A17, A18, A21, A25, GOE_IMAGE_TAKEN, goe_estimate_t.fresh, goe_estimate_t.valid, goe_hazard, goe_update]
+ * GIVEN images of which every number is a random bit pattern, NaNs and infinities among them */
 static void random_bits_do_no_harm(void) {
     any = check_random_start("random bits");
     goe_settings_t settings = any_settings();
@@ -520,7 +521,9 @@ static void order_box(goe_box_t *box) {
     box->bottom_px = b.top_px < b.bottom_px ? b.bottom_px : b.top_px;
 }
 
-/* GIVEN finite images within the ranges, their extremes preferred, under settings of which the same holds */
+/* [A16, A18, A25, A31, GOE_HAS_POSITION, goe_covariance, goe_estimate_t.method, goe_estimate_t.model, goe_estimate_t.valid, goe_update,
+ * refined.range_share]
+ * GIVEN finite images within the ranges, their extremes preferred, under settings of which the same holds */
 static void extremes_do_no_harm(void) {
     static float (*const numbers[])(void) = {pixel_near, pixel_anywhere, pixel_usual};
     any = check_random_start("extremes");
@@ -616,7 +619,7 @@ static void any_scene(scene_t *of) {
     *of = scene;
 }
 
-/* GIVEN flights that make sense, with pixel noise, broken numbers and missing features now and then */
+/* [A16, A31] GIVEN flights that make sense, with pixel noise, broken numbers and missing features now and then */
 static void spoiled_flights_do_no_harm(void) {
     any = check_random_start("spoiled flights");
     const int flights = updates_each() / 50;
@@ -711,7 +714,7 @@ static bool fits_a_pixel(const goe_pixel_t *pixel) {
     return within(&pixel->u_px, 9.0e4f) && within(&pixel->v_px, 9.0e4f);
 }
 
-/* GIVEN one track of thousands of images that is never reset: flights flown again and again, the whole obstacle tricked,
+/* [A16, A18] GIVEN one track of thousands of images that is never reset: flights flown again and again, the whole obstacle tricked,
  * the aircraft standing, leaping, or seconds away from its last image */
 static void long_adversarial_tracks_do_no_harm(void) {
     any = check_random_start("long tracks");

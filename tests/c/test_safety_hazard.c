@@ -1,6 +1,7 @@
 /* Whatever answer and plan come in, nothing but finite numbers comes out of goe_hazard. SPDX-License-Identifier: MIT
  *
  * As in test_safety.c floats are judged by their bits alone: the test must also hold with -ffast-math. */
+/* tests: lib/hazard/goe_hazard.c */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,6 +101,7 @@ static int calls(void) {
     return wanted ? (int)strtol(wanted, NULL, 0) / UPDATES_PER_CALL : CALLS;
 }
 
+/* [A16, A23, goe_affine.c, goe_hazard_t.violation] */
 static void any_answer_and_plan_give_finite_numbers(void) {
     for (int i = 0; i < calls(); i++) {
         const goe_plan_t plan = {{up_to(1e3), up_to(1e3), up_to(1e3)},

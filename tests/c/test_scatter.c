@@ -1,4 +1,5 @@
 /* The factor that answers for a track's own scatter. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_scatter.c */
 #include <math.h>
 #include <string.h>
 
@@ -47,7 +48,7 @@ static double mean_factor(double kept, float repeated) {
     return sum / TRACKS;
 }
 
-/* GIVEN residuals that are new in each image and as large as told THEN nothing is widened by more than chance. */
+/* [(R34)] GIVEN residuals that are new in each image and as large as told THEN nothing is widened by more than chance. */
 static void nothing_is_widened_without_need(void) {
     const double factor = mean_factor(0.0, 1.0f);
     check_report("factor of white residuals", factor);
@@ -56,7 +57,8 @@ static void nothing_is_widened_without_need(void) {
     CHECK_SAME(1.0f, goe_scatter_factor(&filter, 1.0f)); /* a new track */
 }
 
-/* GIVEN residuals that keep a share from image to image THEN the factor is that of the variance of a long mean of them. */
+/* [goe_estimate_t.sigma, (R34)]
+ * GIVEN residuals that keep a share from image to image THEN the factor is that of the variance of a long mean of them. */
 static void alike_residuals_count_less(void) {
     static const double kept[] = {0.3, 0.5, 0.7};
     for (int i = 0; i < 3; i++) {
@@ -67,13 +69,14 @@ static void alike_residuals_count_less(void) {
     }
 }
 
-/* GIVEN a correlation that was told THEN it is not counted twice. */
+/* [detector.point_correlation, (R34)] GIVEN a correlation that was told THEN it is not counted twice. */
 static void what_is_told_is_not_counted_twice(void) {
     const double factor = mean_factor(0.5, 3.0f);
     TEST_ASSERT_TRUE(factor >= 1.0 && factor < 1.15);
 }
 
-/* GIVEN images that scatter more than told THEN the larger of the two means counts; GIVEN ones that scatter less THEN nothing
+/* [goe_estimate_t.sigma, (R34)]
+ * GIVEN images that scatter more than told THEN the larger of the two means counts; GIVEN ones that scatter less THEN nothing
  * shrinks. */
 static void doubt_widens_and_trust_does_not_shrink(void) {
     filter.health.mean_nis = 4.0f;
@@ -100,7 +103,7 @@ static void doubt_widens_and_trust_does_not_shrink(void) {
     CHECK_CLOSE(1.0e-3, 19.0, goe_scatter_factor(&filter, 1.0f));
 }
 
-/* GIVEN a feature that is refused or not seen in an image THEN what comes after joins nothing before it; GIVEN an outlier THEN it
+/* [(R34)] GIVEN a feature that is refused or not seen in an image THEN what comes after joins nothing before it; GIVEN an outlier THEN it
  * counts as ten sigmas. */
 static void gaps_join_nothing_and_outliers_are_clipped(void) {
     double residual[4] = {5.0, 5.0, 5.0, 5.0};

@@ -1,5 +1,6 @@
 /* The self-check finds a square root that is not correctly rounded: compiled as it stands, with one that can be made wrong.
  * SPDX-License-Identifier: MIT */
+/* tests: lib/goe_self_check.c */
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* Defaults and ranges of the settings. SPDX-License-Identifier: MIT */
+/* tests: lib/goe_settings.c */
 #include <stddef.h>
 #include <string.h>
 
@@ -142,7 +143,7 @@ static void check_bad(const char *name) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
 }
 
-/* GIVEN settings full of a sentinel WHEN defaults are asked for THEN no field is left out. */
+/* [A26] GIVEN settings full of a sentinel WHEN defaults are asked for THEN no field is left out. */
 static void the_defaults_set_every_field(void) {
     goe_settings_t again;
     unsigned char heading_auto;
@@ -167,13 +168,14 @@ static void the_defaults_set_every_field(void) {
     TEST_ASSERT_EQUAL_MEMORY(&again, &settings, sizeof settings);
 }
 
-/* The tables above cover the whole structure: 4 bytes a field, but for the enumerations and the flags beside them. */
+/* [A26] The tables above cover the whole structure: 4 bytes a field, but for the enumerations and the flags beside them. */
 static void the_tables_of_this_test_are_complete(void) {
     const size_t head = offsetof(goe_settings_t, heading_deg) - offsetof(goe_settings_t, method);
     const size_t tail = sizeof settings - offsetof(goe_settings_t, refined.top_is_highest);
     TEST_ASSERT_EQUAL_size_t(sizeof settings, 4u * (NUMBERS + COUNTS - 2u) + head + tail);
 }
 
+/* [GOE_BAD_SETTINGS] */
 static void the_defaults_lack_only_the_camera(void) {
     goe_settings_default(&settings);
     check_bad("camera.fx_px");
@@ -185,6 +187,7 @@ static void the_defaults_lack_only_the_camera(void) {
 
 static void no_settings_are_no_crash(void) { goe_settings_default(NULL); }
 
+/* [A21, A26, GOE_BAD_SETTINGS, goe_init] */
 static void every_number_may_reach_its_limits_and_no_farther(void) {
     for (size_t i = 0; i < NUMBERS; i++) {
         const number_t *field = &numbers[i];
@@ -203,6 +206,7 @@ static void every_number_may_reach_its_limits_and_no_farther(void) {
     }
 }
 
+/* [GOE_BAD_SETTINGS] */
 static void every_number_must_be_finite(void) {
     static const uint32_t patterns[] = {0x7F800000u, 0xFF800000u, 0x7FC00000u, 0xFFC00001u, 0x7F800001u, 0xFFFFFFFFu};
     for (size_t i = 0; i < NUMBERS; i++) {
@@ -214,6 +218,7 @@ static void every_number_must_be_finite(void) {
     }
 }
 
+/* [GOE_BAD_SETTINGS, GOE_MODEL_NONE, goe_init] */
 static void every_count_may_reach_its_limits_and_no_farther(void) {
     for (size_t i = 0; i < COUNTS; i++) {
         const count_t *field = &counts[i];

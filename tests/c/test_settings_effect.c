@@ -182,7 +182,8 @@ static void fly(flight_t flight, const goe_settings_t *settings, answers_t *answ
 
 static answers_t plain, changed;
 
-/* GIVEN a flight WHEN one setting alone is changed THEN the answers are others; one that tells of an error makes the sigma larger
+/* [A2, (R14), (R23)]
+ * GIVEN a flight WHEN one setting alone is changed THEN the answers are others; one that tells of an error makes the sigma larger
  * in which that error is. */
 static void every_setting_does_what_it_says(void) {
     for (size_t i = 0; i < EFFECTS; i++) {
@@ -203,6 +204,7 @@ static void every_setting_does_what_it_says(void) {
     }
 }
 
+/* [A11] */
 static void without_a_change_the_answers_are_the_same(void) {
     for (int flight = TRUCK; flight <= PAPER; flight++) {
         const goe_settings_t settings = start((flight_t)flight);
@@ -213,7 +215,7 @@ static void without_a_change_the_answers_are_the_same(void) {
     }
 }
 
-/* The table above names every setting once. */
+/* [A26] The table above names every setting once. */
 static void every_setting_is_tried(void) {
     for (size_t i = 0; i < PLACES; i++) {
         int found = 0;

@@ -1,4 +1,5 @@
 /* Memory of a side's error against generalised least squares over all images at once, in double. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_side_memory.c */
 #include "refined/goe_side_memory.h"
 
 #include <math.h>
@@ -122,7 +123,8 @@ static series_t any_series(void) {
     return s;
 }
 
-/* GIVEN a side whose error is a first-order process WHEN its images come one by one THEN value and variance are those of all
+/* [detector.box_share, (R30), (R31), (R32)]
+ * GIVEN a side whose error is a first-order process WHEN its images come one by one THEN value and variance are those of all
  * images at once, with the error's whole covariance. */
 static void it_is_as_good_as_all_images_at_once(void) {
     any = check_random_start("series");
@@ -139,7 +141,7 @@ static void it_is_as_good_as_all_images_at_once(void) {
     }
 }
 
-/* GIVEN a row that was refused THEN nothing is learnt from it. */
+/* [(R32)] GIVEN a row that was refused THEN nothing is learnt from it. */
 static void a_refused_row_teaches_nothing(void) {
     goe_side_memory_t side;
     goe_side_memory_t before;
@@ -154,7 +156,7 @@ static void a_refused_row_teaches_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &side, sizeof side);
 }
 
-/* GIVEN a side that comes into view late, of a box that has grown THEN its error is as large as that box makes it. */
+/* [(R30)] GIVEN a side that comes into view late, of a box that has grown THEN its error is as large as that box makes it. */
 static void a_side_measured_late_starts_afresh(void) {
     goe_side_memory_t side;
     float row[GOE_COLUMNS] = {0.0f};

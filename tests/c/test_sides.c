@@ -1,5 +1,6 @@
 /* The sides of a box: which count, and the points that stand for them, against leaning rectangles in double.
  * SPDX-License-Identifier: MIT */
+/* tests: lib/image/goe_sides.c */
 #include "image/goe_sides.h"
 
 #include <math.h>
@@ -69,13 +70,14 @@ static void see(float l, float t, float r, float b, unsigned seen) {
 
 /* ----------------------------------------------------------------------------------------------------------- sides -- */
 
-/* GIVEN bits beyond those of the four sides THEN they are none. */
+/* [GOE_SEES_BOX, goe_box_t.seen] GIVEN bits beyond those of the four sides THEN they are none. */
 static void a_bit_that_is_no_side_is_none(void) {
     see(400.0f, 300.0f, 600.0f, 500.0f, 0xF0u | GOE_SEES_LEFT);
     TEST_ASSERT_EQUAL_HEX(GOE_SEES_LEFT, view.sides.usable);
 }
 
-/* GIVEN a side nearer to its border than the share of the width THEN it does not count, and no other side is the worse. */
+/* [camera.border_share, camera.height_px, camera.width_px]
+ * GIVEN a side nearer to its border than the share of the width THEN it does not count, and no other side is the worse. */
 static void a_side_at_the_border_is_not_measured(void) {
     static const float in_px[] = {12.0f, 12.0f, WIDTH_PX - 13.0f, HEIGHT_PX - 13.0f};
     static const float out_px[] = {9.0f, 9.0f, WIDTH_PX - 10.0f, HEIGHT_PX - 10.0f};
@@ -97,7 +99,8 @@ static void a_border_that_is_not_known_is_none(void) {
     TEST_ASSERT_FALSE(view.sides.cut);
 }
 
-/* GIVEN left or right missing, or nearer to the border than cut_share THEN the box counts as cut; top and bottom do not cut. */
+/* [camera.cut_share, detector.cut_noise]
+ * GIVEN left or right missing, or nearer to the border than cut_share THEN the box counts as cut; top and bottom do not cut. */
 static void a_box_is_cut_by_left_and_right_alone(void) {
     see(200.0f, 30.0f, 600.0f, 780.0f, GOE_SEES_BOX);
     TEST_ASSERT_FALSE(view.sides.cut);
@@ -110,7 +113,7 @@ static void a_box_is_cut_by_left_and_right_alone(void) {
     TEST_ASSERT_TRUE(view.sides.cut);
 }
 
-/* GIVEN sides out of order THEN none counts, and that is told; of sides that are not seen no order is asked. */
+/* [goe_box_t.left_px] GIVEN sides out of order THEN none counts, and that is told; of sides that are not seen no order is asked. */
 static void sides_out_of_order_do_not_count(void) {
     see(600.0f, 200.0f, 600.0f, 600.0f, GOE_SEES_BOX);
     TEST_ASSERT_EQUAL_HEX(0u, view.sides.usable);
@@ -133,7 +136,8 @@ static void check_pixel(double u_px, double v_px, const goe_pixel_t *pixel) {
     CHECK_CLOSE(0.02, v_px, pixel->v_px);
 }
 
-/* GIVEN rectangles that lean with the camera's roll WHEN their upright boxes are given THEN the points are the middles of the
+/* [goe_image_t.box]
+ * GIVEN rectangles that lean with the camera's roll WHEN their upright boxes are given THEN the points are the middles of the
  * rectangles' own sides. */
 static void a_leaning_box_is_turned_back(void) {
     any = check_random_start("leaning");
@@ -176,7 +180,7 @@ static void an_upright_box_gives_the_middles_of_its_sides(void) {
 
 static void check_no_points(void) { TEST_ASSERT_FALSE(left.seen || right.seen || top.seen); }
 
-/* GIVEN a box that does not tell the width of what leans in it THEN it gives no points. */
+/* [goe_image_t.box] GIVEN a box that does not tell the width of what leans in it THEN it gives no points. */
 static void what_a_box_does_not_tell_gives_no_points(void) {
     see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX & ~(unsigned)GOE_SEES_LEFT);
     check_no_points();

@@ -7,6 +7,7 @@
 void setUp(void) {}
 void tearDown(void) {}
 
+/* [A9] */
 static void an_estimator_takes_two_and_three_quarters_of_a_kibibyte_at_the_default_window(void) {
     const size_t beyond = (GOE_WINDOW_MAX > STANDARD_WINDOW ? GOE_WINDOW_MAX - STANDARD_WINDOW : 0u) * BYTES_PER_POINT;
     check_report("bytes of an estimator", (double)sizeof(goe_estimator_t));
@@ -19,11 +20,13 @@ static void each_point_of_the_window_takes_40_bytes(void) {
     TEST_ASSERT_EQUAL_size_t(BYTES_PER_POINT * GOE_WINDOW_MAX + rings, windows);
 }
 
+/* [GOE_CAMERAS_MAX] */
 static void each_further_camera_takes_112_bytes(void) {
     goe_estimator_t *none = NULL;
     TEST_ASSERT_EQUAL_size_t(112u, sizeof(goe_camera_t) + sizeof none->camera_to_body[0]);
 }
 
+/* [A12] */
 static void numbers_have_the_sizes_that_the_library_relies_on(void) {
     TEST_ASSERT_EQUAL_size_t(4u, sizeof(float));
     TEST_ASSERT_EQUAL_HEX32(0x3F800000u, check_bits(1.0f));

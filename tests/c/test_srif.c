@@ -1,4 +1,5 @@
 /* Square-root information against dense normal equations in double. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_srif.c */
 #include "refined/goe_srif.h"
 
 #include <math.h>
@@ -222,7 +223,8 @@ static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_
     CHECK_CLOSE(SHARE * (1.0 + expected.nis), expected.nis, nis);
 }
 
-/* GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and what is left are those of the
+/* [GOE_METHOD_REFINED, goe_estimate_t.nis, (R17)]
+ * GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and what is left are those of the
  * normal equations with the temporaries' noise in the rows' covariance. */
 static void an_update_solves_the_normal_equations(void) {
     any = check_random_start("update");
@@ -235,7 +237,7 @@ static void an_update_solves_the_normal_equations(void) {
     }
 }
 
-/* GIVEN the same WHEN the last state is considered THEN the others are those of the normal equations with that state held at 0,
+/* [T3] GIVEN the same WHEN the last state is considered THEN the others are those of the normal equations with that state held at 0,
  * their dependence on it is that of these equations, too, and what is known of it stays. */
 static void a_considered_state_is_held_and_depended_on(void) {
     any = check_random_start("considering");
@@ -265,7 +267,8 @@ static void a_considered_state_is_held_and_depended_on(void) {
     }
 }
 
-/* GIVEN measurements drawn from the model WHEN updated many times THEN the squares that are left over average to the number
+/* [goe_estimate_t.nis, (R17)]
+ * GIVEN measurements drawn from the model WHEN updated many times THEN the squares that are left over average to the number
  * of rows: that is what makes them an innovation statistic. */
 static void the_squares_left_over_average_to_the_number_of_rows(void) {
     const size_t rows = 7;
@@ -309,6 +312,7 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
     CHECK_CLOSE(5.0 * sqrt(2.0 * (double)rows / draws), (double)rows, sum / draws); /* 5 sigma */
 }
 
+/* [(R17)] */
 static void rows_of_zeros_change_nothing(void) {
     any = check_random_start("zeros");
     goe_triangle_t root = no_root;
@@ -336,7 +340,7 @@ static void a_row_without_derivatives_is_left_over(void) {
     CHECK_SAME(9.0f, goe_srif_update(&root, 100.0f, &matrix, change));
 }
 
-/* Each row of R with the other sign is the same information. */
+/* [(R17)] Each row of R with the other sign is the same information. */
 static void the_signs_of_the_rows_are_free(void) {
     any = check_random_start("signs");
     for (size_t i = 0; i < N; i++) {
@@ -378,7 +382,8 @@ static void check_spread(const float direction[GOE_STATES], size_t first, size_t
     check_alike(5.0 * SHARE, &expected, &actual);
 }
 
-/* GIVEN a variance along one state, or along several at once THEN the covariance grows by sigma^2 d d', and nothing else
+/* [navigation.attitude_drift_deg, navigation.position_walk_m, (R14)]
+ * GIVEN a variance along one state, or along several at once THEN the covariance grows by sigma^2 d d', and nothing else
  * changes. */
 static void spreading_adds_to_the_covariance(void) {
     any = check_random_start("spread");
@@ -395,7 +400,7 @@ static void spreading_adds_to_the_covariance(void) {
     }
 }
 
-/* GIVEN a sigma so small that its inverse squared is no float any more THEN the root stays as it is. */
+/* [(R14)] GIVEN a sigma so small that its inverse squared is no float any more THEN the root stays as it is. */
 static void a_tiny_sigma_changes_nothing(void) {
     static const float tiny[] = {1.0e-45f, 1.0e-38f, 1.0e-30f, 1.0e-20f, 1.0e-19f, 1.0e-17f};
     static const float one[N] = {1.0f};
@@ -430,6 +435,7 @@ static void check_inverse(const goe_triangle_t *root, const goe_inverse_t *inver
     }
 }
 
+/* [(R22)] */
 static void the_root_times_its_inverse_is_one(void) {
     any = check_random_start("inverse");
     for (int n = 0; n < CASES; n++) {
@@ -442,7 +448,7 @@ static void the_root_times_its_inverse_is_one(void) {
     }
 }
 
-/* GIVEN weights with zeros among them THEN projected'projected = w'Pw. */
+/* [(R22)] GIVEN weights with zeros among them THEN projected'projected = w'Pw. */
 static void a_variance_is_the_covariance_seen_along_the_weights(void) {
     any = check_random_start("variance");
     for (int n = 0; n < CASES; n++) {
@@ -532,7 +538,7 @@ static void a_singular_covariance_gives_a_finite_root(void) {
     }
 }
 
-/* (R21): GIVEN new states of which the last seven old ones are functions THEN the information in the new ones is D'(R'R)D. */
+/* [(R21)] GIVEN new states of which the last seven old ones are functions THEN the information in the new ones is D'(R'R)D. */
 static void a_substitution_keeps_the_information(void) {
     any = check_random_start("substitution");
     for (int c = 0; c < CASES; c++) {

@@ -1,4 +1,5 @@
 /* Names of the statuses. SPDX-License-Identifier: MIT */
+/* tests: lib/goe_status.c */
 #include <string.h>
 
 #include "check.h"
@@ -26,6 +27,7 @@ static int collect(void) {
     return count;
 }
 
+/* [goe_status_text] */
 static void every_status_has_a_name_of_its_own(void) {
     const int count = collect();
     for (int a = 0; a < count; a++) {
@@ -37,6 +39,7 @@ static void every_status_has_a_name_of_its_own(void) {
     }
 }
 
+/* [goe_status_text] */
 static void a_name_fits_a_log(void) {
     const int count = collect();
     for (int k = 0; k < count; k++) {
@@ -46,6 +49,7 @@ static void a_name_fits_a_log(void) {
     }
 }
 
+/* [goe_status_text] */
 static void the_names_are_those_of_the_manual(void) {
     TEST_ASSERT_EQUAL_STRING("ok", text_of(GOE_OK));
     TEST_ASSERT_EQUAL_STRING("no_baseline", text_of(GOE_NO_BASELINE));
@@ -62,7 +66,7 @@ static void the_names_are_those_of_the_manual(void) {
     TEST_ASSERT_EQUAL_STRING("corrupted", text_of(GOE_CORRUPTED));
 }
 
-/* Also those that are kept free: a new fault must not renumber the calls. */
+/* [A25, goe_status_text] Also those that are kept free: a new fault must not renumber the calls. */
 static void any_other_number_is_unknown(void) {
     for (int status = -100; status <= 100; status++) {
         bool known = false;
@@ -74,6 +78,7 @@ static void any_other_number_is_unknown(void) {
     TEST_ASSERT_TRUE(GOE_BAD_SETTINGS < FREE_FROM && FREE_FROM < GOE_NO_HEIGHT);
 }
 
+/* [A25] */
 static void the_sign_is_the_grade(void) {
     TEST_ASSERT_TRUE(GOE_OK == 0);
     TEST_ASSERT_TRUE(GOE_PARTIAL > 0 && GOE_COLLECTING > 0 && GOE_HELD > 0 && GOE_NOTHING_SEEN > 0);

@@ -1,4 +1,5 @@
 /* What time alone does to what is known: images in which nothing is seen. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_filter.c */
 #include <math.h>
 #include <string.h>
 

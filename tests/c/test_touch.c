@@ -1,5 +1,6 @@
 /* Sides of upright bounding boxes on boxes, chords and discs, against the extremes of what is seen in double.
  * SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_touch.c */
 #include "refined/goe_touch.h"
 
 #include <math.h>
@@ -119,14 +120,17 @@ static void check_model(model_t of, int cases, const char *what) {
     }
 }
 
-/* GIVEN obstacles of any size and place, a camera above or below the roof that rolls by up to 30 degrees, under an attitude bias,
+/* [A29, goe_image_t.box, (R27)]
+ * GIVEN obstacles of any size and place, a camera above or below the roof that rolls by up to 30 degrees, under an attitude bias,
  * WHEN a box replaces left, right and top THEN the sides leave no residual whichever top is configured, and the derivatives are
  * those of the extremes of roof and foot. */
 static void sides_touch_a_box_where_its_image_ends(void) { check_model(A_BOX, CASES, "boxes"); }
+/* [A29, (R27)] */
 static void sides_touch_a_chord_where_its_image_ends(void) { check_model(A_CHORD, CASES, "chords"); }
+/* [A29, goe_image_t.box, (R27)] */
 static void sides_touch_a_disc_where_its_image_ends(void) { check_model(A_DISC, DISCS, "discs"); }
 
-/* GIVEN a side that is not seen THEN it gives no row, and the others give theirs. */
+/* [A29] GIVEN a side that is not seen THEN it gives no row, and the others give theirs. */
 static void a_side_that_is_not_seen_gives_no_row(void) {
     double truth[GOE_STATES];
     model = A_BOX;
@@ -231,7 +235,7 @@ static double worst_height(const scene_t *scene) {
     return worst;
 }
 
-/* GIVEN an exact box and exact base corners WHEN the camera flies over the roof or below it, level or rolled THEN the height is
+/* [A29] GIVEN an exact box and exact base corners WHEN the camera flies over the roof or below it, level or rolled THEN the height is
  * right within three sigma, whichever point the setting calls the top: that one is about points. */
 static void a_house_by_its_box_and_its_corners_has_its_height(void) {
     for (int i = 0; i < 12; i++) {
@@ -245,7 +249,7 @@ static void a_house_by_its_box_and_its_corners_has_its_height(void) {
     }
 }
 
-/* GIVEN the same by a detector that is good to half a percent THEN a rolled house keeps its height, its width and its length:
+/* [A29] GIVEN the same by a detector that is good to half a percent THEN a rolled house keeps its height, its width and its length:
  * points in place of the box would be off by more than that detector. */
 static void a_good_detector_is_not_spoiled_by_roll(void) {
     scene_t scene = house(30.0, 25.0);

@@ -229,7 +229,8 @@ static double fly(void) {
 
 /* ---------------------------------------------------------------------------------------------------------- the tests -- */
 
-/* GIVEN points, boxes or both, heights with and without a white error WHEN down jumps by a known amount, height_m with it or
+/* [A28, goe_pose_t.reset_delta_ned_m]
+ * GIVEN points, boxes or both, heights with and without a white error WHEN down jumps by a known amount, height_m with it or
  * not THEN no quantity moves by a twentieth of a sigma, and the obstacle neither moves nor becomes suspect. */
 static void a_known_jump_of_down_is_no_motion(void) {
     static const float jumps[][3] = {
@@ -252,7 +253,8 @@ static void a_known_jump_of_down_is_no_motion(void) {
     TEST_ASSERT_TRUE(worst < MOVED_MAX);
 }
 
-/* The camera's height goes on over the ground that was known before, whichever height it is. */
+/* [A28, goe_pose_t.height_m, goe_pose_t.reset_delta_ned_m]
+ * The camera's height goes on over the ground that was known before, whichever height it is. */
 static void the_height_goes_on(void) {
     for (int source = 0; source < SOURCES; source++) {
         set_up_flight(CORNERS, (source_t)source);
@@ -276,6 +278,7 @@ static void check_source_by_source(void) {
     }
 }
 
+/* [A28] */
 static void jumps_add_up(void) {
     add_jump(20, 1.0f, 0.5f, 3.0f);
     add_jump(35, -2.0f, 0.0f, 4.5f);
@@ -283,6 +286,7 @@ static void jumps_add_up(void) {
     check_source_by_source();
 }
 
+/* [A28] */
 static void jumps_between_two_images_are_one_sum(void) {
     add_jump(30, 1.0f, 0.5f, 6.0f);
     add_jump(30, 0.0f, 0.0f, -2.0f);
@@ -290,6 +294,7 @@ static void jumps_between_two_images_are_one_sum(void) {
     check_source_by_source();
 }
 
+/* [A28] */
 static void a_jump_without_a_detection_counts(void) {
     flight.blind_from = 28;
     flight.blind_until = 33;
@@ -297,13 +302,14 @@ static void a_jump_without_a_detection_counts(void) {
     check_source_by_source();
 }
 
+/* [GOE_IMAGE_TAKEN] */
 static void a_refused_image_leaves_the_jump_to_the_next_one(void) {
     flight.refused = 30;
     add_jump(30, 2.0f, 0.0f, -4.0f);
     check_source_by_source();
 }
 
-/* GIVEN images in which nothing is seen WHEN down jumps in them, and in the one in which something is seen first THEN the track is
+/* [A28] GIVEN images in which nothing is seen WHEN down jumps in them, and in the one in which something is seen first THEN the track is
  * that of a flight without jumps. */
 static void a_jump_in_the_first_image_with_a_feature_counts(void) {
     flight.blind_until = 10;
@@ -312,7 +318,7 @@ static void a_jump_in_the_first_image_with_a_feature_counts(void) {
     check_source_by_source();
 }
 
-/* GIVEN an aircraft that looks back until something is seen, so that the track begins there THEN a jump in that image counts,
+/* [A28] GIVEN an aircraft that looks back until something is seen, so that the track begins there THEN a jump in that image counts,
  * too. */
 static void a_jump_counts_where_the_track_begins_at_first_sight(void) {
     flight.settings.navigation.height_white_m = 1.0f;
@@ -325,7 +331,7 @@ static void a_jump_counts_where_the_track_begins_at_first_sight(void) {
     TEST_ASSERT_TRUE(of_jumped.valid & GOE_HAS_POSITION);
 }
 
-/* GIVEN a filter that starts again WHEN down jumps in that image, or in the next one THEN nothing moves. */
+/* [A28] GIVEN a filter that starts again WHEN down jumps in that image, or in the next one THEN nothing moves. */
 static void a_jump_at_a_new_start_of_the_filter_counts(void) {
     int seen = 0;
     for (int source = 0; source < SOURCES; source++) {
@@ -342,7 +348,7 @@ static void a_jump_at_a_new_start_of_the_filter_counts(void) {
     TEST_ASSERT_TRUE(seen > 0);
 }
 
-/* GIVEN poses that are late WHEN the filter jumps THEN what they are late by is taken off in that image as in any other. */
+/* [A28] GIVEN poses that are late WHEN the filter jumps THEN what they are late by is taken off in that image as in any other. */
 static void a_jump_does_not_disturb_late_poses(void) {
     for (int source = 0; source < SOURCES; source++) {
         set_up_flight(CORNERS, (source_t)source);
@@ -359,7 +365,7 @@ static void a_jump_does_not_disturb_late_poses(void) {
     }
 }
 
-/* The window takes each image's height as it is. */
+/* [A28] The window takes each image's height as it is. */
 static void a_jump_moves_no_height_of_the_window(void) {
     flight.settings.method = GOE_METHOD_WINDOW;
     for (int source = 0; source < SOURCES; source++) {
@@ -374,7 +380,7 @@ static void a_jump_moves_no_height_of_the_window(void) {
     }
 }
 
-/* GIVEN jumps that height_m followed WHEN the track ends THEN the next one takes height_m as it is. */
+/* [A28] GIVEN jumps that height_m followed WHEN the track ends THEN the next one takes height_m as it is. */
 static void a_new_track_takes_the_height_as_it_is(void) {
     for (int unknown = 0; unknown < 2; unknown++) {
         goe_image_t image;
@@ -396,7 +402,7 @@ static void a_new_track_takes_the_height_as_it_is(void) {
     }
 }
 
-/* GIVEN a height whose noise is well below the jump THEN the jump is taken off in every image; GIVEN one whose noise is not THEN the
+/* [A28] GIVEN a height whose noise is well below the jump THEN the jump is taken off in every image; GIVEN one whose noise is not THEN the
  * height is off by the jump at most. */
 static void the_nearer_of_both_is_taken(void) {
     for (int run = 0; run < 2 * SOURCES; run++) {
@@ -454,7 +460,7 @@ static void take_any_jumps(void) {
     }
 }
 
-/* GIVEN any flight with any jumps THEN no quantity of any image moves by a twentieth of a sigma. */
+/* [A28] GIVEN any flight with any jumps THEN no quantity of any image moves by a twentieth of a sigma. */
 static void no_flight_sees_a_jump(void) {
     double worst = 0.0;
     any = check_random_start("random flights");

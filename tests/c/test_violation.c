@@ -1,6 +1,7 @@
 /* Obstacles that move, and how a violation is put together. SPDX-License-Identifier: MIT
  *
  * Estimates are written into the estimator, so that every number is known. */
+/* tests: lib/hazard/goe_violation.c */
 #include "hazard/goe_violation.h"
 
 #include <math.h>

@@ -40,6 +40,7 @@ static int32_t off_us(uint32_t exposed_us, uint32_t late_us, uint32_t *sd_us) {
 
 static uint32_t jitter_us(void) { return (uint32_t)(-15000.0 * log(check_random_between(&any, 1e-6, 1.0))); }
 
+/* [flight.delay_sd_s] */
 static void the_autopilots_own_clock_is_taken_as_it_is(void) {
     uint32_t sd_us;
     goe_flight_frame_t frame = message(500u, 0u);
@@ -61,7 +62,7 @@ static void an_age_counts_back_from_the_arrival(void) {
     TEST_ASSERT_UINT32_WITHIN(2u, 5831u, sd_us); /* 3 and 5 ms */
 }
 
-/* The least delay is found, also over the wrap of the sender's clock, and its uncertainty is honest. */
+/* [flight.delay_s] The least delay is found, also over the wrap of the sender's clock, and its uncertainty is honest. */
 static void the_least_delay_tells_the_offset(void) {
     uint32_t sd_us = 0u;
     int within = 0;

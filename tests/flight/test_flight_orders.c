@@ -230,6 +230,7 @@ static void a_height_of_zero_gives_orders_at_any_height(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
 }
 
+/* [flight.order_speed_m_s] */
 static void no_order_is_given_too_slow(void) {
     flight.velocity_ned_m_s[0] = 4.9f;
     put(0, 30.0f, 0.5f, 50.0f);
@@ -248,7 +249,8 @@ static void no_order_is_given_in_flare_or_after_touchdown(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.0));
 }
 
-/* A hangar behind the runway, from the approach to the rollout: the hazard is reported throughout, an order in none of the last phases.
+/* [GOE_FLIGHT_FLYING, goe_flight_assessment_t.hazard, goe_flight_assessment_t.reason]
+ * A hangar behind the runway, from the approach to the rollout: the hazard is reported throughout, an order in none of the last phases.
  * Any number that is no phase counts as flying. */
 static void phases_reach_the_rule(void) {
     static flown_t flown;
@@ -341,7 +343,8 @@ static float share_of(float circle_m, float target_ahead_m, float target_right_m
     return share;
 }
 
-/* Beside the way straight on, beside the target, within the fan, in the circle, on the line behind; mirrored it is the same. */
+/* [goe_flight_assessment_t.clear_m]
+ * Beside the way straight on, beside the target, within the fan, in the circle, on the line behind; mirrored it is the same. */
 static void clearance_is_that_of_the_nearest_part_of_the_way(void) {
     for (int side = -1; side <= 1; side += 2) {
         const float s = (float)side;

@@ -53,7 +53,8 @@ static void a_far_obstacle_is_no_reason_yet(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.0));
 }
 
-/* 18 m aside and 71 m of radius: 45 m of way, 2.2 s, 1.5 s to roll in, 3 s of reserve: 6.7 s. */
+/* [flight.roll_in_s, flight.reserve_s, flight.confirm_s]
+ * 18 m aside and 71 m of radius: 45 m of way, 2.2 s, 1.5 s to roll in, 3 s of reserve: 6.7 s. */
 static void the_order_comes_with_the_time_that_it_needs(void) {
     put(0, 3.0f + 6.9f * SPEED_M_S, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
@@ -118,7 +119,7 @@ static void a_wide_obstacle_is_a_reason_to_hold(void) {
     TEST_ASSERT_TRUE(flight.reaction.target_ned_m[1] < -70.0f); /* the side on which less of it stands */
 }
 
-/* 2 m too low: 2 s and 2/2.5 s, less than a turn. */
+/* [flight.climb_in_s] 2 m too low: 2 s and 2/2.5 s, less than a turn. */
 static void a_low_top_is_climbed_over(void) {
     put(0, 110.0f, 0.5f);
     flight.slot[0].top_m = 12.0f;
@@ -140,6 +141,7 @@ static void an_unsure_top_is_taken_for_higher(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
 }
 
+/* [GOE_FLIGHT_APPROACH] */
 static void an_approach_is_broken_off(void) {
     own.approach = true;
     put(0, 110.0f, 0.5f);

@@ -221,7 +221,7 @@ static void a_track_after_the_jump_has_the_ground_of_its_own_time(void) {
 
 /* ---------------------------------------------------------------------------------------------------- unknown, skipped -- */
 
-/* A counter that rose by two hides a jump that nobody told. */
+/* [GOE_FLIGHT_RESETS_COUNT] A counter that rose by two hides a jump that nobody told. */
 static void a_counter_that_skips_is_an_unknown_jump(void) {
     (void)flown_fly(&flown, 3.0);
     flown.reset_horizontal++;

@@ -280,6 +280,7 @@ static void start(void) {
 
 /* ------------------------------------------------------------------------------------------------------------- tests -- */
 
+/* [GOE_FLIGHT_DETECTIONS] */
 static void anything_does_no_harm(void) {
     any = check_random_start("flight layer");
     const int calls = calls_each();
@@ -314,6 +315,7 @@ static void anything_does_no_harm(void) {
     TEST_ASSERT_TRUE(ordered > calls / 1000);
 }
 
+/* [flight.range_finder_sd_m, flight.range_finder_max_m, flight.terrain_sd_m] */
 static void settings_out_of_range_are_named(void) {
     any = check_random_start("flight settings");
     scene_t scene;
@@ -354,6 +356,38 @@ static void settings_out_of_range_are_named(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&memory.flight, sizeof memory.flight, &estimator, NULL, &bad));
 }
 
+/* [goe_flight_attitude_t.q] GIVEN a quaternion whose norm is off 1 by more, or less, than 1 % THEN that alone decides. */
+static void a_quaternion_must_be_one(void) {
+    goe_flight_attitude_t sample;
+    goe_flight_attitude_t later;
+    any = check_random_start("flight attitude");
+    start();
+    memset(&sample, 0, sizeof sample);
+    sample.time_us = now_us;
+    sample.q[0] = 1.02f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ATTITUDE, goe_flight_attitude(&memory.flight, &sample));
+    sample.q[0] = 0.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ATTITUDE, goe_flight_attitude(&memory.flight, &sample));
+    sample.q[0] = 0.992f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&memory.flight, &sample));
+    later = sample;
+    later.time_us += 20000u;
+    later.q[2] = check_from_bits(0x7FC00001u);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_FINITE, goe_flight_attitude(&memory.flight, &later));
+}
+
+/* GIVEN a pose and no obstacle THEN none is there, in no slot. */
+static void an_empty_slot_holds_nothing(void) {
+    goe_flight_obstacle_t o;
+    static flown_t flown;
+    flown_start(&flown, NULL);
+    flown.sees = false;
+    (void)flown_fly(&flown, 1.0);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, 0, &o));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, -1, &o));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, GOE_FLIGHT_SLOTS, &o));
+}
+
 static void null_pointers_are_refused(void) {
     goe_flight_assessment_t a;
     goe_flight_obstacle_t o;
@@ -381,6 +415,8 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(anything_does_no_harm);
     RUN_TEST(settings_out_of_range_are_named);
+    RUN_TEST(a_quaternion_must_be_one);
+    RUN_TEST(an_empty_slot_holds_nothing);
     RUN_TEST(null_pointers_are_refused);
     return UNITY_END();
 }

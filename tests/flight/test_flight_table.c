@@ -62,7 +62,7 @@ static void valid_says_what_an_obstacle_tells(void) {
     }
 }
 
-/* GIVEN images that show no position yet THEN that makes nothing suspect. */
+/* [goe_flight_assessment_t.suspect] GIVEN images that show no position yet THEN that makes nothing suspect. */
 static void a_track_without_a_position_is_not_suspect(void) {
     goe_flight_obstacle_t obstacle;
     int images = 0;
@@ -182,7 +182,7 @@ static void a_height_counts_as_far_as_it_is_valid(void) {
     TEST_ASSERT_EQUAL(4 * GOE_FLIGHT_HEIGHTS, flown.flight.counters.refused);
 }
 
-/* The hazard counts from now, not from the image that came 100 ms late. */
+/* [goe_flight_position_t.velocity_ned_m_s] The hazard counts from now, not from the image that came 100 ms late. */
 static void the_hazard_counts_from_now(void) {
     flown.scene.x0_m = 0.0;
     flown.scene.altitude_m = 6.0;
@@ -201,6 +201,7 @@ static void the_hazard_counts_from_now(void) {
     CHECK_CLOSE(1e-3, (double)hazard.time_s - 0.18, first.hazard.time_s);
 }
 
+/* [flight.confirm_images] */
 static void a_new_obstacle_waits_for_its_confirmation(void) {
     for (int frames = 0; frames < 2;) {
         frames += flown_step(&flown) ? 1 : 0;
@@ -211,6 +212,7 @@ static void a_new_obstacle_waits_for_its_confirmation(void) {
     TEST_ASSERT_EQUAL(1, slots_used());
 }
 
+/* [flight.score_min] */
 static void a_low_score_is_not_looked_at(void) {
     flown.score = 0.2f;
     const goe_flight_assessment_t now = flown_fly(&flown, 2.0);
@@ -220,7 +222,7 @@ static void a_low_score_is_not_looked_at(void) {
     TEST_ASSERT_EQUAL(-1, now.worst);
 }
 
-/* A full table of obstacles, and false detections with a new id in each image: nobody is evicted. */
+/* [GOE_FLIGHT_CANDIDATES] A full table of obstacles, and false detections with a new id in each image: nobody is evicted. */
 static void false_detections_evict_nobody(void) {
     for (int k = 0; k < 40; k++) {
         goe_flight_detection_t detections[5];
@@ -318,6 +320,7 @@ static void an_order_does_not_pass_to_the_next_in_its_slot(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, now.action); /* for hold_s */
 }
 
+/* [flight.alive_s] */
 static void a_dead_detector_is_not_a_clear_sky(void) {
     flown.scene.width_m = flown.scene.length_m = 4.0;
     flown.scene.height_m = 12.0;
@@ -352,6 +355,7 @@ static void without_a_pose_no_obstacle_is_told(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
 }
 
+/* [flight.delay_max_s] */
 static void early_frames_are_kept_by_the_caller(void) {
     (void)flown_fly(&flown, 2.0);
     const goe_flight_detection_t detection = flown_detection(&flown, flown.sample);

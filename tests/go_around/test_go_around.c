@@ -132,6 +132,7 @@ static double least_ordered_s(double roll_deg, bool (*seen)(int k), int *suspect
     return least_s;
 }
 
+/* [GOE_DECISION_ACT, goe_decide] */
 static void the_order_comes_on_every_collision_course(void) {
     static const double roll_deg[] = {0.0, 5.0, 10.0};
     for (int i = 0; i < 3; i++) {
@@ -145,7 +146,7 @@ static void the_order_comes_on_every_collision_course(void) {
     }
 }
 
-/* The same by boxes as they are. */
+/* [GOE_DECISION_ACT, goe_decide] The same by boxes as they are. */
 static void the_order_comes_by_boxes(void) {
     static const double roll_deg[] = {0.0, 5.0, 10.0, 25.0};
     for (int i = 0; i < 4; i++) {
@@ -162,7 +163,7 @@ static void the_order_comes_by_boxes(void) {
     }
 }
 
-/* ... and the path that keeps twice the margin from the outline is left alone, 19 times of 20. */
+/* [goe_decide] ... and the path that keeps twice the margin from the outline is left alone, 19 times of 20. */
 static void a_pass_at_twice_the_margin_by_boxes(void) {
     static const double roll_deg[] = {0.0, 25.0};
     for (int i = 0; i < 2; i++) {
@@ -181,6 +182,7 @@ static void a_pass_at_twice_the_margin_by_boxes(void) {
     }
 }
 
+/* [goe_decide] */
 static void the_order_comes_through_gaps_of_the_detector(void) {
     int suspect = 0;
     int images = 0;
@@ -197,7 +199,7 @@ static bool orders(const goe_estimator_t *of) {
     return go_around;
 }
 
-/* GIVEN an estimate for which the rule orders WHEN the same is suspect, or three seconds old THEN the rule orders, too. */
+/* [goe_decide] GIVEN an estimate for which the rule orders WHEN the same is suspect, or three seconds old THEN the rule orders, too. */
 static void doubt_warns_no_later(void) {
     static goe_estimator_t doubtful;
     static goe_estimator_t old;
@@ -227,7 +229,8 @@ static void doubt_warns_no_later(void) {
     TEST_ASSERT_TRUE(warned > RUNS);
 }
 
-/* GIVEN an order that stands WHEN the rule cannot be asked: a velocity that is no number, flipped settings, an estimator that was
+/* [GOE_DECISION_KEEP, goe_decide]
+ * GIVEN an order that stands WHEN the rule cannot be asked: a velocity that is no number, flipped settings, an estimator that was
  * never set, no position THEN the order stands; and none is given out of nothing. */
 static void no_failure_means_clear(void) {
     static goe_estimator_t broken;
@@ -253,7 +256,7 @@ static void no_failure_means_clear(void) {
     }
 }
 
-/* ... and one that flies past at a distance is left alone. */
+/* [goe_decide] ... and one that flies past at a distance is left alone. */
 static void a_wide_pass_is_no_reason(void) {
     int ordered = 0;
     for (int run = 0; run < RUNS; run++) {

@@ -199,6 +199,7 @@ def test_window(log: Path) -> None:
 
 
 def test_window_64(tmp_path: Path) -> None:
+    """[GOE_WINDOW_MAX]"""
     out = replay(write_log(tmp_path, table(chimney(70))), *PAPER, "--window=64")
     assert [row["status"] for row in out].index("ok") == 63
 

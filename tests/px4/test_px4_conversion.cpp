@@ -315,6 +315,7 @@ static goe_flight_assessment_t an_order() {
     return assessment;
 }
 
+/* [goe_flight_obstacle_t.length_m, goe_flight_obstacle_t.length_heading_deg] */
 static void an_obstacle_is_told_in_px4s_units() {
     static goe_flight_t flight;
     goe_flight_obstacle_t from{};
@@ -339,6 +340,7 @@ static void an_obstacle_is_told_in_px4s_units() {
     TEST_ASSERT_TRUE(__builtin_isnan(goe_px4::obstacle(flight, from, 0, an_order(), 1000u).lat));
 }
 
+/* [goe_flight_assessment_t.needed_s] */
 static void an_order_is_told_whole() {
     static goe_flight_t flight;
     goe_flight_assessment_t assessment = an_order();
@@ -355,6 +357,7 @@ static void an_order_is_told_whole() {
     TEST_ASSERT_TRUE(__builtin_isnan(topic.needed) && __builtin_isnan(topic.target[0]));
 }
 
+/* [goe_flight_position_t.origin_known, goe_flight_position_t.origin_lat_e7, goe_flight_position_t.origin_lon_e7] */
 static void the_origin_is_rounded_and_no_pole() {
     vehicle_local_position_s topic{};
     goe_flight_position_t sample;

@@ -114,6 +114,7 @@ def test_too_many_followed_decisions_and_any_disputed_one() -> None:
 
 
 def test_the_built_program_on_the_committed_logs(replay: Path) -> None:
+    """[A3]"""
     folders = [path.parent for path in sorted((ROOT / "tests" / "data").glob("*/frames.csv"))]
     assert folders
     for model in ("auto", "disc", "line"):

@@ -78,6 +78,7 @@ def test_deepest_path_of_a_call_graph() -> None:
 
 
 def test_recursion_is_refused() -> None:
+    """[A10]"""
     with pytest.raises(LedgerError, match="recursion: a -> b -> a"):
         stack.deepest(graph_of(a=(8, [1]), b=(8, [0])), 0)
 
@@ -245,6 +246,7 @@ def committed() -> book.Ledger:
 
 
 def test_committed_pages_show_the_committed_ledger() -> None:
+    """[A23]"""
     assert pages.wrong_pages(ROOT, committed()) == []
     assert len(command.LEDGER.read_text(encoding="utf-8").splitlines()) < ROWS_MOST
 
@@ -283,6 +285,7 @@ def test_what_is_measured_is_written_to_the_ledger_and_its_pages(
 
 
 def test_a_guarantee_that_the_readme_does_not_state_is_told(tmp_path: Path) -> None:
+    """[A23]"""
     root = copy_of_pages(tmp_path)
     readme = root / "README.md"
     text = readme.read_text(encoding="utf-8")
@@ -292,6 +295,7 @@ def test_a_guarantee_that_the_readme_does_not_state_is_told(tmp_path: Path) -> N
 
 
 def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
+    """[A23]"""
     root = copy_of_pages(tmp_path)
     ledger = committed()
     header = root / pages.HEADER
@@ -338,6 +342,7 @@ def test_the_table_of_guarantees_tells_where_they_do_not_hold() -> None:
 
 
 def test_what_is_measured_is_at_most_what_is_proved_and_that_what_is_stated() -> None:
+    """[A23]"""
     figures = committed()[stated.TARGET]
     limits = stated.stated((ROOT / pages.HEADER).read_text(encoding="utf-8"))
     proved = book.below(figures, book.PROVED)

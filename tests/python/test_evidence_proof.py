@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from goe_tools.evidence import frama_c, proof
+from goe_tools.evidence import contracts, frama_c, proof
 from goe_tools.evidence.frama_c import Property, Run
 from goe_tools.places import ROOT
 
@@ -45,6 +45,57 @@ def test_functions_of_the_library_are_told_by_their_file_or_by_their_name(tmp_pa
     (tmp_path / "a.c").write_text("int one(int x) { return x; }\n")
     assert frama_c.library_functions(tmp_path) == {"one", "two"}
     assert "lib/refined/goe_health.c:average" in frama_c.library_functions()
+
+
+@pytest.mark.parametrize(
+    ("parameters", "clauses"),
+    [
+        ("void", ""),
+        ("int count, float x", ""),
+        ("goe_t *a, const goe_t *b", r"requires \valid(a); requires \valid_read(b);"),
+        (
+            "const float r[9], float by[restrict GOE_N][3]",
+            r"requires \valid_read(r + (0 .. 8)); requires \valid(by + (0 .. GOE_N - 1));",
+        ),
+        ("const goe_covariance_t covariance", r"requires \valid_read(covariance + (0 .. GOE_QUANTITIES - 1));"),
+        ("const goe_view_t *view, goe_rows_t *rows", "requires goe_view_is_open(view); requires goe_rows_hold(rows);"),
+        ("goe_view_t *view", r"requires \valid(view) && goe_view_is_open(view);"),
+        ("const char **text", r"requires \valid(text);"),
+    ],
+)
+def test_a_contract_is_made_of_a_signature(parameters: str, clauses: str) -> None:
+    before = "/* One. */\n#define goe_no(a) (a)\n"
+    made_of = contracts.with_contracts(f"{before}static int one({parameters}) {{\n}}\n", "goe_x.c")
+    assert made_of == before + (f"/*@ {clauses} */ " if clauses else "") + f"static int one({parameters}) {{\n}}\n"
+
+
+def test_a_public_function_takes_null() -> None:
+    made_of = contracts.with_contracts("void goe_one(goe_t *a);\n", "goe.h")
+    assert made_of == "/*@ requires a == \\null || \\valid(a); */ void goe_one(goe_t *a);\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("/*@ requires i < 3; */\nvoid goe_one(const goe_t *a, int i);\n", "goe_x.h"),
+        ("void goe_one(goe_t *a) {\n}\n", "goe_x.c"),  # the header has its contract
+    ],
+)
+def test_a_contract_that_stands_is_left(text: str, name: str) -> None:
+    assert contracts.with_contracts(text, name) == text
+
+
+def test_no_contract_of_the_library_says_only_what_is_made() -> None:
+    """Those would be twice as long for nothing; and each of the others stays as it is."""
+    for path in sorted(frama_c.LIBRARY.rglob("*.[ch]")):
+        text = path.read_text(encoding="utf-8")
+        for match in contracts.functions(text, path.suffix == ".c"):
+            before = text[: match.start()]
+            told = before[before.rfind("/*@") :] if contracts.has_contract(before) else ""
+            made_of = contracts.contract(match["parameters"], path.name == contracts.PUBLIC)
+            assert not told or sorted(re.split(r" && |; requires ", " ".join(told.split())[12:-4])) != sorted(
+                re.split(r" && |; requires ", made_of.strip()[12:-4])
+            ), f"{path.name}: {match['name']}: remove its contract"
 
 
 def made(driver: str, *entries: Property) -> Run:

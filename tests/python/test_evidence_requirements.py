@@ -1,7 +1,8 @@
-"""Requirements: the tables of the tree, and that what is missing in a small one is told."""
+"""Requirements: marks and names of the tree, and that what is missing in a small one is reported."""
 
 from __future__ import annotations
 
+import csv
 import shutil
 import subprocess
 from pathlib import Path
@@ -10,23 +11,29 @@ import pytest
 from goe_tools.__main__ import main
 from goe_tools.evidence.parts import Amount
 from goe_tools.evidence.record import Row
-from goe_tools.evidence.requirements import breaks, check, names, part, rows, sentences
-from goe_tools.logs.obslog import LogError
+from goe_tools.evidence.requirements import breaks, marks, part
 
 ROOT = Path(__file__).resolve().parents[2]
 
 # ------------------------------------------------------------------------------------------------------------- the tree
 
 
-def test_every_promise_has_code_and_tests_and_every_test_its_promise() -> None:
-    found = check.findings()
-    assert not found.all, "\n".join(["", *found.all])
-    assert found.sentences > 300 and found.tests > 300
+def test_every_promise_has_tests_and_every_test_its_promise() -> None:
+    found = marks.joined()
+    stale = list(breaks.stale(breaks.read(), found))
+    assert not [*found.orphans, *stale], "\n".join(["", *found.orphans, *stale])
+    assert len(found.promises) > 500 and len(found.tests) > 2000
+    assert sum(bool(promise.text) for promise in found.promises) > 40
 
 
-def test_the_part_tells_it() -> None:
+def test_the_part_reports_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(part, "TABLE", tmp_path / "new" / "requirements.csv")
     result = part.run(Amount())
-    assert [row.met for row in result.rows] == [None, True, True, True, True]
+    assert [row.met for row in result.rows] == [None, None, None, True, True]
+    with part.TABLE.open(encoding="utf-8", newline="") as file:
+        rows = {row["mark"]: row for row in csv.DictReader(file)}
+    assert "tests/c/test_safety.c:random_bits_do_no_harm" in rows["A16"]["tests"]
+    assert rows["A16"]["promise"].endswith("Every output is finite.") and rows["(R12)"]["place"].startswith("lib/")
 
 
 @pytest.mark.parametrize("how", ["--quick", "--long", "--show"])
@@ -50,8 +57,8 @@ def test_the_script(tmp_path: Path) -> None:
 
 
 def test_a_break_of_each_room_is_tried() -> None:
-    files = {broken.file for broken in rows.breaks()}
-    assert len(rows.breaks()) >= 60
+    files = {broken.file for broken in breaks.read()}
+    assert len(breaks.read()) >= 60
     for room in ("image", "window", "refined", "hazard", "maths"):
         assert any(file.startswith(f"lib/{room}/") for file in files), room
 
@@ -60,108 +67,137 @@ def test_a_break_of_each_room_is_tried() -> None:
 
 HEADER = """/* Counts.
  *
- * A count never falls. It begins at 0.
+ * A count never falls. [A1] It begins at 0.
  */
 enum { GOE_LIMIT = 3 };
 typedef struct {
     int now;  /* the count */
     float x, y; /* where */
 } goe_count_t;
+typedef struct {
+    int now; /* another one */
+} goe_second_t;
 int goe_count(goe_count_t *count);
 """
-CODE = """int goe_count(goe_count_t *count) { return count->now++; } /* (R2) */
+LIST = "#define GOE_SETTINGS(X) X(camera.k1, REAL, 0) X(model, CHOICE, 0)\n"
+CODE = """int goe_count(goe_count_t *count) { return count->now++; } /* (R2) to (R3) */
 """
-TEST = """static void it_grows(void) {}
-int main(void) { RUN_TEST(it_grows); }
+TEST = """/* Counting. */
+/* tests: lib/goe_count.c */
+static const int limits[] = {
+    GOE_LIMIT,
+};
+static int looked(const goe_count_t *count) { return count->now == limits[0]; }
+
+/* [A1, (R2),
+ *  (R3)] GIVEN a count THEN it grows. */
+static void it_grows(void) {
+    TEST_ASSERT_TRUE(goe_count(&count) && count.now && count.x < 1 && looked(&count));
+    settings.camera.k1 = set("model");
+}
+
+/* [goe_count_t.y] */
+static void it_stays(void) { second->now = 1; }
+int main(void) { RUN_TEST(it_grows); RUN_TEST(it_stays); }
 """
-NAMES = "goe_count; GOE_LIMIT; goe_count_t.now; goe_count_t.x; goe_count_t.y; (R2)"
-CODE_ANCHOR, TEST_NAME = "lib/goe_count.c:goe_count", "tests/c/test_count.c:it_grows"
+SMALL = {"lib/goe.h": HEADER, "lib/goe_settings_list.h": LIST, "lib/goe_count.c": CODE, "tests/c/test_count.c": TEST}
 
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    for name, text in {"lib/goe.h": HEADER, "lib/goe_settings_list.h": "", "lib/goe_count.c": CODE,
-                       "tests/c/test_count.c": TEST}.items():  # fmt: skip
+    for name, text in SMALL.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)
-    folder = tmp_path / "tests" / "requirements"
-    folder.mkdir()
-    for name in rows.KINDS:
-        (folder / f"{name}.csv").write_text(",".join(rows.COLUMNS) + "\n")
-    (folder / rows.NO_PROMISE).write_text("source,anchor,why\nlib/goe.h,Counts,a heading\nlib/goe.h,where,explains\n")
-    (folder / rows.BREAKS).write_text(",".join(rows.BREAK_COLUMNS) + "\n")
-    write(tmp_path)
     return tmp_path
 
 
-def write(tree: Path, **changed: str) -> None:
-    row = dict(zip(rows.COLUMNS, ("GOE-API-001", "lib/goe.h", "A count never falls", NAMES, "Counts grow", CODE_ANCHOR,
-                                  TEST_NAME, "")))  # fmt: skip
-    second = {**row, "id": "GOE-API-002", "anchor": "It begins at 0", "names": ""}
-    third = {**row, "id": "GOE-API-003", "anchor": "int now; the\ncount", "names": ""}
-    lines = [",".join(f'"{cell}"' for cell in each.values()) for each in ({**row, **changed}, second, third)]
-    (tree / "tests" / "requirements" / "api.csv").write_text("\n".join([",".join(rows.COLUMNS), *lines, ""]))
-
-
-def told(tree: Path) -> list[str]:
-    for cached in (names.read, names.without_comments, names.unity_tests, names.python_tests, names.told_to_ctest,
-                   sentences.text_of):  # fmt: skip
+def orphans(tree: Path) -> list[str]:
+    for cached in (marks.read, marks.without_comments, marks.chunks):
         cached.cache_clear()
-    return check.findings(tree / "tests" / "requirements", tree).all
+    return marks.joined(tree).orphans
+
+
+def change(tree: Path, name: str, old: str, new: str) -> None:
+    text = (tree / name).read_text()
+    assert text.count(old) == 1
+    (tree / name).write_text(text.replace(old, new))
 
 
 def test_a_whole_tree_is_left_alone(tree: Path) -> None:
-    assert told(tree) == []
+    assert orphans(tree) == []
 
 
 @pytest.mark.parametrize(
-    ("column", "value", "words"),
+    ("name", "old", "new", "found"),
     [
-        ("id", "GOE-STA-001", "must be GOE-API- and three digits"),
-        ("id", "GOE-API-002", "the number is that of"),
-        ("anchor", "A count never rises", "does not say"),
-        ("source", "lib/none.h", "there is no source"),
-        ("names", f"{NAMES}; GOE_NONE", "the interface has no GOE_NONE"),
-        ("names", NAMES.replace("; GOE_LIMIT", ""), "GOE_LIMIT: no requirement names it"),
-        ("names", NAMES.replace("; goe_count_t.y", ""), "goe_count_t.y: no requirement names it"),
-        ("names", NAMES.replace("; (R2)", ""), "(R2): no requirement names it"),
-        ("text", "", "no text"),
-        ("code", "", "no code"),
-        ("code", "lib/goe_count.c:goe_other", "has no goe_other"),
-        ("code", "lib/goe_other.c:goe_count", "there is no file"),
-        ("code", "lib/goe_count.c", "name the function"),
-        ("tests", "", "name the tests"),
-        ("tests", "tests/c/test_count.c:it_falls", "there is no tests/c/test_count.c:it_falls"),
-        ("tests", "tests/c/test_count.c", "name the test"),
-        ("tests", "ctest:count", "there is no ctest:count"),
-        ("open", "nobody knows", "name the tests"),
+        ("lib/goe.h", "at 0.", "at 0. [A2]", "lib/goe.h:3: A2: no test has this mark or name"),
+        ("lib/goe.h", "[A1]", "", "tests/c/test_count.c:10: [A1] is the mark of no promise, name, equation or source"),
+        ("lib/goe.h", "at 0.", "at 0. [A1]", "lib/goe.h:3: [A1] is at lib/goe.h:3, too"),
+        ("lib/goe.h", "int goe_count", "int goe_new(void);\nint goe_count", "lib/goe.h:13: goe_new: no test"),
+        ("lib/goe.h", " = 3 };", " = 3, GOE_LEAST };", "lib/goe.h:5: GOE_LEAST: no test"),
+        ("lib/goe.h", "x, y;", "x, y, z;", "lib/goe.h:8: goe_count_t.z: no test"),
+        (
+            "lib/goe_settings_list.h",
+            "X(model",
+            "X(camera.k2, REAL) X(model",
+            "goe_settings_list.h:1: camera.k2: no test",
+        ),
+        ("lib/goe_count.c", "(R3)", "(R4)", "lib/goe_count.c:1: (R4): no test"),
+        ("tests/c/test_count.c", "/* tests: lib/goe_count.c */", "", "lib/goe_count.c:1: goe_count.c: no test"),
+        (
+            "tests/c/test_count.c",
+            "goe_count.c */",
+            "goe_none.c */",
+            "count.c:10: [goe_none.c] is the mark of no promise",
+        ),
+        ("tests/c/test_count.c", "    GOE_LIMIT,", "    3,", "lib/goe.h:5: GOE_LIMIT: no test"),
+        ("tests/c/test_count.c", "count.now", "count.new", "lib/goe.h:7: goe_count_t.now: no test"),
+        ("tests/c/test_count.c", "second->now", "third->now", "lib/goe.h:11: goe_second_t.now: no test"),
+        ("tests/c/test_count.c", '"model"', "0", "goe_settings_list.h:1: model: no test"),
+        ("tests/c/test_count.c", "[A1,", "A1 [", "lib/goe.h:3: A1: no test"),
     ],
 )
-def test_a_bad_row_is_told(tree: Path, column: str, value: str, words: str) -> None:
-    write(tree, **{column: value})
-    assert any(words in line for line in told(tree)), told(tree)
+def test_an_orphan_is_reported(tree: Path, name: str, old: str, new: str, found: str) -> None:
+    change(tree, name, old, new)
+    assert any(found in line for line in orphans(tree)), orphans(tree)
 
 
-def test_what_is_new_and_in_no_row_is_told(tree: Path) -> None:
-    (tree / "lib" / "goe_new.c").write_text("/* (R7) */\n")
-    (tree / "lib" / "goe.h").write_text(HEADER.replace("It begins at 0.", "It begins at 0. It ends at 3."))
-    (tree / "tests" / "c" / "test_count.c").write_text(TEST + "RUN_TEST(it_ends);\n")
-    lines = "\n".join(told(tree))
-    assert "lib/goe_new.c: no requirement names it" in lines and "(R7): no requirement names it" in lines
-    assert "in this sentence: It ends at 3." in lines
-    assert "it_ends belongs to no requirement: name it as tests/c/test_count.c:it_ends" in lines
+def test_a_test_without_a_mark_is_reported(tree: Path) -> None:
+    (tree / "tests/c/test_other.c").write_text("static void it_ends(void) {}\nint main(void) { RUN_TEST(it_ends); }\n")
+    assert orphans(tree) == ["tests/c/test_other.c:1: it_ends has neither mark nor name of a promise"]
 
 
-def test_columns_are_checked(tree: Path) -> None:
-    (tree / "tests" / "requirements" / "api.csv").write_text("id,text\n")
-    with pytest.raises(LogError, match="columns"):
-        told(tree)
+@pytest.mark.parametrize(
+    ("name", "text", "test"),
+    [
+        (
+            "python/test_x.py",
+            'def test_one(\n    x: int\n) -> None:\n    """[A9] One."""\n',
+            "python/test_x.py::test_one",
+        ),
+        ("x/CMakeLists.txt", "    # [A9, goe_count]\n    add_test(NAME x)\n", "x/CMakeLists.txt:1"),
+        ("x.sh", "#!/bin/sh\n# [A9]\n", "x.sh:2"),
+        ("x.cpp", "namespace {\n// no\n/* [A9] */\nvoid one() {\n}\n}\nRUN_TEST(one)\n", "x.cpp:one"),
+    ],
+)
+def test_other_tests_have_marks(tree: Path, name: str, text: str, test: str) -> None:
+    change(tree, "lib/goe.h", "at 0.", "at 0. [A9]")
+    (tree / "tests" / name).parent.mkdir(exist_ok=True)
+    (tree / "tests" / name).write_text(text)
+    assert orphans(tree) == []
+    assert [each.name for each in marks.joined(tree).by_key["A9"]] == [f"tests/{test}"]
 
 
-def test_sentences_of_comments() -> None:
-    text = sentences.text_of_code("/* One. Two goes\n * on. */ int a; /* -------- title -- */ /* three, 3.5 m */")
-    assert [sentence.text for sentence in text.sentences] == ["One.", "Two goes on.", "three, 3.5 m"]
-    assert all(text.plain[s.begin : s.end] == s.text for s in text.sentences)
+def test_breaks_that_are_stale_are_reported(tree: Path) -> None:
+    def stale(mark: str, old: str, test: str) -> list[str]:
+        broken = breaks.Break(mark, "lib/goe_count.c", old, "", f"tests/c/test_count.c:{test}", 2)
+        orphans(tree)
+        return list(breaks.stale([broken], marks.joined(tree), tree))
+
+    assert stale("A1", "count->now++", "it_grows") == []
+    assert "does not have that mark" in stale("A1", "count->now++", "it_stays")[0]
+    assert "does not have that mark" in stale("A2", "count->now++", "it_grows")[0]
+    assert "must have these words once: count" in stale("A1", "count", "it_grows")[0]
 
 
 # -------------------------------------------------------------------------------------------------------------- breaks
@@ -190,10 +226,10 @@ def test_a_broken_line_is_noticed_or_told(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(breaks, "ROOT", tmp_path)
     monkeypatch.setenv("UNITY_DIR", str(tmp_path / "unity"))
     test = "tests/c/test_add.c:two_and_two"
-    tried = [rows.Break("", "lib/add.c", "a + b", new, test, 2) for new in ("a - b", "b + a", "a +", "*(int *)0")]
+    tried = [breaks.Break("", "lib/add.c", "a + b", new, test, 2) for new in ("a - b", "b + a", "a +", "*(int *)0")]
     outcomes, failing = breaks.try_all(tried, 2)
     assert failing == []
     assert [outcome.noticed for outcome in outcomes] == [True, False, False, True]
     assert "does not compile" in outcomes[2].told
-    _, failing = breaks.try_all([rows.Break("", "lib/add.c", "a + b", "a - b", f"{test}_twice", 2)], 1)
+    _, failing = breaks.try_all([breaks.Break("", "lib/add.c", "a + b", "a - b", f"{test}_twice", 2)], 1)
     assert failing == [f"{test}_twice"]

@@ -112,6 +112,7 @@ def test_the_search_climbs() -> None:
 
 
 def test_near_the_origin_rounding_is_far_below_a_sigma() -> None:
+    """[A15]"""
     found = [search(case, NEAR, TRIES) for case in CASES if case.method == "refined"]
     assert sum(one.tracks for one in found) > 0.8 * TRIES * len(found)
     for name in QUANTITIES:
@@ -122,6 +123,7 @@ def test_near_the_origin_rounding_is_far_below_a_sigma() -> None:
 
 
 def test_a_bound_that_does_not_hold_is_missed() -> None:
+    """[A15]"""
     found = [Found(case, domain) for case in CASES for domain in DOMAINS]
     for one in found:
         one.worst = {name: Worst(99.0, np.zeros(len(one.domain.ranges)), 99.0) for name in QUANTITIES}

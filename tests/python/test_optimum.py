@@ -307,6 +307,7 @@ def test_a_disc_for_a_box_is_held_against_its_middle() -> None:
 
 
 def test_the_library_over_a_flight(built: None) -> None:
+    """[D5]"""
     flight = measure(box_scene(), NOISES["gauss0.3"], 1)
     track = estimate(flight)
     error = judge(track, flight)

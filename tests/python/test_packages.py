@@ -52,6 +52,7 @@ def below(folder: Path, ending: str) -> set[str]:
 
 
 def test_the_facts_are_those_of_the_sources() -> None:
+    """[GOE_CAMERAS_MAX, GOE_WINDOW_MAX]"""
     cmake = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     options = set(re.findall(r"^option\((GOE_WITH_\w+) ", cmake, re.MULTILINE))
     assert {part.define for part in FACTS.parts} == options
@@ -88,7 +89,8 @@ def test_write_renews_what_check_refuses(small_tree: Path, monkeypatch: pytest.M
 
 
 def test_another_version_is_noticed(small_tree: Path) -> None:
-    """A tree whose goe.h went on and whose manifests did not."""
+    """[GOE_VERSION_MAJOR, GOE_VERSION_MINOR, GOE_VERSION_PATCH]
+    A tree whose goe.h went on and whose manifests did not."""
     header = small_tree / "lib" / "goe.h"
     header.write_text(header.read_text().replace("#define GOE_VERSION_PATCH 0", "#define GOE_VERSION_PATCH 7"))
     facts = dataclasses.replace(FACTS, root=small_tree)
@@ -264,6 +266,7 @@ def test_arduino_archive(staged: Path, tmp_path: Path) -> None:
 
 
 def test_arduino_config(staged: Path) -> None:
+    """[A24]"""
     text = (staged / "arduino" / "goe" / "src" / "goe_config.h").read_text(encoding="utf-8")
     defined = dict(re.findall(r"^#define (GOE_\w+) (\d+) ", text, re.MULTILINE))
     assert defined == {

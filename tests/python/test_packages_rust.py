@@ -60,6 +60,7 @@ def target() -> Path:
 
 
 def test_the_crates_own_tests_and_the_bits_of_c(target: Path) -> None:
+    """[A13]"""
     text = passed("cargo", "test", "--offline", "--workspace", target=target)
     counts = [int(n) for n in re.findall(r"test result: ok\. (\d+) passed", text)]
     assert sum(count > 0 for count in counts) == 5, text  # of src, its two files, the golden file, the documentation

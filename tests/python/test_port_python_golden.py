@@ -111,6 +111,7 @@ def runs_of(tracks: list[LoggedTrack]) -> Iterator[tuple[LoggedTrack, goe.Settin
 
 
 def test_estimates_have_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
+    """[A13]"""
     h, images = Hash(), 0
     for track, settings in runs_of(tracks):
         try:
@@ -135,7 +136,7 @@ def test_estimates_have_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int) -> None:
-    """All in one call; also in threads, of more than there are processors."""
+    """[A11] All in one call; also in threads, of more than there are processors."""
     runs = list(runs_of(tracks))
     rules = [goe.Rule(PLAN.margin_m, PLAN.clearance_m, doubt=1.0, drift_m_s=0.0)]
     jobs = {"rules": rules, "covariance": True, "threads": threads}

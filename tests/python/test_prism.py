@@ -112,6 +112,7 @@ def test_the_references_defaults_are_the_librarys(built: None) -> None:
 @pytest.mark.parametrize("roll", [0.0, 5.0, 10.0, 25.0])
 @pytest.mark.parametrize("solid", [MAST, BUILDING, WALL], ids=lambda solid: solid.name)
 def test_rolling(built: None, solid: object, roll: float, double: bool) -> None:
+    """[A29, GOE_MODEL_PRISM]"""
     for seed in (1, 2):
         reference, track = both(box_flight(solid, BoxOptions(roll_deg=roll), seed), Told(), double)
         assert not reference.refused.any()
@@ -160,6 +161,7 @@ WHITE = replace(USUAL, box_share=0.0, image_rate_hz=30.0)
     ],
 )  # fmt: skip
 def test_other_flights_and_noise(built: None, solid: object, options: BoxOptions, told: Told, double: bool) -> None:
+    """[navigation.ground_m, navigation.position_white_m]"""
     reference, track = both(box_flight(solid, options, 3), told, double)
     assert_alike(reference, track, double)
 

@@ -220,6 +220,7 @@ def few_flights(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_demo(built: Path, set_up: None) -> None:
+    """[D1]"""
     text = output_of("tools/demo.sh")
     assert "refined, the default method: better than the paper in" in text
     (page,) = re.findall(r"^The report: +(.*)$", text, re.MULTILINE)
@@ -229,6 +230,7 @@ def test_demo(built: Path, set_up: None) -> None:
 
 
 def test_the_example_prints_what_the_readme_says(built: Path) -> None:
+    """[D4]"""
     lines = output_of(built / "tests" / "readme_example").splitlines()
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     said = " ".join(readme.split("It first answers with the second image: ")[1].split("\n## ")[0].split())
@@ -315,6 +317,7 @@ def test_orders_and_their_report(tmp_path: Path, built: Path) -> None:
 
 @pytest.mark.parametrize("group", ["gauss1", "boxes", "attack,hazard", "float32"])
 def test_goals(group: str, few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """[D5]"""
     assert main(["goals", "--only", group]) == 0
     assert re.search(r"\d+ of \d+ goals met", capsys.readouterr().out)
 

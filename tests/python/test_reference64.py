@@ -62,6 +62,7 @@ def random_rows(generator: np.random.Generator, noise: float) -> list[Row]:
 
 
 def test_dense_solution_is_the_closed_form() -> None:
+    """[(5)]"""
     generator = np.random.default_rng(1)
     for _ in range(100):
         rows = random_rows(generator, 0.02)

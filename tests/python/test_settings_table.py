@@ -50,6 +50,7 @@ def documented() -> dict[str, str]:
 
 
 def test_the_manual_has_the_table(rows: list[Setting]) -> None:
+    """[A26]"""
     assert TABLE.of(MANUAL) == table(rows)
 
 
@@ -58,6 +59,7 @@ def test_the_header_documents_every_setting(rows: list[Setting]) -> None:
 
 
 def test_the_header_tells_range_and_default(rows: list[Setting]) -> None:
+    """[A26]"""
     comments = documented()
     checked = 0
     for row in rows:

@@ -107,6 +107,7 @@ def test_nothing_is_asked_of_the_host(flown: dict[str, Any]) -> None:
 
 
 def test_golden_hash(flown: dict[str, Any]) -> None:
+    """[A13]"""
     assert flown["selfCheck"] == 0
     assert flown["hash"] == page.golden_hash()
 

@@ -196,7 +196,7 @@ def test_boxes_are_flown_level_low_and_rolling(everything: Path) -> None:
 
 
 def test_refined_knows_how_far_off_it_is_by_boxes_at_any_roll(everything: Path) -> None:
-    """And answers every flight."""
+    """[GOE_MODEL_PRISM] And answers every flight."""
     rows = [row for row in read_rows(everything / "cases.csv") if row["study"] == "boxes" and row["fraction"] == "0.4"]
     for roll in ("0", "5", "10", "25"):
         refined, window = (

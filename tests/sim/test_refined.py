@@ -72,7 +72,8 @@ def test_better_than_the_window(programs: dict[str, Path], goe_sim: Path, tmp_pa
 
 
 def test_sigmas_are_of_the_true_error(programs: dict[str, Path], goe_sim: Path, tmp_path: Path) -> None:
-    """Errors of all sensors, as the settings' defaults tell them: at the end the truth lies within two sigma in 90 % of
+    """[A2]
+    Errors of all sensors, as the settings' defaults tell them: at the end the truth lies within two sigma in 90 % of
     runs and quantities, and never outside four; the sigmas are not idle either."""
     ratios = []
     for name, seed in itertools.product(CASES, SEEDS):

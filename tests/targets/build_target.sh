@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# [A13]
 # Builds a target's preset and runs its tests under QEMU.
 #
 #   build_target.sh <preset> <folder for the build> <all|safety|none: tests of tests/c> <folder of unity.c>

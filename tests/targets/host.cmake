@@ -23,7 +23,9 @@ function(goe_target_test name script)
     set_tests_properties(${name} PROPERTIES LABELS targets SKIP_RETURN_CODE 77 TIMEOUT ${goe_build_hang_s})
 endfunction()
 
+# [A13]
 goe_target_test(replay_every_host_build host_builds.sh ${golden} ${flight_golden})
+# [GOE_SELF_CONTRACTED, GOE_SELF_EXCESS, GOE_SELF_FLUSHED, GOE_SELF_REASSOCIATED, GOE_SELF_RECIPROCAL, goe_self_check]
 goe_target_test(self_check_host host_self_check.sh ${golden})
 
 # ------------------------------------------------------------------------------------------------- one test each target

@@ -16,9 +16,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..places import ROOT
+from . import contracts
 from .parts import NotHereError
 
 LIBRARY = ROOT / "lib"
+COPY = ROOT / "build" / "proof" / "lib"  # with all contracts: contracts.py
 DRIVERS = ROOT / "tests" / "proof"
 PROVED = ("Valid", "Considered valid", "Dead")
 
@@ -72,7 +74,7 @@ def place(folder: str, file: str) -> str:
     """As tests/proof/alarms.csv has it; "" of what is neither the library's nor a driver's."""
     path = Path(folder.replace("FRAMAC_SHARE", "/")) / file
     path = path if path.is_absolute() else ROOT / path
-    for base in (LIBRARY, DRIVERS):
+    for base in (LIBRARY, COPY, DRIVERS):
         if path.is_relative_to(base):
             return path.relative_to(base.parent).as_posix()
     return ""
@@ -102,22 +104,12 @@ def plain(name: str) -> str:
     return re.sub(r"_\d+$", "", name)
 
 
-FUNCTION = re.compile(  # static in a .c file or inline in a header; a prototype in a header
-    r"^(?:\w+ +)*?\w[\w ]*[ *]+\**(?P<name>\w+)\([^;{}()]*\)[ \n]*[;{]", re.MULTILINE
-)
-
-
 def library_functions(library: Path = LIBRARY) -> frozenset[str]:
     """As reached_functions() tells them: external ones and those of headers by their name alone."""
     found = set()
     for path in sorted(library.rglob("*.[ch]")):
-        text = re.sub(r"/\*.*?\*/", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
-        text = re.sub(r"^[ \t]*#.*$", "", text, flags=re.MULTILINE)
-        for match in FUNCTION.finditer(text):
-            static = "static" in match[0].split("(")[0].split()
+        for match in contracts.functions(path.read_text(encoding="utf-8"), path.suffix == ".c"):
             name = match["name"]
-            if match[0].startswith(("return", "typedef", "else")) or (path.suffix == ".c" and not static):
-                continue
             found.add(f"{place(str(path.parent), path.name)}:{name}" if path.suffix == ".c" else name)
     return frozenset(found)
 
@@ -129,9 +121,10 @@ class Analyser:
         self.machine = machine
         self.work = work
         self.saved = work / f"parsed-{machine}.sav"
+        contracts.copy(LIBRARY, COPY)
         self.call(
-            ["-machdep", machine, f"-cpp-extra-args=-I{LIBRARY} -I{DRIVERS} -include {DRIVERS / 'builtins.h'}"]
-            + [str(path) for path in sorted(LIBRARY.rglob("*.c")) + sorted(DRIVERS.glob("*.c"))]
+            ["-machdep", machine, f"-cpp-extra-args=-I{COPY} -I{DRIVERS} -include {DRIVERS / 'builtins.h'}"]
+            + [str(path) for path in sorted(COPY.rglob("*.c")) + sorted(DRIVERS.glob("*.c"))]
             + ["-save", str(self.saved)]
         )
 

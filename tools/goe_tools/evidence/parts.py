@@ -19,7 +19,7 @@ MODULES: dict[str, str] = {  # name: what it asks; the module of that name has r
     "programs": "what an attack found in the programs, and the tests that would fail if it came back",
     "reproducible": "whether two builds of the same sources give the same bits",
     "sbom": "the bill of materials: what the tests and tools install, and that the library holds nothing but itself",
-    "requirements": "has every promise its code and its tests, and every test its promise",
+    "requirements": "has every promise its tests, and every test its promise",
     "mutation": "which small changes of lib/, port/flight and port/companion the tests notice",
     "lies": "confident errors, and warnings that vanish, in random flights that the manual allows",
     "proof": "is no call undefined, whatever bits it is given",

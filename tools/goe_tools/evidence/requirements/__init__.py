@@ -1,11 +1,8 @@
-"""Requirements: what the library promises, the code that does it, the tests that would fail without it.
+"""Requirements: what the library promises, and the tests that would fail without it.
 
-rows.py       the tables, tests/requirements/*.csv
-sentences.py  the sentences of a source, in which the anchors lie
-names.py      what the sources define
-check.py      both directions
-breaks.py     the code broken by hand, and whether the named test fails
-part.py       the part of the evidence
+marks.py   promises and tests, joined by marks and names; what has no other side
+breaks.py  the code broken by hand, and whether the test with the mark fails
+part.py    the part of the evidence
 """
 
 from .part import run

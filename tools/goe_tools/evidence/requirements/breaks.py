@@ -1,23 +1,53 @@
-"""The code broken by hand, one line at a time, in a copy: does the test that a requirement names then fail?"""
+"""The code broken by hand, one line at a time, in a copy: does the test that has its mark then fail?"""
 
 from __future__ import annotations
 
+import csv
 import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from ...places import ROOT
 from ..parts import NotHereError
-from .rows import Break
+from . import marks
 
+TABLE = ROOT / "tests" / "mutation" / "breaks.csv"
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off")
 NOT_TOLD = "not told"
 SECONDS = 300  # a test that takes longer hangs, which is noticed, too
+
+
+@dataclass(frozen=True)
+class Break:
+    """One line of the code, broken by hand, and the test that then fails."""
+
+    mark: str  # of the promise that is broken, which the test has, too
+    file: str
+    old: str
+    new: str
+    test: str
+    line: int  # of the table
+
+
+def read(path: Path = TABLE) -> list[Break]:
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = csv.DictReader(file, strict=True)
+        return [Break(row["mark"], row["file"], row["old"], row["new"], row["test"], rows.line_num) for row in rows]
+
+
+def stale(breaks: Iterable[Break], found: marks.Findings, root: Path = ROOT) -> Iterator[str]:
+    """Lines that are no longer there, or whose test no longer has the mark."""
+    for broken in breaks:
+        place = f"tests/mutation/{TABLE.name}:{broken.line} ({broken.mark})"
+        if broken.test not in (test.name for test in found.by_key.get(broken.mark, [])):
+            yield f"{place}: {broken.test} does not have that mark"
+        if not (root / broken.file).is_file() or marks.read(root / broken.file).count(broken.old) != 1:
+            yield f"{place}: {broken.file} must have these words once: {broken.old}"
 
 
 def unity() -> Path:
