@@ -1,7 +1,9 @@
 /* Orders of the module of port/px4: which commands PX4 is given, and when none. SPDX-License-Identifier: MIT */
 #include "px4_flight.hpp"
 
+#include <uORB/topics/position_controller_landing_status.h>
 #include <uORB/topics/position_setpoint_triplet.h>
+#include <uORB/topics/vehicle_land_detected.h>
 
 #include "GoeOrders.hpp"
 
@@ -436,6 +438,39 @@ static void an_approach_is_broken_off() {
     flight.end();
 }
 
+static void publish_flare() {
+    position_controller_landing_status_s topic{};
+    topic.timestamp = standin::now_us();
+    topic.flaring = true;
+    standin::publish(ORB_ID(position_controller_landing_status), &topic);
+}
+
+/* What stands behind the touchdown point. */
+static void a_landing_is_not_broken_off_from_the_flare_on() {
+    start_towards_one(LAND, true, ALL);
+    bool reported = false;
+    for (int i = 0; i < 140; i++) {
+        publish_flare();
+        TEST_ASSERT_EQUAL(0, fly_on(0.1));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+        reported = reported || flight.status().worst >= 0;
+    }
+    TEST_ASSERT_TRUE(reported); /* the hazard is, all the same */
+    flight.end();
+}
+
+static void after_touchdown_nothing_is_ordered() {
+    start_towards_one(LAND, true, ALL);
+    vehicle_land_detected_s topic{};
+    topic.timestamp = standin::now_us();
+    topic.landed = true;
+    standin::publish(ORB_ID(vehicle_land_detected), &topic);
+    TEST_ASSERT_EQUAL(0, fly_on(14.0));
+    TEST_ASSERT_EQUAL(0, goe_command("status"));
+    TEST_ASSERT_TRUE(standin::console().find("; on the ground") != std::string::npos);
+    flight.end();
+}
+
 int main() {
     UNITY_BEGIN();
     RUN_TEST(a_place_is_a_reposition_with_change_of_mode);
@@ -463,5 +498,7 @@ int main() {
     RUN_TEST(an_order_outlives_its_track);
     RUN_TEST(the_status_tells_of_a_pilot_and_of_refusals);
     RUN_TEST(an_approach_is_broken_off);
+    RUN_TEST(a_landing_is_not_broken_off_from_the_flare_on);
+    RUN_TEST(after_touchdown_nothing_is_ordered);
     return UNITY_END();
 }

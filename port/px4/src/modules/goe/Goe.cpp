@@ -189,8 +189,10 @@ void Goe::take_vehicle() {
     position_setpoint_triplet_s setpoint;
     vehicle_command_ack_s answer;
     (void)_vehicle_status_sub.update(&_vehicle_status);
+    (void)_land_detected_sub.update(&_ground);
+    (void)_landing_sub.update(&_landing);
     if (_setpoint_sub.update(&setpoint)) {
-        _approach = setpoint.current.valid && setpoint.current.type == position_setpoint_s::SETPOINT_TYPE_LAND;
+        _setpoint = setpoint.current;
     }
     while (_command_ack_sub.update(&answer)) {
         if (answer.target_system == _vehicle_status.system_id) { /* not of a ground station's command */
@@ -248,7 +250,7 @@ void Goe::publish_status(const goe_flight_assessment_t &assessment, uint64_t now
     _overview.east_m = _position.y;
     _overview.react = _parameters.react;
     _overview.bad_field = _bad_field;
-    _overview.approach = _approach;
+    _overview.phase = _phase;
 }
 
 bool Goe::is_armed() const { return _vehicle_status.arming_state == vehicle_status_s::ARMING_STATE_ARMED; }
@@ -294,7 +296,8 @@ void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
 void Goe::assess(uint64_t now_us) {
     goe_flight_assessment_t assessment;
     _assessed_us = now_us;
-    if (goe_flight_assess(&_flight, goe_px4::time_us(now_us), _approach, &assessment) == GOE_FLIGHT_CORRUPTED) {
+    _phase = goe_px4::phase(_setpoint, _ground, _landing, now_us);
+    if (goe_flight_assess(&_flight, goe_px4::time_us(now_us), _phase, &assessment) == GOE_FLIGHT_CORRUPTED) {
         mavlink_log_critical(&_mavlink_log_pub, "goe: memory was corrupted, begun again");
         _in_use = goe_flight_init(&_flight, sizeof _flight, &_used.estimator, &_used.flight, nullptr) == GOE_FLIGHT_OK;
     }

@@ -21,7 +21,6 @@
 #include <uORB/SubscriptionCallback.hpp>
 #include <uORB/SubscriptionInterval.hpp>
 #include <uORB/topics/parameter_update.h>
-#include <uORB/topics/position_setpoint_triplet.h>
 
 #include "GoeConversion.hpp"
 #include "GoeImages.hpp"
@@ -91,6 +90,8 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
                                                               {ORB_ID(distance_sensor), 3}};
     uORB::Subscription _home_sub{ORB_ID(home_position)};
     uORB::Subscription _setpoint_sub{ORB_ID(position_setpoint_triplet)};
+    uORB::Subscription _land_detected_sub{ORB_ID(vehicle_land_detected)};
+    uORB::Subscription _landing_sub{ORB_ID(position_controller_landing_status)};
     uORB::Subscription _vehicle_status_sub{ORB_ID(vehicle_status)};
     uORB::Subscription _command_ack_sub{ORB_ID(vehicle_command_ack)};
 
@@ -118,7 +119,10 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     float _attitude_q[4]{1.f, 0.f, 0.f, 0.f};
     vehicle_local_position_s _position{};
     vehicle_status_s _vehicle_status{};
-    bool _approach{false}; /* the present setpoint is one to land */
+    position_setpoint_s _setpoint{}; /* the present one */
+    vehicle_land_detected_s _ground{};
+    position_controller_landing_status_s _landing{};
+    uint8_t _phase{GOE_FLIGHT_FLYING};
     uint8_t _self_check{0};
     uint64_t _assessed_us{0};
     uint8_t _told_action{GOE_FLIGHT_NONE};
