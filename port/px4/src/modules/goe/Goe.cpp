@@ -264,6 +264,9 @@ void Goe::follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_
     vehicle_command_s command;
     GoeOrders::Vehicle vehicle{};
     vehicle.armed = is_armed();
+    vehicle.has_wings = has_wings();
+    vehicle.lands = _setpoint.valid && _setpoint.type == position_setpoint_s::SETPOINT_TYPE_LAND;
+    vehicle.setpoint_alt_m = _setpoint.alt;
     vehicle.nav_state = _vehicle_status.nav_state;
     vehicle.origin_known = _flight.origin_known;
     vehicle.obstacle_known = is_followed(_orders.slot());
