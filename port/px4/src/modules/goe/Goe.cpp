@@ -237,6 +237,7 @@ void Goe::publish_status(const goe_flight_assessment_t &assessment, uint64_t now
     topic.self_check = _self_check;
     topic.settings_in_use = _in_use;
     topic.settings_waiting = _waiting;
+    topic.dead_reckoning = _position.xy_valid && _position.dead_reckoning;
     topic.flown = assessment.action != GOE_FLIGHT_NONE && _orders.flown();
     topic.overruled = _orders.overruled();
     topic.overdue = _images.overdue();
@@ -296,6 +297,20 @@ void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
     }
 }
 
+/* The filter of a fixed wing goes on by the airspeed when GPS is lost, and says so here alone. */
+void Goe::report_dead_reckoning() {
+    const bool is_dead = _position.xy_valid && _position.dead_reckoning;
+    if (is_dead == _reported_dead_reckoning) {
+        return;
+    }
+    _reported_dead_reckoning = is_dead;
+    if (_reported_dead_reckoning) {
+        mavlink_log_warning(&_mavlink_log_pub, "goe: position by dead reckoning");
+    } else {
+        mavlink_log_info(&_mavlink_log_pub, "goe: dead reckoning ends");
+    }
+}
+
 void Goe::assess(uint64_t now_us) {
     goe_flight_assessment_t assessment;
     _assessed_us = now_us;
@@ -306,6 +321,7 @@ void Goe::assess(uint64_t now_us) {
     }
     follow_orders(assessment, now_us);
     tell_operator(assessment);
+    report_dead_reckoning();
     pthread_mutex_lock(&_overview_lock);
     publish_obstacles(assessment, now_us);
     publish_status(assessment, now_us);

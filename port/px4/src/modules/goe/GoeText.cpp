@@ -144,8 +144,8 @@ void tell_state(const GoeOverview &o, unsigned number_of_line, char *line) {
             tell_settings(o, line);
             break;
         case 2:
-            snprintf(line, GOE_TEXT_LINE, "pose       %s, jumps of PX4's filter taken along: %u",
-                     yes(o.status.pose_alive), o.status.resets);
+            snprintf(line, GOE_TEXT_LINE, "pose       %s%s, jumps of PX4's filter taken along: %u",
+                     yes(o.status.pose_alive), o.status.dead_reckoning ? ", by dead reckoning" : "", o.status.resets);
             break;
         case 3:
             tell_detector(o.status, line);
