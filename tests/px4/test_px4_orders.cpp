@@ -586,6 +586,27 @@ static void the_status_tells_of_a_pilot_and_of_refusals() {
     flight.end();
 }
 
+/* A pilot has taken over; the layer's order changes, and nobody flies the new one. */
+static void an_order_that_nobody_flies_is_reported_as_such() {
+    start_towards_one(MISSION, false, ALL);
+    flight.follows = false;
+    for (int i = 0; i < 130 && fly_on(0.1) == 0; i++) {
+    }
+    (void)fly_on(0.3);
+    flight.set_mode(true, POSITION);
+    (void)fly_on(0.3);
+    TEST_ASSERT_TRUE(flight.status().overruled);
+    const uint8_t action = flight.status().action;
+    standin::mavlink_texts().clear();
+    flight.flown.scene.x0_m = flight.flown.scene.x0_m > 0.0 ? -60.0 : 60.0; /* seen elsewhere: another side */
+    for (int i = 0; i < 60 && (flight.status().action == action || flight.status().action == GOE_FLIGHT_NONE); i++) {
+        TEST_ASSERT_EQUAL(0, fly_on(0.1));
+    }
+    TEST_ASSERT_TRUE(flight.status().action != action && flight.status().action != GOE_FLIGHT_NONE);
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("(overruled)") != std::string::npos);
+    flight.end();
+}
+
 static void an_approach_is_broken_off() {
     TEST_ASSERT_GREATER_THAN(0, fly_towards_one(LAND, true, 14.0, ALL));
     TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
@@ -684,6 +705,7 @@ int main() {
     RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
     RUN_TEST(an_order_outlives_its_track);
     RUN_TEST(the_status_tells_of_a_pilot_and_of_refusals);
+    RUN_TEST(an_order_that_nobody_flies_is_reported_as_such);
     RUN_TEST(an_approach_is_broken_off);
     RUN_TEST(an_approach_that_is_broken_off_climbs_over_the_obstacle);
     RUN_TEST(an_approach_that_px4_breaks_off_high_enough_gets_no_second_command);

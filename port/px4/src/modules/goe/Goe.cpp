@@ -291,9 +291,10 @@ void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
     if (assessment.action == GOE_FLIGHT_NONE) {
         mavlink_log_info(&_mavlink_log_pub, "goe: the order ends");
     } else {
+        const char *const who = _orders.overruled() ? " (overruled)" : _orders.flown() ? "" : " (told only)";
         mavlink_log_critical(&_mavlink_log_pub, "goe: obstacle in %.0f s, %s%s",
                              static_cast<double>(assessment.hazard.time_s), goe_flight_action_text(assessment.action),
-                             _orders.flown() ? "" : " (told only)");
+                             who);
     }
 }
 
