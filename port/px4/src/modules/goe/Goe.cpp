@@ -12,6 +12,8 @@ constexpr px4::wq_config_t work_queue{"wq:goe", 4600, -50};
 
 constexpr uint32_t CYCLE_US = 100000; /* assessments and what is published; also while no attitude comes */
 constexpr uint64_t RANGE_FRESH_US = 300000;
+constexpr uint64_t DEAD_RECKONING_US =
+    3000000; /* after which its end is believed: PX4's flag flickers once a second at first */
 constexpr float CM_PER_M = 100.f;
 constexpr float US_PER_S = 1.0e6f;
 constexpr float DISTANCE_MAX_M = 200.f; /* of obstacle_distance: what lies farther concerns nobody who reads it */
@@ -237,7 +239,7 @@ void Goe::publish_status(const goe_flight_assessment_t &assessment, uint64_t now
     topic.self_check = _self_check;
     topic.settings_in_use = _in_use;
     topic.settings_waiting = _waiting;
-    topic.dead_reckoning = _position.xy_valid && _position.dead_reckoning;
+    topic.dead_reckoning = _dead_reckoning;
     topic.flown = assessment.action != GOE_FLIGHT_NONE && _orders.flown();
     topic.overruled = _orders.overruled();
     topic.overdue = _images.overdue();
@@ -299,13 +301,15 @@ void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
 }
 
 /* The filter of a fixed wing goes on by the airspeed when GPS is lost, and says so here alone. */
-void Goe::report_dead_reckoning() {
-    const bool is_dead = _position.xy_valid && _position.dead_reckoning;
-    if (is_dead == _reported_dead_reckoning) {
+void Goe::report_dead_reckoning(uint64_t now_us) {
+    const bool says_so = _position.xy_valid && _position.dead_reckoning;
+    _dead_reckoning_us = says_so ? now_us : _dead_reckoning_us;
+    const bool is_dead = says_so || (_dead_reckoning && now_us - _dead_reckoning_us < DEAD_RECKONING_US);
+    if (is_dead == _dead_reckoning) {
         return;
     }
-    _reported_dead_reckoning = is_dead;
-    if (_reported_dead_reckoning) {
+    _dead_reckoning = is_dead;
+    if (is_dead) {
         mavlink_log_warning(&_mavlink_log_pub, "goe: position by dead reckoning");
     } else {
         mavlink_log_info(&_mavlink_log_pub, "goe: dead reckoning ends");
@@ -322,7 +326,7 @@ void Goe::assess(uint64_t now_us) {
     }
     follow_orders(assessment, now_us);
     tell_operator(assessment);
-    report_dead_reckoning();
+    report_dead_reckoning(now_us);
     pthread_mutex_lock(&_overview_lock);
     publish_obstacles(assessment, now_us);
     publish_status(assessment, now_us);

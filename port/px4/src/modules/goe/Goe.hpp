@@ -77,7 +77,7 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     void publish_status(const goe_flight_assessment_t &assessment, uint64_t now_us);
     void follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_us);
     void tell_operator(const goe_flight_assessment_t &assessment);
-    void report_dead_reckoning();
+    void report_dead_reckoning(uint64_t now_us);
 
     uORB::SubscriptionCallbackWorkItem _attitude_sub{this, ORB_ID(vehicle_attitude)};
     uORB::SubscriptionCallbackWorkItem _tunnel_sub{this, ORB_ID(mavlink_tunnel)};
@@ -127,8 +127,9 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     uint8_t _self_check{0};
     uint64_t _assessed_us{0};
     uint8_t _told_action{GOE_FLIGHT_NONE};
-    bool _reported_dead_reckoning{false};
-    GoeOverview _overview{}; /* for `goe status`: written and read under the lock */
+    bool _dead_reckoning{false};
+    uint64_t _dead_reckoning_us{0}; /* when PX4 last said so */
+    GoeOverview _overview{};        /* for `goe status`: written and read under the lock */
     pthread_mutex_t _overview_lock;
     perf_counter_t _cycle_perf{perf_alloc(PC_ELAPSED, MODULE_NAME ": cycle")};
 };
