@@ -40,6 +40,63 @@ static void a_distance_sensor_that_looks_down_gives_a_height() {
     TEST_ASSERT_FALSE(goe_px4::height_by_range(sensor, level, height_m));
 }
 
+/* --------------------------------------------------------------------------------------------------------------- phase -- */
+
+static constexpr uint64_t NOW_US = 90000000u;
+
+struct Landing {
+    position_setpoint_s setpoint{};
+    vehicle_land_detected_s ground{};
+    position_controller_landing_status_s status{};
+
+    Landing() {
+        setpoint.valid = true;
+        setpoint.type = position_setpoint_s::SETPOINT_TYPE_LAND;
+        status.timestamp = NOW_US - 20000u;
+    }
+    uint8_t phase() const { return goe_px4::phase(setpoint, ground, status, NOW_US); }
+};
+
+static void a_setpoint_to_land_is_an_approach() {
+    Landing landing;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_APPROACH, landing.phase());
+    landing.setpoint.type = position_setpoint_s::SETPOINT_TYPE_POSITION;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_FLYING, landing.phase());
+    landing.setpoint.type = position_setpoint_s::SETPOINT_TYPE_LAND;
+    landing.setpoint.valid = false;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_FLYING, landing.phase());
+}
+
+static void the_controller_reports_the_flare() {
+    Landing landing;
+    landing.status.flaring = true;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_FLARE, landing.phase());
+}
+
+/* PX4 publishes the flare while it lands, and does not take it back when it stops to. */
+static void the_flare_of_an_earlier_landing_is_none() {
+    Landing landing;
+    landing.status.flaring = true;
+    landing.status.timestamp = NOW_US - 600000u;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_APPROACH, landing.phase());
+    landing.status.timestamp = NOW_US + 4000u; /* published between the cycle's begin and its assessment */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_FLARE, landing.phase());
+    landing.setpoint.type = position_setpoint_s::SETPOINT_TYPE_LOITER;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_FLYING, landing.phase());
+    landing.status = position_controller_landing_status_s{}; /* never published */
+    landing.status.flaring = true;
+    landing.setpoint.type = position_setpoint_s::SETPOINT_TYPE_LAND;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_APPROACH, landing.phase());
+}
+
+static void what_the_land_detector_says_is_landed() {
+    Landing landing;
+    landing.ground.landed = true;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LANDED, landing.phase());
+    landing.setpoint.valid = false;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LANDED, landing.phase());
+}
+
 static void each_height_is_marked_by_its_source() {
     vehicle_local_position_s topic{};
     goe_px4::Heights heights;
@@ -590,6 +647,10 @@ static void every_range_lies_within_the_layers() {
 int main() {
     UNITY_BEGIN();
     RUN_TEST(a_distance_sensor_that_looks_down_gives_a_height);
+    RUN_TEST(a_setpoint_to_land_is_an_approach);
+    RUN_TEST(the_controller_reports_the_flare);
+    RUN_TEST(the_flare_of_an_earlier_landing_is_none);
+    RUN_TEST(what_the_land_detector_says_is_landed);
     RUN_TEST(each_height_is_marked_by_its_source);
     RUN_TEST(each_clock_has_its_own_times);
     RUN_TEST(a_tunnel_holds_three_boxes);

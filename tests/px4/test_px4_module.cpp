@@ -157,6 +157,32 @@ static void an_invalid_position_is_no_sample() {
     TEST_ASSERT_EQUAL(0, flight.status().refused);
 }
 
+/* Without GPS a fixed wing's filter goes on, by the airspeed: the samples are valid, and drift. */
+static void a_position_by_dead_reckoning_is_reported() {
+    flight.fly(2.0);
+    TEST_ASSERT_FALSE(flight.status().dead_reckoning);
+    TEST_ASSERT_FALSE(says(status_text(), "dead reckoning"));
+    flight.position.dead_reckoning = true;
+    flight.fly(1.0);
+    TEST_ASSERT_TRUE(flight.status().pose_alive);
+    TEST_ASSERT_TRUE(flight.status().dead_reckoning);
+    TEST_ASSERT_TRUE(says(status_text(), "pose       alive, by dead reckoning, jumps"));
+    TEST_ASSERT_TRUE(says(standin::mavlink_texts(), "goe: position by dead reckoning"));
+    const std::string so_far = standin::mavlink_texts();
+    flight.fly(1.0);
+    TEST_ASSERT_TRUE(so_far == standin::mavlink_texts()); /* once */
+    for (int i = 0; i < 40; i++) {                        /* it flickers in the first seconds */
+        flight.position.dead_reckoning = i % 10 == 0;
+        flight.fly(0.1);
+        TEST_ASSERT_TRUE(flight.status().dead_reckoning);
+    }
+    TEST_ASSERT_TRUE(so_far == standin::mavlink_texts());
+    flight.position.dead_reckoning = false;
+    flight.fly(3.2);
+    TEST_ASSERT_FALSE(flight.status().dead_reckoning);
+    TEST_ASSERT_TRUE(says(standin::mavlink_texts(), "goe: dead reckoning ends"));
+}
+
 /* ------------------------------------------------------------------------------------------------- who is there, who not -- */
 
 static void a_full_table_is_told() {
@@ -508,6 +534,7 @@ int main() {
     RUN_TEST(a_missed_reset_ends_the_track);
     RUN_TEST(a_reset_of_the_heading_ends_the_track);
     RUN_TEST(an_invalid_position_is_no_sample);
+    RUN_TEST(a_position_by_dead_reckoning_is_reported);
     RUN_TEST(a_full_table_is_told);
     RUN_TEST(two_obstacles_of_one_image_are_one_image);
     RUN_TEST(a_distance_sensor_tells_the_ground);

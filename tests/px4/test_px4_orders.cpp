@@ -1,7 +1,9 @@
 /* Orders of the module of port/px4: which commands PX4 is given, and when none. SPDX-License-Identifier: MIT */
 #include "px4_flight.hpp"
 
+#include <uORB/topics/position_controller_landing_status.h>
 #include <uORB/topics/position_setpoint_triplet.h>
+#include <uORB/topics/vehicle_land_detected.h>
 
 #include "GoeOrders.hpp"
 
@@ -20,7 +22,13 @@ static vehicle_command_s command;
 
 extern "C" void setUp(void) {
     orders = GoeOrders();
-    vehicle = GoeOrders::Vehicle{true, MISSION, true, true, true, 489.f, 1000000u};
+    vehicle = GoeOrders::Vehicle{};
+    vehicle.armed = vehicle.has_wings = vehicle.obstacle_known = true;
+    vehicle.origin_known = vehicle.altitude_known = true;
+    vehicle.nav_state = MISSION;
+    vehicle.origin_alt_m = 489.f;
+    vehicle.setpoint_alt_m = 489.f;
+    vehicle.now_us = 1000000u;
     memset(&assessment, 0, sizeof assessment);
     assessment.action = GOE_FLIGHT_LEFT;
     assessment.target_ned_m[0] = 100.f;
@@ -265,6 +273,7 @@ static void an_order_in_hold_resumes_nothing() {
 static void a_go_around_is_given_in_landing() {
     assessment.action = GOE_FLIGHT_GO_AROUND;
     vehicle.nav_state = LAND;
+    vehicle.lands = true;
     vehicle.origin_known = false;
     TEST_ASSERT_FALSE(follow(REPOSITION));
     TEST_ASSERT_TRUE(follow());
@@ -278,6 +287,143 @@ static void a_go_around_is_given_in_landing() {
         TEST_ASSERT_FALSE(follow());
         TEST_ASSERT_FALSE(orders.overruled());
     }
+}
+
+/* A go-around that PX4 has taken: it holds at `alt_m`, by its own parameter. */
+static void go_around(uint8_t mode, float alt_m) {
+    assessment.action = GOE_FLIGHT_GO_AROUND;
+    vehicle.nav_state = mode;
+    vehicle.lands = true;
+    TEST_ASSERT_TRUE(follow());
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
+    CHECK_CLOSE(0, 519, command.param1);
+    accept(mode == LAND ? HOLD : mode);
+    vehicle.lands = false;
+    vehicle.setpoint_alt_m = alt_m;
+}
+
+static void a_go_around_climbs_to_what_the_top_requires() {
+    for (const uint8_t mode : {MISSION, LAND}) {
+        setUp();
+        go_around(mode, 505.f);
+        TEST_ASSERT_TRUE(follow(GOE_REACT_GO_AROUND));
+        TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
+        CHECK_CLOSE(0, 1, command.param2);
+        TEST_ASSERT_TRUE(__builtin_isnan(command.param4));
+        TEST_ASSERT_TRUE(__builtin_isnan(command.param5) && __builtin_isnan(command.param6)); /* where PX4 holds */
+        CHECK_CLOSE(0, 519, command.param7);
+        for (int i = 0; i < 4; i++) {
+            TEST_ASSERT_FALSE(follow());
+        }
+        TEST_ASSERT_TRUE(follow()); /* not taken yet */
+        accept(HOLD);
+        vehicle.setpoint_alt_m = 519.f;
+        for (int i = 0; i < 20; i++) {
+            TEST_ASSERT_FALSE(follow());
+        }
+        assessment.target_ned_m[2] = -34.f; /* it is higher than it seemed */
+        TEST_ASSERT_TRUE(follow());
+        CHECK_CLOSE(0, 523, command.param7);
+    }
+}
+
+static void a_go_around_that_is_high_enough_is_left_to_px4() {
+    go_around(MISSION, 520.f);
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+}
+
+static void a_go_around_climbs_no_higher_while_px4_still_lands() {
+    go_around(LAND, 489.f);
+    vehicle.nav_state = LAND;
+    vehicle.lands = true;
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+}
+
+static void without_an_altitude_a_go_around_is_all_that_px4_makes_of_it() {
+    assessment.action = GOE_FLIGHT_GO_AROUND;
+    vehicle.lands = true;
+    vehicle.altitude_known = false;
+    TEST_ASSERT_TRUE(follow());
+    CHECK_CLOSE(0, 0, command.param1);
+    accept(MISSION);
+    vehicle.lands = false;
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+}
+
+/* PX4 acknowledges DO_GO_AROUND, and only a fixed wing flies it. */
+static void a_multicopter_goes_around_by_a_climb() {
+    assessment.action = GOE_FLIGHT_GO_AROUND;
+    vehicle.nav_state = LAND;
+    vehicle.lands = true;
+    vehicle.has_wings = false;
+    TEST_ASSERT_TRUE(follow());
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
+    CHECK_CLOSE(0, 519, command.param7);
+}
+
+static void a_pilot_is_not_fought_after_a_go_around() {
+    go_around(MISSION, 505.f);
+    TEST_ASSERT_TRUE(follow());
+    TEST_ASSERT_FALSE(follow()); /* still in the mission */
+    TEST_ASSERT_FALSE(orders.overruled());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    vehicle.nav_state = MISSION; /* to land once more */
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow());
+    }
+    TEST_ASSERT_TRUE(orders.overruled());
+}
+
+/* It would lead to the same landing. */
+static void no_mission_is_resumed_after_a_go_around() {
+    for (const bool turns : {false, true}) {
+        setUp();
+        go_around(MISSION, 505.f);
+        TEST_ASSERT_TRUE(follow(ALL, true));
+        accept(HOLD);
+        vehicle.setpoint_alt_m = 519.f;
+        TEST_ASSERT_FALSE(follow(ALL, true));
+        if (turns) {
+            assessment.action = GOE_FLIGHT_LEFT;
+            TEST_ASSERT_TRUE(follow(ALL, true));
+            accept(HOLD);
+        }
+        assessment.action = GOE_FLIGHT_NONE;
+        for (int i = 0; i < 20; i++) {
+            TEST_ASSERT_FALSE(follow(ALL, true));
+        }
+    }
+}
+
+static void an_order_after_a_go_around_is_another_one() {
+    go_around(MISSION, 505.f);
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(HOLD);
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    go_around(MISSION, 505.f); /* the second landing */
+    TEST_ASSERT_FALSE(orders.overruled());
+    vehicle.nav_state = LAND; /* where DO_GO_AROUND leads to is PX4's affair again */
+    vehicle.setpoint_alt_m = 519.f;
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    TEST_ASSERT_FALSE(orders.overruled());
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    assessment.action = GOE_FLIGHT_RIGHT; /* in the mission to come */
+    vehicle.nav_state = MISSION;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, command.command);
 }
 
 /* ------------------------------------------------------------------------------------------------------ the whole, flown */
@@ -305,10 +451,20 @@ static void start_towards_one(uint8_t mode, bool lands, int32_t react) {
     flight.follows = !lands;
     position_setpoint_triplet_s setpoint{};
     setpoint.current.valid = true;
+    setpoint.current.alt = 489.f;
     setpoint.current.type =
         lands ? position_setpoint_s::SETPOINT_TYPE_LAND : position_setpoint_s::SETPOINT_TYPE_POSITION;
     standin::publish(ORB_ID(position_setpoint_triplet), &setpoint);
     flight.set_mode(true, mode);
+}
+
+/* As PX4 does: it breaks the landing off, and holds `above_m` over it. */
+static void hold_over_the_landing(float above_m) {
+    position_setpoint_triplet_s setpoint{};
+    setpoint.current.valid = true;
+    setpoint.current.type = position_setpoint_s::SETPOINT_TYPE_LOITER;
+    setpoint.current.alt = 489.f + above_m;
+    standin::publish(ORB_ID(position_setpoint_triplet), &setpoint);
 }
 
 /* PX4 accepts what it is given, and tells `asker` so. */
@@ -430,9 +586,88 @@ static void the_status_tells_of_a_pilot_and_of_refusals() {
     flight.end();
 }
 
+/* A pilot has taken over; the layer's order changes, and nobody flies the new one. */
+static void an_order_that_nobody_flies_is_reported_as_such() {
+    start_towards_one(MISSION, false, ALL);
+    flight.follows = false;
+    for (int i = 0; i < 130 && fly_on(0.1) == 0; i++) {
+    }
+    (void)fly_on(0.3);
+    flight.set_mode(true, POSITION);
+    (void)fly_on(0.3);
+    TEST_ASSERT_TRUE(flight.status().overruled);
+    const uint8_t action = flight.status().action;
+    standin::mavlink_texts().clear();
+    flight.flown.scene.x0_m = flight.flown.scene.x0_m > 0.0 ? -60.0 : 60.0; /* seen elsewhere: another side */
+    for (int i = 0; i < 60 && (flight.status().action == action || flight.status().action == GOE_FLIGHT_NONE); i++) {
+        TEST_ASSERT_EQUAL(0, fly_on(0.1));
+    }
+    TEST_ASSERT_TRUE(flight.status().action != action && flight.status().action != GOE_FLIGHT_NONE);
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("(overruled)") != std::string::npos);
+    flight.end();
+}
+
 static void an_approach_is_broken_off() {
     TEST_ASSERT_GREATER_THAN(0, fly_towards_one(LAND, true, 14.0, ALL));
     TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
+    flight.end();
+}
+
+static void fly_into_a_go_around() {
+    start_towards_one(LAND, true, ALL);
+    for (int i = 0; i < 140 && fly_on(0.1) == 0; i++) {
+    }
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
+}
+
+static void an_approach_that_px4_breaks_off_high_enough_gets_no_second_command() {
+    fly_into_a_go_around();
+    hold_over_the_landing(60.f);
+    TEST_ASSERT_EQUAL(0, fly_on(0.4));
+    flight.end();
+}
+
+/* 9 m high over a truck of 2.5 m: PX4's own height does not clear it by GOE_CLEAR. */
+static void an_approach_that_is_broken_off_climbs_over_the_obstacle() {
+    fly_into_a_go_around();
+    hold_over_the_landing(10.f);
+    TEST_ASSERT_EQUAL(1, fly_on(0.4));
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
+    CHECK_CLOSE(0.01, 489.f - flight.status().target[2], command.param7);
+    TEST_ASSERT_TRUE(command.param7 > 489.f + 12.5f); /* top and GOE_CLEAR */
+    flight.end();
+}
+
+static void publish_flare() {
+    position_controller_landing_status_s topic{};
+    topic.timestamp = standin::now_us();
+    topic.flaring = true;
+    standin::publish(ORB_ID(position_controller_landing_status), &topic);
+}
+
+/* What stands behind the touchdown point. */
+static void a_landing_is_not_broken_off_from_the_flare_on() {
+    start_towards_one(LAND, true, ALL);
+    bool reported = false;
+    for (int i = 0; i < 140; i++) {
+        publish_flare();
+        TEST_ASSERT_EQUAL(0, fly_on(0.1));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+        reported = reported || flight.status().worst >= 0;
+    }
+    TEST_ASSERT_TRUE(reported); /* the hazard is, all the same */
+    flight.end();
+}
+
+static void after_touchdown_nothing_is_ordered() {
+    start_towards_one(LAND, true, ALL);
+    vehicle_land_detected_s topic{};
+    topic.timestamp = standin::now_us();
+    topic.landed = true;
+    standin::publish(ORB_ID(vehicle_land_detected), &topic);
+    TEST_ASSERT_EQUAL(0, fly_on(14.0));
+    TEST_ASSERT_EQUAL(0, goe_command("status"));
+    TEST_ASSERT_TRUE(standin::console().find("; on the ground") != std::string::npos);
     flight.end();
 }
 
@@ -456,12 +691,25 @@ int main() {
     RUN_TEST(the_slot_is_that_of_the_latest_order);
     RUN_TEST(an_order_in_hold_resumes_nothing);
     RUN_TEST(a_go_around_is_given_in_landing);
+    RUN_TEST(a_go_around_climbs_to_what_the_top_requires);
+    RUN_TEST(a_go_around_that_is_high_enough_is_left_to_px4);
+    RUN_TEST(a_go_around_climbs_no_higher_while_px4_still_lands);
+    RUN_TEST(without_an_altitude_a_go_around_is_all_that_px4_makes_of_it);
+    RUN_TEST(a_multicopter_goes_around_by_a_climb);
+    RUN_TEST(a_pilot_is_not_fought_after_a_go_around);
+    RUN_TEST(no_mission_is_resumed_after_a_go_around);
+    RUN_TEST(an_order_after_a_go_around_is_another_one);
     RUN_TEST(no_command_is_ever_given_by_default);
     RUN_TEST(a_mast_on_the_course_is_passed_aside);
     RUN_TEST(it_flies_on_in_its_mission_past_the_mast);
     RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
     RUN_TEST(an_order_outlives_its_track);
     RUN_TEST(the_status_tells_of_a_pilot_and_of_refusals);
+    RUN_TEST(an_order_that_nobody_flies_is_reported_as_such);
     RUN_TEST(an_approach_is_broken_off);
+    RUN_TEST(an_approach_that_is_broken_off_climbs_over_the_obstacle);
+    RUN_TEST(an_approach_that_px4_breaks_off_high_enough_gets_no_second_command);
+    RUN_TEST(a_landing_is_not_broken_off_from_the_flare_on);
+    RUN_TEST(after_touchdown_nothing_is_ordered);
     return UNITY_END();
 }

@@ -3,7 +3,7 @@
  *
  * Written for this project; it has only the names that port/px4 uses. They were compared with PX4 main of 2 March 2026 (tree_2026)
  * and of 20 December 2024, after 1.15 (tree_2024: the older form of ModuleBase, C++14); detect_and_avoid with the message's page
- * of August 2026. What it keeps of PX4's behaviour: a subscriber reads each message of a queue once, the oldest that is left first,
+ * of August 2026, the landing's two topics with main of 13 February 2025. What it keeps of PX4's behaviour: a subscriber reads each message of a queue once, the oldest that is left first,
  * and finds the latest one that was published before it came; a callback schedules the work item; nothing runs at once. */
 #pragma once
 

@@ -12,6 +12,8 @@ constexpr px4::wq_config_t work_queue{"wq:goe", 4600, -50};
 
 constexpr uint32_t CYCLE_US = 100000; /* assessments and what is published; also while no attitude comes */
 constexpr uint64_t RANGE_FRESH_US = 300000;
+constexpr uint64_t DEAD_RECKONING_US =
+    3000000; /* after which its end is believed: PX4's flag flickers once a second at first */
 constexpr float CM_PER_M = 100.f;
 constexpr float US_PER_S = 1.0e6f;
 constexpr float DISTANCE_MAX_M = 200.f; /* of obstacle_distance: what lies farther concerns nobody who reads it */
@@ -189,8 +191,10 @@ void Goe::take_vehicle() {
     position_setpoint_triplet_s setpoint;
     vehicle_command_ack_s answer;
     (void)_vehicle_status_sub.update(&_vehicle_status);
+    (void)_land_detected_sub.update(&_ground);
+    (void)_landing_sub.update(&_landing);
     if (_setpoint_sub.update(&setpoint)) {
-        _approach = setpoint.current.valid && setpoint.current.type == position_setpoint_s::SETPOINT_TYPE_LAND;
+        _setpoint = setpoint.current;
     }
     while (_command_ack_sub.update(&answer)) {
         if (answer.target_system == _vehicle_status.system_id) { /* not of a ground station's command */
@@ -235,6 +239,7 @@ void Goe::publish_status(const goe_flight_assessment_t &assessment, uint64_t now
     topic.self_check = _self_check;
     topic.settings_in_use = _in_use;
     topic.settings_waiting = _waiting;
+    topic.dead_reckoning = _dead_reckoning;
     topic.flown = assessment.action != GOE_FLIGHT_NONE && _orders.flown();
     topic.overruled = _orders.overruled();
     topic.overdue = _images.overdue();
@@ -248,7 +253,7 @@ void Goe::publish_status(const goe_flight_assessment_t &assessment, uint64_t now
     _overview.east_m = _position.y;
     _overview.react = _parameters.react;
     _overview.bad_field = _bad_field;
-    _overview.approach = _approach;
+    _overview.phase = _phase;
 }
 
 bool Goe::is_armed() const { return _vehicle_status.arming_state == vehicle_status_s::ARMING_STATE_ARMED; }
@@ -262,6 +267,9 @@ void Goe::follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_
     vehicle_command_s command;
     GoeOrders::Vehicle vehicle{};
     vehicle.armed = is_armed();
+    vehicle.has_wings = has_wings();
+    vehicle.lands = _setpoint.valid && _setpoint.type == position_setpoint_s::SETPOINT_TYPE_LAND;
+    vehicle.setpoint_alt_m = _setpoint.alt;
     vehicle.nav_state = _vehicle_status.nav_state;
     vehicle.origin_known = _flight.origin_known;
     vehicle.obstacle_known = is_followed(_orders.slot());
@@ -285,21 +293,40 @@ void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
     if (assessment.action == GOE_FLIGHT_NONE) {
         mavlink_log_info(&_mavlink_log_pub, "goe: the order ends");
     } else {
+        const char *const who = _orders.overruled() ? " (overruled)" : _orders.flown() ? "" : " (told only)";
         mavlink_log_critical(&_mavlink_log_pub, "goe: obstacle in %.0f s, %s%s",
                              static_cast<double>(assessment.hazard.time_s), goe_flight_action_text(assessment.action),
-                             _orders.flown() ? "" : " (told only)");
+                             who);
+    }
+}
+
+/* The filter of a fixed wing goes on by the airspeed when GPS is lost, and says so here alone. */
+void Goe::report_dead_reckoning(uint64_t now_us) {
+    const bool says_so = _position.xy_valid && _position.dead_reckoning;
+    _dead_reckoning_us = says_so ? now_us : _dead_reckoning_us;
+    const bool is_dead = says_so || (_dead_reckoning && now_us - _dead_reckoning_us < DEAD_RECKONING_US);
+    if (is_dead == _dead_reckoning) {
+        return;
+    }
+    _dead_reckoning = is_dead;
+    if (is_dead) {
+        mavlink_log_warning(&_mavlink_log_pub, "goe: position by dead reckoning");
+    } else {
+        mavlink_log_info(&_mavlink_log_pub, "goe: dead reckoning ends");
     }
 }
 
 void Goe::assess(uint64_t now_us) {
     goe_flight_assessment_t assessment;
     _assessed_us = now_us;
-    if (goe_flight_assess(&_flight, goe_px4::time_us(now_us), _approach, &assessment) == GOE_FLIGHT_CORRUPTED) {
+    _phase = goe_px4::phase(_setpoint, _ground, _landing, now_us);
+    if (goe_flight_assess(&_flight, goe_px4::time_us(now_us), _phase, &assessment) == GOE_FLIGHT_CORRUPTED) {
         mavlink_log_critical(&_mavlink_log_pub, "goe: memory was corrupted, begun again");
         _in_use = goe_flight_init(&_flight, sizeof _flight, &_used.estimator, &_used.flight, nullptr) == GOE_FLIGHT_OK;
     }
     follow_orders(assessment, now_us);
     tell_operator(assessment);
+    report_dead_reckoning(now_us);
     pthread_mutex_lock(&_overview_lock);
     publish_obstacles(assessment, now_us);
     publish_status(assessment, now_us);

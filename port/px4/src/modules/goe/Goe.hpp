@@ -21,7 +21,6 @@
 #include <uORB/SubscriptionCallback.hpp>
 #include <uORB/SubscriptionInterval.hpp>
 #include <uORB/topics/parameter_update.h>
-#include <uORB/topics/position_setpoint_triplet.h>
 
 #include "GoeConversion.hpp"
 #include "GoeImages.hpp"
@@ -78,6 +77,7 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     void publish_status(const goe_flight_assessment_t &assessment, uint64_t now_us);
     void follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_us);
     void tell_operator(const goe_flight_assessment_t &assessment);
+    void report_dead_reckoning(uint64_t now_us);
 
     uORB::SubscriptionCallbackWorkItem _attitude_sub{this, ORB_ID(vehicle_attitude)};
     uORB::SubscriptionCallbackWorkItem _tunnel_sub{this, ORB_ID(mavlink_tunnel)};
@@ -91,6 +91,8 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
                                                               {ORB_ID(distance_sensor), 3}};
     uORB::Subscription _home_sub{ORB_ID(home_position)};
     uORB::Subscription _setpoint_sub{ORB_ID(position_setpoint_triplet)};
+    uORB::Subscription _land_detected_sub{ORB_ID(vehicle_land_detected)};
+    uORB::Subscription _landing_sub{ORB_ID(position_controller_landing_status)};
     uORB::Subscription _vehicle_status_sub{ORB_ID(vehicle_status)};
     uORB::Subscription _command_ack_sub{ORB_ID(vehicle_command_ack)};
 
@@ -118,11 +120,16 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     float _attitude_q[4]{1.f, 0.f, 0.f, 0.f};
     vehicle_local_position_s _position{};
     vehicle_status_s _vehicle_status{};
-    bool _approach{false}; /* the present setpoint is one to land */
+    position_setpoint_s _setpoint{}; /* the present one */
+    vehicle_land_detected_s _ground{};
+    position_controller_landing_status_s _landing{};
+    uint8_t _phase{GOE_FLIGHT_FLYING};
     uint8_t _self_check{0};
     uint64_t _assessed_us{0};
     uint8_t _told_action{GOE_FLIGHT_NONE};
-    GoeOverview _overview{}; /* for `goe status`: written and read under the lock */
+    bool _dead_reckoning{false};
+    uint64_t _dead_reckoning_us{0}; /* when PX4 last said so */
+    GoeOverview _overview{};        /* for `goe status`: written and read under the lock */
     pthread_mutex_t _overview_lock;
     perf_counter_t _cycle_perf{perf_alloc(PC_ELAPSED, MODULE_NAME ": cycle")};
 };

@@ -15,6 +15,8 @@ constexpr double LONGITUDE_MAX_DEG = 180.0;
 constexpr float RAD_PER_DEG = 0.01745329252f;
 constexpr unsigned TUNNEL_FEATURES = 4270u; /* payload type. Above 32767 are experiments that must not be distributed */
 constexpr uint8_t NO_CAMERA = 255u;
+constexpr uint64_t LANDING_FRESH_US =
+    500000; /* PX4 publishes its landing's status at 50 Hz while it lands, and then no more */
 
 static_assert(GOE_FLIGHT_SECTORS == sizeof(obstacle_distance_s::distances) / sizeof(uint16_t), "one to one");
 static_assert(static_cast<int>(goe_features_s::TIME_BASE_AGE) == static_cast<int>(GOE_FLIGHT_AGE), "same numbers");
@@ -80,6 +82,18 @@ bool height_by_range(const distance_sensor_s &sensor, const float q[4], float &h
 bool home_down(const home_position_s &home, float &down_m) {
     down_m = home.z;
     return home.valid_lpos && home.valid_alt;
+}
+
+uint8_t phase(const position_setpoint_s &setpoint, const vehicle_land_detected_s &ground,
+              const position_controller_landing_status_s &landing, uint64_t now_us) {
+    if (ground.landed) {
+        return GOE_FLIGHT_LANDED;
+    }
+    if (!setpoint.valid || setpoint.type != position_setpoint_s::SETPOINT_TYPE_LAND) {
+        return GOE_FLIGHT_FLYING;
+    }
+    const bool is_fresh = landing.timestamp != 0 && now_us < landing.timestamp + LANDING_FRESH_US;
+    return landing.flaring && is_fresh ? GOE_FLIGHT_FLARE : GOE_FLIGHT_APPROACH;
 }
 
 /* A time of no clock that there is cannot be understood: goe_flight_frame() refuses the camera, and counts it. */

@@ -9,7 +9,10 @@
 #include <uORB/topics/irlock_report.h>
 #include <uORB/topics/mavlink_tunnel.h>
 #include <uORB/topics/obstacle_distance.h>
+#include <uORB/topics/position_controller_landing_status.h>
+#include <uORB/topics/position_setpoint_triplet.h>
 #include <uORB/topics/vehicle_attitude.h>
+#include <uORB/topics/vehicle_land_detected.h>
 #include <uORB/topics/vehicle_local_position.h>
 
 /* Trees from May 2026 on have it. */
@@ -48,6 +51,11 @@ bool height_by_range(const distance_sensor_s &sensor, const float q[4], float &h
 
 /* The home position as a ground, in the local frame. */
 bool home_down(const home_position_s &home, float &down_m);
+
+/* Of GOE_FLIGHT_FLYING, _APPROACH, _FLARE and _LANDED. PX4 publishes the landing's status with each step of a fixed wing's landing, from
+ * the flare through the roll on the ground; the land detector reports the ground when the aircraft has all but stopped. */
+uint8_t phase(const position_setpoint_s &setpoint, const vehicle_land_detected_s &ground,
+              const position_controller_landing_status_s &landing, uint64_t now_us);
 
 /* ------------------------------------------------------------------------------------------------------ images, in -- */
 

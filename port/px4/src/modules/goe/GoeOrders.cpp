@@ -8,6 +8,7 @@ namespace {
 
 constexpr uint64_t REPEAT_US = 500000; /* without an acknowledgement */
 constexpr uint8_t RESUMES_MAX = 5;     /* times that the mission is asked for, until that is acknowledged */
+constexpr float TOO_LOW_M = 1.f;       /* by which PX4 may hold lower than the go-around requires */
 constexpr float TARGET_MOVED_M = 5.f;  /* from which on the target is sent anew */
 constexpr float CHANGE_MODE = 1.f;     /* DO_REPOSITION, param2: into Hold */
 constexpr float DEFAULT_SPEED = -1.f;  /* ... param1 */
@@ -70,9 +71,24 @@ void GoeOrders::reposition(const goe_flight_assessment_t &assessment, const Vehi
     await(command.command, vehicle);
 }
 
-void GoeOrders::go_around(const Vehicle &vehicle, vehicle_command_s &command) {
+/* PX4 does not read the altitude: it holds MIS_LND_ABRT_ALT over the landing. */
+void GoeOrders::go_around(float altitude_m, const Vehicle &vehicle, vehicle_command_s &command) {
     start(command, vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, vehicle);
+    command.param1 = vehicle.altitude_known ? altitude_m : 0.f;
     await(command.command, vehicle);
+    _goes_around = true;
+}
+
+/* Upwards, where PX4 holds. It flies straight on until it is almost that high. */
+void GoeOrders::raise(float altitude_m, const Vehicle &vehicle, vehicle_command_s &command) {
+    start(command, vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, vehicle);
+    command.param1 = DEFAULT_SPEED;
+    command.param2 = CHANGE_MODE;
+    command.param4 = NAN;
+    command.param5 = command.param6 = static_cast<double>(NAN);
+    command.param7 = altitude_m;
+    await(command.command, vehicle);
+    _raised = _goes_around = true;
 }
 
 void GoeOrders::set_mission(const Vehicle &vehicle, vehicle_command_s &command) {
@@ -94,9 +110,10 @@ bool GoeOrders::has_moved(const goe_flight_assessment_t &assessment) const {
     return square > TARGET_MOVED_M * TARGET_MOVED_M;
 }
 
-/* Of an order that was given: Hold is where it leads to, and until it has it is the mode before. */
+/* Of an order that was given: Hold is where it leads to, and until it has it is the mode before. Where DO_GO_AROUND leads to is PX4's
+ * affair. */
 void GoeOrders::watch_mode(const Vehicle &vehicle) {
-    if (!_given || _action == GOE_FLIGHT_GO_AROUND) {
+    if (!_given || (_action == GOE_FLIGHT_GO_AROUND && !_raised)) {
         return;
     }
     if (vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER) {
@@ -108,7 +125,7 @@ void GoeOrders::watch_mode(const Vehicle &vehicle) {
 
 void GoeOrders::begin(goe_flight_action_t action) {
     if (_action == GOE_FLIGHT_NONE) {
-        _has_led = _overruled = _given = false;
+        _has_led = _overruled = _given = _goes_around = _raised = false;
     }
     _action = action;
     _wants_mission = false;
@@ -124,7 +141,7 @@ bool GoeOrders::may_resume(const Vehicle &vehicle) const {
 bool GoeOrders::is_past(const Vehicle &vehicle) const { return vehicle.obstacle_known && _action != GOE_FLIGHT_HOLD; }
 
 bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &command) {
-    _wants_mission = resume && _has_led && !_overruled && is_past(vehicle) &&
+    _wants_mission = resume && _has_led && !_overruled && !_goes_around && is_past(vehicle) &&
                      _mode_before == vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
     _resumes_left = RESUMES_MAX;
     _action = GOE_FLIGHT_NONE;
@@ -145,20 +162,43 @@ bool GoeOrders::repeat_resume(const Vehicle &vehicle, vehicle_command_s &command
     return true;
 }
 
+bool GoeOrders::is_unanswered(const Vehicle &vehicle) const {
+    return _awaited != 0 && vehicle.now_us - _sent_us >= REPEAT_US;
+}
+
+/* PX4 acknowledges DO_GO_AROUND without a look at it, and only a fixed wing that lands flies it. */
+bool GoeOrders::go_on_around(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, bool is_new,
+                             vehicle_command_s &command) {
+    const float altitude_m = vehicle.origin_alt_m - assessment.target_ned_m[2];
+    if (vehicle.has_wings && vehicle.lands) {
+        const bool due = is_new || !_given || is_unanswered(vehicle);
+        if (due) {
+            go_around(altitude_m, vehicle, command);
+        }
+        return due;
+    }
+    const bool too_low = vehicle.altitude_known && altitude_m > vehicle.setpoint_alt_m + TOO_LOW_M;
+    const bool due = too_low && (!_raised || vehicle.now_us - _sent_us >= REPEAT_US);
+    if (due) {
+        raise(altitude_m, vehicle, command);
+    }
+    return due;
+}
+
 bool GoeOrders::go_on(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool is_new,
                       vehicle_command_s &command) {
-    const bool unanswered = _awaited != 0 && vehicle.now_us - _sent_us >= REPEAT_US;
-    const bool moved = is_place(assessment.action) && has_moved(assessment);
     watch_mode(vehicle);
-    if (_overruled || !may_command(assessment.action, vehicle, react) || !(is_new || !_given || unanswered || moved)) {
+    if (_overruled || !may_command(assessment.action, vehicle, react)) {
         return false;
     }
     if (assessment.action == GOE_FLIGHT_GO_AROUND) {
-        go_around(vehicle, command);
-    } else {
+        return go_on_around(assessment, vehicle, is_new, command);
+    }
+    const bool due = is_new || !_given || is_unanswered(vehicle) || has_moved(assessment);
+    if (due) {
         reposition(assessment, vehicle, command);
     }
-    return true;
+    return due;
 }
 
 bool GoeOrders::follow(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool resume,

@@ -9,7 +9,8 @@
 #include "goe_flight.h"
 
 /* Left, right, climb and hold become DO_REPOSITION with a change of mode to Hold; again when the target moves by 5 m, and until
- * PX4 acknowledges it. Go around becomes DO_GO_AROUND. Only while armed, in Mission or Hold (go around: also in Land). A pilot or
+ * PX4 acknowledges it. Go around becomes DO_GO_AROUND, and when PX4 has taken that, DO_REPOSITION upwards where it holds too low for the
+ * obstacle's top. Only while armed, in Mission or Hold (go around: also in Land). A pilot or
  * a failsafe that chooses another mode is not fought: until the end of the order nothing more is sent. The mission goes on only
  * when the obstacle is known to be passed. */
 class GoeOrders {
@@ -17,10 +18,13 @@ class GoeOrders {
     /* Where the aircraft is and how PX4 flies it. */
     struct Vehicle {
         bool armed;
+        bool has_wings;      /* a fixed wing, at present */
+        bool lands;          /* the present setpoint is one to land */
         uint8_t nav_state;   /* vehicle_status_s::NAVIGATION_STATE_... */
         bool obstacle_known; /* the layer still knows the place of that of slot() */
         bool origin_known, altitude_known;
-        float origin_alt_m; /* over the sea, of the local frame's down = 0 */
+        float origin_alt_m;   /* over the sea, of the local frame's down = 0 */
+        float setpoint_alt_m; /* ... of the present setpoint */
         uint64_t now_us;
     };
 
@@ -51,13 +55,18 @@ class GoeOrders {
     bool has_moved(const goe_flight_assessment_t &assessment) const;
     void await(uint32_t command, const Vehicle &vehicle);
     void reposition(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, vehicle_command_s &command);
-    void go_around(const Vehicle &vehicle, vehicle_command_s &command);
+    void go_around(float altitude_m, const Vehicle &vehicle, vehicle_command_s &command);
+    void raise(float altitude_m, const Vehicle &vehicle, vehicle_command_s &command);
+    bool go_on_around(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, bool is_new,
+                      vehicle_command_s &command);
+    bool is_unanswered(const Vehicle &vehicle) const;
     void set_mission(const Vehicle &vehicle, vehicle_command_s &command);
 
     goe_flight_action_t _action{GOE_FLIGHT_NONE};
     int8_t _slot{-1};
     uint8_t _mode_before{0};
     bool _given{false}, _has_led{false}, _overruled{false}, _wants_mission{false};
+    bool _goes_around{false}, _raised{false}; /* since the order began */
     uint8_t _resumes_left{0};
     uint32_t _awaited{0}; /* command whose acknowledgement is awaited; 0: none */
     uint64_t _sent_us{0};

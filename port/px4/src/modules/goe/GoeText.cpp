@@ -72,12 +72,25 @@ void tell_tracks(const goe_status_s &s, char *line) {
              s.full);
 }
 
+const char *phase_text(uint8_t phase) {
+    switch (phase) {
+        case GOE_FLIGHT_APPROACH:
+            return "; on approach";
+        case GOE_FLIGHT_FLARE:
+            return "; in the flare";
+        case GOE_FLIGHT_LANDED:
+            return "; on the ground";
+        default:
+            return "";
+    }
+}
+
 void tell_order(const GoeOverview &o, char *line) {
     const goe_status_s &s = o.status;
     const char *const who = s.overruled ? ", overruled" : s.flown ? ", given to PX4" : ", told only";
     if (s.action == goe_status_s::ACTION_NONE) {
         snprintf(line, GOE_TEXT_LINE, "order      none%s%s", o.react == 0 ? "; GOE_REACT is 0: none is ever flown" : "",
-                 o.approach ? "; on approach" : "");
+                 phase_text(o.phase));
     } else {
         snprintf(line, GOE_TEXT_LINE, "order      %s%s%s, needs %.1f s",
                  goe_flight_action_text(static_cast<goe_flight_action_t>(s.action)), who, s.late ? ", LATE" : "",
@@ -131,8 +144,8 @@ void tell_state(const GoeOverview &o, unsigned number_of_line, char *line) {
             tell_settings(o, line);
             break;
         case 2:
-            snprintf(line, GOE_TEXT_LINE, "pose       %s, jumps of PX4's filter taken along: %u",
-                     yes(o.status.pose_alive), o.status.resets);
+            snprintf(line, GOE_TEXT_LINE, "pose       %s%s, jumps of PX4's filter taken along: %u",
+                     yes(o.status.pose_alive), o.status.dead_reckoning ? ", by dead reckoning" : "", o.status.resets);
             break;
         case 3:
             tell_detector(o.status, line);

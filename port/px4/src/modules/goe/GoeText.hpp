@@ -15,7 +15,7 @@ struct GoeOverview {
     float north_m, east_m; /* the aircraft */
     int32_t react;
     const char *bad_field; /* parameter that was refused, by the setting's name; null: none */
-    bool approach;
+    uint8_t phase;         /* GOE_FLIGHT_FLYING, ... */
 };
 
 /* The parameter behind a setting's name, of those that must be set; else the setting's name itself. */

@@ -4,9 +4,10 @@
 #include "standin.hpp"
 
 struct position_setpoint_s {
-    static constexpr uint8_t SETPOINT_TYPE_POSITION = 0, SETPOINT_TYPE_LAND = 4;
+    static constexpr uint8_t SETPOINT_TYPE_POSITION = 0, SETPOINT_TYPE_LOITER = 2, SETPOINT_TYPE_LAND = 4;
     bool valid;
     uint8_t type;
+    float alt; /* over the sea */
 };
 
 struct position_setpoint_triplet_s {

@@ -1,0 +1,11 @@
+/* Fields that are used of PX4's topic: standin.hpp. SPDX-License-Identifier: MIT */
+#pragma once
+
+#include "standin.hpp"
+
+struct position_controller_landing_status_s {
+    uint64_t timestamp;
+    bool flaring;
+};
+
+STANDIN_TOPIC(position_controller_landing_status, 1)
