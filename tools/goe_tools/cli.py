@@ -20,8 +20,23 @@ EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C
 
 
+def commands_of(package: str) -> Sequence[str]:
+    """Nothing of a package that is not installed."""
+    try:
+        return tuple(importlib.import_module(f"{package}.__main__").COMMANDS)
+    except ModuleNotFoundError:
+        return ()
+
+
 class Parser(argparse.ArgumentParser):
-    """Tells the name that a mistyped command or option was probably meant to be."""
+    """Tells the name that a mistyped command or option was probably meant to be, and the package that has it."""
+
+    package = ""  # of the commands; empty for the parser of one of them
+
+    def elsewhere(self) -> dict[str, str]:
+        """How the commands of the other packages are called, by name."""
+        others = [package for package in PACKAGES if self.package and package != self.package]
+        return {name: f"python -m {package} {name}" for package in others for name in commands_of(package)}
 
     def words(self) -> list[str]:
         """Its options, its commands, and their options: a command hands back what it does not know."""
@@ -36,8 +51,10 @@ class Parser(argparse.ArgumentParser):
         known = self.words()
         mistyped = re.search(r"argument command: invalid choice: '([^']*)'|unrecognized arguments: (\S+)", message)
         word = (mistyped[1] or mistyped[2]).split("=")[0] if mistyped else ""
-        near = difflib.get_close_matches(word, [name for name in known if (name[0] == "-") == word.startswith("-")], 1)
-        super().error(f"{message}; did you mean {near[0]}?" if near else message)
+        others = self.elsewhere() if mistyped and mistyped[1] else {}
+        names = [name for name in (*known, *others) if (name[0] == "-") == word.startswith("-")]
+        near = difflib.get_close_matches(word, names, 1)
+        super().error(f"{message}; did you mean {others.get(near[0], near[0])}?" if near else message)
 
 
 def parser_for(
@@ -46,6 +63,7 @@ def parser_for(
     """The parser of a command line. Only the module of the command that is asked for is imported: plots, tables and
     solvers take their time to start."""
     parser = Parser(prog=package, description=what)
+    parser.package = package
     commands = parser.add_subparsers(dest="command", required=True)
     asked = next((word for word in words if not word.startswith("-")), None)
     for name, (module_name, text) in known.items():
