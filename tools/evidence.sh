@@ -6,10 +6,10 @@
 #   tools/evidence.sh --show              prints that record, or the newest release's
 #   tools/evidence.sh --release VERSION   makes tests/evidence/VERSION.json of that record
 #
-# Further options are those of python -m goe_tools evidence --help. Exit status 1: a goal was missed.
+# Further options are those of python -m ci evidence --help. Exit status 1: a goal was missed.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 tools/setup.sh >&2
 export OPENBLAS_NUM_THREADS=1
-exec .venv/bin/python -m goe_tools evidence "$@"
+exec .venv/bin/python -m ci evidence "$@"

@@ -273,7 +273,7 @@ test_companion_sanitized() {
 }
 pytest_affected() {
     local files
-    mapfile -t files < <("$python" -m ci.affected)
+    mapfile -t files < <("$python" -m ci affected)
     if [ ${#files[@]} = 0 ]; then
         echo "the change affects no test in Python"
     else
@@ -318,31 +318,31 @@ if has shellcheck; then
 else
     lacks "shellcheck (not installed)"
 fi
-add "golden data are what their generator makes" "$python" -m goe_tools golden --check tests/c/golden
+add "golden data are what their generator makes" "$python" -m bench golden --check tests/c/golden
 add "embedded logs are what their generator makes" \
-    "$python" -m goe_tools embed_logs --out tests/targets/embedded_logs.c --check
-add "compare with the references: tests/data" "$python" -m goe_tools compare tests/data/*/
+    "$python" -m ci embed_logs --out tests/targets/embedded_logs.c --check
+add "compare with the references: tests/data" "$python" -m bench compare tests/data/*/
 if [ -d "$flights" ]; then
-    add "compare with the references: recorded flights" "$python" -m goe_tools compare "$flights"/*/
+    add "compare with the references: recorded flights" "$python" -m bench compare "$flights"/*/
 else
     skip "comparison on recorded flights: no folder $flights (GOE_KITTI_DIR)"
 fi
 
 if has cppcheck && has gcc; then
-    tells='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m goe_tools evidence --quick --only misra --only analyzers --jobs 1
+    tells='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m ci evidence --quick --only misra --only analyzers --jobs 1
 else
     lacks "MISRA C:2012 and gcc -fanalyzer (no cppcheck or gcc)"
 fi
 if has frama-c; then
-    add "proof: quick part" "$python" -m goe_tools evidence --quick --only proof --jobs 1
+    add "proof: quick part" "$python" -m ci evidence --quick --only proof --jobs 1
 else
     lacks "proof (no frama-c)"
 fi
 tells='tests passed|Total Test time' add "ctest: targets" \
     ctest --test-dir build/tests/targets --output-on-failure -j "$jobs" # every target under QEMU
 if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
-    after="ctest: targets" add "cost ledger" "$python" -m goe_tools ledger --check # of the builds that ctest has made
-    after="cost ledger" add "cost of the flight layer" "$python" -m goe_tools flight_cost
+    after="ctest: targets" add "cost ledger" "$python" -m ci ledger --check # of the builds that ctest has made
+    after="cost ledger" add "cost of the flight layer" "$python" -m ci flight_cost
 else
     lacks "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
 fi
@@ -360,7 +360,7 @@ fi
 if has clang-19 && has llvm-cov-19 && has llvm-profdata-19 &&
     find "$(clang-19 --print-resource-dir)/" -name 'libclang_rt.profile*' | grep -q .; then
     tells='^\| coverage' add "coverage of the unit tests" \
-        "$python" -m goe_tools evidence --quick --only coverage --jobs "$jobs"
+        "$python" -m ci evidence --quick --only coverage --jobs "$jobs"
 else
     lacks "coverage of the unit tests (needs clang-19, llvm-19 and libclang-rt-19-dev)"
 fi

@@ -2,7 +2,7 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
-/* Minimax polynomials in z = t^2, made by `python -m goe_tools minimax`; the bounds are those of the polynomials alone. */
+/* Minimax polynomials in z = t^2, made by `python -m bench minimax`; the bounds are those of the polynomials alone. */
 #define TAN_PI_8 0.414213562f
 #define ATAN_1 0.333327567f /* atan t = t - t z (A1 - A2 z + A3 z^2 - A4 z^3), |t| <= tan(pi/8): 5e-9 rad */
 #define ATAN_2 0.199718793f

@@ -6,7 +6,7 @@
 #if GOE_WITH_HAZARD
 #include "maths/goe_scalar.h"
 
-/* Minimax polynomial made by `python -m goe_tools minimax`. The upper tail is N(x)^-8, N = N1 + x (N2 + x (N3 + ...)), on
+/* Minimax polynomial made by `python -m bench minimax`. The upper tail is N(x)^-8, N = N1 + x (N2 + x (N3 + ...)), on
  * 0 <= x <= 5.2: 2.0e-7. The eighth power needs no exponential and falls off as fast as the tail does. */
 #define NORMAL_1 1.09050768f
 #define NORMAL_2 0.10876589f

@@ -21,7 +21,7 @@ bool goe_flight_all_within(const float *numbers, int count, float limit) {
 
 #define DEG_MAX 1.0e6f /* quarters of an angle beyond it fit no int */
 
-/* Minimax, made by `python -m goe_tools minimax`: 5e-9 rad of themselves. */
+/* Minimax, made by `python -m bench minimax`: 5e-9 rad of themselves. */
 #define TAN_PI_8 0.414213562f
 #define ATAN_3 0.333327567f /* atan t = t - t z (A3 - A5 z + A7 z^2 - A9 z^3), |t| <= tan(pi/8), z = t^2 */
 #define ATAN_5 0.199718793f

@@ -27,6 +27,6 @@ endforeach()
 list(GET GOE_TARGET_BOARDS 0 GOE_TARGET_BOARD)
 set(CMAKE_CROSSCOMPILING_EMULATOR ${goe_qemu_${GOE_TARGET_BOARD}})
 
-# Told to tools/goe_tools/cost.
+# Told to tools/ci/cost.
 set(GOE_TARGET_BOARD ${GOE_TARGET_BOARD} CACHE INTERNAL "Board that the ledger is measured on")
 set(GOE_QEMU_COMMAND "${CMAKE_CROSSCOMPILING_EMULATOR}" CACHE INTERNAL "Command that runs an image on it")

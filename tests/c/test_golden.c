@@ -1,4 +1,4 @@
-/* Committed reference data: what golden/ holds was made by `python -m goe_tools golden`. SPDX-License-Identifier: MIT
+/* Committed reference data: what golden/ holds was made by `python -m bench golden`. SPDX-License-Identifier: MIT
  * A change of one bit anywhere on the committed flight shows here, with the image and the quantity. */
 /* tests: lib/window/goe_window.c */
 #include <math.h>

@@ -1,6 +1,6 @@
 """Prints how many rows goe_replay takes in a second of the processor: of a long log, all columns filled, from a pipe.
 
-    python tests/host/bench_replay.py ROWS      tools/bench.sh runs it
+python tests/host/bench_replay.py ROWS      tools/bench.sh runs it
 """
 
 from __future__ import annotations

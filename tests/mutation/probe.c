@@ -1,6 +1,6 @@
 /* What a change of the library could change, as one hash for each kind of input. SPDX-License-Identifier: MIT
  *
- * `python -m goe_tools evidence --only mutation` runs it with the library and with each mutant that no unit test notices: lines
+ * `python -m ci evidence --only mutation` runs it with the library and with each mutant that no unit test notices: lines
  * that differ tell what the mutant changes, and a mutant that changes none counts as the same program. It asserts nothing, and its
  * hashes are of this machine: they are compared with those of the library as it is, never kept. */
 #include <stddef.h>

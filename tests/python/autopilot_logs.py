@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from goe_tools.flights.boxes import correlated
+from goe_tools.flights.rotations import euler, matrices, mounting, multiply, quaternions, small_rotations
+from goe_tools.flights.scene import project
 from goe_tools.logs.obslog import Camera, write_camera
-from goe_tools.optimum.flights.boxes import correlated
-from goe_tools.optimum.flights.rotations import euler, matrices, mounting, multiply, quaternions, small_rotations
-from goe_tools.optimum.flights.scene import project
 
 START_S = 20.0  # of the autopilot's clock at the first sample
 SPEED_M_S = 17.0

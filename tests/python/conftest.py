@@ -1,4 +1,4 @@
-"""Shared by the tests of tools/goe_tools."""
+"""Shared by the tests of the Python tools."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from goe_tools.library import ready
 from goe_tools.logs.obslog import Camera, ObservationLog, write_log
 from goe_tools.logs.scene import Scene, make_log
-from goe_tools.optimum.library import ready
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -21,8 +21,8 @@ sys.path.insert(0, {tools!r})
 import numpy as np
 from goe_tools.logs.estimates import LABELS, NUMBERS
 from goe_tools.logs.obslog import read_log
-from goe_tools.reference.mirror32 import Mirror32
-from goe_tools.reference.settings import Settings
+from bench.reference.mirror32 import Mirror32
+from bench.reference.settings import Settings
 
 option = {{name: sys.argv[i + 1] for i, name in enumerate(sys.argv) if name.startswith("--")}}
 change = {change!r}

@@ -9,17 +9,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.attack import approach, errors, judging, rows, scenario, turns, view
-from goe_tools.attack.judging import BOX, DISC, PRISM, X0, Z0, Answers, Outcome
-from goe_tools.attack.scenario import Scenario, Told, Truth
-from goe_tools.attack.solids import Solid
-from goe_tools.optimum.goals import attack, hazard
-from goe_tools.optimum.goals.goal import NAMES, Goal
-from goe_tools.optimum.goals.work import QUICK
-from goe_tools.optimum.library import METHODS, Track, named_settings, package, run, to_package
+from bench.__main__ import main
+from bench.attack import approach, errors, judging, rows, scenario, turns, view
+from bench.attack import command as attack_command
+from bench.attack.judging import BOX, DISC, PRISM, X0, Z0, Answers, Outcome
+from bench.attack.scenario import Scenario, Told, Truth
+from bench.attack.solids import Solid
+from bench.optimum.goals import attack, hazard
+from bench.optimum.goals.goal import NAMES, Goal
+from bench.optimum.goals.work import QUICK
+from goe_tools.library import METHODS, Track, named_settings, package, run, to_package
+from goe_tools.models.coverage import coverage
 from goe_tools.places import ROOT
-from goe_tools.report import attack_command
+from goe_tools.report import attack_lines
 
 NAN = math.nan
 EXACT = {
@@ -262,9 +264,9 @@ def outcome(
 
 def test_coverage_of_known_figure() -> None:
     rng = np.random.default_rng(5)
-    share = judging.coverage([outcome(rng.standard_normal(200)) for _ in range(100)])
+    share = coverage([outcome(rng.standard_normal(200)) for _ in range(100)])
     assert share[Z0] == pytest.approx(95.45, abs=0.5) and np.isnan(share[X0])
-    assert judging.coverage([outcome([0.0] * 30 + [3.0] * 10), outcome([NAN, 2.5]), outcome([NAN])])[Z0] == 37.5
+    assert coverage([outcome([0.0] * 30 + [3.0] * 10), outcome([NAN, 2.5]), outcome([NAN])])[Z0] == 37.5
 
 
 @pytest.mark.parametrize(
@@ -445,12 +447,19 @@ def test_good_answers_meet_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> Non
         row = replace(rows.row_named(title), asked=(rows.cover(90), rows.wrong(4), rows.suspect(1)))
         goals = attack.goals_of("attack", row, [attack.perform(row, number) for number in (1, 3, 5)])
         met = {goal.name.split(": ")[1]: goal.met for goal in goals}
-        assert met[rows.COVER] and met[rows.WRONG] and met[rows.SUSPECT] and met[rows.ANSWERS] is None
+        assert (
+            met[attack_lines.COVER]
+            and met[attack_lines.WRONG]
+            and met[attack_lines.SUSPECT]
+            and met[attack_lines.ANSWERS] is None
+        )
     mover = rows.row_named("across 5 m/s")
     goals = attack.goals_of("attack", mover, [attack.perform(mover, 1)])
     told = {goal.name.split(": ")[1]: goal for goal in goals}
-    assert told[rows.REASON].values[rows.IN_4_S] == 0.0 and told[rows.REASON].met is False
-    assert math.isnan(told[rows.VELOCITY].values[rows.IMAGES]) and told[rows.VELOCITY].met is False
+    assert told[attack_lines.REASON].values[attack_lines.IN_4_S] == 0.0 and told[attack_lines.REASON].met is False
+    assert (
+        math.isnan(told[attack_lines.VELOCITY].values[attack_lines.IMAGES]) and told[attack_lines.VELOCITY].met is False
+    )
 
 
 def test_reasons_and_velocities_of_a_later_library_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -486,11 +495,13 @@ def test_the_library_over_some_rows(
     monkeypatch.setattr(attack, "recorded_scenes", lambda count, seed: [])
     goals = attack.attack_group("attack", AMOUNT)
     baseline, late = lines_of(goals, "baseline"), lines_of(goals, "poses 100 ms late")
-    assert min(baseline[rows.COVER].values.values()) > 80.0 and set(baseline[rows.COVER].values) == set(NAMES)
-    assert late[rows.COVER].values["Z0"] < baseline[rows.COVER].values["Z0"]
-    by_boxes = lines_of(goals, "baseline, by boxes")[rows.COVER]
+    assert min(baseline[attack_lines.COVER].values.values()) > 80.0 and set(baseline[attack_lines.COVER].values) == set(
+        NAMES
+    )
+    assert late[attack_lines.COVER].values["Z0"] < baseline[attack_lines.COVER].values["Z0"]
+    by_boxes = lines_of(goals, "baseline, by boxes")[attack_lines.COVER]
     assert by_boxes.met and math.isnan(by_boxes.values["L"]) and by_boxes.asked == ("X0", "Z0", "W", "H")
-    assert lines_of(goals, "ENU")[rows.ODD].values[rows.FLAGGED] > 60.0
+    assert lines_of(goals, "ENU")[attack_lines.ODD].values[attack_lines.FLAGGED] > 60.0
     left = lines_of(goals, "slope 3 %")["settings left out"]
     assert left.values == {"navigation.no_such_setting": 1.0} and left.met is None
     said = capsys.readouterr().out
@@ -523,12 +534,18 @@ def test_tables_of_the_page_tell_what_the_goals_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     found = [
-        _goal("attack: as told", f"calm: {rows.COVER}", {"X0": 97.4, "Z0": 88.6}, (90.0, 100.0)),
-        _goal("attack: as told", f"calm: {rows.WRONG}", {rows.ANY: 2.0, rows.POSITION: 1.0}),
-        _goal("attack: movers", f"away: {rows.REASON}", {rows.IN_4_S: 24.0, rows.IN_8_S: 56.0, rows.EVER: 78.0}),
-        _goal("hazard", f"corners: {approach.COVERED}", {"time": 97.0, "miss": 98.0, "clearance": 95.0}, (90.0, 100.0)),
-        _goal("hazard", f"corners: {approach.UNWARNED}", {"violators": 0.3}),
-        _goal("hazard", f"corners: {approach.FALSE}", {"passes": 4.6}),
+        _goal("attack: as told", f"calm: {attack_lines.COVER}", {"X0": 97.4, "Z0": 88.6}, (90.0, 100.0)),
+        _goal("attack: as told", f"calm: {attack_lines.WRONG}", {attack_lines.ANY: 2.0, attack_lines.POSITION: 1.0}),
+        _goal(
+            "attack: movers",
+            f"away: {attack_lines.REASON}",
+            {attack_lines.IN_4_S: 24.0, attack_lines.IN_8_S: 56.0, attack_lines.EVER: 78.0},
+        ),
+        _goal(
+            "hazard", f"corners: {attack_lines.COVERED}", {"time": 97.0, "miss": 98.0, "clearance": 95.0}, (90.0, 100.0)
+        ),
+        _goal("hazard", f"corners: {attack_lines.UNWARNED}", {"violators": 0.3}),
+        _goal("hazard", f"corners: {attack_lines.FALSE}", {"passes": 4.6}),
     ]
     file, page = tmp_path / "goals.json", tmp_path / "README.md"
     file.write_text(json.dumps({"quick": False, "goals": found}), encoding="utf-8")

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.logs.obslog import LogError
-from goe_tools.optimum.flights.box_logs import (
+from goe_tools.flights.box_logs import (
     FOLDER_VARIABLE,
     final_depth,
     kitti_box_flights,
@@ -17,8 +16,9 @@ from goe_tools.optimum.flights.box_logs import (
     odmd_flights,
     odmd_folder,
 )
-from goe_tools.optimum.flights.boxes import BUILDING, EXACT, MAST, WALL, BoxOptions, box_flight, clipped, correlated
-from goe_tools.optimum.flights.flight import Flight
+from goe_tools.flights.boxes import BUILDING, EXACT, MAST, WALL, BoxOptions, box_flight, clipped, correlated
+from goe_tools.flights.flight import Flight
+from goe_tools.logs.obslog import LogError
 
 IMAGE = (1280.0, 1280.0)
 ROLLING = replace(EXACT, roll_deg=25.0)

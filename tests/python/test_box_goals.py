@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.optimum.flights.box_logs import FOLDER_VARIABLE
-from goe_tools.optimum.flights.boxes import BUILDING, MAST, BoxOptions, box_flight
-from goe_tools.optimum.flights.flight import Flight
-from goe_tools.optimum.goals import boxes
-from goe_tools.optimum.goals.goal import Goal
-from goe_tools.optimum.goals.work import QUICK
-from goe_tools.optimum.judge import HEIGHT, WIDTH, X0, Z0
-from goe_tools.optimum.library import METHODS, MODEL_PRISM, Track, camera_settings, estimate, ready
-from goe_tools.optimum.prism_offline import PrismFit
+from bench.optimum.goals import boxes
+from bench.optimum.goals.goal import Goal
+from bench.optimum.goals.work import QUICK
+from goe_tools.flights.box_logs import FOLDER_VARIABLE
+from goe_tools.flights.boxes import BUILDING, MAST, BoxOptions, box_flight
+from goe_tools.flights.flight import Flight
+from goe_tools.library import METHODS, MODEL_PRISM, Track, camera_settings, estimate, ready
+from goe_tools.models.judge import HEIGHT, WIDTH, X0, Z0
+from goe_tools.models.prism_offline import PrismFit
 
 NAN = math.nan
 AMOUNT = replace(QUICK, boxes=1)

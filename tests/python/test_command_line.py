@@ -1,24 +1,40 @@
-"""What goe_tools says of a mistyped command line."""
+"""What the three packages of tools say of a mistyped command line."""
 
 from __future__ import annotations
 
 import pytest
+from bench.__main__ import main as bench_main
+from ci.__main__ import main as ci_main
 from goe_tools.__main__ import main
+from goe_tools.cli import commands_of
+
+MAIN = {"goe_tools": main, "bench": bench_main, "ci": ci_main}
 
 
 @pytest.mark.parametrize(
-    ("words", "guess"),
+    ("package", "words", "guess"),
     [
-        (["tabel"], "did you mean table?"),
-        (["table", "estimates.csv", "--thruth", "truth.csv"], "did you mean --truth?"),
-        (["table", "estimates.csv", "--colour"], ""),
-        (["goals", "--quik"], "did you mean --quick?"),
-        (["goals", "--half", "setle"], ""),
+        ("goe_tools", ["tabel"], "did you mean table?"),
+        ("goe_tools", ["table", "estimates.csv", "--thruth", "truth.csv"], "did you mean --truth?"),
+        ("goe_tools", ["table", "estimates.csv", "--colour"], ""),
+        ("bench", ["goals", "--quik"], "did you mean --quick?"),
+        ("bench", ["goals", "--half", "setle"], ""),
+        ("goe_tools", ["golden"], "did you mean python -m bench golden?"),
+        ("goe_tools", ["ledgr"], "did you mean python -m ci ledger?"),
+        ("bench", ["tabel"], "did you mean python -m goe_tools table?"),
+        ("bench", ["settings", "--check", "x"], "did you mean python -m ci settings?"),
+        ("ci", ["view", "log"], "did you mean python -m goe_tools view?"),
+        ("ci", ["goals"], "did you mean python -m bench goals?"),
+        ("ci", ["xyzzy"], ""),
     ],
 )
-def test_a_mistyped_word(words: list[str], guess: str, capsys) -> None:
+def test_a_mistyped_word(package: str, words: list[str], guess: str, capsys) -> None:
     with pytest.raises(SystemExit) as end:
-        main(words)
+        MAIN[package](words)
     assert end.value.code == 2
     told = capsys.readouterr().err.strip()
     assert told.endswith(guess) and ("did you mean" in told) == bool(guess)
+
+
+def test_a_package_that_is_not_installed_has_no_commands() -> None:
+    assert commands_of("goe_tools_of_nobody") == ()

@@ -6,24 +6,36 @@ import subprocess
 import sys
 
 import pytest
-from goe_tools.__main__ import COMMANDS, main
+from bench import __main__ as bench
+from ci import __main__ as ci
+from goe_tools import __main__ as goe_tools
+from goe_tools.cli import PACKAGES
 
+MODULES = {"goe_tools": goe_tools, "bench": bench, "ci": ci}
 HEAVY = ("matplotlib", "numpy", "rich", "scipy", "jinja2")
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_tells_its_arguments(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(("package", "name"), [(p, name) for p, module in MODULES.items() for name in module.COMMANDS])
+def test_every_command_tells_its_arguments(package: str, name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stop:
-        main([name, "--help"])
+        MODULES[package].main([name, "--help"])
     assert stop.value.code == 0
     told = capsys.readouterr().out
-    assert told.startswith(f"usage: goe_tools {name} ") and COMMANDS[name][1][1:] in " ".join(told.split())
+    assert told.startswith(f"usage: {package} {name} ")
+    assert MODULES[package].COMMANDS[name][1][1:] in " ".join(told.split())
 
 
+def test_a_command_is_in_one_package() -> None:
+    assert tuple(MODULES) == PACKAGES
+    names = [name for module in MODULES.values() for name in module.COMMANDS]
+    assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize("package", MODULES)
 @pytest.mark.parametrize("words", [["--help"], ["nothing"], []], ids=["help", "unknown", "none"])
-def test_without_a_command_nothing_heavy_is_imported(words: list[str]) -> None:
+def test_without_a_command_nothing_heavy_is_imported(package: str, words: list[str]) -> None:
     program = (
-        "import sys\nfrom goe_tools.__main__ import main\n"
+        f"import sys\nfrom {package}.__main__ import main\n"
         f"try:\n    main({words!r})\nexcept SystemExit as stop:\n    print(stop.code)\n"
         f"print([name for name in {HEAVY!r} if name in sys.modules])"
     )
@@ -31,4 +43,5 @@ def test_without_a_command_nothing_heavy_is_imported(words: list[str]) -> None:
     code, imported = done.stdout.splitlines()[-2:]
     assert code == ("0" if words == ["--help"] else "2")
     assert imported == "[]"
-    assert all(name in done.stdout + done.stderr for name in COMMANDS)  # the help, or the error, names them
+    told = done.stdout + done.stderr  # the help, or the error, names them
+    assert all(name in told for name in MODULES[package].COMMANDS)

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.__main__ import main
+from bench.__main__ import main
+from bench.reference import compare
+from bench.reference.settings import Settings
 from goe_tools.logs.obslog import FEATURES, ObservationLog, read_log, write_log
 from goe_tools.logs.projection import quaternion_of, yaw_pitch_roll
 from goe_tools.logs.scene import Scene, make_log
-from goe_tools.reference import compare
-from goe_tools.reference.settings import Settings
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -26,8 +26,8 @@ from autopilot_logs import (
     write_ulog,
 )
 from goe_tools.__main__ import main
+from goe_tools.flights.rotations import matrices, quaternions
 from goe_tools.logs.obslog import Frame, ObservationLog, read_log
-from goe_tools.optimum.flights.rotations import matrices, quaternions
 
 for module in ("pyulog", "pymavlink"):
     pytest.importorskip(module, reason=f"{module} is not installed (tools/setup.sh)")

@@ -7,16 +7,16 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.cost import book, growth, guarantees, instructions, measuring, pages, parts, stack, stated
-from goe_tools.cost import ledger as command
-from goe_tools.cost.building import Build, library_command, shown_flags
-from goe_tools.cost.instructions import PUBLIC
-from goe_tools.cost.longest.loop_bounds import Row
-from goe_tools.cost.longest.proving import Proof
-from goe_tools.cost.longest.trip_counts import Trips
-from goe_tools.cost.modules import bytes_of_object
-from goe_tools.cost.running import LedgerError
+from bench.running import LedgerError
+from ci.__main__ import main
+from ci.cost import book, growth, guarantees, instructions, measuring, pages, parts, stack, stated
+from ci.cost import ledger as command
+from ci.cost.building import Build, library_command, shown_flags
+from ci.cost.instructions import PUBLIC
+from ci.cost.longest.loop_bounds import Row
+from ci.cost.longest.proving import Proof
+from ci.cost.longest.trip_counts import Trips
+from ci.cost.modules import bytes_of_object
 
 ROOT = Path(__file__).resolve().parents[2]
 ROWS_MOST = 440  # of the ledger: some 11 for a public function, of which there are three more

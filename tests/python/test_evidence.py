@@ -9,10 +9,10 @@ from dataclasses import asdict
 from pathlib import Path
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.evidence import command
-from goe_tools.evidence.parts import Amount, NotHereError
-from goe_tools.evidence.record import Kept, Result, Row, read
+from ci.__main__ import main
+from ci.evidence import command
+from ci.evidence.parts import Amount, NotHereError
+from ci.evidence.record import Kept, Result, Row, read
 
 ROOT = Path(__file__).resolve().parents[2]
 GOOD = Result([Row("lines", "10 of 10", "all", True), Row("seconds", "3", "", None)], "why")

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from goe_tools.evidence.coverage import REASONS, count, faults, per_file
-from goe_tools.evidence.coverage_counts import CountError, Item, items
-from goe_tools.evidence.coverage_reasons import COLUMNS, Reason, read, settle
+from ci.evidence.coverage import REASONS, count, faults, per_file
+from ci.evidence.coverage_counts import CountError, Item, items
+from ci.evidence.coverage_reasons import COLUMNS, Reason, read, settle
 from goe_tools.logs.obslog import LogError
 
 SOURCE = """\

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from goe_tools.evidence import flips
+from ci.evidence import flips
 
 HEADER = (
     "flips,flight,images,field,bits,crashed,hung,not_finite,undefined,corrupted,suspect,told,wrong,was_wrong,masked"

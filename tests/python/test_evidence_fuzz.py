@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.evidence import command, fuzz
-from goe_tools.evidence.fuzz import MEMORY, PLAIN, SANITIZED, BrokenError, Job
-from goe_tools.evidence.fuzz_state import Build, State, read_state, write_state
-from goe_tools.evidence.record import read
+from ci.__main__ import main
+from ci.evidence import command, fuzz
+from ci.evidence.fuzz import MEMORY, PLAIN, SANITIZED, BrokenError, Job
+from ci.evidence.fuzz_state import Build, State, read_state, write_state
+from ci.evidence.record import read
 
 ROOT = Path(__file__).resolve().parents[2]
 

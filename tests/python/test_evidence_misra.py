@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from goe_tools.evidence import analyzers, cppcheck, misra
+from ci.evidence import analyzers, cppcheck, misra
 from goe_tools.places import ROOT
 
 

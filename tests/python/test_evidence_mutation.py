@@ -8,11 +8,11 @@ from dataclasses import asdict
 from pathlib import Path
 
 import pytest
-from goe_tools.evidence import mutants as made
-from goe_tools.evidence import mutation, mutation_counts, mutation_trees, survivors
-from goe_tools.evidence.mutants import Mutant
-from goe_tools.evidence.mutation import Kept
-from goe_tools.evidence.mutation_counts import (
+from ci.evidence import mutants as made
+from ci.evidence import mutation, mutation_counts, mutation_trees, survivors
+from ci.evidence.mutants import Mutant
+from ci.evidence.mutation import Kept
+from ci.evidence.mutation_counts import (
     BY_HASH,
     EQUIVALENT,
     KILLED,

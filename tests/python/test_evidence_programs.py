@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
-from goe_tools.evidence import programs, reproducible, sbom
-from goe_tools.evidence.parts import Amount
+from ci.evidence import programs, reproducible, sbom
+from ci.evidence.parts import Amount
 
 TESTS = Path(__file__).resolve().parents[1]
 

@@ -7,8 +7,8 @@ import re
 from pathlib import Path
 
 import pytest
-from goe_tools.evidence import contracts, frama_c, proof
-from goe_tools.evidence.frama_c import Property, Run
+from ci.evidence import contracts, frama_c, proof
+from ci.evidence.frama_c import Property, Run
 from goe_tools.places import ROOT
 
 HEAD = "directory\tfile\tline\tfunction\tproperty kind\tstatus\tproperty\n"

@@ -8,10 +8,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.evidence.parts import Amount
-from goe_tools.evidence.record import Row
-from goe_tools.evidence.requirements import breaks, marks, part
+from ci.__main__ import main
+from ci.evidence.parts import Amount
+from ci.evidence.record import Row
+from ci.evidence.requirements import breaks, marks, part
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from goe_tools.evidence import rounding
-from goe_tools.evidence.parts import Amount
-from goe_tools.evidence.rounding import GOALS, Found, Worst, moved, rows, search
-from goe_tools.optimum import rounding as compared
-from goe_tools.optimum.extremes import CASES, DOMAINS, FAR, NEAR, WHOLE, scene_at
-from goe_tools.optimum.library import Images, package, ready
-from goe_tools.optimum.rounding import DECISIONS, QUANTITIES, VELOCITY, difference, most
+from bench.optimum import rounding as compared
+from bench.optimum.extremes import CASES, DOMAINS, FAR, NEAR, WHOLE, scene_at
+from bench.optimum.rounding import DECISIONS, QUANTITIES, VELOCITY, difference, most
+from ci.evidence import rounding
+from ci.evidence.parts import Amount
+from ci.evidence.rounding import GOALS, Found, Worst, moved, rows, search
+from goe_tools.library import Images, package, ready
 
 TRIES = 100
 

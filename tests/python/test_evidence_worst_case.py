@@ -7,14 +7,14 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from goe_tools.cost.building import OBJECTS, Build
-from goe_tools.cost.instructions import PUBLIC
-from goe_tools.cost.longest import identity
-from goe_tools.cost.longest.loop_bounds import Row
-from goe_tools.cost.longest.proving import Proof
-from goe_tools.cost.longest.trip_counts import Trips
-from goe_tools.evidence import worst_case
-from goe_tools.evidence.worst_case import call_rows, report, table_rows
+from ci.cost.building import OBJECTS, Build
+from ci.cost.instructions import PUBLIC
+from ci.cost.longest import identity
+from ci.cost.longest.loop_bounds import Row
+from ci.cost.longest.proving import Proof
+from ci.cost.longest.trip_counts import Trips
+from ci.evidence import worst_case
+from ci.evidence.worst_case import call_rows, report, table_rows
 
 
 @pytest.mark.parametrize(

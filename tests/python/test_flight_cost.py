@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from goe_tools.cost.flight import HEADER, PUBLIC, calls_of, exceeded, ranges_of, stated, table
-from goe_tools.cost.instructions import Spread
+from ci.cost.flight import HEADER, PUBLIC, calls_of, exceeded, ranges_of, stated, table
+from ci.cost.instructions import Spread
 
 
 def test_the_callers_are_left_out_and_thumb_addresses_are_even() -> None:

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.reference import golden
+from bench.__main__ import main
+from bench.reference import golden
 
 ROOT = Path(__file__).resolve().parents[2]
 

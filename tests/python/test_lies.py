@@ -12,9 +12,8 @@ from typing import Any
 import goe
 import numpy as np
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.evidence import lies as evidence_lies
-from goe_tools.lies import (
+from bench.__main__ import main
+from bench.lies import (
     answers,
     approach,
     command,
@@ -30,16 +29,17 @@ from goe_tools.lies import (
     shrink,
     world,
 )
-from goe_tools.lies.decode import decode
-from goe_tools.lies.finds import CAUSES, COLUMNS, FRESH_MOST_S, GONE_MOST, KINDS, SAFE_MOST, WARNS_LEAST, find
-from goe_tools.lies.genes import BASE, BOXES, MIXES, OUTLINES, POINTS, Params
-from goe_tools.lies.judge import QUANTITIES, judge
-from goe_tools.lies.record import write
-from goe_tools.lies.search import Flown
-from goe_tools.lies.shapes import Solid
-from goe_tools.lies.show import from_json, misses
-from goe_tools.lies.shrink import Want
-from goe_tools.lies.tally import Example, Tally, tally_of
+from bench.lies.decode import decode
+from bench.lies.finds import CAUSES, COLUMNS, FRESH_MOST_S, GONE_MOST, KINDS, SAFE_MOST, WARNS_LEAST, find
+from bench.lies.genes import BASE, BOXES, MIXES, OUTLINES, POINTS, Params
+from bench.lies.judge import QUANTITIES, judge
+from bench.lies.record import write
+from bench.lies.search import Flown
+from bench.lies.shapes import Solid
+from bench.lies.show import from_json, misses
+from bench.lies.shrink import Want
+from bench.lies.tally import Example, Tally, tally_of
+from ci.evidence import lies as evidence_lies
 from goe_tools.logs.obslog import Frame, read_log
 from goe_tools.spread import ALONE
 from goe_tools.view.answers import Options, settings_of

@@ -6,15 +6,15 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from goe_tools.cost.building import Build
-from goe_tools.cost.longest import loop_bounds, trip_counts
-from goe_tools.cost.longest.longest_path import Code, Context, Finder, constant_before
-from goe_tools.cost.longest.loop_bounds import HEAD, Row
-from goe_tools.cost.longest.loops import loops_of
-from goe_tools.cost.longest.machine_code import Function, functions_below
-from goe_tools.cost.longest.source_lines import Place, places_of
-from goe_tools.cost.longest.whole_numbers import Program, proved, solve
-from goe_tools.cost.running import LedgerError
+from bench.running import LedgerError
+from ci.cost.building import Build
+from ci.cost.longest import loop_bounds, trip_counts
+from ci.cost.longest.longest_path import Code, Context, Finder, constant_before
+from ci.cost.longest.loop_bounds import HEAD, Row
+from ci.cost.longest.loops import loops_of
+from ci.cost.longest.machine_code import Function, functions_below
+from ci.cost.longest.source_lines import Place, places_of
+from ci.cost.longest.whole_numbers import Program, proved, solve
 
 # 3 + 4 n instructions, of which a call of leaf() each turn; n turns, tested at the end.
 LOOP = """

@@ -14,9 +14,9 @@ import pytest
 from goe_tools.__main__ import main
 from goe_tools.exchange.mcap_command import run_replay
 from goe_tools.exchange.messages import SCHEMAS, heading_turn, turned_up
+from goe_tools.flights.rotations import matrices
 from goe_tools.logs.obslog import ObservationLog, read_log, write_log
 from goe_tools.logs.scene import Scene, make_log
-from goe_tools.optimum.flights.rotations import matrices
 
 reader = pytest.importorskip("mcap.reader", reason="mcap is not installed (tools/setup.sh)")
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.reference.minimax import PROBLEMS, remez
+from bench.reference.minimax import PROBLEMS, remez
 
 LIBRARY = Path(__file__).resolve().parents[2] / "lib" / "maths"
 BOUND = {"ATAN": 5e-9, "SIN": 2e-9, "COS": 1e-10, "NORMAL": 2e-7}

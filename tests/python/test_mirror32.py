@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench.reference import minimax
+from bench.reference.compare import MAX_RELATIVE, relative_difference
+from bench.reference.mirror32 import Mirror32
+from bench.reference.mirror32.angle import ATAN, COS, SIN, arctan_rad, fold_deg, sincos_deg
+from bench.reference.mirror32.single import F
+from bench.reference.reference64 import Reference64
+from bench.reference.settings import Settings
 from goe_tools.logs.obslog import Camera, ObservationLog
 from goe_tools.logs.scene import Scene, make_log
-from goe_tools.reference import minimax
-from goe_tools.reference.compare import MAX_RELATIVE, relative_difference
-from goe_tools.reference.mirror32 import Mirror32
-from goe_tools.reference.mirror32.angle import ATAN, COS, SIN, arctan_rad, fold_deg, sincos_deg
-from goe_tools.reference.mirror32.single import F
-from goe_tools.reference.reference64 import Reference64
-from goe_tools.reference.settings import Settings
 
 ROOT = Path(__file__).resolve().parents[2]
 

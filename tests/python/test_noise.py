@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.__main__ import main
+from goe_tools.flights.box_logs import kitti_feeds
 from goe_tools.logs.obslog import read_log, write_log
 from goe_tools.logs.scene import Scene, make_log
 from goe_tools.noise.likelihood import fit, projected, score
 from goe_tools.noise.rows import Effect, Fading, Rows
-from goe_tools.optimum.flights.box_logs import kitti_feeds
 
 ROOT = Path(__file__).resolve().parents[2]
 SIM = ROOT / "build" / "sim_host" / "goe_sim"

@@ -9,22 +9,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench.__main__ import main as bench_main
+from bench.optimum.goals import command
+from bench.optimum.goals.goal import Goal
+from bench.optimum.goals.kitti import caught
 from goe_tools.__main__ import main
-from goe_tools.logs.obslog import LogError, read_log, write_log
-from goe_tools.optimum import model
-from goe_tools.optimum.bound import bound
-from goe_tools.optimum.flights.flight import LEFT, RIGHT, TOP, Flight, Obstacle
-from goe_tools.optimum.flights.logged import from_log
-from goe_tools.optimum.flights.measured import measure
-from goe_tools.optimum.flights.noise import FIELD, NOISES, Noise
-from goe_tools.optimum.flights.rotations import multiply, small_rotations
-from goe_tools.optimum.flights.scene import Scene
-from goe_tools.optimum.flights.simulated import Course, paper_scenes, pinhole, simulate
-from goe_tools.optimum.goals import command
-from goe_tools.optimum.goals.goal import Goal
-from goe_tools.optimum.goals.kitti import caught
-from goe_tools.optimum.judge import judge, renamed, renamed_sigma
-from goe_tools.optimum.library import (
+from goe_tools.flights.flight import LEFT, RIGHT, TOP, Flight, Obstacle
+from goe_tools.flights.logged import from_log
+from goe_tools.flights.measured import measure
+from goe_tools.flights.noise import FIELD, NOISES, Noise
+from goe_tools.flights.rotations import multiply, small_rotations
+from goe_tools.flights.scene import Scene
+from goe_tools.flights.simulated import Course, paper_scenes, pinhole, simulate
+from goe_tools.library import (
     MODEL_BOX,
     MODEL_DISC,
     MODEL_PRISM,
@@ -32,6 +29,10 @@ from goe_tools.optimum.library import (
     estimate,
     settings_of,
 )
+from goe_tools.logs.obslog import LogError, read_log, write_log
+from goe_tools.models import model
+from goe_tools.models.bound import bound
+from goe_tools.models.judge import judge, renamed, renamed_sigma
 
 CORNER = Path(__file__).resolve().parents[1] / "data" / "corner"
 EXACT = Noise(pixel_px=0.0)
@@ -150,7 +151,7 @@ def test_nuisances_only_raise_the_bound() -> None:
 @pytest.mark.parametrize("scene", [box_scene(), disc_scene()], ids=["box", "disc"])
 def test_the_fit_finds_the_truth_without_noise(scene: Scene) -> None:
     pytest.importorskip("scipy")
-    from goe_tools.optimum.offline import fit
+    from goe_tools.models.offline import fit
 
     flight = measure(scene, EXACT)
     start = model.true_state(flight)
@@ -165,7 +166,7 @@ def test_the_fit_finds_the_truth_without_noise(scene: Scene) -> None:
 
 def test_the_fit_reaches_the_bound() -> None:
     pytest.importorskip("scipy")
-    from goe_tools.optimum.offline import fit
+    from goe_tools.models.offline import fit
 
     ratios = []
     for seed in range(30):
@@ -178,7 +179,7 @@ def test_the_fit_reaches_the_bound() -> None:
 
 def test_the_fit_leaves_outliers_out() -> None:
     pytest.importorskip("scipy")
-    from goe_tools.optimum.offline import fit
+    from goe_tools.models.offline import fit
 
     flight = measure(box_scene(), SENSORS, 1)
     bad = np.random.default_rng(2).random(flight.seen.shape) < 0.05
@@ -393,7 +394,7 @@ def test_caught_at_a_share_of_false_flags() -> None:
 
 def test_goals_of_table3(built: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "goals.json"
-    assert main(["goals", "--quick", "--only", "table3", "--json", str(out)]) == 0
+    assert bench_main(["goals", "--quick", "--only", "table3", "--json", str(out)]) == 0
     assert "cylinder" in capsys.readouterr().out
     rows = json.loads(out.read_text())["goals"]
     assert set(rows[0]) == {"group", "name", "unit", "wanted", "asked", "values", "met"}
@@ -402,7 +403,7 @@ def test_goals_of_table3(built: None, tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def test_goals_says_what_it_does_not_know(built: None, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["goals", "--only", "everything"]) == 2
+    assert bench_main(["goals", "--only", "everything"]) == 2
     assert "everything" in capsys.readouterr().err
 
 
@@ -411,5 +412,5 @@ def test_an_interrupt_ends_with_a_word(monkeypatch: pytest.MonkeyPatch, capsys: 
         raise KeyboardInterrupt
 
     monkeypatch.setitem(command.GROUPS, "field", interrupted)
-    assert main(["goals", "--quick", "--only", "field"]) == 130
-    assert capsys.readouterr().err.splitlines()[-1] == "goe_tools goals: interrupted"
+    assert bench_main(["goals", "--quick", "--only", "field"]) == 130
+    assert capsys.readouterr().err.splitlines()[-1] == "bench goals: interrupted"

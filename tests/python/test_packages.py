@@ -12,11 +12,11 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.packages.command import differences
-from goe_tools.packages.facts import Facts
-from goe_tools.packages.staging import OF_THE_TREE, Words
-from goe_tools.packages.targets import COMMITTED, CONFIG, TARGETS
+from ci.__main__ import main
+from ci.packages.command import differences
+from ci.packages.facts import Facts
+from ci.packages.staging import OF_THE_TREE, Words
+from ci.packages.targets import COMMITTED, CONFIG, TARGETS
 
 ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
@@ -192,7 +192,7 @@ def test_page_licence_and_words(staged: Path, target: str) -> None:
             place = (stage / link).resolve()
             assert place.exists() and place.is_relative_to(stage), f"{target}: {link} leads nowhere"
         assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Into a project", "Parts", "What is missing"]
-        assert "<version>" not in page and "goe_tools" not in page
+        assert "<version>" not in page and not re.search(r"goe_tools|python -m (bench|ci)\b", page)
     texts = [path.read_text() for path in (staged / target).rglob("*") if path.is_file() and path.suffix != ".zip"]
     assert not any("{{ facts" in text or "{%" in text for text in texts)
     assert sum(WORDS.url in text for text in texts) >= 1

@@ -11,8 +11,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.packages.facts import Facts
+from ci.__main__ import main
+from ci.packages.facts import Facts
 
 ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()

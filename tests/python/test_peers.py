@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.cost.peers import command, update, window
-from goe_tools.cost.peers.build import Builder, build_plugin, missing_tool
-from goe_tools.cost.peers.job import Group
-from goe_tools.cost.peers.lower_bound import Operations, householder_update, triangle_inverse
-from goe_tools.cost.peers.measure import Bench
-from goe_tools.cost.peers.others import Others, find_others
-from goe_tools.cost.peers.throughput import KINDS
+from bench.peers import command, update, window
+from bench.peers.build import Builder, build_plugin, missing_tool
+from bench.peers.job import Group
+from bench.peers.lower_bound import Operations, householder_update, triangle_inverse
+from bench.peers.measure import Bench
+from bench.peers.others import Others, find_others
+from bench.peers.throughput import KINDS
 
 # Of W, relative: single precision over a window whose normal equations are conditioned like 1e4.
 WINDOW_ERROR_MOST = 1.0e-3
@@ -65,7 +65,7 @@ def others() -> Others:
 
 @pytest.fixture(scope="module")
 def printed() -> str:
-    done = subprocess.run([sys.executable, "-m", "goe_tools", "peers", "--quick"], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "bench", "peers", "--quick"], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 

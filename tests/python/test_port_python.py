@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from goe_tools.optimum import library
+from goe_tools import library
 
 goe = pytest.importorskip("goe", reason="the Python package is not installed (tools/setup.sh)")
 flight = goe.flight

@@ -13,10 +13,10 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from goe_tools.optimum import library
-from goe_tools.packages.facts import Facts
-from goe_tools.packages.staging import Words
-from goe_tools.packages.targets import TARGETS
+from ci.packages.facts import Facts
+from ci.packages.staging import Words
+from ci.packages.targets import TARGETS
+from goe_tools import library
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "port" / "python"

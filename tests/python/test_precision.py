@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from goe_tools.optimum import double_precision
-from goe_tools.optimum.flights.measured import measure
-from goe_tools.optimum.flights.noise import NOISES
-from goe_tools.optimum.flights.scene import Scene
-from goe_tools.optimum.flights.simulated import paper_scenes, random_scenes
-from goe_tools.optimum.library import MODEL_DISC, estimate, package, ready
-from goe_tools.optimum.precision import rounding_of
+from bench.optimum.precision import rounding_of
+from goe_tools import double_precision
+from goe_tools.flights.measured import measure
+from goe_tools.flights.noise import NOISES
+from goe_tools.flights.scene import Scene
+from goe_tools.flights.simulated import paper_scenes, random_scenes
+from goe_tools.library import MODEL_DISC, estimate, package, ready
 
 LIMIT = 0.05  # of one sigma
 NAMES = ("gauss0.3", "gauss1", "field")
@@ -65,7 +65,7 @@ def test_where_the_builds_decide_otherwise_is_counted(monkeypatch: pytest.Monkey
     tracks = [estimate(flight), estimate(flight, double=True)]
     tracks[1].model[-3:] = MODEL_DISC
     tracks[0].values[-4] += 0.5 * tracks[1].sigma[-4]
-    monkeypatch.setattr("goe_tools.optimum.precision.estimate", lambda _, double=False: tracks[int(double)])
+    monkeypatch.setattr("bench.optimum.precision.estimate", lambda _, double=False: tracks[int(double)])
     told = rounding_of(flight)
     assert told.apart == 3
     assert np.isnan(told.last).all()

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from goe_tools.optimum import prism_filter
-from goe_tools.optimum.flights.boxes import BUILDING, EXACT, MAST, WALL, BoxOptions, box_flight
-from goe_tools.optimum.flights.flight import Flight
-from goe_tools.optimum.library import MODEL_PRISM, Track, camera_settings, estimate, ready
-from goe_tools.optimum.prism import (
+from goe_tools.flights.boxes import BUILDING, EXACT, MAST, WALL, BoxOptions, box_flight
+from goe_tools.flights.flight import Flight
+from goe_tools.library import MODEL_PRISM, Track, camera_settings, estimate, ready
+from goe_tools.models import prism_filter
+from goe_tools.models.prism import (
     BOX_BOTTOM,
     BOX_LEFT,
     BOX_RIGHT,
@@ -34,8 +34,8 @@ from goe_tools.optimum.prism import (
     row_of,
     sights,
 )
-from goe_tools.optimum.prism_bound import bound_of, true_state
-from goe_tools.optimum.prism_filter import PrismTrack, follow
+from goe_tools.models.prism_bound import bound_of, true_state
+from goe_tools.models.prism_filter import PrismTrack, follow
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
 TOLD = [X0, Z0, WIDTH, HEIGHT]

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from goe_tools.optimum.flights.boxes import BUILDING, EXACT, MAST, BoxOptions, Solid, box_flight
-from goe_tools.optimum.flights.flight import Flight
-from goe_tools.optimum.prism import (
+from goe_tools.flights.boxes import BUILDING, EXACT, MAST, BoxOptions, Solid, box_flight
+from goe_tools.flights.flight import Flight
+from goe_tools.models.prism import (
     AXIS,
     STATES,
     UNKNOWNS,
@@ -24,8 +24,8 @@ from goe_tools.optimum.prism import (
     row_of,
     sights,
 )
-from goe_tools.optimum.prism_bound import VX, VZ, bound_of
-from goe_tools.optimum.prism_offline import Track, fit
+from goe_tools.models.prism_bound import VX, VZ, bound_of
+from goe_tools.models.prism_offline import Track, fit
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
 TOLD = [X0, Z0, WIDTH, HEIGHT]

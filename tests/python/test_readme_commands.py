@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
+from bench.__main__ import main as bench_main
+from bench.optimum.goals import command as goals
+from bench.optimum.goals import work
 from goe_tools.__main__ import main
-from goe_tools.optimum.goals import command as goals
-from goe_tools.optimum.goals import work
 from synthetic_campaign import write_campaign
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -97,10 +98,10 @@ RUN_BY = {
     'conan create . -o "&:with_movers=False"': By(
         "tests/python/test_packages_hosts.py", "conan create . -o '&:with_movers=False'"
     ),
-    "python -m goe_tools packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
-    "python -m goe_tools packages --sbom": By("tests/python/test_sbom.py", '"packages", "--sbom"'),
-    "python -m goe_tools packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
-    "python -m goe_tools packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
+    "python -m ci packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
+    "python -m ci packages --sbom": By("tests/python/test_sbom.py", '"packages", "--sbom"'),
+    "python -m ci packages --write": By("tests/python/test_packages.py", '"packages", "--write"'),
+    "python -m ci packages --target ...": By("tests/python/test_packages.py", '"packages", "--target"'),
     "pip install ./port/python": By(
         "tools/setup.sh", "pip install --quiet --disable-pip-version-check --no-build-isolation"
     ),
@@ -109,8 +110,8 @@ RUN_BY = {
     "ctest --preset": By("tools/test.sh", "ctest --preset"),
     "build/tests/targets/replay": By("tests/targets/host.cmake", "goe_check_hash(replay replay)"),
     "build/tests/targets/flight_replay": By("tests/targets/host.cmake", "goe_check_flight_hash(flight_replay"),
-    "build/tests/fuzz/fuzz_estimator --random 1 --seconds 20": By("tools/goe_tools/evidence/fuzz.py", "fuzz_estimator"),
-    "python -m goe_tools evidence --long --only fuzz": By("tests/python/test_evidence_fuzz.py", '"evidence", "--long"'),
+    "build/tests/fuzz/fuzz_estimator --random 1 --seconds 20": By("tools/ci/evidence/fuzz.py", "fuzz_estimator"),
+    "python -m ci evidence --long --only fuzz": By("tests/python/test_evidence_fuzz.py", '"evidence", "--long"'),
     "build/tests/flight/flight_recorded": By("tests/flight/CMakeLists.txt", "flight_recorded"),
     "host_builds.sh": By("tests/targets/host.cmake", "host_builds.sh"),
     "host_self_check.sh": By("tests/targets/host.cmake", "host_self_check.sh"),
@@ -121,7 +122,7 @@ RUN_BY = {
     "tools/setup.sh": By("tools/test.sh", "setup.sh"),
     "goe_replay": By("tests/host/test_replay.py", "goe_replay"),
     "goe_replay --set": By("tests/host/test_replay.py", '"--set"'),
-    "goe_replay --settings": By("tools/goe_tools/reference/settings_table.py", '"--settings"'),
+    "goe_replay --settings": By("tools/ci/settings_table.py", '"--settings"'),
     "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
     "goe_sim --features": By("tests/sim/test_sim_boxes.py", '"--features"'),
     "goe_campaign": By("tests/sim/test_campaign.py", "goe_campaign"),
@@ -136,36 +137,34 @@ RUN_BY = {
     "cmake --preset default": By("tools/test.sh", 'cmake --preset "$1"'),
     "cmake --build --preset default --target goe_companion": By("tools/test.sh", 'cmake --build --preset "$1"'),
     "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
-    "python -m goe_tools attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
+    "python -m bench attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),
     "python -m goe_tools bound": By("tests/python/test_optimum.py", '"bound"'),
     "python -m goe_tools campaign --out": By("tests/python/test_spread.py", '"campaign", "--studies"'),
-    "python -m goe_tools compare": By("tests/python/test_compare.py", '"compare"'),
+    "python -m bench compare": By("tests/python/test_compare.py", '"compare"'),
     "python -m goe_tools convert...": By("tests/python/test_convert.py", '"convert", f"--{kind}"'),
     "python -m goe_tools mcap...": By("tests/python/test_mcap.py", '"mcap", str(folder), "--out"'),
-    "python -m goe_tools lies...": By("tests/python/test_lies.py", '"lies", "--flights"'),
+    "python -m bench lies...": By("tests/python/test_lies.py", '"lies", "--flights"'),
     "python -m goe_tools noise...": By("tests/python/test_noise.py", '"noise", *logs'),
-    "python -m goe_tools embed_logs": By("tools/test.sh", "goe_tools embed_logs"),
-    "python -m goe_tools evidence ...": By("tests/python/test_evidence_requirements.py", '"evidence", how'),
-    "python -m goe_tools flight_cost": By("tools/test.sh", "goe_tools flight_cost"),
-    "python -m goe_tools ledger": By("tools/test.sh", "goe_tools ledger"),
-    "python -m goe_tools ledger --check": By("tools/test.sh", "goe_tools ledger --check"),
-    "python -m goe_tools ledger --write": By("tests/python/test_cost.py", '"ledger", "--write"'),
+    "python -m ci embed_logs": By("tools/test.sh", "ci embed_logs"),
+    "python -m ci evidence ...": By("tests/python/test_evidence_requirements.py", '"evidence", how'),
+    "python -m ci flight_cost": By("tools/test.sh", "ci flight_cost"),
+    "python -m ci ledger": By("tools/test.sh", "ci ledger"),
+    "python -m ci ledger --check": By("tools/test.sh", "ci ledger --check"),
+    "python -m ci ledger --write": By("tests/python/test_cost.py", '"ledger", "--write"'),
     "python -m goe_tools live": By("tests/python/test_live_page.py", '"live", "--out"'),
     "python -m goe_tools live --out live.html": By("tests/python/test_live_page.py", '"live", "--out"'),
     "python -m goe_tools offline": By("tests/python/test_optimum.py", '"offline"'),
-    "python -m goe_tools peers": By("tests/python/test_peers.py", "peers"),
-    "python -m goe_tools peers --quick": By("tests/python/test_peers.py", '"peers", "--quick"'),
-    "python -m goe_tools peers update --tinyekf": By("tests/python/test_peers.py", '"peers", "--quick"'),
-    "python -m goe_tools peers window --cmsis-dsp": By("tests/python/test_peers.py", '"peers", "--quick"'),
+    "python -m bench peers": By("tests/python/test_peers.py", "peers"),
+    "python -m bench peers --quick": By("tests/python/test_peers.py", '"peers", "--quick"'),
+    "python -m bench peers update --tinyekf": By("tests/python/test_peers.py", '"peers", "--quick"'),
+    "python -m bench peers window --cmsis-dsp": By("tests/python/test_peers.py", '"peers", "--quick"'),
     "python -m goe_tools report --table --out": By("tools/demo.sh", "report $campaign --table --out"),
     "python -m goe_tools scene ...": By("tests/python/test_scene.py", "python -m goe_tools scene"),
     "python -m goe_tools jsbsim_flight": By("tests/sim/test_sim_jsbsim.py", "jsbsim_flight"),
     "python -m goe_tools view": By("tests/python/test_view_command.py", '"view"'),
     "python -m goe_tools view --png --theme dark": By("tests/python/test_view_command.py", '"view"'),
     "python -m goe_tools view --svg": By("tests/python/test_view_command.py", '"view"'),
-    "python -m goe_tools settings --write lib/README.md": By(
-        "tests/python/test_settings_table.py", '"settings", "--write"'
-    ),
+    "python -m ci settings --write lib/README.md": By("tests/python/test_settings_table.py", '"settings", "--write"'),
 }
 
 # Commands in a tree that no machine of the tests has.
@@ -297,7 +296,7 @@ def test_targets_are_listed(built: Path) -> None:
 
 def test_quick_goals_and_their_report(tmp_path: Path, few_flights: None, built: Path) -> None:
     file, page = tmp_path / "goals.json", tmp_path / "page.html"
-    assert main(["goals", "--quick", "--json", str(file)]) == 0
+    assert bench_main(["goals", "--quick", "--json", str(file)]) == 0
     rows = json.loads(file.read_text())["goals"]
     assert not any(row["asked"] or row["met"] is not None for row in rows)
     groups = {row["group"] for row in rows}
@@ -318,7 +317,7 @@ def test_orders_and_their_report(tmp_path: Path, built: Path) -> None:
 @pytest.mark.parametrize("group", ["gauss1", "boxes", "attack,hazard", "float32"])
 def test_goals(group: str, few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """[D5]"""
-    assert main(["goals", "--only", group]) == 0
+    assert bench_main(["goals", "--only", group]) == 0
     assert re.search(r"\d+ of \d+ goals met", capsys.readouterr().out)
 
 
@@ -326,7 +325,7 @@ def test_goals_of_the_settling_half(few_flights: None, built: Path, capsys: pyte
     """Other tracks, other figures."""
     texts = []
     for half in ("settle", "judge"):
-        assert main(["goals", "--only", "attack", "--half", half]) == 0
+        assert bench_main(["goals", "--only", "attack", "--half", half]) == 0
         texts.append(capsys.readouterr().out)
     assert texts[0] != texts[1]
 
@@ -338,13 +337,13 @@ RUN_HERE: dict[str, Callable[..., None]] = {
     "tools/bench_campaign.sh": test_bench_campaign,
     "tools/setup.sh --rivals": test_set_up_with_rivals,
     "ctest -L targets": test_targets_are_listed,
-    "python -m goe_tools goals": test_goals,
-    "python -m goe_tools goals --only boxes": test_goals,
-    "python -m goe_tools goals --only attack,hazard": test_goals,
-    "python -m goe_tools goals --only attack --half settle": test_goals_of_the_settling_half,
-    "python -m goe_tools goals --only float32": test_goals,
-    "python -m goe_tools goals --quick": test_quick_goals_and_their_report,
-    "python -m goe_tools goals --json": test_quick_goals_and_their_report,
+    "python -m bench goals": test_goals,
+    "python -m bench goals --only boxes": test_goals,
+    "python -m bench goals --only attack,hazard": test_goals,
+    "python -m bench goals --only attack --half settle": test_goals_of_the_settling_half,
+    "python -m bench goals --only float32": test_goals,
+    "python -m bench goals --quick": test_quick_goals_and_their_report,
+    "python -m bench goals --json": test_quick_goals_and_their_report,
     "python -m goe_tools report --goals --out": test_quick_goals_and_their_report,
     "python -m goe_tools report --avoid --out": test_orders_and_their_report,
     "goe_avoid --csv": test_orders_and_their_report,
@@ -355,7 +354,7 @@ RUN_HERE: dict[str, Callable[..., None]] = {
 
 def own_name(command: str) -> str:
     """What a command is called: compare, demo.sh, --install."""
-    tool = re.match(r"python -m goe_tools (\w+)", command)
+    tool = re.match(r"python -m (?:goe_tools|bench|ci) (\w+)", command)
     words = command.split()
     if tool:
         return tool.group(1)

@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bench.reference.gates import Gates
+from bench.reference.mirror32 import Mirror32
+from bench.reference.reference64 import Reference64, Report
+from bench.reference.reference64.geometry import mounting_rotation, quaternion_rotation, undistort
+from bench.reference.reference64.window import Row, solve
+from bench.reference.settings import Settings
 from goe_tools.logs.obslog import Camera, Frame, ObservationLog
 from goe_tools.logs.projection import CAMERA_AXES_IN_BODY, distort, quaternion_of, yaw_pitch_roll
 from goe_tools.logs.scene import Scene, make_log
-from goe_tools.reference.gates import Gates
-from goe_tools.reference.mirror32 import Mirror32
-from goe_tools.reference.reference64 import Reference64, Report
-from goe_tools.reference.reference64.geometry import mounting_rotation, quaternion_rotation, undistort
-from goe_tools.reference.reference64.window import Row, solve
-from goe_tools.reference.settings import Settings
 
 
 def fly(log: ObservationLog, **settings: object) -> list[Report]:

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools.logs.obslog import LogError
-from goe_tools.optimum import paper_table3 as t3
 from goe_tools.report import attacks, avoid, boxes, page, terminal
+from goe_tools.report import paper_table3 as t3
 from goe_tools.report import refined as rf
 from goe_tools.report import statistics as st
 from goe_tools.report.data import Campaign, Cases, read_campaign

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from goe_tools.optimum import rivals
-from goe_tools.optimum.flights.measured import measure
-from goe_tools.optimum.flights.noise import Noise
-from goe_tools.optimum.flights.simulated import paper_scenes
-from goe_tools.optimum.rivals import RIVALS, STRENGTHS, Track, history, missing
-from goe_tools.optimum.rivals.track import MIN_IMAGES
+from bench.optimum import rivals
+from bench.optimum.rivals import RIVALS, Track, history, missing
+from bench.optimum.rivals.track import MIN_IMAGES
+from goe_tools.flights.measured import measure
+from goe_tools.flights.noise import Noise
+from goe_tools.flights.simulated import paper_scenes
+from goe_tools.report.prose.refined import STRENGTHS
 
 SIGMA = 0.3 / 914.0  # 0.3 px
 IMAGES = 120

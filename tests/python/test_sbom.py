@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.packages.facts import Facts
-from goe_tools.packages.installed import PINNED, Sources, array_of, canonical, requirement
-from goe_tools.packages.licences import PYTHON
-from goe_tools.packages.sbom import make
-from goe_tools.packages.sbom_rules import faults
+from ci.__main__ import main
+from ci.packages.facts import Facts
+from ci.packages.installed import PINNED, Sources, array_of, canonical, requirement
+from ci.packages.licences import PYTHON
+from ci.packages.sbom import make
+from ci.packages.sbom_rules import faults
 
 ROOT = Path(__file__).resolve().parents[2]
 Json = dict[str, Any]

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench.reference.mirror32 import Mirror32
+from bench.reference.settings import Settings as SettingsOfWindow
 from goe_tools.__main__ import main
+from goe_tools.flights.logged import from_log
 from goe_tools.logs.obslog import FEATURES, Camera, Frame, ObservationLog, read_log, write_log
 from goe_tools.logs.projection import distort, quaternion_of, yaw_pitch_roll
 from goe_tools.logs.scene import Scene, make_log
-from goe_tools.optimum.flights.logged import from_log
-from goe_tools.reference.mirror32 import Mirror32
-from goe_tools.reference.settings import Settings as SettingsOfWindow
 
 ROOT = Path(__file__).resolve().parents[2]
 

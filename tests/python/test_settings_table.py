@@ -8,8 +8,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from goe_tools.__main__ import main
-from goe_tools.reference.settings_table import MANUAL, TABLE, Setting, settings, table
+from ci.__main__ import main
+from ci.settings_table import MANUAL, TABLE, Setting, settings, table
 
 HEADER = MANUAL.with_name("goe.h")
 REPLAY = os.environ.get("GOE_REPLAY")

@@ -17,10 +17,11 @@ from pathlib import Path
 import cloudpickle
 import numpy as np
 import pytest
+from bench.__main__ import main as bench_main
+from bench.optimum.goals.outcome import Outcome, Task, perform
 from goe_tools.__main__ import main
-from goe_tools.optimum.flights.noise import NOISES
-from goe_tools.optimum.flights.simulated import random_scenes
-from goe_tools.optimum.goals.outcome import Outcome, Task, perform
+from goe_tools.flights.noise import NOISES
+from goe_tools.flights.simulated import random_scenes
 from goe_tools.spread import Workers, _client, each, spread
 
 cloudpickle.register_pickle_by_value(sys.modules[__name__])  # no worker could import it
@@ -134,9 +135,12 @@ def test_a_cluster_that_loses_a_worker(conditioning: Path, tmp_path: Path, monke
     here."""
     distributed, dask = pytest.importorskip("distributed"), pytest.importorskip("dask")
     monkeypatch.setattr("goe_tools.spread.CONNECT_S", HANG_S)
-    with dask.config.set({"distributed.comm.timeouts.connect": f"{HANG_S}s"}), distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
-    ) as cluster:
+    with (
+        dask.config.set({"distributed.comm.timeouts.connect": f"{HANG_S}s"}),
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        ) as cluster,
+    ):
         results = spread(partial(late_cube, tmp_path), range(40), Workers(scheduler=cluster.scheduler_address))
         first = next(results)
         wait_for(lambda: len(asked(tmp_path)) == 2)
@@ -156,7 +160,7 @@ def test_a_cluster_that_loses_a_worker(conditioning: Path, tmp_path: Path, monke
 
 def test_no_scheduler_there(built: None, capsys) -> None:
     pytest.importorskip("distributed")
-    assert main(["goals", "--quick", "--only", "field", "--scheduler", "nonsense://1"]) == 2
+    assert bench_main(["goals", "--quick", "--only", "field", "--scheduler", "nonsense://1"]) == 2
     assert "--scheduler nonsense://1: " in capsys.readouterr().err
 
 
@@ -172,13 +176,13 @@ def catches_ctrl_c(process: int) -> bool:
 
 
 def test_ctrl_c_ends_all_processes(built: None) -> None:
-    command = [sys.executable, "-m", "goe_tools", "goals", "--only", "gauss1", "--jobs", "2"]
+    command = [sys.executable, "-m", "bench", "goals", "--only", "gauss1", "--jobs", "2"]
     with subprocess.Popen(command, cwd=ROOT, start_new_session=True, stderr=subprocess.PIPE, text=True) as program:
         wait_for(lambda: len(children(program.pid)) >= 2 and catches_ctrl_c(program.pid))
         born = children(program.pid)
         os.killpg(program.pid, signal.SIGINT)
         _, told = program.communicate(timeout=HANG_S)
         assert program.returncode == 130
-        assert told.strip().splitlines()[-1] == "goe_tools goals: interrupted" and "Traceback" not in told
+        assert told.strip().splitlines()[-1] == "bench goals: interrupted" and "Traceback" not in told
     assert len(born) >= 2
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in born))

@@ -6,11 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
+from bench.reference.compare import run_replay  # noqa: F401  (the stand-in is run as the program would be)
 from goe_tools.__main__ import main
 from goe_tools.logs.estimates import LABELS, NUMBERS, Estimate, read_estimates
 from goe_tools.logs.obslog import LogError
 from goe_tools.logs.table import chosen, measured
-from goe_tools.reference.compare import run_replay  # noqa: F401  (the stand-in is run as the program would be)
 
 ROOT = Path(__file__).resolve().parents[2]
 

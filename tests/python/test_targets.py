@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from goe_tools.logs import embed_logs
+from ci import embed_logs
 
 TARGETS = Path(__file__).resolve().parents[1] / "targets"
 

@@ -1,4 +1,6 @@
-"""The rooms of tools/goe_tools: imports go down, never round in circles, and a long file holds one idea."""
+"""The packages in tools/ and their rooms: imports go down, never round in circles, and a long file holds one idea.
+
+``ci`` may use ``bench`` and ``goe_tools``, ``bench`` may use ``goe_tools``, and ``goe_tools`` neither."""
 
 from __future__ import annotations
 
@@ -8,26 +10,68 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
+from bench.__main__ import COMMANDS as BENCH_COMMANDS
+from ci.__main__ import COMMANDS as CI_COMMANDS
 from goe_tools.__main__ import COMMANDS
+from goe_tools.cli import PACKAGES
 
-PACKAGE = Path(__file__).resolve().parents[2] / "tools" / "goe_tools"
+TOOLS = Path(__file__).resolve().parents[2] / "tools"
+COMMANDS_OF = {"goe_tools": COMMANDS, "bench": BENCH_COMMANDS, "ci": CI_COMMANDS}
 
 # From the ground up. A room knows the floors below its own, and no other room of its own floor.
-FLOORS = (
-    ("__init__", "places", "spread"),
-    ("logs",),
-    ("attack", "lies"),
-    ("reference", "optimum", "cost", "packages"),
-    ("view",),
-    ("report", "live", "exchange", "noise", "evidence"),
-    ("__main__",),
-)
+FLOORS = {
+    "goe_tools": (
+        ("__init__", "places", "spread"),
+        ("logs",),
+        ("flights", "double_precision"),
+        ("library",),
+        ("models",),
+        ("view",),
+        ("report", "live", "exchange", "noise"),
+        ("cli",),
+        ("__main__",),
+    ),
+    "bench": (
+        ("__init__", "running"),
+        ("count_plugin",),
+        ("attack", "lies"),
+        ("reference", "optimum", "peers"),
+        ("__main__",),
+    ),
+    "ci": (
+        ("__init__",),
+        ("affected", "cost", "embed_logs", "packages", "settings_table"),
+        ("evidence",),
+        ("__main__",),
+    ),
+}
 
 MOST_LINES = 500
 LONG: dict[str, str] = {}  # file, its one idea
 
 Module = tuple[str, ...]  # ("logs", "obslog"); of a folder's __init__.py: ("logs", "__init__")
 Graph = dict[str, set[str]]
+
+
+def imported_names(tree: ast.AST) -> Iterator[str]:
+    """Of absolute imports, also those inside functions."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield node.module or ""
+
+
+def against_the_direction(tools: Path) -> list[str]:
+    """Files of a package that import a package above it."""
+    found = []
+    for number, package in enumerate(PACKAGES):
+        above = set(PACKAGES[number + 1 :])
+        for path in sorted((tools / package).rglob("*.py")):
+            for name in imported_names(ast.parse(path.read_text(encoding="utf-8"))):
+                if name.split(".")[0] in above:
+                    found.append(f"{path.relative_to(tools).as_posix()} imports {name}")
+    return found
 
 
 def folders_of(modules: Iterable[Module]) -> set[Module]:
@@ -92,9 +136,9 @@ def circles(package: Path) -> list[str]:
     return found
 
 
-def upwards(edges: set[tuple[Module, Module]]) -> list[str]:
+def upwards(edges: set[tuple[Module, Module]], floors: tuple[tuple[str, ...], ...]) -> list[str]:
     """Imports that do not go to a lower floor, and rooms without one."""
-    floor = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+    floor = {room: number for number, rooms in enumerate(floors) for room in rooms}
     found = []
     for source, target in sorted(edges):
         rooms = [module[0] for module in (source, target)]
@@ -106,35 +150,50 @@ def upwards(edges: set[tuple[Module, Module]]) -> list[str]:
     return found
 
 
-def test_imports_go_to_lower_floors() -> None:
-    edges = imports(PACKAGE)
-    assert (("report", "page"), ("report", "figures", "__init__")) in edges  # a folder's __init__.py is found
-    assert (("optimum", "model"), ("logs", "obslog")) in edges  # ... and what lies in another room
-    commands = {(("__main__",), tuple(name.strip(".").split("."))) for name, _ in COMMANDS.values()}
-    assert upwards(edges | commands) == []
+def test_packages_import_in_one_direction() -> None:
+    assert set(PACKAGES) == set(FLOORS)
+    assert against_the_direction(TOOLS) == []
 
 
-def test_no_circles_at_any_level() -> None:
-    assert circles(PACKAGE) == []
+@pytest.mark.parametrize("package", PACKAGES)
+def test_imports_go_to_lower_floors(package: str) -> None:
+    edges = imports(TOOLS / package)
+    commands = {(("__main__",), tuple(name.strip(".").split("."))) for name, _ in COMMANDS_OF[package].values()}
+    assert upwards(edges | commands, FLOORS[package]) == []
 
 
-def test_every_command_is_a_module() -> None:
-    known = sources(PACKAGE)
-    for module_name, _ in COMMANDS.values():
+def test_imports_are_found() -> None:
+    edges = imports(TOOLS / "goe_tools")
+    assert (("report", "page"), ("report", "figures", "__init__")) in edges  # a folder's __init__.py
+    assert (("models", "model"), ("logs", "obslog")) in edges  # ... and what lies in another room
+    text = (TOOLS / "bench" / "optimum" / "goals" / "boxes.py").read_text(encoding="utf-8")
+    assert "goe_tools.flights.boxes" in imported_names(ast.parse(text))  # ... and in another package
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_no_circles_at_any_level(package: str) -> None:
+    assert circles(TOOLS / package) == []
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_command_is_a_module(package: str) -> None:
+    known = sources(TOOLS / package)
+    for module_name, _ in COMMANDS_OF[package].values():
         name = tuple(module_name.strip(".").split("."))
         assert name in known or (*name, "__init__") in known, module_name
 
 
-def test_what_lies_in_the_package_has_a_floor_and_a_line_in_the_readme() -> None:
-    told = (PACKAGE / "README.md").read_text(encoding="utf-8")
-    for room in {module[0] for module in sources(PACKAGE)}:
-        assert any(room in rooms for rooms in FLOORS), room
-        if (PACKAGE / room).is_dir():
+@pytest.mark.parametrize("package", PACKAGES)
+def test_what_lies_in_the_package_has_a_floor_and_a_line_in_the_readme(package: str) -> None:
+    told = (TOOLS / package / "README.md").read_text(encoding="utf-8")
+    for room in {module[0] for module in sources(TOOLS / package)}:
+        assert any(room in rooms for rooms in FLOORS[package]), room
+        if (TOOLS / package / room).is_dir():
             assert f"`{room}/`" in told or f"`{room}.py`" in told, room
 
 
 def test_a_long_file_holds_one_idea() -> None:
-    files = sources(PACKAGE).values()
+    files = [path for package in PACKAGES for path in sources(TOOLS / package).values()]
     assert len(files) > 50
     long = [p for p in files if len(p.read_text(encoding="utf-8").splitlines()) > MOST_LINES and p.name not in LONG]
     assert long == [], "split it, or name its one idea in LONG"
@@ -165,6 +224,28 @@ def test_a_circle_between_folders_is_seen(tmp_path: Path, back: str) -> None:
     assert told.startswith("house: ") and "logs" in told and "report" in told
 
 
+@pytest.mark.parametrize(
+    ("file", "text", "name"),
+    [
+        ("goe_tools/logs/a.py", "def f():\n    from bench.attack import rows", "bench.attack"),
+        ("goe_tools/a.py", "import ci.affected as b", "ci.affected"),
+        ("bench/attack/a.py", "from ci import cost", "ci"),
+    ],
+)
+def test_an_import_against_the_direction_is_seen(tmp_path: Path, file: str, text: str, name: str) -> None:
+    files = {
+        "goe_tools/places.py": "",
+        "bench/b.py": "from goe_tools import places",
+        "ci/c.py": "import bench.b\nfrom goe_tools import places",
+        "bench/d.py": "from .ci import c",
+        file: text,
+    }
+    for place, content in files.items():
+        (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / place).write_text(content)
+    assert against_the_direction(tmp_path) == [f"{file} imports {name}"]
+
+
 def test_an_import_upwards_is_seen(tmp_path: Path) -> None:
     files = {
         "logs/b.py": "from ..report.a import x",
@@ -173,7 +254,8 @@ def test_an_import_upwards_is_seen(tmp_path: Path) -> None:
         "reference/d.py": "from ..optimum import c",
         "cellar/e.py": "from ..logs.b import x",
     }
-    assert upwards(imports(write(tmp_path, files))) == [
+    floors = (("logs",), ("reference", "optimum"), ("report",))
+    assert upwards(imports(write(tmp_path, files)), floors) == [
         "cellar: say in FLOORS on which floor it is",
         "cellar/e imports logs/b",
         "logs/b imports report/a",

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import view_logs
+from goe_tools import library
 from goe_tools.logs.obslog import Camera, ObservationLog, read_log
-from goe_tools.optimum import library
 from goe_tools.view import outline, words
 from goe_tools.view.answers import Options
 from goe_tools.view.motion import motion_of

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 import view_logs
 from chromium import HANG_S, hold_time, open_page, screenshot, set_size, step_time
+from goe_tools import library
 from goe_tools.__main__ import main
 from goe_tools.logs.obslog import ObservationLog, read_log, write_truth
-from goe_tools.optimum import library
 from goe_tools.view.answers import Options
 from goe_tools.view.story import story_of
 

@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import view_logs
+from goe_tools import library
 from goe_tools.__main__ import main
 from goe_tools.logs.obslog import ObservationLog, write_truth
-from goe_tools.optimum import library
 
 MOST_KB = 4000.0
 

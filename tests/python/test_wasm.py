@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from goe_tools.__main__ import EXIT_BAD_INPUT, main
+from goe_tools.__main__ import main
+from goe_tools.cli import EXIT_BAD_INPUT
 from goe_tools.live import modules, page
 
 ROOT = Path(__file__).resolve().parents[2]

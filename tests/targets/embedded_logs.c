@@ -1,4 +1,4 @@
-/* Made by `python -m goe_tools embed_logs`; do not edit. SPDX-License-Identifier: MIT */
+/* Made by `python -m ci embed_logs`; do not edit. SPDX-License-Identifier: MIT */
 #include "embedded_logs.h"
 
 const logged_image_t logged_images[739] = {

@@ -6,7 +6,7 @@ set_property(CACHE GOE_TARGET_TESTS PROPERTY STRINGS all safety none)
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
 target_link_libraries(goe PUBLIC m)
-# What tools/goe_tools/cost reads. Lines (-g1), which leave the code as it is, on the processor that it proves the cost of.
+# What tools/ci/cost reads. Lines (-g1), which leave the code as it is, on the processor that it proves the cost of.
 target_compile_options(goe PRIVATE -ffunction-sections -fstack-usage $<$<C_COMPILER_ID:GNU>:-fcallgraph-info=su>)
 if(GOE_TARGET_BOARD STREQUAL mps2-an386)
     target_compile_options(goe PRIVATE $<$<C_COMPILER_ID:GNU>:-g1>)

@@ -1,4 +1,4 @@
-"""Which Python tests a change affects: ``python -m ci.affected`` prints their files for ``tools/test.sh --quick``.
+"""Which Python tests a change affects: ``python -m ci affected`` prints their files for ``tools/test.sh --quick``.
 
 A test file is affected if it changed, if it imports a module that changed, directly or through one other module, or if
 it names a changed file. A change of the library or the flight layer affects the tests of the package goe, too. Deeper
@@ -7,6 +7,7 @@ dependencies are left to the whole run.
 
 from __future__ import annotations
 
+import argparse
 import ast
 import os
 import subprocess
@@ -79,5 +80,10 @@ def affected(paths: set[str]) -> list[str]:
     return sorted(str(path.relative_to(ROOT)) for path in found)
 
 
-if __name__ == "__main__":
+def add_arguments(_: argparse.ArgumentParser) -> None:
+    """It has none."""
+
+
+def run(_: argparse.Namespace) -> int:
     print("\n".join(affected(changed())))
+    return 0

@@ -1,5 +1,5 @@
 /* Angles: arctangent, sine and cosine against double.
- * Made by `python -m goe_tools golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
+ * Made by `python -m bench golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
 #ifndef GOLDEN_ANGLE_H
 #define GOLDEN_ANGLE_H
 

@@ -1,5 +1,5 @@
 /* One flight, tests/data/corner with the window method: every image and the estimate after it, in bits.
- * Made by `python -m goe_tools golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
+ * Made by `python -m bench golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
 #ifndef GOLDEN_CORNER_H
 #define GOLDEN_CORNER_H
 

@@ -1,5 +1,5 @@
 /* Lens: Brown-Conrady distortion inverted in double.
- * Made by `python -m goe_tools golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
+ * Made by `python -m bench golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
 #ifndef GOLDEN_LENS_H
 #define GOLDEN_LENS_H
 

@@ -1,5 +1,5 @@
 /* Window least squares against a dense solution of (5) in double.
- * Made by `python -m goe_tools golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
+ * Made by `python -m bench golden --out tests/c/golden`; do not edit. SPDX-License-Identifier: MIT */
 #ifndef GOLDEN_WINDOW_H
 #define GOLDEN_WINDOW_H
 

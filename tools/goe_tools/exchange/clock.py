@@ -24,9 +24,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..flights.rotations import matrices, mounting
 from ..logs.obslog import Camera, Frame
-from ..optimum.flights.rotations import matrices, mounting
-from ..optimum.model import undistort
+from ..models.model import undistort
 from .detections import by_id
 from .recording import Poses, Series, filled, slerp, within
 

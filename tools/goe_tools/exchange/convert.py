@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ..flights.rotations import matrices
 from ..logs.fields import LogError
 from ..logs.obslog import Camera, Frame, ObservationLog, read_cameras, write_log
-from ..optimum.flights.rotations import matrices
 from .clock import find_offset
 from .dataflash import read_dataflash
 from .detections import read_detections, sees

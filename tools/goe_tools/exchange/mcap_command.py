@@ -17,11 +17,11 @@ from typing import IO, Any
 import numpy as np
 from tqdm import tqdm
 
+from ..flights.rotations import matrices
 from ..logs.estimates import NUMBERS, Estimate, read_estimates
 from ..logs.fields import LogError
 from ..logs.obslog import Frame, ObservationLog, read_log
 from ..logs.whole_file import log_files, refuse_inputs, replacing
-from ..optimum.flights.rotations import matrices
 from ..places import ROOT
 from .messages import (
     SCHEMAS,

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..flights.rotations import matrices, multiply
 from ..logs.fields import LogError
-from ..optimum.flights.rotations import matrices, multiply
 
 LOG_BYTES_MAX = 2**31  # of a file of messages: what is read of it is held in memory
 LEAST_SAMPLES = 2

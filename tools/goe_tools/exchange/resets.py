@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..optimum.flights.rotations import multiply
+from ..flights.rotations import multiply
 from .recording import Jump, Series, conjugate, linear, turned_by
 
 STEP_M = 0.5  # a position that is farther off than that ...

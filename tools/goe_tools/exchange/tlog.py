@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..flights.rotations import quaternions
 from ..logs.fields import LogError
-from ..optimum.flights.rotations import quaternions
 from .recording import Jump, Recording, Series, made_upright, make_attitude, make_series
 from .resets import attitude_jumps, merged, position_jumps
 

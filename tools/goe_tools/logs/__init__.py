@@ -6,7 +6,6 @@ table          estimates as a table that a pilot can read
 projection     where a point lies in the image of a flying camera
 scene          synthetic logs of boxes and cylinders
 scene_command  the command that writes one
-embed_logs     synthetic logs as C arrays, for the images that run on every target
 jsbsim_flight  a log of a flight by JSBSim
 whole_file     files that appear whole or not at all
 marked_block   the block of a page that a command writes

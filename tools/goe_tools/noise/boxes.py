@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..optimum.flights.flight import Flight
-from ..optimum.prism import PX, STATES, A, E, G, Q, S, Told, W, box_size, focal_px
-from ..optimum.prism_offline import Track
+from ..flights.flight import Flight
+from ..models.prism import PX, STATES, A, E, G, Q, S, Told, W, box_size, focal_px
+from ..models.prism_offline import Track
 from .rows import Effect, Fading, Rows
 
 LEAST_IMAGES = 8

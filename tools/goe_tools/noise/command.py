@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.table import Table
 from tqdm import tqdm
 
-from ..optimum.flights.flight import Flight
-from ..optimum.prism import Told
+from ..flights.flight import Flight
+from ..models.prism import Told
 from .boxes import box_rows
 from .judged import covered
 from .likelihood import Fitted, fit

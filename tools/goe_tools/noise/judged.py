@@ -7,11 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..attack.judging import coverage
-from ..optimum.flights.flight import Flight
-from ..optimum.goals.boxes import BoxOutcome
-from ..optimum.judge import HEIGHT, X0, Z0
-from ..optimum.library import METHODS, camera_settings, estimate
+from ..flights.flight import Flight
+from ..library import METHODS, camera_settings, estimate
+from ..models.coverage import BoxOutcome, coverage
+from ..models.judge import HEIGHT, X0, Z0
 
 TOLD = {"X0": X0, "Z0": Z0, "H": HEIGHT}
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..optimum.flights.flight import TOP, Flight
-from ..optimum.flights.noise import Noise
-from ..optimum.model import (
+from ..flights.flight import TOP, Flight
+from ..flights.noise import Noise
+from ..models.model import (
     DH,
     VX,
     VZ,

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..flights.flight import Flight, Obstacle
+from ..flights.logged import from_log
+from ..flights.noise import Noise
+from ..flights.rotations import level_axes, matrices
 from ..logs.obslog import Camera, Frame, LogError, Truth, read_log
-from ..optimum.flights.flight import Flight, Obstacle
-from ..optimum.flights.logged import from_log
-from ..optimum.flights.noise import Noise
-from ..optimum.flights.rotations import level_axes, matrices
 
 
 def _flight_of(camera: Camera, frames: Sequence[Frame], truth: Truth | None, name: str) -> Flight:

@@ -6,12 +6,19 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from ..attack import approach, rows
+from . import attack_lines
 from .goals_file import QUANTITIES, GoalRow, Goals
 from .prose.words import plural
 
 ATTACK, HAZARD = "attack", "hazard"
-TOLD_LINES = (rows.REASON, rows.LATENESS, rows.ODD, rows.VELOCITY, rows.TIME, rows.ANSWERS)
+TOLD_LINES = (
+    attack_lines.REASON,
+    attack_lines.LATENESS,
+    attack_lines.ODD,
+    attack_lines.VELOCITY,
+    attack_lines.TIME,
+    attack_lines.ANSWERS,
+)
 
 
 @dataclass
@@ -79,7 +86,7 @@ def _told(attack: Attack) -> dict[str, str]:
     parts, css = [], ""
     for line in TOLD_LINES:
         row = attack.lines.get(line)
-        if row is not None and (line != rows.ANSWERS or row.met is not None):
+        if row is not None and (line != attack_lines.ANSWERS or row.met is not None):
             values = row.values
             known = [f"{name} {_percent(value)} %" for name, value in values.items() if math.isfinite(value)]
             parts += [f"{line}: {', '.join(known) or 'never'}"]
@@ -91,9 +98,9 @@ def attack_table(goals: Goals) -> list[dict[str, object]]:
     """For the page: coverage of the six, confident errors, suspicion, what else is told, goal."""
     told, section = [], ""
     for attack in attacks(goals):
-        cells = [_cell(attack, rows.COVER, [name]) for name in QUANTITIES]
-        wrong = _cell(attack, rows.WRONG, (rows.ANY, rows.POSITION))
-        suspect = _cell(attack, rows.SUSPECT, (rows.TRACKS, rows.IMAGES))
+        cells = [_cell(attack, attack_lines.COVER, [name]) for name in QUANTITIES]
+        wrong = _cell(attack, attack_lines.WRONG, (attack_lines.ANY, attack_lines.POSITION))
+        suspect = _cell(attack, attack_lines.SUSPECT, (attack_lines.TRACKS, attack_lines.IMAGES))
         told.append({
             "section": attack.section if attack.section != section else "", "title": attack.title,
             "cells": [*cells, wrong, suspect], "told": _told(attack), "met": attack.met,
@@ -105,16 +112,16 @@ def attack_table(goals: Goals) -> list[dict[str, object]]:
 def warning_table(goals: Goals) -> list[dict[str, object]]:
     told = []
     for row in warnings(goals):
-        shares = row.lines.get(approach.TRUE_SHARE)
+        shares = row.lines.get(attack_lines.TRUE_SHARE)
         levels = [f"{level}: {share:.2f}" for level, share in shares.values.items()] if shares else []
-        off = any(line == approach.OFF for line, _ in row.missed)
+        off = any(line == attack_lines.OFF for line, _ in row.missed)
         told.append({
             "title": row.title, "met": row.met,
             "cells": [
                 {"text": "; ".join(levels), "css": "miss" if off else ""},
-                _cell(row, approach.COVERED, ("time", "miss", "clearance")),
-                _cell(row, approach.UNWARNED, ("violators",)),
-                _cell(row, approach.FALSE, ("passes",)),
+                _cell(row, attack_lines.COVERED, ("time", "miss", "clearance")),
+                _cell(row, attack_lines.UNWARNED, ("violators",)),
+                _cell(row, attack_lines.FALSE, ("passes",)),
             ],
         })  # fmt: skip
     return told
@@ -130,16 +137,20 @@ def sentences(goals: Goals) -> list[str]:
             met = sum(bool(row.met) for row in asked)
             verb = "meets" if met == 1 else "meet"
             said.append(f"Of {plural(len(asked), one, many)} with a goal, {met} {verb} all that is asked.")
-    wrong = [(row.figure(rows.WRONG, rows.POSITION), row.title) for row in attacks(goals) if rows.WRONG in row.lines]
+    wrong = [
+        (row.figure(attack_lines.WRONG, attack_lines.POSITION), row.title)
+        for row in attacks(goals)
+        if attack_lines.WRONG in row.lines
+    ]
     worst = sorted((figure for figure in wrong if figure[0] > 0.0), reverse=True)[:3]
     if worst:
         names = "; ".join(f"{title} ({_percent(share)} %)" for share, title in worst)
         said.append(f"Positions confidently wrong, and not suspect, in most tracks: {names}.")
-    unwarned = [(row.figure(approach.UNWARNED, "violators"), row.title) for row in warnings(goals)]
+    unwarned = [(row.figure(attack_lines.UNWARNED, "violators"), row.title) for row in warnings(goals)]
     lacking = [f"{title} ({_percent(share)} %)" for share, title in unwarned if share > 0.0]
     if unwarned:
         said.append(
-            f"Violators without a warning {approach.AHEAD_S:g} s ahead, by the decision rule: "
+            f"Violators without a warning {attack_lines.AHEAD_S:g} s ahead, by the decision rule: "
             + ("; ".join(lacking) if lacking else "none")
             + "."
         )

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..optimum.paper_table3 import FRACTION
 from .data import COVERED, Campaign, Cases
+from .paper_table3 import FRACTION
 from .style import number
 
 ALIKE = 1.15  # errors whose ratio is within this are called alike

@@ -1,4 +1,4 @@
-"""Reads what ``python -m goe_tools goals --json FILE`` wrote: every goal's figures, wanted and reached."""
+"""Reads what ``python -m bench goals --json FILE`` wrote: every goal's figures, wanted and reached."""
 
 from __future__ import annotations
 

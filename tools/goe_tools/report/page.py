@@ -17,11 +17,11 @@ from tqdm import tqdm
 
 from ..logs.obslog import read_log
 from ..logs.whole_file import write_whole
-from ..optimum import paper_table3 as t3
 from ..view.answers import Options
 from ..view.picture import png
 from ..view.story import story_of
 from . import attacks, avoid, boxes, rare
+from . import paper_table3 as t3
 from . import refined as rf
 from . import statistics as st
 from .data import COVERED, Campaign
@@ -242,8 +242,6 @@ def _goal_rows(rows: Iterable[GoalRow]) -> list[dict[str, Any]]:
 
 
 def _rivals(goals: Goals) -> list[dict[str, Any]]:
-    from ..optimum.rivals import STRENGTHS
-
     tables = []
     for noise, rows in rf.rivals(goals).items():
         ours = next((row.errors for row in rows if row.name == "refined"), dict.fromkeys(QUANTITIES, math.nan))
@@ -258,7 +256,7 @@ def _rivals(goals: Goals) -> list[dict[str, Any]]:
                 })  # fmt: skip
             told.append({
                 "name": rp.METHOD_NAMES.get(row.name, row.name), "own": row.name == "refined", "cells": cells,
-                "strength": "" if tables else STRENGTHS.get(row.name, ""),
+                "strength": "" if tables else rp.STRENGTHS.get(row.name, ""),
             })  # fmt: skip
         tables.append({"noise": rp.NOISE_NAMES.get(noise, noise), "flights": rows[0].flights, "rows": told,
                        "strengths": not tables})  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..optimum import paper_table3 as t3
+from . import paper_table3 as t3
 from . import statistics as st
 from .data import Campaign, Cases
 from .goals_file import QUANTITIES, GoalRow, Goals

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..optimum.paper_table3 import FRACTION, PAPER_TABLE3, TABLE3_QUANTITIES, PaperRange, holding_range
 from .data import IN_PERCENT, SAME_CASE, Campaign, Cases
+from .paper_table3 import FRACTION, PAPER_TABLE3, TABLE3_QUANTITIES, PaperRange, holding_range
 
 ROUNDING = 1.25  # the paper's ranges are round numbers read off plots: this much wider still counts as reproduced
 MUCH = 0.5  # half the paper's range or less counts as better

@@ -8,7 +8,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from ..optimum import paper_table3 as t3
+from . import paper_table3 as t3
 from . import refined as rf
 from . import statistics as st
 from .data import Campaign

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .. import library
 from ..logs.obslog import FEATURES, TIME_LIMIT_US, Camera, Frame, ObservationLog
-from ..optimum import library
 from .motion import Motion
 
 MODEL_NAMES = {0: "none", 2: "disc", 3: "line", 4: "box", 5: "prism"}

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..flights.rotations import matrices, mounting
 from ..logs.obslog import Camera, Frame, ObservationLog
-from ..optimum.flights.rotations import matrices, mounting
-from ..optimum.model import undistort
+from ..models.model import undistort
 
 VELOCITY_OVER_S = 1.0  # the own velocity is the mean over so long, or over the last two images
 QUATERNION_OFF = 0.01  # what the library refuses

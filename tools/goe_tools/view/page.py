@@ -19,7 +19,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from ..optimum.library import package
+from ..library import package
 from . import words
 from .charts import Chart, axis_range, charts_of, text
 from .story import Story, Track, map_bounds

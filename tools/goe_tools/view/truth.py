@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
+from ..flights.rotations import fold
 from ..logs.obslog import Truth
-from ..optimum.flights.rotations import fold
 from .answers import Answers
 
 MODELS_OF_EDGE = ("line", "box")  # whose point is the middle of the front edge

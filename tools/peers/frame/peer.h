@@ -10,7 +10,7 @@ extern "C" {
 
 #define PEER_SLOTS 64 /* cases that are prepared at once: the most of a group */
 
-/* Written by `goe_tools peers`, group after group, so that each machine gets the same bits. */
+/* Written by `bench peers`, group after group, so that each machine gets the same bits. */
 extern const peer_case_t peer_cases[];
 extern const int peer_first[]; /* case of each group, and the end of the last */
 extern const int peer_groups;

@@ -12,7 +12,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from ...optimum import paper_table3 as t3
+from .. import paper_table3 as t3
 from .. import statistics as st
 from ..data import Campaign, Cases
 from ..style import COLOURS, FAINT, MARKERS, NAMES, NARROW_IN, OBSTACLES, QUANTITY_NAMES, UNITS, WIDE_IN, number

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ...optimum import paper_table3 as t3
+from .. import paper_table3 as t3
 from .. import statistics as st
 from ..data import Campaign, Cases
 from ..style import INK, NARROW_IN, SOFT, WIDE_IN, number

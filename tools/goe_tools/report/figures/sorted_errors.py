@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from ...optimum import paper_table3 as t3
+from .. import paper_table3 as t3
 from .. import statistics as st
 from ..data import Campaign, Cases
 from ..style import COLOURS, INK, MARKERS, NAMES, OBSTACLES, PAPER_COLOUR, QUANTITY_NAMES, SOFT, SYMBOLS, UNITS, number

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...optimum import paper_table3 as t3
+from .. import paper_table3 as t3
 from .. import statistics as st
 from ..data import IN_PERCENT, Cases
 from ..style import NAMES, SYMBOLS, UNITS, number, with_unit

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ...optimum import paper_table3 as t3
+from .. import paper_table3 as t3
 from .. import refined as rf
 from ..data import Campaign
 from ..goals_file import GoalRow, Goals
@@ -27,6 +27,12 @@ METHOD_NAMES = {
     "inverse_depth": "inverse-depth Kalman filter",
     "bearing_angle": "bearing-angle filter",
     "inverse_size": "inverse-size line fit (Atherton et al., BMVC 1991)",
+}
+STRENGTHS: dict[str, str] = {
+    "triangulation": "All images at once, no ground, height or start value needed; most of it is library calls.",
+    "inverse_depth": "Takes any points, one by one, from their first image on: twelve numbers of memory for each.",
+    "bearing_angle": "Linear throughout, three states, no start value, no corner to be recognised; made for cylinders.",
+    "inverse_size": "A straight line, the cheapest by far; a size in the image does not feel attitude errors at all.",
 }
 
 

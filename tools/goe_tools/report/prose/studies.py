@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ...optimum import paper_table3 as t3
+from .. import paper_table3 as t3
 from .. import statistics as st
 from ..data import Campaign, Cases
 from ..style import number

@@ -7,7 +7,7 @@ from collections import Counter
 
 import numpy as np
 
-from ...optimum import paper_table3 as t3
+from .. import paper_table3 as t3
 from .. import statistics as st
 from ..data import Cases
 from ..style import NAMES, SYMBOLS, number, with_unit

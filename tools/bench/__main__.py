@@ -1,0 +1,26 @@
+"""Command line: python -m bench COMMAND ..."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from goe_tools import cli
+
+COMMANDS = {  # name: module with add_arguments and run, and what it does
+    "attack_tables": (".attack.command", "print or write the tables of hostile flights from a file of goals"),
+    "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
+    "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),
+    "lies": (".lies.command", "search for confident errors and warnings that vanish, in random legal flights"),
+    "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
+    "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
+    "peers": (".peers.command", "hold the window fit and the filter update against other solvers"),
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    return cli.main("bench", "What the ground obstacle estimator is held against.", COMMANDS, argv)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

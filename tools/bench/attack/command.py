@@ -1,0 +1,97 @@
+"""The command ``attack_tables``: a file of the goals attack and hazard, as the tables of attack/README.md."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+
+from goe_tools.logs.marked_block import MarkedBlock
+from goe_tools.places import ROOT
+from goe_tools.report import attack_lines
+from goe_tools.report.attacks import Attack, attacks, warnings
+from goe_tools.report.goals_file import QUANTITIES, Goals, read_goals
+
+PAGE = ROOT / "tools" / "bench" / "attack" / "README.md"
+TABLES = MarkedBlock("attack")
+VERDICT = {True: "met", False: "missed", None: ""}
+HEADS = {
+    "movers": ("mover", "moves within 4 s/8 s/ever", "velocity in 2 sigma"),
+    "conventions": ("what is wrong", "told within 3 s"),
+}
+ANSWERS = ("attack", "in 2 sigma", "5 sigma off", "suspect", "told late or as wrong", "answers")
+WARNINGS = ("features, errors", "true share by told", "off by", "time/miss/clearance in 2 sigma", "unwarned", "false")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("goals", type=Path, metavar="FILE", help="what goals --only attack,hazard --json FILE wrote")
+    parser.add_argument("--write", action="store_true", help="into attack/README.md, in place of the tables there")
+
+
+def _percents(attack: Attack, line: str, names: tuple[str, ...]) -> str:
+    values = [attack.figure(line, name) for name in names]
+    if not any(math.isfinite(value) for value in values):
+        return ""
+    return "/".join(f"{value:.0f}" if math.isfinite(value) else "-" for value in values)
+
+
+def _line(cells: list[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _table(heads: tuple[str, ...], lines: list[list[str]]) -> list[str]:
+    """Without the columns that no line fills."""
+    kept = [i for i in range(len(heads)) if i == 0 or any(line[i] for line in lines)]
+    told = [_line([*(heads[i] for i in kept), "goal"]), "|" + "---|" * (len(kept) + 1)]
+    return told + [_line([*(line[i] for i in kept), line[-1]]) for line in lines] + [""]
+
+
+def _cells(attack: Attack) -> list[str]:
+    verdict = VERDICT[attack.met]
+    if attack.section == "movers":
+        moves = _percents(attack, attack_lines.REASON, (attack_lines.IN_4_S, attack_lines.IN_8_S, attack_lines.EVER))
+        return [attack.title, moves, _percents(attack, attack_lines.VELOCITY, (attack_lines.IMAGES,)), verdict]
+    if attack.section == "conventions":
+        return [attack.title, _percents(attack, attack_lines.ODD, (attack_lines.FLAGGED,)), verdict]
+    flagged = [_percents(attack, line, (attack_lines.FLAGGED,)) for line in (attack_lines.LATENESS, attack_lines.ODD)]
+    return [
+        attack.title, _percents(attack, attack_lines.COVER, QUANTITIES),
+        _percents(attack, attack_lines.WRONG, (attack_lines.ANY, attack_lines.POSITION)),
+        _percents(attack, attack_lines.SUSPECT, (attack_lines.TRACKS, attack_lines.IMAGES)),
+        next(filter(None, flagged), ""),
+        _percents(attack, attack_lines.ANSWERS, (attack_lines.TRACKS,)), verdict,
+    ]  # fmt: skip
+
+
+def _warning(row: Attack) -> list[str]:
+    shares = row.lines[attack_lines.TRUE_SHARE].values.values() if attack_lines.TRUE_SHARE in row.lines else ()
+    off = row.lines[attack_lines.OFF].values.values() if attack_lines.OFF in row.lines else ()
+    return [
+        row.title, "/".join(f"{share:.2f}" for share in shares), f"{max(off):.2f}" if off else "",
+        _percents(row, attack_lines.COVERED, ("time", "miss", "clearance")),
+        f"{row.figure(attack_lines.UNWARNED, 'violators'):.1f}", f"{row.figure(attack_lines.FALSE, 'passes'):.0f}",
+        VERDICT[row.met],
+    ]  # fmt: skip
+
+
+def tables(goals: Goals) -> str:
+    told: list[str] = []
+    found = attacks(goals)
+    for section in dict.fromkeys(attack.section for attack in found):
+        lines = [_cells(attack) for attack in found if attack.section == section]
+        if not any(any(line[1:-1]) for line in lines):
+            continue
+        told += [f"### {section[0].upper()}{section[1:]}", "", *_table(HEADS.get(section, ANSWERS), lines)]
+    if warnings(goals):
+        told += ["### Warnings", "", *_table(WARNINGS, [_warning(row) for row in warnings(goals)])]
+    asked = [row for row in goals.rows if row.met is not None]
+    return "\n".join([*told, f"{sum(bool(row.met) for row in asked)} of {len(asked)} goals are met."])
+
+
+def run(arguments: argparse.Namespace) -> int:
+    text = tables(read_goals(arguments.goals))
+    if not arguments.write:
+        print(text)
+        return 0
+    TABLES.write(PAGE, text)
+    return 0

@@ -1,0 +1,228 @@
+"""Answers of an estimator against the truth of a track, and the figures of many tracks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from goe_tools.models.coverage import COVERED_SIGMA, Judged
+
+from .scenario import Truth
+
+X0, Z0, ORIENTATION, WIDTH, LENGTH, HEIGHT = range(6)
+POSITION = (X0, Z0)
+CONFIDENT_SIGMA = 5.0  # an error beyond that ...
+CONFIDENT_IMAGES = 5  # ... in so many images on end, nothing being suspect
+COVERED_SHARE = 0.9  # of a track's answers, for one that is called covered
+RESTARTS = 2  # of the filter: no good track has so many in three seconds
+DISC, LINE, BOX, PRISM = 2, 3, 4, 5  # the library's models
+
+
+@dataclass
+class Answers:
+    """Of one track, K images. Quantities in the order X0, Z0, orientation (rad), width, length, height; NaN without an
+    answer of the refined method."""
+
+    time_s: np.ndarray
+    values: np.ndarray  # (K, 6)
+    sigma: np.ndarray  # (K, 6)
+    model: np.ndarray  # (K,)
+    status: np.ndarray  # (K,)
+    suspect: np.ndarray  # (K,)
+    restarted: np.ndarray  # (K,) the filter forgot what it had
+    reason: np.ndarray | None = None  # (K,) of suspicion, as text; None: the library tells none
+    velocity_m_s: np.ndarray | None = (
+        None  # (K, 2) of the obstacle, north and east, NaN where not told; None: never told
+    )
+    velocity_sigma_m_s: np.ndarray | None = None
+    time_to_go_s: np.ndarray | None = None  # (K,) until the closest approach, NaN where not told; None: not asked for
+
+
+@dataclass
+class Outcome:
+    """One track, judged: errors and sigmas (K, 6), NaN where nothing was answered or it cannot be judged."""
+
+    answers: Answers
+    error: np.ndarray
+    sigma: np.ndarray
+
+    @property
+    def suspect(self) -> np.ndarray:
+        return self.answers.suspect
+
+
+def folded(angle: np.ndarray) -> np.ndarray:
+    """To +-90 degrees: an edge has no direction."""
+    return (angle + math.pi / 2) % math.pi - math.pi / 2
+
+
+# ---------------------------------------------------------------------------------------------------------- one track
+
+
+def namings(truth: Truth) -> np.ndarray:
+    """(2, 6) what a box may rightly be told as: either of the faces that are seen at first may be the front. The
+    first is that whose side edge is nearer to the truth's own."""
+    solid, result = truth.solid, []
+    for turn in (0, 1):
+        angle = solid.orientation_rad - turn * math.pi / 2
+        width, length = (solid.width_m, solid.length_m) if turn == 0 else (solid.length_m, solid.width_m)
+        out = np.array([math.sin(angle), math.cos(angle)])  # along the side edge
+        faces = [truth.middle_m - sign * 0.5 * length * out for sign in (1.0, -1.0)]
+        front = min(faces, key=lambda face: float(np.hypot(*face)))  # it faces the camera
+        result.append([*front, folded(np.array(angle)), width, length, solid.height_m])
+    return np.array(result)
+
+
+def _known(angle: np.ndarray) -> np.ndarray:
+    """(K,) gaps filled from the next answer, or else from the last; all NaN without any."""
+    known = np.flatnonzero(np.isfinite(angle))
+    if not len(known):
+        return angle
+    return angle[known[np.minimum(np.searchsorted(known, np.arange(len(angle))), len(known) - 1)]]
+
+
+def width_across(truth: Truth) -> float:
+    """Of the footprint, square to the line of sight at first sight."""
+    solid = truth.solid
+    if solid.kind == "cylinder":
+        return solid.width_m
+    sight = truth.middle_m
+    sight = sight / np.linalg.norm(sight)
+    return float(np.ptp(np.concatenate(solid.bases()) @ np.array([sight[1], -sight[0]])))
+
+
+def judge(answers: Answers, truth: Truth) -> Outcome:
+    """Of a box, either naming of front and side is right, the nearer one in angle counts. A disc that stands for
+    something else tells the place of its middle and no size; a prism (upright boxes) its middle, and the width at first
+    sight."""
+    values, solid = answers.values, truth.solid
+    error = np.full_like(values, np.nan)
+    if solid.kind == "cylinder":
+        names = [X0, Z0, WIDTH, HEIGHT]
+        error[:, names] = values[:, names] - [*truth.middle_m, solid.width_m, solid.height_m]
+    else:
+        as_box = (answers.model == BOX) | (answers.model == LINE)
+        angle = _known(np.where(as_box, values[:, ORIENTATION], np.nan))
+        one, other = namings(truth)
+        with np.errstate(invalid="ignore"):
+            turned = np.abs(folded(angle - one[ORIENTATION])) > math.pi / 4
+        error[as_box] = (values - np.where(turned[:, None], other, one))[as_box]
+        error[~as_box, :2] = values[~as_box, :2] - truth.middle_m
+        prism = answers.model == PRISM
+        error[prism, WIDTH] = values[prism, WIDTH] - width_across(truth)
+        error[prism, HEIGHT] = values[prism, HEIGHT] - solid.height_m
+    error[:, ORIENTATION] = folded(error[:, ORIENTATION])
+    there = np.isfinite(error) & np.isfinite(answers.sigma)
+    return Outcome(answers, np.where(there, error, np.nan), np.where(there, answers.sigma, np.nan))
+
+
+def longest_run(flags: np.ndarray) -> int:
+    """Images on end that are flagged."""
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
+    return int((ends[1::2] - ends[::2]).max(initial=0))
+
+
+def is_confidently_wrong(outcome: Judged, quantities: Sequence[int] = range(6)) -> bool:
+    """Whether one of the quantities is far outside its own sigma for several images on end, and nothing warns of it."""
+    with np.errstate(invalid="ignore"):
+        far = np.abs(outcome.error) > CONFIDENT_SIGMA * outcome.sigma
+    return longest_run(far[:, list(quantities)].any(1) & ~outcome.suspect) >= CONFIDENT_IMAGES
+
+
+def first_flag_s(answers: Answers, flags: np.ndarray) -> float:
+    """Time of the first flagged image; infinite without one."""
+    flagged = np.flatnonzero(flags)
+    return float(answers.time_s[flagged[0]] - answers.time_s[0]) if len(flagged) else math.inf
+
+
+def told(answers: Answers, word: str) -> np.ndarray:
+    """(K,) whether an image's reason has the word in it; of a library that tells no reasons: whether it is suspect."""
+    if answers.reason is None:
+        return answers.suspect
+    return np.array([word in reason for reason in answers.reason], bool)
+
+
+def is_odd_within(answers: Answers, limit_s: float) -> bool:
+    """Whether something is told to be wrong with the whole track by a time: suspect, the filter restarting again and
+    again, or most images with a fault."""
+    early = answers.time_s - answers.time_s[0] <= limit_s
+    faults = float(np.mean(answers.status[early] < 0))
+    return bool(answers.suspect[early].any()) or int(answers.restarted[early].sum()) >= RESTARTS or faults > 0.5
+
+
+# --------------------------------------------------------------------------------------------------------- many tracks
+
+
+def share(flags: Sequence[bool]) -> float:
+    """Percent."""
+    return 100.0 * float(np.mean(flags)) if len(flags) else math.nan
+
+
+def confident(outcomes: Sequence[Outcome]) -> dict[str, float]:
+    """Percent of the tracks with a confident error in any quantity, and in the position."""
+    return {
+        "any": share([is_confidently_wrong(o) for o in outcomes]),
+        "position": share([is_confidently_wrong(o, POSITION) for o in outcomes]),
+    }
+
+
+def suspected(outcomes: Sequence[Outcome]) -> dict[str, float]:
+    """Percent of the tracks that are ever suspect, and of all images."""
+    images = np.concatenate([o.answers.suspect for o in outcomes])
+    return {"tracks": share([bool(o.answers.suspect.any()) for o in outcomes]), "images": share(images.tolist())}
+
+
+def answered(outcomes: Sequence[Outcome]) -> float:
+    """Percent of the tracks with a position in any image."""
+    return share([bool(np.isfinite(o.error[:, Z0]).any()) for o in outcomes])
+
+
+def told_within(outcomes: Sequence[Outcome], word: str, limit_s: float) -> float:
+    """Percent of the tracks of which a reason is told by a time; an infinite limit: ever."""
+    times = [first_flag_s(o.answers, told(o.answers, word)) for o in outcomes]
+    return share([math.isfinite(time) and time <= limit_s for time in times])
+
+
+def suspect_or_covered(outcomes: Sequence[Outcome]) -> float:
+    """Percent of the tracks that are suspect in some image, or whose answers are as good as their sigmas say."""
+    good = []
+    for o in outcomes:
+        there = np.isfinite(o.error)
+        with np.errstate(invalid="ignore"):
+            inside = (np.abs(o.error) < COVERED_SIGMA * o.sigma)[there]
+        good.append(bool(o.answers.suspect.any()) or (inside.size > 0 and inside.mean() >= COVERED_SHARE))
+    return share(good)
+
+
+def velocity_covered(outcomes: Sequence[Outcome], velocity_m_s: Sequence[np.ndarray]) -> float:
+    """Percent of the told velocities, north and east, within two sigma of the true ones (2,), one for each track; NaN
+    if none is told."""
+    inside = []
+    for o, true in zip(outcomes, velocity_m_s):
+        if o.answers.velocity_m_s is None or o.answers.velocity_sigma_m_s is None:
+            continue
+        ratio = np.abs(o.answers.velocity_m_s - true) / o.answers.velocity_sigma_m_s
+        inside += (ratio[np.isfinite(ratio)] < COVERED_SIGMA).tolist()
+    return share(inside)
+
+
+def time_error(outcomes: Sequence[Outcome], true_s: Sequence[np.ndarray], word: str, least_s: float) -> float:
+    """Median over the tracks of the told time to go's error, percent of the true one (K,), from the flag on while at
+    least ``least_s`` are left; NaN if no track is flagged so early."""
+    medians = []
+    for o, true in zip(outcomes, true_s):
+        flags = told(o.answers, word)
+        if o.answers.time_to_go_s is None or not flags.any():
+            continue
+        after = np.arange(len(flags)) >= np.argmax(flags)
+        chosen = after & (true > least_s) & np.isfinite(o.answers.time_to_go_s)
+        if chosen.any():
+            medians.append(100.0 * np.median(np.abs(o.answers.time_to_go_s - true)[chosen] / true[chosen]))
+    return float(np.median(medians)) if medians else math.nan
+
+
+def odd_within(outcomes: Sequence[Outcome], limit_s: float) -> float:
+    """Percent; ``is_odd_within``."""
+    return share([is_odd_within(o.answers, limit_s) for o in outcomes])

@@ -1,0 +1,200 @@
+"""The library over the hostile flights of ``attack``: a line of goals for each figure of a row.
+
+What the library tells besides (reasons of suspicion, the obstacle's velocity) is used where ``Track.more`` has the
+columns ``reason`` (named by ``reason_names``) and ``VELOCITY``; settings that it does not have are left out, with a
+word."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from goe_tools.flights.measured import measure
+from goe_tools.flights.recorded import recorded_scenes
+from goe_tools.library import (
+    METHODS,
+    Images,
+    Plan,
+    Track,
+    camera_settings,
+    estimate,
+    has_setting,
+    reason_names,
+    run,
+    settings_of,
+)
+from goe_tools.models.coverage import coverage
+from goe_tools.report import attack_lines
+from goe_tools.spread import each
+
+from ...attack import approach, judging, rows, scenario
+from ...attack.judging import Answers, Outcome
+from ...attack.rows import MOVES, Ask, Row
+from ...attack.scenario import Told
+from .goal import OPEN, Figures, Goal, Range, named
+from .work import Amount
+
+VELOCITY = ("velocity_north_m_s", "velocity_east_m_s", "velocity_north_sd_m_s", "velocity_east_sd_m_s")
+PLANS = (
+    Plan(approach.MARGIN_M, approach.CLEARANCE_M),
+    Plan(approach.MARGIN_M, approach.CLEARANCE_M, grows=True),
+)
+TIME_LEAST_S = 2.0  # left, for a told time to go to be judged
+TIMED_S = 60.0  # of a mover's path, in which its closest approach is looked for
+RECORDED_MOST = {"px4": 3.0}  # percent told as moving, by the settings of that autopilot
+
+
+def images_of(told: Told, plans: tuple[Plan, ...] = ()) -> Images:
+    return Images(
+        told.time_s, told.position_ned_m, told.attitude, told.height_m, told.pixel_px, told.seen, told.box_px,
+        told.reset_count, told.reset_m, told.velocity_ned_m_s if plans else None, plans,
+    )  # fmt: skip
+
+
+def known(settings: dict[str, float]) -> dict[str, float]:
+    """Those that the library has."""
+    return {name: value for name, value in settings.items() if has_setting(name)}
+
+
+def reasons_of(track: Track) -> np.ndarray | None:
+    """(K,) why an obstacle is suspect, as text; None of a library that does not say."""
+    names = reason_names()
+    if "reason" not in track.more or not names:
+        return None
+    return np.array([names[number] if 0 <= number < len(names) else "" for number in track.more["reason"]])
+
+
+def answers_of(track: Track, time_s: np.ndarray) -> Answers:
+    """The refined method's answers: the window's sigmas are not of the true error."""
+    refined = track.method == METHODS["refined"]
+    values, sigma = (np.where(refined[:, None], a, np.nan) for a in (track.values, track.sigma))
+    points = track.points if track.points is not None else np.zeros(len(time_s), int)
+    restarted = np.append(False, np.diff(points) < 0)  # images behind the answer: they grow until all is forgotten
+    answers = Answers(time_s, values, sigma, track.model, track.status, track.suspect, restarted, reasons_of(track))
+    if all(name in track.more for name in VELOCITY):
+        told = np.stack([track.more[name] for name in VELOCITY], 1)
+        there = (told[:, 2:] > 0.0).all(1)[:, None]
+        answers.velocity_m_s, answers.velocity_sigma_m_s = (np.where(there, told[:, i : i + 2], np.nan) for i in (0, 2))
+    if track.hazard:
+        answers.time_to_go_s = np.where(track.hazard["status"][:, 0] == 0, track.hazard["time_s"][:, 0], np.nan)
+    return answers
+
+
+def perform(row: Row, number: int) -> tuple[Outcome, Figures]:
+    """A track of a row; of movers also the obstacle's velocity, and the true time to go as far as it is asked."""
+    told = scenario.fly(row.scenario, number)
+    timed = any(ask.line == attack_lines.TIME for ask in row.asked)
+    settings = {**told.settings, **row.settings, **known(row.if_known)}
+    track = run(images_of(told, PLANS[:1] if timed else ()), settings)
+    return judging.judge(answers_of(track, told.time_s), told.truth), _motion(told, timed)
+
+
+def _motion(told: Told, timed: bool) -> Figures:
+    velocity = told.truth.velocity_ned_m_s
+    result = {"north": float(velocity[0]), "east": float(velocity[1])}
+    if timed:
+        first = approach.closest(told.truth, 0, told.truth.path_velocity_ned_m_s[0] - np.append(velocity, 0.0), TIMED_S)
+        result["closest_s"] = first.time_s
+    return result
+
+
+def _lines(row: Row, results: Sequence[tuple[Outcome, Figures]]) -> dict[str, tuple[str, Figures]]:
+    """Line -> unit and figures."""
+    outcomes = [outcome for outcome, _ in results]
+    suspected = judging.suspected(outcomes)
+    lines: dict[str, tuple[str, Figures]] = {}
+    if row.section == "movers":
+        within = partial(judging.told_within, outcomes, MOVES)
+        lines[attack_lines.REASON] = (
+            "%",
+            {attack_lines.IN_4_S: within(4.0), attack_lines.IN_8_S: within(8.0), attack_lines.EVER: within(math.inf)},
+        )
+        velocity = [np.array([motion["north"], motion["east"]]) for _, motion in results]
+        lines[attack_lines.VELOCITY] = "%", {attack_lines.IMAGES: judging.velocity_covered(outcomes, velocity)}
+        if any("closest_s" in motion for _, motion in results):
+            left = [motion["closest_s"] - outcome.answers.time_s for outcome, motion in results]
+            lines[attack_lines.TIME] = (
+                "%",
+                {attack_lines.MEDIAN: judging.time_error(outcomes, left, MOVES, TIME_LEAST_S)},
+            )
+    elif row.section == "conventions":
+        lines[attack_lines.ODD] = "%", {attack_lines.FLAGGED: judging.odd_within(outcomes, attack_lines.FLAG_S)}
+    else:
+        lines[attack_lines.COVER] = "%", named(coverage(outcomes))
+        lines[attack_lines.WRONG] = "%", judging.confident(outcomes)
+        lines[attack_lines.SUSPECT] = "%", {**suspected, attack_lines.OR_COVERED: judging.suspect_or_covered(outcomes)}
+        lines[attack_lines.ANSWERS] = "%", {attack_lines.TRACKS: judging.answered(outcomes)}
+        if any(ask.line == attack_lines.LATENESS for ask in row.asked):
+            lines[attack_lines.LATENESS] = (
+                "%",
+                {attack_lines.FLAGGED: judging.told_within(outcomes, rows.LATE, attack_lines.FLAG_S)},
+            )
+        if any(ask.line == attack_lines.ODD for ask in row.asked):
+            lines[attack_lines.ODD] = "%", {attack_lines.FLAGGED: judging.odd_within(outcomes, attack_lines.FLAG_S)}
+        if any(ask.line == attack_lines.REASON for ask in row.asked):
+            lines[attack_lines.REASON] = "%", {attack_lines.EVER: judging.told_within(outcomes, MOVES, math.inf)}
+    lines.setdefault(attack_lines.SUSPECT, ("%", suspected))
+    return lines
+
+
+def _asked_names(ask: Ask, figures: Figures) -> tuple[str, ...]:
+    """Without names: all that are told, and the position in any case."""
+    return ask.names or tuple(n for n, v in figures.items() if math.isfinite(v) or n in ("X0", "Z0"))
+
+
+def goals_of(group: str, row: Row, results: Sequence[tuple[Outcome, Figures]]) -> list[Goal]:
+    goals = []
+    for line, (unit, figures) in _lines(row, results).items():
+        asks = [ask for ask in row.asked if ask.line == line]
+        name = f"{row.title}: {line}"
+        for i, ask in enumerate(asks):
+            names = _asked_names(ask, figures)
+            if i == 0:
+                goals.append(Goal(group, name, unit, figures, ask.wanted, names))
+            else:  # another range, for other quantities
+                shown = {n: figures[n] for n in names}
+                goals.append(Goal(group, f"{name}, {', '.join(names)}", unit, shown, ask.wanted, names))
+        if not asks:
+            goals.append(Goal(group, name, unit, figures))
+    return goals
+
+
+def tracks_of(row: Row, amount: Amount) -> range:
+    return rows.numbers(amount.half, max(1, round(amount.attack * row.tracks_share)))
+
+
+def _recorded(group: str, amount: Amount) -> list[Goal]:
+    """Static obstacles beside recorded flights, by the settings of each autopilot: what of them is told as moving."""
+    by_autopilot: dict[str, list[Outcome]] = {}
+    for part in range(1, amount.recorded_seeds + 1):
+        for number, scene in enumerate(recorded_scenes(amount.recorded, seed=part)):
+            flight = measure(scene, scene.noise, (part, number))
+            answers = answers_of(estimate(flight, {**settings_of(flight), **camera_settings(flight)}), flight.time_s)
+            nothing = np.full_like(answers.values, np.nan)
+            by_autopilot.setdefault(scene.group, []).append(Outcome(answers, nothing, nothing))
+    goals = []
+    for autopilot, outcomes in by_autopilot.items():
+        wanted: Range = (0.0, RECORDED_MOST[autopilot]) if autopilot in RECORDED_MOST else OPEN
+        told = {attack_lines.EVER: judging.told_within(outcomes, MOVES, math.inf)}
+        name = f"{autopilot}, {len(outcomes)} static obstacles: {attack_lines.REASON}"
+        goals.append(Goal(group, name, "%", told, wanted, (attack_lines.EVER,) if autopilot in RECORDED_MOST else ()))
+    if not goals:
+        print("left out: recorded flights are not there")
+    return goals
+
+
+def attack_group(group: str, amount: Amount) -> list[Goal]:
+    """The whole table."""
+    goals, left_out = [], set()
+    for row in rows.ROWS:
+        results = each(partial(perform, row), tracks_of(row, amount), amount.workers, row.title)
+        goals += goals_of(f"{group}: {row.section}", row, results)
+        unknown = {name: value for name, value in row.if_known.items() if name not in known(row.if_known)}
+        if unknown:
+            left_out |= set(unknown)
+            goals.append(Goal(f"{group}: {row.section}", f"{row.title}: settings left out", "1", unknown))
+    if left_out:
+        print(f"left out: settings that the library does not have: {', '.join(sorted(left_out))}")
+    return goals + _recorded(f"{group}: recorded flights", amount)

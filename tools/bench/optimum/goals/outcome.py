@@ -1,0 +1,134 @@
+"""A flight to be judged, and what the methods make of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from goe_tools.flights.flight import QUANTITIES, Flight, Obstacle
+from goe_tools.flights.measured import measure
+from goe_tools.flights.noise import Noise
+from goe_tools.flights.rotations import fold
+from goe_tools.flights.scene import Scene
+from goe_tools.library import METHODS, Track, estimate, settings_of
+from goe_tools.models import offline
+from goe_tools.models.bound import bound
+from goe_tools.models.judge import DISC_QUANTITIES, ORIENTATION, X0, Z0, Judgement, judge, renamed, renamed_sigma
+
+SUSPECT_IMAGES = 8  # before which the library suspects nothing
+
+
+@dataclass
+class Task:
+    scene: Scene
+    noise: Noise
+    seed: tuple[int, int]
+    bound: bool = False
+    offline: bool = False
+    rivals: bool = False
+
+
+@dataclass
+class Outcome:
+    """One flight: what the refined method and the window method answer, image by image."""
+
+    name: str
+    group: str
+    truth: Obstacle
+    time_s: np.ndarray
+    reach_s: float
+    refined: Judgement
+    window: Judgement
+    covariance: np.ndarray  # (6, 6) at the end
+    nis: float  # sums over the track
+    nis_rows: float
+    misfit: float  # at the end
+    misfit_most: float  # over the track
+    suspect: bool  # in any image
+    answered: int  # images with an answer
+    answered_by_window: int
+    bound: np.ndarray | None = None  # (6,) under the naming of the last answer
+    offline: np.ndarray | None = None  # (6,) errors
+    rivals: dict[str, np.ndarray] = field(default_factory=dict)  # errors (6,) at the end
+    seed: tuple[int, ...] = ()
+
+    @property
+    def box(self) -> bool:
+        return self.truth.kind == "box"
+
+
+def _refined_only(track: Track) -> Track:
+    """Without the answers that the window method gave before the refined one had started: their sigmas mean less."""
+    track.values[track.method != METHODS["refined"]] = np.nan
+    return track
+
+
+def _misfit_most(track: Track) -> float:
+    """The largest misfit from the image on from which it counts."""
+    return float(track.misfit[np.cumsum(track.nis_rows > 0) >= SUSPECT_IMAGES].max(initial=0.0))
+
+
+def outcome_of(flight: Flight) -> Outcome:
+    """Runs both methods over a flight."""
+    track = estimate(flight)
+    position = track.valid[:, Z0]
+    by_window = int((position & (track.method == METHODS["window"])).sum())
+    window = estimate(flight, settings_of(flight, method="window"))
+    return Outcome(
+        flight.name, flight.group, flight.truth, flight.time_s, flight.reach_s, judge(_refined_only(track), flight),
+        judge(window, flight), track.covariance[-1], float(track.nis.sum()), float(track.nis_rows.sum()),
+        float(track.misfit[-1]), _misfit_most(track), bool(track.suspect.any()), int(position.sum()), by_window,
+    )  # fmt: skip
+
+
+def perform(task: Task) -> Outcome:
+    flight = measure(task.scene, task.noise, task.seed)
+    result = outcome_of(flight)
+    result.seed = task.seed
+    if task.bound:
+        best = bound(flight)
+        last = result.refined.renamed[-1]
+        result.bound = renamed_sigma(flight.truth, best.covariance) if last else best.sigma
+    if task.offline:
+        result.offline = _offline_error(flight)
+    if task.rivals:
+        result.rivals = _rival_errors(flight)
+    return result
+
+
+def _offline_error(flight: Flight) -> np.ndarray:
+    error = offline.fit(flight).values - flight.truth.values
+    error[ORIENTATION] = fold(error[ORIENTATION])
+    return np.where(True if flight.truth.kind == "box" else DISC_QUANTITIES, error, np.nan)
+
+
+def _rival_errors(flight: Flight) -> dict[str, np.ndarray]:
+    """Errors (6,) of the rivals at the end of a flight; nothing where they are not installed."""
+    try:
+        from .. import rivals
+    except ImportError:
+        return {}
+    absent, track = rivals.missing(), rivals.Track.of_flight(flight)
+    result = {}
+    for name, method in rivals.RIVALS.items():
+        if name not in absent:
+            result[name] = _rival_error(flight, method(track))
+    return result
+
+
+def _rival_error(flight: Flight, told: dict[str, float]) -> np.ndarray:
+    values = np.array([told.get(name, math.nan) for name in QUANTITIES])
+    truth, box = flight.truth, flight.truth.kind == "box"
+    error = values - truth.values
+    if not box:
+        error[~DISC_QUANTITIES] = np.nan
+    elif told.get("box", 0.0) > 0.5:
+        if abs(fold(error[ORIENTATION])) > math.pi / 4:
+            others = [values - renamed(truth.values, side) for side in (-1, 1)]
+            error = min(others, key=lambda e: abs(e[X0]) + abs(e[Z0]))
+    else:
+        error[:2] = values[:2] - truth.corners().mean(0)
+        error[2:] = np.nan
+    error[ORIENTATION] = fold(error[ORIENTATION])
+    return error

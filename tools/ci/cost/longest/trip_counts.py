@@ -1,0 +1,183 @@
+"""What the table says, held against what the embedded logs do: how often loops turn, what excludes what."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench.count_plugin import build_plugin
+
+from ..building import Build
+from ..instructions import PUBLIC
+from .longest_path import (
+    ANY,
+    Code,
+    Finder,
+    Pair,
+    inlined_by,
+    is_tested_at_its_end,
+    table_rows_of,
+    terms_of,
+)
+from .loop_bounds import Row
+from .loops import Loop
+from .machine_code import Function
+
+PLUGIN = "count_loops"
+
+
+@dataclass(frozen=True)
+class Trips:
+    """The most that a loop turned or that calls added up to, and may, by a line of the table."""
+
+    function: str
+    header: int
+    row: Row
+    measured: int
+    most: int
+
+
+@dataclass(frozen=True)
+class Check:
+    """What is counted, and may come to `most` at any time until it begins anew."""
+
+    function: str
+    address: int
+    row: Row
+    most: int
+    counts: tuple[tuple[int, int], ...]  # addresses, and how much each adds
+    resets: tuple[int, ...]
+    needs: frozenset[str] = frozenset()  # texts of lines by which it was called
+    bars: frozenset[str] = frozenset()  # ... by which it was not
+
+
+DEPTH = {"outer": 1, "outer2": 2}  # loops around that a bound speaks of
+
+
+def depth_of(loop: Loop) -> int:
+    return 0 if loop.outer is None else 1 + depth_of(loop.outer)
+
+
+def resets_of(code: Code, function: Function, loop: Loop, row: Row) -> tuple[int, ...]:
+    """Addresses after which a bound counts anew."""
+    if row.per == "call":
+        return (function.start,)
+    if row.per == "all" or row.per.startswith("> "):
+        return starts_of(code)
+    scope = loop
+    for _ in range(DEPTH.get(row.per, 0)):
+        assert scope.outer is not None
+        scope = scope.outer
+    return tuple(function.blocks[at].last.address for at, _ in scope.entries)
+
+
+def starts_of(code: Code) -> tuple[int, ...]:
+    return tuple(function.start for function in code.functions.values() if function.name in PUBLIC)
+
+
+def calls_of(code: Code, finder: Finder, pair: Pair) -> Iterator[int]:
+    """Addresses of the calls of a pair."""
+    for function in code.functions.values():
+        for block in function.blocks.values():
+            for call, to in block.calls:
+                if pair in finder.pair_of(function, call, to):
+                    yield call.address
+
+
+def checks_of_loops(code: Code, finder: Finder) -> Iterator[Check]:
+    """One for each loop and each line of the table that bounds it; not where a size decides."""
+    for function in code.functions.values():
+        for loop in code.loops[function.start]:
+            rows = table_rows_of(code, function, loop)
+            here = inlined_by(code, function, loop)
+            for row in rows:
+                once = is_tested_at_its_end(code, function, loop, row)
+                if re.search(r"size|over", row.most) or depth_of(loop) < DEPTH.get(row.per, 0):
+                    continue
+                most, counts = code.bound(row), [(loop.header, 1)]
+                if row.per.startswith("> "):
+                    if not once:
+                        continue  # its entries are not counted
+                    counts += [(at, -most) for at in calls_of(code, finder, (ANY, row.per[2:]))]
+                    most = 0
+                elif row.per == "entry" and not once:
+                    most += 1
+                needs = frozenset(row.passes) - here
+                others = (set(other.passes) - here for other in rows if set(other.passes) > set(row.passes))
+                yield Check(
+                    function.name, loop.header, row, most, tuple(counts), resets_of(code, function, loop, row), needs,
+                    frozenset().union(*others) - needs,
+                )  # fmt: skip
+
+
+def checks_of_statements(code: Code, finder: Finder) -> Iterator[Check]:
+    """One for each statement and case of every public call; of what was put in place of a call, for each block."""
+    for row in (*finder.statements, *finder.cases):
+        calls: list[tuple[int, int]] = []
+        placed: list[tuple[int, int]] = []
+        for times, pair in terms_of(row):
+            calls += [(at, times) for at in calls_of(code, finder, pair)]
+            for function in code.functions.values():
+                for block in function.blocks.values():
+                    if pair in finder.put_in(block) and not finder.turns_within(function, block, pair):
+                        placed.append((block.start, times))
+        for part in placed or [None]:
+            counts = tuple(calls) if part is None else (part, *calls)
+            if counts:
+                yield Check("any", counts[0][0], row, code.bound(row), counts, starts_of(code))
+
+
+def switch_lines(code: Code, texts: list[str]) -> Iterator[str]:
+    """On at calls by a line with that text, off behind them; and one that is on while a public call runs."""
+    for function in code.functions.values():
+        if function.name in PUBLIC:
+            yield f"on {function.start:x} {len(texts)}"
+            yield from (f"off {b.last.address:x} {len(texts)}" for b in function.blocks.values() if b.leaves)
+        for block in function.blocks.values():
+            for call, to in block.calls:
+                lines = [place.text for place in code.at(call)]
+                for number, text in enumerate(texts):
+                    if not any(text in line for line in lines):
+                        continue
+                    yield f"on {call.address:x} {number}"
+                    if call.name.startswith("bl"):
+                        yield f"off {call.address + 4:x} {number}"
+                    else:
+                        ends = (b.last.address for b in code.functions[to].blocks.values() if b.leaves)
+                        yield from (f"off {end:x} {number}" for end in ends)
+
+
+def map_of(code: Code, checks: list[Check]) -> str:
+    lines = list(switch_lines(code, code.texts))
+    for number, check in enumerate(checks):
+        for address, times in check.counts:
+            lines += [f"{'count' if times > 0 else 'less'} {address:x} {number}"] * abs(times)
+        lines.append(f"needs {number} {len(code.texts)}")
+        lines += [f"reset {address:x} {number}" for address in check.resets]
+        lines += [f"needs {number} {code.texts.index(text)}" for text in sorted(check.needs)]
+        lines += [f"bars {number} {code.texts.index(text)}" for text in sorted(check.bars)]
+    return "\n".join(lines) + "\n"
+
+
+def measured(built: Build, code: Code, folder: Path) -> list[Trips]:
+    """Over the embedded logs, under QEMU."""
+    finder = Finder(code, "all")
+    checks = [*checks_of_loops(code, finder), *checks_of_statements(code, finder)]
+    events, out = folder / "events", folder / "turns"
+    events.write_text(map_of(code, checks), encoding="utf-8")
+    plugin = build_plugin(folder, PLUGIN)
+    built.run_image(built.image("replay"), "-plugin", f"{plugin},map={events},out={out}")
+    turns = [int(line) for line in out.read_text(encoding="utf-8").split()]
+    turns += [0] * (len(checks) - len(turns))
+    return [Trips(c.function, c.address, c.row, turn, c.most) for c, turn in zip(checks, turns)]
+
+
+def exceeded(trips: list[Trips]) -> list[str]:
+    return [
+        f"{trip.function} at {trip.header:x}: counted {trip.measured}, line {trip.row.number} of the table says "
+        f"{trip.most}"
+        for trip in trips
+        if trip.measured > trip.most
+    ]

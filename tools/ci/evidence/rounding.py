@@ -1,0 +1,144 @@
+"""How far float32 takes the answers from exact arithmetic: a search for the worst scenes that lib/goe.h allows.
+
+The library in float32 and compiled in double precision get the same numbers. Compared is what lies before the first
+image in which the two decide anything otherwise (a model, an outlier at the edge of the gate, which corner of a box is
+which): such a decision is one that noise makes either way, and what follows it is told beside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+from bench.optimum.extremes import CASES, DOMAINS, FAR, NEAR, Case, Domain, scene_at
+from bench.optimum.rounding import QUANTITIES, difference, most
+from goe_tools.library import ready
+
+from .parts import Amount, NotHereError
+from .record import Result, Row
+
+TRIED = {False: 250, True: 6000}  # scenes for each case and domain; of a long run
+RANDOM_SHARE = 0.3  # of them at random, before the climbing begins
+STEP, STEP_SHARE = 0.1, 0.35  # of a coordinate of the unit cube; of the coordinates that are moved
+METHODS = ("refined", "window")
+GOALS = {(NEAR.name, "refined"): 0.5, (FAR.name, "refined"): 1.0}  # sigmas; what is reached: lib/goe.h, Arithmetic
+
+
+@dataclass
+class Worst:
+    """The worst scene of a quantity."""
+
+    sigmas: float = 0.0
+    point: np.ndarray | None = None
+    ever: float = 0.0  # in any scene, also after something was decided otherwise that no output names
+
+
+@dataclass
+class Found:
+    case: Case
+    domain: Domain
+    worst: dict[str, Worst] = field(default_factory=lambda: {name: Worst() for name in QUANTITIES})
+    sigma: float = 0.0  # of a sigma, relative
+    tracks: int = 0  # with an answer
+    answers: int = 0
+    apart: int = 0
+    parted: int = 0  # tracks in which a decision fell otherwise
+
+
+def try_point(found: Found, point: np.ndarray) -> None:
+    images, settings = scene_at(found.case, found.domain, point)
+    told = difference(images, settings)
+    found.tracks += told.answered > 0
+    found.answers += told.answered
+    found.apart += told.apart
+    found.parted += told.apart > 0
+    for name, worst in found.worst.items():
+        sigmas = most(told.sigmas[name])
+        found.sigma = max(found.sigma, most(told.sigma[name]))
+        worst.ever = max(worst.ever, most(told.ever[name]))
+        if sigmas > worst.sigmas:
+            worst.sigmas, worst.point = sigmas, point
+
+
+def moved(point: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    chosen = rng.random(len(point)) < STEP_SHARE
+    return np.clip(point + chosen * STEP * rng.standard_normal(len(point)), 0.0, 1.0)
+
+
+def search(case: Case, domain: Domain, tries: int, seed: int = 1) -> Found:
+    """At random first, then from the worst of each quantity in turn."""
+    rng = np.random.default_rng([seed, CASES.index(case), DOMAINS.index(domain)])
+    found = Found(case, domain)
+    names = list(QUANTITIES)
+    for number in range(tries):
+        worst = found.worst[names[number % len(names)]].point
+        random = number < RANDOM_SHARE * tries or worst is None
+        try_point(found, rng.random(len(domain.ranges)) if random or worst is None else moved(worst, rng))
+    return found
+
+
+def _search(job: tuple[int, int, int]) -> Found:
+    return search(CASES[job[0]], DOMAINS[job[1]], job[2])
+
+
+def searched(amount: Amount) -> list[Found]:
+    jobs = [(c, d, TRIED[amount.long]) for d in range(len(DOMAINS)) for c in range(len(CASES))]
+    if amount.jobs < 2:
+        return [_search(job) for job in jobs]
+    with ProcessPoolExecutor(amount.jobs) as pool:
+        return list(pool.map(_search, jobs))
+
+
+def worst_of(found: Sequence[Found], name: str) -> Found:
+    return max(found, key=lambda one: one.worst[name].sigmas)
+
+
+def rows(found: Sequence[Found]) -> Iterator[Row]:
+    for domain in DOMAINS:
+        for method in METHODS:
+            own = [f for f in found if f.domain == domain and f.case.method == method]
+            goal = GOALS.get((domain.name, method))
+            if not own:
+                continue
+            for name in QUANTITIES:
+                best = worst_of(own, name)
+                worst, ever = best.worst[name], max(f.worst[name].ever for f in own)
+                if worst.point is not None:
+                    yield Row(
+                        f"{name}, {method}, {domain.name} domain: float32 against float64, the worst scene found",
+                        f"{worst.sigmas:.2g} sigma ({best.case.name}); {ever:.2g} once a decision falls otherwise",
+                        f"at most {goal:g} sigma" if goal else "",
+                        worst.sigmas <= goal if goal else None,
+                    )
+            tracks, parted = sum(f.tracks for f in own), sum(f.parted for f in own)
+            yield Row(
+                f"{method}, {domain.name} domain: a sigma's own rounding; tracks with another decision",
+                f"{max(f.sigma for f in own):.2g} of it; {parted} of {tracks} tracks that were searched for the worst",
+                "",
+                None,
+            )
+
+
+def report(found: Sequence[Found]) -> str:
+    lines = [f"{domain.name}: {domain.words}" for domain in DOMAINS]
+    for one in found:
+        lines += [
+            "",
+            f"{one.domain.name}, {one.case.name}: {one.tracks} tracks, {one.answers} answers, {one.apart} apart",
+        ]
+        for name, worst in one.worst.items():
+            if worst.point is not None:
+                figures = ", ".join(f"{k} {v:.3g}" for k, v in one.domain.figures(worst.point).items())
+                lines.append(f"  {name}: {worst.sigmas:.3g} sigma; {figures}")
+    return "\n".join(lines)
+
+
+def run(amount: Amount) -> Result:
+    try:
+        ready()
+        ready(double=True)
+    except FileNotFoundError as reason:
+        raise NotHereError(str(reason)) from None
+    found = searched(amount)
+    return Result(list(rows(found)), report(found))

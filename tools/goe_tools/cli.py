@@ -1,0 +1,113 @@
+"""The command line of the three packages: python -m goe_tools COMMAND ..., python -m bench ..., python -m ci ...
+
+A package's ``COMMANDS`` have by name a module with add_arguments and run, and what it does."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import importlib
+import os
+import re
+import sys
+from collections.abc import Mapping, Sequence
+from typing import NoReturn
+
+from .logs.obslog import LogError
+
+PACKAGES = ("goe_tools", "bench", "ci")  # each has its COMMANDS in __main__.py
+EXIT_BAD_INPUT = 2
+EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C
+
+
+def commands_of(package: str) -> Sequence[str]:
+    """Nothing of a package that is not installed."""
+    try:
+        return tuple(importlib.import_module(f"{package}.__main__").COMMANDS)
+    except ModuleNotFoundError:
+        return ()
+
+
+class Parser(argparse.ArgumentParser):
+    """Tells the name that a mistyped command or option was probably meant to be, and the package that has it."""
+
+    package = ""  # of the commands; empty for the parser of one of them
+
+    def elsewhere(self) -> dict[str, str]:
+        """How the commands of the other packages are called, by name."""
+        others = [package for package in PACKAGES if self.package and package != self.package]
+        return {name: f"python -m {package} {name}" for package in others for name in commands_of(package)}
+
+    def words(self) -> list[str]:
+        """Its options, its commands, and their options: a command hands back what it does not know."""
+        found = [word for action in self._actions for word in action.option_strings]
+        for action in self._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                for name, parser in action.choices.items():
+                    found += [name, *parser.words()]
+        return found
+
+    def error(self, message: str) -> NoReturn:
+        known = self.words()
+        mistyped = re.search(r"argument command: invalid choice: '([^']*)'|unrecognized arguments: (\S+)", message)
+        word = (mistyped[1] or mistyped[2]).split("=")[0] if mistyped else ""
+        others = self.elsewhere() if mistyped and mistyped[1] else {}
+        names = [name for name in (*known, *others) if (name[0] == "-") == word.startswith("-")]
+        near = difflib.get_close_matches(word, names, 1)
+        super().error(f"{message}; did you mean {others.get(near[0], near[0])}?" if near else message)
+
+
+def parser_for(
+    package: str, what: str, known: Mapping[str, tuple[str, str]], words: Sequence[str]
+) -> argparse.ArgumentParser:
+    """The parser of a command line. Only the module of the command that is asked for is imported: plots, tables and
+    solvers take their time to start."""
+    parser = Parser(prog=package, description=what)
+    parser.package = package
+    commands = parser.add_subparsers(dest="command", required=True)
+    asked = next((word for word in words if not word.startswith("-")), None)
+    for name, (module_name, text) in known.items():
+        command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+        if name == asked:
+            module = importlib.import_module(module_name, package)
+            module.add_arguments(command)
+            command.set_defaults(entry=module.run)
+    return parser
+
+
+def fault_of(error: OSError) -> str:
+    """The file first; an error of the system that names none is of standard output: a full disk, a closed pipe."""
+    if error.strerror is None:
+        return str(error)
+    return f"{error.filename or 'standard output'}: {error.strerror}"
+
+
+def drop_output() -> None:
+    """What standard output did not take: Python would try again on leaving."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def main(package: str, what: str, known: Mapping[str, tuple[str, str]], argv: Sequence[str] | None = None) -> int:
+    """``what``: the package in one sentence; ``known``: its ``COMMANDS``."""
+    words = sys.argv[1:] if argv is None else argv
+    arguments = parser_for(package, what, known, words).parse_args(words)
+    try:
+        status = int(arguments.entry(arguments))
+        sys.stdout.flush()
+        return status
+    except OSError as error:
+        print(f"{package} {arguments.command}: {fault_of(error)}", file=sys.stderr)
+        drop_output()
+        return EXIT_BAD_INPUT
+    except (LogError, ValueError) as error:
+        print(f"{package} {arguments.command}: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except MemoryError:
+        print(f"{package} {arguments.command}: out of memory", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except KeyboardInterrupt:
+        print(f"{package} {arguments.command}: interrupted", file=sys.stderr)
+        return EXIT_INTERRUPTED

@@ -1,0 +1,444 @@
+"""A recursive estimator of a prism by upright bounding boxes, image by image: covariance form, float64.
+
+It follows the library's definitions, and shares no code with it; the library keeps a triangular root of the
+information, and has no covariance. One linearised update per image, at the predicted state x:
+
+    r = measured - predicted(x)          J = d predicted / d state              (``prism.row_of``)
+
+A side's error has a white part and one that stays alike, a first-order process of the sigma s = box_share * size of the
+box, which fades by f = exp(-t/tau) from image to image. Given the state, the residuals so far tell it: m - F (x' - x)
+if the state becomes x', of the variance V beyond that.
+
+    fading      m <- f m    F <- f F    V <- min(f^2 V + (1 - f^2) s^2, s^2)    in the first image V = s^2
+    recalled    r <- r - m  J <- J - F  N = V + white
+    learnt      k = V/(N + variance that the image's rows share)    m <- m + k r    F <- F + k J    V <- V - k V
+
+The state c has a prior and is never estimated (Schmidt): P is the covariance of the others if c were 0, and the
+estimate moves by z c if it is not. K is the gain by P alone.
+
+    P <- (I - K J) P (I - K J)' + K N K'        z <- z - K (J z + J_c)          all others' covariance: P + z z' var(c)
+
+A track that scatters more than it was told, or whose residuals are alike from image to image, widens its sigmas: the
+variance is multiplied by ``Scatter.factor``.
+
+Left out is what the library does once sides do not fit image after image: it frees the top, or starts anew."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..flights.flight import Flight
+from .model import undistort
+from .prism import (
+    BX,
+    PX,
+    STATES,
+    A,
+    C,
+    E,
+    G,
+    Q,
+    S,
+    Sight,
+    Told,
+    W,
+    box_size,
+    focal_px,
+    quantities,
+    quantity_slopes,
+    row_of,
+    sights,
+)
+
+COUNT = len(STATES)
+SCATTER_SHARE = 0.01  # white part of a side's error, of the box's size
+EARLY_SHARE = 0.08  # of tau: an image sooner after the last one is not used
+GAP_MAX_S = 1000.0  # a longer one counts as this
+DEPTH_LIMIT = 2.0  # of |s|
+AHEAD_MIN = 0.02  # of the middle, units of Z0
+RAY_AHEAD_MIN = 0.02
+GROUND_SIGMAS = 3.0  # by which the foot must lie below the horizon to tell the range
+FOOT_SHARE = 0.6  # of box_share of the width, in that sigma
+NEAR_SIDE = 0.5  # of the width: the foot is nearer than the middle
+RANGE_MIN_M, RANGE_MAX_M = 1.0, 1e6
+NO_ALTIMETER_M = 50.0  # sigma of the height from which on the first box tells it
+HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
+GROUND_MIN = 1e-6  # units of Z0
+PATH_MIN_M = 0.1
+DEPTH_SD = 0.3  # of s
+UNSEEN_SD = 3.0  # of c
+DISC_SD = 1e-3  # of both where a disc is asked for
+# Of the width, by which it changes while the line of sight turns by a radian, up to an angle; and of the depth beyond
+# the width, where the point of the roof may lie that the top is over.
+TURNED_SHARE, TURNED_MAX, ROOF_SHARE = (float(np.float32(share)) for share in (1.3, 0.15, 0.15))
+
+SCATTER_KEPT, ALIKE_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as the library holds them
+SCATTER_CLIP, SCATTER_SEED = 10.0, 10.0
+MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
+CHANCE = float(np.float32(0.07))  # one sigma of both means: only what is beyond widens
+
+
+def depth_sds(told: Told) -> tuple[float, float]:
+    """One sigma of s and of c before the first image."""
+    return (DISC_SD, DISC_SD) if told.disc else (DEPTH_SD, UNSEEN_SD)
+
+
+@dataclass
+class Memory:
+    """Of a side's error that stays alike, given the state: value - by (x - state), focal lengths."""
+
+    value: float
+    by: np.ndarray  # (10,)
+    variance: float
+    learnt: bool = False  # the side was measured
+
+    def fade(self, share: float, variance: float) -> None:
+        if not self.learnt:
+            self.variance = variance
+            return
+        self.value *= share
+        self.by = self.by * share
+        self.variance = min(share**2 * self.variance + (1 - share**2) * variance, variance)
+
+
+def _beyond_chance(excess: float) -> float:
+    return excess - CHANCE**2 / excess if excess > CHANCE else 0.0
+
+
+@dataclass
+class Scatter:
+    """Of normalised residuals: how large they are against what was told, and how alike to those of the image before."""
+
+    before: np.ndarray  # (4,) by side, sigmas; 0: none
+    products: float = 0.0
+    squares: float = 0.0
+    recent: float = 0.0  # mean of nis over rows, of the latest images
+    whole: float = 0.0  # of what it is above 1, over the whole track
+    images: int = 0
+
+    def take(self, side: np.ndarray, residual: np.ndarray) -> None:
+        now = np.zeros(4)
+        now[side] = np.clip(residual, -SCATTER_CLIP, SCATTER_CLIP)
+        both = (now != 0) & (self.before != 0)
+        self.products = SCATTER_KEPT * self.products + float(now[both] @ self.before[both])
+        self.squares = SCATTER_KEPT * self.squares + float(now[both] @ now[both])
+        self.before = now
+
+    def take_fit(self, ratio: float) -> None:
+        self.images += 1
+        heard = self.images + MEAN_SEEDS
+        self.recent += (min(ratio, RATIO_MOST) - self.recent) / min(heard, MEAN_IMAGES)
+        self.whole += (min(ratio - 1, RATIO_MOST) - self.whole) / heard
+
+    def factor(self) -> float:
+        alike = min(_beyond_chance(self.products / (self.squares + SCATTER_SEED)), ALIKE_MOST)
+        excess = max(self.recent - 1, self.whole)
+        scale = 1 + (_beyond_chance(excess) if excess > 0 else excess)
+        return max(scale * (1 + alike) / (1 - alike), 1.0)
+
+
+@dataclass
+class Rows:
+    """Of one image; n rows. Own variances, and what they share: the covariance of the image's attitude and position."""
+
+    side: np.ndarray  # (n,)
+    residual: np.ndarray
+    slope: np.ndarray  # (n, 10)
+    own: np.ndarray
+    about: np.ndarray  # (n, 3) derivative by the image's attitude error, the state's axes
+    shift: np.ndarray  # (n, 3) by unit errors of the image's position
+
+
+@dataclass
+class PrismTrack:
+    """(K, 6) in the order x0, z0, orientation (NaN), width, length (NaN), height; NaN before the start."""
+
+    values: np.ndarray
+    sigma: np.ndarray
+    fresh: np.ndarray  # (K,) the image told something
+    doubted: np.ndarray  # (K,) rows that counted less
+    refused: np.ndarray  # (K,) rows that did not count
+
+
+class PrismFilter:
+    """Fed with the images of one obstacle in T."""
+
+    def __init__(self, told: Told) -> None:
+        self.told = told
+        self.state: np.ndarray | None = None  # (10,)
+        self.doubted = self.refused = 0  # of the latest image
+        self.scatter = Scatter(np.zeros(4))
+        self.first_s: float | None = None  # the track's first image
+
+    # --------------------------------------------------------------------------------------------------------- start
+
+    def _ray(self, sight: Sight, x: float, y: float) -> np.ndarray | None:
+        """X/Z and Y/Z of the raw image point, focal lengths; None if it does not point ahead."""
+        camera = sight.camera
+        pixel = np.array([x, y]) * [camera.fx, camera.fy] + [camera.cx, camera.cy]
+        ray = sight.axes_from_camera @ [*undistort(camera, pixel)[0], 1.0]
+        return ray[:2] / ray[2] if ray[2] > RAY_AHEAD_MIN else None
+
+    def _first_range_m(self, sight: Sight, size: float, foot: np.ndarray | None) -> float:
+        """By flat ground, if the foot lies clearly below the horizon, otherwise by the typical size."""
+        told = self.told
+        attitude = np.radians([told.attitude_bias_deg, told.attitude_white_deg])
+        own = [told.box_px / sight.camera.fy, FOOT_SHARE * told.box_share * size]
+        clear = GROUND_SIGMAS * float(np.linalg.norm([*attitude, *own]))
+        high = sight.height_m > GROUND_SIGMAS * told.height_sd_m
+        if foot is not None and foot[1] > clear and high:
+            return sight.height_m / foot[1] * (1 + NEAR_SIDE * size)
+        return told.typical_size_m / size
+
+    def start(self, in_t: Sight) -> bool:
+        """By the first image that measures left and right: Z then points at the middle between them."""
+        left, top, right, bottom = in_t.side
+        if not np.isfinite(left + right):
+            return False
+        x, y = 0.5 * (left + right), 0.5 * (top + bottom)
+        ray = self._ray(in_t, x, y if np.isfinite(y) else 0.0)
+        if ray is None:
+            return False
+        cosine, sine = np.array([1.0, ray[0]]) / np.hypot(1.0, ray[0])
+        turn = np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
+        sight = in_t.turned(turn, in_t.moved_m)
+        head = self._ray(sight, x, top) if np.isfinite(top) else None
+        foot = self._ray(sight, x, bottom) if np.isfinite(bottom) else None
+        size = (right - left) / (1 + x * x)
+        range_m = self._first_range_m(sight, size, foot)
+        if not RANGE_MIN_M <= range_m <= RANGE_MAX_M:
+            return False
+        self.turn, self.origin_m, self.start_s, self.time_s = turn, in_t.moved_m, in_t.time_s, in_t.time_s
+        state = np.zeros(COUNT)
+        state[[Q, W]] = 1 / range_m, 0.5 * size
+        state[E] = sight.height_m / range_m - (0.0 if head is None else head[1])
+        if self.told.height_sd_m > NO_ALTIMETER_M and foot is not None:
+            state[G] = foot[1] - sight.height_m / range_m
+        self.state = state
+        sd = self._prior_sd(size)
+        self.covariance, self.by_c, self.c_sd = np.diag(sd[:C] ** 2), np.zeros(C), float(sd[C])
+        self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
+        self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
+        self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)  # after the latest image, and since
+        self.walked_s = np.zeros(2)  # since the walk was added along X, and along Z
+        return True
+
+    def _prior_sd(self, width: float) -> np.ndarray:
+        """(10,) one sigma of the first guess."""
+        told, q = self.told, self.state[Q]
+        sd = np.empty(COUNT)
+        sd[:3] = np.radians(told.attitude_bias_deg)
+        sd[2] = np.hypot(sd[2], HEADING_ARM * told.velocity_bias_m_s)
+        sd[G] = max(told.height_sd_m * q, GROUND_MIN)
+        sd[[A, Q, W]] = 1.0, 2.0 * q, 2.5 * width
+        sd[E] = 10 * max(abs(self.state[E]), width)
+        sd[[S, C]] = depth_sds(told)
+        return sd
+
+    # ------------------------------------------------------------------------------------------------------- an image
+
+    def full_covariance(self) -> np.ndarray:
+        """(10, 10), c included."""
+        by_c = np.append(self.by_c, 1.0)
+        result = self.c_sd**2 * np.outer(by_c, by_c)
+        result[:C, :C] += self.covariance
+        return result
+
+    def _pass_time(self, span_s: float) -> None:
+        """The position walks along X and Z in turn: a step along Z rescales the lengths in units of Z0."""
+        drift, walk = np.radians(self.told.attitude_drift_deg), self.told.position_walk_m * self.state[Q]
+        noise = np.zeros(C)
+        noise[BX : BX + 3] = drift**2
+        self.gained[BX : BX + 3] += drift**2 * span_s
+        self.gained[A] += walk**2 * span_s
+        self.walked_s += span_s
+        axis = int(self.walked_s[1] > self.walked_s[0])
+        direction = np.zeros(C)
+        if axis == 0:
+            direction[A] = 1.0
+        else:
+            direction[[G, A, Q, W, E]] = self.state[[G, A, Q, W, E]]
+        waited_s, self.walked_s[axis] = float(self.walked_s[axis]), 0.0
+        self.covariance = (
+            self.covariance + np.diag(noise * span_s) + walk**2 * waited_s * np.outer(direction, direction)
+        )
+
+    def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
+        """Residuals and derivatives as measured, and the white variances with what the linearisation misses."""
+        told = self.told
+        found = [row_of(sight, self.state, i, sight.side[i]) for i in range(4) if np.isfinite(sight.side[i])]
+        rows = [row for row in found if row is not None]
+        if not rows:
+            return None
+        side = np.array([row.side for row in rows])
+        slope = np.array([row.slope for row in rows])
+        size = np.array([box_size(sight, self.state, row.side % 2) for row in rows])
+        own = (told.box_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
+        own += (told.cut_noise * size) ** 2 if sight.cut else 0.0
+        ahead = max(1 - sight.moved_m[2] * self.state[Q], AHEAD_MIN)
+        own += (slope[:, Q] * sight.moved_m[2] * q_variance / ahead) ** 2
+        position_sd = told.position_white_m * np.sqrt(1 + q_variance / self.state[Q] ** 2)
+        residual = np.array([sight.side[row.side] - row.predicted for row in rows])
+        about = slope[:, :3] @ sight.axes_from_body.T
+        return Rows(side, residual, slope[:, :COUNT], own, about, position_sd * slope[:, PX:])
+
+    def _recall(self, sight: Sight, span_s: float, rows: Rows | None) -> None:
+        told = self.told
+        share = np.exp(-span_s / told.correlation_s) if told.correlation_s > 0 else 0.0
+        for side, memory in enumerate(self.memory):
+            memory.fade(share, (told.box_share * box_size(sight, self.state, side % 2)) ** 2)
+        for i, side in enumerate(() if rows is None else rows.side):
+            memory = self.memory[side]
+            rows.residual[i] -= memory.value
+            rows.slope[i] -= memory.by
+            rows.own[i] += memory.variance
+
+    def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
+        """Normalised square of a weighted sum of residuals, without what a walk along Z adds."""
+        slope = weight @ rows.slope
+        white = np.radians(self.told.attitude_white_deg)
+        variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
+        variance += white**2 * np.sum((weight @ rows.about) ** 2) + np.sum((weight @ rows.shift) ** 2)
+        return float((weight @ rows.residual) ** 2 / variance)
+
+    def _judge(self, rows: Rows) -> np.ndarray:
+        """(n,) normalised squares: of the middle residual of each image axis alone, of the others by their distance
+        from it, as the attitude moves both; alone, too, if the middle one is off itself."""
+        result = np.zeros(len(rows.side))
+        along_x = np.abs(rows.about[:, 1]) > np.abs(rows.about[:, 0])
+        unit = np.eye(len(rows.side))
+        for group in (np.flatnonzero(along_x), np.flatnonzero(~along_x)):
+            if not len(group):
+                continue
+            order = group[np.argsort(rows.residual[group], kind="stable")]
+            middle = order[len(order) // 2]
+            other = order[len(order) // 2 - 1]
+            if len(order) % 2 == 0 and abs(rows.residual[other]) < abs(rows.residual[middle]):
+                middle = other
+            result[middle] = self._innovation2(rows, unit[middle])
+            common = result[middle] <= self.told.gate_sigma**2
+            for row in group[group != middle]:
+                result[row] = self._innovation2(rows, unit[row] - unit[middle] if common else unit[row])
+        return result
+
+    def _learn(self, rows: Rows, shared: np.ndarray) -> None:
+        for i, side in enumerate(rows.side):
+            memory = self.memory[side]
+            gain = memory.variance / (rows.own[i] + shared[i, i])
+            memory.value += gain * rows.residual[i]
+            memory.by = memory.by + gain * rows.slope[i]
+            memory.variance -= gain * memory.variance
+            memory.learnt = True
+
+    def _nis(self, rows: Rows, shared: np.ndarray) -> float:
+        slope = rows.slope[:, :C]
+        expected = slope @ self.covariance @ slope.T + shared + np.diag(rows.own)
+        return float(rows.residual @ np.linalg.solve(expected, rows.residual))
+
+    def _update(self, rows: Rows, shared: np.ndarray) -> None:
+        slope, by_c = rows.slope[:, :C], rows.slope[:, C]
+        noise = shared + np.diag(rows.own)
+        cross = self.covariance @ slope.T
+        gain = np.linalg.solve(slope @ cross + noise, cross.T).T
+        change = gain @ rows.residual
+        rest = np.eye(C) - gain @ slope
+        self.covariance = rest @ self.covariance @ rest.T + gain @ noise @ gain.T
+        self.by_c = self.by_c - gain @ (slope @ self.by_c + by_c)
+        self.state = self.state + np.append(change, 0.0)
+        self.state[S] = np.clip(self.state[S], -DEPTH_LIMIT, DEPTH_LIMIT)
+        for memory in self.memory:
+            memory.value -= memory.by[:C] @ change
+
+    def take(self, in_t: Sight) -> bool:
+        """An image; whether it told something."""
+        self.doubted = self.refused = 0
+        self.first_s = in_t.time_s if self.first_s is None else self.first_s
+        if self.state is None:
+            if not self.start(in_t):
+                return False
+        elif in_t.time_s - self.time_s < EARLY_SHARE * self.told.correlation_s:
+            return False
+        self.flown_m += float(np.linalg.norm((in_t.moved_m - self.last_m)[[0, 2]]))
+        self.last_m = in_t.moved_m
+        sight = in_t.turned(self.turn, self.origin_m)
+        span_s = min(in_t.time_s - self.time_s, GAP_MAX_S)
+        self.time_s = in_t.time_s
+        q_variance = self.full_covariance()[Q, Q]
+        self._pass_time(span_s)
+        rows = self._rows(sight, q_variance)
+        self._recall(sight, span_s, rows)
+        if rows is None:
+            return False
+        ratio = self._judge(rows)
+        kept = ratio <= self.told.gate_sigma**2
+        self.refused = int((~kept).sum())
+        self.doubted = int((kept & (ratio > self.told.huber_sigma**2)).sum())
+        factor = np.minimum(self.told.huber_sigma / np.sqrt(np.maximum(ratio, 1e-30)), 1.0)
+        names = ("side", "residual", "slope", "own", "about", "shift")
+        rows.own = rows.own / factor
+        poor = 2 * self.refused >= len(kept)
+        self.scatter.take(rows.side, np.where(kept, rows.residual / np.sqrt(rows.own), 0.0))
+        rows = Rows(*(getattr(rows, name)[kept] for name in names))
+        if not kept.any():
+            self.scatter.take_fit(RATIO_MOST)
+            return False
+        white = np.radians(self.told.attitude_white_deg)
+        shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
+        self._learn(rows, shared)
+        nis = self._nis(rows, shared)
+        self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
+        self._update(rows, shared)
+        self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)
+        return True
+
+    # ----------------------------------------------------------------------------------------------------- quantities
+
+    def report(self, in_t: Sight) -> tuple[np.ndarray, np.ndarray]:
+        """(4,) X0, Z0, W, H and their sigmas, m. What the velocity errors told do to the path flown is added: they
+        scale and turn it, and the obstacle with it."""
+        told = self.told
+        values = quantities(self.state, self.turn)
+        slopes = quantity_slopes(self.state, self.turn)
+        variance = np.einsum("ij,jk,ik->i", slopes, self.full_covariance(), slopes) * self.scatter.factor()
+        span_s = in_t.time_s - self.start_s
+        path_m = max(float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]])), PATH_MIN_M)
+        share = told.velocity_bias_m_s * span_s / path_m
+        above_m = max(abs(values[3]), abs(values[3] - in_t.given_height_m))
+        variance += (share * np.array([values[1], values[1], values[2], above_m])) ** 2
+        before_s = self.start_s - self.first_s  # X0 and Z0 count from the track's first image
+        way_m = float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]]))
+        straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # a path that leads back is not scaled
+        variance[:2] += (told.velocity_bias_m_s * span_s) ** 2 * (1 - straight**2)
+        variance[:2] += told.position_walk_m**2 * (span_s + before_s) + (told.velocity_bias_m_s * before_s) ** 2
+        variance += self._no_ellipse(values, in_t)
+        values[:2] += self.origin_m[[0, 2]]
+        return values, np.sqrt(variance)
+
+    def _no_ellipse(self, values: np.ndarray, in_t: Sight) -> np.ndarray:
+        """(4,) variances, m^2: what an ellipse across the first line of sight misses of anything else than a disc."""
+        variance = np.zeros(4)
+        if not self.told.disc:
+            first, now = values[:2], values[:2] - (in_t.moved_m - self.origin_m)[[0, 2]]
+            range_m = float(np.linalg.norm(now))
+            turned = abs(first[0] * now[1] - first[1] * now[0]) / (float(np.linalg.norm(first)) * range_m)
+            below_m = in_t.given_height_m - values[3]
+            deeper_m = max(values[2] * (np.exp(self.state[S]) - 1.0), 0.0)
+            variance[2] = (TURNED_SHARE * values[2] * min(turned, TURNED_MAX)) ** 2
+            variance[3] = (ROOF_SHARE * deeper_m * below_m) ** 2 / (range_m**2 + below_m**2)
+        return variance
+
+
+def follow(flight: Flight, told: Told) -> PrismTrack:
+    """The filter over all images of a flight with boxes."""
+    prism = PrismFilter(told)
+    images = len(flight.time_s)
+    values, sigma = np.full((images, 6), np.nan), np.full((images, 6), np.nan)
+    fresh, doubted, refused = np.zeros(images, bool), np.zeros(images, int), np.zeros(images, int)
+    for k, sight in enumerate(sights(flight, told)):
+        fresh[k] = prism.take(sight)
+        doubted[k], refused[k] = prism.doubted, prism.refused
+        if prism.state is not None:
+            values[k, [0, 1, 3, 5]], sigma[k, [0, 1, 3, 5]] = prism.report(sight)
+    return PrismTrack(values, sigma, fresh, doubted, refused)
