@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from goe_tools.places import ROOT
+
 from ..parts import Amount
 from ..record import Result, Row
 from . import breaks, marks
