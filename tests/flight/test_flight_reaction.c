@@ -37,16 +37,18 @@ void setUp(void) {
 void tearDown(void) {}
 
 /* Looks for so long, ten times a second, at estimates that are renewed each time. */
-static goe_flight_action_t decide(double seconds) {
+static goe_flight_action_t decide_about(int worst, double seconds) {
     for (int k = 0; k <= (int)(seconds * 10.0 + 0.5); k++) {
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
             flight.slot[i].taken_us = own.time_us;
         }
-        (void)goe_flight_reaction_decide(&flight, 0, &own);
+        (void)goe_flight_reaction_decide(&flight, worst, &own);
         own.time_us += 100000u;
     }
     return (goe_flight_action_t)flight.reaction.action;
 }
+
+static goe_flight_action_t decide(double seconds) { return decide_about(0, seconds); }
 
 static void a_far_obstacle_is_no_reason_yet(void) {
     put(0, 400.0f, 0.0f);
@@ -174,6 +176,68 @@ static void an_approach_left_to_a_side_is_broken_off_once_there_is_time(void) {
             CHECK_CLOSE(0.01, -22.0, flight.reaction.target_ned_m[2]);
         }
     }
+}
+
+/* GIVEN a go-around over a low obstacle WHEN a tower stands behind it that the climb does not clear in time THEN a side is flown. */
+static void a_climb_that_comes_too_late_gives_way_to_a_side(void) {
+    own.approach = true;
+    put(0, 110.0f, 0.5f);
+    flight.slot[0].top_m = 12.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    put(1, 400.0f, 0.5f);
+    flight.slot[1].top_m = 60.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    put(0, -40.0f, 0.5f); /* passed */
+    flight.slot[0].hazard.violation = 0.0f;
+    put(1, 125.0f, 0.5f);
+    flight.slot[1].top_m = 60.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide_about(1, 0.5)); /* 20 s of climb, 6 s left */
+    TEST_ASSERT_FALSE(flight.reaction.late);
+}
+
+/* GIVEN a go-around WHEN a higher top is known farther ahead on the course THEN the height clears that too, and never sinks again. */
+static void a_climb_clears_every_known_top_ahead(void) {
+    own.approach = true;
+    put(0, 110.0f, 0.5f);
+    flight.slot[0].top_m = 12.0f;
+    put(1, 600.0f, 3.0f);
+    flight.slot[1].top_m = 30.0f;
+    put(2, 600.0f, 80.0f); /* beside the course */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    CHECK_CLOSE(0.01, -40.0, flight.reaction.target_ned_m[2]);
+    flight.slot[1].top_m = 25.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    CHECK_CLOSE(0.01, -40.0, flight.reaction.target_ned_m[2]);
+    flight.slot[1].top_m = 35.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    CHECK_CLOSE(0.01, -45.0, flight.reaction.target_ned_m[2]);
+}
+
+/* GIVEN any places about a standing order THEN what is reported of it agrees: clear is nothing that leads into something. */
+static void what_is_reported_of_an_order_agrees(void) {
+    uint32_t state = 1u;
+    int least_bad = 0;
+    for (int flights = 0; flights < 300; flights++) {
+        setUp();
+        for (int step = 0; step < 6; step++) {
+            for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+                state = state * 1664525u + 1013904223u;
+                const float ahead_m = 30.0f + (float)(state >> 24u);
+                state = state * 1664525u + 1013904223u;
+                put(i, ahead_m, i == 0 ? 1.0f : (float)(state >> 24u) - 128.0f);
+            }
+            (void)decide(0.2);
+            const goe_flight_reaction_t *r = &flight.reaction;
+            if (r->clear_m < 0.0f) {
+                least_bad++;
+                TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LEAST_BAD, r->reason);
+            }
+            if (r->action == GOE_FLIGHT_NONE) {
+                TEST_ASSERT_EQUAL_FLOAT(0.0f, r->clear_m);
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(least_bad > 20);
 }
 
 static void a_wait_for_confirmation_is_not_afforded_when_it_is_late(void) {
@@ -346,6 +410,9 @@ int main(void) {
     RUN_TEST(an_unsure_top_is_taken_for_higher);
     RUN_TEST(an_approach_is_broken_off);
     RUN_TEST(an_approach_left_to_a_side_is_broken_off_once_there_is_time);
+    RUN_TEST(a_climb_that_comes_too_late_gives_way_to_a_side);
+    RUN_TEST(a_climb_clears_every_known_top_ahead);
+    RUN_TEST(what_is_reported_of_an_order_agrees);
     RUN_TEST(a_wait_for_confirmation_is_not_afforded_when_it_is_late);
     RUN_TEST(an_unlikely_hazard_is_no_reason_when_it_is_late);
     RUN_TEST(no_hazard_is_no_reason);

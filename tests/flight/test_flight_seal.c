@@ -94,6 +94,82 @@ static void no_settings_are_the_defaults(void) {
     TEST_ASSERT_EQUAL_MEMORY(&settings, &flown.flight.settings, sizeof settings);
 }
 
+static bool is_finite(const void *at, size_t bytes) {
+    const unsigned char *from = (const unsigned char *)at;
+    for (size_t i = 0; i + sizeof(float) <= bytes; i += sizeof(float)) {
+        uint32_t bits;
+        memcpy(&bits, &from[i], sizeof bits);
+        if ((bits & 0x7F800000u) == 0x7F800000u) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* GIVEN one flipped bit anywhere behind what is sealed WHEN pose, assessment and obstacles are asked for THEN no number is infinite and
+ * no enumerator is outside of its list. */
+static void no_flipped_bit_makes_an_output_infinite(void) {
+    static goe_flight_t whole;
+    goe_flight_assessment_t now;
+    goe_flight_obstacle_t obstacle;
+    goe_pose_t pose;
+    float sd_deg;
+    (void)flown_fly(&flown, 6.0);
+    whole = flown.flight;
+    for (size_t bit = 8u * offsetof(goe_flight_t, history); bit < 8u * sizeof whole; bit += 11u) {
+        flown.flight = whole;
+        flip(&flown.flight, bit);
+        (void)goe_flight_pose(&flown.flight, flown_now_us(&flown) - 100000u, 0, &pose, &sd_deg);
+        TEST_ASSERT_TRUE(is_finite(pose.position_ned_m, sizeof pose.position_ned_m) &&
+                         is_finite(&pose.height_m, sizeof pose.height_m) && is_finite(&sd_deg, sizeof sd_deg));
+        (void)assess(&now);
+        TEST_ASSERT_TRUE(is_finite(now.target_ned_m, sizeof now.target_ned_m) &&
+                         is_finite(&now.needed_s, sizeof now.needed_s) && is_finite(&now.clear_m, sizeof now.clear_m) &&
+                         is_finite(&now.hazard, offsetof(goe_hazard_t, has_clearance)));
+        TEST_ASSERT_TRUE((unsigned)now.action <= GOE_FLIGHT_HOLD && (unsigned)now.reason <= GOE_FLIGHT_REASON_LANDING);
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            (void)goe_flight_obstacle(&flown.flight, i, &obstacle);
+            TEST_ASSERT_TRUE(is_finite(&obstacle.age_s, offsetof(goe_flight_obstacle_t, lat_e7) -
+                                                            offsetof(goe_flight_obstacle_t, age_s)) &&
+                             is_finite(&obstacle.hazard, offsetof(goe_hazard_t, has_clearance)));
+        }
+    }
+}
+
+/* GIVEN bools of a message that are neither 0 nor 1 THEN they count as 1 (the sanitizers would notice one that is loaded). */
+static void a_bool_of_any_bits_counts_as_set(void) {
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    (void)flown_fly(&flown, 2.0);
+    flown_samples(&flown, flown.sample, &attitude, &position);
+    memset(&position.origin_known, 255, sizeof position.origin_known);
+    memset(&position.reset_delta_known, 2, sizeof position.reset_delta_known);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    TEST_ASSERT_TRUE(flown.flight.origin_known == 1);
+    goe_flight_detection_t detection = flown_detection(&flown, flown.sample - 6);
+    memset(&detection.top.seen, 255, sizeof detection.top.seen);
+    memset(&detection.base_near.seen, 2, sizeof detection.base_near.seen);
+    const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 6, &detection, 1);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+}
+
+/* GIVEN a position but no attitude since an unknown reset THEN every sector is unknown, whatever is kept. */
+static void no_sector_is_known_without_a_pose(void) {
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+    (void)flown_fly(&flown, 4.0);
+    flown_samples(&flown, flown.sample, &attitude, &position);
+    position.reset_horizontal++;
+    position.reset_delta_known = false;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NO_POSE, goe_flight_sectors(&flown.flight, 20000u, sector_cm));
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[i]);
+    }
+}
+
 /* One sample and a frame on, whatever becomes of them. */
 static void step_anyhow(void) {
     goe_flight_attitude_t attitude;
@@ -191,6 +267,9 @@ static void indices_stay_in_their_arrays(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(no_flipped_bit_makes_an_output_infinite);
+    RUN_TEST(a_bool_of_any_bits_counts_as_set);
+    RUN_TEST(no_sector_is_known_without_a_pose);
     RUN_TEST(settings_change_in_flight_and_nothing_is_lost);
     RUN_TEST(refused_settings_change_nothing);
     RUN_TEST(no_settings_are_the_defaults);
