@@ -19,6 +19,7 @@ MODES = {ARDUPILOT: 10, PX4: 4 << 16 | 4 << 24}  # AUTO; AUTO.MISSION
 LOITER = 4 << 16 | 3 << 24  # PX4: AUTO.LOITER
 DO_SET_MODE, DO_GO_AROUND, DO_REPOSITION, SET_MESSAGE_INTERVAL, REQUEST_MESSAGE = 176, 191, 192, 511, 512
 BANK, BANK_RATE = math.radians(30.0), math.radians(60.0)  # of a turn, and of rolling into it
+CLIMB_M_S = 3.0  # of a go-around
 ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that ask for messages and move nothing
 SIGNING_EPOCH_S = 1_420_070_400  # UNIX time of 2015: times of signatures count from there, in 10 us
 ACCEPTED, REJECTED, DENIED, FAILED = 0, 1, 2, 4  # results of a command
@@ -67,7 +68,7 @@ class Pose:
 
 @dataclass
 class Aircraft:
-    """Flies north, or turns towards `goal` as a bank of 30 degrees allows."""
+    """Flies north, or turns towards `goal` as a bank of 30 degrees allows; climbs to `climb_to_m`."""
 
     north_m: float = 0.0
     east_m: float = 0.0
@@ -77,6 +78,7 @@ class Aircraft:
     roll_deg: float = 3.0
     roll_hz: float = 0.4
     goal: tuple[float, float] | None = None
+    climb_to_m: float = -math.inf
     time_s: float = 0.0
     begin_s: float = field(init=False)
     bank: float = field(init=False, default=0.0)
@@ -104,6 +106,11 @@ class Aircraft:
         self.course += self.turn * step_s
         self.north_m += self.speed_m_s * step_s * math.cos(middle)
         self.east_m += self.speed_m_s * step_s * math.sin(middle)
+        self.height_m += self.climb_m_s * step_s
+
+    @property
+    def climb_m_s(self) -> float:
+        return CLIMB_M_S if self.height_m < self.climb_to_m else 0.0
 
     @property
     def turn(self) -> float:
@@ -119,7 +126,7 @@ class Aircraft:
         roll, rate = self.bank + most * math.sin(phase), self.bank_rate + most * omega * math.cos(phase)
         return Pose(
             (self.north_m, self.east_m, -self.height_m),
-            (self.speed_m_s * math.cos(self.course), self.speed_m_s * math.sin(self.course), 0.0),
+            (self.speed_m_s * math.cos(self.course), self.speed_m_s * math.sin(self.course), -self.climb_m_s),
             (roll, 0.0, self.course),
             (rate, self.turn * math.sin(roll), self.turn * math.cos(roll)),
         )
@@ -334,6 +341,8 @@ class Autopilot:
             self.aircraft.goal = local_m(*where_e7)
             if int(message.param2) & 1:
                 self.set_mode(LOITER)
+        elif message.command == DO_GO_AROUND:
+            self.aircraft.climb_to_m = message.param1
         elif message.command == DO_SET_MODE:
             self.set_mode(int(message.param2) << 16 | int(message.param3) << 24)
 
