@@ -244,11 +244,13 @@ def flags(goals: Goals) -> list[str]:
         return []
     row = found.goal
     parts = [f"{_with_goal_unit(row, row.values.get(name, math.nan))} at {name} false flags" for name in row.asked]
-    said = [
-        f"Moving cars are caught, by how badly the images fit a static obstacle, to {listed(parts)}, where "
-        f"{wanted(row)} % is wanted: {'met' if row.met else 'missed'}. The area under the curve is "
-        f"{number(found.area)} (chance: 0.5)."
-    ]
+    said = [f"The area under the curve of moving cars, flagged by their misfit, is {number(found.area)} (chance: 0.5)."]
+    if parts:
+        said.insert(
+            0,
+            f"Moving cars are flagged, by how badly the images fit a static obstacle, to {listed(parts)}; the goal is "
+            f"{wanted(row)} %: {'met' if row.met else 'missed'}.",
+        )
     if found.default is not None:
         said.append(
             f"With its default threshold the library flags {number(found.default[1])} % of the moving cars and "
