@@ -33,7 +33,7 @@ def pages() -> list[Path]:
 
 def is_command(text: str) -> bool:
     words = text.split()
-    if not words:
+    if not words or words[0].endswith("/"):
         return False
     if words[0] in PROGRAMS or words[:2] in (["python", "-m"], ["python3", "-m"]):
         return True
@@ -83,6 +83,7 @@ class By:
 # A key that ends in "..." stands for all that begins so.
 RUN_BY = {
     "tools/test.sh": By(".ci/run", "tools/test.sh"),
+    "tools/test.sh --quick": By("tests/python/test_test_run.py", '"tools/test.sh", "--quick"'),
     "cmake --install": By("tests/CMakeLists.txt", "--install"),
     "cmake --install build": By("tests/python/test_install.py", '"cmake", "--install", BUILD'),
     "cc -Ilib ...": By("tests/python/test_examples.py", 'r"^cc '),
@@ -119,6 +120,7 @@ RUN_BY = {
     "tests/parts/parts.sh": By("tests/CMakeLists.txt", "parts/parts.sh"),
     "tests/flags/invariants.sh": By("tests/CMakeLists.txt", "flags/invariants.sh"),
     "tools/evidence.sh": By("tests/python/test_evidence.py", '"tools" / "evidence.sh"'),
+    "tools/evidence.sh ...": By("tests/python/test_evidence.py", '"tools" / "evidence.sh"'),
     "tools/setup.sh": By("tools/test.sh", "setup.sh"),
     "goe_replay": By("tests/host/test_replay.py", "goe_replay"),
     "goe_replay --set": By("tests/host/test_replay.py", '"--set"'),
