@@ -1,4 +1,4 @@
-/* How clear a standing order is, when it ends, and how to hold: against plain models of the README's rule. SPDX-License-Identifier: MIT
+/* Which way is taken, how clear a standing order is, and when it ends: against plain models of the README's rule. SPDX-License-Identifier: MIT
  *
  * Any places about any order on any course. How clear one way is test_flight_clear.c knows; here it is which way counts. */
 #include <math.h>
@@ -26,7 +26,7 @@ static double line[2], course[2], own_ahead_m, own_right_m; /* on the line of th
 
 void setUp(void) {
     static flown_t flown;
-    any = check_random_start("flight ends");
+    any = check_random_start("flight rule");
     flown_start(&flown, NULL);
     plain = flown.flight;
 }
@@ -309,68 +309,253 @@ static void an_order_stands_as_long_as_something_is_in_the_way(void) {
     TEST_ASSERT_TRUE(ended > 300 && waits > 100 && turned_to > 50 && told > 1000);
 }
 
-/* GIVEN a wall that is too wide to be passed THEN HOLD is ordered on the way that is clearest, up to the whole margin, of four: to the side
- * where less of the wall stands first, about a point abeam or at once. */
-static void to_hold_takes_the_clearest_of_four_ways(void) {
-    int held = 0;
-    for (int n = 0; n < TRIALS; n++) {
-        double best = -100.0;
-        double target_m[2] = {0.0, 0.0};
-        any_standing_order();
-        goe_flight_reaction_clear(&flight.reaction);
-        flight.settings.confirm_s = 0.0f;
-        const double wall_right_m = between(-20.0, 20.0);
-        const double wall_ahead_m = between(100.0, 170.0);
-        goe_flight_slot_t *wall = &flight.slot[0];
-        wall->used = wall->assessed = true;
-        wall->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
-        wall->width_m = (float)between(150.0, 190.0);
-        wall->center_ne_m[0] = own.ned_m[0] + (float)(wall_ahead_m * course[0] - wall_right_m * course[1]);
-        wall->center_ne_m[1] = own.ned_m[1] + (float)(wall_ahead_m * course[1] + wall_right_m * course[0]);
-        wall->hazard.violation = 1.0f;
-        wall->hazard.time_s = 3.0f;
-        near_tie = false;
-        begin_frame(0.0);
-        const double loiter_m = (double)flight.settings.loiter_m;
-        const double circle_m = fmax(loiter_m, turn_m());
-        for (int k = 0; k < 4; k++) {
-            const double side = (k < 2) == (wall_right_m > 0.0) ? -1.0 : 1.0;
-            goe_flight_clear_way_t way;
-            memset(&way, 0, sizeof way);
-            way.target_m[0] = k % 2 == 1 ? frame.late_m : 0.0f;
-            way.target_m[1] = (float)(side * (k % 2 == 1 ? circle_m : 2.0 * turn_m() + loiter_m));
-            way.circle_m = (float)circle_m;
-            way.sigmas = 2.0f;
-            way.turns_away = true;
-            const double share = fmin(share_of(&way), 1.0);
-            near_tie = near_tie || (fabs(share - best) < NEAR_TIE && share < 1.0);
-            if (share > best) {
-                best = share;
-                target_m[0] = (double)way.target_m[0];
-                target_m[1] = (double)way.target_m[1];
-            }
-        }
-        const int changes = flight.reaction.changes;
-        (void)goe_flight_reaction_decide(&flight, 0, &own);
-        const goe_flight_reaction_t *r = &flight.reaction;
-        if (near_tie || fabs(wall_right_m) < NEAR_TIE_M || r->action != GOE_FLIGHT_HOLD) {
+/* ------------------------------------------------------------------------------------------------------------ choice -- */
+
+typedef struct {
+    goe_flight_action_t action;
+    double share, cost_s, needed_s;
+    double target_m[2], down_m; /* ahead, right */
+} choice_t;
+
+typedef struct {
+    double ahead_m, right_m, radius_m, keep_m, rise_m;
+    bool has_top, counts, is_on_course;
+} met_t;
+
+static met_t meet(int i) {
+    const goe_flight_slot_t *slot = &flight.slot[i];
+    const goe_flight_settings_t *settings = &flight.settings;
+    const double doubt = slot->suspect ? (double)settings->doubt : 1.0;
+    const double top_m = (double)slot->top_m + 2.0 * (double)slot->top_sd_m + doubt * (double)settings->clearance_m;
+    met_t met;
+    met.counts = slots[i].counts;
+    met.ahead_m = (double)slots[i].at_m[0];
+    met.right_m = (double)slots[i].at_m[1];
+    met.radius_m = (double)slots[i].radius_m;
+    met.keep_m = 0.5 * (double)slot->width_m + doubt * (double)settings->margin_m +
+                 2.0 * sqrt(fmax((double)slots[i].variance_m2[2], 0.0));
+    met.is_on_course = false;
+    met.has_top = (slot->valid & GOE_HAS_HEIGHT) != 0u;
+    met.rise_m = met.has_top ? fmax((double)own.ned_m[2] - ((double)slot->ground_down_m - top_m), 0.0)
+                             : (double)settings->clearance_m;
+    met.is_on_course =
+        slot->used && is_more(met.ahead_m, 0.0, NEAR_TIE_M) && is_more(met.keep_m, fabs(met.right_m), NEAR_TIE_M);
+    return met;
+}
+
+static double climb_s(double rise_m) {
+    return (double)flight.settings.climb_in_s + rise_m / (double)flight.settings.climb_m_s;
+}
+
+static double turn_s(double aside_m) {
+    const double d = fmin(fmax(aside_m, 0.0), turn_m());
+    return (double)flight.settings.roll_in_s + sqrt(d * (2.0 * turn_m() - d)) / SPEED_M_S;
+}
+
+/* Of two free ways the one of the lesser cost, else the clearer one. */
+static void prefer(choice_t *best, const choice_t *other) {
+    const bool free = is_more(other->share, 0.75, NEAR_TIE);
+    if (best->action == GOE_FLIGHT_NONE) {
+        *best = *other;
+    } else if (free && best->share > 0.75) {
+        *best = is_more(best->cost_s, other->cost_s, NEAR_TIE) ? *other : *best;
+    } else {
+        *best = is_more(other->share, best->share, NEAR_TIE) ? *other : *best;
+    }
+}
+
+/* Over everything on the course, each in time; a top far behind only raises the height. */
+static void try_climb(double soonest_s, choice_t *best) {
+    const met_t about = meet(0);
+    choice_t climb = {own.approach ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_CLIMB, 1.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
+    double rise_m = about.rise_m;
+    bool possible = (about.has_top || own.approach) && is_more(soonest_s, climb_s(about.rise_m), NEAR_TIE);
+    for (int i = 1; i < GOE_FLIGHT_SLOTS; i++) {
+        const met_t other = meet(i);
+        if (!flight.slot[i].used || !other.counts || !other.is_on_course) {
             continue;
         }
-        held++;
-        TEST_ASSERT_EQUAL(changes, r->changes);
-        CHECK_CLOSE(0.02, (double)own.ned_m[0] + target_m[0] * course[0] - target_m[1] * course[1], r->target_ned_m[0]);
-        CHECK_CLOSE(0.02, (double)own.ned_m[1] + target_m[0] * course[1] + target_m[1] * course[0], r->target_ned_m[1]);
-        CHECK_CLOSE(0.02, best * (double)flight.settings.margin_m, r->clear_m);
-        TEST_ASSERT_EQUAL(best >= 0.5 ? GOE_FLIGHT_REASON_CLEAR : GOE_FLIGHT_REASON_LEAST_BAD, r->reason);
-        TEST_ASSERT_EQUAL(target_m[1] < 0.0 ? -1 : 1, r->side);
+        const bool is_soon = is_more(about.ahead_m + 2.0 * turn_m(), other.ahead_m, NEAR_TIE_M);
+        const double there_s = fmax(other.ahead_m - other.radius_m, 0.0) / SPEED_M_S;
+        rise_m = other.has_top || is_soon ? fmax(rise_m, other.rise_m) : rise_m;
+        possible = possible &&
+                   (!is_soon || ((other.has_top || own.approach) && is_more(there_s, climb_s(other.rise_m), NEAR_TIE)));
     }
-    check_report("held", (double)held);
-    TEST_ASSERT_TRUE(held > 500);
+    climb.needed_s = climb.cost_s = climb_s(about.rise_m);
+    climb.target_m[0] = about.ahead_m;
+    climb.down_m = (double)own.ned_m[2] - rise_m;
+    if (possible) {
+        prefer(best, &climb);
+    }
+}
+
+static void try_target(int side, double aside_m, choice_t *best) {
+    const double loiter_m = (double)flight.settings.loiter_m;
+    const double circle_m = loiter_m > 0.0 ? fmax(loiter_m, turn_m()) : 0.0;
+    goe_flight_clear_way_t way;
+    choice_t choice = {side < 0 ? GOE_FLIGHT_LEFT : GOE_FLIGHT_RIGHT, 0.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
+    memset(&way, 0, sizeof way);
+    way.target_m[0] = slots[0].at_m[0];
+    way.target_m[1] = (float)(aside_m + (double)side * circle_m);
+    way.circle_m = (float)circle_m;
+    way.sigmas = 2.0f;
+    way.line_m[0] = 1.0f;
+    way.shifts = true;
+    choice.share = share_of(&way);
+    choice.needed_s = turn_s((double)side * aside_m);
+    choice.cost_s = choice.needed_s + 4.0 * (0.9 - fmin(choice.share, 0.9));
+    choice.target_m[0] = (double)way.target_m[0];
+    choice.target_m[1] = (double)way.target_m[1];
+    choice.down_m = (double)own.ned_m[2];
+    prefer(best, &choice);
+}
+
+/* Past its outline; farther out past that of another one; in the middle of the gap between the two. */
+static void try_side(int side, choice_t *best) {
+    const met_t about = meet(0);
+    const double base_m = about.right_m + side * about.keep_m;
+    const double wall_m = about.right_m + side * about.radius_m;
+    if (!is_more(turn_m(), side * base_m, NEAR_TIE_M)) {
+        return;
+    }
+    try_target(side, base_m, best);
+    for (int i = 1; i < GOE_FLIGHT_SLOTS; i++) {
+        const met_t other = meet(i);
+        if (!flight.slot[i].used || !other.counts || !is_more(other.ahead_m, -turn_m(), NEAR_TIE_M) ||
+            !is_more(2.0 * turn_m(), other.ahead_m - about.ahead_m, NEAR_TIE_M)) {
+            continue;
+        }
+        const double inner_m = other.right_m - side * other.radius_m;
+        const double edge_m = other.right_m + side * other.keep_m;
+        const double middle_m = 0.5 * (wall_m + inner_m);
+        if (is_more(side * edge_m, side * base_m, NEAR_TIE_M)) {
+            try_target(side, edge_m, best);
+        }
+        if (is_more(side * inner_m, side * wall_m, NEAR_TIE_M) && is_more(side * base_m, side * middle_m, NEAR_TIE_M)) {
+            try_target(side, middle_m, best);
+        }
+    }
+}
+
+static choice_t best_hold(void) {
+    choice_t best = {GOE_FLIGHT_HOLD, -100.0, 0.0, turn_s(turn_m()), {0.0, 0.0}, (double)own.ned_m[2]};
+    const double loiter_m = (double)flight.settings.loiter_m;
+    const double circle_m = fmax(loiter_m, turn_m());
+    const bool is_right = is_more((double)slots[0].at_m[1], 0.0, NEAR_TIE_M);
+    for (int k = 0; k < 4; k++) {
+        const double side = (k < 2) == is_right ? -1.0 : 1.0;
+        goe_flight_clear_way_t way;
+        memset(&way, 0, sizeof way);
+        way.target_m[0] = k % 2 == 1 ? frame.late_m : 0.0f;
+        way.target_m[1] = (float)(side * (k % 2 == 1 ? circle_m : 2.0 * turn_m() + loiter_m));
+        way.circle_m = (float)circle_m;
+        way.sigmas = 2.0f;
+        way.turns_away = true;
+        const double share = fmin(share_of(&way), 1.0);
+        near_tie = near_tie || (fabs(share - best.share) < NEAR_TIE && share < 1.0);
+        if (share > best.share) {
+            best.share = share;
+            best.target_m[0] = (double)way.target_m[0];
+            best.target_m[1] = (double)way.target_m[1];
+        }
+    }
+    return best;
+}
+
+static choice_t choose(double soonest_s) {
+    choice_t best = {GOE_FLIGHT_NONE, -100.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
+    if (own.approach) {
+        try_climb(soonest_s, &best);
+    }
+    if (best.action != GOE_FLIGHT_NONE) {
+        return best;
+    }
+    try_side(1, &best);
+    try_side(-1, &best);
+    try_climb(soonest_s, &best);
+    if (best.action != GOE_FLIGHT_NONE && is_more(best.share, 0.75, NEAR_TIE)) {
+        return best;
+    }
+    const choice_t hold = best_hold();
+    return best.action == GOE_FLIGHT_NONE || is_more(hold.share, 0.5, NEAR_TIE) ||
+                   is_more(hold.share, best.share + 0.2, NEAR_TIE)
+               ? hold
+               : best;
+}
+
+/* An obstacle ahead that is surely a hazard, among others that are none. */
+static void any_hazard(void) {
+    any_standing_order();
+    goe_flight_reaction_clear(&flight.reaction);
+    flight.settings.confirm_s = 0.0f;
+    own.approach = one_in(4);
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        goe_flight_slot_t *slot = &flight.slot[i];
+        const double ahead_m = i == 0 ? between(50.0, 180.0) : between(-60.0, 320.0);
+        const double right_m = i == 0 ? between(-15.0, 15.0) : one_in(3) ? between(-10.0, 10.0) : between(-90.0, 90.0);
+        slot->used = i == 0 || slot->used;
+        slot->suspect = one_in(6);
+        slot->top_m = one_in(2) ? (float)between(8.0, 25.0) : 80.0f;
+        slot->top_sd_m = one_in(3) ? 1.5f : 0.0f;
+        slot->width_m = one_in(6) ? 110.0f : (float)between(1.0, 20.0);
+        slot->taken_us = own.time_us;
+        slot->center_ne_m[0] = own.ned_m[0] + (float)(ahead_m * course[0] - right_m * course[1]);
+        slot->center_ne_m[1] = own.ned_m[1] + (float)(ahead_m * course[1] + right_m * course[0]);
+    }
+    flight.slot[0].valid = (uint8_t)(flight.slot[0].valid | GOE_HAS_POSITION | GOE_HAS_WIDTH);
+    flight.slot[0].assessed = true;
+    flight.slot[0].hazard.violation = 1.0f;
+    flight.slot[0].hazard.time_s = (float)between(1.0, 9.0);
+}
+
+/* [flight.margin_m, flight.clearance_m, flight.bank_deg, flight.climb_m_s, goe_flight_assessment_t.needed_s]
+ * GIVEN any obstacles THEN the way that is taken, its point, its height and what is told of it are those of the rule. */
+static void the_way_that_is_taken_is_that_of_the_rule(void) {
+    int taken[GOE_FLIGHT_HOLD + 1] = {0, 0, 0, 0, 0, 0};
+    for (int n = 0; n < TRIALS; n++) {
+        any_hazard();
+        near_tie = false;
+        begin_frame(0.0);
+        const double soonest_s = (double)flight.slot[0].hazard.time_s;
+        const choice_t choice = choose(soonest_s);
+        const bool due = is_more(choice.needed_s + (double)flight.settings.reserve_s, soonest_s, NEAR_TIE);
+        const bool late = is_more(choice.needed_s, soonest_s, NEAR_TIE);
+        if (near_tie) {
+            continue;
+        }
+        const float needed_s = goe_flight_reaction_decide(&flight, 0, &own);
+        const goe_flight_reaction_t *r = &flight.reaction;
+        CHECK_CLOSE(2.0e-3, choice.needed_s, needed_s);
+        TEST_ASSERT_EQUAL(due ? choice.action : GOE_FLIGHT_NONE, r->action);
+        taken[r->action]++;
+        if (!due) {
+            continue;
+        }
+        const bool up = choice.action == GOE_FLIGHT_CLIMB || choice.action == GOE_FLIGHT_GO_AROUND;
+        const double free = choice.action == GOE_FLIGHT_HOLD ? 0.5 : 0.75;
+        const double north = choice.target_m[0] * course[0] - choice.target_m[1] * course[1];
+        const double east = choice.target_m[0] * course[1] + choice.target_m[1] * course[0];
+        CHECK_CLOSE(0.05, (double)own.ned_m[0] + north, r->target_ned_m[0]);
+        CHECK_CLOSE(0.05, (double)own.ned_m[1] + east, r->target_ned_m[1]);
+        CHECK_CLOSE(0.01, choice.down_m, r->target_ned_m[2]);
+        TEST_ASSERT_EQUAL(late, r->late);
+        TEST_ASSERT_EQUAL(0, r->slot);
+        TEST_ASSERT_EQUAL(choice.share > free ? GOE_FLIGHT_REASON_CLEAR : GOE_FLIGHT_REASON_LEAST_BAD, r->reason);
+        CHECK_CLOSE(0.03, up ? 0.0 : choice.share * (double)flight.settings.margin_m, r->clear_m);
+        TEST_ASSERT_EQUAL_UINT32(own.time_us, r->ordered_us);
+        TEST_ASSERT_EQUAL_MEMORY(own.ned_m, r->from_ne_m, sizeof r->from_ne_m);
+        CHECK_CLOSE(1.0e-5, course[0], r->course_ne[0]);
+        CHECK_CLOSE(1.0e-5, course[1], r->course_ne[1]);
+    }
+    for (int i = 0; i <= GOE_FLIGHT_HOLD; i++) {
+        check_report(goe_flight_action_text((goe_flight_action_t)i), (double)taken[i]);
+        TEST_ASSERT_TRUE(taken[i] > 50);
+    }
 }
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(the_way_that_is_taken_is_that_of_the_rule);
     RUN_TEST(an_order_stands_as_long_as_something_is_in_the_way);
-    RUN_TEST(to_hold_takes_the_clearest_of_four_ways);
     return UNITY_END();
 }
