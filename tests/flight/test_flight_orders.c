@@ -429,6 +429,44 @@ static void a_climb_is_left_when_it_comes_too_late(void) {
     }
 }
 
+/* [goe_flight_position_t.velocity_ned_m_s] Above 1 m/s there is a course, and so an order. */
+static void a_slow_aircraft_has_a_course(void) {
+    for (int slow = 0; slow < 2; slow++) {
+        start(0.0f);
+        flight.settings.order_speed_m_s = 0.0f;
+        flight.velocity_ned_m_s[0] = slow ? 0.9f : 1.5f;
+        put(0, 12.0f, 0.5f, 80.0f);
+        flight.slot[0].hazard.time_s = 3.0f;
+        TEST_ASSERT_EQUAL(slow, decide(0.5) == GOE_FLIGHT_NONE);
+    }
+}
+
+/* The side that was flown last is worth half a second. */
+static void the_side_of_before_is_preferred(void) {
+    for (int side = -1; side <= 1; side++) {
+        start(0.0f);
+        own.time_us = 5000000u;
+        flight.reaction.side = (int8_t)side;
+        flight.reaction.falling_us = own.time_us - 5000000u; /* too long ago to be flying back */
+        flight.reaction.course_ne[0] = 1.0f;
+        put(0, 110.0f, 1.0f, 50.0f);
+        TEST_ASSERT_EQUAL(side > 0 ? GOE_FLIGHT_RIGHT : GOE_FLIGHT_LEFT, decide(0.5));
+    }
+}
+
+/* A slot that is free, or has no place, raises no climb. */
+static void what_is_not_there_raises_no_climb(void) {
+    put(0, 110.0f, 0.5f, 12.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
+    put(1, 300.0f, 0.5f, 60.0f);
+    flight.slot[1].used = false;
+    put(2, 300.0f, 0.5f, 60.0f);
+    flight.slot[2].valid = GOE_HAS_HEIGHT;
+    flight.slot[1].hazard.violation = flight.slot[2].hazard.violation = 0.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.2));
+    CHECK_CLOSE(0.01, -22.0, flight.reaction.target_ned_m[2]);
+}
+
 /* At most 1000 m are told, however large the margin. */
 static void what_is_clear_is_told_up_to_a_kilometre(void) {
     flight.settings.margin_m = 1000.0f;
@@ -455,6 +493,9 @@ int main(void) {
     RUN_TEST(a_way_that_is_hardly_clear_is_left_after_a_while);
     RUN_TEST(flying_back_is_given_time);
     RUN_TEST(a_climb_is_left_when_it_comes_too_late);
+    RUN_TEST(a_slow_aircraft_has_a_course);
+    RUN_TEST(the_side_of_before_is_preferred);
+    RUN_TEST(what_is_not_there_raises_no_climb);
     RUN_TEST(what_is_clear_is_told_up_to_a_kilometre);
     RUN_TEST(a_mast_that_is_not_on_the_course_blocks_a_side);
     RUN_TEST(a_place_that_is_hardly_known_blocks_a_side);
