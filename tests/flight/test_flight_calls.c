@@ -308,6 +308,22 @@ static void an_obstacle_of_no_numbers_is_corrupted(void) {
     }
 }
 
+/* GIVEN estimators of other slots that lost their settings THEN a track begins with those of its own. */
+static void a_track_begins_with_its_own_settings(void) {
+    goe_flight_settings_t settings = flight->settings;
+    settings.confirm_images = 1.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(flight, &settings, NULL));
+    for (int i = 1; i < GOE_FLIGHT_SLOTS; i++) {
+        memset(&flight->slot[i].estimator, 0xA5, sizeof flight->slot[i].estimator);
+    }
+    const goe_flight_detection_t detection = flown_detection(&flown, 0);
+    goe_flight_frame_t frame = flown_frame(&flown, 0, &detection, 1);
+    frame.capture_us = frame.arrival_us = newest_us();
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(flight, &frame));
+    TEST_ASSERT_TRUE(flight->slot[0].used);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(0u, GOE_FLIGHT_FLYING));
+}
+
 /* ------------------------------------------------------------------------------------------------------------ resets -- */
 
 /* GIVEN a jump of unknown size after a gap of the samples THEN what is kept moves by what the velocity does not explain. */
@@ -382,6 +398,7 @@ int main(void) {
     RUN_TEST(an_obstacle_tells_its_age_and_place);
     RUN_TEST(an_unknown_top_is_not_taken_for_a_low_one);
     RUN_TEST(an_obstacle_of_no_numbers_is_corrupted);
+    RUN_TEST(a_track_begins_with_its_own_settings);
     RUN_TEST(an_unknown_jump_is_what_the_velocity_does_not_explain);
     RUN_TEST(jumps_beyond_all_places_are_unknown);
     RUN_TEST(sectors_stay_in_their_place);
