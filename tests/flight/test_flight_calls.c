@@ -324,6 +324,25 @@ static void a_track_begins_with_its_own_settings(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(0u, GOE_FLIGHT_FLYING));
 }
 
+/* [goe_flight_restart] What waited for its confirmation is forgotten too. */
+static void a_restart_forgets_what_waits(void) {
+    goe_flight_settings_t settings = flight->settings;
+    settings.confirm_images = 2.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(flight, &settings, NULL));
+    const goe_flight_detection_t detection = flown_detection(&flown, 0);
+    goe_flight_frame_t frame = flown_frame(&flown, 0, &detection, 1);
+    for (uint32_t k = 0; k < 3u; k++) {
+        at((SAMPLES + k) * STEP_US);
+        give();
+        frame.capture_us = frame.arrival_us = position.time_us;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(flight, &frame));
+        TEST_ASSERT_EQUAL(k == 2u, flight->slot[0].used);
+        if (k == 0u) {
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_restart(flight));
+        }
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------ resets -- */
 
 /* GIVEN a jump of unknown size after a gap of the samples THEN what is kept moves by what the velocity does not explain. */
@@ -387,6 +406,7 @@ static void texts_are_those_of_the_manual(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_restart_forgets_what_waits);
     RUN_TEST(a_pose_is_that_of_its_time);
     RUN_TEST(a_pose_of_no_numbers_is_none);
     RUN_TEST(a_norm_within_one_percent_is_taken);

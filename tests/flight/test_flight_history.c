@@ -246,8 +246,23 @@ static void a_sample_of_long_ago_bends_nothing(void) {
     CHECK_SAME(0.0f, pose.spread_deg);
 }
 
+/* Half of a wide turn between two samples is half of it, and a rotation. */
+static void half_of_a_wide_turn_is_a_rotation(void) {
+    const float ned_m[3] = {0.0f, 0.0f, 0.0f};
+    float q[4];
+    for (uint32_t k = 0; k < 2u; k++) {
+        attitude_at(0.1 * k, 900.0, q);
+        TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 100000u * k, q));
+        TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, 100000u * k, ned_m));
+    }
+    attitude_at(0.05, 900.0, q);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 50000u, &pose));
+    TEST_ASSERT_TRUE(turned_deg(q, pose.q) < 2e-3);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(half_of_a_wide_turn_is_a_rotation);
     RUN_TEST(each_ring_answers_for_itself);
     RUN_TEST(the_rate_is_that_of_all_samples);
     RUN_TEST(a_sample_of_long_ago_bends_nothing);

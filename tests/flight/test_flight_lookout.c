@@ -169,8 +169,22 @@ static void over_the_middle_the_whole_spread_counts(void) {
     CHECK_SAME(0.0f, flight.slot[0].hazard.miss_m);
 }
 
+/* Who stands still comes no nearer. */
+static void a_hover_meets_nothing(void) {
+    const float own_ned_m[3] = {0.0f, 0.0f, -20.0f};
+    put_any(&flight.slot[0], 0u);
+    flight.slot[0].center_ne_m[0] = 60.0f;
+    flight.slot[0].center_ne_m[1] = -80.0f;
+    flight.slot[0].width_m = flight.slot[0].length_m = 0.0f;
+    TEST_ASSERT_EQUAL(0, goe_flight_lookout_assess(&flight, own_ned_m, 0u));
+    CHECK_SAME(0.0f, flight.slot[0].hazard.time_s);
+    CHECK_CLOSE(1.0e-3, 100.0, flight.slot[0].hazard.miss_m);
+    TEST_ASSERT_TRUE(check_is_finite(flight.slot[0].hazard.violation));
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_hover_meets_nothing);
     RUN_TEST(a_kept_place_is_a_hazard_by_the_closest_approach);
     RUN_TEST(what_has_no_place_has_no_hazard);
     RUN_TEST(over_the_middle_the_whole_spread_counts);
