@@ -4,6 +4,7 @@
 
 #include "autopilot.h"
 #include "check.h"
+#include "receiver.h"
 
 #define OTHER_SYSTEM 9
 #define SYSTEM 1
@@ -424,8 +425,152 @@ static void a_restart_of_the_autopilot_asks_for_everything_again(void) {
     CHECK_CLOSE(0.01, 25.0, autopilot.rates.rate[0].hz);
 }
 
+/* -------------------------------------------------------------------------------------------------------------- asks -- */
+
+/* The first messages to an autopilot that was just heard: the question for its clock, the first rate, its origin and its home. */
+static void what_is_asked_for_is_named(void) {
+    receiver_t receiver;
+    mavlink_message_t message;
+    unsigned clocks = 0, origins = 0, homes = 0, rates = 0;
+    link_close(wire.link);
+    receiver_open(&receiver, &wire);
+    config.link_request_rates = 1;
+    config.link_attitude_hz = 40.0;
+    autopilot_ask(&autopilot, own_us);
+    while (receiver_next(&receiver, &message)) {
+        TEST_ASSERT_EQUAL_UINT8(196, message.compid);
+        if (message.msgid == MAVLINK_MSG_ID_TIMESYNC) {
+            TEST_ASSERT_EQUAL_INT64(0, mavlink_msg_timesync_get_tc1(&message));
+            TEST_ASSERT_EQUAL_INT64(own_us * 1000, mavlink_msg_timesync_get_ts1(&message));
+            clocks++;
+            continue;
+        }
+        TEST_ASSERT_EQUAL_UINT32(MAVLINK_MSG_ID_COMMAND_LONG, message.msgid);
+        mavlink_command_long_t asked;
+        mavlink_msg_command_long_decode(&message, &asked);
+        TEST_ASSERT_EQUAL_UINT8(SYSTEM, asked.target_system);
+        TEST_ASSERT_EQUAL_UINT8(MAV_COMP_ID_AUTOPILOT1, asked.target_component);
+        CHECK_SAME(0.0f, asked.param7);
+        const bool is_request = asked.command == MAV_CMD_REQUEST_MESSAGE;
+        origins += is_request && asked.param1 == (float)MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN ? 1u : 0u;
+        homes += is_request && asked.param1 == (float)MAVLINK_MSG_ID_HOME_POSITION ? 1u : 0u;
+        if (asked.command == MAV_CMD_SET_MESSAGE_INTERVAL) {
+            CHECK_SAME((float)MAVLINK_MSG_ID_ATTITUDE_QUATERNION, asked.param1);
+            CHECK_SAME(25000.0f, asked.param2);
+            rates++;
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(1, clocks);
+    TEST_ASSERT_EQUAL_UINT(1, origins);
+    TEST_ASSERT_EQUAL_UINT(1, homes);
+    TEST_ASSERT_EQUAL_UINT(1, rates);
+    (void)close(receiver.socket);
+}
+
+/* What an autopilot of each kind is asked for. */
+static void each_kind_is_asked_for_its_own_messages(void) {
+    static const uint32_t both[] = {MAVLINK_MSG_ID_ATTITUDE_QUATERNION, MAVLINK_MSG_ID_LOCAL_POSITION_NED,
+                                    MAVLINK_MSG_ID_DISTANCE_SENSOR,     MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
+                                    MAVLINK_MSG_ID_HOME_POSITION,       MAVLINK_MSG_ID_ODOMETRY,
+                                    MAVLINK_MSG_ID_GPS_RAW_INT};
+    static const uint32_t px4[] = {MAVLINK_MSG_ID_ESTIMATOR_STATUS, MAVLINK_MSG_ID_ALTITUDE,
+                                   MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT};
+    static const uint32_t ardupilot[] = {MAVLINK_MSG_ID_EKF_STATUS_REPORT, MAVLINK_MSG_ID_TERRAIN_REPORT};
+    for (int is_px4 = 0; is_px4 < 2; is_px4++) {
+        message_rates_clear(&autopilot.rates);
+        autopilot.kind = is_px4 ? MAV_AUTOPILOT_PX4 : MAV_AUTOPILOT_ARDUPILOTMEGA;
+        autopilot.requested_us = 0;
+        config.link_request_rates = 1;
+        config.link_attitude_hz = 40.0;
+        config.link_position_hz = 30.0;
+        autopilot_ask(&autopilot, own_us);
+        TEST_ASSERT_EQUAL_UINT(is_px4 ? 10 : 9, autopilot.rates.count);
+        for (unsigned i = 0; i < autopilot.rates.count; i++) {
+            const message_rate_t *rate = &autopilot.rates.rate[i];
+            TEST_ASSERT_EQUAL_UINT32(i < 7u ? both[i] : is_px4 ? px4[i - 7u] : ardupilot[i - 7u], rate->message);
+            TEST_ASSERT_TRUE(rate->wanted_hz > 0.0 && strlen(rate->name) > 6u);
+        }
+        CHECK_CLOSE(0.0, 40.0, autopilot.rates.rate[0].wanted_hz);
+        CHECK_CLOSE(0.0, 30.0, autopilot.rates.rate[1].wanted_hz);
+    }
+}
+
+/* The companion is a component of the autopilot's system. */
+static void the_companion_takes_the_autopilots_system(void) {
+    TEST_ASSERT_EQUAL_UINT8(SYSTEM, wire.system);
+    TEST_ASSERT_EQUAL_UINT8(SYSTEM, wire.heard);
+    autopilot_init(&autopilot, &config, &flight, &wire);
+    beat(OTHER_SYSTEM);
+    TEST_ASSERT_EQUAL_UINT8(OTHER_SYSTEM, wire.system);
+    TEST_ASSERT_EQUAL_UINT8(OTHER_SYSTEM, wire.heard);
+}
+
+/* Each number of a position beyond its range, either way. */
+static void a_position_out_of_range_is_counted(void) {
+    fly(5);
+    for (int i = 0; i < 6; i++) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            mavlink_message_t message;
+            float number[6] = {north_m, 0.0f, -30.0f, SPEED_M_S, 0.0f, 0.0f};
+            number[i] = (float)sign * (i < 3 ? 1.1e6f : 1.1e3f);
+            own_us += 1000 * PERIOD_MS;
+            boot_ms += PERIOD_MS;
+            const unsigned long before = autopilot.bad_samples;
+            (void)mavlink_msg_local_position_ned_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, boot_ms, number[0],
+                                                      number[1], number[2], number[3], number[4], number[5]);
+            autopilot_take(&autopilot, &message, own_us);
+            TEST_ASSERT_EQUAL_UINT32((uint32_t)before + 1u, (uint32_t)autopilot.bad_samples);
+            TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.jumps);
+        }
+    }
+}
+
+/* A step down or up is one like any other. */
+static void a_step_of_the_height_is_a_known_jump(void) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+        tearDown();
+        setUp();
+        fly(20);
+        for (int k = 0; k < 3; k++) {
+            own_us += 1000 * PERIOD_MS;
+            boot_ms += PERIOD_MS;
+            north_m += SPEED_M_S * 1e-3f * PERIOD_MS;
+            send_attitude(SYSTEM, 1.0f, 0.0f);
+            send_position(SYSTEM, north_m, -30.0f + 4.0f * (float)sign);
+        }
+        TEST_ASSERT_EQUAL_UINT32(1, (uint32_t)autopilot.jumps);
+        CHECK_CLOSE(0.01, 4.0 * sign, autopilot.reset_delta_ned_m[2]);
+    }
+}
+
+/* Terrain is taken where it is known, and for two seconds. */
+static void terrain_is_the_ground_while_it_is_fresh(void) {
+    for (int known = 0; known < 2; known++) {
+        mavlink_message_t message;
+        tearDown();
+        setUp();
+        fly(20);
+        (void)mavlink_msg_terrain_report_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 0, 0, known ? 100 : 0, 0.0f,
+                                              25.0f, 0, 0);
+        autopilot_take(&autopilot, &message, own_us);
+        fly(2);
+        TEST_ASSERT_EQUAL(known ? GOE_FLIGHT_TERRAIN : GOE_FLIGHT_HOME, flight.ground_source);
+        CHECK_CLOSE(1e-3, known ? -5.0 : 0.0, flight.ground_down_m);
+        fly(95);
+        TEST_ASSERT_EQUAL(known ? GOE_FLIGHT_TERRAIN : GOE_FLIGHT_HOME, flight.ground_source);
+        fly(10);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_HOME, flight.ground_source);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(what_is_asked_for_is_named);
+    RUN_TEST(each_kind_is_asked_for_its_own_messages);
+    RUN_TEST(the_companion_takes_the_autopilots_system);
+    RUN_TEST(a_position_out_of_range_is_counted);
+    RUN_TEST(a_step_of_the_height_is_a_known_jump);
+    RUN_TEST(terrain_is_the_ground_while_it_is_fresh);
     RUN_TEST(samples_reach_the_flight_layer_at_their_own_time);
     RUN_TEST(nothing_is_taken_before_a_heartbeat_or_from_another_system);
     RUN_TEST(a_step_of_the_position_is_a_known_jump);

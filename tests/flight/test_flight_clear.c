@@ -121,6 +121,10 @@ static void check_spare(double within_m) {
 static void a_target_is_flown_through_by_turns_of_every_delay(void) {
     for (int n = 0; n < TRIALS; n++) {
         any_encounter();
+        if (n % 2 == 1) { /* almost abeam: more than a quarter of a circle */
+            way.target_m[0] = between(own.late_m + 1.0, own.late_m + 30.0);
+            way.target_m[1] = (n % 4 == 1 ? 1.0f : -1.0f) * between(100.0, 260.0);
+        }
         const double early_m[2] = {(double)own.early_m, 0.0};
         const double target_m[2] = {(double)way.target_m[0], (double)way.target_m[1]};
         begin_trace();
@@ -335,8 +339,45 @@ static void the_covariance_turns_with_the_course(void) {
     }
 }
 
+/* On the way itself the distance is nothing, whichever sigma counts; and no share is below the least. */
+static void what_stands_on_the_way_has_no_distance(void) {
+    for (int turns = 0; turns < 2; turns++) {
+        int nearest;
+        any_encounter();
+        own.late_m = 30.0f;
+        way.turns_away = turns != 0;
+        way.target_m[0] = turns ? -100.0f : 200.0f;
+        way.target_m[1] = turns ? 200.0f : 0.0f;
+        way.sigmas = 2.0f;
+        slots[0].at_m[0] = 20.0f;
+        slots[0].at_m[1] = 0.0f;
+        slots[0].radius_m = 10.0f;
+        slots[0].margin_m = 100.0f;
+        slots[0].across_sd_m = 0.0f;
+        CHECK_CLOSE(1.0e-3, -0.1, goe_flight_clear_share(&own, slots, &way, -10.0f, &nearest));
+        TEST_ASSERT_EQUAL(0, nearest);
+        slots[0].margin_m = 1.0f;
+        CHECK_SAME(-GOE_FLIGHT_CLEAR_MAX, goe_flight_clear_share(&own, slots, &way, -10.0f, &nearest));
+    }
+}
+
+/* Over an obstacle's middle no line of sight is known; its sigma is a number all the same. */
+static void over_the_middle_a_sigma_is_a_number(void) {
+    static goe_flight_t flight;
+    memset(&flight, 0, sizeof flight);
+    any_encounter();
+    goe_flight_settings_default(&flight.settings);
+    flight.slot[0].used = true;
+    flight.slot[0].valid = GOE_HAS_POSITION;
+    flight.slot[0].covariance_ne_m2[0] = flight.slot[0].covariance_ne_m2[2] = 4.0f;
+    goe_flight_clear_slots(&flight, &own, slots);
+    TEST_ASSERT_TRUE(slots[0].counts && check_is_finite(slots[0].across_sd_m));
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(what_stands_on_the_way_has_no_distance);
+    RUN_TEST(over_the_middle_a_sigma_is_a_number);
     RUN_TEST(a_target_is_flown_through_by_turns_of_every_delay);
     RUN_TEST(a_line_may_be_left_at_once);
     RUN_TEST(a_circle_is_flown_about_the_target);

@@ -131,8 +131,58 @@ static void a_two_way_offset_replaces_the_estimate(void) {
     TEST_ASSERT_EQUAL_INT32(1000, off_us(77u, 1000u, &sd_us));
 }
 
+/* While few messages have come their mean lateness is a part of the uncertainty. */
+static void a_clock_that_is_hardly_known_says_so(void) {
+    double excess_us = 0.0;
+    for (uint32_t k = 0; k < 12u; k++) {
+        uint32_t sd_us;
+        const uint32_t late_us = k % 2u == 0u ? 0u : 4000u * k;
+        const double share = 1.0 / (double)(k + 1u);
+        (void)off_us(100000u * k, late_us, &sd_us);
+        excess_us += share * ((double)late_us - excess_us);
+        const double unsettled_us = k + 1u < 8u ? excess_us : 0.0;
+        TEST_ASSERT_UINT32_WITHIN(2u, (uint32_t)sqrt(26.0e6 + unsettled_us * unsettled_us), sd_us);
+    }
+}
+
+/* A least delay counts for ten seconds, and after twenty no more. */
+static void a_least_delay_is_forgotten(void) {
+    for (uint32_t k = 0; k < 300u; k++) {
+        uint32_t sd_us;
+        const int32_t error_us = off_us(100000u * k, k == 0u ? 0u : 5000u, &sd_us);
+        if (k <= 99u) {
+            TEST_ASSERT_EQUAL_INT32(0, error_us);
+        }
+        if (k > 202u) {
+            TEST_ASSERT_EQUAL_INT32(5000, error_us);
+        }
+    }
+}
+
+/* Three messages in a row of another clock are believed, two are not; whichever way the clock was set. */
+static void another_clock_is_believed_with_the_third_message(void) {
+    uint32_t sd_us;
+    for (uint32_t k = 0; k < 30u; k++) {
+        (void)off_us(100000u * k, 0u, &sd_us);
+    }
+    for (int n = 0; n < 2; n++) {
+        TEST_ASSERT_EQUAL_INT32(0, off_us(3000000u, 2000000u, &sd_us));
+        TEST_ASSERT_EQUAL_INT32(0, off_us(3100000u, 2000000u, &sd_us));
+        TEST_ASSERT_EQUAL_INT32(0, off_us(3200000u, 0u, &sd_us));
+    }
+    TEST_ASSERT_EQUAL_INT32(0, off_us(3300000u, 2000000u, &sd_us));
+    TEST_ASSERT_EQUAL_INT32(0, off_us(3400000u, 2000000u, &sd_us));
+    TEST_ASSERT_EQUAL_INT32(2000000, off_us(3500000u, 2000000u, &sd_us));
+    for (uint32_t k = 36u; k < 120u; k++) { /* and for as long as any */
+        TEST_ASSERT_EQUAL_INT32(2000000, off_us(100000u * k, k == 36u ? 2000000u : 2003000u, &sd_us));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_clock_that_is_hardly_known_says_so);
+    RUN_TEST(a_least_delay_is_forgotten);
+    RUN_TEST(another_clock_is_believed_with_the_third_message);
     RUN_TEST(the_autopilots_own_clock_is_taken_as_it_is);
     RUN_TEST(an_age_counts_back_from_the_arrival);
     RUN_TEST(the_least_delay_tells_the_offset);

@@ -367,6 +367,117 @@ static void a_target_straight_ahead_takes_no_circle(void) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------- small shares -- */
+
+/* [flight.confirm_s] GIVEN a side that keeps a fifth of the margin THEN another way is flown once that has stood for confirm_s. */
+static void a_way_that_is_hardly_clear_is_left_after_a_while(void) {
+    put(0, 130.0f, 0.5f, 50.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    const float target_m = flight.reaction.target_ned_m[1];
+    put(1, 200.0f, target_m - 6.0f, 50.0f);
+    flight.slot[1].hazard.violation = 0.0f;
+    (void)decide(0.2);
+    CHECK_CLOSE(0.1, 3.0, flight.reaction.clear_m);
+    CHECK_SAME(target_m, flight.reaction.target_ned_m[1]);
+    const uint32_t until_us = own.time_us + 300000u;
+    while (flight.reaction.target_ned_m[1] > target_m - 10.0f) {
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.0));
+        TEST_ASSERT_TRUE(own.time_us <= until_us);
+    }
+    TEST_ASSERT_TRUE(flight.reaction.clear_m > 6.0f);
+}
+
+/* GIVEN an order that has just ended, and a clear way back to its line WHEN something stands on the course of this moment THEN that is no
+ * hazard for 1.2 roll_in_s, by when the aircraft turns back. */
+static void flying_back_is_given_time(void) {
+    for (int late = 0; late < 2; late++) {
+        start(0.0f);
+        own.time_us = 5000000u;
+        own.ned_m[0] = 125.0f;
+        own.ned_m[1] = -20.0f;
+        flight.reaction.side = -1;
+        flight.reaction.course_ne[0] = 1.0f;
+        flight.reaction.falling_us = own.time_us - (late ? 1900000u : 1000000u);
+        flight.velocity_ned_m_s[0] = 14.142136f;
+        flight.velocity_ned_m_s[1] = -14.142136f;
+        put(0, 125.0f + 71.0f, -20.0f - 71.0f, 50.0f);
+        flight.slot[0].hazard.violation = 1.0f;
+        flight.slot[0].hazard.time_s = 4.85f;
+        flight.settings.confirm_s = 0.0f;
+        TEST_ASSERT_EQUAL(late, decide(0.0) != GOE_FLIGHT_NONE);
+    }
+}
+
+/* GIVEN a climb that was ordered a while ago WHEN half of the clearance over a top cannot be reached before it any more THEN another
+ * order is given, whatever side was flown before; while it can, the climb stands. */
+static void a_climb_is_left_when_it_comes_too_late(void) {
+    for (int since = 0; since <= 3; since++) {
+        for (int later = 0; later < 2; later++) {
+            const float needed_s = fmaxf(2.0f - (float)since, 0.0f) + 5.0f / 2.5f;
+            start(0.0f);
+            own.time_us = 5000000u;
+            put(0, 3.0f + SPEED_M_S * needed_s, 0.5f, 20.0f); /* 10 m to climb, of which 5 are enough */
+            flight.slot[0].hazard.time_s = needed_s + (later ? 0.2f : -0.2f);
+            flight.reaction.action = GOE_FLIGHT_CLIMB;
+            flight.reaction.slot = 0;
+            flight.reaction.side = (int8_t)(since % 2);
+            flight.reaction.course_ne[0] = flight.reaction.along_ne[0] = 1.0f;
+            flight.reaction.target_ned_m[2] = -30.0f;
+            flight.reaction.ordered_us = own.time_us - (uint32_t)since * 1000000u;
+            TEST_ASSERT_EQUAL(later, decide(0.0) == GOE_FLIGHT_CLIMB);
+        }
+    }
+}
+
+/* [goe_flight_position_t.velocity_ned_m_s] Above 1 m/s there is a course, and so an order. */
+static void a_slow_aircraft_has_a_course(void) {
+    for (int slow = 0; slow < 2; slow++) {
+        start(0.0f);
+        flight.settings.order_speed_m_s = 0.0f;
+        flight.velocity_ned_m_s[0] = slow ? 0.9f : 1.5f;
+        put(0, 12.0f, 0.5f, 80.0f);
+        flight.slot[0].hazard.time_s = 3.0f;
+        TEST_ASSERT_EQUAL(slow, decide(0.5) == GOE_FLIGHT_NONE);
+    }
+}
+
+/* The side that was flown last is worth half a second. */
+static void the_side_of_before_is_preferred(void) {
+    for (int side = -1; side <= 1; side++) {
+        start(0.0f);
+        own.time_us = 5000000u;
+        flight.reaction.side = (int8_t)side;
+        flight.reaction.falling_us = own.time_us - 5000000u; /* too long ago to be flying back */
+        flight.reaction.course_ne[0] = 1.0f;
+        put(0, 110.0f, 1.0f, 50.0f);
+        TEST_ASSERT_EQUAL(side > 0 ? GOE_FLIGHT_RIGHT : GOE_FLIGHT_LEFT, decide(0.5));
+    }
+}
+
+/* A slot that is free, or has no place, raises no climb. */
+static void what_is_not_there_raises_no_climb(void) {
+    put(0, 110.0f, 0.5f, 12.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
+    put(1, 300.0f, 0.5f, 60.0f);
+    flight.slot[1].used = false;
+    put(2, 300.0f, 0.5f, 60.0f);
+    flight.slot[2].valid = GOE_HAS_HEIGHT;
+    flight.slot[1].hazard.violation = flight.slot[2].hazard.violation = 0.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.2));
+    CHECK_CLOSE(0.01, -22.0, flight.reaction.target_ned_m[2]);
+}
+
+/* At most 1000 m are told, however large the margin. */
+static void what_is_clear_is_told_up_to_a_kilometre(void) {
+    flight.settings.margin_m = 1000.0f;
+    flight.reaction.action = GOE_FLIGHT_LEFT;
+    flight.reaction.side = -1;
+    flight.reaction.course_ne[0] = flight.reaction.along_ne[0] = 1.0f;
+    flight.reaction.target_ned_m[0] = 100.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.0));
+    CHECK_SAME(1000.0f, flight.reaction.clear_m);
+}
+
 /* ---------------------------------------------------------------------------------------------------------------- names -- */
 
 static void every_reason_has_a_name(void) {
@@ -379,6 +490,13 @@ static void every_reason_has_a_name(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_way_that_is_hardly_clear_is_left_after_a_while);
+    RUN_TEST(flying_back_is_given_time);
+    RUN_TEST(a_climb_is_left_when_it_comes_too_late);
+    RUN_TEST(a_slow_aircraft_has_a_course);
+    RUN_TEST(the_side_of_before_is_preferred);
+    RUN_TEST(what_is_not_there_raises_no_climb);
+    RUN_TEST(what_is_clear_is_told_up_to_a_kilometre);
     RUN_TEST(a_mast_that_is_not_on_the_course_blocks_a_side);
     RUN_TEST(a_place_that_is_hardly_known_blocks_a_side);
     RUN_TEST(an_old_place_blocks_a_side);

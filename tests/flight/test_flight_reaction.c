@@ -366,6 +366,28 @@ static void an_order_about_no_slot_is_none(void) {
     }
 }
 
+/* ... as is one whose numbers are none. */
+static void an_order_of_no_numbers_is_none(void) {
+    for (int k = 0; k < 10; k++) {
+        goe_flight_reaction_t *r = &flight.reaction;
+        float *const number[] = {&r->target_ned_m[0], &r->target_ned_m[1], &r->target_ned_m[2], &r->from_ne_m[0],
+                                 &r->from_ne_m[1],    &r->course_ne[0],    &r->course_ne[1],    &r->along_ne[0],
+                                 &r->along_ne[1],     &r->clear_m};
+        for (int bad = 0; bad < 2; bad++) {
+            goe_flight_reaction_clear(r);
+            put(0, 300.0f, 0.0f);
+            flight.slot[0].hazard.violation = 0.0f;
+            r->action = GOE_FLIGHT_LEFT;
+            r->side = -1;
+            r->slot = 0;
+            r->course_ne[0] = r->along_ne[0] = 1.0f;
+            *number[k] = bad ? check_from_bits(0x7FC00000u) : *number[k];
+            (void)goe_flight_reaction_decide(&flight, -1, &own);
+            TEST_ASSERT_EQUAL(bad ? GOE_FLIGHT_NONE : GOE_FLIGHT_LEFT, r->action);
+        }
+    }
+}
+
 static void the_point_of_a_side_follows_the_estimate(void) {
     put(0, 100.0f, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
@@ -397,6 +419,7 @@ static void every_action_has_a_name(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(an_order_of_no_numbers_is_none);
     RUN_TEST(a_far_obstacle_is_no_reason_yet);
     RUN_TEST(the_order_comes_with_the_time_that_it_needs);
     RUN_TEST(a_range_that_is_hardly_known_orders_earlier_but_not_at_once);

@@ -409,8 +409,28 @@ static void the_autopilots_clock_may_wrap(void) {
     TEST_ASSERT_EQUAL(0, other.flight.counters.late);
 }
 
+/* [flight.score_min] GIVEN a track THEN a weak detection, or one of no numbers, is nobody's: it shows no obstacle, and takes none over. */
+static void what_is_not_looked_at_is_nobodys(void) {
+    for (int kind = 0; kind < 4; kind++) {
+        setUp();
+        (void)flown_fly(&flown, 3.0);
+        const uint32_t seen_us = flown.flight.slot[0].seen_us;
+        TEST_ASSERT_TRUE(flown.flight.slot[0].in_view);
+        goe_flight_detection_t detection = flown_detection(&flown, flown.sample - 1);
+        detection.id = kind % 2 == 0 ? 99u : 7u;
+        detection.score = kind < 2 ? 0.1f : check_from_bits(0x7FC00000u);
+        const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &detection, 1);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+        TEST_ASSERT_EQUAL_UINT32(7u, flown.flight.slot[0].id);
+        TEST_ASSERT_EQUAL_UINT32(seen_us, flown.flight.slot[0].seen_us);
+        TEST_ASSERT_FALSE(flown.flight.slot[0].in_view);
+        TEST_ASSERT_EQUAL(1, slots_used());
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(what_is_not_looked_at_is_nobodys);
     RUN_TEST(an_obstacle_is_found_where_it_is);
     RUN_TEST(valid_says_what_an_obstacle_tells);
     RUN_TEST(a_track_without_a_position_is_not_suspect);

@@ -31,7 +31,9 @@ CACHE = ROOT / ".cache" / "evidence" / "mutation"
 LEFT_OUT = shutil.ignore_patterns(".git", ".cache", ".venv", "build*", "__pycache__")
 OPTIONS = ("-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_FLAGS_RELEASE=-O2", "-DGOE_BUILD_TESTS=ON")
 OPTIONS += ("-DGOE_WERROR=OFF", "-DGOE_INSTALL=OFF")
+PROGRAM = "program"  # its tests in Python, all of them, by this name
 SPARE, SPARE_S = 10.0, 5.0  # a mutant's test may take so many times what it takes without, and so many seconds more
+SPARE_OF_PROGRAM = 2.0  # its tests wait for it and take long as it is: one that hangs is to end soon
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ class Tree:
         subprocess.run([*map(str, configured), f"-DGOE_PYTHON={sys.executable}"], check=True, capture_output=True)
         if not self.make():
             raise RuntimeError(f"{self.folder} does not build")
-        for name in [*self.tests, *(["program"] if self.python_tests else [])]:
+        for name in [*self.tests, *([PROGRAM] if self.python_tests else [])]:
             before = time.monotonic()
             if not self.passes(name):
                 raise RuntimeError(f"{self.layer.name} as it is fails {name}")
@@ -124,7 +126,7 @@ class Tree:
         """A test in C by its name, or those of the program."""
         command = [str(self.build / self.layer.tests / name)]
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-        if name == "program":
+        if name == PROGRAM:
             command = [
                 sys.executable,
                 "-m",
@@ -138,7 +140,8 @@ class Tree:
             ]
             command += [str(path.relative_to(ROOT)) for path in self.python_tests]
             environment.update((name, str(self.build / path)) for name, path in self.layer.programs.items())
-        limit = SPARE_S + SPARE * self.seconds[name] if name in self.seconds else None
+        spare = SPARE_OF_PROGRAM if name == PROGRAM else SPARE
+        limit = SPARE_S + spare * self.seconds[name] if name in self.seconds else None
         nothing = subprocess.DEVNULL
         process = subprocess.Popen(
             command, cwd=self.folder, env=environment, stdout=nothing, stderr=nothing, start_new_session=True
@@ -169,8 +172,8 @@ class Tree:
         for name in self.tests:
             if not self.passes(name):
                 return Outcome(mutant, KILLED, name)
-        if self.python_tests and not self.passes("program"):
-            return Outcome(mutant, KILLED_BY_PROGRAM, "program")
+        if self.python_tests and not self.passes(PROGRAM):
+            return Outcome(mutant, KILLED_BY_PROGRAM, PROGRAM)
         return Outcome(mutant, SURVIVED)
 
 

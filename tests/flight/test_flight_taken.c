@@ -1,0 +1,384 @@
+/* Which detections are taken, which obstacles are given up for them, and whose they are. SPDX-License-Identifier: MIT
+ *
+ * Each rule of the layer's manual against a plain model of it, for any table of obstacles. */
+#include <math.h>
+#include <string.h>
+
+#include "flown.h"
+#include "goe_candidate.h"
+#include "goe_geometry.h"
+#include "goe_slot.h"
+#include "goe_table.h"
+
+#define TRIALS 2000
+#define NEW_ID 77u
+#define BOX_MIN_PX 8.0
+
+static check_random_t any;
+static flown_t flown;
+static goe_flight_t *flight;
+
+void setUp(void) {
+    goe_flight_settings_t settings;
+    goe_flight_settings_default(&settings);
+    settings.confirm_images = 1.0f;
+    any = check_random_start("flight taken");
+    flown_start(&flown, &settings);
+    flown.sees = false;
+    (void)flown_fly(&flown, 1.0);
+    flight = &flown.flight;
+}
+void tearDown(void) {}
+
+static double between(double low, double high) { return check_random_between(&any, low, high); }
+static bool one_in(int n) { return between(0.0, (double)n) < 1.0; }
+
+static goe_flight_detection_t good_detection(void) {
+    goe_flight_detection_t d;
+    memset(&d, 0, sizeof d);
+    d.id = NEW_ID;
+    d.score = 0.9f;
+    d.box.left_px = 1000.0f;
+    d.box.top_px = 100.0f;
+    d.box.right_px = 1040.0f;
+    d.box.bottom_px = 160.0f;
+    d.box.seen = GOE_SEES_BOX;
+    return d;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- readable -- */
+
+/* Whether the detection was left out and counted, in a frame that announces another one. */
+static bool is_refused(const goe_flight_detection_t *detection) {
+    flown_t copy = flown;
+    goe_flight_frame_t frame = flown_frame(&copy, copy.sample - 1, detection, 1);
+    const uint16_t before = copy.flight.counters.refused;
+    frame.number = 2;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&copy.flight, &frame));
+    const bool refused = copy.flight.counters.refused == before + 1;
+    TEST_ASSERT_EQUAL(!refused, copy.flight.had_frame != 0u); /* a sign of life is what can be read */
+    return refused;
+}
+
+static void sides_count_as_far_as_they_are_seen(void) {
+    flight->had_frame = 0u;
+    const float bad[] = {NAN, INFINITY, -INFINITY, 2.0e5f, -2.0e5f};
+    for (unsigned seen = 0u; seen < 32u; seen++) {
+        for (int side = 0; side < 4; side++) {
+            for (int k = 0; k < 5; k++) {
+                goe_flight_detection_t d = good_detection();
+                float *const sides[4] = {&d.box.left_px, &d.box.top_px, &d.box.right_px, &d.box.bottom_px};
+                const unsigned bits[4] = {GOE_SEES_LEFT, GOE_SEES_TOP, GOE_SEES_RIGHT, GOE_SEES_BOTTOM};
+                *sides[side] = bad[k];
+                d.box.seen = (uint8_t)seen;
+                TEST_ASSERT_EQUAL((seen & bits[side]) != 0u || seen > GOE_SEES_BOX, is_refused(&d));
+            }
+        }
+    }
+}
+
+/* Left of right, and top above bottom, where both are seen. */
+static void a_box_has_an_inside(void) {
+    flight->had_frame = 0u;
+    for (unsigned seen = 0u; seen <= GOE_SEES_BOX; seen++) {
+        for (int k = 0; k < 4; k++) {
+            goe_flight_detection_t d = good_detection();
+            d.box.seen = (uint8_t)seen;
+            if (k < 2) {
+                d.box.right_px = d.box.left_px - (float)k;
+            } else {
+                d.box.bottom_px = d.box.top_px - (float)(k - 2);
+            }
+            const unsigned both = k < 2 ? GOE_SEES_LEFT | GOE_SEES_RIGHT : GOE_SEES_TOP | GOE_SEES_BOTTOM;
+            TEST_ASSERT_EQUAL((seen & both) == both, is_refused(&d));
+        }
+    }
+}
+
+static void points_and_numbers_have_their_ranges(void) {
+    flight->had_frame = 0u;
+    const float bad[] = {NAN, INFINITY, 2.0e5f, -2.0e5f};
+    for (int point = 0; point < 6; point++) {
+        for (int k = 0; k < 16; k++) {
+            goe_flight_detection_t d = good_detection();
+            goe_pixel_t *const points[6] = {&d.left, &d.right, &d.top, &d.base_left, &d.base_near, &d.base_right};
+            points[point]->seen = k < 8;
+            *(k % 2 == 0 ? &points[point]->u_px : &points[point]->v_px) = bad[(k / 2) % 4];
+            TEST_ASSERT_EQUAL(k < 8, is_refused(&d));
+        }
+    }
+    const float score[] = {0.0f, 1.0f, -0.01f, 1.01f, NAN};
+    const float pixel_px[] = {0.0f, 100.0f, -0.01f, 100.1f, NAN};
+    for (int k = 0; k < 5; k++) {
+        goe_flight_detection_t d = good_detection();
+        d.score = score[k];
+        TEST_ASSERT_EQUAL(k >= 2, is_refused(&d));
+        d = good_detection();
+        d.pixel_px = pixel_px[k];
+        TEST_ASSERT_EQUAL(k >= 2, is_refused(&d));
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- room -- */
+
+static void put_any(goe_flight_t *to, int i, uint32_t now_us) {
+    goe_flight_slot_t *slot = &to->slot[i];
+    slot->used = !one_in(8);
+    slot->id = 100u + (uint32_t)i;
+    slot->seen_us = slot->taken_us = now_us - (uint32_t)between(0.2e6, 4.0e6);
+    slot->valid = (uint8_t)(one_in(3) ? 0 : GOE_HAS_POSITION);
+    slot->assessed = slot->valid != 0u && !one_in(5);
+    slot->hazard.violation = (float)between(0.0, 0.7);
+    slot->hazard.time_s = one_in(3) ? 0.0f : (float)between(0.5, 40.0);
+    slot->fresh_track = false;
+}
+
+/* The less, the sooner it is given up: a free slot; what has no position, or is passed, and was not seen for 2 s; the least violation and
+ * nearness in time, below a half. */
+static double worth(const goe_flight_t *of, int i, uint32_t now_us) {
+    const goe_flight_slot_t *slot = &of->slot[i];
+    const bool unseen = (now_us - slot->seen_us) > 2000000u;
+    if (!slot->used) {
+        return -3.0;
+    }
+    if (i == of->reaction.slot) {
+        return 1.0;
+    }
+    if (unseen && slot->valid == 0u) {
+        return -2.0;
+    }
+    if (!slot->assessed) {
+        return 1.0;
+    }
+    return unseen && !(slot->hazard.time_s > 0.0f)
+               ? -1.0
+               : (double)slot->hazard.violation + 1.0 / (1.0 + (double)slot->hazard.time_s);
+}
+
+/* [goe_flight_counters_t.evicted, goe_flight_counters_t.full]
+ * GIVEN any table WHEN a new obstacle is confirmed THEN it gets the slot of the least worth, and none while all are worth a half. */
+static void a_new_obstacle_takes_the_place_of_the_least_worth(void) {
+    int ends[3] = {0, 0, 0};
+    const goe_flight_detection_t detection = good_detection();
+    for (int n = 0; n < TRIALS; n++) {
+        static goe_flight_t copy;
+        goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &detection, 1);
+        int expected = -1;
+        double least = 0.5;
+        copy = *flight;
+        frame.number = 2; /* the others are not in this part of the image */
+        copy.reaction.slot = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            put_any(&copy, i, frame.capture_us);
+            const double value = worth(&copy, i, frame.capture_us);
+            expected = value < least ? i : expected;
+            least = fmin(value, least);
+        }
+        const bool was_used = expected >= 0 && copy.slot[expected].used;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&copy, &frame));
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            TEST_ASSERT_EQUAL(i == expected, copy.slot[i].id == NEW_ID && copy.slot[i].used);
+        }
+        TEST_ASSERT_EQUAL(expected < 0 ? 1 : 0, copy.counters.full);
+        TEST_ASSERT_EQUAL(was_used ? 1 : 0, copy.counters.evicted);
+        ends[expected < 0 ? 0 : was_used ? 1 : 2]++;
+    }
+    TEST_ASSERT_TRUE(ends[0] > 20 && ends[1] > 20 && ends[2] > 20);
+}
+
+/* [flight.forget_s]
+ * GIVEN any table THEN what was not seen for forget_s is given up, or for 30 s while an order stands; but not what stands ahead. The
+ * order forgets what is given up. */
+static void what_is_old_is_given_up(void) {
+    int given_up = 0;
+    int kept = 0;
+    for (int n = 0; n < TRIALS; n++) {
+        static goe_flight_t copy;
+        const uint32_t now_us = 100000000u;
+        copy = *flight;
+        copy.settings.forget_s = one_in(3) ? 40.0f : 10.0f;
+        copy.reaction.action = (uint8_t)(one_in(2) ? GOE_FLIGHT_NONE : GOE_FLIGHT_LEFT);
+        copy.reaction.slot = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
+        copy.reaction.edge = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            put_any(&copy, i, now_us);
+            copy.slot[i].seen_us = now_us - (uint32_t)between(1.0e6, 60.0e6);
+        }
+        const goe_flight_t before = copy;
+        goe_flight_table_age(&copy, now_us);
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            const goe_flight_slot_t *slot = &before.slot[i];
+            const double unseen_s = 1.0e-6 * (double)(now_us - slot->seen_us);
+            const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.slot == i;
+            const double most_s = ordered ? fmax(30.0, (double)copy.settings.forget_s) : (double)copy.settings.forget_s;
+            const bool ahead =
+                slot->assessed && slot->hazard.time_s > 0.0f && slot->hazard.violation >= copy.settings.violation_max;
+            const bool stays = slot->used && (ahead || unseen_s <= most_s);
+            TEST_ASSERT_EQUAL(stays, copy.slot[i].used);
+            TEST_ASSERT_EQUAL(stays && before.reaction.slot == i, copy.reaction.slot == i);
+            TEST_ASSERT_EQUAL(stays && before.reaction.edge == i, copy.reaction.edge == i);
+            given_up += slot->used && !stays ? 1 : 0;
+            kept += stays ? 1 : 0;
+        }
+    }
+    TEST_ASSERT_TRUE(given_up > TRIALS / 4 && kept > TRIALS / 4);
+}
+
+/* -------------------------------------------------------------------------------------------------------- candidates -- */
+
+/* Share of the union of two boxes that both cover; boxes may have no inside. */
+static void overlap_is_the_share_of_the_union(void) {
+    int some = 0;
+    for (int n = 0; n < TRIALS; n++) {
+        int16_t a[4];
+        int16_t b[4];
+        double area[2] = {1.0, 1.0};
+        double both = 1.0;
+        for (int axis = 0; axis < 2; axis++) {
+            a[axis] = (int16_t)between(-20.0, 20.0);
+            b[axis] = (int16_t)between(-20.0, 20.0);
+            a[axis + 2] = (int16_t)(a[axis] + (int)between(-2.0, 30.0));
+            b[axis + 2] = (int16_t)(b[axis] + (int)between(-2.0, 30.0));
+            area[0] *= fmax((double)(a[axis + 2] - a[axis]), 0.0);
+            area[1] *= fmax((double)(b[axis + 2] - b[axis]), 0.0);
+            both *= fmax(fmin((double)a[axis + 2], (double)b[axis + 2]) - fmax((double)a[axis], (double)b[axis]), 0.0);
+        }
+        const double all = area[0] + area[1] - both;
+        CHECK_CLOSE(1.0e-5, all > 0.0 ? both / all : 0.0, goe_flight_candidate_overlap(a, b));
+        some += both > 0.0 ? 1 : 0;
+    }
+    TEST_ASSERT_TRUE(some > TRIALS / 10);
+}
+
+static bool seen(goe_flight_candidate_t *table, uint32_t id, uint32_t time_us, uint8_t camera, int left_px,
+                 int images) {
+    const goe_flight_candidate_t candidate = {
+        id, time_us, {(int16_t)left_px, 0, (int16_t)(left_px + 10), 10}, camera, 0};
+    return goe_flight_candidate_seen(table, &candidate, images);
+}
+
+/* [flight.confirm_images, GOE_FLIGHT_CANDIDATES] */
+static void images_of_one_candidate_lie_at_most_a_second_apart(void) {
+    goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES];
+    const uint32_t start_us = 0xFFFFFFFFu - 500000u; /* the clock wraps on the way */
+    for (int late = 0; late < 2; late++) {
+        memset(table, 0, sizeof table);
+        TEST_ASSERT_FALSE(seen(table, 5u, start_us, 0, 0, 2));
+        TEST_ASSERT_EQUAL(!late, seen(table, 5u, start_us + (late ? 1000001u : 1000000u), 0, 0, 2));
+    }
+    memset(table, 0, sizeof table);
+    TEST_ASSERT_FALSE(seen(table, 5u, start_us, 0, 0, 2));
+    TEST_ASSERT_FALSE(seen(table, 5u, start_us, 0, 0, 2));        /* twice in one image */
+    TEST_ASSERT_FALSE(seen(table, 6u, start_us + 100u, 0, 0, 2)); /* another id, another camera */
+    TEST_ASSERT_FALSE(seen(table, 5u, start_us + 100u, 1, 0, 2));
+    TEST_ASSERT_FALSE(
+        seen(table, 0u, start_us + 100u, 0, 0, 2)); /* without an id the place decides: 3 of 10 in common */
+    TEST_ASSERT_FALSE(seen(table, 0u, start_us + 200u, 0, 6, 2));
+    TEST_ASSERT_TRUE(seen(table, 0u, start_us + 300u, 0, 4, 2));
+    TEST_ASSERT_TRUE(seen(table, 5u, start_us + 300u, 0, 90, 2));  /* an id may be anywhere */
+    TEST_ASSERT_FALSE(seen(table, 5u, start_us + 400u, 0, 90, 2)); /* confirmed: it is no candidate any more */
+    TEST_ASSERT_TRUE(seen(table, 9u, start_us + 400u, 0, 90, 1));
+}
+
+/* A full table forgets the one that was not seen for the longest. */
+static void a_full_table_forgets_the_oldest(void) {
+    for (int oldest = 0; oldest < GOE_FLIGHT_CANDIDATES; oldest++) {
+        goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES];
+        memset(table, 0, sizeof table);
+        for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
+            const uint32_t time_us = i == oldest ? 100000u : 200000u + 10000u * (uint32_t)((i * 5) % 6);
+            TEST_ASSERT_FALSE(seen(table, 10u + (uint32_t)i, time_us, 0, 0, 3));
+        }
+        TEST_ASSERT_FALSE(seen(table, 50u, 300000u, 0, 0, 3));
+        for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
+            TEST_ASSERT_EQUAL_UINT32(i == oldest ? 50u : 10u + (uint32_t)i, table[i].id);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- claims -- */
+
+/* From the least to the largest of what is seen, and no smaller than 8 px. */
+static void any_points_make_their_box(void) {
+    for (int n = 0; n < TRIALS; n++) {
+        goe_flight_detection_t d;
+        int16_t box_px[4];
+        memset(&d, 0, sizeof d);
+        goe_pixel_t *const points[6] = {&d.left, &d.right, &d.top, &d.base_left, &d.base_near, &d.base_right};
+        double low[2] = {1.0e9, 1.0e9};
+        double high[2] = {-1.0e9, -1.0e9};
+        const double size_px = one_in(2) ? 6.0 : 300.0;
+        for (int i = 0; i < 6; i++) {
+            points[i]->u_px = (float)between(-size_px, size_px);
+            points[i]->v_px = (float)between(-size_px, size_px);
+            points[i]->seen = one_in(2);
+            for (int axis = 0; axis < 2 && points[i]->seen; axis++) {
+                low[axis] = fmin(low[axis], (double)(axis == 0 ? points[i]->u_px : points[i]->v_px));
+                high[axis] = fmax(high[axis], (double)(axis == 0 ? points[i]->u_px : points[i]->v_px));
+            }
+        }
+        const bool found = goe_flight_slot_box_of(&d, box_px);
+        TEST_ASSERT_EQUAL(low[0] < 1.0e8, found);
+        for (int axis = 0; axis < 2 && found; axis++) {
+            const double lacking = fmax(BOX_MIN_PX - (high[axis] - low[axis]), 0.0);
+            CHECK_CLOSE(1.0, low[axis] - 0.5 * lacking, box_px[axis]);
+            CHECK_CLOSE(1.0, high[axis] + 0.5 * lacking, box_px[axis + 2]);
+        }
+    }
+}
+
+/* A box claims an obstacle by how near its middle the predicted place lies, as a share of three quarters of the box, in both axes. */
+static void a_box_claims_what_is_predicted_in_it(void) {
+    int some = 0;
+    int none = 0;
+    goe_flight_slot_t *slot = &flight->slot[0];
+    goe_flight_slot_view_t view;
+    goe_pose_t pose;
+    memset(&view, 0, sizeof view);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(flight, flown_now_us(&flown), 0u, &pose, NULL));
+    memcpy(view.pose.q, pose.attitude, sizeof view.pose.q);
+    memcpy(view.pose.ned_m, pose.position_ned_m, sizeof view.pose.ned_m);
+    for (int n = 0; n < TRIALS; n++) {
+        float pixel[2];
+        int16_t box_px[4];
+        double claim = 1.0;
+        slot->valid = (uint8_t)(GOE_HAS_POSITION | (one_in(2) ? GOE_HAS_HEIGHT : 0));
+        slot->ground_down_m = view.pose.ned_m[2] + (float)between(-3.0, 30.0);
+        slot->top_m = (float)between(2.0, 20.0);
+        slot->center_ne_m[0] = view.pose.ned_m[0] + (float)between(40.0, 100.0);
+        slot->center_ne_m[1] = view.pose.ned_m[1] + (float)between(-20.0, 20.0);
+        const float own_m = fmaxf(slot->ground_down_m - view.pose.ned_m[2], 0.0f);
+        const float up_m = 0.5f * ((slot->valid & GOE_HAS_HEIGHT) != 0u ? slot->top_m : own_m);
+        const float point[3] = {slot->center_ne_m[0], slot->center_ne_m[1], slot->ground_down_m - up_m};
+        if (!goe_flight_geometry_project(&flight->camera[0], &view.pose, point, pixel)) {
+            continue;
+        }
+        for (int axis = 0; axis < 2; axis++) {
+            const int half_px = 10 + (int)between(0.0, 30.0);
+            const int middle_px = (int)pixel[axis] + (int)between(-60.0, 60.0);
+            box_px[axis] = (int16_t)(middle_px - half_px);
+            box_px[axis + 2] = (int16_t)(middle_px + half_px);
+            claim *= fmax(1.0 - fabs((double)pixel[axis] - middle_px) / (1.5 * half_px), 0.0);
+        }
+        memcpy(slot->box_px, box_px, sizeof slot->box_px);
+        CHECK_CLOSE(1.0e-3, claim, goe_flight_slot_claims(slot, flight->camera, &view, box_px));
+        some += claim > 0.0 ? 1 : 0;
+        none += claim > 0.0 ? 0 : 1;
+    }
+    TEST_ASSERT_TRUE(some > 200 && none > 200);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(sides_count_as_far_as_they_are_seen);
+    RUN_TEST(a_box_has_an_inside);
+    RUN_TEST(points_and_numbers_have_their_ranges);
+    RUN_TEST(a_new_obstacle_takes_the_place_of_the_least_worth);
+    RUN_TEST(what_is_old_is_given_up);
+    RUN_TEST(overlap_is_the_share_of_the_union);
+    RUN_TEST(images_of_one_candidate_lie_at_most_a_second_apart);
+    RUN_TEST(a_full_table_forgets_the_oldest);
+    RUN_TEST(any_points_make_their_box);
+    RUN_TEST(a_box_claims_what_is_predicted_in_it);
+    return UNITY_END();
+}
