@@ -144,6 +144,7 @@ RUN_BY = {
     "python -m goe_tools convert...": By("tests/python/test_convert.py", '"convert", f"--{kind}"'),
     "python -m goe_tools mcap...": By("tests/python/test_mcap.py", '"mcap", str(folder), "--out"'),
     "python -m bench lies...": By("tests/python/test_lies.py", '"lies", "--flights"'),
+    "python -m goe_tools montecarlo...": By("tests/python/test_montecarlo.py", '"montecarlo", str(scenario), "--runs"'),
     "python -m goe_tools noise...": By("tests/python/test_noise.py", '"noise", *logs'),
     "python -m ci embed_logs": By("tools/test.sh", "ci embed_logs"),
     "python -m ci evidence ...": By("tests/python/test_evidence_requirements.py", '"evidence", how'),
