@@ -118,6 +118,7 @@ RUN_BY = {
     "build_target.sh": By("tests/targets/host.cmake", "build_target.sh"),
     "tests/parts/parts.sh": By("tests/CMakeLists.txt", "parts/parts.sh"),
     "tests/flags/invariants.sh": By("tests/CMakeLists.txt", "flags/invariants.sh"),
+    "tools/api_pages.sh": By("tests/python/test_api_pages.py", '"tools" / "api_pages.sh"'),
     "tools/evidence.sh": By("tests/python/test_evidence.py", '"tools" / "evidence.sh"'),
     "tools/setup.sh": By("tools/test.sh", "setup.sh"),
     "goe_replay": By("tests/host/test_replay.py", "goe_replay"),
