@@ -316,7 +316,7 @@ def test_orders_and_their_report(tmp_path: Path, built: Path) -> None:
     assert "of 6 collision courses" in page.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("group", ["gauss1", "boxes", "attack,hazard", "float32"])
+@pytest.mark.parametrize("group", ["gauss1", "boxes", "attack,hazard", "float32", "rivals"])
 def test_goals(group: str, few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """[D5]"""
     assert bench_main(["goals", "--only", group]) == 0
@@ -341,6 +341,7 @@ RUN_HERE: dict[str, Callable[..., None]] = {
     "ctest -L targets": test_targets_are_listed,
     "python -m bench goals": test_goals,
     "python -m bench goals --only boxes": test_goals,
+    "python -m bench goals --only rivals --json tests/data/rivals.json": test_goals,
     "python -m bench goals --only attack,hazard": test_goals,
     "python -m bench goals --only attack --half settle": test_goals_of_the_settling_half,
     "python -m bench goals --only float32": test_goals,
