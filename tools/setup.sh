@@ -74,6 +74,7 @@ find_missing() {
         want extra clang-format-19 has clang-format-19
         want extra clang-tidy-19 has clang-tidy-19
         want extra shellcheck has shellcheck
+        want extra doxygen has doxygen
         want extra chromium has chromium
         want extra chromium-driver has chromedriver
         want extra poppler-utils has pdftoppm

@@ -307,6 +307,7 @@ def test_debian_package(built: tuple[str, Path], tmp_path: Path) -> None:
     assert package.name == f"libgoe-dev_{FACTS.version}-1_{architecture}.deb"
     fields = passed("dpkg-deb", "-f", package)
     assert "\nPackage: libgoe-dev\n" in f"\n{fields}" and f"\nVersion: {FACTS.version}-1\n" in fields
+    assert f"\nHomepage: {FACTS.url}\n" in fields
     assert "\nSection: libdevel\n" in fields and "\n .\n" in fields and f"\nMaintainer: {MAINTAINER}\n" in fields
     cmake = tuple(map(int, re.findall(r"\d+", passed("cmake", "--version"))[:2]))
     assert ("\nMulti-Arch: same\n" in fields) == (cmake >= (3, 31))

@@ -119,6 +119,7 @@ RUN_BY = {
     "build_target.sh": By("tests/targets/host.cmake", "build_target.sh"),
     "tests/parts/parts.sh": By("tests/CMakeLists.txt", "parts/parts.sh"),
     "tests/flags/invariants.sh": By("tests/CMakeLists.txt", "flags/invariants.sh"),
+    "tools/api_pages.sh": By("tests/python/test_api_pages.py", '"tools" / "api_pages.sh"'),
     "tools/evidence.sh": By("tests/python/test_evidence.py", '"tools" / "evidence.sh"'),
     "tools/evidence.sh ...": By("tests/python/test_evidence.py", '"tools" / "evidence.sh"'),
     "tools/setup.sh": By("tools/test.sh", "setup.sh"),
@@ -146,6 +147,7 @@ RUN_BY = {
     "python -m goe_tools convert...": By("tests/python/test_convert.py", '"convert", f"--{kind}"'),
     "python -m goe_tools mcap...": By("tests/python/test_mcap.py", '"mcap", str(folder), "--out"'),
     "python -m bench lies...": By("tests/python/test_lies.py", '"lies", "--flights"'),
+    "python -m goe_tools montecarlo...": By("tests/python/test_montecarlo.py", '"montecarlo", str(scenario), "--runs"'),
     "python -m goe_tools noise...": By("tests/python/test_noise.py", '"noise", *logs'),
     "python -m ci embed_logs": By("tools/test.sh", "ci embed_logs"),
     "python -m ci evidence ...": By("tests/python/test_evidence_requirements.py", '"evidence", how'),
@@ -316,7 +318,7 @@ def test_orders_and_their_report(tmp_path: Path, built: Path) -> None:
     assert "of 6 collision courses" in page.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("group", ["gauss1", "boxes", "attack,hazard", "float32"])
+@pytest.mark.parametrize("group", ["gauss1", "boxes", "attack,hazard", "float32", "rivals"])
 def test_goals(group: str, few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """[D5]"""
     assert bench_main(["goals", "--only", group]) == 0
@@ -341,6 +343,7 @@ RUN_HERE: dict[str, Callable[..., None]] = {
     "ctest -L targets": test_targets_are_listed,
     "python -m bench goals": test_goals,
     "python -m bench goals --only boxes": test_goals,
+    "python -m bench goals --only rivals --json tests/data/rivals.json": test_goals,
     "python -m bench goals --only attack,hazard": test_goals,
     "python -m bench goals --only attack --half settle": test_goals_of_the_settling_half,
     "python -m bench goals --only float32": test_goals,

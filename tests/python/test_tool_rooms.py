@@ -27,7 +27,7 @@ FLOORS = {
         ("library",),
         ("models",),
         ("view",),
-        ("report", "live", "exchange", "noise"),
+        ("report", "live", "exchange", "montecarlo", "noise"),
         ("cli",),
         ("__main__",),
     ),

@@ -15,6 +15,10 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
     "live": (".live.command", "write a page in which the library runs, compiled to WebAssembly"),
     "mcap": (".exchange.mcap_command", "write a log and its estimates as MCAP, for Foxglove and PlotJuggler"),
+    "montecarlo": (
+        ".montecarlo.command",
+        "fly a scenario many times in simulation: errors in sigmas, coverage, warnings",
+    ),
     "noise": (".noise.command", "find the settings of the noise that logs ask for"),
     "offline": (".models.offline", "fit all images of a log with truth at once"),
     "rare": (".report.rare_command", "fly the flight layer's orders many times and keep what rarely happens"),

@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument("--sbom", type=Path, metavar="FILE", help="write the bill of materials, CycloneDX as JSON")
     parser.add_argument("--target", action="append", choices=sorted(TARGETS), help="only this one; may be repeated")
     parser.add_argument("--maintainer", help="who answers for the packages; default: the goe authors")
-    parser.add_argument("--url", help="home page of the project; Arduino's index asks for one")
+    parser.add_argument("--url", help="home page; default: that of CMakeLists.txt")
 
 
 def differences(facts: Facts) -> list[str]:
@@ -65,6 +65,6 @@ def run(arguments: argparse.Namespace) -> int:
         for name, text in COMMITTED.items():
             (facts.root / name).write_text(text(facts), encoding="utf-8")
         return 0
-    words = Words(arguments.maintainer or Words.maintainer, arguments.url or Words.url)
+    words = Words(arguments.maintainer or Words.maintainer, arguments.url or facts.url)
     stage(facts, words, arguments.out, sorted(set(arguments.target or TARGETS)))
     return 0

@@ -83,6 +83,15 @@ class Facts:
         return f"{numbers['MAJOR']}.{numbers['MINOR']}.{numbers['PATCH']}"
 
     @cached_property
+    def url(self) -> str:
+        """The home page, as the top CMakeLists.txt has it."""
+        text = (self.root / "CMakeLists.txt").read_text(encoding="utf-8")
+        found = re.search(r'^ +HOMEPAGE_URL "(https://[^"]+)"', text, re.MULTILINE)
+        if not found:
+            raise ValueError("CMakeLists.txt: project() has no HOMEPAGE_URL")
+        return found[1]
+
+    @cached_property
     def parts(self) -> tuple[Part, ...]:
         found = re.findall(r"^#ifndef GOE_WITH_(\w+)\n#define GOE_WITH_\1 1 /\* (.*) \*/$", self.header, re.MULTILINE)
         if not found:

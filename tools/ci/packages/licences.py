@@ -15,6 +15,7 @@ DEBIAN = {
     "cmake": "BSD-3-Clause",
     "cppcheck": "GPL-3.0-or-later",
     "curl": "curl",
+    "doxygen": "GPL-2.0-only",
     "frama-c-base": "LGPL-2.1-only",
     "gcc-arm-none-eabi": GCC,
     "gcc-riscv64-unknown-elf": GCC,

@@ -39,6 +39,30 @@ def _setting(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"{name}: '{value}' is not a number") from None
 
 
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """How a log is replayed and judged: what ``options_of`` reads."""
+    add = parser.add_argument
+    add("--method", choices=("refined", "window"), default="refined", help="as goe_replay's")
+    add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
+    add("--window", type=int, metavar="N", help="as goe_replay's: image points in the window")
+    add(
+        "--set",
+        type=_setting,
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="as goe_replay's; may be repeated",
+    )
+    add("--margin", type=_number(0.0, 1e4), default=15.0, metavar="M", help="too close: aside (default 15 m)")
+    add("--clearance", type=_number(0.0, 1e4), default=10.0, metavar="M", help="... and over the top (default 10 m)")
+
+
+def options_of(arguments: argparse.Namespace) -> Options:
+    return Options(
+        arguments.method, arguments.model, arguments.window, dict(arguments.set), arguments.margin, arguments.clearance
+    )
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("log", type=Path, metavar="LOG", help="folder with camera.ini, frames.csv and, where it is known, truth.csv")
@@ -54,19 +78,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--theme", choices=("light", "dark"), default="light", help="of the PNG (default light)")
     add("--at", type=_number(-1e12, 1e12), metavar="S", help="time shown first, and in the picture (default: midway)")
     add("--id", type=int, metavar="N", help="obstacle shown first, and in the picture (default: the one answered most)")
-    add("--method", choices=("refined", "window"), default="refined", help="as goe_replay's")
-    add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
-    add("--window", type=int, metavar="N", help="as goe_replay's: image points in the window")
-    add(
-        "--set",
-        type=_setting,
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="as goe_replay's; may be repeated",
-    )
-    add("--margin", type=_number(0.0, 1e4), default=15.0, metavar="M", help="too close: aside (default 15 m)")
-    add("--clearance", type=_number(0.0, 1e4), default=10.0, metavar="M", help="... and over the top (default 10 m)")
+    add_options(parser)
     add(
         "--rows", type=_number(2, 1e5), default=MOST_ROWS, metavar="N",
         help=f"images that the page holds at most; more are thinned (default {MOST_ROWS})",
@@ -115,11 +127,8 @@ def write_outputs(story: Story, arguments: argparse.Namespace) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     log = read(arguments)
-    options = Options(
-        arguments.method, arguments.model, arguments.window, dict(arguments.set), arguments.margin, arguments.clearance
-    )
     name = arguments.log.resolve().name
-    story = story_of(name, log, options, int(arguments.rows))
+    story = story_of(name, log, options_of(arguments), int(arguments.rows))
     write_outputs(story, arguments)
     answered = sum(int(track.answers.answered.sum()) for track in story.tracks)
     if not answered:

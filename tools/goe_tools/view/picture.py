@@ -41,7 +41,7 @@ LOOK_STEPS = 24
 LINE_PT = 900.0  # size times letters of the bold line that fills the width
 
 
-def _style(theme: dict[str, str]) -> dict[str, object]:
+def style(theme: dict[str, str]) -> dict[str, object]:
     ink, soft, faint = theme["ink"], theme["soft"], theme["faint"]
     return {
         "font.size": 8.5, "font.family": "DejaVu Sans", "text.color": ink, "axes.labelcolor": soft,
@@ -259,7 +259,7 @@ def draw(story: Story, track: Track, moment: int, theme: dict[str, str]) -> Figu
 
 
 def _saved(story: Story, track: Track, moment: int, theme: dict[str, str], kind: str, dpi: int) -> bytes:
-    with plt.rc_context(_style(theme)):
+    with plt.rc_context(style(theme)):
         figure = draw(story, track, moment, theme)
         file = BytesIO()
         nothing = {"Date": None, "Creator": None} if kind == "svg" else {"Software": None}
