@@ -1,4 +1,4 @@
-"""The tables that people read: all of them in tests/targets/LEDGER.md, a few rows in README.md."""
+"""The tables that people read: all of them in tests/targets/LEDGER.md, a few rows of the first in README.md."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def heading(preset: str, figures: Figures) -> str:
 
 def ledger_tables(ledger: Ledger) -> str:
     """All tables, for LEDGER.md."""
-    blocks = [target_table(ledger)]
+    blocks = [target_table(ledger), guarantees.rows(ledger)]
     parts = ledger.get(PARTS_PRESET)
     if parts and part_table(parts):
         blocks += [[heading(PARTS_PRESET, parts)], part_table(parts)]
@@ -108,9 +108,9 @@ def ledger_tables(ledger: Ledger) -> str:
 
 
 def readme_tables(ledger: Ledger) -> str:
-    """A few targets, and where the guarantees hold."""
+    """A few targets."""
     few = {preset: ledger[preset] for preset in README_PRESETS if preset in ledger}
-    return "\n".join([*target_table(few), "", *guarantees.rows(ledger), ""])
+    return "\n".join([*target_table(few), ""])
 
 
 HEADER = Path("lib/goe.h")
