@@ -568,6 +568,16 @@ static bool is_outside(const look_t *look, const goe_flight_reaction_t *r, int i
     return is_aside(r->action) && i != r->slot && times(r->side, aside_m) > 0.0f;
 }
 
+/* Whether the obstacle of an order to a side lies ahead, and the way past it farther out than that past the next on the line: to turn to
+ * that one would lead back into it. */
+static bool is_farther_out(const look_t *look, const goe_flight_reaction_t *r, int next) {
+    float ahead_m;
+    float aside_m;
+    relate(look->own->ned_m, r->course_ne, look->flight->slot[r->slot].center_ne_m, &ahead_m, &aside_m);
+    return is_aside(r->action) && look->slot[r->slot].counts && ahead_m > 0.0f &&
+           times(r->side, edge_of(look, r, r->slot, r->side) - edge_of(look, r, next, r->side)) > 0.0f;
+}
+
 /* Whether the line of the order may be flown again: every obstacle lies behind on it, or surely aside of it, or is unknown; and the way
  * back to it is clear. The order turns to the nearest obstacle that is left. */
 static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) {
@@ -592,7 +602,8 @@ static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) 
     }
     *behind = false;
     if (waits) {
-        if (!left && r->slot != NOBODY && next != NOBODY && !is_up(r->action)) { /* past the one, before the next */
+        const bool may_turn = !left && r->slot != NOBODY && next != NOBODY && !is_up(r->action);
+        if (may_turn && !is_farther_out(look, r, next)) { /* past the one, before the next */
             r->slot = (int8_t)next;
             r->edge = is_aside(r->action) ? (int8_t)next : NOBODY;
             r->gap = false;

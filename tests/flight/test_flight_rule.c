@@ -217,28 +217,37 @@ static int next_of(double aside_m) {
     return next;
 }
 
-/* An order to a side that turns to another obstacle leads past its outline, with the margin, two sigmas and the circle. */
-static void lead_past(int i, goe_flight_reaction_t *r) {
+/* Ahead of the origin on the line, and how far to the right a side leads: past the outline, the margin, two sigmas and the circle. */
+static void lead_past(int i, int side, double *ahead_m, double *aside_m) {
     const goe_flight_slot_t *slot = &flight.slot[i];
     const double place[2] = {(double)slot->center_ne_m[0], (double)slot->center_ne_m[1]};
-    const double ahead_m = line[0] * place[0] + line[1] * place[1];
-    const double right_m = line[0] * place[1] - line[1] * place[0];
     const float *v = slot->covariance_ne_m2;
     const double variance =
         line[1] * line[1] * (double)v[0] - 2.0 * line[0] * line[1] * (double)v[1] + line[0] * line[0] * (double)v[2];
     const double circle_m = flight.settings.loiter_m > 0.0f ? fmax((double)flight.settings.loiter_m, turn_m()) : 0.0;
     const double beyond_m =
         0.5 * (double)slot->width_m + (double)flight.settings.margin_m + circle_m + 2.0 * sqrt(fmax(variance, 0.0));
-    const double aside_m = right_m + (double)r->side * beyond_m;
-    r->target_ned_m[0] = (float)(ahead_m * line[0] - aside_m * line[1]);
-    r->target_ned_m[1] = (float)(ahead_m * line[1] + aside_m * line[0]);
+    *ahead_m = line[0] * place[0] + line[1] * place[1];
+    *aside_m = line[0] * place[1] - line[1] * place[0] + (double)side * beyond_m;
+}
+
+/* The obstacle of an order to a side lies ahead, and the way past it is farther out than that past the next. */
+static bool is_farther_out(const goe_flight_reaction_t *r, int next) {
+    double ahead_m[2];
+    double aside_m[2];
+    lead_past(r->slot, r->side, &ahead_m[0], &aside_m[0]);
+    lead_past(next, r->side, &ahead_m[1], &aside_m[1]);
+    const bool ahead = is_more(ahead_m[0], own_ahead_m, NEAR_TIE_M);
+    const bool farther = is_more((double)r->side * aside_m[0], (double)r->side * aside_m[1], NEAR_TIE_M);
+    return r->action != GOE_FLIGHT_HOLD && slots[r->slot].counts && ahead && farther;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- tests -- */
 
 /* [flight.hold_s, goe_flight_assessment_t.clear_m]
  * GIVEN any order that stands THEN it ends once nothing is in the way and the way back is clear: at once if its obstacle lies behind,
- * else after hold_s. Till then it tells how clear it is, and turns to the next obstacle once its own is out of the way. */
+ * else after hold_s. Till then it tells how clear it is, and turns to the next obstacle once its own is out of the way, but not back into
+ * what lies ahead. */
 static void an_order_stands_as_long_as_something_is_in_the_way(void) {
     int ended = 0;
     int waits = 0;
@@ -260,10 +269,14 @@ static void an_order_stands_as_long_as_something_is_in_the_way(void) {
         }
         const int next = any_in_the_way ? next_of(aside_m) : -1;
         const bool over = !any_in_the_way && (up || is_way_back_clear(aside_m));
-        const bool turns = !up && before.slot >= 0 && any_in_the_way && !own_in_the_way && next >= 0;
+        const bool turns =
+            !up && before.slot >= 0 && any_in_the_way && !own_in_the_way && next >= 0 && !is_farther_out(&before, next);
         goe_flight_reaction_t followed = before;
         if (turns && before.action != GOE_FLIGHT_HOLD) {
-            lead_past(next, &followed);
+            double at_m[2];
+            lead_past(next, before.side, &at_m[0], &at_m[1]);
+            followed.target_ned_m[0] = (float)(at_m[0] * line[0] - at_m[1] * line[1]);
+            followed.target_ned_m[1] = (float)(at_m[0] * line[1] + at_m[1] * line[0]);
         }
         const double share = up ? 0.0 : share_of_order(&followed);
         bool behind = false;
