@@ -1,0 +1,168 @@
+"""The window method's steps against other formulas: compositions, trigonometry, complex steps."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bench.reference.gates import Gates
+from bench.reference.settings import Settings
+from bench.reference.window import WindowMethod
+from bench.reference.window.geometry import (
+    Lens,
+    Point,
+    disc_row,
+    heading_deg,
+    mounting_rotation,
+    quaternion_rotation,
+    undistort,
+)
+from bench.reference.window.precision import numbers
+from bench.reference.window.view import View
+from goe_tools.logs.obslog import Camera, ObservationLog
+from goe_tools.logs.projection import CAMERA_AXES_IN_BODY, distort, quaternion_of, yaw_pitch_roll
+
+N = numbers(np.float64)
+PLAIN = Camera(1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
+
+
+def rodrigues(q: tuple[float, float, float, float]) -> np.ndarray:
+    """The rotation matrix from the axis and the angle of the quaternion."""
+    vector = np.asarray(q[1:])
+    length = float(np.linalg.norm(vector))
+    x, y, z = vector / length
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = 2.0 * math.atan2(length, q[0])
+    return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * (cross @ cross)
+
+
+def test_rotations_against_compositions() -> None:
+    generator = np.random.default_rng(3)
+    for angles in generator.uniform(-180.0, 180.0, (50, 3)):
+        matrix = yaw_pitch_roll(*angles)
+        assert np.reshape(quaternion_rotation(N, quaternion_of(matrix)), (3, 3)) == pytest.approx(matrix, abs=1e-12)
+        camera = replace(PLAIN, mount_yaw_deg=angles[0], mount_pitch_deg=angles[1], mount_roll_deg=angles[2])
+        mounting = np.reshape(mounting_rotation(N, camera), (3, 3))
+        assert mounting == pytest.approx(matrix @ CAMERA_AXES_IN_BODY, abs=1e-12)
+    for q in generator.normal(0.0, 1.0, (50, 4)):  # of any length
+        assert np.reshape(quaternion_rotation(N, q), (3, 3)) == pytest.approx(rodrigues(q), abs=1e-12)
+    assert quaternion_rotation(N, (2.0, 0.0, 0.0, 0.0)) == pytest.approx(list(np.eye(3).ravel()))
+
+
+def test_lens_is_inverted(real_camera: Camera) -> None:
+    lens = Lens.of(N, real_camera)
+    for x, y in itertools.product(np.linspace(-0.7, 0.7, 9), repeat=2):
+        back_x, back_y, converged, _ = undistort(N, lens, *distort(real_camera, x, y))
+        assert converged
+        assert (back_x, back_y) == pytest.approx((x, y), abs=2e-9)
+    fish = Lens.of(N, replace(real_camera, k1=-0.5, k2=0.0, k3=0.0))
+    assert not undistort(N, fish, np.float64(1.2), np.float64(0.0))[2]
+
+
+def aligned(x: float, y: float) -> Point:
+    return Point(np.float64(x), np.float64(y), N.zero, N.zero)
+
+
+def test_heading_is_the_printed_equation() -> None:
+    """[(1)], its fraction the right way up."""
+    generator = np.random.default_rng(5)
+    for xa, ya, xb, yb in generator.uniform(-1.0, 1.0, (200, 4)):
+        dx = xa - ya * (xb - xa) / (yb - ya)
+        assert heading_deg(N, aligned(xa, ya), aligned(xb, yb)) == pytest.approx(math.degrees(math.atan(dx)), abs=1e-9)
+    assert heading_deg(N, aligned(-0.3, 0.2), aligned(0.4, 0.2)) == 90.0
+    assert heading_deg(N, aligned(0.4, 0.2), aligned(-0.3, 0.2)) == 90.0
+
+
+def test_disc_row_by_trigonometry() -> None:
+    """[(2)]"""
+    generator = np.random.default_rng(6)
+    for left, right in np.sort(generator.uniform(-1.5, 1.5, (200, 2))):
+        size = (right - left) * (math.cos(math.atan(left)) + math.cos(math.atan(right)))
+        x = 0.5 * (left + right) * (1.0 - size**2 / 16.0)
+        assert disc_row(N, left, right) == pytest.approx((2.0 * x / size, 2.0 / size), rel=1e-12)
+
+
+def view_turned_by(b_deg: float) -> View:
+    view = View(Gates())
+    view.sin_b, view.cos_b = N.sincos_deg(np.float64(b_deg))
+    return view
+
+
+def test_turned_points_by_trigonometry() -> None:
+    """[(4)]"""
+    generator, method = np.random.default_rng(7), WindowMethod(PLAIN)
+    for x, b in zip(generator.uniform(-1.5, 1.5, 300), generator.uniform(-90.0, 90.0, 300)):
+        angle = math.atan(x) - math.radians(b)
+        turned = method._turned(view_turned_by(b), "", aligned(x, 0.1))
+        if math.cos(angle) > 0.05:
+            assert turned == pytest.approx(math.tan(angle), rel=1e-9, abs=1e-12)
+        else:
+            assert turned is None
+
+
+def spread_by_complex_steps(function, values: tuple[float, ...], sigmas: tuple[float, ...]) -> float:
+    """The sigma of a function of independent values."""
+    steps = [[value + (1e-30j if i == k else 0.0) for i, value in enumerate(values)] for k in range(len(values))]
+    return math.sqrt(sum((function(*step).imag / 1e-30 * sigma) ** 2 for step, sigma in zip(steps, sigmas)))
+
+
+def test_sigmas_of_what_hangs_on_a_solution(corner_log: ObservationLog) -> None:
+    """[(6), (7), (8)] What a length or height of one image and the centre inherit from the solution."""
+    camera, found = corner_log.camera, {"length_m": 0, "height_m": 0, "center": 0}
+    method = WindowMethod(camera, Settings(model="line"))
+    seen: list[tuple[str, float, float]] = []
+    take = method._take_extent
+
+    def watched(gates, name, value, variance, roundoff, size) -> None:
+        seen.append((name, value, variance))
+        take(gates, name, value, variance, roundoff, size)
+
+    method._take_extent = watched
+    for frame in corner_log.frames:
+        seen.clear()
+        report = method.update(frame)
+        fit, values, told = method.fit, report.estimate.values, {name: rest for name, *rest in seen}
+        if not report.fresh:
+            continue
+        solution = fit.x0_m, fit.z0_m, fit.width_m
+        sigmas = fit.sigma["x0_m"], fit.sigma["z0_m"], fit.sigma["width_m"]
+        b = math.radians(method.orientation.deg)
+        if "height_m" in told:
+            value, variance = told["height_m"]
+            found["height_m"] += 1
+            z = fit.z0_m - method.dz_m
+            y = (frame.height_m - value) / z
+            height = lambda x0, z0, w: frame.height_m - y * (z0 - method.dz_m)  # noqa: B023, E731
+            assert math.sqrt(variance) == pytest.approx(spread_by_complex_steps(height, solution, sigmas), rel=1e-9)
+        if "length_m" in told:
+            value, variance = told["length_m"]
+            found["length_m"] += 1
+            half = 0.5 if fit.x0_m < 0.0 else -0.5  # the visible side is the right one of what lies to the left
+
+            def across(x0, z0, w):  # (4) and (7): X_C of the side
+                x, z = x0 - method.dx_m, z0 - method.dz_m
+                return (x * math.cos(b) - z * math.sin(b)) + half * w  # noqa: B023
+
+            inverse = value / across(*solution).real
+            length = lambda x0, z0, w: inverse * across(x0, z0, w)  # noqa: B023, E731
+            assert math.sqrt(variance) == pytest.approx(spread_by_complex_steps(length, solution, sigmas), rel=1e-9)
+        if "center_n_m" in values:
+            found["center"] += 1
+            heading = math.atan2(*method.heading)
+            inputs = fit.x0_m, fit.z0_m, values["length_m"], values["length_m"]
+            off = sigmas[0], sigmas[1], values["length_sd_m"], values["length_sd_m"]
+
+            def place(x0, z0, length_in_x, length_in_z):  # the method takes X and Z of the centre as independent
+                x, z = x0 + 0.5 * length_in_x * math.sin(b), z0 + 0.5 * length_in_z * math.cos(b)  # noqa: B023
+                turn = complex(math.cos(heading), math.sin(heading))  # noqa: B023
+                return z * turn.real - x * turn.imag, z * turn.imag + x * turn.real
+
+            for i, axis in enumerate("ne"):
+                expected = spread_by_complex_steps(lambda *v: place(*v)[i], inputs, off)  # noqa: B023
+                assert values[f"center_{axis}_sd_m"] == pytest.approx(expected, rel=1e-9)
+                middle = method.origin_m[i] + place(*inputs)[i]
+                assert values[f"center_{axis}_m"] == pytest.approx(middle, rel=1e-12)
+    assert min(found.values()) > 5, found
