@@ -15,24 +15,24 @@ from goe_tools.logs.scene import Scene, make_log
 ROOT = Path(__file__).resolve().parents[2]
 
 FAKE_REPLAY = """#!{python}
-'''Stands in for goe_replay: prints the float32 mirror's answers, one column changed on demand.'''
+'''Stands in for goe_replay: prints the window method's answers in float32, one column changed on demand.'''
 import sys
 sys.path.insert(0, {tools!r})
 import numpy as np
 from goe_tools.logs.estimates import LABELS, NUMBERS
 from goe_tools.logs.obslog import read_log
-from bench.reference.mirror32 import Mirror32
 from bench.reference.settings import Settings
+from bench.reference.window import WindowMethod
 
 option = {{name: sys.argv[i + 1] for i, name in enumerate(sys.argv) if name.startswith("--")}}
 change = {change!r}
 log = read_log(sys.argv[-1])
-mirrors = {{}}
+methods = {{}}
 lines = [",".join((*LABELS, *NUMBERS))]
 for number, frame in enumerate(log.frames):
     settings = Settings(model=option["--model"], window=int(option["--window"]))
-    mirror = mirrors.setdefault(frame.id, Mirror32(log.camera, settings))
-    estimate = mirror.update(frame)
+    method = methods.setdefault(frame.id, WindowMethod(log.camera, settings, np.float32))
+    estimate = method.update(frame).estimate
     if number in change.get("rows", range(10**9)):
         if "status" in change:
             estimate.status = change["status"]

@@ -26,7 +26,7 @@ def test_agreement(corner_folder: Path, fake_replay, capsys) -> None:
     told = capsys.readouterr()
     assert "100.000%" in told.out
     assert "length_sd_m" in told.out
-    assert "mirror32 0/0/0, float64 0/0/0" in told.out
+    assert "float32 0/0/0, float64 0/0/0" in told.out
     assert told.err == ""
 
 
@@ -38,7 +38,7 @@ def test_options_reach_all_three(options: tuple[str, ...], corner_folder: Path, 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"columns": ["x0_m"], "ulp": 5, "rows": [30]}, "mirror: 5 ULP apart, 4 allowed"),
+        ({"columns": ["x0_m"], "ulp": 5, "rows": [30]}, "float32: 5 ULP apart, 4 allowed"),
         ({"columns": ["z0_m"], "ulp": 1}, "values have identical bits, 99.9% needed"),
         ({"columns": ["width_m"], "ulp": 30000}, "float64: width_m: 99th percentile"),
         ({"columns": ["x0_sd_m"], "ulp": 3000000}, "float64: x0_sd_m: 99th percentile"),
@@ -146,8 +146,8 @@ def test_the_built_program_on_tracks_that_begin_with_a_turn(
     write_log(tmp_path, turning_log(blind, seen, turn_deg, real_camera))
     log, settings = read_log(tmp_path), Settings()
     result = compare.compare_rows(log, compare.run_replay(replay, tmp_path, settings), settings)
-    assert result.failures() == [] and result.mirror.total == 0
-    assert all(max(column.ulp_mirror, default=0) == 0 for column in result.columns.values())
+    assert result.failures() == [] and result.single.total == 0
+    assert all(max(column.ulp_single, default=0) == 0 for column in result.columns.values())
     if seen == 0 or (seen < 8 and turn_deg >= 65.0):  # T is that of the flight
         assert result.conditioned > 10
 
@@ -166,6 +166,6 @@ def test_the_built_program_on_random_flights(replay: Path, tmp_path: Path, real_
         log = read_log(tmp_path / str(k))
         settings = Settings(window=int(generator.choice([3, 8, 20])))
         result = compare.compare_rows(log, compare.run_replay(replay, tmp_path / str(k), settings), settings)
-        assert result.mirror.total == result.presence_mirror == 0
-        assert all(max(column.ulp_mirror, default=0) == 0 for column in result.columns.values())
+        assert result.single.total == result.presence_single == 0
+        assert all(max(column.ulp_single, default=0) == 0 for column in result.columns.values())
         assert not result.disputed

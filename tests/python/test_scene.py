@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bench.reference.mirror32 import Mirror32
 from bench.reference.settings import Settings as SettingsOfWindow
+from bench.reference.window import WindowMethod
 from goe_tools.__main__ import main
 from goe_tools.flights.logged import from_log
 from goe_tools.logs.obslog import FEATURES, Camera, Frame, ObservationLog, read_log, write_log
@@ -229,8 +229,9 @@ def test_the_track_begins_with_the_first_image_that_shows_a_feature(shape: str, 
     assert 5 < shown.index(True) < 40
     told = {name: float(log.truth[1].extra[name]) for name in ("x0_m", "z0_m", "track_heading_deg")}
     assert told["track_heading_deg"] < -2.0
-    mirror = Mirror32(log.camera, SettingsOfWindow(model="disc" if shape == "cylinder" else "line"))
-    values = [mirror.update(frame).values for frame in log.frames][-20]
+    settings = SettingsOfWindow(model="disc" if shape == "cylinder" else "line")
+    method = WindowMethod(log.camera, settings, np.float32)
+    values = [method.update(frame).estimate.values for frame in log.frames][-20]
     assert values["x0_m"] == pytest.approx(told["x0_m"], abs=0.5)
     assert values["z0_m"] == pytest.approx(told["z0_m"], abs=1.0)
     if shape == "box":

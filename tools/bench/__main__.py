@@ -9,7 +9,10 @@ from goe_tools import cli
 
 COMMANDS = {  # name: module with add_arguments and run, and what it does
     "attack_tables": (".attack.command", "print or write the tables of hostile flights from a file of goals"),
-    "compare": (".reference.compare", "run goe_replay over logs and compare it with both references"),
+    "compare": (
+        ".reference.compare",
+        "run goe_replay over logs and compare it with the method in Python, both precisions",
+    ),
     "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),
     "lies": (".lies.command", "search for confident errors and warnings that vanish, in random legal flights"),
     "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),

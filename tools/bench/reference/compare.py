@@ -1,6 +1,6 @@
-"""Compares goe_replay with both references, value by value.
+"""Compares goe_replay with the window method in both precisions, value by value.
 
-C against the float32 mirror: the bits. C against the float64 reference: the difference relative to the size of the
+C against float32: the bits. C against float64: the difference relative to the size of the
 quantity, over the rows whose solution is well conditioned, baseline / W > 0.5 (baseline: root of the summed squared
 deviations of the camera's path over the window). Length and height are sliding means, of one value per solution; they
 count where every solution in the mean is well conditioned, and so does the centre of a box, which hangs on the length.
@@ -13,12 +13,12 @@ What "relative" means for a column:
   * centre: relative to the distance between the reference point and the start, whatever the NED origin;
   * a sigma: it comes from residuals, and where the data are noise-free these are nothing but the rounding of float32,
     which says nothing. So the difference is taken relative to the sigma plus a multiple of what the rounding of the
-    rows would show by itself (the float64 reference propagates the rounding unit of the aligned points through the same
+    rows would show by itself (the float64 method propagates the rounding unit of the aligned points through the same
     covariance). At the limit of 1e-3 this allows 1e-3 of the sigma plus five such rounding sigmas.
 
 Decisions. float32 and float64 may decide differently at a threshold when the value lies within rounding of it, and the
-rows after that would compare two different computations. The float64 reference therefore follows the decisions of the
-float32 mirror there, and only there (gates.py). Decisions followed are counted and bounded: 1 % of a log's decisions,
+rows after that would compare two different computations. The float64 method therefore follows the decisions of the
+float32 method there, and only there (gates.py). Decisions followed are counted and bounded: 1 % of a log's decisions,
 which whole pixels reach, since they meet a gate of 2 px exactly. Decisions that differ farther from the threshold are
 *disputed*: none is allowed. No row is left out because of a decision, and statuses, models and numbers of points must
 agree in all rows.
@@ -43,9 +43,8 @@ from rich.console import Console
 from rich.table import Table
 from tqdm import tqdm
 
-from .mirror32 import Mirror32
-from .reference64 import Reference64, Report
 from .settings import Settings
+from .window import Report, WindowMethod
 
 MIN_SAME_BITS = 0.999  # share of values
 MAX_ULP = 4
@@ -71,7 +70,7 @@ def ulp_index(value: np.ndarray) -> np.ndarray:
 class Column:
     """The differences of one output column."""
 
-    ulp_mirror: list[int] = field(default_factory=list)
+    ulp_single: list[int] = field(default_factory=list)
     same_bits: int = 0
     ulp_double: list[int] = field(default_factory=list)  # well-conditioned rows
     relative: list[float] = field(default_factory=list)  # well-conditioned rows
@@ -104,9 +103,9 @@ class Result:
     solved: int = 0
     conditioned: int = 0
     columns: dict[str, Column] = field(default_factory=lambda: {name: Column() for name in NUMBERS})
-    mirror: Labels = field(default_factory=Labels)
+    single: Labels = field(default_factory=Labels)
     double: Labels = field(default_factory=Labels)
-    presence_mirror: int = 0
+    presence_single: int = 0
     decisions: int = 0
     followed: list[str] = field(default_factory=list)
     disputed: list[str] = field(default_factory=list)
@@ -114,15 +113,15 @@ class Result:
     def failures(self) -> list[str]:
         """What lies beyond the limits, in words."""
         found = []
-        values = sum(len(column.ulp_mirror) for column in self.columns.values())
+        values = sum(len(column.ulp_single) for column in self.columns.values())
         same = sum(column.same_bits for column in self.columns.values())
-        worst = max((max(column.ulp_mirror, default=0) for column in self.columns.values()), default=0)
+        worst = max((max(column.ulp_single, default=0) for column in self.columns.values()), default=0)
         if values and same < MIN_SAME_BITS * values:
-            found.append(f"mirror: {same} of {values} values have identical bits, {MIN_SAME_BITS:.1%} needed")
+            found.append(f"float32: {same} of {values} values have identical bits, {MIN_SAME_BITS:.1%} needed")
         if worst > MAX_ULP:
-            found.append(f"mirror: {worst} ULP apart, {MAX_ULP} allowed")
-        if self.mirror.total or self.presence_mirror:
-            found.append(f"mirror: {self.mirror.total} labels and {self.presence_mirror} empty fields differ")
+            found.append(f"float32: {worst} ULP apart, {MAX_ULP} allowed")
+        if self.single.total or self.presence_single:
+            found.append(f"float32: {self.single.total} labels and {self.presence_single} empty fields differ")
         if self.double.total:
             found.append(f"float64: {self.double.total} statuses, models or numbers of points differ")
         presence = sum(column.presence for column in self.columns.values())
@@ -189,7 +188,7 @@ def run_replay(replay: Path, folder: Path, settings: Settings) -> list[tuple[flo
 
 
 def check_comparable(log: ObservationLog, folder: Path) -> None:
-    """The references follow the paper: points, and a position that does not jump."""
+    """The method follows the paper: points, and a position that does not jump."""
     path = folder / "frames.csv"
     if any(frame.box_px is not None for frame in log.frames):
         raise LogError(path, 0, "", "holds bounding boxes, which the references do not know")
@@ -202,28 +201,28 @@ def check_comparable(log: ObservationLog, folder: Path) -> None:
 def compare_rows(
     log: ObservationLog, answers: Sequence[tuple[float, int, Estimate]], settings: Settings, label: str = ""
 ) -> Result:
-    """Runs both references over a log and compares."""
+    """Runs the method over a log in both precisions and compares."""
     if len(answers) != len(log.frames):
         raise ValueError(f"{label}: {len(answers)} rows of estimates for {len(log.frames)} rows of frames")
     result = Result(rows=len(log.frames))
-    mirrors: dict[int, Mirror32] = {}
-    doubles: dict[int, Reference64] = {}
+    singles: dict[int, WindowMethod] = {}
+    doubles: dict[int, WindowMethod] = {}
     rows = zip(log.frames, answers)
     for frame, (t_s, track, told) in tqdm(rows, total=len(log.frames), desc=label, leave=False, disable=None):
         if track != frame.id or (t_s != frame.t_s and t_s == t_s):
             raise ValueError(f"{label}: the estimate at {t_s!r} s of track {track} stands at {frame.t_s!r} s")
-        if frame.id not in mirrors:
-            mirrors[frame.id] = Mirror32(log.camera, settings)
-            doubles[frame.id] = Reference64(log.camera, settings)
-        mirrored = mirrors[frame.id].update(frame)
-        report = doubles[frame.id].update(frame, mirrors[frame.id].taken)
-        _count_row(result, told, mirrored, report)
+        if frame.id not in singles:
+            singles[frame.id] = WindowMethod(log.camera, settings, np.float32)
+            doubles[frame.id] = WindowMethod(log.camera, settings, np.float64)
+        single = singles[frame.id].update(frame)
+        double = doubles[frame.id].update(frame, single.gates.taken)
+        _count_row(result, told, single.estimate, double)
     return result
 
 
-def _count_row(result: Result, told: Estimate, mirrored: Estimate, report: Report) -> None:
+def _count_row(result: Result, told: Estimate, single: Estimate, report: Report) -> None:
     exact = report.estimate
-    result.mirror.count(told, mirrored)
+    result.single.count(told, single)
     result.double.count(told, exact)
     result.solved += told.status in ("ok", "partial")
     result.decisions += len(report.gates.taken)
@@ -232,14 +231,14 @@ def _count_row(result: Result, told: Estimate, mirrored: Estimate, report: Repor
     result.conditioned += report.conditioning["x0_m"] > MIN_BASELINE_RATIO
     for name, column in result.columns.items():
         value = told.values.get(name)
-        result.presence_mirror += (value is None) != (name not in mirrored.values)
+        result.presence_single += (value is None) != (name not in single.values)
         column.presence += (value is None) != (name not in exact.values)
         if value is None:
             continue
         bits = np.float32(value)
-        if name in mirrored.values:
-            column.same_bits += bits.tobytes() == np.float32(mirrored.values[name]).tobytes()
-            column.ulp_mirror.append(int(abs(ulp_index(bits) - ulp_index(mirrored.values[name]))))
+        if name in single.values:
+            column.same_bits += bits.tobytes() == np.float32(single.values[name]).tobytes()
+            column.ulp_single.append(int(abs(ulp_index(bits) - ulp_index(single.values[name]))))
         conditioning = report.conditioning[SIGMA_OWNER.get(name, name)]
         if conditioning > MIN_BASELINE_RATIO and name in exact.values:
             column.ulp_double.append(int(abs(ulp_index(bits) - ulp_index(np.float32(exact.values[name])))))
@@ -251,16 +250,16 @@ def print_result(console: Console, title: str, result: Result) -> None:
     table.add_column("column")
     for heading in ("values", "same bits", "worst ULP", "values", "99 % rel", "worst rel", "99 % ULP", "worst ULP"):
         table.add_column(heading, justify="right")
-    table.add_row("", "", "C and mirror32", "", "", "C and float64", "(baseline/W", "> 0.5)", "", style="dim")
+    table.add_row("", "", "C and float32", "", "", "C and float64", "(baseline/W", "> 0.5)", "", style="dim")
     for name, column in result.columns.items():
-        values = len(column.ulp_mirror)
+        values = len(column.ulp_single)
         if not values:
             continue
         table.add_row(
             name,
             str(values),
             f"{column.same_bits / values:.3%}",
-            str(max(column.ulp_mirror)),
+            str(max(column.ulp_single)),
             str(len(column.relative)),
             f"{percentile(column.relative):.1e}",
             f"{max(column.relative, default=0.0):.1e}",
@@ -270,7 +269,7 @@ def print_result(console: Console, title: str, result: Result) -> None:
     console.print(table)
     console.print(
         f"rows {result.rows}, solved {result.solved}, with baseline/W > {MIN_BASELINE_RATIO:g}: {result.conditioned}; "
-        f"differing status/model/n_used: mirror32 {_counts(result.mirror)}, float64 {_counts(result.double)}; "
+        f"differing status/model/n_used: float32 {_counts(result.single)}, float64 {_counts(result.double)}; "
         f"decisions {result.decisions}, followed within rounding {len(result.followed)}, "
         f"disputed {len(result.disputed)}"
     )

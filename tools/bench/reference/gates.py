@@ -2,7 +2,7 @@
 
 A chain in float32 and one in float64 cannot agree on every threshold: where a value lies within rounding of it, either
 answer is right. A reference that carries on with its own answer would then be compared with a different computation.
-So the float64 reference may be given the decisions of the float32 one (``guide``). Where they differ and the value lies
+So the float64 method may be given the decisions of the float32 one (``guide``). Where they differ and the value lies
 within rounding of the threshold it follows the guide and counts a *followed* decision; where they differ and the value
 does not, it keeps its own and counts a *disputed* one. Neither is hidden: the comparison bounds the first and allows
 none of the second.

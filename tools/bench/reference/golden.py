@@ -24,10 +24,12 @@ from goe_tools.logs.projection import distort
 from goe_tools.logs.whole_file import write_whole
 from goe_tools.places import ROOT
 
+from . import dense
 from .gates import Gates
-from .mirror32 import Mirror32
-from .reference64.window import Row, solve
 from .settings import Settings
+from .window import WindowMethod
+from .window.fit import Row, solve
+from .window.precision import numbers
 
 SEED = 20190917
 ARCTAN_CASES, SINCOS_CASES, LENS_CASES, WINDOW_CASES = 240, 200, 24, 48
@@ -214,20 +216,22 @@ def window_header() -> str:
             xi = f32((x0 - dx) / width + noise * (2.0 * generator.random() - 1.0))
             zeta = f32((z0 - dz) / width + noise * (2.0 * generator.random() - 1.0))
             points.append((dx, dz, xi, zeta))
-        # b = 0: the rows of (5) are zeta and xi themselves
-        _status, fit = solve([Row(zeta, xi, 1.0, 0.0, dx, dz) for dx, dz, xi, zeta in points], 0.1, Gates())
-        if fit is None or fit.ratio < 0.5:
+        fitted = [Row(*(np.float64(value) for value in (xi, zeta, dx, dz))) for dx, dz, xi, zeta in points]
+        fit = solve(numbers(np.float64), fitted, np.float64(0.1), Gates())[1]
+        if fit is None or fit.ratio < 0.5:  # the library would refuse it, or rounding governs it
             continue
+        # b = 0: the rows of (5) are zeta and xi themselves
+        answer = dense.solve([dense.DenseRow(zeta, xi, 1.0, 0.0, dx, dz) for dx, dz, xi, zeta in points])
         columns = [wrapped([hex_float(point[i]) for point in points], 4, "      ") for i in range(4)]
         expected = (
-            fit.x0_m,
-            fit.z0_m,
-            fit.width_m,
-            fit.sigma["x0_m"],
-            fit.sigma["z0_m"],
-            fit.sigma["width_m"],
-            fit.residual,
-            fit.baseline_m,
+            answer.x0_m,
+            answer.z0_m,
+            answer.width_m,
+            answer.sigma["x0_m"],
+            answer.sigma["z0_m"],
+            answer.sigma["width_m"],
+            answer.residual,
+            answer.baseline_m,
         )
         text = f"{{{n},\n" + "".join(f"     {{{column}}},\n" for column in columns)
         results = [double(value) for value in expected]
@@ -275,16 +279,17 @@ def _bits(value: np.float32) -> str:
 def corner_header() -> str:
     log = read_log(CORNER)
     camera = log.camera
-    mirror = Mirror32(camera, Settings())
+    method = WindowMethod(camera, Settings(), np.float32)
     rows = []
     for frame in log.frames:
-        estimate = mirror.update(frame)
+        report = method.update(frame)
+        estimate = report.estimate
         valid = [flag for flag, name in VALID.items() if name in estimate.values]
         numbers = [estimate.values.get(name, np.float32(0.0)) for name in NUMBERS]
-        numbers += [mirror.told.residual, mirror.told.baseline_m]
+        numbers += [report.residual, report.baseline_m]
         bits = [_bits(number) for number in numbers]
         image = _image(frame)
-        fresh = "true" if mirror.told.fresh else "false"
+        fresh = "true" if report.fresh else "false"
         labels = f"GOE_{estimate.status.upper()}, GOE_MODEL_{estimate.model.upper()}, {estimate.n_used}, {fresh},"
         lines = ["{" + image[0], *image[1:], f" {labels}", f" {' | '.join(valid) or '0u'},"]
         lines.append(f" {{{wrapped(bits, 8, '      ')}}}}}")

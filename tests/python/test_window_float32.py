@@ -1,4 +1,4 @@
-"""The float32 mirror: single precision throughout, and near the float64 reference."""
+"""The window method in float32: single precision throughout, and near the one in float64."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from bench.reference import minimax
 from bench.reference.compare import MAX_RELATIVE, relative_difference
-from bench.reference.mirror32 import Mirror32
-from bench.reference.mirror32.angle import ATAN, COS, SIN, arctan_rad, fold_deg, sincos_deg
-from bench.reference.mirror32.single import F
-from bench.reference.reference64 import Reference64
 from bench.reference.settings import Settings
+from bench.reference.window import WindowMethod
+from bench.reference.window.polynomials import ATAN, COS, SIN, F, arctan_rad, sincos_deg
+from bench.reference.window.precision import numbers
 from goe_tools.logs.obslog import Camera, ObservationLog
 from goe_tools.logs.scene import Scene, make_log
 
@@ -43,21 +42,30 @@ def test_sine_and_cosine() -> None:
     assert sincos_deg(F(90.0)) == (F(1.0), F(0.0))
 
 
-def test_fold() -> None:
-    assert [float(fold_deg(F(deg))) for deg in (90.0, 90.5, -90.0, 0.0, 180.0, -270.0)] == [90, -89.5, 90, 0, 0, -90]
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_fold(dtype) -> None:
+    fold_deg = numbers(dtype).fold_deg
+    assert [float(fold_deg(dtype(deg))) for deg in (90.0, 90.5, -90.0, 0.0, 180.0, -270.0)] == [
+        90,
+        -89.5,
+        90,
+        0,
+        0,
+        -90,
+    ]
 
 
 def test_polynomials_are_those_of_the_library() -> None:
-    """One set of constants in three places: the generator, the C source and the mirror."""
+    """One set of constants in three places: the generator, the C source and the method in float32."""
     source = (ROOT / "lib" / "maths" / "goe_angle.c").read_text()
     in_c = {name: F(value) for name, value in re.findall(r"#define (\w+_\d) ([0-9.e-]+)f", source)}
-    in_mirror = {"ATAN": ATAN, "SIN": SIN, "COS": COS}
+    in_python = {"ATAN": ATAN, "SIN": SIN, "COS": COS}
     for problem in minimax.PROBLEMS:
-        if problem.name not in in_mirror:  # the window method has no use for it
+        if problem.name not in in_python:  # the window method has no use for it
             continue
         for number, coefficient in enumerate(minimax.remez(problem).coefficients, start=1):
             name = f"{problem.name}_{number}"
-            assert in_c[name] == in_mirror[problem.name][number - 1], name
+            assert in_c[name] == in_python[problem.name][number - 1], name
             assert float(in_c[name]) == pytest.approx(abs(coefficient), rel=1e-6), name
 
 
@@ -72,11 +80,12 @@ def test_near_the_reference(rounding: str, model: str, real_camera: Camera) -> N
             camera=real_camera,
         )  # fmt: skip
         log = make_log(scene)
-        mirror, reference = Mirror32(log.camera, settings), Reference64(log.camera, settings)
+        single, double = WindowMethod(log.camera, settings, np.float32), WindowMethod(log.camera, settings)
         compared = 0
         for frame in log.frames:
-            told = mirror.update(frame)
-            report = reference.update(frame, mirror.taken)
+            answer = single.update(frame)
+            told = answer.estimate
+            report = double.update(frame, answer.gates.taken)
             exact = report.estimate
             assert (told.status, told.model, told.n_used) == (exact.status, exact.model, exact.n_used)
             assert told.values.keys() == exact.values.keys()
@@ -92,25 +101,26 @@ def test_near_the_reference(rounding: str, model: str, real_camera: Camera) -> N
 
 
 def test_decisions_are_noted_under_the_same_names(corner_log: ObservationLog) -> None:
-    """What the mirror decides and the reference does not, or the other way round, could not be compared."""
+    """What one precision decides and the other does not could not be compared."""
     for model in ("auto", "disc", "line"):
         settings = Settings(model=model)
-        mirror, reference = Mirror32(corner_log.camera, settings), Reference64(corner_log.camera, settings)
+        camera = corner_log.camera
+        single, double = WindowMethod(camera, settings, np.float32), WindowMethod(camera, settings)
         names = set()
         for frame in corner_log.frames:
-            mirror.update(frame)
-            taken = reference.update(frame, mirror.taken).gates.taken
-            assert taken == mirror.taken
+            guide = single.update(frame).gates.taken
+            taken = double.update(frame, guide).gates.taken
+            assert taken == guide
             names |= taken.keys()
         assert {"baseline", "parallax", "passed"} <= names
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e38, -1e38, 0.0, 1e-45])
 def test_outputs_are_finite_whatever_comes(value: float, corner_log: ObservationLog) -> None:
-    mirror = Mirror32(corner_log.camera)
+    method = WindowMethod(corner_log.camera, dtype=np.float32)
     for k, frame in enumerate(corner_log.frames):
         if k % 5 == 3:
             frame.left = (value, value)
         if k % 7 == 4:
             frame.agl_m = value
-        assert all(np.isfinite(number) for number in mirror.update(frame).values.values())
+        assert all(np.isfinite(number) for number in method.update(frame).estimate.values.values())

@@ -1,79 +1,85 @@
-"""The float64 reference: exact on exact data, right about its sigmas, and wrong only by what the paper leaves out."""
+"""The window method in float64: exact on exact data, right about its sigmas, wrong only by what the paper omits."""
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from bench.reference import dense
 from bench.reference.gates import Gates
-from bench.reference.mirror32 import Mirror32
-from bench.reference.reference64 import Reference64, Report
-from bench.reference.reference64.geometry import mounting_rotation, quaternion_rotation, undistort
-from bench.reference.reference64.window import Row, solve
 from bench.reference.settings import Settings
+from bench.reference.window import Report, WindowMethod
+from bench.reference.window.fit import Fit, Row, solve
+from bench.reference.window.precision import numbers
 from goe_tools.logs.obslog import Camera, Frame, ObservationLog
-from goe_tools.logs.projection import CAMERA_AXES_IN_BODY, distort, quaternion_of, yaw_pitch_roll
 from goe_tools.logs.scene import Scene, make_log
 
 
 def fly(log: ObservationLog, **settings: object) -> list[Report]:
-    reference = Reference64(log.camera, Settings(**settings))
+    reference = WindowMethod(log.camera, Settings(**settings))
     return [reference.update(frame) for frame in log.frames]
 
 
-def closed_form(rows: list[Row]) -> dict[str, float]:
-    """The solution of (5) as two straight lines with one slope."""
-    c, s = np.array([row.cos_b for row in rows]), np.array([row.sin_b for row in rows])
-    forward, aside = np.array([row.forward for row in rows]), np.array([row.aside for row in rows])
-    dx, dz = np.array([row.dx_m for row in rows]), np.array([row.dz_m for row in rows])
-    xi, zeta = c * aside + s * forward, c * forward - s * aside
-    x, z = dx - dx.mean(), dz - dz.mean()
-    spread = x @ x + z @ z
-    slope = -(x @ (xi - xi.mean()) + z @ (zeta - zeta.mean())) / spread
-    width, n = 1.0 / slope, len(rows)
-    residuals = np.concatenate([xi - xi.mean() + slope * x, zeta - zeta.mean() + slope * z])
-    s2 = residuals @ residuals / (2 * n - 3)
-    return {
-        "width_m": width,
-        "x0_m": width * xi.mean() + dx.mean(),
-        "z0_m": width * zeta.mean() + dz.mean(),
-        "width_sd": width**2 * math.sqrt(s2 / spread),
-        "x0_sd": width * math.sqrt(s2 / n + xi.mean() ** 2 * width**2 * s2 / spread),
-        "z0_sd": width * math.sqrt(s2 / n + zeta.mean() ** 2 * width**2 * s2 / spread),
-        "residual": math.sqrt(residuals @ residuals / (2 * n)),
-        "baseline": math.sqrt(spread),
-    }
+DOUBLE = numbers(np.float64)
+
+
+def solved(rows: list[Row]) -> tuple[str, Fit | None]:
+    return solve(DOUBLE, rows, np.float64(0.1), Gates())
+
+
+def row(xi: float, zeta: float, dx_m: float, dz_m: float) -> Row:
+    return Row(*(np.float64(value) for value in (xi, zeta, dx_m, dz_m)))
 
 
 def random_rows(generator: np.random.Generator, noise: float) -> list[Row]:
     width, x0, z0 = generator.uniform(2.0, 20.0), generator.uniform(-60.0, 60.0), generator.uniform(80.0, 400.0)
     rows = []
     for k in range(generator.integers(3, 20)):
-        b = generator.uniform(-0.7, 0.7)
         dx, dz = generator.normal(0.0, 1.0), 4.0 * k
         xi, zeta = (x0 - dx) / width, (z0 - dz) / width
-        xi, zeta = xi + noise * generator.normal(), zeta + noise * generator.normal()
-        c, s = math.cos(b), math.sin(b)
-        rows.append(Row(c * zeta + s * xi, c * xi - s * zeta, c, s, dx, dz))
+        rows.append(row(xi + noise * generator.normal(), zeta + noise * generator.normal(), dx, dz))
     return rows
 
 
-def test_dense_solution_is_the_closed_form() -> None:
+def check_against_dense(rows: list[Row], fit: Fit, generator: np.random.Generator) -> None:
+    """The dense system sees each image turned by an orientation of its own, as the paper writes it."""
+    paper = []
+    for item in rows:
+        b = generator.uniform(-0.7, 0.7)
+        c, s = math.cos(b), math.sin(b)
+        forward, aside = c * item.zeta + s * item.xi, c * item.xi - s * item.zeta
+        paper.append(dense.DenseRow(forward, aside, c, s, item.dx_m, item.dz_m))
+    expected = dense.solve(paper)
+    noise = expected.residual * math.sqrt(2 * len(rows) / (2 * len(rows) - 3))  # of a row, as its residuals tell it
+    rounding = math.sqrt(np.mean([item.roundoff**2 + (item.roundoff_m / expected.width_m) ** 2 for item in rows]))
+    for name in ("width_m", "x0_m", "z0_m"):
+        assert getattr(fit, name) == pytest.approx(getattr(expected, name), rel=1e-9)
+        assert fit.sigma[name] == pytest.approx(expected.sigma[name], rel=1e-9)
+        assert fit.roundoff[name] == pytest.approx(rounding * expected.sigma[name] / noise, rel=1e-9)
+    assert fit.residual == pytest.approx(expected.residual, rel=1e-9)
+    assert fit.baseline_m == pytest.approx(expected.baseline_m, rel=1e-12)
+
+
+def test_closed_form_is_the_dense_solution() -> None:
     """[(5)]"""
     generator = np.random.default_rng(1)
     for _ in range(100):
         rows = random_rows(generator, 0.02)
-        status, fit = solve(rows, 0.1, Gates())
+        status, fit = solved(rows)
         assert status == "ok"
-        expected = closed_form(rows)
-        for name in ("width_m", "x0_m", "z0_m"):
-            assert getattr(fit, name) == pytest.approx(expected[name], rel=1e-9)
-            assert fit.sigma[name] == pytest.approx(expected[name[:-2] + "_sd"], rel=1e-9)
-        assert fit.residual == pytest.approx(expected["residual"], rel=1e-9)
-        assert fit.baseline_m == pytest.approx(expected["baseline"], rel=1e-12)
+        check_against_dense(rows, fit, generator)
+
+
+@pytest.mark.parametrize("model", ["disc", "line"])
+def test_every_window_of_a_flight_is_the_dense_solution(model: str, corner_log: ObservationLog) -> None:
+    generator, method, checked = np.random.default_rng(4), WindowMethod(corner_log.camera, Settings(model=model)), 0
+    for frame in corner_log.frames:
+        if method.update(frame).fresh:
+            check_against_dense(method.rows[model].items, method.fit, generator)
+            checked += 1
+    assert checked > 20
 
 
 def test_sigmas_are_the_spread_of_the_solutions() -> None:
@@ -81,23 +87,19 @@ def test_sigmas_are_the_spread_of_the_solutions() -> None:
     clean, noise = random_rows(generator, 0.0), 1e-4
     fits = []
     for _ in range(1000):
-        rows = [replace(row, forward=row.forward + noise * generator.normal(),
-                        aside=row.aside + noise * generator.normal()) for row in clean]  # fmt: skip
-        fits.append(solve(rows, 0.1, Gates())[1])
+        noisy = [replace(item, xi=item.xi + noise * generator.normal(), zeta=item.zeta + noise * generator.normal())
+                 for item in clean]  # fmt: skip
+        fits.append(solved(noisy)[1])
     for name in ("width_m", "x0_m", "z0_m"):
         spread = np.std([getattr(fit, name) for fit in fits])
         assert math.sqrt(np.mean([fit.sigma[name] ** 2 for fit in fits])) == pytest.approx(spread, rel=0.1)
 
 
 def test_solution_refuses_what_has_no_solution() -> None:
-    still = [Row(20.0, 1.0, 1.0, 0.0, 0.0, 0.0)] * 8
-    assert solve(still, 0.1, Gates())[0] == "no_baseline"
-    same = [Row(20.0, 1.0, 1.0, 0.0, 0.0, 2.0 * k) for k in range(8)]
-    assert solve(same, 0.1, Gates())[0] == "no_parallax"
-    shrinking = [Row(20.0 + k, 1.0, 1.0, 0.0, 0.0, 2.0 * k) for k in range(8)]
-    assert solve(shrinking, 0.1, Gates())[0] == "no_parallax"
-    passed = [Row((5.0 - 2.0 * k) / 3.0, 1.0, 1.0, 0.0, 0.0, 2.0 * k) for k in range(8)]
-    assert solve(passed, 0.1, Gates())[0] == "passed"
+    assert solved([row(1.0, 20.0, 0.0, 0.0)] * 8)[0] == "no_baseline"
+    assert solved([row(1.0, 20.0, 0.0, 2.0 * k) for k in range(8)])[0] == "no_parallax"
+    assert solved([row(1.0, 20.0 + k, 0.0, 2.0 * k) for k in range(8)])[0] == "no_parallax"
+    assert solved([row(1.0, (5.0 - 2.0 * k) / 3.0, 0.0, 2.0 * k) for k in range(8)])[0] == "passed"
 
 
 @pytest.mark.parametrize("path", ["straight", "arc", "weave"])
@@ -150,37 +152,19 @@ def test_height_is_off_by_the_top_points_own_distance() -> None:
 def test_disc_rows_are_off_as_the_analysis_says(x0_m: float) -> None:
     """(2): the position row is exact, the size row is off by r^2 X^2 / (Z^2 d^2)."""
     log = make_log(Scene("cylinder", 6.0, 6.0, 30.0, x0_m=x0_m, z0_m=180.0, altitude_m=15.0, run_s=6.0))
-    reference = Reference64(log.camera, Settings(model="disc"))
+    reference = WindowMethod(log.camera, Settings(model="disc"))
     for k, frame in enumerate(log.frames):
         reference.update(frame)
-        row = reference.track.rows["disc"][-1]
+        ring = reference.rows["disc"]
+        newest = ring.items[ring.next - 1]
         z = 180.0 - 17.0 * k / 8.0
         predicted = 9.0 * x0_m**2 / (z**2 * (x0_m**2 + z**2))
-        assert row.aside / row.forward == pytest.approx(x0_m / z, rel=2e-6, abs=1e-12)
-        assert abs(row.forward * 6.0 / (2.0 * z) * 2.0 - 1.0) == pytest.approx(predicted, rel=0.1, abs=1e-9)
+        assert newest.xi / newest.zeta == pytest.approx(x0_m / z, rel=2e-6, abs=1e-12)
+        assert abs(newest.zeta * 6.0 / (2.0 * z) * 2.0 - 1.0) == pytest.approx(predicted, rel=0.1, abs=1e-9)
     values = reference.update(replace(log.frames[-1], t_s=99.0)).estimate.values
     if x0_m == 0.0:
         assert values["width_m"] == pytest.approx(6.0, rel=1e-7)
         assert values["z0_m"] == pytest.approx(180.0, rel=1e-7)
-
-
-def test_rotations_against_compositions() -> None:
-    generator = np.random.default_rng(3)
-    for angles in generator.uniform(-180.0, 180.0, (50, 3)):
-        matrix = yaw_pitch_roll(*angles)
-        assert quaternion_rotation(quaternion_of(matrix)) == pytest.approx(matrix, abs=1e-12)
-        camera = Camera(1, 1, 1, 1, 0, 0, mount_yaw_deg=angles[0], mount_pitch_deg=angles[1], mount_roll_deg=angles[2])
-        assert mounting_rotation(camera) == pytest.approx(matrix @ CAMERA_AXES_IN_BODY, abs=1e-12)
-    assert quaternion_rotation((2.0, 0.0, 0.0, 0.0)) == pytest.approx(np.eye(3))
-
-
-def test_lens_is_inverted(real_camera: Camera) -> None:
-    for x, y in itertools.product(np.linspace(-0.7, 0.7, 9), repeat=2):
-        back_x, back_y, converged, _ = undistort(real_camera, *distort(real_camera, x, y))
-        assert converged
-        assert (back_x, back_y) == pytest.approx((x, y), abs=2e-9)
-    fish = replace(real_camera, k1=-0.5, k2=0.0, k3=0.0)
-    assert not undistort(fish, 1.2, 0.0)[2]
 
 
 def frame_at(t_s: float, **changes: object) -> Frame:
@@ -213,23 +197,25 @@ def frame_at(t_s: float, **changes: object) -> Frame:
 )
 def test_statuses_of_one_image(frame: Frame, status: str) -> None:
     camera = Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0)
-    reference, mirror = Reference64(camera), Mirror32(camera)
-    assert reference.update(frame_at(0.0)).estimate.status == mirror.update(frame_at(0.0)).status == "collecting"
-    assert reference.update(frame).estimate.status == mirror.update(frame).status == status
+    double, single = WindowMethod(camera), WindowMethod(camera, dtype=np.float32)
+    for method in (double, single):
+        assert method.update(frame_at(0.0)).estimate.status == "collecting"
+        assert method.update(frame).estimate.status == status
 
 
 def test_a_turn_begins_no_track_where_the_heading_is_set() -> None:
     camera = Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0, heading_deg=0.0)
-    reference, mirror = Reference64(camera), Mirror32(camera)
-    assert reference.update(frame_at(0.0)).estimate.status == mirror.update(frame_at(0.0)).status == "collecting"
+    double, single = WindowMethod(camera), WindowMethod(camera, dtype=np.float32)
     behind = replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0))
-    assert reference.update(behind).estimate.status == mirror.update(behind).status == "behind_camera"
+    for method in (double, single):
+        assert method.update(frame_at(0.0)).estimate.status == "collecting"
+        assert method.update(behind).estimate.status == "behind_camera"
 
 
 def test_refused_images_change_nothing() -> None:
     log = make_log(Scene(width_m=10.0, alpha_deg=20.0, run_s=4.0))
     camera, frames = log.camera, log.frames
-    clean, dirty = Reference64(camera), Reference64(camera)
+    clean, dirty = WindowMethod(camera), WindowMethod(camera)
     for k, frame in enumerate(frames):
         expected = clean.update(frame).estimate
         assert dirty.update(frame).estimate == expected
