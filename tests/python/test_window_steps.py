@@ -11,6 +11,7 @@ import pytest
 from bench.reference.gates import Gates
 from bench.reference.settings import Settings
 from bench.reference.window import WindowMethod
+from bench.reference.window.fit import Mean, Ring
 from bench.reference.window.geometry import (
     Lens,
     Point,
@@ -20,8 +21,9 @@ from bench.reference.window.geometry import (
     quaternion_rotation,
     undistort,
 )
+from bench.reference.window.orientation import Orientation
 from bench.reference.window.precision import numbers
-from bench.reference.window.view import View
+from bench.reference.window.view import Edge, View
 from goe_tools.logs.obslog import Camera, ObservationLog
 from goe_tools.logs.projection import CAMERA_AXES_IN_BODY, distort, quaternion_of, yaw_pitch_roll
 
@@ -101,6 +103,56 @@ def test_turned_points_by_trigonometry() -> None:
             assert turned == pytest.approx(math.tan(angle), rel=1e-9, abs=1e-12)
         else:
             assert turned is None
+
+
+def test_sliding_mean() -> None:
+    generator, mean, values = np.random.default_rng(8), Mean(Ring(8)), []
+    for value in generator.normal(5.0, 1.0, 30):
+        values = [*values, value][-8:]
+        average, variance = mean.add(N, value, value)
+        assert average == pytest.approx(np.mean(values), rel=1e-12)
+        assert variance == pytest.approx(np.var(values, ddof=1) / len(values) if len(values) > 1 else 0.0, rel=1e-9)
+        assert mean.ratio == min(values)
+
+
+def shown(*headings_deg: float) -> View:
+    """A view of edges with these headings."""
+    edges = [Edge(aligned(0.0, 0.1), aligned(0.1, 0.2), True, np.float64(deg)) for deg in headings_deg]
+    return View(Gates(), edges=edges)
+
+
+def test_low_pass_of_lines_about_90_degrees() -> None:
+    """The mean of the first 20, then each new one with a twentieth. 91 and -89 degrees are the same line."""
+    generator, orientation, steps = np.random.default_rng(9), Orientation(N, 20), [0.0]
+    measured = generator.uniform(80.0, 100.0, 30)
+    for k, deg in enumerate(measured):
+        orientation._low_pass(Gates(), deg if deg <= 90.0 else deg - 180.0, 0.0, 180.0)
+        if 0 < k < 20:
+            steps.append(deg - np.mean(measured[:k]))
+        if k < 20:
+            assert orientation.deg % 180.0 == pytest.approx(np.mean(measured[: k + 1]), rel=1e-12)
+            assert orientation.variance_deg2 == pytest.approx(np.mean(np.square(steps)), rel=1e-9)
+    weights = np.concatenate([np.full(20, 0.95**10 / 20.0), 0.05 * 0.95 ** np.arange(9, -1, -1)])
+    assert orientation.deg % 180.0 == pytest.approx(weights @ measured, rel=1e-12)
+
+
+def test_a_guide_chooses_the_end_near_90_degrees() -> None:
+    orientation, near = Orientation(N, 20), 90.0 - 1e-9
+    assert orientation._choose_end(Gates({"end": False}), "end", near, 180.0) == near - 180.0
+    assert orientation._choose_end(Gates({"end": True}), "end", -near, 180.0) == 180.0 - near
+    assert orientation._choose_end(Gates({"end": True}), "end", near, 180.0) == near
+    assert orientation._choose_end(Gates({"end": False}), "end", 80.0, 180.0) == 80.0  # too far to be followed
+
+
+@pytest.mark.parametrize(("headings", "side"), [((46.0, -44.0), 0), ((-44.0, 46.0), 1), ((70.0, -20.0), 1)])
+def test_the_low_pass_tells_the_sides_where_the_angle_does_not(headings: tuple[float, float], side: int) -> None:
+    orientation = Orientation(N, 20)
+    for _ in range(5):
+        orientation.update(shown(45.0))
+    view = shown(*headings)
+    orientation.update(view)
+    assert view.side is view.edges[side] and view.front is view.edges[1 - side]
+    assert view.side_is_right == (side == 1)
 
 
 def spread_by_complex_steps(function, values: tuple[float, ...], sigmas: tuple[float, ...]) -> float:

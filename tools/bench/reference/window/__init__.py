@@ -15,7 +15,8 @@ what shares none of it:
     propagates sigmas through inv(A^T A): the golden data of the C fit are its, and so are the solutions that the fits
     of random rows and of every window of a flight are compared with;
   * tests/python/test_window_steps.py: rotations against elementary ones and Rodrigues' formula, the lens against the
-    distortion, (1) as printed, (2) and (4) by trigonometry, the sigmas of length, height and centre by complex steps;
+    distortion, (1) as printed, (2) and (4) by trigonometry, sliding mean and low-pass by numpy's means
+    and by weights, the sigmas of length, height and centre by complex steps;
   * tests/python/test_window_float64.py: exact boxes come out to 1e-9 whatever the path, and (2) and (8) are off by what
     the analysis says.
 
