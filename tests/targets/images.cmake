@@ -3,6 +3,8 @@
 set(GOE_TARGET_TESTS all CACHE STRING "Tests of tests/c to build as images, too: all, safety, none")
 set_property(CACHE GOE_TARGET_TESTS PROPERTY STRINGS all safety none)
 
+set(GOE_TARGET_SHARE 5 CACHE STRING "One of so many draws of the tests of tests/c is drawn")
+
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
 target_link_libraries(goe PUBLIC m)
@@ -145,6 +147,7 @@ if(NOT GOE_TARGET_TESTS STREQUAL none)
     goe_compile(unit_test_support)
     target_compile_options(unit_test_support PRIVATE -Wno-double-promotion -Wno-float-equal)
     target_include_directories(unit_test_support PUBLIC ${unit_tests})
+    target_compile_definitions(unit_test_support PUBLIC CHECK_SHARE=${GOE_TARGET_SHARE})
     target_link_libraries(unit_test_support PUBLIC goe goe_unity goe_port)
     foreach(source IN LISTS programs)
         get_filename_component(name ${source} NAME_WE)
