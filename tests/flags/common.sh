@@ -26,14 +26,23 @@ compilers() {
     done
 }
 
+# takes <flag>...: whether $compiler does, without a murmur, for $language
+takes() {
+    echo 'int main(void) { return 0; }' |
+        "$compiler" -Werror "$@" -x "$language" - -o "$scratch/probe" >/dev/null 2>&1
+}
+
 # known <compiler> <flag>...: those of the flags that this compiler takes without a murmur, one a line.
 known() {
     local compiler=$1 flag language=c
     [[ $compiler != *++* ]] || language=c++
     shift
+    if takes "$@"; then # at once, as most compilers do
+        printf '%s\n' "$@"
+        return
+    fi
     for flag in "$@"; do
-        if echo 'int main(void) { return 0; }' |
-            "$compiler" -Werror "$flag" -x "$language" - -o "$scratch/probe" >/dev/null 2>&1; then
+        if takes "$flag"; then
             echo "$flag"
         fi
     done

@@ -4,9 +4,12 @@
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
 #
-# Every host compiler there is; C99, C11 and GNU C17; with and without NDEBUG. The safety tests (of tests/c, tests/flight and
-# tests/mavlink) are compiled plainly, so that they can tell a NaN, and are linked with the firmware's flags, which may change the
-# floating-point unit's mode. UNITY_INCLUDE and UNITY_LIBRARY say where the test framework is.
+# Every host compiler there is; C99, C11 and GNU C17; with and without NDEBUG. C99 at both of the firmware's levels makes code, which is
+# tested, and warnings that only come with code; the other dialects and NDEBUG change what is read alone, and are read alone. gcc warns of
+# what nothing uses only when it makes code: with NDEBUG it makes some, without optimization.
+#
+# The safety tests are those of safety_objects.sh, linked with the firmware's flags, which may change the floating-point unit's mode.
+# UNITY_INCLUDE and UNITY_LIBRARY say where the test framework is, SAFETY_OBJECTS where safety_objects.sh has put its objects.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/firmwares.sh"
@@ -17,16 +20,13 @@ firmware_flags "$firmware" || {
     exit 2
 }
 
-shopt -s nullglob
-safety_tests=("$root"/tests/c/test_safety*.c "$root"/tests/flight/test_flight_safety*.c
-    "$root"/tests/mavlink/test_mavlink_safety*.c)
-support=()
-for file in "$root"/tests/c/*.c "$root"/tests/flight/*.c "$root"/tests/mavlink/*.c; do
-    [[ $(basename "$file") == test_* || $(basename "$file") == mavlink_echo.c ]] || support+=("$file")
-done
-if [ ${#safety_tests[@]} = 0 ]; then
-    fail "no safety test tests/c/test_safety*.c"
+objects=${SAFETY_OBJECTS:-}
+if [ -z "$objects" ]; then
+    objects=$scratch/safety
+    bash "$root/tests/flags/safety_objects.sh" "$objects"
 fi
+mapfile -t safety_tests <"$objects/names"
+[ ${#safety_tests[@]} != 0 ] || fail "no safety test"
 
 # compile <compiler> <flag>...: the whole library into the current folder
 compile() {
@@ -38,17 +38,14 @@ compile() {
 
 # run_safety <compiler> <flag>...: with the library's objects in the current folder
 run_safety() {
-    local compiler=$1 file program
+    local compiler=$1 name
     shift
-    for file in "${safety_tests[@]}"; do
-        program=$scratch/$(basename "$file" .c)
-        mkdir -p "$scratch/plain"
-        (cd "$scratch/plain" && rm -f ./*.o && "$compiler" -std=c99 -O1 "${all_includes[@]}" -I"$root/tests/c" \
-            -I"$root/tests/flight" -I"$root/tests/mavlink" -I"$UNITY_INCLUDE" -c "$file" "${support[@]}") || fail "$compiler: $file"
-        "$compiler" "$@" ./*.o "$scratch"/plain/*.o "$UNITY_LIBRARY" -lm -o "$program" || fail "link: $compiler $*"
-        "$program" >"$scratch/log" 2>&1 || {
+    "$compiler" "$@" ./*.o "$objects/$compiler"/*.o "$UNITY_LIBRARY" -lm -o "$scratch/safety_program" ||
+        fail "link: $compiler $*"
+    for name in "${safety_tests[@]}"; do
+        "$scratch/safety_program" "$name" >"$scratch/log" 2>&1 || {
             cat "$scratch/log" >&2
-            fail "$(basename "$program") under $compiler $*"
+            fail "$name under $compiler $*"
         }
         ran=$((ran + 1))
     done
@@ -56,18 +53,20 @@ run_safety() {
 
 compiled=0
 ran=0
-mkdir "$scratch/objects"
-cd "$scratch/objects"
+mkdir "$scratch/objects" "$scratch/unused"
 mapfile -t present < <(compilers gcc clang-19)
 for compiler in "${present[@]}"; do
     mapfile -t common < <(known "$compiler" "${flags[@]}")
-    compile "$compiler" -std=c99 "${levels[0]}" "${common[@]}" -DNDEBUG
-    for standard in c11 gnu17 c99; do
-        compile "$compiler" "-std=$standard" "${levels[0]}" "${common[@]}"
+    cd "$scratch/unused"
+    compile "$compiler" -std=c99 "${common[@]}" -O0 -fno-lto -DNDEBUG
+    for standard in c11 gnu17; do
+        compile "$compiler" "-std=$standard" "${levels[0]}" "${common[@]}" -fsyntax-only
     done
-    run_safety "$compiler" "${levels[0]}" "${common[@]}"
+    cd "$scratch/objects"
     level=$(known "$compiler" "${levels[1]}")
-    compile "$compiler" -std=c99 "${level:--O3}" "${common[@]}"
-    run_safety "$compiler" "${level:--O3}" "${common[@]}"
+    for level in "${levels[0]}" "${level:--O3}"; do
+        compile "$compiler" -std=c99 "$level" "${common[@]}"
+        run_safety "$compiler" "$level" "${common[@]}"
+    done
 done
 echo "$firmware: ${present[*]}: $compiled compilations without a warning, $ran safety programs ran"

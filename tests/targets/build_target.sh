@@ -28,9 +28,11 @@ case $preset in
 esac
 
 # The safety tests run at full length on one processor; elsewhere what a compiler may do wrong shows early.
-# GOE_TARGETS_LONG=1: at full length everywhere, as tools/evidence.sh --long does.
+# The other tests draw a share. GOE_TARGETS_LONG=1: at full length everywhere, as tools/evidence.sh --long does.
 length=()
-if [ "$preset" != m4f-gcc-o2 ] && [ -z "${GOE_TARGETS_LONG:-}" ]; then
+if [ -n "${GOE_TARGETS_LONG:-}" ]; then
+    length=(-DGOE_TARGET_SHARE=1)
+elif [ "$preset" != m4f-gcc-o2 ]; then
     length=(-DPORT_ENVIRONMENT=GOE_TEST_UPDATES=2000)
 fi
 

@@ -21,11 +21,14 @@ int main(void) { return 0; }' | "$@" -x c - -o "$scratch/probe" 2>/dev/null && r
     return 1
 }
 
-# try <compiler> <flag>...
+# try <compiler> <flag>...: every file is compiled once; each program links what it calls
 try() {
     local line
-    "$1" "${own[@]}" "${@:2}" "${library_sources[@]}" "$here/replay_main.c" "${sources[@]}" -lm -o "$scratch/replay"
-    "$1" "${own[@]}" "${@:2}" "${all_sources[@]}" "$here/flight_main.c" "${sources[@]}" -lm -o "$scratch/flight"
+    rm -rf "$scratch/objects"
+    mkdir "$scratch/objects"
+    (cd "$scratch/objects" && "$1" "${own[@]}" "${@:2}" -c "${all_sources[@]}" "${sources[@]}")
+    "$1" "${own[@]}" "${@:2}" "$here/replay_main.c" "$scratch"/objects/*.o -lm -o "$scratch/replay"
+    "$1" "${own[@]}" "${@:2}" "$here/flight_main.c" "$scratch"/objects/*.o -lm -o "$scratch/flight"
     line=$("$scratch/replay")
     ran=$((ran + 1))
     echo "$line  $*"
