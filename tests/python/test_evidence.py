@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import shutil
 import subprocess
+import sys
 from dataclasses import asdict
 from pathlib import Path
 
@@ -124,11 +127,25 @@ def test_the_releases_that_are_here_can_be_read() -> None:
 
 
 def test_the_script_is_the_command(tmp_path: Path) -> None:
-    if not (ROOT / ".venv" / "installed").exists():
-        pytest.skip("tools/setup.sh has not run")
-    done = subprocess.run(
-        [str(ROOT / "tools" / "evidence.sh"), "--show", "--record", str(tmp_path / "none.json")],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    """In a copy whose set-up does nothing but say so: it comes first, and only the table goes to the output."""
+    tools, python = tmp_path / "tools", tmp_path / ".venv" / "bin" / "python"
+    tools.mkdir()
+    python.parent.mkdir(parents=True)
+    shutil.copy(ROOT / "tools" / "evidence.sh", tools)
+    command = [str(tools / "evidence.sh"), "--show", "--record", str(tmp_path / "none.json")]
+
+    def run(after_set_up: str) -> subprocess.CompletedProcess[str]:
+        for file, line in (
+            (tools / "setup.sh", f"echo set up $#; {after_set_up}"),
+            (python, f'exec "{sys.executable}" "$@"'),
+        ):
+            file.write_text(f"#!/bin/sh\n{line}\n")
+            file.chmod(0o755)
+        settings = {**os.environ, "PYTHONPATH": str(ROOT / "tools")}
+        return subprocess.run(command, env=settings, capture_output=True, text=True, check=False)
+
+    done = run("true")
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("| part | what |")
+    assert done.stdout.startswith("| part | what |") and done.stderr == "set up 0\n"
+    failed = run("exit 1")
+    assert failed.returncode == 1 and not failed.stdout

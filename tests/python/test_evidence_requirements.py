@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -46,14 +45,6 @@ def test_the_command(
     assert main(["evidence", how, "--only", "requirements", "--record", str(record)]) == 0
     assert record.exists() == (how == "--long")
     assert ("| requirements |" in capsys.readouterr().out) == (how != "--show")
-
-
-def test_the_script(tmp_path: Path) -> None:
-    if not (ROOT / ".venv" / "installed").exists():
-        pytest.skip("tools/setup.sh has not run")
-    command = [ROOT / "tools" / "evidence.sh", "--show", "--record", tmp_path / "none.json"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout.startswith("| part | what |")
 
 
 def test_a_break_of_each_room_is_tried() -> None:
