@@ -11,6 +11,7 @@
 #include "frame_reader.h"
 #include "goe.h"
 #include "input_error.h"
+#include "log_hints.h"
 #include "nearest_name.h"
 #include "option_fault.h"
 #include "output_file.h"
@@ -244,7 +245,9 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
     goe_image_t image;
     goe_estimate_t estimate;
     input_error_t error;
+    log_hints_t hints;
     frame_reader_result_t result = FRAME_READER_END;
+    (void)memset(&hints, 0, sizeof hints);
     (void)memset(&estimate, 0, sizeof estimate);
     if (!estimate_write_header(stream, options->residuals != 0)) {
         return write_failed(options);
@@ -254,6 +257,7 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
         if (estimator == NULL) {
             return too_many_tracks(options, &frame);
         }
+        log_hints_add(&hints, &frame);
         frame_to_image(&frame, &image);
         const goe_status_t status = goe_update(estimator, &image, &estimate);
         count_row(tally, status, &estimate);
@@ -261,7 +265,11 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
             return write_failed(options);
         }
     }
-    return result == FRAME_READER_END || print_error(&error);
+    if (result != FRAME_READER_END) {
+        return print_error(&error);
+    }
+    log_hints_print(&hints, PROGRAM, options->frames, stderr);
+    return true;
 }
 
 /* Whether a path leads to any file of the log that an input is of. */
@@ -327,6 +335,7 @@ static int replay(const options_t *options) {
         (void)print_error(&error);
         return EXIT_BAD_INPUT;
     }
+    frame_reader_print_misspelt(reader, PROGRAM, stderr);
     const bool done = replay_with(options, &settings, reader, &tally);
     frame_reader_close(reader);
     if (!done) {

@@ -9,6 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "nearest_name.h"
+
 #define BUFFER_BYTES (256u * 1024u)
 #define FIRST_ROOM 1024u
 #define FIELD_STEP_BYTES (64u * 1024u) /* by which the parser enlarges its room for a field; its own are tiny */
@@ -143,11 +145,66 @@ static void take_header(table_reader_t *reader) {
     }
 }
 
+/* The delimiter of a header line that has no comma; 0: it has one, or none at all. */
+static char other_delimiter(const table_reader_t *reader) {
+    if (reader->columns != 1) {
+        return 0;
+    }
+    const char *found = strpbrk(reader->headers[0], ";\t|");
+    return found != NULL ? *found : 0;
+}
+
+/* The file's own name for a column that it lacks; null: nothing like it is there. */
+static const char *mistyped(const table_reader_t *reader, const char *name) {
+    nearest_name_t nearest = nearest_name_of(name, strlen(name));
+    for (size_t i = 0; i < reader->columns; i++) {
+        if (reader->fields[i].column == TABLE_STRANGER) {
+            nearest_name_try(&nearest, reader->headers[i]);
+        }
+    }
+    return nearest.name;
+}
+
+const char *table_reader_misspelt(const table_reader_t *reader, size_t *next, const char **meant) {
+    for (; *next < reader->columns; (*next)++) {
+        const char *name = reader->headers[*next];
+        nearest_name_t nearest = nearest_name_of(name, strlen(name));
+        for (size_t i = 0; i < reader->wanted_count && reader->fields[*next].column == TABLE_STRANGER; i++) {
+            if (!table_reader_has(reader, i)) {
+                nearest_name_try(&nearest, reader->wanted[i].name);
+            }
+        }
+        if (nearest.name != NULL) {
+            (*next)++;
+            *meant = nearest.name;
+            return name;
+        }
+    }
+    return NULL;
+}
+
+static void fail_missing(table_reader_t *reader, const char *name) {
+    const char delimiter = reader->header_done ? other_delimiter(reader) : 0;
+    const char *instead = reader->header_done ? mistyped(reader, name) : NULL;
+    if (delimiter != 0) {
+        FAIL(reader, reader->header_line, name,
+             "missing column: %s separate the columns; a log has commas between them, and points in its numbers",
+             delimiter == '\t'  ? "tabs"
+             : delimiter == ';' ? "semicolons"
+                                : "bars");
+    } else if (instead != NULL) {
+        FAIL(reader, reader->header_line, name, "missing column; is '%s' meant to be it?",
+             excerpt_of(instead, strlen(instead)).text);
+    } else {
+        FAIL(reader, reader->header_line, name, "%s",
+             reader->header_done ? "missing column" : "missing column, the file is empty");
+    }
+}
+
 static void check_header(table_reader_t *reader) {
     for (size_t i = 0; i < reader->wanted_count; i++) {
         if (reader->wanted[i].required && !table_reader_has(reader, i)) {
-            FAIL(reader, reader->header_line, reader->wanted[i].name, "%s",
-                 reader->header_done ? "missing column" : "missing column, the file is empty");
+            fail_missing(reader, reader->wanted[i].name);
         }
     }
 }

@@ -1,0 +1,135 @@
+"""What goe_replay says of logs in other units, signs and spellings, and that it says nothing of good ones.
+
+GOE_REPLAY names the program; by default it is looked for in build/.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("GOE_REPLAY", str(ROOT / "build" / "sim_host" / "goe_replay"))
+CORNER = ROOT / "tests" / "data" / "corner"
+FOOT = 1.0 / 0.3048
+PLACE = "n_m", "e_m", "d_m"
+NAMES = "qw", "qx", "qy", "qz"
+Row = dict[str, str]
+
+pytestmark = pytest.mark.skipif(
+    "GOE_REPLAY" not in os.environ and not Path(PROGRAM).exists(), reason=f"{PROGRAM} is not built"
+)
+
+
+def rows() -> list[Row]:
+    with (CORNER / "frames.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def write(folder: Path, table: list[Row], delimiter: str = ",") -> Path:
+    folder.mkdir()
+    (folder / "camera.ini").write_bytes((CORNER / "camera.ini").read_bytes())
+    with (folder / "frames.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(table[0]), delimiter=delimiter, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
+    return folder
+
+
+def said(folder: Path) -> tuple[int, str]:
+    """Exit status and standard error of the program, less its name."""
+    done = subprocess.run([PROGRAM, "--out", os.devnull, str(folder)], capture_output=True, text=True, check=False)
+    return done.returncode, done.stderr.replace("goe_replay: ", "")
+
+
+def change(by: Callable[[Row], dict[str, object]]) -> Callable[[list[Row]], list[Row]]:
+    return lambda table: [row | {name: str(value) for name, value in by(row).items()} for row in table]
+
+
+def times(factor: float, *names: str) -> Callable[[list[Row]], list[Row]]:
+    return change(lambda row: {name: factor * float(row[name]) for name in names})
+
+
+def moved(row: Row) -> dict[str, object]:
+    """The quaternion's parts in the order x, y, z, w."""
+    return dict(zip(NAMES, [row[name] for name in (*NAMES[1:], "qw")]))
+
+
+def descending(table: list[Row]) -> list[Row]:
+    """The same above a ground at 0, from 90 m down to 30 m."""
+    return [row | {"d_m": str(-90.0 + 0.5 * k), "agl_m": str(90.0 - 0.5 * k)} for k, row in enumerate(table)]
+
+
+def renamed(old: str, new: str) -> Callable[[list[Row]], list[Row]]:
+    return lambda table: [{new if name == old else name: text for name, text in row.items()} for row in table]
+
+
+MILLISECONDS = "t_s: an image every 250 s of an aircraft that flies 0.017 m/s: milliseconds? t_s is in seconds"
+TOO_FAST = "n_m, e_m: the aircraft flies 1.7e+03 m/s: feet? positions are in metres, t_s in seconds"
+ORDER = "qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: qw is its real part"
+UPWARD = "d_m: it grows as agl_m does: is it up? d_m is down, negative above the origin"
+BELOW = "d_m: the camera is below the ground, and agl_m is empty: is it up? d_m is down, negative above the origin"
+WARNINGS = [
+    (times(1e3, "t_s"), MILLISECONDS),
+    (times(1e-2, "t_s"), TOO_FAST),
+    (change(moved), ORDER),
+    (lambda table: times(-1.0, "d_m")(descending(table)), UPWARD),
+    (change(lambda row: {"d_m": 40, "agl_m": ""}), BELOW),
+    (lambda table: times(FOOT, "agl_m")(descending(table)), "agl_m: 3.28 times -d_m: feet? both are in metres"),
+    (lambda table: times(FOOT, *PLACE)(descending(table)), "d_m: 3.28 times -agl_m: feet? both are in metres"),
+]
+
+
+@pytest.mark.parametrize(("spoil", "hint"), WARNINGS)
+def test_other_units_signs_and_orders_are_hinted_at(
+    tmp_path: Path, spoil: Callable[[list[Row]], list[Row]], hint: str
+) -> None:
+    """A hint refuses nothing."""
+    folder = write(tmp_path / "log", spoil(rows()))
+    status, text = said(folder)
+    warnings = [line for line in text.splitlines() if line.startswith("warning: ")]
+    assert status in (0, 1) and len(warnings) == 1, text
+    assert warnings[0] == f"warning: {folder / 'frames.csv'}: {hint}"
+
+
+@pytest.mark.parametrize("spoil", [lambda t: t, descending, lambda t: t[:9], change(lambda row: {"agl_m": ""})])
+def test_good_logs_are_not_remarked_on(tmp_path: Path, spoil: Callable[[list[Row]], list[Row]]) -> None:
+    assert "warning" not in said(write(tmp_path / "log", spoil(rows())))[1]
+
+
+@pytest.mark.parametrize(("delimiter", "name"), [(";", "semicolons"), ("\t", "tabs"), ("|", "bars")])
+def test_another_delimiter(tmp_path: Path, delimiter: str, name: str) -> None:
+    folder = write(tmp_path / "log", rows(), delimiter)
+    reason = f"{name} separate the columns; a log has commas between them, and points in its numbers\n"
+    assert said(folder) == (2, f"{folder / 'frames.csv'}:1: t_s: missing column: {reason}")
+
+
+def test_a_required_column_misspelt(tmp_path: Path) -> None:
+    folder = write(tmp_path / "log", renamed("agl_m", "x")(renamed("e_m", "e_me")(rows())))
+    assert said(folder) == (2, f"{folder / 'frames.csv'}:1: e_m: missing column; is 'e_me' meant to be it?\n")
+
+
+def test_an_optional_column_misspelt(tmp_path: Path) -> None:
+    sides = {"box_left": 1, "box_top_px": 2, "box_rigth_px": 3, "box_bottom_px": 4, "colour": 5}
+    folder = write(tmp_path / "log", change(lambda row: sides)(rows()))
+    assert said(folder)[1].splitlines()[:2] == [
+        f"warning: {folder / 'frames.csv'}:1: {name}: unknown column, ignored; did you mean {meant}?"
+        for name, meant in (("box_left", "box_left_px"), ("box_rigth_px", "box_right_px"))
+    ]
+
+
+def test_rows_that_are_not_numbers(tmp_path: Path) -> None:
+    table = rows()
+    table[3]["n_m"] = table[7]["left_u"] = "nan"
+    table[9]["qw"] = ""
+    folder = write(tmp_path / "log", table)
+    assert said(folder) == (
+        0,
+        f"warning: {folder / 'frames.csv'}: 3 rows without a finite pose or with a number that "
+        "is not finite, the first in line 5\n",
+    )
