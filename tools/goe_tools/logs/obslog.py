@@ -9,13 +9,29 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import gc
 import math
-from collections.abc import Sequence
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from operator import itemgetter
 from pathlib import Path
 from typing import Optional
 
-from .fields import LogError, Row, read_integer, read_number, read_optional, read_rows, read_text
+from .fields import (
+    LogError,
+    Row,
+    read_fields,
+    read_integer,
+    read_number,
+    read_optional,
+    read_rows,
+    read_text,
+    warn_of_misspelt,
+)
+from .hints import hints_of, warn
 from .whole_file import replacing_all
 
 Pixel = tuple[float, float]
@@ -81,10 +97,14 @@ CAMERA_RANGES = {  # as the library has them; an image has at least a pixel
     **dict.fromkeys(("mount_roll_deg", "mount_pitch_deg", "mount_yaw_deg", "heading_deg"), ANGLE_RANGE),
     **dict.fromkeys(("offset_x_m", "offset_y_m", "offset_z_m"), (-1e4, 1e4)),
 }
+LOG_NAMES = ("camera.ini", "frames.csv", "truth.csv", "truth_frames.csv")
 CAMERA_NAMES = ("camera", "camera2")  # their keys begin so
 
 
-@dataclass
+SLOTS = {"slots": True} if sys.version_info >= (3, 10) else {}  # a long log has a million of them
+
+
+@dataclass(**SLOTS)
 class Frame:
     """One row of frames.csv: one obstacle in one image."""
 
@@ -252,25 +272,102 @@ def read_features(row: Row, path: Path, line: int, cameras: int) -> dict[str, ob
     }
 
 
+NUMBER_COLUMNS = ("t_s", *POSE_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, *JUMP_COLUMNS)
+INTEGER_COLUMNS = ("id", RESET_COLUMN, CAMERA_COLUMN)
+UNUSUAL = re.compile(r"[^-+.0-9eE,]").search  # words like nan, and whatever Python takes for a number and others do not
+PAIRS = range(9, 9 + len(POINT_COLUMNS), 2)  # in a row's numbers
+BOX, JUMP = slice(PAIRS.stop, PAIRS.stop + 4), slice(PAIRS.stop + 4, PAIRS.stop + 7)
+ID_DIGITS_MAX = 18  # of 64 bits in any case
+
+
+def _plain_frame(texts: Sequence[str], integers: Sequence[str], cameras: int) -> Frame | None:
+    """A row's numbers in the order of the columns above. None: there is something in it that takes a closer look."""
+    if UNUSUAL(",".join(texts)) or "" in texts[:8]:
+        return None
+    try:
+        row = [float(text) if text else None for text in texts]
+        key, resets, camera = (int(text) if len(text) <= ID_DIGITS_MAX and text.isdigit() else -1 for text in integers)
+    except ValueError:
+        return None
+    if key < 0 or (resets < 0 and integers[1]) or (camera < 0 and integers[2]) or camera >= cameras:
+        return None
+    points = [None if row[i] is None or row[i + 1] is None else (row[i], row[i + 1]) for i in PAIRS]
+    box, jump = tuple(row[BOX]), tuple(row[JUMP])
+    return Frame(
+        row[0], key, tuple(row[1:4]), tuple(row[4:8]), row[8], *points,  # type: ignore[arg-type]
+        None if box == NO_BOX else box, max(camera, 0), max(resets, 0),  # type: ignore[arg-type]
+        None if None in jump else jump,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+NO_BOX = (None,) * len(BOX_COLUMNS)
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Rows refer to nothing that refers to them: looking for such circles among millions takes a third of the time."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+def _frame(row: Row, path: Path, line: int, cameras: int) -> Frame:
+    pose = [read_optional(row, path, line, column) for column in POSE_COLUMNS]
+    n, e, d, qw, qx, qy, qz = (math.nan if value is None else value for value in pose)
+    return Frame(
+        t_s=read_number(row["t_s"], path, line, "t_s"),
+        id=read_integer(row["id"], path, line, "id"),
+        position_m=(n, e, d),
+        attitude=(qw, qx, qy, qz),
+        agl_m=read_optional(row, path, line, "agl_m"),
+        **read_features(row, path, line, cameras),  # type: ignore[arg-type]
+        reset_count=read_integer(row[RESET_COLUMN], path, line, RESET_COLUMN) if row.get(RESET_COLUMN) else 0,
+        reset_delta_m=_jump(row, path, line),
+    )
+
+
+def _is_broken(frame: Frame) -> bool:
+    """Without a finite pose, or with a number that is not finite."""
+    numbers = [frame.t_s, *frame.position_m, *frame.attitude, 0.0 if frame.agl_m is None else frame.agl_m]
+    for feature in FEATURES:
+        numbers += getattr(frame, feature) or ()
+    numbers += [side for side in (*(frame.box_px or ()), *(frame.reset_delta_m or ())) if side is not None]
+    return not all(map(math.isfinite, numbers))
+
+
+@_no_collection()
 def read_frames(path: Path, cameras: int = len(CAMERA_NAMES)) -> list[Frame]:
-    """Reads frames.csv of so many cameras. An empty pose field becomes NaN: a bad measurement, no bad input."""
+    """Reads frames.csv of so many cameras. An empty pose field becomes NaN: a bad measurement, no bad input; a warning
+    says how many rows have one."""
     path = Path(path)
-    frames = []
-    for line, row in read_rows(path, REQUIRED_COLUMNS, FRAME_COLUMNS, check_pairs):
-        pose = [read_optional(row, path, line, column) for column in POSE_COLUMNS]
-        n, e, d, qw, qx, qy, qz = (math.nan if value is None else value for value in pose)
-        frames.append(
-            Frame(
-                t_s=read_number(row["t_s"], path, line, "t_s"),
-                id=read_integer(row["id"], path, line, "id"),
-                position_m=(n, e, d),
-                attitude=(qw, qx, qy, qz),
-                agl_m=read_optional(row, path, line, "agl_m"),
-                **read_features(row, path, line, cameras),  # type: ignore[arg-type]
-                reset_count=read_integer(row[RESET_COLUMN], path, line, RESET_COLUMN) if row.get(RESET_COLUMN) else 0,
-                reset_delta_m=_jump(row, path, line),
+    frames: list[Frame] = []
+    broken, first = 0, 0
+
+    def check(header: list[str], path: Path, line: int) -> None:
+        check_pairs(header, path, line)
+        warn_of_misspelt(header, path, line, FRAME_COLUMNS)
+
+    for line, header, fields in read_fields(path, REQUIRED_COLUMNS, FRAME_COLUMNS, check):
+        if not frames:
+            place = {name: i for i, name in enumerate(header)}
+            numbers, integers = (
+                itemgetter(*(place.get(name, len(header)) for name in names))
+                for names in (NUMBER_COLUMNS, INTEGER_COLUMNS)
             )
-        )
+        fields.append("")  # of the columns that are not there
+        frame = _plain_frame(numbers(fields), integers(fields), cameras)
+        if frame is None:
+            frame = _frame(dict(zip(header, fields)), path, line, cameras)
+            if _is_broken(frame):
+                broken, first = broken + 1, first or line
+        frames.append(frame)
+    if broken:
+        rows = "1 row" if broken == 1 else f"{broken} rows"
+        warn(path, f"{rows} without a finite pose or with a number that is not finite, the first in line {first}")
     return frames
 
 
@@ -303,16 +400,28 @@ def read_truth(path: Path) -> dict[int, Truth]:
     return result
 
 
+def log_folder(path: Path) -> Path:
+    """The folder of a log; of a file of it, too, which a shell's completion easily names."""
+    path = Path(path)
+    if path.is_file():
+        reason = "is a file; name its folder"
+        raise LogError(path, 0, "", f"{reason}, {path.parent}" if path.name in LOG_NAMES else f"{reason}")
+    if not path.is_dir():
+        raise LogError(path, 0, "", "no such folder")
+    return path
+
+
 def read_log(folder: Path) -> ObservationLog:
-    """Reads a whole log; truth.csv may be absent."""
-    folder = Path(folder)
-    if not folder.is_dir():
-        raise LogError(folder, 0, "", "no such folder")
+    """Reads a whole log; truth.csv may be absent. Warnings say what looks wrong in it."""
+    folder = log_folder(folder)
     truth = folder / "truth.csv"
     cameras = read_cameras(folder / "camera.ini")
+    frames = read_frames(folder / "frames.csv", len(cameras))
+    for hint in hints_of(frames):
+        warn(folder / "frames.csv", hint)
     return ObservationLog(
         camera=cameras[0],
-        frames=read_frames(folder / "frames.csv", len(cameras)),
+        frames=frames,
         truth=read_truth(truth) if truth.exists() else {},
         camera2=cameras[1] if len(cameras) > 1 else None,
     )
