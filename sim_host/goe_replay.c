@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "camera_file.h"
 #include "estimate_writer.h"
@@ -25,7 +26,7 @@
 
 #define PROGRAM "goe_replay"
 #define WINDOW_MIN 3
-#define CHOICE_FAULT_MAX 128
+#define CHOICE_FAULT_MAX 256
 
 enum { EXIT_DONE = 0, EXIT_NO_ESTIMATE = 1, EXIT_BAD_INPUT = 2 };
 
@@ -131,6 +132,11 @@ static bool default_path(char **path, const char *directory, const char *name, c
     return true;
 }
 
+static bool is_file(const char *path) {
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 static bool parse_arguments(poptContext context, const struct poptOption *table, int argc, const char *const *argv,
                             options_t *options) {
     const int result = poptGetNextOpt(context);
@@ -147,6 +153,13 @@ static bool parse_arguments(poptContext context, const struct poptOption *table,
     const char *surplus = poptPeekArg(context);
     if (surplus != NULL) {
         return complain(surplus, "one folder at a time");
+    }
+    if (directory != NULL && is_file(directory)) {
+        char reason[CHOICE_FAULT_MAX];
+        const char *slash = strrchr(directory, '/');
+        (void)snprintf(reason, sizeof reason, "is a file; name its folder, %.*s",
+                       slash != NULL ? (int)(slash - directory) : 1, slash != NULL ? directory : ".");
+        return complain(directory, reason);
     }
     return default_path(&options->camera, directory, "camera.ini", "--camera") &&
            default_path(&options->frames, directory, "frames.csv", "--frames");

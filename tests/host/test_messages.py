@@ -1,4 +1,5 @@
 """What goe_replay says of logs in other units, signs and spellings, and that it says nothing of good ones.
+The Python tools say the same.
 
 GOE_REPLAY names the program; by default it is looked for in build/.
 """
@@ -12,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from goe_tools.logs.obslog import LogError, read_log
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("GOE_REPLAY", str(ROOT / "build" / "sim_host" / "goe_replay"))
@@ -47,6 +49,15 @@ def said(folder: Path) -> tuple[int, str]:
     return done.returncode, done.stderr.replace("goe_replay: ", "")
 
 
+def python_said(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """What the tools' reader has to say."""
+    try:
+        read_log(folder)
+    except LogError as error:
+        return str(error)
+    return capsys.readouterr().err
+
+
 def change(by: Callable[[Row], dict[str, object]]) -> Callable[[list[Row]], list[Row]]:
     return lambda table: [row | {name: str(value) for name, value in by(row).items()} for row in table]
 
@@ -71,7 +82,8 @@ def renamed(old: str, new: str) -> Callable[[list[Row]], list[Row]]:
 
 MILLISECONDS = "t_s: an image every 250 s of an aircraft that flies 0.017 m/s: milliseconds? t_s is in seconds"
 TOO_FAST = "n_m, e_m: the aircraft flies 1.7e+03 m/s: feet? positions are in metres, t_s in seconds"
-ORDER = "qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: qw is its real part"
+REAL_PART = "qw is its real part"
+ORDER = f"qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: {REAL_PART}"
 UPWARD = "d_m: it grows as agl_m does: is it up? d_m is down, negative above the origin"
 BELOW = "d_m: the camera is below the ground, and agl_m is empty: is it up? d_m is down, negative above the origin"
 WARNINGS = [
@@ -87,7 +99,7 @@ WARNINGS = [
 
 @pytest.mark.parametrize(("spoil", "hint"), WARNINGS)
 def test_other_units_signs_and_orders_are_hinted_at(
-    tmp_path: Path, spoil: Callable[[list[Row]], list[Row]], hint: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: Callable[[list[Row]], list[Row]], hint: str
 ) -> None:
     """A hint refuses nothing."""
     folder = write(tmp_path / "log", spoil(rows()))
@@ -95,41 +107,71 @@ def test_other_units_signs_and_orders_are_hinted_at(
     warnings = [line for line in text.splitlines() if line.startswith("warning: ")]
     assert status in (0, 1) and len(warnings) == 1, text
     assert warnings[0] == f"warning: {folder / 'frames.csv'}: {hint}"
+    assert python_said(folder, capsys) == warnings[0] + "\n"
 
 
 @pytest.mark.parametrize("spoil", [lambda t: t, descending, lambda t: t[:9], change(lambda row: {"agl_m": ""})])
-def test_good_logs_are_not_remarked_on(tmp_path: Path, spoil: Callable[[list[Row]], list[Row]]) -> None:
-    assert "warning" not in said(write(tmp_path / "log", spoil(rows())))[1]
+def test_good_logs_are_not_remarked_on(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: Callable[[list[Row]], list[Row]]
+) -> None:
+    folder = write(tmp_path / "log", spoil(rows()))
+    assert "warning" not in said(folder)[1] and python_said(folder, capsys) == ""
 
 
 @pytest.mark.parametrize(("delimiter", "name"), [(";", "semicolons"), ("\t", "tabs"), ("|", "bars")])
-def test_another_delimiter(tmp_path: Path, delimiter: str, name: str) -> None:
+def test_another_delimiter(tmp_path: Path, capsys: pytest.CaptureFixture[str], delimiter: str, name: str) -> None:
     folder = write(tmp_path / "log", rows(), delimiter)
     reason = f"{name} separate the columns; a log has commas between them, and points in its numbers\n"
     assert said(folder) == (2, f"{folder / 'frames.csv'}:1: t_s: missing column: {reason}")
+    reason = f"{name} separate the columns; there must be commas, and points in the numbers"
+    assert python_said(folder, capsys) == f"{folder / 'frames.csv'}:1: t_s: column is missing: {reason}"
 
 
-def test_a_required_column_misspelt(tmp_path: Path) -> None:
+def test_a_required_column_misspelt(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = write(tmp_path / "log", renamed("agl_m", "x")(renamed("e_m", "e_me")(rows())))
+    place = f"{folder / 'frames.csv'}:1: e_m:"
+    assert python_said(folder, capsys) == f"{place} column is missing; is 'e_me' meant to be it?"
     assert said(folder) == (2, f"{folder / 'frames.csv'}:1: e_m: missing column; is 'e_me' meant to be it?\n")
 
 
-def test_an_optional_column_misspelt(tmp_path: Path) -> None:
+def test_an_optional_column_misspelt(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sides = {"box_left": 1, "box_top_px": 2, "box_rigth_px": 3, "box_bottom_px": 4, "colour": 5}
     folder = write(tmp_path / "log", change(lambda row: sides)(rows()))
-    assert said(folder)[1].splitlines()[:2] == [
-        f"warning: {folder / 'frames.csv'}:1: {name}: unknown column, ignored; did you mean {meant}?"
-        for name, meant in (("box_left", "box_left_px"), ("box_rigth_px", "box_right_px"))
-    ]
+    warnings = said(folder)[1].splitlines()[:2]
+    assert (
+        python_said(folder, capsys).splitlines()
+        == warnings
+        == [
+            f"warning: {folder / 'frames.csv'}:1: {name}: unknown column, ignored; did you mean {meant}?"
+            for name, meant in (("box_left", "box_left_px"), ("box_rigth_px", "box_right_px"))
+        ]
+    )
 
 
-def test_rows_that_are_not_numbers(tmp_path: Path) -> None:
+def test_rows_that_are_not_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = rows()
     table[3]["n_m"] = table[7]["left_u"] = "nan"
     table[9]["qw"] = ""
     folder = write(tmp_path / "log", table)
-    assert said(folder) == (
-        0,
-        f"warning: {folder / 'frames.csv'}: 3 rows without a finite pose or with a number that "
-        "is not finite, the first in line 5\n",
+    text = "3 rows without a finite pose or with a number that is not finite, the first in line 5\n"
+    assert said(folder) == (0, f"warning: {folder / 'frames.csv'}: {text}")
+    assert python_said(folder, capsys) == f"warning: {folder / 'frames.csv'}: {text}"
+
+
+@pytest.mark.parametrize("name", ["frames.csv", "camera.ini"])
+def test_a_file_in_place_of_its_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
+    folder = write(tmp_path / "log", rows())
+    assert said(folder / name) == (
+        2,
+        f"{folder / name}: is a file; name its folder, {folder} (see goe_replay --help)\n",
     )
+    assert python_said(folder / name, capsys) == f"{folder / name}: is a file; name its folder, {folder}"
+
+
+def test_every_row_by_the_fast_way_or_the_careful_one(tmp_path: Path) -> None:
+    """The same numbers in forms that only the careful way reads."""
+    fast = read_log(write(tmp_path / "fast", rows())).frames
+    careful = change(
+        lambda row: {"id": "+1", "agl_m": f"{row['agl_m']}e0" if row["agl_m"] else "", "left_u": row["left_u"]}
+    )
+    assert read_log(write(tmp_path / "careful", careful(rows()))).frames == fast

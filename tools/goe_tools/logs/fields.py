@@ -6,11 +6,11 @@ import csv
 import difflib
 import os
 import stat
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
-from .hints import warn
 from .progress import Progress
 
 INTEGER_MIN, INTEGER_MAX = -(2**63), 2**63 - 1  # what the programs' reader takes
@@ -32,6 +32,11 @@ class LogError(ValueError):
         self.path, self.line, self.column, self.reason = Path(path), line, column, reason
         where = f"{path}:{line}: " if line else f"{path}: "
         super().__init__(where + (f"{column}: " if column else "") + reason)
+
+
+def warn(path: Path, text: str, line: int = 0) -> None:
+    """What looks wrong in a file, but is no reason to refuse it."""
+    print(f"warning: {path}:{f'{line}:' if line else ''} {text}", file=sys.stderr)
 
 
 def read_number(text: str, path: Path, line: int, column: str) -> float:

@@ -7,27 +7,16 @@ Nothing is refused for it: a hint says what was seen and what to do. goe_replay 
 from __future__ import annotations
 
 import math
-import sys
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from .obslog import Frame
-
-IMAGES_MIN, ROWS_MAX = 10, 20_000  # of a longer log its beginning says enough
+IMAGES_MIN = 10
 STEP_MAX_S, SPEED_MIN_M_S, WAY_MIN_M = 5.0, 0.5, 5.0  # slower images of an aircraft that hardly moves: milliseconds
 SPEED_MAX_M_S = 150.0
 MOVE_M = 1.0
 TILT_MAX, AGAINST, MOST = 0.5, -0.5, 0.8  # cosines of a tilt, of the nose to the motion; share of the moves
 FOOT_M, FOOT_TOLERANCE = 0.3048, 0.03
 HEIGHT_VARIANCE_M2, CORRELATED = 4.0 * FOOT_M, 0.99
-
-
-def warn(path: Path, text: str, line: int = 0) -> None:
-    print(f"warning: {path}:{f'{line}:' if line else ''} {text}", file=sys.stderr)
 
 
 def _moves(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -105,23 +94,18 @@ def _of_heights(up: np.ndarray, agl: np.ndarray, given: np.ndarray) -> str:
     return ""
 
 
-def hints_of(frames: Sequence[Frame]) -> list[str]:
-    """Of the rows of frames.csv."""
-    frames = frames[:ROWS_MAX]
-    numbers = (number for frame in frames for number in (frame.t_s, *frame.position_m, *frame.attitude))
-    pose = np.fromiter(numbers, float, 8 * len(frames)).reshape(-1, 8)
+def hints_of(pose: np.ndarray, agl: np.ndarray, given: np.ndarray) -> list[str]:
+    """Of rows of frames.csv: (N, 8) time, position and attitude, (N,) height above ground, NaN where it is no number,
+    and whether its field has one."""
     taken = np.flatnonzero(np.isfinite(pose).all(1))
     latest = np.maximum.accumulate(pose[taken, 0]) if len(taken) else pose[:0, 0]
     taken = taken[np.flatnonzero(np.diff(latest, prepend=-np.inf) > 0.0)]  # an image has a row of each obstacle
     if len(taken) < IMAGES_MIN:
         return []
-    height = [frames[i].agl_m for i in taken]
-    agl = np.array([math.nan if value is None else value for value in height], float)
-    given = np.array([value is not None for value in height])
     pose = pose[taken]
     found = [
         _of_times(pose[:, 0], pose[:, 1:3]),
         _of_attitude(pose[:, 4:], pose[:, 1:3]),
-        _of_heights(-pose[:, 3], agl, given),
+        _of_heights(-pose[:, 3], agl[taken], given[taken]),
     ]
     return [hint for hint in found if hint]

@@ -8,7 +8,6 @@ An empty field means "not measured": None here. Errors carry file, line and colu
 from __future__ import annotations
 
 import csv
-import dataclasses
 import gc
 import math
 import re
@@ -20,6 +19,12 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Optional
 
+import numpy as np
+
+from .camera_file import CAMERA_FIELDS as CAMERA_FIELDS
+from .camera_file import CAMERA_NAMES, Camera, read_cameras, shortest, write_camera
+from .camera_file import CAMERA_RANGES as CAMERA_RANGES
+from .camera_file import read_camera as read_camera
 from .fields import (
     LogError,
     Row,
@@ -28,10 +33,10 @@ from .fields import (
     read_number,
     read_optional,
     read_rows,
-    read_text,
+    warn,
     warn_of_misspelt,
 )
-from .hints import hints_of, warn
+from .hints import hints_of
 from .whole_file import replacing_all
 
 Pixel = tuple[float, float]
@@ -61,46 +66,8 @@ TRUTH_COLUMNS = (
 )
 
 
-@dataclass
-class Camera:
-    """One camera of camera.ini. ``heading_deg`` is the heading of T's Z axis, clockwise from north, the same for
-    each camera; None: auto."""
-
-    width: float
-    height: float
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    k1: float = 0.0
-    k2: float = 0.0
-    p1: float = 0.0
-    p2: float = 0.0
-    k3: float = 0.0
-    mount_roll_deg: float = 0.0
-    mount_pitch_deg: float = 0.0
-    mount_yaw_deg: float = 0.0
-    offset_x_m: float = 0.0
-    offset_y_m: float = 0.0
-    offset_z_m: float = 0.0
-    heading_deg: float | None = None
-
-
-CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.name != "heading_deg")
-REQUIRED_CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.default is dataclasses.MISSING)
-HEADING_KEY = "trajectory.heading_deg"
-SIZE_RANGE, PIXEL_RANGE, LENS_RANGE, ANGLE_RANGE = (1.0, 1e5), (-1e5, 1e5), (-100.0, 100.0), (-360.0, 360.0)
-CAMERA_RANGES = {  # as the library has them; an image has at least a pixel
-    **dict.fromkeys(("width", "height", "fx", "fy"), SIZE_RANGE),
-    **dict.fromkeys(("cx", "cy"), PIXEL_RANGE),
-    **dict.fromkeys(("k1", "k2", "p1", "p2", "k3"), LENS_RANGE),
-    **dict.fromkeys(("mount_roll_deg", "mount_pitch_deg", "mount_yaw_deg", "heading_deg"), ANGLE_RANGE),
-    **dict.fromkeys(("offset_x_m", "offset_y_m", "offset_z_m"), (-1e4, 1e4)),
-}
+HINT_ROWS_MAX = 20_000  # of a longer log its beginning says enough
 LOG_NAMES = ("camera.ini", "frames.csv", "truth.csv", "truth_frames.csv")
-CAMERA_NAMES = ("camera", "camera2")  # their keys begin so
-
-
 SLOTS = {"slots": True} if sys.version_info >= (3, 10) else {}  # a long log has a million of them
 
 
@@ -172,59 +139,6 @@ class ObservationLog:
 
 
 # ----------------------------------------------------------------------------------------------------------- reading
-
-
-def _key_of(key: str) -> tuple[str, str]:
-    """The camera's name and the field of a key; empty if there is none."""
-    if key == HEADING_KEY:
-        return CAMERA_NAMES[0], "heading_deg"
-    owner, _, name = key.partition(".")
-    return (owner, name) if owner in CAMERA_NAMES and name in CAMERA_FIELDS else ("", "")
-
-
-def read_cameras(path: Path) -> list[Camera]:
-    """Reads camera.ini, one camera or two; an unknown, doubled, missing or non-numeric key is a LogError."""
-    path = Path(path)
-    found: dict[str, dict[str, float | None]] = {CAMERA_NAMES[0]: {}}
-    for line, raw in enumerate(read_text(path).split("\n"), start=1):
-        if "\0" in raw:
-            raise LogError(path, line, "", "the line holds a NUL byte")
-        text = raw.split("#", 1)[0].strip()
-        if not text:
-            continue
-        key, equals, value = (part.strip() for part in text.partition("="))
-        if not equals:
-            raise LogError(path, line, "", f"'{text}' is not of the form key = value")
-        owner, name = _key_of(key)
-        if not owner:
-            raise LogError(path, line, key, "unknown key")
-        values = found.setdefault(owner, {})
-        if name in values:
-            raise LogError(path, line, key, "given twice")
-        if key == HEADING_KEY and value == "auto":
-            values[name] = None
-            continue
-        number = read_number(value, path, line, key)
-        if not math.isfinite(number):
-            raise LogError(path, line, key, f"'{value}' is not finite")
-        low, high = CAMERA_RANGES[name]
-        if not low <= number <= high:
-            raise LogError(path, line, key, f"'{value}' is out of range: {low:g} to {high:g}")
-        values[name] = number
-    for owner, values in found.items():
-        for name in REQUIRED_CAMERA_FIELDS:
-            if name not in values:
-                raise LogError(path, 0, f"{owner}.{name}", "missing")
-    heading = found[CAMERA_NAMES[0]].get("heading_deg")
-    return [Camera(**values | {"heading_deg": heading}) for values in found.values()]  # type: ignore[arg-type]
-
-
-def read_camera(path: Path) -> Camera:
-    """Reads the camera.ini of one camera; a second one is a LogError, too."""
-    cameras = read_cameras(path)
-    if len(cameras) > 1:
-        raise LogError(path, 0, CAMERA_NAMES[1], "a second camera, of a log that must have one alone")
-    return cameras[0]
 
 
 def check_pairs(header: list[str], path: Path, line: int) -> None:
@@ -411,14 +325,21 @@ def log_folder(path: Path) -> Path:
     return path
 
 
+def _hint(path: Path, frames: Sequence[Frame]) -> None:
+    pose = np.array([(frame.t_s, *frame.position_m, *frame.attitude) for frame in frames], float).reshape(-1, 8)
+    agl = np.array([math.nan if frame.agl_m is None else frame.agl_m for frame in frames], float)
+    given = np.array([frame.agl_m is not None for frame in frames], bool)
+    for hint in hints_of(pose, agl, given):
+        warn(path, hint)
+
+
 def read_log(folder: Path) -> ObservationLog:
     """Reads a whole log; truth.csv may be absent. Warnings say what looks wrong in it."""
     folder = log_folder(folder)
     truth = folder / "truth.csv"
     cameras = read_cameras(folder / "camera.ini")
     frames = read_frames(folder / "frames.csv", len(cameras))
-    for hint in hints_of(frames):
-        warn(folder / "frames.csv", hint)
+    _hint(folder / "frames.csv", frames[:HINT_ROWS_MAX])
     return ObservationLog(
         camera=cameras[0],
         frames=frames,
@@ -428,20 +349,6 @@ def read_log(folder: Path) -> ObservationLog:
 
 
 # ----------------------------------------------------------------------------------------------------------- writing
-
-
-def _text(value: float | None) -> str:
-    """The shortest text that reads back as the same double, so that a file adds no noise; empty for None."""
-    return "" if value is None else repr(float(value))
-
-
-def write_camera(path: Path, camera: Camera, comment: str = "", camera2: Camera | None = None) -> None:
-    lines = [f"# {line}" for line in comment.splitlines()]
-    for owner, described in zip(CAMERA_NAMES, (camera, camera2)):
-        if described is not None:
-            lines += [f"{owner}.{name} = {_text(getattr(described, name))}" for name in CAMERA_FIELDS]
-    lines.append(f"{HEADING_KEY} = {'auto' if camera.heading_deg is None else _text(camera.heading_deg)}")
-    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def write_frames(path: Path, frames: Sequence[Frame]) -> None:
@@ -461,7 +368,7 @@ def write_frames(path: Path, frames: Sequence[Frame]) -> None:
             numbers = [*frame.position_m, frame.agl_m, *frame.attitude, *(value for pixel in pixels for value in pixel)]
             numbers += (frame.box_px or (None,) * len(BOX_COLUMNS)) if boxes else ()
             numbers += (frame.reset_delta_m or (None,) * len(JUMP_COLUMNS)) if resets else ()
-            row = [_text(frame.t_s), frame.id, *(_text(number) for number in numbers)]
+            row = [shortest(frame.t_s), frame.id, *(shortest(number) for number in numbers)]
             row += [frame.reset_count] if resets else []
             row += [frame.camera] if numbered else []
             writer.writerow(row)
@@ -473,7 +380,7 @@ def write_truth(path: Path, truth: dict[int, Truth]) -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*TRUTH_COLUMNS, *extra])
         for entry in truth.values():
-            numbers = [_text(getattr(entry, column)) for column in TRUTH_COLUMNS[2:]]
+            numbers = [shortest(getattr(entry, column)) for column in TRUTH_COLUMNS[2:]]
             writer.writerow([entry.id, int(entry.static), *numbers, *(entry.extra.get(name, "") for name in extra)])
 
 
