@@ -16,6 +16,7 @@
 #include "nearest_name.h"
 #include "option_fault.h"
 #include "output_file.h"
+#include "read_progress.h"
 #include "settings_text.h"
 #include "standard_output.h"
 #include "track_table.h"
@@ -251,11 +252,25 @@ static bool too_many_tracks(const options_t *options, const frame_t *frame) {
     return print_error(&error);
 }
 
+/* One row, to its track's estimator. */
+static bool replay_row(const options_t *options, const frame_t *frame, track_table_t *tracks, FILE *stream,
+                       goe_estimate_t *estimate, tally_t *tally) {
+    goe_image_t image;
+    goe_estimator_t *estimator = track_table_get(tracks, frame->id);
+    if (estimator == NULL) {
+        return too_many_tracks(options, frame);
+    }
+    frame_to_image(frame, &image);
+    const goe_status_t status = goe_update(estimator, &image, estimate);
+    count_row(tally, status, estimate);
+    return estimate_write_row(stream, frame->time_text, frame->id, status, estimate, options->residuals != 0) ||
+           write_failed(options);
+}
+
 /* Row by row, until the end or the first fault. */
 static bool replay_rows(const options_t *options, frame_reader_t *reader, track_table_t *tracks, FILE *stream,
                         tally_t *tally) {
     frame_t frame;
-    goe_image_t image;
     goe_estimate_t estimate;
     input_error_t error;
     log_hints_t hints;
@@ -265,24 +280,21 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
     if (!estimate_write_header(stream, options->residuals != 0)) {
         return write_failed(options);
     }
-    while ((result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
-        goe_estimator_t *estimator = track_table_get(tracks, frame.id);
-        if (estimator == NULL) {
-            return too_many_tracks(options, &frame);
-        }
+    read_progress_t progress = read_progress_begin(PROGRAM);
+    bool done = true;
+    while (done && (result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
         log_hints_add(&hints, &frame);
-        frame_to_image(&frame, &image);
-        const goe_status_t status = goe_update(estimator, &image, &estimate);
-        count_row(tally, status, &estimate);
-        if (!estimate_write_row(stream, frame.time_text, frame.id, status, &estimate, options->residuals != 0)) {
-            return write_failed(options);
-        }
+        read_progress_row(&progress, frame_reader_share(reader));
+        done = replay_row(options, &frame, tracks, stream, &estimate, tally);
     }
-    if (result != FRAME_READER_END) {
+    read_progress_end(&progress);
+    if (result == FRAME_READER_ERROR) {
         return print_error(&error);
     }
-    log_hints_print(&hints, PROGRAM, options->frames, stderr);
-    return true;
+    if (done) {
+        log_hints_print(&hints, PROGRAM, options->frames, stderr);
+    }
+    return done;
 }
 
 /* Whether a path leads to any file of the log that an input is of. */

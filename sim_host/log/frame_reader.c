@@ -184,6 +184,8 @@ frame_reader_result_t frame_reader_next(frame_reader_t *reader, frame_t *frame, 
     return result == TABLE_ROW ? FRAME_READER_ROW : FRAME_READER_END;
 }
 
+double frame_reader_share(const frame_reader_t *reader) { return table_reader_share(reader->table); }
+
 void frame_reader_print_misspelt(const frame_reader_t *reader, const char *program, FILE *stream) {
     const char *meant = NULL;
     size_t next = 0;

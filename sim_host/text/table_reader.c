@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "nearest_name.h"
@@ -20,6 +21,7 @@ struct table_reader {
     const table_column_t *wanted;
     size_t wanted_count;
     int descriptor;
+    double bytes, bytes_read; /* of the file; 0: not known */
     struct csv_parser parser;
     char *buffer;
     size_t begin, end; /* what is not yet parsed of the buffer */
@@ -333,6 +335,7 @@ static void fill(table_reader_t *reader) {
         return;
     }
     reader->end += (size_t)got;
+    reader->bytes_read += (double)got;
     reader->at_end = got == 0;
 }
 
@@ -399,6 +402,9 @@ table_reader_t *table_reader_open(const char *path, const table_column_t *column
     if (reader->descriptor < 0) {
         FAIL(reader, 0u, NULL, "cannot be opened: %s", strerror(errno));
     } else {
+        struct stat status;
+        reader->bytes =
+            fstat(reader->descriptor, &status) == 0 && S_ISREG(status.st_mode) ? (double)status.st_size : 0.0;
         skip_byte_order_mark(reader);
     }
     while (!reader->failed && !reader->header_done && !reader->finished) {
@@ -413,6 +419,10 @@ table_reader_t *table_reader_open(const char *path, const table_column_t *column
 }
 
 unsigned long table_reader_header_line(const table_reader_t *reader) { return reader->header_line; }
+
+double table_reader_share(const table_reader_t *reader) {
+    return reader->bytes > 0.0 ? (reader->bytes_read - (double)(reader->end - reader->begin)) / reader->bytes : -1.0;
+}
 
 table_result_t table_reader_next(table_reader_t *reader, table_row_t *row, input_error_t *error) {
     reader->row_ready = false;

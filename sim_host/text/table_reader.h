@@ -55,6 +55,9 @@ const char *table_reader_misspelt(const table_reader_t *reader, size_t *next, co
 /* Line of the header; 1 if the file is empty. */
 unsigned long table_reader_header_line(const table_reader_t *reader);
 
+/* How much of the file is read, 0 to 1; less than 0: not known, as of a pipe. */
+double table_reader_share(const table_reader_t *reader);
+
 table_result_t table_reader_next(table_reader_t *reader, table_row_t *row, input_error_t *error);
 
 /* Null is ignored. */

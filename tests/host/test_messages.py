@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import csv
 import os
+import pty
 import subprocess
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -166,6 +168,25 @@ def test_a_file_in_place_of_its_folder(tmp_path: Path, capsys: pytest.CaptureFix
         f"{folder / name}: is a file; name its folder, {folder} (see goe_replay --help)\n",
     )
     assert python_said(folder / name, capsys) == f"{folder / name}: is a file; name its folder, {folder}"
+
+
+def test_a_long_read_shows_on_a_terminal_how_far_it_is(tmp_path: Path) -> None:
+    """From a pipe that pauses for longer than the two seconds before the first sign."""
+    camera, text = str(CORNER / "camera.ini"), (CORNER / "frames.csv").read_text()
+    row = text.splitlines()[1].split(",", 1)[1]
+    lines = [f"{k}.5,{row}" for k in range(4000)]
+    terminal, other = pty.openpty()
+    words = [PROGRAM, "--out", os.devnull, "--camera", camera, "--frames", "/dev/stdin"]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stderr=other, text=True) as running:
+        assert running.stdin is not None
+        running.stdin.write("\n".join([text.splitlines()[0], *lines[:500], ""]))
+        running.stdin.flush()
+        time.sleep(2.2)
+        running.stdin.write("\n".join([*lines[500:], ""]))
+    os.close(other)
+    shown = os.read(terminal, 4096).decode()
+    os.close(terminal)
+    assert running.returncode == 1 and "goe_replay: 1024 rows" in shown  # an aircraft that stands learns nothing
 
 
 def test_every_row_by_the_fast_way_or_the_careful_one(tmp_path: Path) -> None:
