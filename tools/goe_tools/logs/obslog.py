@@ -19,8 +19,6 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Optional
 
-import numpy as np
-
 from .camera_file import CAMERA_FIELDS as CAMERA_FIELDS
 from .camera_file import CAMERA_NAMES, Camera, read_cameras, shortest, write_camera
 from .camera_file import CAMERA_RANGES as CAMERA_RANGES
@@ -36,7 +34,6 @@ from .fields import (
     warn,
     warn_of_misspelt,
 )
-from .hints import hints_of
 from .whole_file import replacing_all
 
 Pixel = tuple[float, float]
@@ -326,6 +323,10 @@ def log_folder(path: Path) -> Path:
 
 
 def _hint(path: Path, frames: Sequence[Frame]) -> None:
+    import numpy as np  # here: the command line starts without it
+
+    from .hints import hints_of
+
     pose = np.array([(frame.t_s, *frame.position_m, *frame.attitude) for frame in frames], float).reshape(-1, 8)
     agl = np.array([math.nan if frame.agl_m is None else frame.agl_m for frame in frames], float)
     given = np.array([frame.agl_m is not None for frame in frames], bool)
