@@ -46,8 +46,9 @@ static struct poptOption options[] = {
     {"step", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &step, 0, "of these: from one seed to the next", "N"},
     {"trace", 0, POPT_ARG_INT, &trace, 0, "of these: prints flight N, one line for every assessment", "N"},
     {"csv", 'c', POPT_ARG_STRING, &csv, 0, "a row for every run goes here", "FILE"},
-    {"version", 'V', POPT_ARG_NONE, NULL, 'V', "the version", NULL},
-    POPT_AUTOHELP POPT_TABLEEND};
+    {"help", 'h', POPT_ARG_NONE, NULL, 'h', "print this and exit", NULL},
+    {"version", 'V', POPT_ARG_NONE, NULL, 'V', "print the version and exit", NULL},
+    POPT_TABLEEND};
 
 /* Of one kind of obstacle and one question. */
 typedef struct {
@@ -267,10 +268,14 @@ static bool run_options(poptContext context, int argc, const char *const *argv) 
         puts(PROGRAM " " GOE_VERSION);
         return true;
     }
+    if (said == 'h') {
+        poptPrintHelp(context, stdout, 0);
+        return true;
+    }
     if (said < -1) {
         const char *bad = option_blamed(context, argc, argv);
         char reason[OPTION_FAULT_MAX];
-        option_fault(reason, options, bad, said);
+        option_fault(reason, context, options, bad, said);
         return give_up(bad, reason);
     }
     if (poptPeekArg(context) != NULL) {

@@ -436,7 +436,7 @@ int main(int argc, char **argv) {
     } else if (result < -1) {
         const char *bad = option_blamed(context, argc, arguments);
         char reason[OPTION_FAULT_MAX];
-        option_fault(reason, table, bad, result);
+        option_fault(reason, context, table, bad, result);
         (void)complain(bad, reason);
     } else {
         done = run(context, &options);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "camera_file.h"
 #include "estimate_writer.h"
@@ -11,9 +12,11 @@
 #include "frame_reader.h"
 #include "goe.h"
 #include "input_error.h"
+#include "log_hints.h"
 #include "nearest_name.h"
 #include "option_fault.h"
 #include "output_file.h"
+#include "read_progress.h"
 #include "settings_text.h"
 #include "standard_output.h"
 #include "track_table.h"
@@ -24,7 +27,7 @@
 
 #define PROGRAM "goe_replay"
 #define WINDOW_MIN 3
-#define CHOICE_FAULT_MAX 128
+#define CHOICE_FAULT_MAX 256
 
 enum { EXIT_DONE = 0, EXIT_NO_ESTIMATE = 1, EXIT_BAD_INPUT = 2 };
 
@@ -130,13 +133,18 @@ static bool default_path(char **path, const char *directory, const char *name, c
     return true;
 }
 
+static bool is_file(const char *path) {
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 static bool parse_arguments(poptContext context, const struct poptOption *table, int argc, const char *const *argv,
                             options_t *options) {
     const int result = poptGetNextOpt(context);
     if (result < -1) {
         const char *bad = option_blamed(context, argc, argv);
         char reason[OPTION_FAULT_MAX];
-        option_fault(reason, table, bad, result);
+        option_fault(reason, context, table, bad, result);
         return complain(bad, reason);
     }
     if (options->help || options->version || options->settings) {
@@ -146,6 +154,13 @@ static bool parse_arguments(poptContext context, const struct poptOption *table,
     const char *surplus = poptPeekArg(context);
     if (surplus != NULL) {
         return complain(surplus, "one folder at a time");
+    }
+    if (directory != NULL && is_file(directory)) {
+        char reason[CHOICE_FAULT_MAX];
+        const char *slash = strrchr(directory, '/');
+        (void)snprintf(reason, sizeof reason, "is a file; name its folder, %.*s",
+                       slash != NULL ? (int)(slash - directory) : 1, slash != NULL ? directory : ".");
+        return complain(directory, reason);
     }
     return default_path(&options->camera, directory, "camera.ini", "--camera") &&
            default_path(&options->frames, directory, "frames.csv", "--frames");
@@ -237,31 +252,49 @@ static bool too_many_tracks(const options_t *options, const frame_t *frame) {
     return print_error(&error);
 }
 
+/* One row, to its track's estimator. */
+static bool replay_row(const options_t *options, const frame_t *frame, track_table_t *tracks, FILE *stream,
+                       goe_estimate_t *estimate, tally_t *tally) {
+    goe_image_t image;
+    goe_estimator_t *estimator = track_table_get(tracks, frame->id);
+    if (estimator == NULL) {
+        return too_many_tracks(options, frame);
+    }
+    frame_to_image(frame, &image);
+    const goe_status_t status = goe_update(estimator, &image, estimate);
+    count_row(tally, status, estimate);
+    return estimate_write_row(stream, frame->time_text, frame->id, status, estimate, options->residuals != 0) ||
+           write_failed(options);
+}
+
 /* Row by row, until the end or the first fault. */
 static bool replay_rows(const options_t *options, frame_reader_t *reader, track_table_t *tracks, FILE *stream,
                         tally_t *tally) {
     frame_t frame;
-    goe_image_t image;
     goe_estimate_t estimate;
     input_error_t error;
+    log_hints_t hints;
     frame_reader_result_t result = FRAME_READER_END;
+    (void)memset(&hints, 0, sizeof hints);
     (void)memset(&estimate, 0, sizeof estimate);
     if (!estimate_write_header(stream, options->residuals != 0)) {
         return write_failed(options);
     }
-    while ((result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
-        goe_estimator_t *estimator = track_table_get(tracks, frame.id);
-        if (estimator == NULL) {
-            return too_many_tracks(options, &frame);
-        }
-        frame_to_image(&frame, &image);
-        const goe_status_t status = goe_update(estimator, &image, &estimate);
-        count_row(tally, status, &estimate);
-        if (!estimate_write_row(stream, frame.time_text, frame.id, status, &estimate, options->residuals != 0)) {
-            return write_failed(options);
-        }
+    read_progress_t progress = read_progress_begin(PROGRAM);
+    bool done = true;
+    while (done && (result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
+        log_hints_add(&hints, &frame);
+        read_progress_row(&progress, frame_reader_share(reader));
+        done = replay_row(options, &frame, tracks, stream, &estimate, tally);
     }
-    return result == FRAME_READER_END || print_error(&error);
+    read_progress_end(&progress);
+    if (result == FRAME_READER_ERROR) {
+        return print_error(&error);
+    }
+    if (done) {
+        log_hints_print(&hints, PROGRAM, options->frames, stderr);
+    }
+    return done;
 }
 
 /* Whether a path leads to any file of the log that an input is of. */
@@ -327,6 +360,7 @@ static int replay(const options_t *options) {
         (void)print_error(&error);
         return EXIT_BAD_INPUT;
     }
+    frame_reader_print_misspelt(reader, PROGRAM, stderr);
     const bool done = replay_with(options, &settings, reader, &tally);
     frame_reader_close(reader);
     if (!done) {

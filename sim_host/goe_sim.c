@@ -57,17 +57,38 @@ typedef struct {
     double box_px, box_share, box_correlation;
     double attitude_bias, attitude_noise, position_walk, velocity_bias, altimeter_bias, drop_rate, time_jitter;
     long long seed;
-    int paper_case, list_cases, rounding;
+    int paper_case, list_cases, rounding, help, version;
 } arguments_t;
 
 static arguments_t given;
 static scenario_file_t scenario_file;
 
+/* Where the scenario file gave an option, so that a value is blamed there if it turns out wrong later. */
+#define FILE_OPTIONS_MAX 128
+typedef struct {
+    char name[32];
+    unsigned long line;
+} file_option_t;
+
+static struct {
+    const char *path; /* null: there is no such file */
+    int count;
+    file_option_t option[FILE_OPTIONS_MAX];
+} from_file;
+
+static struct {
+    int count;
+    const char **word;
+} command_line;
+
+static char *scenario_path; /* from_file.path, to be freed */
+
 #define NUMBER(name, variable, unit, text) {name, '\0', POPT_ARG_DOUBLE, &given.variable, 0, text, unit}
 #define WORD(name, number, form, text) {name, '\0', POPT_ARG_STRING, NULL, number, text, form}
 static struct poptOption scene_options[] = {
     WORD("obstacle", WORD_OBSTACLE, "WHAT", OBSTACLE_FORMS "; default cylinder"),
-    NUMBER("x0", x0, "M", "side distance of its centre from the course at the start, left positive"),
+    NUMBER("x0", x0, "M",
+           "side distance of its centre from the course at the start, right positive, as x0_m of the answers"),
     NUMBER("z0", z0, "M", "distance of its centre along the course, instead of the way flown by --reach"),
     NUMBER("alpha", alpha, "DEG", "its length axis from the course, clockwise seen from above"),
     NUMBER("reach", reach, "S", "time to reach the obstacle"),
@@ -150,8 +171,10 @@ static struct poptOption program_options[] = {
          "flight and obstacles from a file, [flight] and [obstacle N]; options given here override it"),
     {"case", '\0', POPT_ARG_INT, &given.paper_case, 0, "start from this case of the paper's campaign", "N"},
     {"list-cases", '\0', POPT_ARG_NONE, &given.list_cases, 0, "list the paper's campaign and stop", NULL},
-    WORD("out", WORD_OUT, "DIR", "folder of the log; replaced if it holds one"),
-    POPT_AUTOHELP POPT_TABLEEND};
+    WORD("out", WORD_OUT, "DIR", "folder of the log; one that goe_sim wrote there is replaced"),
+    {"help", 'h', POPT_ARG_NONE, &given.help, 0, "print this and exit", NULL},
+    {"version", 'V', POPT_ARG_NONE, &given.version, 0, "print the version and exit", NULL},
+    POPT_TABLEEND};
 
 static void nothing_said(void) {
     memset(&given, 0, sizeof given);
@@ -175,6 +198,80 @@ static int complain(const char *what, const char *reason) {
     return EXIT_BAD_USAGE;
 }
 
+static bool is_on_command_line(const char *name, size_t length) {
+    for (int i = 1; i < command_line.count; i++) {
+        const char *word = command_line.word[i];
+        const size_t dashes = strspn(word, "-");
+        const char after = strlen(word) >= dashes + length ? word[dashes + length] : 'x';
+        if (dashes > 0 && strncmp(word + dashes, name, length) == 0 && (after == '\0' || after == '=')) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Line of the scenario file that gave an option its value; 0: the value is not from there. */
+static unsigned long line_in_file(const char *name, size_t length) {
+    for (int i = from_file.count - 1; i >= 0; i--) {
+        const file_option_t *option = &from_file.option[i];
+        if (strlen(option->name) == length && strncmp(option->name, name, length) == 0) {
+            return is_on_command_line(name, length) ? 0 : option->line;
+        }
+    }
+    return 0;
+}
+
+/* Of the options that a reason begins with, as in "run, reach: must be ...", the first that the file gave; 0: none. */
+static unsigned long line_of_reason(const char *reason) {
+    const size_t names = strcspn(reason, ":");
+    unsigned long line = 0;
+    for (size_t begin = 0; begin < names && line == 0;) {
+        const size_t length = strcspn(reason + begin, ",:");
+        line = line_in_file(reason + begin, length);
+        begin += length + strspn(reason + begin + length, ", ");
+    }
+    return line;
+}
+
+/* A flight that cannot be. */
+static int complain_of_flight(const char *reason) {
+    const unsigned long line = line_of_reason(reason);
+    if (line == 0) {
+        return complain("cannot fly", reason);
+    }
+    (void)fprintf(stderr, "goe_sim: %s:%lu: %s\n", from_file.path, line, reason);
+    return EXIT_BAD_USAGE;
+}
+
+/* What an option was given; null: it takes no word, or has none. */
+static const char *word_of(const char *option) {
+    static struct poptOption *const tables[] = {scene_options, camera_options, noise_options};
+    for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
+        for (const struct poptOption *known = tables[i]; known->longName != NULL; known++) {
+            if (strcmp(known->longName, option) == 0) {
+                return known->val > 0 ? given.word[known->val] : NULL;
+            }
+        }
+    }
+    return NULL;
+}
+
+/* A value that is not understood, with what it may be. */
+static int complain_of_value(const char *option, const char *reason) {
+    const char *name = option + strspn(option, "-"), *word = word_of(name);
+    const unsigned long line = line_in_file(name, strlen(name));
+    if (line != 0) {
+        (void)fprintf(stderr, "goe_sim: %s:%lu: %s: ", from_file.path, line, name);
+    } else {
+        (void)fprintf(stderr, "goe_sim: %s: ", option);
+    }
+    if (word != NULL) {
+        (void)fprintf(stderr, "'%s' cannot be taken: ", excerpt_of(word, strlen(word)).text);
+    }
+    (void)fprintf(stderr, "%s\n", reason);
+    return EXIT_BAD_USAGE;
+}
+
 /* A NaN was said: the checks of the values refuse it. */
 static bool was_said(double value) { return isnan(value) || value < NOT_SAID || value > NOT_SAID; }
 
@@ -185,7 +282,9 @@ static void set(double *value, double said) {
 }
 
 static void set_flight(flight_case_t *setup) {
-    set(&setup->x0_m, given.x0);
+    if (was_said(given.x0)) {
+        setup->x0_m = 0.0 - given.x0; /* a case's is the paper's: left is positive */
+    }
     set(&setup->z0_m, given.z0);
     set(&setup->alpha_deg, given.alpha);
     set(&setup->reach_s, given.reach);
@@ -343,7 +442,7 @@ static int list_cases(void) {
     (void)printf("case obstacle    x0_m altitude_m alpha_deg glide_deg run_s reach_s\n");
     for (int i = 0; i < scenario_count(); i++) {
         const scenario_t s = scenario_get(i);
-        (void)printf("%4d %-10s %5g %10g %9g %9g %5g %7g\n", i, s.obstacle, s.x0_m, s.altitude_m, s.alpha_deg,
+        (void)printf("%4d %-10s %5g %10g %9g %9g %5g %7g\n", i, s.obstacle, 0.0 - s.x0_m, s.altitude_m, s.alpha_deg,
                      s.glide_deg, s.run_s, s.reach_s);
     }
     return EXIT_SUCCESS;
@@ -389,7 +488,7 @@ static int fly_and_write(const flight_case_t *setup) {
     size_t count = 0;
     const char *reason = fly_past_all(setup, log, &count);
     const flight_logs_t logs = {log, count};
-    const int status = reason != NULL ? complain("cannot fly", reason) : write_logs(setup, &logs);
+    const int status = reason != NULL ? complain_of_flight(reason) : write_logs(setup, &logs);
     for (size_t i = 0; i < count; i++) {
         flight_log_free(&log[i]);
     }
@@ -413,7 +512,7 @@ static int fly(void) {
     const char *reason;
     const char *option = set_case(&setup, &reason);
     if (option != NULL) {
-        return complain(option, reason);
+        return complain_of_value(option, reason);
     }
     if (given.word[WORD_OUT] == NULL) {
         return complain("--out", "is needed: the folder of the log");
@@ -437,6 +536,7 @@ static int fly(void) {
 }
 
 static void free_words(void) {
+    free(scenario_path);
     for (size_t i = 0; i < WORD_COUNT; i++) {
         free(given.word[i]);
     }
@@ -453,9 +553,17 @@ static int read_options(poptContext context) {
     return option;
 }
 
+static void note_line(const char *name, unsigned long line) {
+    if (from_file.count < FILE_OPTIONS_MAX) {
+        file_option_t *option = &from_file.option[from_file.count++];
+        (void)snprintf(option->name, sizeof option->name, "%s", name);
+        option->line = line;
+    }
+}
+
 /* An option of a scenario file, as if it stood on the command line. */
-static bool take_option(const char *name, const char *value, char reason[SCENARIO_REASON_MAX]) {
-    static const char *const no_options[] = {"scenario", "out", "case", "list-cases", "help", "usage"};
+static bool take_option(const char *name, const char *value, unsigned long line, char reason[SCENARIO_REASON_MAX]) {
+    static const char *const no_options[] = {"scenario", "out", "case", "list-cases", "help", "version"};
     for (size_t i = 0; i < sizeof no_options / sizeof no_options[0]; i++) {
         if (strcmp(name, no_options[i]) == 0) {
             (void)snprintf(reason, SCENARIO_REASON_MAX, "belongs on the command line");
@@ -469,10 +577,11 @@ static bool take_option(const char *name, const char *value, char reason[SCENARI
         return false;
     }
     const char *argv[] = {"goe_sim", option, NULL};
+    note_line(name, line);
     poptContext context = poptGetContext("goe_sim", 2, argv, program_options, 0);
     const int error = read_options(context);
     if (error < -1) {
-        option_fault_bare(reason, SCENARIO_REASON_MAX, program_options, name, error);
+        option_fault_bare(reason, SCENARIO_REASON_MAX, program_options, name, value, error);
     }
     (void)poptFreeContext(context);
     return error >= -1;
@@ -481,10 +590,10 @@ static bool take_option(const char *name, const char *value, char reason[SCENARI
 /* The file's options first, then once more those of the command line, which go before them. */
 static bool read_scenario(poptContext context) {
     char fault[FAULT_SIZE];
-    char *path = given.word[WORD_SCENARIO];
+    char *path = scenario_path = given.word[WORD_SCENARIO]; /* the second reading of the options finds it again */
     given.word[WORD_SCENARIO] = NULL;
     const bool read = scenario_file_read(path, take_option, &scenario_file, fault, sizeof fault);
-    free(path);
+    from_file.path = path;
     if (!read) {
         (void)fprintf(stderr, "goe_sim: %s\n", fault);
         return false;
@@ -495,6 +604,8 @@ static bool read_scenario(poptContext context) {
 
 int main(int argc, const char **argv) {
     nothing_said();
+    command_line.count = argc;
+    command_line.word = argv;
     standard_output_watch("goe_sim", EXIT_BAD_USAGE);
     poptContext context = poptGetContext("goe_sim", argc, argv, program_options, 0);
     const int error = read_options(context);
@@ -502,10 +613,16 @@ int main(int argc, const char **argv) {
     if (error < -1) {
         const char *bad = option_blamed(context, argc, argv);
         char reason[OPTION_FAULT_MAX];
-        option_fault(reason, program_options, bad, error);
+        option_fault(reason, context, program_options, bad, error);
         status = complain(bad, reason);
     } else if (poptPeekArg(context) != NULL) {
         status = complain(poptPeekArg(context), "options only; see --help");
+    } else if (given.help) {
+        poptPrintHelp(context, stdout, 0);
+        status = EXIT_SUCCESS;
+    } else if (given.version) {
+        (void)puts("goe_sim " GOE_VERSION);
+        status = EXIT_SUCCESS;
     } else if (given.word[WORD_SCENARIO] != NULL && !read_scenario(context)) {
         status = EXIT_BAD_USAGE;
     } else {

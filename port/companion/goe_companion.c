@@ -60,7 +60,7 @@ static bool parse_arguments(poptContext context, const struct poptOption *table,
     if (result < -1) {
         const char *bad = option_blamed(context, argc, argv);
         char reason[OPTION_FAULT_MAX];
-        option_fault(reason, table, bad, result);
+        option_fault(reason, context, table, bad, result);
         return complain(bad, reason);
     }
     if (options->help || options->version) {

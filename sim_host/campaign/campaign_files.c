@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "parent_folders.h"
+
 #define PATH_SIZE 4096
 #define STAGING_PATTERN ".goe_campaign-XXXXXX"
 #define FOLDER_MODE 0777u
@@ -73,7 +75,11 @@ const char *campaign_files_check(const char *folder) {
         if (lstat(folder, &status) == 0) {
             return "is a symbolic link that leads nowhere";
         }
-        return cause == ENOENT ? check_parent(folder) : strerror(cause);
+        errno = cause;
+        if (cause != ENOENT || !parent_folders_make(folder)) {
+            return strerror(errno);
+        }
+        return check_parent(folder);
     }
     if (!S_ISDIR(status.st_mode)) {
         return "is there and is not a folder";

@@ -37,26 +37,26 @@ void camera_prepare(camera_t *camera) {
 
 const char *camera_fault(const camera_t *camera) {
     if (!(camera->width_px >= 1.0 && camera->width_px <= 1e5 && camera->height_px >= 1.0 && camera->height_px <= 1e5)) {
-        return "image size must be 1 to 100000 px";
+        return "image-width, image-height: the image size must be 1 to 100000 px";
     }
     if (!(camera->fx_px >= 1.0 && camera->fx_px <= 1e5 && camera->fy_px >= 1.0 && camera->fy_px <= 1e5)) {
-        return "focal length must be 1 to 100000 px";
+        return "fx, fy: the focal length must be 1 to 100000 px";
     }
     if (!(fabs(camera->cx_px) <= 1e5 && fabs(camera->cy_px) <= 1e5)) {
-        return "principal point must lie within +-100000 px";
+        return "cx, cy: the principal point must lie within +-100000 px";
     }
     const double *lens[] = {&camera->k1, &camera->k2, &camera->p1, &camera->p2, &camera->k3};
     for (size_t i = 0; i < sizeof lens / sizeof lens[0]; i++) {
         if (!(fabs(*lens[i]) <= 100.0)) {
-            return "lens coefficients must lie within +-100";
+            return "k1, k2, p1, p2, k3: the lens coefficients must lie within +-100";
         }
     }
     if (!(fabs(camera->mount_roll_deg) <= 360.0 && fabs(camera->mount_pitch_deg) <= 360.0 &&
           fabs(camera->mount_yaw_deg) <= 360.0)) {
-        return "mounting angles must lie within +-360 deg";
+        return "roll-camera, pitch-camera, yaw-camera, second-camera: the mounting angles must lie within +-360 deg";
     }
     if (!(vec3_norm(camera->offset_m) <= 1e4)) {
-        return "camera offset must lie within 10000 m";
+        return "offset-x, offset-y, offset-z: the camera's offset must lie within 10000 m";
     }
     return NULL;
 }

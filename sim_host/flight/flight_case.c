@@ -84,14 +84,14 @@ static const char *aircraft_fault(const flight_case_t *setup) {
         return "altitude: must be more than 0 and at most 10000 m";
     }
     if (!(setup->wind_mps >= 0.0 && setup->wind_mps < setup->speed_mps)) {
-        return "mean wind: must be 0 or more and less than the speed";
+        return "wind-speed: must be 0 or more and less than the speed";
     }
     if (!within(setup->wind_from_deg, -360.0, 360.0)) {
-        return "wind direction: must be -360 to 360 deg";
+        return "wind-from: must be -360 to 360 deg";
     }
     if (!within(setup->roll_amplitude_deg, 0.0, LARGEST_ROLL_DEG) ||
         !within(setup->roll_rate_hz, 0.0, FASTEST_ROLL_HZ)) {
-        return "roll: the amplitude must be 0 to 80 deg, the rate 0 to 10 Hz";
+        return "roll-amplitude-deg, roll-rate-hz: the amplitude must be 0 to 80 deg, the rate 0 to 10 Hz";
     }
     double alpha;
     controls_t trim;
@@ -110,13 +110,13 @@ const char *flight_case_fault(const flight_case_t *setup) {
         return "z0: must lie within +-100000 m";
     }
     if (!within(setup->alpha_deg, -360.0, 360.0) || !within(setup->course_deg, -360.0, 360.0)) {
-        return "alpha and course: must be -360 to 360 deg";
+        return "alpha, course: must be -360 to 360 deg";
     }
     if (!(setup->run_s >= 0.0 && setup->run_s <= LONGEST_S && setup->reach_s > 0.0 && setup->reach_s <= LONGEST_S)) {
-        return "run and reach: must be 0 to 100000 s, reach more than 0";
+        return "run, reach: must be 0 to 100000 s, reach more than 0";
     }
     if (!(setup->fps_hz > 0.0 && setup->fps_hz <= 1000.0 && setup->run_s * setup->fps_hz < MOST_FRAMES)) {
-        return "fps: must be more than 0, at most 1000 Hz, and give fewer than a million frames";
+        return "fps, run: fps must be more than 0 and at most 1000 Hz, and both must give fewer than a million frames";
     }
     const char *fault = NULL;
     for (int i = 0; i < setup->cameras && fault == NULL; i++) {

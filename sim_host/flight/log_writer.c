@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "output_file.h"
+#include "parent_folders.h"
 
 #define PATH_SIZE 4096
 #define NUMBER_SIZE 32 /* of any double in text */
@@ -37,6 +38,15 @@ static const char *number(char text[NUMBER_SIZE], double value) {
 static void put(FILE *file, double value) {
     char text[NUMBER_SIZE];
     (void)fprintf(file, ",%s", number(text, value));
+}
+
+/* An empty field where the quantity does not exist. */
+static void put_if(FILE *file, bool exists, double value) {
+    if (exists) {
+        put(file, value);
+    } else {
+        (void)fputc(',', file);
+    }
 }
 
 static void put_vector(FILE *file, vec3_t v) {
@@ -174,20 +184,21 @@ static void write_truth(FILE *file, const flight_case_t *setup, const flight_log
     for (size_t track = 0; track < logs->count; track++) {
         const flight_log_t *log = &logs->log[track];
         const obstacle_t *o = &log->obstacle;
+        const bool is_box = o->kind == OBSTACLE_BOX; /* what is round has neither sides nor an orientation */
         (void)fprintf(file, "%d,1", LOG_TRACK_ID + (int)track);
         put(file, o->center_n_m);
         put(file, o->center_e_m);
         put(file, o->ground_d_m);
         put(file, o->width_m);
-        put(file, o->length_m);
+        put_if(file, is_box, o->length_m);
         put(file, o->height_m);
-        put(file, degrees(o->heading_rad));
+        put_if(file, is_box, degrees(o->heading_rad));
         put(file, log->x0_m);
         put(file, log->z0_m);
-        put(file, log->front_x0_m);
-        put(file, log->front_z0_m);
-        put(file, log->orientation_deg);
-        (void)fprintf(file, ",%s,%" PRIu64 "\n", o->kind == OBSTACLE_BOX ? "box" : "cylinder", setup->seed);
+        put_if(file, is_box, log->front_x0_m);
+        put_if(file, is_box, log->front_z0_m);
+        put_if(file, is_box, log->orientation_deg);
+        (void)fprintf(file, ",%s,%" PRIu64 "\n", is_box ? "box" : "cylinder", setup->seed);
     }
 }
 
@@ -247,6 +258,76 @@ static bool is_log_file(const char *name) {
     return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
 }
 
+/* ------------------------------------------------------------------------------------------------------- own logs -- */
+
+/* The last line of camera.ini says who wrote the log, and a sum over all that the folder held then: a log of another program, or
+ * one that was edited since, is not goe_sim's to replace. */
+#define MARK "# written by goe_sim; it replaces the log only as long as this sum fits: "
+#define MARK_SIZE (sizeof MARK + 17u) /* 16 digits, a line break and a NUL */
+#define SUM_BEGIN 0xcbf29ce484222325u /* FNV-1a, 64 bits */
+#define SUM_FACTOR 0x100000001b3u
+#define CAMERA_FILE 0 /* of LOG_FILES */
+
+static uint64_t sum_of(uint64_t sum, const unsigned char *bytes, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        sum = (sum ^ bytes[i]) * SUM_FACTOR;
+    }
+    return sum;
+}
+
+/* Of a file without its last `left_out` bytes, which go to `end`. False: it cannot be read, or is shorter. */
+static bool sum_of_file(const char *path, size_t left_out, char *end, uint64_t *sum) {
+    unsigned char buffer[16384];
+    struct stat status;
+    FILE *file = stat(path, &status) == 0 && S_ISREG(status.st_mode) ? fopen(path, "rb") : NULL;
+    if (file == NULL) {
+        return false;
+    }
+    bool done = status.st_size >= (off_t)left_out;
+    off_t rest = done ? status.st_size - (off_t)left_out : 0;
+    while (done && rest > 0) {
+        const size_t wanted = rest < (off_t)sizeof buffer ? (size_t)rest : sizeof buffer;
+        done = fread(buffer, 1, wanted, file) == wanted;
+        *sum = done ? sum_of(*sum, buffer, wanted) : *sum;
+        rest -= (off_t)wanted;
+    }
+    done = done && fread(end, 1, left_out, file) == left_out;
+    (void)fclose(file);
+    return done;
+}
+
+/* The mark that belongs to a folder's files; camera.ini already ends in one if `marked`, which goes to `found`. */
+static bool mark_of(const char *folder, bool marked, char mark[MARK_SIZE], char found[MARK_SIZE]) {
+    char path[PATH_SIZE];
+    uint64_t sum = SUM_BEGIN;
+    bool done = true;
+    for (size_t i = 0; i < LOG_FILE_COUNT && done; i++) {
+        const size_t left_out = marked && i == CAMERA_FILE ? MARK_SIZE - 1u : 0u;
+        done = join(path, folder, LOG_FILES[i].name) && sum_of_file(path, left_out, found, &sum);
+    }
+    (void)snprintf(mark, MARK_SIZE, "%s%016" PRIx64 "\n", MARK, sum);
+    return done;
+}
+
+static bool is_own_log(const char *folder) {
+    char mark[MARK_SIZE] = "", found[MARK_SIZE] = "";
+    return mark_of(folder, true, mark, found) && strcmp(mark, found) == 0;
+}
+
+static bool put_mark(const char *folder) {
+    char mark[MARK_SIZE], nothing[MARK_SIZE], path[PATH_SIZE];
+    FILE *file = mark_of(folder, false, mark, nothing) && join(path, folder, LOG_FILES[CAMERA_FILE].name)
+                     ? fopen(path, "ab")
+                     : NULL;
+    if (file == NULL) {
+        return false;
+    }
+    const bool written = fputs(mark, file) >= 0;
+    return fclose(file) == 0 && written;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- replace -- */
+
 /* Null if a log may be put in this place, otherwise why not. */
 static const char *occupied(const char *folder, bool *exists) {
     struct stat status;
@@ -258,12 +339,18 @@ static const char *occupied(const char *folder, bool *exists) {
     if (entries == NULL) {
         return "is there and is not a folder";
     }
-    bool only_log = true;
+    bool only_log = true, empty = true;
     for (const struct dirent *entry = readdir(entries); entry != NULL; entry = readdir(entries)) {
         only_log = only_log && is_log_file(entry->d_name);
+        empty = empty && entry->d_name[0] == '.';
     }
     (void)closedir(entries);
-    return only_log ? NULL : "is there and holds files that are no log";
+    if (!only_log) {
+        return "is there and holds files that are no log";
+    }
+    return empty || is_own_log(folder) ? NULL
+                                       : "is there and holds a log that goe_sim did not write, or that was changed "
+                                         "since; remove it or name another folder";
 }
 
 static bool exchange(const char *folder, const char *fresh, bool exists) {
@@ -294,7 +381,7 @@ static bool write_and_exchange(const char *folder, const char *fresh, bool exist
     for (size_t i = 0; i < LOG_FILE_COUNT && done; i++) {
         done = write_file(fresh, &LOG_FILES[i], setup, logs);
     }
-    done = done && exchange(folder, fresh, exists);
+    done = done && put_mark(fresh) && exchange(folder, fresh, exists);
     if (!done) {
         const int reason = errno;
         remove_log(fresh);
@@ -331,7 +418,8 @@ bool log_write(const char *folder, const flight_case_t *setup, const flight_logs
     (void)sigprocmask(SIG_BLOCK, &interrupts, &before);
     (void)signal(SIGXFSZ, SIG_IGN); /* a write that cannot succeed shall fail where it is made */
     (void)snprintf(fresh, sizeof fresh, "%s.part-XXXXXX", place);
-    const bool done = mkdtemp(fresh) != NULL && write_and_exchange(place, fresh, exists, setup, logs);
+    const bool done =
+        parent_folders_make(place) && mkdtemp(fresh) != NULL && write_and_exchange(place, fresh, exists, setup, logs);
     if (!done) {
         (void)snprintf(fault, fault_size, "%s: %s", place, strerror(errno));
     }

@@ -93,7 +93,7 @@ static void take_option(scenario_reader_t *reader, const char *key, const char *
     char reason[SCENARIO_REASON_MAX];
     if (*value == '\0') {
         fail(reader, key, "no value");
-    } else if (!reader->option(name, value, reason)) {
+    } else if (!reader->option(name, value, reader->lines.number, reason)) {
         fail(reader, key, "%s", reason);
     }
 }
@@ -119,6 +119,8 @@ static void take_neighbour(scenario_reader_t *reader, int i, int key, const char
         fail(reader, KEY_NAMES[key], "'%s' is not %s", value, OBSTACLE_FORMS);
     } else if (key != KEY_WHAT && !text_numbers(value, "", numbers[key], 1)) {
         fail(reader, KEY_NAMES[key], "'%s' is not a number", value);
+    } else if (key == KEY_X0) {
+        neighbour->x0_m = 0.0 - neighbour->x0_m; /* as --x0, right is positive; in a case, left */
     }
 }
 

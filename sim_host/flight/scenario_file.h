@@ -7,7 +7,7 @@
  *   noise = field
  *   [obstacle 1]      counted from 1; of the first one each key may be left out, as on the command line, but not all
  *   what = building   as --obstacle
- *   x0 = 30
+ *   x0 = -30          to the right is positive
  *   z0 = 300          needed from the second one on
  *   alpha = 20
  *
@@ -26,8 +26,9 @@
 #define SCENARIO_NEIGHBOURS_MAX 15
 #define SCENARIO_REASON_MAX 256
 
-/* Takes an option by its name; false: reason says why not. */
-typedef bool (*scenario_option_t)(const char *name, const char *value, char reason[SCENARIO_REASON_MAX]);
+/* Takes an option by its name, from this line; false: reason says why not. */
+typedef bool (*scenario_option_t)(const char *name, const char *value, unsigned long line,
+                                  char reason[SCENARIO_REASON_MAX]);
 
 typedef struct {
     neighbour_t neighbour[SCENARIO_NEIGHBOURS_MAX]; /* obstacles from the second on */

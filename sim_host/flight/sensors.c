@@ -49,23 +49,39 @@ bool sensor_noise_parse(const char *text, sensor_noise_t *noise) {
     return read;
 }
 
+#define SIZE_FAULT " must be 0 to 1e6"
 const char *sensor_noise_fault(const sensor_noise_t *noise) {
-    const double sizes[] = {
-        noise->pixel_px,          noise->outlier_px,         noise->detector_px,     noise->detector_width,
-        noise->attitude_bias_deg, noise->attitude_noise_deg, noise->position_walk_m, noise->velocity_bias_mps,
-        noise->altimeter_m,       noise->time_jitter_s,      noise->box_px,          noise->box_share,
-        noise->box_correlation_s};
+    const struct {
+        double value;
+        const char *fault;
+    } sizes[] = {
+        {noise->pixel_px, "pixel-noise: a noise figure" SIZE_FAULT},
+        {noise->outlier_px, "outlier-size: a noise figure" SIZE_FAULT},
+        {noise->detector_px, "detector-px: a noise figure" SIZE_FAULT},
+        {noise->detector_width, "detector-width: a noise figure" SIZE_FAULT},
+        {noise->attitude_bias_deg, "attitude-bias: a noise figure" SIZE_FAULT},
+        {noise->attitude_noise_deg, "attitude-noise: a noise figure" SIZE_FAULT},
+        {noise->position_walk_m, "position-walk: a noise figure" SIZE_FAULT},
+        {noise->velocity_bias_mps, "velocity-bias: a noise figure" SIZE_FAULT},
+        {noise->altimeter_m, "altimeter-bias: a noise figure" SIZE_FAULT},
+        {noise->time_jitter_s, "time-jitter: a noise figure" SIZE_FAULT},
+        {noise->box_px, "box-px: a noise figure" SIZE_FAULT},
+        {noise->box_share, "box-share: a noise figure" SIZE_FAULT},
+        {noise->box_correlation_s, "box-correlation: a noise figure" SIZE_FAULT},
+    };
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        if (!(sizes[i] >= 0.0 && sizes[i] <= 1e6)) {
-            return "a noise figure must be 0 to 1e6";
+        if (!(sizes[i].value >= 0.0 && sizes[i].value <= 1e6)) {
+            return sizes[i].fault;
         }
     }
-    if (!(noise->outlier_rate >= 0.0 && noise->outlier_rate <= 1.0 && noise->drop_rate >= 0.0 &&
-          noise->drop_rate <= 1.0)) {
-        return "a rate must be 0 to 1";
+    if (!(noise->outlier_rate >= 0.0 && noise->outlier_rate <= 1.0)) {
+        return "outlier-rate: a rate must be 0 to 1";
+    }
+    if (!(noise->drop_rate >= 0.0 && noise->drop_rate <= 1.0)) {
+        return "drop-rate: a rate must be 0 to 1";
     }
     if (!(noise->detector_correlation >= 0.0 && noise->detector_correlation < 1.0)) {
-        return "the detector's correlation must be 0 or more and less than 1";
+        return "detector-correlation: must be 0 or more and less than 1";
     }
     return NULL;
 }

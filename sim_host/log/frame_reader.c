@@ -16,6 +16,7 @@ enum { COLUMN_TIME, COLUMN_ID, COLUMN_RESET_COUNT, COLUMN_CAMERA, COLUMN_VALUES 
 struct frame_reader {
     char *path;
     int cameras; /* that there are */
+    table_column_t columns[COLUMNS_KNOWN];
     table_reader_t *table;
     bool failed;
     input_error_t error;
@@ -144,7 +145,6 @@ static void store_row(frame_reader_t *reader, const table_row_t *row, frame_t *f
 /* ------------------------------------------------------------------------------------------------------- interface -- */
 
 frame_reader_t *frame_reader_open(const char *path, int cameras, input_error_t *error) {
-    table_column_t columns[COLUMNS_KNOWN];
     frame_reader_t *reader = calloc(1, sizeof *reader);
     if (reader != NULL) {
         reader->path = strdup(path);
@@ -155,8 +155,8 @@ frame_reader_t *frame_reader_open(const char *path, int cameras, input_error_t *
         return NULL;
     }
     reader->cameras = cameras;
-    name_columns(columns);
-    reader->table = table_reader_open(path, columns, COLUMNS_KNOWN, error);
+    name_columns(reader->columns);
+    reader->table = table_reader_open(path, reader->columns, COLUMNS_KNOWN, error);
     if (reader->table == NULL) {
         frame_reader_close(reader);
         return NULL;
@@ -182,6 +182,19 @@ frame_reader_result_t frame_reader_next(frame_reader_t *reader, frame_t *frame, 
         return FRAME_READER_ERROR;
     }
     return result == TABLE_ROW ? FRAME_READER_ROW : FRAME_READER_END;
+}
+
+double frame_reader_share(const frame_reader_t *reader) { return table_reader_share(reader->table); }
+
+void frame_reader_print_misspelt(const frame_reader_t *reader, const char *program, FILE *stream) {
+    const char *meant = NULL;
+    size_t next = 0;
+    for (const char *name = table_reader_misspelt(reader->table, &next, &meant); name != NULL;
+         name = table_reader_misspelt(reader->table, &next, &meant)) {
+        (void)fprintf(stream, "%s: warning: %s:%lu: %s: unknown column, ignored; did you mean %s?\n", program,
+                      reader->path, table_reader_header_line(reader->table), excerpt_of(name, strlen(name)).text,
+                      meant);
+    }
 }
 
 void frame_reader_close(frame_reader_t *reader) {

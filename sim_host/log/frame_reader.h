@@ -2,6 +2,8 @@
 #ifndef FRAME_READER_H
 #define FRAME_READER_H
 
+#include <stdio.h>
+
 #include "frame.h"
 #include "input_error.h"
 
@@ -18,6 +20,12 @@ typedef enum {
 frame_reader_t *frame_reader_open(const char *path, int cameras, input_error_t *error);
 
 frame_reader_result_t frame_reader_next(frame_reader_t *reader, frame_t *frame, input_error_t *error);
+
+/* How much of the file is read, 0 to 1; less than 0: not known. */
+double frame_reader_share(const frame_reader_t *reader);
+
+/* A line for each column that is probably misspelt: "program: warning: file:line: ...". Unknown columns are no error. */
+void frame_reader_print_misspelt(const frame_reader_t *reader, const char *program, FILE *stream);
 
 /* Null is ignored. */
 void frame_reader_close(frame_reader_t *reader);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "input_error.h"
 #include "nearest_name.h"
 
 static bool is_end(const struct poptOption *option) {
@@ -30,8 +31,9 @@ const char *option_blamed(poptContext context, int argc, const char *const *argv
     return bad;
 }
 
-static void tell(char *text, size_t room, const struct poptOption *table, const char *word, int error,
-                 const char *dashes) {
+static void tell(char *text, size_t room, const struct poptOption *table, const char *word, const char *value,
+                 int error, const char *dashes) {
+    const char *quote = value != NULL ? " '" : "";
     nearest_name_t nearest = nearest_name_of(word, strcspn(word, "="));
     try_table(&nearest, table);
     for (const struct poptOption *option = table; !is_end(option); option++) {
@@ -40,14 +42,20 @@ static void tell(char *text, size_t room, const struct poptOption *table, const 
         }
     }
     const bool guess = error == POPT_ERROR_BADOPT && nearest.name != NULL;
-    (void)snprintf(text, room, "%s%s%s%s%s", poptStrerror(error), guess ? "; did you mean " : "", guess ? dashes : "",
-                   guess ? nearest.name : "", guess ? "?" : "");
+    const excerpt_t shown = excerpt_of(value != NULL ? value : "", value != NULL ? strlen(value) : 0u);
+    (void)snprintf(text, room, "%s%s%s%s%s%s%s%s", poptStrerror(error), quote, shown.text, value != NULL ? "'" : "",
+                   guess ? "; did you mean " : "", guess ? dashes : "", guess ? nearest.name : "", guess ? "?" : "");
 }
 
-void option_fault_bare(char *text, size_t room, const struct poptOption *table, const char *name, int error) {
-    tell(text, room, table, name, error, "");
+void option_fault_bare(char *text, size_t room, const struct poptOption *table, const char *name, const char *value,
+                       int error) {
+    tell(text, room, table, name, error != POPT_ERROR_BADOPT ? value : NULL, error, "");
 }
 
-void option_fault(char text[OPTION_FAULT_MAX], const struct poptOption *table, const char *bad, int error) {
-    tell(text, OPTION_FAULT_MAX, table, bad + strspn(bad, "-"), error, "--");
+void option_fault(char text[OPTION_FAULT_MAX], poptContext context, const struct poptOption *table, const char *bad,
+                  int error) {
+    const char *value = poptBadOption(context, 0);
+    const bool apart = error == POPT_ERROR_BADNUMBER || error == POPT_ERROR_OVERFLOW;
+    tell(text, OPTION_FAULT_MAX, table, bad + strspn(bad, "-"), apart && strcmp(value, bad) != 0 ? value : NULL, error,
+         "--");
 }

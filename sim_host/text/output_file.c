@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "parent_folders.h"
+
 #define BUFFER_BYTES (1024u * 1024u)
 #define TEMPORARY_SUFFIX ".XXXXXX"
 #define PERMISSIONS 0777u
@@ -139,7 +141,7 @@ bool output_file_open(output_file_t *output, const char *path) {
     if (path == NULL) {
         output->stream = stdout;
     } else if (stat(path, &status) != 0) {
-        (void)(errno == ENOENT && !is_link(path) && open_beside(output, path, NULL));
+        (void)(errno == ENOENT && !is_link(path) && parent_folders_make(path) && open_beside(output, path, NULL));
     } else if (S_ISREG(status.st_mode)) {
         (void)open_beside(output, path, &status);
     } else {

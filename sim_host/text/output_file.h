@@ -12,6 +12,7 @@ typedef struct {
 } output_file_t;
 
 /* path null: standard output. A regular file is left as it is until output_file_commit(); a symbolic link to one stays a link.
+ * Folders on the way that are missing are made.
  * A link that leads nowhere is refused (ENOENT): neither the link is to be replaced nor a file to be made in an unnamed place.
  * One output at a time. False on failure: errno says why. */
 bool output_file_open(output_file_t *output, const char *path);

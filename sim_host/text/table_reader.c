@@ -7,7 +7,10 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include "nearest_name.h"
 
 #define BUFFER_BYTES (256u * 1024u)
 #define FIRST_ROOM 1024u
@@ -18,6 +21,7 @@ struct table_reader {
     const table_column_t *wanted;
     size_t wanted_count;
     int descriptor;
+    double bytes, bytes_read; /* of the file; 0: not known */
     struct csv_parser parser;
     char *buffer;
     size_t begin, end; /* what is not yet parsed of the buffer */
@@ -143,11 +147,66 @@ static void take_header(table_reader_t *reader) {
     }
 }
 
+/* The delimiter of a header line that has no comma; 0: it has one, or none at all. */
+static char other_delimiter(const table_reader_t *reader) {
+    if (reader->columns != 1) {
+        return 0;
+    }
+    const char *found = strpbrk(reader->headers[0], ";\t|");
+    return found != NULL ? *found : 0;
+}
+
+/* The file's own name for a column that it lacks; null: nothing like it is there. */
+static const char *mistyped(const table_reader_t *reader, const char *name) {
+    nearest_name_t nearest = nearest_name_of(name, strlen(name));
+    for (size_t i = 0; i < reader->columns; i++) {
+        if (reader->fields[i].column == TABLE_STRANGER) {
+            nearest_name_try(&nearest, reader->headers[i]);
+        }
+    }
+    return nearest.name;
+}
+
+const char *table_reader_misspelt(const table_reader_t *reader, size_t *next, const char **meant) {
+    for (; *next < reader->columns; (*next)++) {
+        const char *name = reader->headers[*next];
+        nearest_name_t nearest = nearest_name_of(name, strlen(name));
+        for (size_t i = 0; i < reader->wanted_count && reader->fields[*next].column == TABLE_STRANGER; i++) {
+            if (!table_reader_has(reader, i)) {
+                nearest_name_try(&nearest, reader->wanted[i].name);
+            }
+        }
+        if (nearest.name != NULL) {
+            (*next)++;
+            *meant = nearest.name;
+            return name;
+        }
+    }
+    return NULL;
+}
+
+static void fail_missing(table_reader_t *reader, const char *name) {
+    const char delimiter = reader->header_done ? other_delimiter(reader) : 0;
+    const char *instead = reader->header_done ? mistyped(reader, name) : NULL;
+    if (delimiter != 0) {
+        FAIL(reader, reader->header_line, name,
+             "missing column: %s separate the columns; a log has commas between them, and points in its numbers",
+             delimiter == '\t'  ? "tabs"
+             : delimiter == ';' ? "semicolons"
+                                : "bars");
+    } else if (instead != NULL) {
+        FAIL(reader, reader->header_line, name, "missing column; is '%s' meant to be it?",
+             excerpt_of(instead, strlen(instead)).text);
+    } else {
+        FAIL(reader, reader->header_line, name, "%s",
+             reader->header_done ? "missing column" : "missing column, the file is empty");
+    }
+}
+
 static void check_header(table_reader_t *reader) {
     for (size_t i = 0; i < reader->wanted_count; i++) {
         if (reader->wanted[i].required && !table_reader_has(reader, i)) {
-            FAIL(reader, reader->header_line, reader->wanted[i].name, "%s",
-                 reader->header_done ? "missing column" : "missing column, the file is empty");
+            fail_missing(reader, reader->wanted[i].name);
         }
     }
 }
@@ -276,6 +335,7 @@ static void fill(table_reader_t *reader) {
         return;
     }
     reader->end += (size_t)got;
+    reader->bytes_read += (double)got;
     reader->at_end = got == 0;
 }
 
@@ -342,6 +402,9 @@ table_reader_t *table_reader_open(const char *path, const table_column_t *column
     if (reader->descriptor < 0) {
         FAIL(reader, 0u, NULL, "cannot be opened: %s", strerror(errno));
     } else {
+        struct stat status;
+        reader->bytes =
+            fstat(reader->descriptor, &status) == 0 && S_ISREG(status.st_mode) ? (double)status.st_size : 0.0;
         skip_byte_order_mark(reader);
     }
     while (!reader->failed && !reader->header_done && !reader->finished) {
@@ -356,6 +419,10 @@ table_reader_t *table_reader_open(const char *path, const table_column_t *column
 }
 
 unsigned long table_reader_header_line(const table_reader_t *reader) { return reader->header_line; }
+
+double table_reader_share(const table_reader_t *reader) {
+    return reader->bytes > 0.0 ? (reader->bytes_read - (double)(reader->end - reader->begin)) / reader->bytes : -1.0;
+}
 
 table_result_t table_reader_next(table_reader_t *reader, table_row_t *row, input_error_t *error) {
     reader->row_ready = false;

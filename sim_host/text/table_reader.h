@@ -38,8 +38,8 @@ typedef enum {
     TABLE_ERROR /* *error says what is wrong and where; so will every further call */
 } table_result_t;
 
-/* Opens a file and reads its header line. Null on failure, and *error says why: the file cannot be read, a required column is
- * missing, one of the columns is there twice.
+/* Opens a file and reads its header line; the columns must outlive the reader. Null on failure, and *error says why: the file cannot be read, a required column is
+ * missing, one of the columns is there twice. It also says what was probably meant: another delimiter, a mistyped name.
  *
  * Blank lines and a byte order mark are passed over. Rows end in LF, also CR LF, the last one too: a row at whose end the file
  * ends may have been cut off within its last number. */
@@ -48,8 +48,15 @@ table_reader_t *table_reader_open(const char *path, const table_column_t *column
 /* Whether the file has a column of the caller's. */
 bool table_reader_has(const table_reader_t *reader, size_t column);
 
+/* Columns of the file that are none of the caller's, but are named nearly as one of the caller's that the file lacks: from *next on,
+ * which is 0 at first. Null: no more. */
+const char *table_reader_misspelt(const table_reader_t *reader, size_t *next, const char **meant);
+
 /* Line of the header; 1 if the file is empty. */
 unsigned long table_reader_header_line(const table_reader_t *reader);
+
+/* How much of the file is read, 0 to 1; less than 0: not known, as of a pipe. */
+double table_reader_share(const table_reader_t *reader);
 
 table_result_t table_reader_next(table_reader_t *reader, table_row_t *row, input_error_t *error);
 

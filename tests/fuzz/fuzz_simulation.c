@@ -55,8 +55,8 @@ static void try_flight(const char *text, size_t size) {
 }
 
 /* Takes every option but those that begin with an x, for whatever reason. */
-static bool take_option(const char *name, const char *value, char reason[SCENARIO_REASON_MAX]) {
-    FUZZ_HOLDS(name != NULL && value != NULL && *value != '\0');
+static bool take_option(const char *name, const char *value, unsigned long line, char reason[SCENARIO_REASON_MAX]) {
+    FUZZ_HOLDS(name != NULL && value != NULL && *value != '\0' && line > 0);
     (void)strcpy(reason, "it begins with an x");
     return *name != 'x' || name[1] == '0';
 }

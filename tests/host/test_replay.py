@@ -892,7 +892,7 @@ BAD_USAGE = [
     (["--window", "2"], "--window: must be 3 to 64, not 2"),
     (["--window", "65"], "--window: must be 3 to 64"),
     (["--window=-8"], "--window: must be 3 to 64"),
-    (["--window", "x"], "--window: invalid numeric value"),
+    (["--window", "x"], "--window: invalid numeric value 'x'"),
     (["--window"], "--window: missing argument"),
     (["--model", "box"], "box: --model must be auto, disc or line ("),
     (["--model", "dics"], "dics: --model must be auto, disc or line; did you mean disc?"),
@@ -1041,8 +1041,13 @@ def test_out_through_a_link_that_leads_nowhere(tmp_path: Path, log: Path) -> Non
     assert link.is_symlink() and sorted(path.name for path in tmp_path.iterdir()) == ["link.csv", "log"]
 
 
+def test_out_makes_the_folders_on_its_way(tmp_path: Path, log: Path) -> None:
+    call("--out", tmp_path / "no" / "such" / "out.csv", log)
+    assert (tmp_path / "no" / "such" / "out.csv").read_text() == call(log).stdout
+
+
 def test_out_that_cannot_be_written(tmp_path: Path, log: Path) -> None:
-    assert "No such file" in call("--out", tmp_path / "nowhere" / "out.csv", log, check=2).stderr
+    assert "Not a directory" in call("--out", log / "frames.csv" / "out.csv", log, check=2).stderr
     assert "cannot be written: Is a directory" in call("--out", tmp_path, log, check=2).stderr
 
 

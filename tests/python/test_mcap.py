@@ -169,7 +169,8 @@ def test_bad_measurements_have_no_pose(folder: Path, tmp_path: Path) -> None:
 
 def test_wrong_input(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str],
                      monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
-    out = tmp_path / "no" / "log.mcap"
+    out = tmp_path / "file" / "log.mcap"
+    (tmp_path / "file").touch()
 
     def refused(*words: str) -> str:
         assert main(["mcap", *words]) == 2
@@ -177,7 +178,7 @@ def test_wrong_input(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture
         return capsys.readouterr().err
 
     assert "no such folder" in refused(str(tmp_path / "none"), "--out", str(out))
-    assert f"{out}: No such file or directory" in refused(str(folder), "--out", str(out))
+    assert f"{out}: File exists" in refused(str(folder), "--out", str(out))
     missing = str(tmp_path / "e.csv")
     assert f"{missing}: No such file" in refused(str(folder), "--estimates", missing, "--out", str(out))
     Path(missing).write_text("t_s,id\n")

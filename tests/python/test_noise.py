@@ -107,7 +107,7 @@ def boxes(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     for seed in range(1, FLIGHTS + 1):
         out = folder / f"{seed}"
         words = [
-            SIM, "--obstacle", "cylinder", "--x0", 12 + 3 * (seed % 4), "--yaw-camera", 0, "--reach", 14, "--run", 11,
+            SIM, "--obstacle", "cylinder", "--x0", -12 + 3 * (seed % 4), "--yaw-camera", 0, "--reach", 14, "--run", 11,
             "--speed", 17, "--altitude", 20, "--features", "boxes", "--roll-amplitude-deg", 10,
             "--box-px", TOLD["detector.box_px"], "--box-share", TOLD["detector.box_share"], "--box-correlation", 1.2,
             "--attitude-noise", TOLD["navigation.attitude_white_deg"],

@@ -18,6 +18,7 @@ from goe_tools.logs.obslog import (
     read_truth,
     write_log,
 )
+from goe_tools.logs.progress import Progress
 
 CAMERA = "camera.width = 640\ncamera.height=480 # px\n\n# a comment\ncamera.fx = 500\ncamera.fy = 501\n" + (
     "camera.cx = 320\ncamera.cy = 240\n"
@@ -241,3 +242,19 @@ def test_truth(tmp_path: Path) -> None:
     assert (truth[5].length_m, truth[5].heading_deg) == (None, None)
     with pytest.raises(LogError, match=r"truth\.csv:3: id: 4 is given twice"):
         read_truth(write(path, header + "\n" + "4,1,1,2,3,4,5,6,7,13\n" * 2))
+
+
+def test_progress_is_for_terminals_and_for_what_takes_long(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    clock = [0.0]
+    monkeypatch.setattr("goe_tools.logs.progress.time.monotonic", lambda: clock[0])
+    for terminal in (False, True):
+        monkeypatch.setattr("sys.stderr.isatty", lambda now=terminal: now)
+        clock[0] = 0.0
+        progress = Progress("frames.csv", 200)
+        for clock[0], done in ((1.9, 50), (2.1, 100), (2.2, 110), (2.4, 150)):
+            progress.show(done, f", {done} rows")
+        progress.end()
+        shown = [part for part in capsys.readouterr().err.split("\r\x1b[K") if part]
+        assert shown == (["frames.csv: 50%, 100 rows", "frames.csv: 75%, 150 rows"] if terminal else [])

@@ -270,12 +270,12 @@ def test_words() -> None:
 @pytest.mark.parametrize(
     ("value", "sigma", "figures", "text"),
     [
-        (473.2, 6.0, 1, "473 ± 12 m"), (41.26, 0.66, 1, "41 ± 1 m"), (41.26, 0.2, 1, "41.3 ± 0.4 m"),
-        (5.1, 0.01, 1, "5.10 ± 0.02 m"), (-3.0, 0.1, 2, "−3.00 ± 0.20 m"), (60.0, 0.0, 1, "60.0 ± 0.0 m"),
+        (473.2, 12.0, 1, "473 ± 12 m"), (41.26, 1.32, 1, "41 ± 1 m"), (41.26, 0.4, 1, "41.3 ± 0.4 m"),
+        (5.1, 0.02, 1, "5.10 ± 0.02 m"), (-3.0, 0.2, 2, "−3.00 ± 0.20 m"), (60.0, 0.0, 1, "60.0 ± 0.0 m"),
         (math.nan, 1.0, 1, "–"), (12.34, math.nan, 1, "12.3 m"),
     ],
 )  # fmt: skip
-def test_digits_follow_the_band(value: float, sigma: float, figures: int, text: str) -> None:
+def test_digits_follow_the_sigma(value: float, sigma: float, figures: int, text: str) -> None:
     assert words.measured(value, sigma, "m", figures).replace("\u00a0", " ") == text
 
 

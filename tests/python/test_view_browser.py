@@ -126,12 +126,12 @@ def replayed(page: Path, replay: Path, key: int) -> list[Row]:
 
 
 def assert_says(text: str, value: str, sigma: str, where: str) -> None:
-    """A text like "473 ± 12 m left" rounds a value and its two sigma."""
+    """A text like "473 ± 12 m left" rounds a value and its sigma."""
     if not value:
         assert text == "–", where
         return
     number, band = (re.fullmatch(r"−?([\d.]+) ± ([\d.]+)[ °].*", text) or pytest.fail(f"{where}: {text}")).groups()
-    for told, true in ((number, abs(float(value))), (band, 2.0 * float(sigma))):
+    for told, true in ((number, abs(float(value))), (band, float(sigma))):
         half_digit = 0.5 * 10.0 ** -len(told.partition(".")[2])
         assert abs(float(told) - true) <= half_digit + 1e-6, f"{where}: {text}, goe_replay: {value}, {sigma}"
 

@@ -125,6 +125,14 @@ def test_a_broken_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 # ------------------------------------------------------------------------------------------------------------ pictures
 
 
+def test_a_moment_that_the_log_does_not_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for word in ("--at=99", "--at=-1"):
+        assert main(["view", str(view_logs.CORNER), word, "--out", str(tmp_path / "page.html")]) == 2
+        said = capsys.readouterr().err
+        assert said == f"goe_tools view: --at: {word[5:]} s is not in the log, which goes from 0 to 30 s\n"
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_pictures(tmp_path: Path) -> None:
     from PIL import Image
 

@@ -179,8 +179,9 @@ def test_orders_are_those_of_the_decision_rule(flown: dict[str, Any]) -> None:
 def test_bad_command_lines(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["live", "--out", str(tmp_path)]) == EXIT_BAD_INPUT
     assert "is a folder" in capsys.readouterr().err
-    assert main(["live", "--out", str(tmp_path / "none" / "page.html")]) == EXIT_BAD_INPUT
-    assert "there is no folder" in capsys.readouterr().err
+    (tmp_path / "file").touch()
+    assert main(["live", "--out", str(tmp_path / "file" / "page.html")]) == EXIT_BAD_INPUT
+    assert f"{tmp_path / 'file'}: File exists" in capsys.readouterr().err
     monkeypatch.setenv("PATH", str(tmp_path))
     assert main(["live", "--out", str(tmp_path / "page.html")]) == EXIT_BAD_INPUT
     assert "needs cmake, ninja, clang-19, wasm-ld-19, wasm-opt" in capsys.readouterr().err

@@ -49,18 +49,24 @@ def test_what_is_not_finished_leaves_nothing(tmp_path: Path, end: type[BaseExcep
     assert names(tmp_path) == ["old.txt"] and old.read_text() == "old"
 
 
+def test_folders_on_the_way_are_made(tmp_path: Path) -> None:
+    write_whole(tmp_path / "no" / "such" / "file", "text")
+    assert (tmp_path / "no" / "such" / "file").read_text() == "text"
+
+
 def test_places_that_are_none(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    (tmp_path / "file").touch()
     for path, reason in (
         (tmp_path / "link", "is a symbolic link that leads nowhere"),
         (tmp_path, "is a folder"),
-        (tmp_path / "no" / "file", "No such file or directory"),
+        (tmp_path / "file" / "file", "File exists"),
         (Path("/dev/full"), "No space left on device"),
     ):
         with pytest.raises(LogError) as error:
             write_whole(path, "text")
         assert str(error.value) == f"{path}: {reason}"
-    assert names(tmp_path) == ["link"]
+    assert names(tmp_path) == ["file", "link"]
 
 
 def test_an_input_is_not_replaced_by_whatever_link(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ def read_log(folder: Path) -> Log:
     camera = {key: float(value) for key, value in parser["log"].items()}
     with (folder / "truth.csv").open(newline="") as file:
         (row,) = list(csv.DictReader(file))
-    truth = {key: float(value) for key, value in row.items() if key != "kind"}
+    truth = {key: float(value) if value else np.nan for key, value in row.items() if key != "kind"}
     return Log(camera, truth, read_table(folder / "frames.csv"), read_table(folder / "truth_frames.csv"))
 
 

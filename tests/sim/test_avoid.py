@@ -40,6 +40,12 @@ def test_the_same_seed_flies_the_same_runs(goe_avoid: Path) -> None:
     assert avoid(goe_avoid, "-n", "3", "-s", "7") != avoid(goe_avoid, "-n", "3", "-s", "70")
 
 
+@pytest.mark.parametrize("word", ["-h", "--help"])
+def test_help(goe_avoid: Path, word: str) -> None:
+    done = subprocess.run([str(goe_avoid), word], capture_output=True, text=True, check=True)
+    assert "--several" in done.stdout and done.stderr == ""
+
+
 def test_bad_usage_is_told(goe_avoid: Path) -> None:
     for wrong in (["--runs", "0"], ["--delay", "-1"], ["--csv"], ["--nonsense"], ["word"]):
         done = subprocess.run([str(goe_avoid), *wrong], capture_output=True, text=True)
@@ -54,7 +60,7 @@ def test_bad_usage_is_told(goe_avoid: Path) -> None:
         (["--seed", "-1"], "--seed: must be 0 or more"),
         (["--delay", "2.5"], "--delay: must be 0 to 2 s, not 2.5"),
         (["--delay", "nan"], "--delay: must be 0 to 2 s, not nan"),
-        (["--runs", "many"], "--runs: invalid numeric value"),
+        (["--runs", "many"], "--runs: invalid numeric value 'many'"),
         (["--sede", "3"], "--sede: unknown option; did you mean --seed?"),
     ],
 )
@@ -133,10 +139,11 @@ def test_the_file_appears_whole_or_not_at_all(goe_avoid: Path, tmp_path: Path) -
     assert file.read_text() == "as it was" and list(tmp_path.iterdir()) == [file]
 
 
-@pytest.mark.parametrize("place", ["none/runs.csv", "."])
+@pytest.mark.parametrize("place", ["file/runs.csv", "."])
 def test_a_place_that_cannot_be_written_is_told_before_anything_is_flown(
     goe_avoid: Path, tmp_path: Path, place: str
 ) -> None:
+    (tmp_path / "file").touch()
     wrong = ["-n", "100000", "--csv", str(tmp_path / place)]
     done = subprocess.run([str(goe_avoid), *wrong], capture_output=True, text=True, timeout=HANG_S)
     assert (done.returncode, done.stdout) == (2, "")

@@ -156,7 +156,8 @@ def test_case_numbers_are_goe_sims(paper: Path, goe_sim: Path) -> None:
     flown = {int(row["case"]): setup_of(row) for row in read_rows(paper / "cases.csv")}
     for line in listed.splitlines()[1:]:
         case, name, *numbers = line.split()
-        assert flown.pop(int(case)) == (name, *map(float, numbers[:4]))
+        x0, *others = map(float, numbers[:4])  # as --x0, to the right; the campaign has the paper's, to the left
+        assert flown.pop(int(case)) == (name, -x0, *others)
     assert not flown
 
 
@@ -653,7 +654,7 @@ def assert_refused(goe_campaign: Path, cwd: Path, out: object, told: str) -> Non
     assert shown.count("\n") == 1 and "flights" not in shown
 
 
-@pytest.mark.parametrize("out", ["file", "file/campaign", "missing/campaign", ""])
+@pytest.mark.parametrize("out", ["file", "file/campaign", "file/missing/campaign", ""])
 def test_where_nothing_can_be_written(goe_campaign: Path, tmp_path: Path, out: str) -> None:
     (tmp_path / "file").write_text("mine")
     assert_refused(goe_campaign, tmp_path, out, "")

@@ -198,7 +198,7 @@ def test_turbulence_is_ridden_out(goe_sim: Path, tmp_path: Path, wind: str, heig
     errors, speeds, rolls = [], [], []
     for seed in range(10):
         log = fly(
-            goe_sim, tmp_path / str(seed), "--obstacle", "building", "--x0", "150", "--wind", wind, "--seed", seed
+            goe_sim, tmp_path / str(seed), "--obstacle", "building", "--x0", "-150", "--wind", wind, "--seed", seed
         )
         errors.append(-log.exact["d_m"] - 44.5)
         speeds.append(log.exact["airspeed_mps"] - 17.0)

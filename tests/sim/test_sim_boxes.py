@@ -18,10 +18,10 @@ RIM_POINTS, RINGS, EDGE_POINTS = 2000, 25, 2001
 LEAST_PX = 2.0  # nothing smaller is detected
 
 # all of it stays in the image, for many frames: the noise is not cut
-LONG = ("--obstacle", "building", "--x0", "150", "--reach", "80", "--run", "40", "--fps", "20")
+LONG = ("--obstacle", "building", "--x0", "-150", "--reach", "80", "--run", "40", "--fps", "20")
 ROLLING = ("--roll-amplitude-deg", "25")
 # past a building until it is out of sight; it stays in front of the camera
-PASSING = ("--obstacle", "building", "--x0", "60", "--reach", "20", "--run", "18", "--yaw-camera", "0")
+PASSING = ("--obstacle", "building", "--x0", "-60", "--reach", "20", "--run", "18", "--yaw-camera", "0")
 SCENES = {
     "chimney": ("--obstacle", "cylinder"),
     "chimney, rolling": ("--obstacle", "cylinder", *ROLLING),
@@ -107,7 +107,7 @@ def test_noise_does_not_carry_a_side_over_the_border(goe_sim: Path, tmp_path: Pa
 
 def test_a_building_beside_the_camera_keeps_its_box(goe_sim: Path, tmp_path: Path) -> None:
     """A part of it lies behind the camera: the rest still reaches beyond the border on that side."""
-    wall = ("--obstacle", "box:6,200,12", "--x0", "20", "--altitude", "6", "--z0", "150", "--run", "6")
+    wall = ("--obstacle", "box:6,200,12", "--x0", "-20", "--altitude", "6", "--z0", "150", "--run", "6")
     log = fly(goe_sim, tmp_path / "log", *EXACT, *wall)
     camera, corners = Camera(log.camera), box_corners(log.truth)
     position, attitude = poses(log.exact)

@@ -16,7 +16,7 @@ TOLERANCE_PX = 1e-3
 BORDER_PX = 0.01  # nearer to the border it is a matter of rounding whether the obstacle is seen whole
 ALL_SEEN = {"ok", "partial"}
 EXACT = ("--features", "boxes", "--noise", "none")
-PASSING = ("--x0", "40", "--reach", "12", "--yaw-camera", "-25", "--second-camera", "-75,0", "--run", "11.5")
+PASSING = ("--x0", "-40", "--reach", "12", "--yaw-camera", "-25", "--second-camera", "-75,0", "--run", "11.5")
 
 
 def cameras(log: Log) -> tuple[Camera, Camera]:
@@ -53,7 +53,7 @@ SCENES = {
 def test_the_row_is_of_the_camera_that_sees_it_whole_or_nearer_to_its_axis(
     goe_sim: Path, tmp_path: Path, scene: str
 ) -> None:
-    shape = ("--obstacle", "box:8,12,14", "--alpha", "20", "--x0", "40", "--reach", "14", "--run", "13", "--fps", "20")
+    shape = ("--obstacle", "box:8,12,14", "--alpha", "20", "--x0", "-40", "--reach", "14", "--run", "13", "--fps", "20")
     log = fly(goe_sim, tmp_path / "log", *EXACT, *shape, *SCENES[scene])
     number = log.frames["camera"].astype(int)
     assert np.array_equal(number, log.exact["camera"]) and set(number) == {0, 1}
@@ -98,7 +98,9 @@ def test_a_camera_that_sees_nothing_changes_nothing_but_the_column(goe_sim: Path
 @pytest.mark.parametrize("angles", ["", "30", "30,", "30,x", "nan,0", "30,0,0", "400,0"])
 def test_bad_angles_are_named(goe_sim: Path, tmp_path: Path, angles: str) -> None:
     done = run(goe_sim, "--out", tmp_path / "log", "--second-camera", angles, expect=2)
-    assert ("mounting angles" if angles == "400,0" else "--second-camera: YAW,PITCH") in done.stderr
+    assert (
+        "mounting angles" if angles == "400,0" else f"--second-camera: '{angles}' cannot be taken: YAW,PITCH"
+    ) in done.stderr
     assert not list(tmp_path.iterdir())
 
 

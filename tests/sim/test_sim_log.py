@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import os
 import shutil
 import signal
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +19,7 @@ from sim_support import FEATURES, HANG_S, Camera, Log, fly, poses, read_log, run
 FILES = ("camera.ini", "frames.csv", "truth.csv", "truth_frames.csv")
 TRUCK = ("--obstacle", "truck", "--altitude", "5")
 # a flight far from the obstacle in which all six features stay in the frame, with many frames
-LONG = ("--obstacle", "building", "--alpha", "20", "--x0", "150", "--reach", "80", "--run", "40", "--fps", "50")
+LONG = ("--obstacle", "building", "--alpha", "20", "--x0", "-150", "--reach", "80", "--run", "40", "--fps", "50")
 
 
 def folder_bytes(folder: Path) -> dict[str, bytes]:
@@ -246,7 +248,7 @@ def test_a_seed_repeats_and_another_differs(goe_sim: Path, tmp_path: Path) -> No
 
 def test_the_truth_counts_from_the_first_image_that_shows_a_feature(goe_sim: Path, tmp_path: Path) -> None:
     """A camera that looks aside: the obstacle comes into view late, and T's origin is there."""
-    log = fly(goe_sim, tmp_path / "log", "--obstacle", "disc:6,30", "--x0", 40, "--z0", 200, "--run", 10,
+    log = fly(goe_sim, tmp_path / "log", "--obstacle", "disc:6,30", "--x0", -40, "--z0", 200, "--run", 10,
               "--yaw-camera", -60, "--course", 70)  # fmt: skip
     shown = np.isfinite([log.pixels(name, exact=False)[:, 0] for name in FEATURES]).any(0)
     begin = int(np.argmax(shown))
@@ -271,9 +273,10 @@ def test_paper_s_cases(goe_sim: Path, tmp_path: Path) -> None:
     for number in (1, 35, 90, 155):
         log = fly(goe_sim, tmp_path / "log", "--case", number)
         x0, altitude, alpha, glide, end, reach = lines[1 + number].split()[2:]
-        assert log.truth["x0_m"] == pytest.approx(-float(x0), abs=1e-9)
+        assert log.truth["x0_m"] == pytest.approx(float(x0), abs=1e-9)
         assert log.truth["z0_m"] == pytest.approx(17 * float(reach), abs=1e-9)
-        assert log.truth["orientation_deg"] == pytest.approx(float(alpha), abs=1e-9)
+        angle = np.nan if names[number] == "cylinder" else float(alpha)
+        assert log.truth["orientation_deg"] == pytest.approx(angle, abs=1e-9, nan_ok=True)
         assert log.frames["t_s"][-1] == float(end)
         assert log.exact["agl_m"][-1] == pytest.approx(
             float(altitude) + 17 * (float(reach) - float(end)) * np.tan(np.radians(float(glide))), abs=1e-3
@@ -328,7 +331,7 @@ def test_recorded_flight(goe_sim: Path, tmp_path: Path, swap: bool) -> None:
         "--obstacle",
         "truck",
         "--x0",
-        "12",
+        "-12",
         "--noise",
         "none",
         "--fps",
@@ -538,6 +541,7 @@ def test_out_is_needed(goe_sim: Path) -> None:
 
 def test_a_log_is_replaced_and_nothing_else_is(goe_sim: Path, tmp_path: Path) -> None:
     log = tmp_path / "log"
+    log.mkdir()  # an empty folder has nothing to lose
     run(goe_sim, *TRUCK, "--seed", "1", "--noise", "field", "--out", log)
     before = folder_bytes(log)
     run(goe_sim, *TRUCK, "--seed", "2", "--noise", "field", "--out", f"{log}/")
@@ -550,8 +554,55 @@ def test_a_log_is_replaced_and_nothing_else_is(goe_sim: Path, tmp_path: Path) ->
     plain.write_text("mine")
     assert "not a folder" in run(goe_sim, *TRUCK, "--out", plain, expect=2).stderr
     assert plain.read_text() == "mine"
-    run(goe_sim, *TRUCK, "--out", tmp_path / "no" / "such" / "folder", expect=2)
+    assert "Not a directory" in run(goe_sim, *TRUCK, "--out", plain / "log", expect=2).stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == ["log", "plain"]
+
+
+def test_folders_on_the_way_are_made(goe_sim: Path, tmp_path: Path) -> None:
+    run(goe_sim, *TRUCK, "--out", tmp_path / "no" / "such" / "folder")
+    assert set(folder_bytes(tmp_path / "no" / "such" / "folder")) == set(FILES)
+
+
+def change_a_digit(log: Path) -> None:
+    text = (log / "frames.csv").read_text()
+    (log / "frames.csv").write_text(text[:-3] + ("1" if text[-3] == "0" else "0") + text[-2:])
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        change_a_digit,
+        lambda log: (log / "camera.ini").write_text("# mine\n" + (log / "camera.ini").read_text()),
+        lambda log: (log / "camera.ini").write_text("camera.fx = 914\n"),
+        lambda log: (log / "camera.ini").write_text(""),
+        lambda log: (log / "truth.csv").unlink(),
+        lambda log: [path.unlink() for path in log.iterdir() if path.name != "frames.csv"],
+    ],
+    ids=["frames", "comment", "camera", "empty camera", "no truth", "frames alone"],
+)
+def test_a_log_of_others_is_not_replaced(goe_sim: Path, tmp_path: Path, change: Callable[[Path], object]) -> None:
+    """Neither one that another program wrote, nor one that was edited since."""
+    log = tmp_path / "log"
+    run(goe_sim, *TRUCK, "--out", log)
+    change(log)
+    before = folder_bytes(log)
+    assert "a log that goe_sim did not write" in run(goe_sim, *TRUCK, "--out", log, expect=2).stderr
+    assert folder_bytes(log) == before and [path.name for path in tmp_path.iterdir()] == ["log"]
+
+
+def test_what_is_round_has_neither_sides_nor_orientation(goe_sim: Path, tmp_path: Path) -> None:
+    run(goe_sim, "--obstacle", "disc:6,30", "--run", "1", "--out", tmp_path / "log")
+    with (tmp_path / "log" / "truth.csv").open(newline="") as file:
+        (row,) = csv.DictReader(file)
+    empty = {name for name, text in row.items() if text == ""}
+    assert empty == {"length_m", "heading_deg", "front_x0_m", "front_z0_m", "orientation_deg"}
+    assert (row["width_m"], row["height_m"], row["kind"]) == ("6", "30", "cylinder")
+
+
+@pytest.mark.parametrize("word", ["-h", "--help"])
+def test_help(goe_sim: Path, word: str) -> None:
+    done = run(goe_sim, word)
+    assert "--obstacle" in done.stdout and done.stderr == ""
 
 
 def written(folder: Path) -> int:

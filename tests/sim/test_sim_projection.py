@@ -33,7 +33,7 @@ BOXES = {
     "building, level, still air": ("--obstacle", "building", "--alpha", "20", "--wind", "none"),
     "building, one face": ("--obstacle", "building", "--alpha", "0", "--x0", "0"),
     "truck from above": ("--obstacle", "truck", "--altitude", "12", "--glide", "6", "--alpha", "45"),
-    "truck on the right": ("--obstacle", "truck", "--altitude", "9", "--x0", "-12.5", "--yaw-camera", "30"),
+    "truck on the right": ("--obstacle", "truck", "--altitude", "9", "--x0", "12.5", "--yaw-camera", "30"),
     "long truck, lens": ("--obstacle", "long-truck", "--altitude", "15", "--alpha", "70", *LENS),
     "long truck, mounting": ("--obstacle", "long-truck", "--altitude", "15", "--alpha", "-110", *MOUNT),
     "box, odd camera": (
@@ -60,7 +60,7 @@ BOXES = {
         "--altitude",
         "30",
         "--x0",
-        "45",
+        "-45",
         "--run",
         "26",
         "--yaw-camera",
@@ -77,7 +77,7 @@ CYLINDERS = {
     "chimney ahead": ("--obstacle", "cylinder", "--x0", "0", "--yaw-camera", "-5", "--run", "14"),
     "disc from above, lens": ("--obstacle", "disc:14,3", "--altitude", "25", *LENS),
     "disc, mounting": ("--obstacle", "disc:3,12", "--altitude", "20", "--course", "120", *MOUNT),
-    "tall, cut by the frame": ("--obstacle", "disc:30,150", "--x0", "50", "--altitude", "40"),
+    "tall, cut by the frame": ("--obstacle", "disc:30,150", "--x0", "-50", "--altitude", "40"),
 }
 
 
@@ -263,7 +263,7 @@ def test_lens_does_not_fold_the_outside_into_the_image(goe_sim: Path, tmp_path: 
         "--altitude",
         "5",
         "--x0",
-        "40",
+        "-40",
         "--noise",
         "none",
         "--k1",
@@ -289,7 +289,7 @@ def test_lens_does_not_fold_the_outside_into_the_image(goe_sim: Path, tmp_path: 
 @pytest.mark.parametrize("alpha", [-135.0, -90.0, -45.0, 0.0, 20.0, 90.0, 180.0])
 @pytest.mark.parametrize("x0", [-30.0, 30.0])
 def test_truth_says_where_the_obstacle_is(goe_sim: Path, tmp_path: Path, alpha: float, x0: float) -> None:
-    """x0 counts to the left; front reference: middle of the near edge across the length axis; orientation mod 180."""
+    """x0 counts to the right; front reference: middle of the near edge across the length axis; orientation mod 180."""
     log = fly(
         goe_sim,
         tmp_path / "log",
@@ -305,12 +305,12 @@ def test_truth_says_where_the_obstacle_is(goe_sim: Path, tmp_path: Path, alpha: 
         "2",
     )
     truth, course = log.truth, np.radians(70.0)
-    assert truth["x0_m"] == pytest.approx(-x0, abs=1e-9)
+    assert truth["x0_m"] == pytest.approx(x0, abs=1e-9)
     axis_pitch = np.array(poses(log.exact)[1][0].apply([2.0, 0.0, 0.0]))
     assert truth["z0_m"] == pytest.approx(17.0 * 20.0 - np.hypot(*axis_pitch[:2]), abs=1e-9)
     right, ahead = np.array([-np.sin(course), np.cos(course)]), np.array([np.cos(course), np.sin(course)])
     center = np.array([truth["center_n_m"], truth["center_e_m"]])
-    assert center == pytest.approx(340.0 * ahead - x0 * right, abs=1e-9)
+    assert center == pytest.approx(340.0 * ahead + x0 * right, abs=1e-9)
     assert -90 < truth["orientation_deg"] <= 90
     assert (truth["orientation_deg"] - alpha) % 180 == pytest.approx(0.0, abs=1e-9)
     front = np.array([truth["front_x0_m"], truth["front_z0_m"]]) - np.array([truth["x0_m"], truth["z0_m"]])

@@ -19,11 +19,11 @@ features = boxes
 noise = detector
 yaw-camera = 0
 """
-MAST = "[obstacle 1]\nwhat = disc:4,50\nx0 = -8\n"
-BUILDING = "[obstacle 2]\nwhat = building\nx0 = 60\nz0 = 320\nalpha = 20\n"
-TRUCK = "[obstacle 3]\nwhat = truck\nx0 = 5\nz0 = 250\n"
+MAST = "[obstacle 1]\nwhat = disc:4,50\nx0 = 8\n"
+BUILDING = "[obstacle 2]\nwhat = building\nx0 = -60\nz0 = 320\nalpha = 20\n"
+TRUCK = "[obstacle 3]\nwhat = truck\nx0 = -5\nz0 = 250\n"
 SAME = ("--speed", 18, "--run", 6, "--reach", 15, "--altitude", 30, "--features", "boxes", "--noise", "detector")
-ALONE = (*SAME, "--yaw-camera", 0, "--obstacle", "disc:4,50", "--x0", -8)
+ALONE = (*SAME, "--yaw-camera", 0, "--obstacle", "disc:4,50", "--x0", 8)
 POSE = ("t_s", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz")
 SIDES = ("box_left_px", "box_top_px", "box_right_px", "box_bottom_px")
 
@@ -65,7 +65,7 @@ def test_others_change_nothing_of_the_first(goe_sim: Path, tmp_path: Path) -> No
 def test_each_is_what_a_flight_past_it_alone_would_show(goe_sim: Path, tmp_path: Path) -> None:
     """Exact boxes of the second one. The path is straight: the same past any obstacle."""
     run(goe_sim, "--scenario", write(tmp_path, FLIGHT + MAST + BUILDING), "--out", tmp_path / "two")
-    alone = (*SAME, "--yaw-camera", 0, "--obstacle", "building", "--x0", 60, "--z0", 320, "--alpha", 20)
+    alone = (*SAME, "--yaw-camera", 0, "--obstacle", "building", "--x0", -60, "--z0", 320, "--alpha", 20)
     run(goe_sim, *alone, "--out", tmp_path / "one")
     seen, expected = rows(tmp_path / "two", "truth_frames.csv")[2], rows(tmp_path / "one", "truth_frames.csv")[1]
     assert np.allclose(numbers(seen, SIDES), numbers(expected, SIDES), rtol=0, atol=1e-9, equal_nan=True)
@@ -101,7 +101,12 @@ def test_the_flight_ends_at_any_of_them(goe_sim: Path, tmp_path: Path) -> None:
     ("old", "new", "fault"),
     [
         ("speed = 18", "sped = 18", "3: sped: unknown option; did you mean speed?"),
-        ("speed = 18", "speed = fast", "3: speed: invalid numeric value"),
+        ("speed = 18", "speed = fast", "3: speed: invalid numeric value 'fast'"),
+        ("speed = 18", "wind = storm", "3: wind: 'storm' cannot be taken: none, dryden:light or dryden:moderate"),
+        ("speed = 18", "speed = 88", "3: speed: the aircraft flies 12 to 28 m/s"),
+        ("speed = 18", "speed = 18\npixel-noise = -1", "4: pixel-noise: a noise figure must be 0 to 1e6"),
+        ("speed = 18", "speed = 18\nfy = 0", "4: fx, fy: the focal length must be 1 to 100000 px"),
+        ("x0 = 8", "x0 = 1e9", "12: x0: must lie within"),
         ("speed = 18", "speed", "3: a line is [section] or key = value"),
         ("speed = 18", "out = elsewhere", "3: out: belongs on the command line"),
         ("z0 = 320\n", "", "14: [obstacle 2]: z0 is missing"),
@@ -112,7 +117,7 @@ def test_the_flight_ends_at_any_of_them(goe_sim: Path, tmp_path: Path) -> None:
         ("[obstacle 2]", "[obstacle 4]", "14: what: obstacle 4 comes before obstacle 3"),
         ("[obstacle 2]", "[obstacle two]", "14: what: [obstacle two] is neither [flight] nor"),
         ("speed = 18", "speed =", "3: speed: no value"),
-        ("x0 = -8", "x0 =", "12: x0: no value"),
+        ("x0 = 8", "x0 =", "12: x0: no value"),
         ("what = disc:4,50", "what = castle", "11: what: 'castle' is not cylinder"),
         ("[obstacle 2]", "[obstacle 2", "13: a line is [section] or key = value"),
         ("alpha = 20", "z0 = 310", "17: z0: [obstacle 2] has it twice, first in line 16"),
@@ -129,6 +134,15 @@ def test_a_bad_file(goe_sim: Path, tmp_path: Path, old: str, new: str, fault: st
     done = run(goe_sim, "--scenario", file, "--out", tmp_path / "log", expect=2)
     assert done.stderr.startswith(f"goe_sim: {file}:{fault}"), done.stderr
     assert not (tmp_path / "log").exists()
+
+
+def test_a_bad_option_on_top_of_a_file_is_not_blamed_on_it(goe_sim: Path, tmp_path: Path) -> None:
+    file, out = write(tmp_path, FLIGHT + MAST), tmp_path / "log"
+    for words, fault in (
+        (("--speed", "88"), "goe_sim: cannot fly: speed: the aircraft flies 12 to 28 m/s\n"),
+        (("--noise=fields",), "goe_sim: --noise: 'fields' cannot be taken: none, rounding"),
+    ):
+        assert run(goe_sim, "--scenario", file, *words, "--out", out, expect=2).stderr.startswith(fault)
 
 
 def test_no_file(goe_sim: Path, tmp_path: Path) -> None:

@@ -97,7 +97,7 @@ function value(r, id) {
   const quantity = QUANTITIES.find((q) => q.id === id);
   const now = read(quantity, r);
   const words = (v) => (id === "side" ? side(v) : `${amount(v)} m`);
-  find(`${id}-value`).innerHTML = now ? `${words(now[0])} <small>± ${amount(2 * now[1])}</small>` : "–";
+  find(`${id}-value`).innerHTML = now ? `${words(now[0])} <small>± ${amount(now[1])}</small>` : "–";
   find(`${id}-truth`).textContent = now ? `truth ${words(now[2])}` : "";
   find(`${id}-value`).dataset.value = now ? now[0] : "";
   find(`${id}-value`).dataset.sigma = now ? now[1] : "";
@@ -114,8 +114,8 @@ function show() {
   find("order").dataset.at = at;
   find("width-title").textContent = isEdge(r) ? "Width, front edge" : "Width, across the view";
   find("turned").textContent = r.valid & HAS.orientation
-    ? `Turned ${amount(r.orientation_deg)}° ± ${amount(2 * r.orientation_sd_deg)} (truth ${amount(r.true_orientation_deg)}°)` +
-      (r.valid & HAS.length ? `, ${amount(r.length_m)} m ± ${amount(2 * r.length_sd_m)} deep (truth ${amount(r.true_length_m)} m).` : ".")
+    ? `Turned ${amount(r.orientation_deg)}° ± ${amount(r.orientation_sd_deg)} (truth ${amount(r.true_orientation_deg)}°)` +
+      (r.valid & HAS.length ? `, ${amount(r.length_m)} m ± ${amount(r.length_sd_m)} deep (truth ${amount(r.true_length_m)} m).` : ".")
     : "";
   find("time").value = at;
   find("time").setAttribute("aria-valuetext", `${r.time_s.toFixed(1)} seconds`);

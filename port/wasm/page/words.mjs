@@ -34,8 +34,8 @@ export function side(value_m) {
 
 /** How the flight will pass, after "in 8 s": "3.0 m beside it". */
 function passing(r) {
-  if (r.has_clearance && r.clearance_m > 0 && r.miss_m < 15) return `${amount(r.clearance_m)} m over its top (± ${amount(2 * r.clearance_sd_m)})`;
-  return r.miss_m > 0 ? `${amount(r.miss_m)} m beside it (± ${amount(2 * r.miss_sd_m)})` : "through it";
+  if (r.has_clearance && r.clearance_m > 0 && r.miss_m < 15) return `${amount(r.clearance_m)} m over its top (± ${amount(r.clearance_sd_m)})`;
+  return r.miss_m > 0 ? `${amount(r.miss_m)} m beside it (± ${amount(r.miss_sd_m)})` : "through it";
 }
 
 function when(r) {

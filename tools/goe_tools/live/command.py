@@ -23,8 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     if arguments.out.is_dir():
         raise ValueError(f"{arguments.out} is a folder: name a file")
-    if not arguments.out.parent.is_dir():
-        raise ValueError(f"there is no folder {arguments.out.parent}")
+    arguments.out.parent.mkdir(parents=True, exist_ok=True)
     with Console(stderr=True).status("building the modules"):
         modules = build(arguments.build.resolve())
     text = page(modules)

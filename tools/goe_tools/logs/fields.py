@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import csv
+import difflib
+import os
+import stat
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO
+
+from .progress import Progress
 
 INTEGER_MIN, INTEGER_MAX = -(2**63), 2**63 - 1  # what the programs' reader takes
 
@@ -26,6 +32,11 @@ class LogError(ValueError):
         self.path, self.line, self.column, self.reason = Path(path), line, column, reason
         where = f"{path}:{line}: " if line else f"{path}: "
         super().__init__(where + (f"{column}: " if column else "") + reason)
+
+
+def warn(path: Path, text: str, line: int = 0) -> None:
+    """What looks wrong in a file, but is no reason to refuse it."""
+    print(f"warning: {path}:{f'{line}:' if line else ''} {text}", file=sys.stderr)
 
 
 def read_number(text: str, path: Path, line: int, column: str) -> float:
@@ -71,10 +82,28 @@ def read_text(path: Path, most_bytes: int = TEXT_BYTES_MAX) -> str:
         raise LogError(path, 0, "", f"not UTF-8 text: {error.reason}") from None
 
 
+DELIMITERS = {";": "semicolons", "\t": "tabs", "|": "bars"}
+ALIKE = 0.75  # of difflib
+
+
+def _nearest(name: str, names: Sequence[str]) -> str:
+    """The one of some names that another was probably meant to be; empty: none."""
+    return next(iter(difflib.get_close_matches(name, names, 1, ALIKE)), "")
+
+
+def _missing(header: list[str], name: str, known: Sequence[str]) -> str:
+    """What is to be said of a column that is not there."""
+    for delimiter, plural in DELIMITERS.items():
+        if len(header) == 1 and delimiter in header[0]:
+            return f"column is missing: {plural} separate the columns; there must be commas, and points in the numbers"
+    instead = _nearest(name, [other for other in header if other not in known])
+    return f"column is missing; is '{instead}' meant to be it?" if instead else "column is missing"
+
+
 def _check_header(header: list[str], path: Path, line: int, required: Sequence[str], known: Sequence[str]) -> None:
     for name in required:
         if name not in header:
-            raise LogError(path, line, name, "column is missing")
+            raise LogError(path, line, name, _missing(header, name, known))
     for name in known:
         if header.count(name) > 1:
             raise LogError(path, line, name, "column is given twice")
@@ -118,7 +147,19 @@ class _Lines:
         return text.replace("\r", " ")  # a blank, as the programs have it
 
 
+PROGRESS_ROWS = 4096  # from one look at the clock to the next
+
+
 def _records_of(path: Path, file: IO[bytes]) -> Iterator[tuple[int, list[str]]]:
+    status = os.fstat(file.fileno())
+    progress = Progress(str(path), status.st_size if stat.S_ISREG(status.st_mode) else 0)
+    try:
+        yield from _rows_of(path, file, progress)
+    finally:
+        progress.end()
+
+
+def _rows_of(path: Path, file: IO[bytes], progress: Progress) -> Iterator[tuple[int, list[str]]]:
     lines, rows = _Lines(path, file), 0
     reader = csv.reader(lines, strict=True, skipinitialspace=True)
     while True:
@@ -137,6 +178,8 @@ def _records_of(path: Path, file: IO[bytes]) -> Iterator[tuple[int, list[str]]]:
         if rows == 0 and len(fields) > COLUMNS_MAX:
             raise LogError(path, lines.first, "", f"more than {COLUMNS_MAX} columns")
         rows += 1
+        if rows % PROGRESS_ROWS == 0:
+            progress.show(lines.bytes, f", {rows:,} rows")
         yield lines.first, fields
         if not lines.ended:
             raise LogError(path, lines.first, "", "the file ends without a line break: is it cut off here?")
@@ -152,14 +195,14 @@ def read_records(path: Path) -> Iterator[tuple[int, list[str]]]:
         raise LogError(path, 0, "", error.strerror or str(error)) from None
 
 
-def read_rows(
+def read_fields(
     path: Path,
     required: Sequence[str],
     known: Sequence[str],
     check: Callable[[list[str], Path, int], None] | None = None,
-) -> Iterator[tuple[int, Row]]:
-    """Yields (line number, column -> text) of a CSV file with a header line. ``known``: columns that may not appear
-    twice; ``check``: raises a LogError if the header line is none."""
+) -> Iterator[tuple[int, list[str], list[str]]]:
+    """Yields (line number, header, fields) of each row of a CSV file with a header line. ``known``: columns that may
+    not appear twice; ``check``: raises a LogError if the header line is none."""
     header: list[str] | None = None
     for line, fields in read_records(path):
         if header is None:
@@ -171,6 +214,26 @@ def read_rows(
             column = header[min(len(fields), len(header) - 1)]
             raise LogError(path, line, column, f"{len(fields)} fields under {len(header)} columns")
         else:
-            yield line, dict(zip(header, fields))
+            yield line, header, fields
     if header is None:
         raise LogError(path, 0, "", "empty: no header line")
+
+
+def read_rows(
+    path: Path,
+    required: Sequence[str],
+    known: Sequence[str],
+    check: Callable[[list[str], Path, int], None] | None = None,
+) -> Iterator[tuple[int, Row]]:
+    """The same as (line number, column -> text)."""
+    for line, header, fields in read_fields(path, required, known, check):
+        yield line, dict(zip(header, fields))
+
+
+def warn_of_misspelt(header: list[str], path: Path, line: int, known: Sequence[str]) -> None:
+    """A column that is ignored, but named nearly as one that is not there."""
+    absent = [name for name in known if name not in header]
+    for name in header:
+        meant = _nearest(name, absent) if name not in known else ""
+        if meant:
+            warn(path, f"{name}: unknown column, ignored; did you mean {meant}?", line)

@@ -8,14 +8,32 @@ An empty field means "not measured": None here. Errors carry file, line and colu
 from __future__ import annotations
 
 import csv
-import dataclasses
+import gc
 import math
-from collections.abc import Sequence
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from operator import itemgetter
 from pathlib import Path
 from typing import Optional
 
-from .fields import LogError, Row, read_integer, read_number, read_optional, read_rows, read_text
+from .camera_file import CAMERA_FIELDS as CAMERA_FIELDS
+from .camera_file import CAMERA_NAMES, Camera, read_cameras, shortest, write_camera
+from .camera_file import CAMERA_RANGES as CAMERA_RANGES
+from .camera_file import read_camera as read_camera
+from .fields import (
+    LogError,
+    Row,
+    read_fields,
+    read_integer,
+    read_number,
+    read_optional,
+    read_rows,
+    warn,
+    warn_of_misspelt,
+)
 from .whole_file import replacing_all
 
 Pixel = tuple[float, float]
@@ -45,46 +63,12 @@ TRUTH_COLUMNS = (
 )
 
 
-@dataclass
-class Camera:
-    """One camera of camera.ini. ``heading_deg`` is the heading of T's Z axis, clockwise from north, the same for
-    each camera; None: auto."""
-
-    width: float
-    height: float
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    k1: float = 0.0
-    k2: float = 0.0
-    p1: float = 0.0
-    p2: float = 0.0
-    k3: float = 0.0
-    mount_roll_deg: float = 0.0
-    mount_pitch_deg: float = 0.0
-    mount_yaw_deg: float = 0.0
-    offset_x_m: float = 0.0
-    offset_y_m: float = 0.0
-    offset_z_m: float = 0.0
-    heading_deg: float | None = None
+HINT_ROWS_MAX = 20_000  # of a longer log its beginning says enough
+LOG_NAMES = ("camera.ini", "frames.csv", "truth.csv", "truth_frames.csv")
+SLOTS = {"slots": True} if sys.version_info >= (3, 10) else {}  # a long log has a million of them
 
 
-CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.name != "heading_deg")
-REQUIRED_CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.default is dataclasses.MISSING)
-HEADING_KEY = "trajectory.heading_deg"
-SIZE_RANGE, PIXEL_RANGE, LENS_RANGE, ANGLE_RANGE = (1.0, 1e5), (-1e5, 1e5), (-100.0, 100.0), (-360.0, 360.0)
-CAMERA_RANGES = {  # as the library has them; an image has at least a pixel
-    **dict.fromkeys(("width", "height", "fx", "fy"), SIZE_RANGE),
-    **dict.fromkeys(("cx", "cy"), PIXEL_RANGE),
-    **dict.fromkeys(("k1", "k2", "p1", "p2", "k3"), LENS_RANGE),
-    **dict.fromkeys(("mount_roll_deg", "mount_pitch_deg", "mount_yaw_deg", "heading_deg"), ANGLE_RANGE),
-    **dict.fromkeys(("offset_x_m", "offset_y_m", "offset_z_m"), (-1e4, 1e4)),
-}
-CAMERA_NAMES = ("camera", "camera2")  # their keys begin so
-
-
-@dataclass
+@dataclass(**SLOTS)
 class Frame:
     """One row of frames.csv: one obstacle in one image."""
 
@@ -154,59 +138,6 @@ class ObservationLog:
 # ----------------------------------------------------------------------------------------------------------- reading
 
 
-def _key_of(key: str) -> tuple[str, str]:
-    """The camera's name and the field of a key; empty if there is none."""
-    if key == HEADING_KEY:
-        return CAMERA_NAMES[0], "heading_deg"
-    owner, _, name = key.partition(".")
-    return (owner, name) if owner in CAMERA_NAMES and name in CAMERA_FIELDS else ("", "")
-
-
-def read_cameras(path: Path) -> list[Camera]:
-    """Reads camera.ini, one camera or two; an unknown, doubled, missing or non-numeric key is a LogError."""
-    path = Path(path)
-    found: dict[str, dict[str, float | None]] = {CAMERA_NAMES[0]: {}}
-    for line, raw in enumerate(read_text(path).split("\n"), start=1):
-        if "\0" in raw:
-            raise LogError(path, line, "", "the line holds a NUL byte")
-        text = raw.split("#", 1)[0].strip()
-        if not text:
-            continue
-        key, equals, value = (part.strip() for part in text.partition("="))
-        if not equals:
-            raise LogError(path, line, "", f"'{text}' is not of the form key = value")
-        owner, name = _key_of(key)
-        if not owner:
-            raise LogError(path, line, key, "unknown key")
-        values = found.setdefault(owner, {})
-        if name in values:
-            raise LogError(path, line, key, "given twice")
-        if key == HEADING_KEY and value == "auto":
-            values[name] = None
-            continue
-        number = read_number(value, path, line, key)
-        if not math.isfinite(number):
-            raise LogError(path, line, key, f"'{value}' is not finite")
-        low, high = CAMERA_RANGES[name]
-        if not low <= number <= high:
-            raise LogError(path, line, key, f"'{value}' is out of range: {low:g} to {high:g}")
-        values[name] = number
-    for owner, values in found.items():
-        for name in REQUIRED_CAMERA_FIELDS:
-            if name not in values:
-                raise LogError(path, 0, f"{owner}.{name}", "missing")
-    heading = found[CAMERA_NAMES[0]].get("heading_deg")
-    return [Camera(**values | {"heading_deg": heading}) for values in found.values()]  # type: ignore[arg-type]
-
-
-def read_camera(path: Path) -> Camera:
-    """Reads the camera.ini of one camera; a second one is a LogError, too."""
-    cameras = read_cameras(path)
-    if len(cameras) > 1:
-        raise LogError(path, 0, CAMERA_NAMES[1], "a second camera, of a log that must have one alone")
-    return cameras[0]
-
-
 def check_pairs(header: list[str], path: Path, line: int) -> None:
     """An image point needs both its columns, and the jump of a reset the count."""
     for name in FEATURES:
@@ -252,25 +183,102 @@ def read_features(row: Row, path: Path, line: int, cameras: int) -> dict[str, ob
     }
 
 
+NUMBER_COLUMNS = ("t_s", *POSE_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, *JUMP_COLUMNS)
+INTEGER_COLUMNS = ("id", RESET_COLUMN, CAMERA_COLUMN)
+UNUSUAL = re.compile(r"[^-+.0-9eE,]").search  # words like nan, and whatever Python takes for a number and others do not
+PAIRS = range(9, 9 + len(POINT_COLUMNS), 2)  # in a row's numbers
+BOX, JUMP = slice(PAIRS.stop, PAIRS.stop + 4), slice(PAIRS.stop + 4, PAIRS.stop + 7)
+ID_DIGITS_MAX = 18  # of 64 bits in any case
+
+
+def _plain_frame(texts: Sequence[str], integers: Sequence[str], cameras: int) -> Frame | None:
+    """A row's numbers in the order of the columns above. None: there is something in it that takes a closer look."""
+    if UNUSUAL(",".join(texts)) or "" in texts[:8]:
+        return None
+    try:
+        row = [float(text) if text else None for text in texts]
+        key, resets, camera = (int(text) if len(text) <= ID_DIGITS_MAX and text.isdigit() else -1 for text in integers)
+    except ValueError:
+        return None
+    if key < 0 or (resets < 0 and integers[1]) or (camera < 0 and integers[2]) or camera >= cameras:
+        return None
+    points = [None if row[i] is None or row[i + 1] is None else (row[i], row[i + 1]) for i in PAIRS]
+    box, jump = tuple(row[BOX]), tuple(row[JUMP])
+    return Frame(
+        row[0], key, tuple(row[1:4]), tuple(row[4:8]), row[8], *points,  # type: ignore[arg-type]
+        None if box == NO_BOX else box, max(camera, 0), max(resets, 0),  # type: ignore[arg-type]
+        None if None in jump else jump,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+NO_BOX = (None,) * len(BOX_COLUMNS)
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Rows refer to nothing that refers to them: looking for such circles among millions takes a third of the time."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+def _frame(row: Row, path: Path, line: int, cameras: int) -> Frame:
+    pose = [read_optional(row, path, line, column) for column in POSE_COLUMNS]
+    n, e, d, qw, qx, qy, qz = (math.nan if value is None else value for value in pose)
+    return Frame(
+        t_s=read_number(row["t_s"], path, line, "t_s"),
+        id=read_integer(row["id"], path, line, "id"),
+        position_m=(n, e, d),
+        attitude=(qw, qx, qy, qz),
+        agl_m=read_optional(row, path, line, "agl_m"),
+        **read_features(row, path, line, cameras),  # type: ignore[arg-type]
+        reset_count=read_integer(row[RESET_COLUMN], path, line, RESET_COLUMN) if row.get(RESET_COLUMN) else 0,
+        reset_delta_m=_jump(row, path, line),
+    )
+
+
+def _is_broken(frame: Frame) -> bool:
+    """Without a finite pose, or with a number that is not finite."""
+    numbers = [frame.t_s, *frame.position_m, *frame.attitude, 0.0 if frame.agl_m is None else frame.agl_m]
+    for feature in FEATURES:
+        numbers += getattr(frame, feature) or ()
+    numbers += [side for side in (*(frame.box_px or ()), *(frame.reset_delta_m or ())) if side is not None]
+    return not all(map(math.isfinite, numbers))
+
+
+@_no_collection()
 def read_frames(path: Path, cameras: int = len(CAMERA_NAMES)) -> list[Frame]:
-    """Reads frames.csv of so many cameras. An empty pose field becomes NaN: a bad measurement, no bad input."""
+    """Reads frames.csv of so many cameras. An empty pose field becomes NaN: a bad measurement, no bad input; a warning
+    says how many rows have one."""
     path = Path(path)
-    frames = []
-    for line, row in read_rows(path, REQUIRED_COLUMNS, FRAME_COLUMNS, check_pairs):
-        pose = [read_optional(row, path, line, column) for column in POSE_COLUMNS]
-        n, e, d, qw, qx, qy, qz = (math.nan if value is None else value for value in pose)
-        frames.append(
-            Frame(
-                t_s=read_number(row["t_s"], path, line, "t_s"),
-                id=read_integer(row["id"], path, line, "id"),
-                position_m=(n, e, d),
-                attitude=(qw, qx, qy, qz),
-                agl_m=read_optional(row, path, line, "agl_m"),
-                **read_features(row, path, line, cameras),  # type: ignore[arg-type]
-                reset_count=read_integer(row[RESET_COLUMN], path, line, RESET_COLUMN) if row.get(RESET_COLUMN) else 0,
-                reset_delta_m=_jump(row, path, line),
+    frames: list[Frame] = []
+    broken, first = 0, 0
+
+    def check(header: list[str], path: Path, line: int) -> None:
+        check_pairs(header, path, line)
+        warn_of_misspelt(header, path, line, FRAME_COLUMNS)
+
+    for line, header, fields in read_fields(path, REQUIRED_COLUMNS, FRAME_COLUMNS, check):
+        if not frames:
+            place = {name: i for i, name in enumerate(header)}
+            numbers, integers = (
+                itemgetter(*(place.get(name, len(header)) for name in names))
+                for names in (NUMBER_COLUMNS, INTEGER_COLUMNS)
             )
-        )
+        fields.append("")  # of the columns that are not there
+        frame = _plain_frame(numbers(fields), integers(fields), cameras)
+        if frame is None:
+            frame = _frame(dict(zip(header, fields)), path, line, cameras)
+            if _is_broken(frame):
+                broken, first = broken + 1, first or line
+        frames.append(frame)
+    if broken:
+        rows = "1 row" if broken == 1 else f"{broken} rows"
+        warn(path, f"{rows} without a finite pose or with a number that is not finite, the first in line {first}")
     return frames
 
 
@@ -303,36 +311,45 @@ def read_truth(path: Path) -> dict[int, Truth]:
     return result
 
 
+def log_folder(path: Path) -> Path:
+    """The folder of a log; of a file of it, too, which a shell's completion easily names."""
+    path = Path(path)
+    if path.is_file():
+        reason = "is a file; name its folder"
+        raise LogError(path, 0, "", f"{reason}, {path.parent}" if path.name in LOG_NAMES else f"{reason}")
+    if not path.is_dir():
+        raise LogError(path, 0, "", "no such folder")
+    return path
+
+
+def _hint(path: Path, frames: Sequence[Frame]) -> None:
+    import numpy as np  # here: the command line starts without it
+
+    from .hints import hints_of
+
+    pose = np.array([(frame.t_s, *frame.position_m, *frame.attitude) for frame in frames], float).reshape(-1, 8)
+    agl = np.array([math.nan if frame.agl_m is None else frame.agl_m for frame in frames], float)
+    given = np.array([frame.agl_m is not None for frame in frames], bool)
+    for hint in hints_of(pose, agl, given):
+        warn(path, hint)
+
+
 def read_log(folder: Path) -> ObservationLog:
-    """Reads a whole log; truth.csv may be absent."""
-    folder = Path(folder)
-    if not folder.is_dir():
-        raise LogError(folder, 0, "", "no such folder")
+    """Reads a whole log; truth.csv may be absent. Warnings say what looks wrong in it."""
+    folder = log_folder(folder)
     truth = folder / "truth.csv"
     cameras = read_cameras(folder / "camera.ini")
+    frames = read_frames(folder / "frames.csv", len(cameras))
+    _hint(folder / "frames.csv", frames[:HINT_ROWS_MAX])
     return ObservationLog(
         camera=cameras[0],
-        frames=read_frames(folder / "frames.csv", len(cameras)),
+        frames=frames,
         truth=read_truth(truth) if truth.exists() else {},
         camera2=cameras[1] if len(cameras) > 1 else None,
     )
 
 
 # ----------------------------------------------------------------------------------------------------------- writing
-
-
-def _text(value: float | None) -> str:
-    """The shortest text that reads back as the same double, so that a file adds no noise; empty for None."""
-    return "" if value is None else repr(float(value))
-
-
-def write_camera(path: Path, camera: Camera, comment: str = "", camera2: Camera | None = None) -> None:
-    lines = [f"# {line}" for line in comment.splitlines()]
-    for owner, described in zip(CAMERA_NAMES, (camera, camera2)):
-        if described is not None:
-            lines += [f"{owner}.{name} = {_text(getattr(described, name))}" for name in CAMERA_FIELDS]
-    lines.append(f"{HEADING_KEY} = {'auto' if camera.heading_deg is None else _text(camera.heading_deg)}")
-    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def write_frames(path: Path, frames: Sequence[Frame]) -> None:
@@ -352,7 +369,7 @@ def write_frames(path: Path, frames: Sequence[Frame]) -> None:
             numbers = [*frame.position_m, frame.agl_m, *frame.attitude, *(value for pixel in pixels for value in pixel)]
             numbers += (frame.box_px or (None,) * len(BOX_COLUMNS)) if boxes else ()
             numbers += (frame.reset_delta_m or (None,) * len(JUMP_COLUMNS)) if resets else ()
-            row = [_text(frame.t_s), frame.id, *(_text(number) for number in numbers)]
+            row = [shortest(frame.t_s), frame.id, *(shortest(number) for number in numbers)]
             row += [frame.reset_count] if resets else []
             row += [frame.camera] if numbered else []
             writer.writerow(row)
@@ -364,7 +381,7 @@ def write_truth(path: Path, truth: dict[int, Truth]) -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*TRUTH_COLUMNS, *extra])
         for entry in truth.values():
-            numbers = [_text(getattr(entry, column)) for column in TRUTH_COLUMNS[2:]]
+            numbers = [shortest(getattr(entry, column)) for column in TRUTH_COLUMNS[2:]]
             writer.writerow([entry.id, int(entry.static), *numbers, *(entry.extra.get(name, "") for name in extra)])
 
 

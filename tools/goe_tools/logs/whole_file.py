@@ -42,6 +42,7 @@ def _placed(path: Path) -> Iterator[Path]:
         yield path
         return
     target = path.resolve()
+    target.parent.mkdir(parents=True, exist_ok=True)
     descriptor, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
     part = Path(name)
     try:
@@ -56,7 +57,8 @@ def _placed(path: Path) -> Iterator[Path]:
 @contextmanager
 def replacing(path: Path, inputs: Iterable[Path | None] = ()) -> Iterator[Path]:
     """Where to write what is to stand in ``path`` once all is written; what is there stays until then, and if writing
-    fails or is interrupted. A symbolic link stays one; one that leads nowhere is refused, and so is an input."""
+    fails or is interrupted. A symbolic link stays one; one that leads nowhere is refused, and so is an input. Folders
+    on the way are made."""
     path = Path(path)
     refuse_inputs(path, inputs)
     try:

@@ -75,7 +75,7 @@ def write(folder: Path, flown: Flown) -> None:
 
 def check_out(folder: Path) -> None:
     """Said before the flights, not after."""
-    place = folder if folder.exists() else folder.parent
+    place = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     if not place.is_dir() or not os.access(place, os.W_OK | os.X_OK):
         raise ValueError(f"{folder}: cannot be written")
 

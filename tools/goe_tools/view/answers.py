@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import library
 from ..logs.obslog import FEATURES, TIME_LIMIT_US, Camera, Frame, ObservationLog
+from ..logs.progress import Progress
 from .motion import Motion
 
 MODEL_NAMES = {0: "none", 2: "disc", 3: "line", 4: "box", 5: "prism"}
@@ -178,7 +179,10 @@ def answers_of(log: ObservationLog, motion: Motion, options: Options) -> list[An
     for i, frame in enumerate(log.frames):
         rows.setdefault(frame.id, []).append(i)
     result = []
+    progress, done = Progress("replay", len(log.frames)), 0
     for key, indices in rows.items():
+        progress.show(done)
+        done += len(indices)
         frames, moment = [log.frames[i] for i in indices], motion.of_frame[indices]
         with np.errstate(over="ignore", invalid="ignore"):  # what float32 cannot hold is not finite there, and refused
             track = library.run(_images(frames, motion.velocity_m_s[moment], options), settings)
@@ -190,4 +194,5 @@ def answers_of(log: ObservationLog, motion: Motion, options: Options) -> list[An
             _taken_cameras(motion, moment, track.status), column, _covariance(track, column),
             track.hazard["act"][:, 0],
         ))  # fmt: skip
+    progress.end()
     return result

@@ -99,18 +99,22 @@ def read(arguments: argparse.Namespace) -> ObservationLog:
 
 
 def write(path: Path, content: bytes, arguments: argparse.Namespace) -> None:
-    """Whole or not at all, into a folder that is made."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise LogError(path, 0, "", error.strerror or str(error)) from None
+    """Whole or not at all."""
     write_whole(path, content, [*log_files(arguments.log), arguments.truth])
     print(f"{path}: {len(content) / 1e3:,.0f} kB")
 
 
+def moment_of(story: Story, time_s: float) -> int:
+    """The moment at or last before a time that the log has."""
+    first_s, last_s = float(story.time_s[0]), float(story.time_s[-1])
+    if not first_s <= time_s <= last_s:
+        raise ValueError(f"--at: {time_s:g} s is not in the log, which goes from {first_s:g} to {last_s:g} s")
+    return story.at(time_s)
+
+
 def write_outputs(story: Story, arguments: argparse.Namespace) -> None:
     chosen = story.chosen(arguments.id)
-    first = story.first_look(chosen) if arguments.at is None else story.at(arguments.at)
+    first = story.first_look(chosen) if arguments.at is None else moment_of(story, arguments.at)
     page = arguments.out if arguments.out or arguments.png or arguments.svg else DEFAULT_PAGE
     if page:
         from .page import render

@@ -1,6 +1,6 @@
 """One image's answer as text: what a pilot reads first, the same in the page, in the picture and for a screen reader.
 
-Every "±" is two sigma. Lengths in metres.
+Every "±" is one sigma. Lengths in metres.
 """
 
 from __future__ import annotations
@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 from .answers import Answers
-from .outline import SIGMAS
 
 NOTHING = "–"
 OLD_S = 0.05  # an answer of less age is of now
@@ -58,8 +57,8 @@ def measured(value: float, sigma: float, unit: str = "m", figures: int = 2) -> s
     space = "" if unit in ("°", "") else "\u00a0"
     if not math.isfinite(sigma):
         return f"{value:.{1 if abs(value) >= 10.0 else 2}f}{space}{unit}".replace("-", "−")
-    places = decimals(SIGMAS * sigma, figures)
-    return f"{value:.{places}f}\u00a0±\u00a0{SIGMAS * sigma:.{places}f}{space}{unit}".replace("-", "−")
+    places = decimals(sigma, figures)
+    return f"{value:.{places}f}\u00a0±\u00a0{sigma:.{places}f}{space}{unit}".replace("-", "−")
 
 
 def _value(answers: Answers, k: int, name: str) -> tuple[float, float]:

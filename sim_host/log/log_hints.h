@@ -1,0 +1,31 @@
+/* What looks wrong in a log although it can be read: other units, other signs, another order of the quaternion. Nothing is refused for
+ * it: a hint says what was seen and what to do. SPDX-License-Identifier: MIT */
+#ifndef LOG_HINTS_H
+#define LOG_HINTS_H
+
+#include <stdio.h>
+
+#include "frame.h"
+
+/* All zero at first. Sums over the images, one for each time. */
+typedef struct {
+    unsigned long broken,
+        broken_line; /* rows with a number that is not finite, or a pose that is not known; the first's line */
+    unsigned long images;
+    double first_s, last_s, last[3];
+    double way_m; /* flown, level */
+    double anchor[2];
+    unsigned long moves, odd,
+        odd_as_xyzw; /* of a metre; against the nose or tilted; the same with the quaternion's parts moved */
+    unsigned long heights, below; /* images with agl_m; images without it that are below the ground */
+    double up[2], agl[2], up_agl; /* sums of -d_m and agl_m from the first, of their squares and of their products */
+    double first_up, first_agl;
+    double ratio[2]; /* of agl_m to -d_m, least and greatest */
+} log_hints_t;
+
+void log_hints_add(log_hints_t *hints, const frame_t *frame);
+
+/* A line for each hint: "program: warning: file: ...". */
+void log_hints_print(const log_hints_t *hints, const char *program, const char *file, FILE *stream);
+
+#endif

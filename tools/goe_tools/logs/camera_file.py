@@ -1,0 +1,116 @@
+"""camera.ini of an observation log: one camera or two. Errors carry file and line: LogError."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from .fields import LogError, read_number, read_text
+
+
+@dataclass
+class Camera:
+    """One camera of camera.ini. ``heading_deg`` is the heading of T's Z axis, clockwise from north, the same for
+    each camera; None: auto."""
+
+    width: float
+    height: float
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    k1: float = 0.0
+    k2: float = 0.0
+    p1: float = 0.0
+    p2: float = 0.0
+    k3: float = 0.0
+    mount_roll_deg: float = 0.0
+    mount_pitch_deg: float = 0.0
+    mount_yaw_deg: float = 0.0
+    offset_x_m: float = 0.0
+    offset_y_m: float = 0.0
+    offset_z_m: float = 0.0
+    heading_deg: float | None = None
+
+
+CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.name != "heading_deg")
+REQUIRED_CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.default is dataclasses.MISSING)
+HEADING_KEY = "trajectory.heading_deg"
+SIZE_RANGE, PIXEL_RANGE, LENS_RANGE, ANGLE_RANGE = (1.0, 1e5), (-1e5, 1e5), (-100.0, 100.0), (-360.0, 360.0)
+CAMERA_RANGES = {  # as the library has them; an image has at least a pixel
+    **dict.fromkeys(("width", "height", "fx", "fy"), SIZE_RANGE),
+    **dict.fromkeys(("cx", "cy"), PIXEL_RANGE),
+    **dict.fromkeys(("k1", "k2", "p1", "p2", "k3"), LENS_RANGE),
+    **dict.fromkeys(("mount_roll_deg", "mount_pitch_deg", "mount_yaw_deg", "heading_deg"), ANGLE_RANGE),
+    **dict.fromkeys(("offset_x_m", "offset_y_m", "offset_z_m"), (-1e4, 1e4)),
+}
+CAMERA_NAMES = ("camera", "camera2")  # their keys begin so
+
+
+def shortest(value: float | None) -> str:
+    """The shortest text that reads back as the same double, so that a file adds no noise; empty for None."""
+    return "" if value is None else repr(float(value))
+
+
+def _key_of(key: str) -> tuple[str, str]:
+    """The camera's name and the field of a key; empty if there is none."""
+    if key == HEADING_KEY:
+        return CAMERA_NAMES[0], "heading_deg"
+    owner, _, name = key.partition(".")
+    return (owner, name) if owner in CAMERA_NAMES and name in CAMERA_FIELDS else ("", "")
+
+
+def read_cameras(path: Path) -> list[Camera]:
+    """Reads camera.ini, one camera or two; an unknown, doubled, missing or non-numeric key is a LogError."""
+    path = Path(path)
+    found: dict[str, dict[str, float | None]] = {CAMERA_NAMES[0]: {}}
+    for line, raw in enumerate(read_text(path).split("\n"), start=1):
+        if "\0" in raw:
+            raise LogError(path, line, "", "the line holds a NUL byte")
+        text = raw.split("#", 1)[0].strip()
+        if not text:
+            continue
+        key, equals, value = (part.strip() for part in text.partition("="))
+        if not equals:
+            raise LogError(path, line, "", f"'{text}' is not of the form key = value")
+        owner, name = _key_of(key)
+        if not owner:
+            raise LogError(path, line, key, "unknown key")
+        values = found.setdefault(owner, {})
+        if name in values:
+            raise LogError(path, line, key, "given twice")
+        if key == HEADING_KEY and value == "auto":
+            values[name] = None
+            continue
+        number = read_number(value, path, line, key)
+        if not math.isfinite(number):
+            raise LogError(path, line, key, f"'{value}' is not finite")
+        low, high = CAMERA_RANGES[name]
+        if not low <= number <= high:
+            raise LogError(path, line, key, f"'{value}' is out of range: {low:g} to {high:g}")
+        values[name] = number
+    for owner, values in found.items():
+        for name in REQUIRED_CAMERA_FIELDS:
+            if name not in values:
+                raise LogError(path, 0, f"{owner}.{name}", "missing")
+    heading = found[CAMERA_NAMES[0]].get("heading_deg")
+    return [Camera(**values | {"heading_deg": heading}) for values in found.values()]  # type: ignore[arg-type]
+
+
+def read_camera(path: Path) -> Camera:
+    """Reads the camera.ini of one camera; a second one is a LogError, too."""
+    cameras = read_cameras(path)
+    if len(cameras) > 1:
+        raise LogError(path, 0, CAMERA_NAMES[1], "a second camera, of a log that must have one alone")
+    return cameras[0]
+
+
+def write_camera(path: Path, camera: Camera, comment: str = "", camera2: Camera | None = None) -> None:
+    lines = [f"# {line}" for line in comment.splitlines()]
+    for owner, described in zip(CAMERA_NAMES, (camera, camera2)):
+        if described is not None:
+            lines += [f"{owner}.{name} = {shortest(getattr(described, name))}" for name in CAMERA_FIELDS]
+    lines.append(f"{HEADING_KEY} = {'auto' if camera.heading_deg is None else shortest(camera.heading_deg)}")
+    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
