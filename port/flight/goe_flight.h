@@ -28,8 +28,8 @@
  *             silenced. What else is kept here (poses, clocks, places, the order that stands) is not sealed.
  * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 44,700 for each obstacle in it, an assessment
  *             28,700 with one obstacle, 23,200 for each further one with a position and, while a hazard is answered, the ways that
- *             are looked at: at most 3 times 4 + 4 GOE_FLIGHT_SLOTS of them, each against every obstacle; goe_flight_obstacle() 640,
- *             goe_flight_sectors() 6,600, goe_flight_init() 12,360 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
+ *             are looked at: at most 3 times 4 + 4 GOE_FLIGHT_SLOTS of them, each against every obstacle; goe_flight_obstacle() 980,
+ *             goe_flight_sectors() 6,600, goe_flight_init() 12,400 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changed nothing but counters.
  */
 #ifndef GOE_FLIGHT_H
