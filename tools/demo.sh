@@ -32,7 +32,7 @@ echo
 .venv/bin/python -m goe_tools view tests/data/corner --out build/view.html
 recorded=tests/evidence/goals.json # a release's
 goals=()
-[ ! -e $recorded ] || goals=(--goals $recorded)
+[ ! -e $recorded ] || goals=(--goals "$recorded")
 .venv/bin/python -m goe_tools report $campaign --table --out build/report.html --avoid $orders "${goals[@]}" \
     --approach tests/data/corner --rare tests/data/rare_events.json --summary
 echo
