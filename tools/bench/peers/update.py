@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from .build import (
     FLAG_SETS,
+    LIBRARY,
     PEERS,
     ROOT,
     Builder,
@@ -223,7 +224,7 @@ def make_groups(recorded: NDArray[np.float32], most: int) -> list[Group]:
 
 def update_peers(others: Others) -> list[Peer]:
     """Ours are first."""
-    library, include = library_sources(), (*library_includes(), TEN_STATES)
+    library, include = (LIBRARY / "refined" / "goe_srif.c",), (*library_includes(), TEN_STATES)
     peers: list[Peer] = []
     kinds = ((OURS, "Eigen HouseholderQR", "root"), (OURS_INVERSE, "Eigen HouseholderQR and inverse", "inverse"))
     defines = [(f"-DWITH_INVERSE={number}",) for number in range(len(kinds))]

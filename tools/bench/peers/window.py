@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .build import PEERS, Builder, library_includes, library_sources, output_of, own_program
+from .build import LIBRARY, PEERS, Builder, library_includes, output_of, own_program
 from .job import SLOTS, Group, Job, Peer, printed_cases
 from .others import Others
 
@@ -52,8 +52,9 @@ def make_cases(builder: Builder, count: int) -> NDArray[np.float32]:
 
 def window_peers(others: Others) -> list[Peer]:
     """Ours is first."""
-    library = library_sources()
-    peers = [Peer(OURS, FOLDER / "peer_goe.c", OURS, library_includes(), more_sources=library)]
+    peers = [
+        Peer(OURS, FOLDER / "peer_goe.c", OURS, library_includes(), more_sources=(LIBRARY / "window" / "goe_fit.c",))
+    ]
     if others.eigen is not None:
         for number, method in enumerate(("LLT", "LDLT", "ColPivHouseholderQR"), start=1):
             source, defines = FOLDER / "peer_eigen.cpp", (f"-DMETHOD={number}",)
