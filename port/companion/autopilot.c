@@ -360,7 +360,9 @@ static void take_terrain(autopilot_t *autopilot, const mavlink_message_t *messag
 }
 
 static void take_altitude(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
-    const float height_m = mavlink_msg_altitude_get_bottom_clearance(message);
+    mavlink_altitude_t altitude;
+    mavlink_msg_altitude_decode(message, &altitude);
+    const float height_m = altitude.bottom_clearance;
     if (height_m > 0.0f) {
         put_terrain(autopilot, height_m, now_us);
     }
@@ -375,8 +377,10 @@ static void place_home(autopilot_t *autopilot) {
 }
 
 static void take_home(autopilot_t *autopilot, const mavlink_message_t *message) {
-    const float down_m = mavlink_msg_home_position_get_z(message);
-    autopilot->home_alt_m = 1e-3f * (float)mavlink_msg_home_position_get_altitude(message);
+    mavlink_home_position_t home;
+    mavlink_msg_home_position_decode(message, &home);
+    const float down_m = home.z;
+    autopilot->home_alt_m = 1e-3f * (float)home.altitude;
     autopilot->has_home_alt = true;
     if (autopilot->kind != MAV_AUTOPILOT_ARDUPILOTMEGA && fabsf(down_m) <= HEIGHT_MAX_M) {
         autopilot->home_down_m = down_m;
@@ -462,8 +466,10 @@ uint8_t autopilot_phase(const autopilot_t *autopilot) {
 }
 
 static void take_target(autopilot_t *autopilot, const mavlink_message_t *message) {
-    autopilot->target_lat_e7 = mavlink_msg_position_target_global_int_get_lat_int(message);
-    autopilot->target_lon_e7 = mavlink_msg_position_target_global_int_get_lon_int(message);
+    mavlink_position_target_global_int_t target;
+    mavlink_msg_position_target_global_int_decode(message, &target);
+    autopilot->target_lat_e7 = target.lat_int;
+    autopilot->target_lon_e7 = target.lon_int;
     autopilot->targets++;
 }
 

@@ -440,8 +440,10 @@ static void what_is_asked_for_is_named(void) {
     while (receiver_next(&receiver, &message)) {
         TEST_ASSERT_EQUAL_UINT8(196, message.compid);
         if (message.msgid == MAVLINK_MSG_ID_TIMESYNC) {
-            TEST_ASSERT_EQUAL_INT64(0, mavlink_msg_timesync_get_tc1(&message));
-            TEST_ASSERT_EQUAL_INT64(own_us * 1000, mavlink_msg_timesync_get_ts1(&message));
+            mavlink_timesync_t sync;
+            mavlink_msg_timesync_decode(&message, &sync);
+            TEST_ASSERT_EQUAL_INT64(0, sync.tc1);
+            TEST_ASSERT_EQUAL_INT64(own_us * 1000, sync.ts1);
             clocks++;
             continue;
         }
