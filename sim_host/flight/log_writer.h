@@ -2,7 +2,7 @@
  * Writes a flight as an observation log: a folder with camera.ini, frames.csv, truth.csv, and truth_frames.csv with what each
  * frame would be without noise. Numbers have the fewest digits that read back as the same double.
  *
- * The folder appears whole or not at all: it is written beside its place under another name and then renamed. A log that was
+ * The folder appears whole or not at all: it is written under another name in the same parent folder and then renamed. A log that was
  * written so is replaced, as long as nobody has changed it since; a folder that holds anything else is refused, a log of another
  * program, too. Folders on the way that are missing are made.
  *
