@@ -49,7 +49,7 @@ typedef enum {
 } outcome_t;
 
 static const char *const outcome_names[OUTCOMES] = {"crashed", "hung", "not_finite", "undefined", "corrupted",
-                                                    "suspect", "told", "wrong",      "was_wrong", "masked"};
+                                                    "suspect", "reported", "wrong",      "was_wrong", "masked"};
 
 typedef struct {
     goe_status_t status, covariance_status, hazard_status;
