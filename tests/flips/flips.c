@@ -48,7 +48,7 @@ typedef enum {
     OUTCOMES
 } outcome_t;
 
-static const char *const outcome_names[OUTCOMES] = {"crashed", "hung", "not_finite", "undefined", "corrupted",
+static const char *const outcome_names[OUTCOMES] = {"crashed", "hung",     "not_finite", "undefined", "corrupted",
                                                     "suspect", "reported", "wrong",      "was_wrong", "masked"};
 
 typedef struct {

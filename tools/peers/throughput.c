@@ -1,4 +1,4 @@
-/* Updates per second on one core of the host: 1, 10, ... 10,000 obstacles, each with image after image in turn, so that many
+/* Updates per second on one core of the host: 1, 10, ... 10,000 obstacles, each with image after image in turn; many
  * obstacles no longer fit into the caches. Numbers and kinds of update alternate, so a slow minute of the machine
  * affects all of them.
  *

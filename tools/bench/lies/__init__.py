@@ -1,7 +1,7 @@
 """A search for lies: confident errors, false safety and warnings that vanish, in random legal flights.
 
 Simulator and judge are written from goe.h alone: they share neither code nor ideas with the library, the other
-simulators or the other judges, so that common errors of those are detected. float64, arrays over all images of many
+simulators or the other judges, which exposes their common errors. float64, arrays over all images of many
 flights.
 
 genes      unit numbers of a flight, and its seed

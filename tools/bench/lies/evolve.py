@@ -86,7 +86,7 @@ def score(flights: Flights) -> Scored:
 
 
 def survivors(flights: Flights, scored: Scored) -> Flights:
-    """The worst flights, with a limit for each class, so that no class displaces the others."""
+    """The worst flights, with a limit for each class to keep all classes."""
     order = np.argsort(-scored.score, kind="stable")
     taken: dict[int, int] = {}
     chosen = []

@@ -165,8 +165,8 @@ def _positions(truth: _Truth) -> tuple[Array, Array]:
 
 
 def _width(truth: _Truth) -> Array:
-    """(N,): errors. For a cuboid that is not reported as a box: "the lateral extent of what is seen of it", across the
-    line of sight, of the first image or of this one, or along X of T."""
+    """(N,): errors. For a cuboid that is not reported as a box: the extent of its visible part, across the line of
+    sight, of the first image or of this one, or along X of T."""
     world, e = truth.world, truth.e
     reported = e["width_m"].astype(float)
     begin = track_begins(world)

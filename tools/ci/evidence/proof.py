@@ -1,6 +1,6 @@
 """Proof with Frama-C's Eva that no call of the library has undefined behavior, for any input bits.
 
-tests/proof/README.md lists what is proved and what is assumed. tests/proof/alarms.csv has every remaining alarm
+tests/proof/README.md lists the proved properties and the assumptions. tests/proof/alarms.csv has every remaining alarm
 with its reason; a new alarm fails, and so does one that no longer appears.
 """
 

@@ -1,7 +1,7 @@
 """Image points of a box or a disc, in float64, as a function of twelve states.
 
 The model shares only the definition of the features with the library. The library uses analytic derivatives, this model
-complex steps, so that an error in either one is detected.
+complex steps; a comparison detects errors of either one.
 
 States (``STATES``), with T's origin at the camera of the track's first image and all obstacle lengths divided by
 the range Z0, because early images are almost linear in these states:

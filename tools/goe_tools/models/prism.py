@@ -27,7 +27,7 @@ States (``STATES``):
     c         like s, but not estimated
 
 The position error of the camera (``PX``, ``PY``, ``PZ``: m, same axes) is not a state, but derivatives by it are
-given, too. All derivatives use complex steps, so that errors in the library's formulas are detected."""
+given, too. All derivatives use complex steps, to detect errors in the library's formulas."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ class Track:
             state[Q] *= FARTHER
         return state
 
-    # ------------------------------------------------------------------------------------------------ what is measured
+    # --------------------------------------------------------------------------------------------------- measurements
 
     def unknowns(self, state: np.ndarray) -> np.ndarray:
         """(n, 13) of ``prism``: the reported path is too long by velocity times time."""

@@ -281,7 +281,7 @@
     return extent(there.concat(region(track, row), [pair(story.moments.path, moment)], known([closest]) ? [closest] : [], track.truth));
   }
 
-  /* ... of the close view: about the obstacle's last place, in steps, so that the region visibly shrinks. */
+  /* ... of the close view: about the obstacle's last place, in steps, to show how the region shrinks. */
   function closeBounds(moment) {
     const track = story.tracks[state.track], row = rowAt(track, moment);
     const there = row >= 0 ? outline(track, row) : [], exists = known(there);
@@ -297,14 +297,14 @@
   function ranges(map, moment) {
     const [x0, x1, y0, y1] = map.bounds(moment), box = $(map.id).getBoundingClientRect();
     const wide = Math.max(box.width - MAP_MARGIN.l - MAP_MARGIN.r, 50), high = Math.max(box.height - MAP_MARGIN.t - MAP_MARGIN.b, 50);
-    const scale = map.room * Math.max((x1 - x0) / wide, (y1 - y0) / high, 1e-3);
+    const scale = map.margin * Math.max((x1 - x0) / wide, (y1 - y0) / high, 1e-3);
     const x = 0.5 * (x0 + x1), y = 0.5 * (y0 + y1);
     return { "xaxis.range": [x - 0.5 * scale * wide, x + 0.5 * scale * wide], "yaxis.range": [y - 0.5 * scale * high, y + 0.5 * scale * high] };
   }
 
   const MAPS = [
-    { id: "map", bounds: wideBounds, room: 1.17, ticks: [6, 9], wedge: true },
-    { id: "close", bounds: closeBounds, room: 1.04, ticks: [5, 5], wedge: false },
+    { id: "map", bounds: wideBounds, margin: 1.17, ticks: [6, 9], wedge: true },
+    { id: "close", bounds: closeBounds, margin: 1.04, ticks: [5, 5], wedge: false },
   ];
 
   function makeMaps() {
