@@ -205,8 +205,8 @@ def test_what_changes_nothing_counts_as_nothing() -> None:
 
 def test_what_the_probe_does_not_see_is_counted() -> None:
     told = {row.what: row for row in mutation_counts.rows(outcomes(), {})}
-    assert told["mutants that neither a unit test nor the probe notices"].figure == "3"
-    assert told["killed, where those count as alive"].figure == "82.6 % (19 of 23)"
+    assert told["mutants that neither a unit test nor the probe detects"].figure == "3"
+    assert told["killed, if those count as alive"].figure == "82.6 % (19 of 23)"
 
 
 def test_in_a_layer_all_that_changes_the_object_code_counts() -> None:
