@@ -33,7 +33,7 @@ def test_cases_are_counted() -> None:
         (("python/test_b.py::test_that_is_gone",), "0 of 1", False),
     ):
         row = programs.row_of(programs.Finding("x", tests), found)
-        assert (row.figure, row.met) == (f"mended: {figure} cases pass", met)
+        assert (row.figure, row.met) == (f"fixed: {figure} cases pass", met)
 
 
 def test_every_test_that_a_finding_names_is_there() -> None:

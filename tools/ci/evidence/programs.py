@@ -141,7 +141,7 @@ def run(_: Amount) -> Result:
         raise NotHereError(f"build/{missing[0]}, which cmake --build --preset default makes")
     found = outcomes(sorted({test for finding in FINDINGS for test in finding.tests}))
     rows = [row_of(finding, found) for finding in FINDINGS]
-    mended = sum(row.met is True for row in rows)
-    whole = Row("findings fixed, with tests", f"{mended} of {len(rows)}", "all", mended == len(rows))
+    fixed = sum(row.met is True for row in rows)
+    whole = Row("findings fixed, with tests", f"{fixed} of {len(rows)}", "all", fixed == len(rows))
     lines = [f"{finding.what}\n" + "\n".join(f"  tests/{test}" for test in finding.tests) for finding in FINDINGS]
     return Result([whole, *rows], "\n".join(lines))
