@@ -14,6 +14,7 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     "flight_cost": (".cost.flight", "measure what the calls of the flight layer take"),
     "ledger": (".cost.ledger", "measure what the library costs on each target"),
     "packages": (".packages.command", "stage packages for other package managers, or check their manifests"),
+    "tidy_commands": (".tidy_commands", "write one compile command for each source, for clang-tidy"),
     "settings": (".settings_table", "print, write or check the manual's table of the library's settings"),
 }
 
