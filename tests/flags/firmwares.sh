@@ -23,3 +23,15 @@ firmware_flags() {
             return 1 ;;
     esac
 }
+
+# Warnings of all four together, for reading the sources without generating code: a warning of one firmware never silences one of
+# another. -fsingle-precision-constant, which does, is left out.
+reading_flags() {
+    local firmware flag
+    for firmware in "${firmwares[@]}"; do
+        firmware_flags "$firmware"
+        for flag in "${flags[@]}"; do
+            [[ $flag != -W* ]] || echo "$flag"
+        done
+    done | sort -u
+}

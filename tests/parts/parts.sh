@@ -12,16 +12,15 @@ builds=$1
 unity=$2
 mkdir -p "$builds"
 
-# syntax <definition>...: warnings of both compilers under each firmware's flags, without code
+mapfile -t all_flags < <(reading_flags)
+
+# syntax <definition>...: warnings of both compilers with the warnings of all firmwares, without code
 syntax() {
-    local compiler firmware accepted
+    local compiler accepted
     for compiler in $(compilers gcc clang-19); do
-        for firmware in "${firmwares[@]}"; do
-            firmware_flags "$firmware"
-            mapfile -t accepted < <(known "$compiler" "${flags[@]}")
-            "$compiler" -std=c99 "${accepted[@]}" -Werror -Wundef -fsyntax-only "$@" -I"$root/lib" "${library_sources[@]}" ||
-                fail "$compiler, flags of $firmware, $*"
-        done
+        mapfile -t accepted < <(known "$compiler" "${all_flags[@]}")
+        "$compiler" -std=c99 "${accepted[@]}" -Werror -Wundef -fsyntax-only "$@" -I"$root/lib" "${library_sources[@]}" ||
+            fail "$compiler, warnings of the firmwares, $*"
     done
 }
 
