@@ -246,7 +246,7 @@ static bool may_begin_again(const goe_estimator_t *estimator, const goe_view_t *
     const float x = to_trajectory[0] * nose[0] + to_trajectory[1] * nose[1] + to_trajectory[2] * nose[2];
     const float z = to_trajectory[6] * nose[0] + to_trajectory[7] * nose[1] + to_trajectory[8] * nose[2];
     const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
-    return goe_is_set(&estimator->settings.heading_auto) && estimator->motion.sighted && !known && goe_absolute(x) > z;
+    return goe_is_set(&estimator->settings.heading_auto) && estimator->motion.detected && !known && goe_absolute(x) > z;
 }
 
 /* Whether something is seen, and all of it more than 60 degrees from Z. */
@@ -288,7 +288,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     } else {
         goe_align_points(camera, view, faults);
     }
-    estimator->motion.sighted = estimator->motion.sighted || view->seen;
+    estimator->motion.detected = estimator->motion.detected || view->seen;
 }
 
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {

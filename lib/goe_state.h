@@ -26,13 +26,13 @@ typedef uint8_t goe_flag_t;
 /* What the filter knows beside its state and takes as constant: the latency of the poses, s, and the obstacle's velocity, T
  * axes, m/s; 0 of them if that part is left out. */
 #if GOE_WITH_REFINED && GOE_WITH_MOVERS
-#define GOE_BESIDE 3
+#define GOE_AUGMENTED 3
 #else
-#define GOE_BESIDE 0
+#define GOE_AUGMENTED 0
 #endif
 
 /* In this order. */
-typedef enum { GOE_BESIDE_LATENCY, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_Z } goe_beside_t;
+typedef enum { GOE_AUGMENTED_LATENCY, GOE_AUGMENTED_VELOCITY_X, GOE_AUGMENTED_VELOCITY_Z } goe_augmented_t;
 
 /* ----------------------------------------------------------------------------------------------------------- image -- */
 
@@ -47,9 +47,9 @@ typedef struct {
     float height_jump_m;            /* sum of the jumps of down that the given height followed */
     float ground_m;                 /* down of the ground, by the latest image's height as given */
     goe_flag_t started;             /* a first image was taken; the fields above hold */
-    goe_flag_t sighted;             /* a feature was seen: T and its origin stay */
+    goe_flag_t detected;            /* a feature was seen: T and its origin stay */
     uint8_t reset_count;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_flag_t paced;                     /* the fields below hold */
     float rate_rad_s[3], velocity_m_s[2]; /* T axes; since the mark ... */
     float rate_before_rad_s[3];           /* ... and before it: free of the latest attitude's own error */
@@ -94,12 +94,12 @@ typedef struct { /* window/goe_window.c */
 #define GOE_FEATURES 6
 
 /* The state and what is beside it. */
-#define GOE_UNKNOWNS (GOE_STATES + GOE_BESIDE)
+#define GOE_UNKNOWNS (GOE_STATES + GOE_AUGMENTED)
 
 typedef struct {
     float element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) / 2]; /* upper triangular matrix, row by row */
-#if GOE_BESIDE
-    float right[GOE_BESIDE]; /* right-hand side of the last rows, those beside the state */
+#if GOE_AUGMENTED
+    float right[GOE_AUGMENTED]; /* right-hand side of the last rows, those beside the state */
     uint8_t estimated; /* so many of what is beside the state, from the first on, are; the others are taken as known */
 #endif
 } goe_triangle_t;
@@ -107,7 +107,7 @@ typedef struct {
 typedef struct {
     float
         element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) / 2]; /* the inverse of one, column by column; of what is estimated */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     uint8_t estimated;
 #endif
 } goe_inverse_t;
@@ -127,7 +127,7 @@ typedef struct {
     int64_t start_time_us;
     float turn_cos, turn_sin;     /* T turned by this about the vertical, clockwise seen from above */
     float start_dx_m, start_dz_m; /* that camera in T */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     float start_velocity_m_s[2]; /* ... and its velocity, if goe_filter_t.paced holds */
 #endif
 } goe_axes_t;
@@ -199,9 +199,9 @@ typedef struct {      /* refined/goe_health.c: how the images fit */
 
 /* refined/goe_mover.c: what the images say of the latency and of the obstacle's velocity. */
 typedef struct {
-    float beside[3];            /* taken off: latency, s; velocity, T axes, m/s: 0 unless it is followed */
+    float augmented[3];         /* taken off: latency, s; velocity, T axes, m/s: 0 unless it is followed */
     float nis, rows;            /* sums over the track: what no state explains, and what it would be by chance */
-    float heard_s;              /* for how long images told something, over all starts of the filter */
+    float observed_s;           /* for how long images told something, over all starts of the filter */
     float unlike_s;             /* for how long it has been none of a static obstacle */
     uint8_t images;             /* in a row that said so */
     goe_flag_t moves, followed; /* the obstacle moves; the filter moves with it */
@@ -227,7 +227,7 @@ typedef struct {
     uint8_t phase;        /* goe_phase_t */
     uint8_t phase_images; /* images of the phase, saturating */
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_flag_t paced; /* the velocity in axes holds */
 #endif
     goe_naming_t naming;
@@ -247,7 +247,7 @@ typedef struct {
     goe_axes_t axes;
     goe_datum_t datum;
     goe_scatter_t scatter;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_mover_t mover;
 #endif
     goe_side_memory_t side[4]; /* by goe_box_side_t */

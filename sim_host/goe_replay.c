@@ -123,13 +123,13 @@ static bool default_path(char **path, const char *directory, const char *name, c
     if (directory == NULL) {
         return complain(option, "missing: name the log's folder, or both --camera and --frames");
     }
-    const size_t room = strlen(directory) + strlen(name) + 2u;
-    *path = malloc(room);
+    const size_t capacity = strlen(directory) + strlen(name) + 2u;
+    *path = malloc(capacity);
     if (*path == NULL) {
         return give_up(directory, "out of memory");
     }
     const char *slash = *directory != '\0' && directory[strlen(directory) - 1u] == '/' ? "" : "/";
-    (void)snprintf(*path, room, "%s%s%s", directory, slash, name);
+    (void)snprintf(*path, capacity, "%s%s%s", directory, slash, name);
     return true;
 }
 
@@ -304,12 +304,12 @@ static bool is_of_log(const char *path, const char *input) {
     const int folder = slash != NULL ? (int)(slash - input) + 1 : 0;
     bool found = output_file_is(path, input);
     for (size_t i = 0; i < sizeof names / sizeof names[0] && !found; i++) {
-        const size_t room = (size_t)folder + strlen(names[i]) + 1u;
-        char *beside = malloc(room);
+        const size_t capacity = (size_t)folder + strlen(names[i]) + 1u;
+        char *beside = malloc(capacity);
         if (beside == NULL) {
             return true; /* rather no output than a lost log */
         }
-        (void)snprintf(beside, room, "%.*s%s", folder, input, names[i]);
+        (void)snprintf(beside, capacity, "%.*s%s", folder, input, names[i]);
         found = output_file_is(path, beside);
         free(beside);
     }

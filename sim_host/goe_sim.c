@@ -453,10 +453,10 @@ static int list_cases(void) {
 static const char *fly_past_all(const flight_case_t *setup, flight_log_t *log, size_t *count) {
     const char *reason = flight_case_fly(setup, log);
     *count = reason == NULL ? 1 : 0;
-    for (int i = 0; i < scenario_file.neighbours && reason == NULL; i++) {
+    for (int i = 0; i < scenario_file.neighbors && reason == NULL; i++) {
         /* no other flight's seed: small numbers are what people give */
         const uint64_t seed = setup->seed ^ ((uint64_t)(i + 1) << SEED_SHIFT);
-        reason = flight_log_of_neighbour(setup, log, &scenario_file.neighbour[i], seed, &log[*count]);
+        reason = flight_log_of_neighbor(setup, log, &scenario_file.neighbor[i], seed, &log[*count]);
         *count += reason == NULL ? 1u : 0u;
     }
     for (size_t i = 1; i < *count; i++) {
@@ -484,7 +484,7 @@ static int write_logs(const flight_case_t *setup, const flight_logs_t *logs) {
 }
 
 static int fly_and_write(const flight_case_t *setup) {
-    flight_log_t log[1 + SCENARIO_NEIGHBOURS_MAX];
+    flight_log_t log[1 + SCENARIO_NEIGHBORS_MAX];
     size_t count = 0;
     const char *reason = fly_past_all(setup, log, &count);
     const flight_logs_t logs = {log, count};

@@ -145,12 +145,12 @@ static float misfit(const goe_observation_t *obs, const outline_t *o, const size
 
 /* The near corner is seen, or both outer ones are. */
 static void visible_corners(const goe_observation_t *obs, const outline_t *o, size_t corner[3]) {
-    const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
+    const bool near_visible = obs->point[GOE_POINT_BASE_NEAR].usable;
     const size_t of_two = o->front ? (o->right ? FRONT_LEFT : BACK_LEFT) : (o->right ? FRONT_RIGHT : BACK_RIGHT);
     const size_t along = o->front ? FRONT_LEFT : BACK_RIGHT;
     const size_t across = o->right ? FRONT_RIGHT : BACK_LEFT;
-    corners_from(near_seen ? of_two : o->depth_margin > o->side_margin ? along : across, near_seen, corner);
-    if (!near_seen && obs->two_faces && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
+    corners_from(near_visible ? of_two : o->depth_margin > o->side_margin ? along : across, near_visible, corner);
+    if (!near_visible && obs->two_faces && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
         /* one face, or two and the detector missed the corner between them */
         size_t both[3];
         corners_from(of_two, true, both);
@@ -318,11 +318,12 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     outline_t outline;
     size_t corner[3] = {FRONT_LEFT, FRONT_LEFT, FRONT_LEFT};
     describe(obs, &outline);
-    const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
-    if (obs->base && !near_seen && obs->two_faces && obs->depth_variance > goe_square(POOR_SHARE * outline.edges.sum)) {
+    const bool near_visible = obs->point[GOE_POINT_BASE_NEAR].usable;
+    if (obs->base && !near_visible && obs->two_faces &&
+        obs->depth_variance > goe_square(POOR_SHARE * outline.edges.sum)) {
         return; /* which corners these are would be a guess, and the box would learn it */
     }
-    if (obs->base || near_seen) {
+    if (obs->base || near_visible) {
         visible_corners(obs, &outline, corner);
         for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i++) {
             if (obs->point[GOE_POINT_BASE_LEFT + i].usable) {
@@ -528,8 +529,8 @@ static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
     const float vz = e.side.along.z / e.side.length;
     const float px = x[GOE_BEARING] - camera_m.x / scale_m;
     const float pz = 1.0f - camera_m.z / scale_m;
-    const float beside = goe_larger(goe_absolute(vz * px - vx * pz) - 0.5f * x[GOE_FRONT_X] / vz, 0.0f);
-    return goe_square(beside) / (px * px + pz * pz);
+    const float augmented = goe_larger(goe_absolute(vz * px - vx * pz) - 0.5f * x[GOE_FRONT_X] / vz, 0.0f);
+    return goe_square(augmented) / (px * px + pz * pz);
 }
 
 float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *shape, goe_xz_t camera_m, int quantity,

@@ -160,7 +160,7 @@ bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_filter_invert(filter);
     filter->leaving.outward = 0.0f;
     filter->leaving.turning = 0.0f;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_mover_doubt(filter);
 #endif
     goe_filter_enter(filter, GOE_PHASE_CHORD);
@@ -316,7 +316,7 @@ static bool turn_face_away(goe_filter_t *filter, const goe_observation_t *obs, g
     return true;
 }
 
-static void learn_anew(goe_filter_t *filter) {
+static void relearn(goe_filter_t *filter) {
     const float sigma = END_FREEDOM * chord_length(filter->state);
     inflate(filter, GOE_SIDE_X, sigma);
     inflate(filter, GOE_FRONT_X, sigma);
@@ -335,7 +335,7 @@ bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *obs) {
     const bool right = filter->leaving.turning > 0.0f;
     const bool to_left = obs->camera_m.x > filter->state[GOE_BEARING] * obs->camera_m.z;
     if (right == to_left) {
-        learn_anew(filter);
+        relearn(filter);
         return true;
     }
     return turn_face_away(filter, obs, right ? GOE_POINT_RIGHT : GOE_POINT_LEFT);

@@ -314,12 +314,12 @@ static float unlikeness(const goe_filter_t *filter, float variance, float turned
     return odds / (1.0f + odds);
 }
 
-goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t camera_m, goe_shape_t *shape) {
+goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape) {
     goe_disc_doubt_t doubt;
     const float variance = skew_variance_of(filter);
     const float skew2 = goe_square(filter->state[GOE_SIDE_X]);
     doubt.skew_variance = variance;
-    if (asked) {
+    if (wanted) {
         doubt.spread = sqrtf(goe_larger(skew2 - CHANCE_SHARE * variance, 0.0f));
         return doubt;
     }

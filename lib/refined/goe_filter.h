@@ -30,14 +30,14 @@ GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
 
 /* What the same places hold while the obstacle is a prism, see goe_prism.h. All over Z0. */
 enum {
-    GOE_PRISM_DEPTH = GOE_SIDE_X,          /* log of the depth along Z over the width */
-    GOE_PRISM_HALF = GOE_FRONT_X,          /* half width across Z */
-    GOE_PRISM_TOP = GOE_DEPTH_DIFFERENCE,  /* like GOE_TOP */
-    GOE_PRISM_UNSEEN = GOE_TOP,            /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
-    GOE_PRISM_ESTIMATED = GOE_PRISM_UNSEEN /* states before this one are estimated */
+    GOE_PRISM_DEPTH = GOE_SIDE_X,              /* log of the depth along Z over the width */
+    GOE_PRISM_HALF = GOE_FRONT_X,              /* half width across Z */
+    GOE_PRISM_TOP = GOE_DEPTH_DIFFERENCE,      /* like GOE_TOP */
+    GOE_PRISM_UNOBSERVED = GOE_TOP,            /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
+    GOE_PRISM_ESTIMATED = GOE_PRISM_UNOBSERVED /* states before this one are estimated */
 };
 
-GOE_STATIC_ASSERT(GOE_PRISM_UNSEEN == GOE_STATES - 1, what_is_not_estimated_comes_last);
+GOE_STATIC_ASSERT(GOE_PRISM_UNOBSERVED == GOE_STATES - 1, unestimated_states_come_last);
 
 /* Places of the states in goe_substitution_t. */
 enum { GOE_OF_GROUND, GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH, GOE_OF_TOP };
@@ -125,7 +125,7 @@ float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motio
 
 /* goe_filter_camera(): the camera since the filter's start, the state's axes, m: as an obstacle sees it that moves, and freed of
  * what the poses are late by. */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion);
 
 /* The own velocity less that at the filter's start, m/s, the state's axes. */

@@ -135,7 +135,7 @@ static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_row
     return 1;
 }
 
-int goe_ground_tell(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+int goe_ground_row(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     const bool white = obs->settings->navigation.height_white_m > 0.0f;
     if ((filter->known & GOE_HAS_POSITION) == 0u) {
         return 0;

@@ -35,10 +35,10 @@ static inline void goe_ground_follow(goe_filter_t *filter, float inverse_range_b
 }
 
 /* Takes back what was told too well by that ratio, before the rows of an image are taken; what was not told well enough is
- * a row of goe_ground_tell(). A prism's foot tells its first range, which is near enough: nothing is taken back there. */
+ * a row of goe_ground_row(). A prism's foot tells its first range, which is near enough: nothing is taken back there. */
 void goe_ground_widen(goe_filter_t *filter);
 
 /* Appends what the heights tell beyond what they have told, as far as there is room. Returns how many rows. */
-int goe_ground_tell(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
+int goe_ground_row(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
 #endif

@@ -44,9 +44,9 @@ static bool is_poor(goe_verdict_t verdict) {
 static void average_track(goe_health_t *health, float ratio) {
     const int before = health->images > 0 ? health->images : 0;
     health->images = (int16_t)(before < INT16_MAX ? before + 1 : INT16_MAX);
-    const int heard = health->images + MEAN_SEEDS;
-    average(&health->mean_nis, ratio, 1.0f / (float)(heard < MEAN_IMAGES ? heard : MEAN_IMAGES));
-    average(&health->excess, ratio - 1.0f, 1.0f / (float)heard);
+    const int counted = health->images + MEAN_SEEDS;
+    average(&health->mean_nis, ratio, 1.0f / (float)(counted < MEAN_IMAGES ? counted : MEAN_IMAGES));
+    average(&health->excess, ratio - 1.0f, 1.0f / (float)counted);
 }
 
 void goe_health_expect(goe_health_t *health) {

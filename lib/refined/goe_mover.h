@@ -8,7 +8,7 @@
 #include "refined/goe_filter.h"
 #include "refined/goe_observation.h"
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 
 /* A new track: the poses are in time, as far as is known, and nothing moves. */
 void goe_mover_clear(goe_filter_t *filter);

@@ -30,7 +30,7 @@ typedef struct {
     bool base;            /* both outer base corners are seen */
     bool edge;            /* an edge of the base is seen */
     uint8_t number;       /* of the camera */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     float turn_cos, turn_sin;   /* of the state's axes from T */
     float elapsed_s;            /* since the filter's start */
     float rate_rad_s[3];        /* of the vehicle, the state's axes ... */
@@ -153,9 +153,9 @@ static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->va
 static inline void goe_rows_place(float *by, const goe_observation_t *obs, float by_x, float by_z) {
     by[GOE_BEARING] = by_x;
     by[GOE_INVERSE_RANGE] = -(by_x * obs->camera_m.x) - by_z * obs->camera_m.z;
-#if GOE_BESIDE
-    by[GOE_STATES + GOE_BESIDE_VELOCITY_X] = by_x; /* until goe_mover_columns() */
-    by[GOE_STATES + GOE_BESIDE_VELOCITY_Z] = by_z;
+#if GOE_AUGMENTED
+    by[GOE_STATES + GOE_AUGMENTED_VELOCITY_X] = by_x; /* until goe_mover_columns() */
+    by[GOE_STATES + GOE_AUGMENTED_VELOCITY_Z] = by_z;
 #endif
 }
 

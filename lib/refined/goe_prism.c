@@ -31,7 +31,7 @@
 #define HALF_FREEDOM 2.5f      /* ... of the half width, in widths */
 #define TOP_FREEDOM 10.0f      /* ... of the top, in the larger of top and width */
 #define DEPTH_FREEDOM 0.3f     /* ... of s */
-#define DEPTH_UNSEEN 3.0f      /* one sigma of c: a factor of 20 in depth, from a plate to a wall seen end-on */
+#define DEPTH_SD 3.0f          /* one sigma of c: a factor of 20 in depth, from a plate to a wall seen end-on */
 #define TURNED_SHARE 1.3f      /* of the width by which it changes while the line of sight turns by a radian */
 #define TURNED_MAX 0.15f       /* ... up to which: what was seen before counts on */
 #define ROOF_SHARE 0.15f /* of the depth beyond the width: where the point of the roof may lie that the top is over */
@@ -82,7 +82,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
     by[GOE_PRISM_HALF] = outward * t.reach / o->half;
     by[GOE_PRISM_TOP] = t.foot ? 0.0f : -g.y;
-    by[GOE_PRISM_UNSEEN] = by[GOE_PRISM_DEPTH];
+    by[GOE_PRISM_UNOBSERVED] = by[GOE_PRISM_DEPTH];
     const float shift = -obs->position_sd * obs->state[GOE_INVERSE_RANGE];
     float *common = rows->shift[rows->count - 1u];
     common[0] = shift * g.x;
@@ -255,7 +255,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
     sd[GOE_PRISM_HALF] = HALF_FREEDOM * width;
     sd[GOE_PRISM_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_PRISM_TOP]), width);
-    sd[GOE_PRISM_UNSEEN] = disc ? DISC_FREEDOM : DEPTH_UNSEEN;
+    sd[GOE_PRISM_UNOBSERVED] = disc ? DISC_FREEDOM : DEPTH_SD;
     goe_srif_clear(root);
     for (size_t i = 0; i < GOE_STATES; i++) {
         root->element[goe_srif_row(i) + i] = 1.0f / sd[i];

@@ -28,7 +28,7 @@
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 #define AGREE_SIGMA 3.0f       /* within which two answers say the same */
-#define STANDS_S 3.0f          /* since the new start, for which the answer before it may stand */
+#define KEPT_S 3.0f            /* since the new start, for which the answer before it may stand */
 #define REACH_MAX_M 1.0e6f     /* as all positions */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -39,7 +39,7 @@ static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     memcpy(direction, filter->state, sizeof direction);
     if (filter->phase == GOE_PHASE_PRISM) {
         direction[GOE_PRISM_DEPTH] = 0.0f;
-        direction[GOE_PRISM_UNSEEN] = 0.0f;
+        direction[GOE_PRISM_UNOBSERVED] = 0.0f;
     }
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
 }
@@ -70,7 +70,7 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->flown_m += sqrtf(dx_m * dx_m + dz_m * dz_m);
     filter->last.dx_m = motion->dx_m;
     filter->last.dz_m = motion->dz_m;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_filter_pace(filter, motion);
 #endif
 }
@@ -107,7 +107,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
     goe_rows_end(&rows, obs);
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_mover_columns(obs, &rows);
 #endif
     allow_for_curvature(obs, &rows);
@@ -122,7 +122,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     filter->answer.outdated = true;
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
-    verdict->rows += goe_ground_tell(filter, obs, &rows);
+    verdict->rows += goe_ground_row(filter, obs, &rows);
     const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
@@ -176,7 +176,7 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
 /* Whether the obstacle has just been found to move. */
 static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
                            float since_s) {
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     return goe_mover_judge(filter, obs, change, since_s);
 #else
     (void)filter;
@@ -258,13 +258,13 @@ static bool agrees(const place_t *now, const place_t *before, float reach_m) {
 
 /* Whether the answer from before a new start of the filter stands: the new one says the same, and knows it less well. One that
  * disagrees, or that is of an obstacle that moves, takes over; after some seconds any does. */
-static bool previous_stands(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
-                            const goe_estimate_t *estimate) {
+static bool keeps_previous(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
+                           const goe_estimate_t *estimate) {
     const place_t now[2] = {{quantities->value[GOE_X0], quantities->sigma[GOE_X0]},
                             {quantities->value[GOE_Z0], quantities->sigma[GOE_Z0]}};
     const place_t before[2] = {{estimate->x0_m, estimate->sigma.x_m}, {estimate->z0_m, estimate->sigma.z_m}};
     const bool answered = (estimate->valid & GOE_HAS_POSITION) != 0u && !quantities->moves && estimate->z_m > 0.0f &&
-                          goe_filter_elapsed_s(filter, motion) < STANDS_S;
+                          goe_filter_elapsed_s(filter, motion) < KEPT_S;
     const float reach_m = filter->answer.reach_m;
     return answered && (filter->answer.previous != 0u) &&
            goe_square(now[0].sigma) + goe_square(now[1].sigma) >
@@ -302,7 +302,7 @@ bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, co
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
     }
-    if (placed && previous_stands(filter, motion, &quantities, estimate)) {
+    if (placed && keeps_previous(filter, motion, &quantities, estimate)) {
         return false;
     }
     const bool fresh = goe_report_quantities(&quantities, motion, estimate);

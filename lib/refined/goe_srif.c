@@ -11,7 +11,9 @@
 #define PIVOT_MIN 1.0e-12f /* of the diagonal: a covariance this near to singular is taken as if it were this far */
 
 /* The rows of the state come first. */
-void goe_srif_clear(goe_triangle_t *root) { memset(root->element, 0, goe_srif_beside_row() * sizeof root->element[0]); }
+void goe_srif_clear(goe_triangle_t *root) {
+    memset(root->element, 0, goe_srif_augmented_row() * sizeof root->element[0]);
+}
 
 /* -------------------------------------------------------------------------------------------------------- reflections -- */
 
@@ -136,11 +138,11 @@ static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     }
 }
 
-#if GOE_BESIDE
-static void reflect_beside(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
-    const size_t count = goe_srif_beside_count(root);
+#if GOE_AUGMENTED
+static void reflect_augmented(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
+    const size_t count = goe_srif_augmented_count(root);
     reflect_unknowns(root, matrix, GOE_STATES, GOE_UNKNOWNS, root->right);
-    for (size_t j = 0; j < GOE_BESIDE; j++) {
+    for (size_t j = 0; j < GOE_AUGMENTED; j++) {
         const bool estimated = j < count;
         change[GOE_STATES + j] = estimated ? root->right[j] : 0.0f;
         root->right[j] = estimated ? 0.0f : root->right[j];
@@ -155,8 +157,8 @@ GOE_NOINLINE static float update(goe_triangle_t *root, float nuisance_root, goe_
     memset(change, 0, GOE_STATES * sizeof change[0]);
     reflect_unknowns(root, matrix, 0, states, change);
     const column_t residual = load(&matrix->row[0][GOE_RESIDUAL]);
-#if GOE_BESIDE
-    reflect_beside(root, matrix, change);
+#if GOE_AUGMENTED
+    reflect_augmented(root, matrix, change);
 #endif
     solve_back(root, change);
     return dot(residual, residual, 0.0f);
@@ -240,8 +242,8 @@ static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t 
         }
         v += j + 1;
     }
-#if GOE_BESIDE
-    inverse->estimated = (uint8_t)goe_srif_beside_count(root);
+#if GOE_AUGMENTED
+    inverse->estimated = (uint8_t)goe_srif_augmented_count(root);
 #endif
 }
 
@@ -308,13 +310,13 @@ float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight
     return sum + p * p;
 }
 
-#if GOE_BESIDE
-GOE_STATIC_ASSERT(GOE_BESIDE == 3, what_is_added_beside_the_state_is_cleared_by_three_writes);
+#if GOE_AUGMENTED
+GOE_STATIC_ASSERT(GOE_AUGMENTED == 3, augmented_states_are_cleared_by_three_writes);
 
 /* Written out, as above. */
-void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
-                     float part[GOE_BESIDE]) {
-    const size_t count = goe_inverse_beside(inverse);
+void goe_srif_augmented(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_AUGMENTED],
+                        float part[GOE_AUGMENTED]) {
+    const size_t count = goe_inverse_augmented(inverse);
     part[0] = 0.0f;
     part[1] = 0.0f;
     part[2] = 0.0f;
@@ -436,7 +438,7 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
         }
         memset(&r[i], 0, (GOE_UNKNOWNS - i) * sizeof r[0]);
     }
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     const uint8_t estimated = root->estimated; /* what is beside the state keeps what it is yet to move by */
     root->estimated = 0;
     (void)goe_srif_update(root, 1.0f, rows, change);

@@ -11,7 +11,7 @@
 /* Columns of a row of goe_matrix_t: the image's own nuisances, the states, what is beside them, the residual (measured minus
  * predicted). */
 #define GOE_STATE_COLUMN GOE_NUISANCES
-#define GOE_BESIDE_COLUMN (GOE_STATE_COLUMN + GOE_STATES)
+#define GOE_AUGMENTED_COLUMN (GOE_STATE_COLUMN + GOE_STATES)
 #define GOE_RESIDUAL (GOE_COLUMNS - 1)
 
 /* Element (i, j), i <= j, is element[goe_srif_row(i) + j]. */
@@ -26,18 +26,18 @@ static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
 /* How many of what is beside the state are estimated; never more than there are. */
-static inline size_t goe_srif_beside_count(const goe_triangle_t *r) {
-#if GOE_BESIDE
-    return r->estimated < GOE_BESIDE ? r->estimated : GOE_BESIDE;
+static inline size_t goe_srif_augmented_count(const goe_triangle_t *r) {
+#if GOE_AUGMENTED
+    return r->estimated < GOE_AUGMENTED ? r->estimated : GOE_AUGMENTED;
 #else
     (void)r;
     return 0;
 #endif
 }
 
-static inline size_t goe_inverse_beside(const goe_inverse_t *inverse) {
-#if GOE_BESIDE
-    return inverse->estimated < GOE_BESIDE ? inverse->estimated : GOE_BESIDE;
+static inline size_t goe_inverse_augmented(const goe_inverse_t *inverse) {
+#if GOE_AUGMENTED
+    return inverse->estimated < GOE_AUGMENTED ? inverse->estimated : GOE_AUGMENTED;
 #else
     (void)inverse;
     return 0;
@@ -45,13 +45,13 @@ static inline size_t goe_inverse_beside(const goe_inverse_t *inverse) {
 }
 
 /* ... and with the state. */
-static inline size_t goe_srif_count(const goe_triangle_t *r) { return GOE_STATES + goe_srif_beside_count(r); }
+static inline size_t goe_srif_count(const goe_triangle_t *r) { return GOE_STATES + goe_srif_augmented_count(r); }
 static inline size_t goe_inverse_count(const goe_inverse_t *inverse) {
-    return GOE_STATES + goe_inverse_beside(inverse);
+    return GOE_STATES + goe_inverse_augmented(inverse);
 }
 
 /* Where the rows of what is beside the state begin. */
-static inline size_t goe_srif_beside_row(void) { return goe_srif_row(GOE_STATES) + GOE_STATES; }
+static inline size_t goe_srif_augmented_row(void) { return goe_srif_row(GOE_STATES) + GOE_STATES; }
 
 /* Clears the elements by the state from `first` on, and by what is beside it: in two steps, each too short to be worth a call of
  * memset(). */
@@ -60,7 +60,7 @@ static inline void goe_srif_zero(float by[GOE_UNKNOWNS], size_t first) {
     for (size_t i = first; i < GOE_STATES; i++) {
         by[i] = 0.0f;
     }
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     by[GOE_STATES] = 0.0f;
     by[GOE_STATES + 1] = 0.0f;
     by[GOE_STATES + 2] = 0.0f;
@@ -102,18 +102,18 @@ float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STA
 #define GOE_UNWEIGHTED 3
 float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 /* What the estimates beside the state add to the variance of w' x + direct' beside, as its squares' sum. direct may be null. */
 /*@ requires \valid_read(inverse) && \valid_read(weight + (0 .. GOE_STATES - 1));
-    requires direct == \null || \valid_read(direct + (0 .. GOE_BESIDE - 1));
-    requires \valid(part + (0 .. GOE_BESIDE - 1)); */
-void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
-                     float part[GOE_BESIDE]);
+    requires direct == \null || \valid_read(direct + (0 .. GOE_AUGMENTED - 1));
+    requires \valid(part + (0 .. GOE_AUGMENTED - 1)); */
+void goe_srif_augmented(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_AUGMENTED],
+                        float part[GOE_AUGMENTED]);
 
 /* Covariance of two such sums, or the variance of one. */
-static inline float goe_srif_beside_dot(const float a[GOE_BESIDE], const float b[GOE_BESIDE]) {
+static inline float goe_srif_augmented_dot(const float a[GOE_AUGMENTED], const float b[GOE_AUGMENTED]) {
     float sum = 0.0f;
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
         sum += a[i] * b[i];
     }
     return sum;

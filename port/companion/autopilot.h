@@ -41,7 +41,7 @@ typedef struct {
     unsigned resets;       /* of all kinds, restarts included, for the log ... */
     bool last_reset_known; /* ... and whether the latest was a step by reset_delta_ned_m */
     int64_t jump_us;       /* own time of the latest jump that was found */
-    int64_t told_us;       /* ... and of a reset that ODOMETRY tells, and no jump has explained yet; 0: none */
+    int64_t report_us;     /* ... and of a reset that ODOMETRY tells, and no jump has explained yet; 0: none */
     uint8_t odometry_resets;
     bool has_odometry_resets;
     int strange_times;                /* in a row, against the clock that is known */
@@ -60,11 +60,11 @@ typedef struct {
     float home_alt_m;  /* over the sea */
     bool has_home_alt;
 
-    int64_t asked_us[AUTOPILOT_QUESTIONS]; /* own times of the latest questions for its clock, a ring ... */
-    unsigned asked;                        /* ... with so many of them ever */
-    bool answered;                         /* one was */
+    int64_t question_us[AUTOPILOT_QUESTIONS]; /* own times of the latest questions for its clock, a ring ... */
+    unsigned questions;                       /* ... with so many of them ever */
+    bool answered;                            /* one was */
     message_rates_t rates;
-    int64_t requested_us, origin_asked_us; /* own times of the latest requests */
+    int64_t requested_us, origin_requested_us; /* own times of the latest requests */
 
     /* counted; summary and status line tell them */
     unsigned long attitudes, positions, bad_samples, restarts, slips, jumps, strangers;

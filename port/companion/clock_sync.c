@@ -42,9 +42,9 @@ static int64_t round_trip(const clock_sync_t *sync) {
     return use_before(sync) ? sync->round_before_us : sync->round_us;
 }
 
-bool clock_sync_answer(clock_sync_t *sync, int64_t asked_us, int64_t now_us, int64_t autopilot_us) {
-    const int64_t round_us = now_us - asked_us;
-    const int64_t offset_us = autopilot_us - asked_us - round_us / 2;
+bool clock_sync_answer(clock_sync_t *sync, int64_t question_us, int64_t now_us, int64_t autopilot_us) {
+    const int64_t round_us = now_us - question_us;
+    const int64_t offset_us = autopilot_us - question_us - round_us / 2;
     if (round_us < 0 || round_us > ROUND_MAX_US) {
         return true;
     }

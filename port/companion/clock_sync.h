@@ -20,9 +20,9 @@ typedef struct {
 
 void clock_sync_reset(clock_sync_t *sync);
 
-/* An answer to a question that was asked at asked_us and came back at now_us, own clock, from autopilot_us of its clock.
+/* An answer to a question that was asked at question_us and came back at now_us, own clock, from autopilot_us of its clock.
  * Returns false if the autopilot's clock has jumped: three answers in a row contradict what was known, which is forgotten. */
-bool clock_sync_answer(clock_sync_t *sync, int64_t asked_us, int64_t now_us, int64_t autopilot_us);
+bool clock_sync_answer(clock_sync_t *sync, int64_t question_us, int64_t now_us, int64_t autopilot_us);
 
 /* A message of the autopilot's time arrived. Nothing once there was an answer. */
 void clock_sync_one_way(clock_sync_t *sync, int64_t now_us, int64_t autopilot_us);

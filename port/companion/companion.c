@@ -229,7 +229,7 @@ static bool is_due(int64_t *last_us, int64_t now_us, double hz) {
     return true;
 }
 
-static void tell_alive(companion_t *c) {
+static void send_alive(companion_t *c) {
     const goe_flight_assessment_t *a = &c->assessment;
     if (a->detector_alive != c->detector_alive) {
         event(a->detector_alive ? "the detector is alive"
@@ -281,7 +281,7 @@ static void assess(companion_t *c, int64_t now_us) {
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
     const uint8_t phase = autopilot_phase(&c->autopilot);
     const goe_flight_status_t status = goe_flight_assess(&c->flight, autopilot_us, phase, &c->assessment);
-    tell_alive(c);
+    send_alive(c);
     if (status == GOE_FLIGHT_CORRUPTED) {
         event("its memory was corrupted: obstacles are looked for anew");
         (void)begin_flight(c, NULL);
@@ -346,7 +346,7 @@ static void end_second(companion_t *c, int64_t now_us) {
     mend_links(c, now_us);
 }
 
-static bool do_what_is_due(companion_t *c) {
+static bool do_due_work(companion_t *c) {
     const int64_t now_us = clock_us(CLOCK_MONOTONIC);
     autopilot_ask(&c->autopilot, now_us);
     watch_health(c, now_us);
@@ -379,7 +379,7 @@ bool companion_turn(companion_t *c) {
     if (c->detections_link != NULL) {
         read_lines(c);
     }
-    return do_what_is_due(c);
+    return do_due_work(c);
 }
 
 static bool open_all(companion_t *c, char *fault, size_t fault_size) {

@@ -317,8 +317,8 @@ static void lose(link_t *link) {
 static bool is_for_later(int why) { return why == EAGAIN || why == EINTR || why == EINPROGRESS; }
 
 static bool has_bytes(const link_t *link) {
-    struct pollfd asked = {.fd = link->descriptor, .events = POLLIN, .revents = 0};
-    return poll(&asked, 1, 0) > 0;
+    struct pollfd request = {.fd = link->descriptor, .events = POLLIN, .revents = 0};
+    return poll(&request, 1, 0) > 0;
 }
 
 size_t link_read(link_t *link, uint8_t *bytes, size_t size) {

@@ -23,7 +23,7 @@ typedef struct {
     message_rate_t rate[MESSAGE_RATES_MAX];
     unsigned count, next; /* next: the one that is being asked for; count: all are done */
     unsigned tries;       /* requests for it without an answer */
-    int64_t asked_us;     /* own time of the latest request */
+    int64_t question_us;  /* own time of the latest request */
     bool awaiting;        /* its answer */
 } message_rates_t;
 

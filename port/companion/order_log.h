@@ -17,7 +17,7 @@ typedef struct {
 
 /* What is left of an order that still stands: enough to go back from it. */
 typedef struct {
-    bool stands;
+    bool active;
     unsigned action; /* goe_flight_action_t */
     uint32_t mode_before;
     int64_t unix_us, boot_us; /* when this was written, by both clocks */

@@ -40,14 +40,14 @@ typedef struct {
     mode_watch_t watch;
     screen_t *screen;    /* null: none */
     order_log_t *log;    /* null: none */
-    order_left_t stands; /* what of the order that stands the log keeps ... */
+    order_left_t active; /* what of the order that stands the log keeps ... */
     bool left_reported;
     order_left_t left;                  /* ... and what of one a companion before this one left */
     goe_flight_assessment_t assessment; /* the latest */
     int64_t unix_us, boot_us;           /* ... and when it was, by both clocks */
     int resumes_left;                   /* times that it may still be asked for */
     unsigned resumed_at;                /* count of heartbeats when it was asked for last */
-    unsigned long restarts_seen;
+    unsigned long restarts_counted;
     unsigned long orders, refused; /* counted */
 } orders_t;
 

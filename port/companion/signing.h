@@ -17,7 +17,7 @@ typedef struct {
     bool failed;                 /* it could not be written, which was reported */
     mavlink_signing_t state;
     mavlink_signing_streams_t streams;
-    unsigned long unsigned_seen, forged_seen; /* counts of the wire that were reported */
+    unsigned long unsigned_reported, forged_reported; /* counts of the wire that were reported */
 } signing_t;
 
 /* Signs and checks from now on. unix_us: the computer's clock, which need not be right. */

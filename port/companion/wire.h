@@ -25,7 +25,7 @@ typedef struct {
 typedef struct {
     link_t *link;
     uint8_t system, component; /* the companion's */
-    uint8_t heard;             /* the autopilot's system, whose losses count; 0: not known yet */
+    uint8_t autopilot_system;  /* the autopilot's system, whose losses count; 0: not known yet */
     mavlink_message_t buffer;
     mavlink_status_t parser;
     mavlink_status_t sender; /* keeps the running number of what goes out */

@@ -258,14 +258,14 @@ static bool ends_of_circle(const float begin_m[2], const goe_flight_clear_way_t 
 }
 
 /* Where an autopilot that leaves its line by 45 degrees at once begins to fly beside it. */
-static void shift_aside(const float begin_m[2], const goe_flight_clear_way_t *way, float beside_m[2]) {
+static void shift_aside(const float begin_m[2], const goe_flight_clear_way_t *way, float sideways_m[2]) {
     const float *line = way->line_m;
     float to[2];
     minus(way->target_m, begin_m, to);
     const float aside_m = cross(line, to);
     const float ahead_m = goe_flight_clamped(dot(line, to), 0.0f, goe_flight_absolute(aside_m));
-    beside_m[0] = begin_m[0] + ahead_m * line[0] - aside_m * line[1];
-    beside_m[1] = begin_m[1] + ahead_m * line[1] + aside_m * line[0];
+    sideways_m[0] = begin_m[0] + ahead_m * line[0] - aside_m * line[1];
+    sideways_m[1] = begin_m[1] + ahead_m * line[1] + aside_m * line[0];
 }
 
 static void add_fan(region_t *region, const float a_m[2], const float b_m[2], const float c_m[2]) {

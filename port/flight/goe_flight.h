@@ -327,7 +327,7 @@ typedef struct { /* goe_slot.c */
     goe_estimator_t estimator;
     goe_hazard_t hazard; /* from the latest assessment; goe_lookout.c */
     uint32_t id;
-    uint32_t taken_us, seen_us; /* exposure of the latest image taken, and of that with a detection */
+    uint32_t taken_us, detected_us; /* exposure of the latest image taken, and of that with a detection */
     float jumps_ned_m[3];       /* the history's sum at the latest image taken */
     float ground_down_m, height_sd_m; /* of the track, fixed at its first image */
     float center_ne_m[2], covariance_ne_m2[3];

@@ -346,8 +346,8 @@ static option_t choose(const look_t *look, int about, const encounter_t *e, int 
     if (side == 0 || side == -away) {
         try_hold(look, -away, &hold);
     }
-    const bool holds = best.action == GOE_FLIGHT_NONE || hold.share >= HOLD_FREE || hold.share > best.share + GAIN;
-    return holds ? hold : best;
+    const bool keep = best.action == GOE_FLIGHT_NONE || hold.share >= HOLD_FREE || hold.share > best.share + GAIN;
+    return keep ? hold : best;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- order -- */
@@ -825,15 +825,15 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
     if (own->grounded && r->action != GOE_FLIGHT_NONE) {
         goe_flight_reaction_clear(r);
     }
-    const bool stands = r->action != GOE_FLIGHT_NONE;
-    if (!stands) {
+    const bool active = r->action != GOE_FLIGHT_NONE;
+    if (!active) {
         r->reason = GOE_FLIGHT_REASON_NONE;
     }
     if (!look_around(flight, own, &look)) {
         r->rising = false;
         return 0.0f;
     }
-    if (stands) {
+    if (active) {
         end_if_over(flight, &look);
         break_off(flight, &look);
         review(flight, &look);

@@ -24,8 +24,8 @@
 #define APPROACH_FOCAL_PX 914.0 /* 70 degrees from side to side; the camera looks along the body's forward axis */
 
 /* Errors that every flight has; one sigma each. */
-#define APPROACH_BOX_SHARE 0.02 /* of a box's side, of its width or height, that stays alike ... */
-#define APPROACH_ALIKE_S 1.0    /* ... for so long */
+#define APPROACH_BOX_SHARE 0.02    /* of a box's side, of its width or height, that stays alike ... */
+#define APPROACH_CORRELATION_S 1.0 /* ... for so long */
 #define APPROACH_ATTITUDE_BIAS_DEG 0.3
 #define APPROACH_ATTITUDE_WHITE_DEG 0.1
 #define APPROACH_VELOCITY_M_S 0.05

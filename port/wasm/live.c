@@ -51,7 +51,7 @@ static void choose_settings(goe_settings_t *settings) {
     settings->camera.height_px = (float)APPROACH_IMAGE_HEIGHT_PX;
     settings->heading_auto = false; /* north, the course */
     settings->detector.box_share = (float)APPROACH_BOX_SHARE;
-    settings->detector.correlation_s = (float)APPROACH_ALIKE_S;
+    settings->detector.correlation_s = (float)APPROACH_CORRELATION_S;
     if (controls[CONTROL_knows] > 0.5f) {
         const float offset_m = controls[CONTROL_height_offset_m];
         settings->detector.box_px = larger(controls[CONTROL_pixel_px], 0.1f);

@@ -175,7 +175,7 @@ aircraft_state_t aircraft_advance(const aircraft_state_t *state, const controls_
     next = moved(&next, &k2, step_s / 3.0);
     next = moved(&next, &k3, step_s / 3.0);
     next = moved(&next, &k4, step_s / 6.0);
-    next.attitude = quat_normalised(next.attitude);
+    next.attitude = quat_normalized(next.attitude);
     return next;
 }
 

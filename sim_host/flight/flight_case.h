@@ -107,16 +107,16 @@ const char *flight_case_fly(const flight_case_t *given, flight_log_t *log);
 typedef struct {
     obstacle_t obstacle;          /* its shape */
     double x0_m, z0_m, alpha_deg; /* as those of flight_case_t; z0_m must be known */
-} neighbour_t;
+} neighbor_t;
 
 /* Null if it can be placed, otherwise why not. */
-const char *neighbour_fault(const neighbour_t *neighbour);
+const char *neighbor_fault(const neighbor_t *neighbor);
 
 /* What the camera of a flight that was flown with *setup shows of another obstacle on the same ground: times, poses and lost
  * frames are the flight's, pixels have errors of their own, drawn from seed. It ends where the aircraft is inside of the other
  * one. Returns null and fills *log (to be freed with flight_log_free), or says why not. */
-const char *flight_log_of_neighbour(const flight_case_t *setup, const flight_log_t *flown, const neighbour_t *neighbour,
-                                    uint64_t seed, flight_log_t *log);
+const char *flight_log_of_neighbor(const flight_case_t *setup, const flight_log_t *flown, const neighbor_t *neighbor,
+                                   uint64_t seed, flight_log_t *log);
 
 void flight_log_free(flight_log_t *log);
 

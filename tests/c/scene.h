@@ -51,7 +51,7 @@ typedef struct {
     double left_x, right_x;                   /* silhouette, aligned */
     double top_y, top_z_m;                    /* aligned y, and its Z */
     double base_x[3], base_y[3], base_z_m[3]; /* left, near, right */
-    bool base_seen[3];
+    bool base_visible[3];
 } scene_truth_t;
 
 /* A truck on the left of a straight level flight to the north, 1280 x 1280 pixels of 70 degrees, 8 images a second. */
@@ -68,7 +68,7 @@ goe_settings_t scene_window_settings(const scene_t *scene);
 void scene_make_cylinder(scene_t *scene);
 
 /* The noise that the scenes have: nothing but the rounding of their numbers is wrong. */
-void scene_tell_no_noise(goe_settings_t *settings);
+void scene_clear_noise(goe_settings_t *settings);
 
 /* No point is seen; a box may be. */
 void scene_hide_points(goe_image_t *image);

@@ -221,7 +221,7 @@ static const int faces_to_feature[3] = {GOE_POINT_BASE_LEFT, GOE_POINT_BASE_NEAR
 /* [goe_image_t.base_left, goe_image_t.pose, goe_image_t.top, (R1), (R10), (R11), (R12), (R13), (R2), (R9)]
  * GIVEN boxes of any size, side and orientation WHEN all that can be seen is measured where brute force puts it THEN all
  * residuals are 0, so that the same corners were taken, and all derivatives are those of the projection. */
-static void rows_are_those_of_the_corners_that_are_seen(void) {
+static void rows_are_those_of_the_corners_that_are_visible(void) {
     int faces[3] = {0, 0, 0};
     any = check_random_start("all features");
     for (int n = 0; n < CASES; n++) {
@@ -281,7 +281,7 @@ static void a_silhouette_alone_takes_the_outermost_corners(void) {
 /* [goe_image_t.base_left]
  * GIVEN two faces of which the detector missed the corner between them WHEN the length is estimated THEN the outer corners
  * are those of both faces all the same, if that fits clearly better. */
-static void a_missed_near_corner_is_told_from_a_single_face(void) {
+static void a_missed_near_corner_is_distinguished_from_a_single_face(void) {
     int checked = 0;
     any = check_random_start("missed corner");
     for (int n = 0; n < CASES; n++) {
@@ -416,7 +416,7 @@ static void names_move_the_reference_point_and_not_the_middle(void) {
 }
 
 /* [(R24)] 1 + 12 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
-static void an_unsure_depth_widens_what_hangs_on_the_corner(void) {
+static void an_uncertain_depth_widens_corner_quantities(void) {
     goe_box_edges_t edges;
     goe_shape_t shape;
     start_at(30.0);
@@ -434,12 +434,12 @@ static void an_unsure_depth_widens_what_hangs_on_the_corner(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(rows_are_those_of_the_corners_that_are_seen);
+    RUN_TEST(rows_are_those_of_the_corners_that_are_visible);
     RUN_TEST(a_silhouette_alone_takes_the_outermost_corners);
-    RUN_TEST(a_missed_near_corner_is_told_from_a_single_face);
+    RUN_TEST(a_missed_near_corner_is_distinguished_from_a_single_face);
     RUN_TEST(depths_solve_their_equations);
     RUN_TEST(an_edge_keeps_its_name_until_it_lies_clearly_across);
     RUN_TEST(names_move_the_reference_point_and_not_the_middle);
-    RUN_TEST(an_unsure_depth_widens_what_hangs_on_the_corner);
+    RUN_TEST(an_uncertain_depth_widens_corner_quantities);
     return UNITY_END();
 }

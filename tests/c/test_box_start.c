@@ -116,7 +116,7 @@ static void a_side_alone_has_its_near_end_on_the_front(void) {
 static void the_sigma_covers_the_noise(void) {
     const int draws = 2000;
     double sum2 = 0.0;
-    double told = 0.0;
+    double reported = 0.0;
     any = check_random_start("sigma");
     for (int n = 0; n < draws; n++) {
         show_face((place_t){-6.0, 51.0}, (place_t){2.0, 49.0});
@@ -128,11 +128,11 @@ static void the_sigma_covers_the_noise(void) {
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const double error = (double)box.orientation_rad - atan2(2.0, 8.0);
         sum2 += error * error;
-        told = (double)box.sigma_rad;
+        reported = (double)box.sigma_rad;
     }
-    check_report("rms error of the orientation over the told sigma", sqrt(sum2 / draws) / told);
-    TEST_ASSERT_TRUE(sqrt(sum2 / draws) < told);
-    TEST_ASSERT_TRUE(sqrt(sum2 / draws) > 0.2 * told);
+    check_report("rms error of the orientation over the told sigma", sqrt(sum2 / draws) / reported);
+    TEST_ASSERT_TRUE(sqrt(sum2 / draws) < reported);
+    TEST_ASSERT_TRUE(sqrt(sum2 / draws) > 0.2 * reported);
 }
 
 /* GIVEN a face and an attitude that may be off by a roll THEN the roll tilts the face's ends against each other, which looks like a
@@ -268,7 +268,7 @@ static void good_box(void) {
 }
 
 /* [(R20)] */
-static void what_one_face_does_not_tell_is_refused(void) {
+static void an_unobservable_quantity_of_one_face_is_refused(void) {
     any = check_random_start("refusals");
     good_face();
     sighting.sight.base = false;
@@ -300,7 +300,7 @@ static void what_one_face_does_not_tell_is_refused(void) {
 }
 
 /* [(R19)] */
-static void what_two_faces_do_not_tell_is_refused(void) {
+static void an_unobservable_quantity_of_two_faces_is_refused(void) {
     any = check_random_start("refusals");
     good_box();
     sighting.sight.base = false;
@@ -332,7 +332,7 @@ int main(void) {
     RUN_TEST(ends_that_would_show_a_second_face_are_none_of_one);
     RUN_TEST(a_front_that_becomes_a_side_agrees_with_itself);
     RUN_TEST(two_faces_of_equal_depth_are_right_to_first_order);
-    RUN_TEST(what_one_face_does_not_tell_is_refused);
-    RUN_TEST(what_two_faces_do_not_tell_is_refused);
+    RUN_TEST(an_unobservable_quantity_of_one_face_is_refused);
+    RUN_TEST(an_unobservable_quantity_of_two_faces_is_refused);
     return UNITY_END();
 }

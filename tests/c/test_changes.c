@@ -199,7 +199,7 @@ static void make_chord(bool right) {
 }
 
 /* The corner between the faces, at the end of the front from which the chord leads away, lies where the end that has left was seen. */
-static void check_corner(const double x[GOE_STATES], float seen_x) {
+static void check_corner(const double x[GOE_STATES], float image_x) {
     double side_z;
     double front_z;
     edges_of(x, &side_z, &front_z);
@@ -207,13 +207,13 @@ static void check_corner(const double x[GOE_STATES], float seen_x) {
     const double q = x[GOE_INVERSE_RANGE];
     const double px = x[GOE_BEARING] + end * x[GOE_FRONT_X] - (double)sighting.sight.camera_m.x * q;
     const double pz = 1.0 + end * front_z - (double)sighting.sight.camera_m.z * q;
-    CHECK_CLOSE(1.0e-4, px / pz, seen_x);
+    CHECK_CLOSE(1.0e-4, px / pz, image_x);
 }
 
 /* GIVEN a chord that becomes a box WHEN one face has turned away THEN what was known of its ends is known of the box's outer corners,
  * a little less well for the images in which it went unnoticed; the corner between them is somewhere on the circle over the
  * chord; and the images to come are free to correct it. */
-static void a_box_by_its_outline_knows_what_the_chord_knew(void) {
+static void an_outline_box_starts_from_the_chord(void) {
     int changed = 0;
     any = check_random_start("a face turns away");
     for (int n = 0; n < 20 * CASES && changed < CASES; n++) {
@@ -383,7 +383,7 @@ static void turned(const double x[GOE_STATES], double to[GOE_STATES]) {
 /* GIVEN a disc that becomes a box THEN it keeps what it knew of attitude, ground, place and range, with what the biases and the place
  * have gained since; the place is open again by the size of the box, as another point of it counts from now on, and the range by as
  * much; extents are open but for the length of a single face, which nothing tells. */
-static void a_box_begins_with_what_the_disc_knew(void) {
+static void a_box_starts_from_the_disc(void) {
     any = check_random_start("a box starts");
     for (int n = 0; n < CASES; n++) {
         const bool both = n % 2 == 0;
@@ -450,10 +450,10 @@ static void only_images_that_agree_start_a_box(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(a_box_by_its_outline_knows_what_the_chord_knew);
+    RUN_TEST(an_outline_box_starts_from_the_chord);
     RUN_TEST(a_box_by_other_names_is_known_as_well);
     RUN_TEST(a_second_face_opens_the_length_alone);
-    RUN_TEST(a_box_begins_with_what_the_disc_knew);
+    RUN_TEST(a_box_starts_from_the_disc);
     RUN_TEST(only_images_that_agree_start_a_box);
     return UNITY_END();
 }

@@ -62,7 +62,7 @@ static void update(void) {
     reasons |= 1u << estimate.reason;
 }
 
-static bool was_told(goe_reason_t reason) { return (reasons >> reason & 1u) != 0u; }
+static bool was_reported(goe_reason_t reason) { return (reasons >> reason & 1u) != 0u; }
 
 static void leave_base_out(void) {
     image.base_left.seen = false;
@@ -189,7 +189,7 @@ static void a_box_comes_out_of_its_silhouette(void) {
     for (int i = 0; i < 3; i++) {
         setUp();
         scene.alpha_deg = alpha_deg[i];
-        scene_tell_no_noise(&settings);
+        scene_clear_noise(&settings);
         start();
         for (int k = 0; k < IMAGES; k++) {
             see_silhouette(k, 0.0);
@@ -276,10 +276,10 @@ static void outlines_of_houses_are_not_confidently_wrong(void) {
 }
 
 /* GIVEN a flight WHEN it is mirrored THEN the same models come at the same images, and the box is the mirrored one. */
-static void left_and_right_are_alike(void) {
+static void left_and_right_are_equal(void) {
     unsigned char phase[IMAGES];
     scene.camera.cx_px = 0.0f;
-    scene_tell_no_noise(&settings);
+    scene_clear_noise(&settings);
     start();
     for (int k = 0; k < IMAGES; k++) {
         see_silhouette(k, 0.0);
@@ -304,7 +304,7 @@ static void left_and_right_are_alike(void) {
 
 /* GIVEN a box that starts by its silhouette WHEN its base comes into view THEN it becomes a box by its corners. */
 static void base_corners_end_the_chord(void) {
-    scene_tell_no_noise(&settings);
+    scene_clear_noise(&settings);
     start();
     for (int k = 0; k < 60; k++) {
         see_silhouette(k, 0.0);
@@ -458,14 +458,14 @@ static void false_base_corners_are_found_out(void) {
     }
     TEST_ASSERT_TRUE(was_in(GOE_PHASE_BOX));
     TEST_ASSERT_TRUE(suspected);
-    TEST_ASSERT_TRUE(was_told(GOE_REASON_BASE));
+    TEST_ASSERT_TRUE(was_reported(GOE_REASON_BASE));
     TEST_ASSERT_EQUAL_INT(GOE_REASON_BASE, estimate.reason); /* and stays so */
     TEST_ASSERT_FALSE(goe_filter_is_box(&estimator.filter));
 }
 
 /* GIVEN base corners that proved to be none WHEN the window answers, which knows of no doubt THEN its answer tells of it, and a
  * graver reason stands. */
-static void refused_corners_are_told_with_every_answer(void) {
+static void refused_corners_are_reported_with_every_answer(void) {
     goe_filter_clear(&filter);
     for (int refused = 0; refused < 2; refused++) {
         filter.health.base_refused = refused != 0;
@@ -490,8 +490,8 @@ static void noise_does_not_make_corners_false(void) {
         update();
     }
     TEST_ASSERT_TRUE(suspected);
-    TEST_ASSERT_TRUE(was_told(GOE_REASON_NOISE));
-    TEST_ASSERT_FALSE(was_told(GOE_REASON_BASE));
+    TEST_ASSERT_TRUE(was_reported(GOE_REASON_NOISE));
+    TEST_ASSERT_FALSE(was_reported(GOE_REASON_BASE));
     TEST_ASSERT_FALSE(estimator.filter.health.base_refused);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
 }
@@ -502,7 +502,7 @@ int main(void) {
     RUN_TEST(a_box_comes_out_of_its_silhouette);
     RUN_TEST(noise_does_not_hide_the_box);
     RUN_TEST(outlines_of_houses_are_not_confidently_wrong);
-    RUN_TEST(left_and_right_are_alike);
+    RUN_TEST(left_and_right_are_equal);
     RUN_TEST(base_corners_end_the_chord);
     RUN_TEST(a_corner_makes_a_box);
     RUN_TEST(ends_that_leave_in_turn_make_no_box);
@@ -511,7 +511,7 @@ int main(void) {
     RUN_TEST(a_cylinder_stays_a_disc);
     RUN_TEST(a_disc_by_force_is_suspect);
     RUN_TEST(false_base_corners_are_found_out);
-    RUN_TEST(refused_corners_are_told_with_every_answer);
+    RUN_TEST(refused_corners_are_reported_with_every_answer);
     RUN_TEST(noise_does_not_make_corners_false);
     return UNITY_END();
 }

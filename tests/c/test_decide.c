@@ -53,7 +53,7 @@ static void probability_and_time_decide(void) {
 
 /* GIVEN a place so uncertain that hardly any of it lies within the margin THEN the small probability is no "clear": too little is known.
  * A place that is surely outside is clear, by either distance. */
-static void what_is_hardly_known_is_not_clear(void) {
+static void a_poorly_known_obstacle_is_not_clear(void) {
     for (int far_aside = 0; far_aside < 2; far_aside++) {
         place(far_aside == 1 ? 60.0 : 0.0);
         estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 5000.0f;
@@ -228,7 +228,7 @@ static void the_soonest_time_is_early(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(probability_and_time_decide);
-    RUN_TEST(what_is_hardly_known_is_not_clear);
+    RUN_TEST(a_poorly_known_obstacle_is_not_clear);
     RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(without_a_position_nothing_is_known);

@@ -146,7 +146,7 @@ static void a_forced_model_is_never_left(void) {
 
 /* [goe_estimate_t.x_m]
  * GIVEN a solution WHEN nothing is in view THEN the image's pose is followed, the answer ages, and nothing is at fault. */
-static void nothing_seen_is_no_fault(void) {
+static void no_detection_is_no_fault(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 16));
     const goe_estimate_t before = estimate;
@@ -169,7 +169,7 @@ static void nothing_seen_is_no_fault(void) {
 }
 
 /* [GOE_MODEL_AUTO, goe_window.c] GIVEN the line is reported WHEN an image shows the silhouette alone THEN the line's solution is held. */
-static void an_image_without_corners_holds_the_line(void) {
+static void an_image_without_corners_keeps_the_line(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 16));
     const goe_estimate_t before = estimate;
@@ -244,7 +244,7 @@ static void head_on_has_no_edge(void) {
 
 /* --------------------------------------------------------------------------------- faults of an image that was taken -- */
 
-static void swapped_left_and_right_are_told(void) {
+static void swapped_left_and_right_are_reported(void) {
     scene_make_cylinder(&scene);
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
@@ -261,7 +261,7 @@ static void swapped_left_and_right_are_told(void) {
 }
 
 /* [A21, GOE_CAUSES, GOE_IMAGE_TAKEN, goe_update] The camera looks back: every ray is behind. */
-static void what_lies_behind_is_told(void) {
+static void an_obstacle_behind_is_reported(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
     scene_image(&scene, 10, &image, NULL);
@@ -276,7 +276,7 @@ static void what_lies_behind_is_told(void) {
 }
 
 /* A fault of one feature does not lose the others. */
-static void a_fault_beside_a_solution_is_partial(void) {
+static void a_fault_next_to_a_solution_is_partial(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
     scene_image(&scene, 10, &image, NULL);
@@ -324,7 +324,7 @@ static void a_height_that_is_not_positive_is_none(void) {
 }
 
 /* [window.side_min_px] GIVEN a truck flown past so that its side points at the camera THEN lengths are skipped and it is told. */
-static void a_side_seen_edge_on_gives_no_length(void) {
+static void a_side_viewed_edge_on_gives_no_length(void) {
     scene.x0_m = -1.9; /* the plane of the right side passes 0.65 m from the camera */
     scene.z0_m = 80.0;
     start();
@@ -370,7 +370,7 @@ static void stopping_keeps_the_last_answer(void) {
 /* [goe_update]
  * GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is told;
  * before there is one to solve, the feature's fault is. */
-static void a_failed_solution_is_told_before_a_feature_s_fault(void) {
+static void a_failed_solution_is_reported_before_a_feature_s_fault(void) {
     scene.speed_mps = 0.0;
     start();
     for (int k = 0; k < 12; k++) {
@@ -427,7 +427,7 @@ static void an_obstacle_that_is_said_to_lie_behind_is_passed(void) {
 /* The estimator is as it was, but for one counter. */
 static void check_refused(goe_status_t expected) {
     static goe_estimator_t before;
-    const goe_estimate_t told = estimate;
+    const goe_estimate_t reported = estimate;
     memcpy(&before, &estimator, sizeof before);
     memset(&estimate, 0xA5, sizeof estimate);
     CHECK_STATUS(expected, update());
@@ -435,12 +435,12 @@ static void check_refused(goe_status_t expected) {
     before.causes[-expected]++;
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
     TEST_ASSERT_FALSE(estimate.fresh); /* always written */
-    TEST_ASSERT_EQUAL_HEX32(told.valid, estimate.valid);
-    TEST_ASSERT_EQUAL_INT(told.model, estimate.model);
-    CHECK_SAME(told.z0_m, estimate.z0_m);
-    CHECK_SAME(told.x_m, estimate.x_m);
-    CHECK_SAME(told.length_m, estimate.length_m);
-    CHECK_SAME(told.sigma.height_m, estimate.sigma.height_m);
+    TEST_ASSERT_EQUAL_HEX32(reported.valid, estimate.valid);
+    TEST_ASSERT_EQUAL_INT(reported.model, estimate.model);
+    CHECK_SAME(reported.z0_m, estimate.z0_m);
+    CHECK_SAME(reported.x_m, estimate.x_m);
+    CHECK_SAME(reported.length_m, estimate.length_m);
+    CHECK_SAME(reported.sigma.height_m, estimate.sigma.height_m);
 }
 
 /* [A17, A21, GOE_CAUSES, goe_intake.c] */
@@ -554,7 +554,7 @@ static void a_box_out_of_order_does_not_count(void) {
 }
 
 /* [goe_pixel_t.seen] */
-static void what_is_not_seen_is_not_read(void) {
+static void invisible_features_are_not_read(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
     scene_image(&scene, 12, &image, NULL);
@@ -639,7 +639,7 @@ static void an_image_of_no_camera_is_refused(void) {
 }
 
 /* [goe_fault.c, goe_update] The order of the checks, each over the whole image. */
-static void the_first_fault_is_told(void) {
+static void the_first_fault_is_reported(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
     for (int i = 0; i < 4; i++) {
@@ -679,7 +679,7 @@ static void null_pointers_are_refused(void) {
 }
 
 /* [goe_update] */
-static void an_estimator_must_be_initialised(void) {
+static void an_estimator_must_be_initialized(void) {
     static const int fills[] = {0x00, 0xFF, 0xA5};
     goe_estimate_t nothing;
     memset(&nothing, 0, sizeof nothing);
@@ -878,37 +878,37 @@ int main(void) {
     RUN_TEST(the_number_of_line_points_is_a_setting);
     RUN_TEST(the_window_is_a_setting);
     RUN_TEST(a_forced_model_is_never_left);
-    RUN_TEST(nothing_seen_is_no_fault);
-    RUN_TEST(an_image_without_corners_holds_the_line);
+    RUN_TEST(no_detection_is_no_fault);
+    RUN_TEST(an_image_without_corners_keeps_the_line);
     RUN_TEST(an_age_is_bounded);
     RUN_TEST(an_estimate_grows_old_while_images_are_refused);
     RUN_TEST(times_may_start_anywhere);
     RUN_TEST(head_on_has_no_edge);
-    RUN_TEST(swapped_left_and_right_are_told);
-    RUN_TEST(what_lies_behind_is_told);
-    RUN_TEST(a_fault_beside_a_solution_is_partial);
+    RUN_TEST(swapped_left_and_right_are_reported);
+    RUN_TEST(an_obstacle_behind_is_reported);
+    RUN_TEST(a_fault_next_to_a_solution_is_partial);
     RUN_TEST(a_negative_height_all_along_gives_no_height);
     RUN_TEST(a_height_that_is_not_positive_is_none);
-    RUN_TEST(a_side_seen_edge_on_gives_no_length);
+    RUN_TEST(a_side_viewed_edge_on_gives_no_length);
     RUN_TEST(hovering_has_no_baseline);
     RUN_TEST(stopping_keeps_the_last_answer);
-    RUN_TEST(a_failed_solution_is_told_before_a_feature_s_fault);
+    RUN_TEST(a_failed_solution_is_reported_before_a_feature_s_fault);
     RUN_TEST(a_moving_obstacle_has_no_parallax);
     RUN_TEST(an_obstacle_that_is_said_to_lie_behind_is_passed);
     RUN_TEST(every_number_read_is_checked);
     RUN_TEST(the_ends_of_ranges_are_within);
     RUN_TEST(points_and_boxes_are_both_checked);
     RUN_TEST(a_box_out_of_order_does_not_count);
-    RUN_TEST(what_is_not_seen_is_not_read);
+    RUN_TEST(invisible_features_are_not_read);
     RUN_TEST(time_must_run_on);
     RUN_TEST(the_settings_are_copied_and_the_counters_zeroed);
     RUN_TEST(the_first_image_needs_a_time);
     RUN_TEST(a_quaternion_may_be_off_by_one_percent);
     RUN_TEST(an_image_of_no_camera_is_refused);
-    RUN_TEST(the_first_fault_is_told);
+    RUN_TEST(the_first_fault_is_reported);
     RUN_TEST(counters_saturate);
     RUN_TEST(null_pointers_are_refused);
-    RUN_TEST(an_estimator_must_be_initialised);
+    RUN_TEST(an_estimator_must_be_initialized);
     RUN_TEST(the_covariance_is_the_sigmas_squared);
     RUN_TEST(a_reset_forgets_the_track_and_keeps_the_counters);
     RUN_TEST(estimators_share_nothing);

@@ -116,7 +116,7 @@ static void an_obstacle_abeam_or_behind_is_passed(void) {
 }
 
 /* [window.min_baseline_m] */
-static void what_is_too_far_to_be_an_obstacle_is_no_parallax(void) {
+static void an_excessive_range_is_no_parallax(void) {
     for (int k = 0; k < LENGTH; k++) { /* W = 2e6 m, and the camera moves 1e6 m: above the rounding limit */
         goe_fit_add(&window, LENGTH, 0.0f, 1.0e6f * (float)k, (goe_row_t){0.0f, 10.0f - 0.5f * (float)k});
     }
@@ -212,7 +212,7 @@ int main(void) {
     RUN_TEST(an_image_that_shrinks_is_no_parallax);
     RUN_TEST(growth_below_the_rounding_of_floats_is_no_parallax);
     RUN_TEST(an_obstacle_abeam_or_behind_is_passed);
-    RUN_TEST(what_is_too_far_to_be_an_obstacle_is_no_parallax);
+    RUN_TEST(an_excessive_range_is_no_parallax);
     RUN_TEST(the_oldest_rows_leave);
     RUN_TEST(a_place_outside_the_ring_is_its_first);
     RUN_TEST(the_count_of_points_saturates);

@@ -225,17 +225,17 @@ static void an_unsure_state_opens_the_gate(void) {
  * of their differences, and an outlier among them is found. */
 static void the_own_position_s_error_opens_the_gate(void) {
     for (int shared = 0; shared < 2; shared++) {
-        for (int told = 0; told < 2; told++) {
+        for (int reported = 0; reported < 2; reported++) {
             setUp();
             memset(rows.shift, 0, sizeof rows.shift);
-            rows.shifts = told != 0;
+            rows.shifts = reported != 0;
             rows.count = GOE_BOX_SIDES; /* so many of a box: along x, x, y, x */
             for (size_t i = 0; i < rows.count; i++) {
                 rows.shift[i][1] = shared || i == 0 ? 0.01f : 0.0f;
             }
             *residual(0) = (float)(15.0 / FOCAL_PX);
             apply();
-            TEST_ASSERT_EQUAL_HEX32(told && !shared ? 0u : 1u << rows.feature[0], verdict.refused);
+            TEST_ASSERT_EQUAL_HEX32(reported && !shared ? 0u : 1u << rows.feature[0], verdict.refused);
         }
     }
 }

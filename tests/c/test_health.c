@@ -46,7 +46,7 @@ static bool judge(unsigned measured, unsigned refused) {
 
 /* GIVEN one point that is refused again and again, the others fitting THEN in the fourth image the state is taken to be captured, not
  * the point to be an outlier; an image in which it fits begins the count anew, one that does not show it does not. */
-static void a_point_that_is_always_refused_begins_anew(void) {
+static void a_point_that_is_always_refused_begins_again(void) {
     for (int i = 0; i < 3; i++) {
         TEST_ASSERT_FALSE(judge(ALL, LEFT));
     }
@@ -65,7 +65,7 @@ static void a_point_that_is_always_refused_begins_anew(void) {
 
 /* GIVEN images of which half the points are refused THEN the third in a row begins anew; less than half is none of these, and an
  * image that fits ends the row. */
-static void images_of_which_half_is_refused_begin_anew(void) {
+static void images_of_which_half_is_refused_begin_again(void) {
     TEST_ASSERT_FALSE(judge(ALL, 0x07u));
     TEST_ASSERT_FALSE(judge(ALL, 0x38u));
     TEST_ASSERT_TRUE(judge(ALL, 0x15u));
@@ -98,7 +98,7 @@ static void an_end_of_a_chord_has_longer(void) {
 
 /* GIVEN the top alone refused for three images THEN it is free again, by twice the largest extent, as nothing else hangs on it; and
  * the others are as certain as they were. */
-static void a_refused_top_is_learnt_anew(void) {
+static void a_refused_top_is_learnt_again(void) {
     const double before = (double)goe_filter_variance(&filter, GOE_FRONT_X);
     for (int box = 0; box < 2; box++) {
         setUp();
@@ -156,7 +156,7 @@ static void corners_that_prove_wrong_twice_are_left_out(void) {
 
 /* GIVEN two new starts within 24 images THEN what is given does not belong together; one is an outlier's, and so are two that lie
  * farther apart. */
-static void two_starts_in_short_order_are_told(void) {
+static void two_starts_in_short_order_are_reported(void) {
     const goe_verdict_t good = verdict_of(ALL, 0u);
     for (int apart = 22; apart <= 24; apart++) {
         setUp();
@@ -217,12 +217,12 @@ static void the_means_are_those_of_the_header(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(a_point_that_is_always_refused_begins_anew);
-    RUN_TEST(images_of_which_half_is_refused_begin_anew);
+    RUN_TEST(a_point_that_is_always_refused_begins_again);
+    RUN_TEST(images_of_which_half_is_refused_begin_again);
     RUN_TEST(an_end_of_a_chord_has_longer);
-    RUN_TEST(a_refused_top_is_learnt_anew);
+    RUN_TEST(a_refused_top_is_learnt_again);
     RUN_TEST(corners_that_prove_wrong_twice_are_left_out);
-    RUN_TEST(two_starts_in_short_order_are_told);
+    RUN_TEST(two_starts_in_short_order_are_reported);
     RUN_TEST(a_state_that_is_none_is_not_kept);
     RUN_TEST(the_means_are_those_of_the_header);
     return UNITY_END();

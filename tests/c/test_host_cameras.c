@@ -6,7 +6,7 @@
 #include "scene.h"
 
 #define IMAGES 56
-#define SEEN_DEG 32.0 /* off the axis of a camera: half of what it sees across */
+#define VISIBLE_DEG 32.0 /* off the axis of a camera: half of what it sees across */
 #define YAW_AHEAD_DEG (-25.0f)
 #define YAW_ASIDE_DEG (-75.0f)
 #define EXACT_M 0.02
@@ -75,7 +75,7 @@ static bool see(int k, goe_image_t *image) {
     look_through(by_aside ? &aside : &ahead);
     scene_image(&scene, k, image, NULL);
     image->camera = by_aside ? 1 : 0;
-    return fabs(bearing - (double)scene.camera.mount_yaw_deg) < SEEN_DEG;
+    return fabs(bearing - (double)scene.camera.mount_yaw_deg) < VISIBLE_DEG;
 }
 
 static void start(void) { CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL)); }
@@ -133,7 +133,7 @@ static void a_track_passes_from_one_camera_to_the_other(void) {
             settings = method == 0 ? scene_settings(&scene) : scene_window_settings(&scene);
             settings.more_cameras[0] = aside;
             if (method == 0) {
-                scene_tell_no_noise(&settings);
+                scene_clear_noise(&settings);
             }
             const passage_t passage = fly(0.0);
             TEST_ASSERT_TRUE(passage.by[0] > 5 && passage.by[1] > 5);

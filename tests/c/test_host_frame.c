@@ -20,7 +20,7 @@ static void give(frame_value_t name, double value) {
 }
 
 /* One side after the other, so that no side can stand for another. */
-static void each_side_given_is_seen(void) {
+static void each_side_given_is_visible(void) {
     static const struct {
         frame_value_t name;
         unsigned bit;
@@ -93,7 +93,7 @@ static void the_camera_s_number_is_shown_as_it_is(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(each_side_given_is_seen);
+    RUN_TEST(each_side_given_is_visible);
     RUN_TEST(a_side_that_is_no_number_is_shown);
     RUN_TEST(a_jump_is_known_by_all_three_numbers);
     RUN_TEST(a_wider_counter_goes_on_in_eight_bits);

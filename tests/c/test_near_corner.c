@@ -163,7 +163,7 @@ static void a_second_face_comes_late_in_a_turn(void) {
 /* [(R42)]
  * GIVEN a truck that is met end on, seen from above WHEN its top is the highest point of the roof in the image, which is over the far end
  * THEN the height is uncertain by the length that no image shows. */
-static void a_truck_seen_end_on_hides_its_length(void) {
+static void a_truck_viewed_end_on_hides_its_length(void) {
     start("truck");
     for (int n = 0; n < FLIGHTS; n++) {
         scene.width_m = 2.5;
@@ -184,6 +184,6 @@ int main(void) {
     RUN_TEST(a_missed_corner_makes_no_face_of_two);
     RUN_TEST(two_ends_are_no_sure_face);
     RUN_TEST(a_second_face_comes_late_in_a_turn);
-    RUN_TEST(a_truck_seen_end_on_hides_its_length);
+    RUN_TEST(a_truck_viewed_end_on_hides_its_length);
     return UNITY_END();
 }

@@ -139,7 +139,7 @@ static void end(const goe_outline_t *o, const question_t *question, goe_affine_t
 
 /* GIVEN any outline and direction THEN reach and distance, and the place along a course, move with each quantity as their
  * derivatives say. */
-static void what_is_reached_moves_as_its_derivatives_say(void) {
+static void the_support_point_moves_as_its_derivatives_say(void) {
     any = check_random_start("reach");
     for (int n = 0; n < CASES; n++) {
         obstacle_t obstacle;
@@ -244,7 +244,7 @@ static void the_way_from_an_outline_is_the_shortest(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(what_is_reached_moves_as_its_derivatives_say);
+    RUN_TEST(the_support_point_moves_as_its_derivatives_say);
     RUN_TEST(a_crossing_moves_as_its_derivatives_say);
     RUN_TEST(a_crossing_ends_on_the_outline);
     RUN_TEST(the_way_from_an_outline_is_the_shortest);

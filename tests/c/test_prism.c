@@ -33,7 +33,7 @@ static void rim_point(const double state[GOE_STATES], size_t side, double at, bo
     const double q = state[GOE_INVERSE_RANGE];
     const double h = (double)sighting.sight.steady_height_m;
     const double half = state[GOE_PRISM_HALF];
-    const double depth = half * exp(state[GOE_PRISM_DEPTH] + state[GOE_PRISM_UNSEEN]);
+    const double depth = half * exp(state[GOE_PRISM_DEPTH] + state[GOE_PRISM_UNOBSERVED]);
     (void)side;
     point[0] = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * q + half * sin(at);
     point[1] = foot ? h * q + state[GOE_GROUND] : h * q - state[GOE_PRISM_TOP];
@@ -323,7 +323,7 @@ static void see_box(float left, float top, float right, float bottom) {
 /* GIVEN a first box THEN the filter starts with the range that its foot gives over flat ground, its near side being nearer than its
  * middle by half the width; or, where that foot is hidden or lies so near to the horizon that errors may have put it there, with
  * the typical size's; with the size and the top that the box shows there; and no state is more certain than that. */
-static void a_start_is_what_one_box_shows(void) {
+static void a_start_matches_one_box(void) {
     goe_triangle_t root;
     float x[GOE_STATES];
     any = check_random_start("start");
@@ -335,7 +335,7 @@ static void a_start_is_what_one_box_shows(void) {
         CHECK_SAME(0.0f, x[i]);
     }
     CHECK_SAME(0.0f, x[GOE_PRISM_DEPTH]);
-    CHECK_SAME(0.0f, x[GOE_PRISM_UNSEEN]);
+    CHECK_SAME(0.0f, x[GOE_PRISM_UNOBSERVED]);
     const double q = 1.0 / (80.0 * 1.05);
     const double bias = 0.5 * 0.017453292519943295;
     CHECK_CLOSE(1.0e-6, q, x[GOE_INVERSE_RANGE]);
@@ -359,7 +359,7 @@ static void a_start_is_what_one_box_shows(void) {
     sighting.settings.model = GOE_MODEL_DISC; /* which is as deep as wide */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_DEPTH, GOE_PRISM_DEPTH));
-    CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_UNSEEN, GOE_PRISM_UNSEEN));
+    CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_UNOBSERVED, GOE_PRISM_UNOBSERVED));
     see_box(-0.05f, -0.1f, 0.05f, 0.25f);
     sides.usable = GOE_SEES_LEFT | GOE_SEES_RIGHT; /* no foot, no head */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
@@ -558,7 +558,7 @@ static double first_range_m(void) {
 static double first_sd(size_t state) { return 1.0 / (double)first_root.element[goe_srif_row(state) + state]; }
 
 /* GIVEN a foot clearly below the horizon THEN the range is that of flat ground, to the middle; width and top follow from it. */
-static void the_ground_tells_the_first_range(void) {
+static void the_ground_gives_the_first_range(void) {
     show_tower();
     CHECK_CLOSE(0.1, 103.0, first_range_m());
     CHECK_CLOSE(1.0e-6, 0.03, first[GOE_PRISM_HALF]);
@@ -572,7 +572,7 @@ static void the_ground_tells_the_first_range(void) {
 
 /* GIVEN a foot that is not seen, or lies too near to the horizon, or a height that says nothing THEN the range is that of the typical
  * size. */
-static void the_typical_size_tells_it_otherwise(void) {
+static void the_typical_size_gives_another_range(void) {
     show_tower();
     sighting.settings.refined.typical_size_m = 12.0f;
     sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
@@ -613,7 +613,7 @@ static void no_range_is_no_start(void) {
 }
 
 /* GIVEN a height that is as good as not known THEN the first box's foot sets it, if it is seen. */
-static void without_an_altimeter_the_foot_tells_the_height(void) {
+static void without_an_altimeter_the_foot_gives_the_height(void) {
     show_tower();
     sighting.sight.height_sd_m = 100.0f;
     sighting.settings.refined.typical_size_m = 12.0f;
@@ -628,17 +628,17 @@ static void without_an_altimeter_the_foot_tells_the_height(void) {
 static void a_disc_by_force_has_no_depth_of_its_own(void) {
     show_tower();
     TEST_ASSERT_TRUE(starts());
-    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) > 0.1 && first_sd(GOE_PRISM_UNSEEN) > 1.0);
+    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) > 0.1 && first_sd(GOE_PRISM_UNOBSERVED) > 1.0);
     sighting.settings.model = GOE_MODEL_DISC;
     TEST_ASSERT_TRUE(starts());
-    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) < 0.01 && first_sd(GOE_PRISM_UNSEEN) < 0.01);
+    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) < 0.01 && first_sd(GOE_PRISM_UNOBSERVED) < 0.01);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ errors -- */
 
 /* GIVEN rows of unit noise to which the image's own position error adds one that they share WHEN they are freed of it THEN they are
  * the old ones times the inverse of a Cholesky root of their covariance: none shares anything any more. */
-static void rows_are_freed_of_what_they_share(void) {
+static void rows_are_whitened(void) {
     any = check_random_start("shared shifts");
     for (int n = 0; n < CASES; n++) {
         goe_filter_t filter;
@@ -810,7 +810,7 @@ static void errors_of_an_image_are_checked(void) {
 }
 
 /* [goe_intake.c] GIVEN a side of the box that is no number, or out of range THEN the image is refused; one that is not seen is not read. */
-static void every_side_that_is_seen_is_checked(void) {
+static void every_side_that_is_visible_is_checked(void) {
     scene_t scene;
     goe_estimator_t estimator;
     goe_estimate_t estimate;
@@ -927,7 +927,7 @@ static void a_height_s_own_error_counts_in_the_first_image(void) {
 
 /* [(R33)] GIVEN the same boxes WHEN a disc is asked for THEN the range is known better: a prism's sigma holds what no image can show of its
  * depth, and that keeps no answer back. */
-static void a_prism_is_told_with_what_no_image_shows(void) {
+static void a_prism_reports_unobserved_depth(void) {
     goe_estimate_t prism;
     goe_estimate_t disc;
     (void)height_sigma_with(0.0f, 0.0f, GOE_MODEL_AUTO, &prism);
@@ -941,7 +941,7 @@ static void a_prism_is_told_with_what_no_image_shows(void) {
 /* [(R33)]
  * GIVEN a share of the range that the whole sigma passes, and what an image can show does not THEN the position is told, with
  * the whole sigma. */
-static void what_no_image_shows_keeps_no_answer_back(void) {
+static void unobserved_depth_keeps_no_answer_back(void) {
     static const float share[] = {0.02f, 0.01f};
     scene_t scene;
     goe_estimator_t estimator;
@@ -957,9 +957,9 @@ static void what_no_image_shows_keeps_no_answer_back(void) {
             scene_image(&scene, k, &image, NULL);
             (void)goe_update(&estimator, &image, &estimate);
         }
-        const bool told = estimate.fresh && estimate.method == GOE_METHOD_REFINED;
-        TEST_ASSERT_EQUAL_INT(strict == 0, told);
-        TEST_ASSERT_TRUE(!told || estimate.sigma.z0_m > share[strict] * estimate.z0_m);
+        const bool reported = estimate.fresh && estimate.method == GOE_METHOD_REFINED;
+        TEST_ASSERT_EQUAL_INT(strict == 0, reported);
+        TEST_ASSERT_TRUE(!reported || estimate.sigma.z0_m > share[strict] * estimate.z0_m);
     }
 }
 
@@ -993,18 +993,18 @@ static void boxes_that_come_too_soon_are_not_used(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(every_side_that_is_seen_is_checked);
+    RUN_TEST(every_side_that_is_visible_is_checked);
     RUN_TEST(the_width_of_slender_things_is_not_confidently_wrong);
     RUN_TEST(a_height_s_own_error_counts_in_the_first_image);
-    RUN_TEST(a_prism_is_told_with_what_no_image_shows);
-    RUN_TEST(what_no_image_shows_keeps_no_answer_back);
+    RUN_TEST(a_prism_reports_unobserved_depth);
+    RUN_TEST(unobserved_depth_keeps_no_answer_back);
     RUN_TEST(boxes_that_come_too_soon_are_not_used);
-    RUN_TEST(the_ground_tells_the_first_range);
-    RUN_TEST(the_typical_size_tells_it_otherwise);
+    RUN_TEST(the_ground_gives_the_first_range);
+    RUN_TEST(the_typical_size_gives_another_range);
     RUN_TEST(no_range_is_no_start);
-    RUN_TEST(without_an_altimeter_the_foot_tells_the_height);
+    RUN_TEST(without_an_altimeter_the_foot_gives_the_height);
     RUN_TEST(a_disc_by_force_has_no_depth_of_its_own);
-    RUN_TEST(rows_are_freed_of_what_they_share);
+    RUN_TEST(rows_are_whitened);
     RUN_TEST(a_shift_far_above_the_noise_makes_no_row_certain);
     RUN_TEST(a_row_far_below_its_shift_counts_less);
     RUN_TEST(the_depth_of_a_body_is_bounded);
@@ -1015,7 +1015,7 @@ int main(void) {
     RUN_TEST(rows_that_share_an_error_are_whitened);
     RUN_TEST(each_side_has_its_own_memory);
     RUN_TEST(a_sides_error_is_a_share_of_the_box);
-    RUN_TEST(a_start_is_what_one_box_shows);
+    RUN_TEST(a_start_matches_one_box);
     RUN_TEST(the_axes_turn_towards_the_box);
     RUN_TEST(sides_are_remembered_in_flight);
     RUN_TEST(a_box_goes_with_base_corners);

@@ -115,7 +115,7 @@ static void the_line_is_exact_everywhere(void) {
     TEST_ASSERT_TRUE(worst < 3.0e-5);
 }
 
-static void a_line_seen_from_its_end_or_from_behind_is_edge_on(void) {
+static void a_line_viewed_from_its_end_or_from_behind_is_edge_on(void) {
     goe_row_t row = {1.25f, 2.5f};
     goe_span_t span;
     const goe_point_t a = at(0.1);
@@ -163,7 +163,7 @@ int main(void) {
     RUN_TEST(the_disc_size_has_the_error_of_equation_2);
     RUN_TEST(a_disc_needs_left_on_the_left);
     RUN_TEST(the_line_is_exact_everywhere);
-    RUN_TEST(a_line_seen_from_its_end_or_from_behind_is_edge_on);
+    RUN_TEST(a_line_viewed_from_its_end_or_from_behind_is_edge_on);
     RUN_TEST(a_virtual_rotation_subtracts_from_the_bearing);
     RUN_TEST(a_virtual_rotation_stops_where_the_alignment_does);
     return UNITY_END();

@@ -236,7 +236,7 @@ static void the_heading_in_the_world_does_not_depend_on_the_trajectory_frame(voi
 
 /* [goe_estimate_t.x0_m]
  * GIVEN a flight WHEN it is mirrored left to right THEN X0 and the orientation change sign and nothing else changes. */
-static void left_and_right_are_alike(void) {
+static void left_and_right_are_equal(void) {
     for (int shape = 0; shape < 2; shape++) {
         for (int path = 0; path < 3; path++) {
             scene_t scene;
@@ -361,7 +361,7 @@ int main(void) {
     RUN_TEST(own_attitude_and_mounting_are_taken_out);
     RUN_TEST(turning_the_world_changes_nothing_in_the_trajectory_frame);
     RUN_TEST(the_heading_in_the_world_does_not_depend_on_the_trajectory_frame);
-    RUN_TEST(left_and_right_are_alike);
+    RUN_TEST(left_and_right_are_equal);
     RUN_TEST(doubling_all_lengths_doubles_the_answer);
     RUN_TEST(the_origin_of_ned_does_not_matter);
     RUN_TEST(an_estimate_agrees_with_itself);

@@ -80,7 +80,7 @@ static void make_any(goe_phase_t phase) {
     }
     if (prism) {
         sigma_of[GOE_PRISM_DEPTH] = 0.1;
-        sigma_of[GOE_PRISM_UNSEEN] = 1.0;
+        sigma_of[GOE_PRISM_UNOBSERVED] = 1.0;
     } else if (phase == GOE_PHASE_DISC) {
         filter.state[GOE_SIDE_X] = 0.0f;
         settings.model = GOE_MODEL_DISC; /* a true disc, and asked for: its condition moves nothing */
@@ -296,7 +296,7 @@ static void sigmas_are_those_of_the_state(void) {
 
 /* GIVEN a prism, of which no image shows how deep it is THEN that widens its sigmas, and silences nothing: what is known is decided without
  * it. Of all others what the last state adds is as good as the rest. */
-static void what_no_image_shows_silences_nothing(void) {
+static void unobserved_depth_silences_nothing(void) {
     any = check_random_start("unseen");
     for (int n = 0; n < CASES; n++) {
         const goe_phase_t phase = phases[n % 5];
@@ -379,7 +379,7 @@ static double square_of(float a, float b) { return (double)a * (double)a + (doub
 
 /* GIVEN something that is estimated beside the state, as the latency is THEN what the state is uncertain by with it widens the place, in T
  * as in north and east, and the extents that hang on the same states. */
-static void what_is_estimated_beside_the_state_widens(void) {
+static void augmented_states_widen_the_sigmas(void) {
     any = check_random_start("beside");
     for (int n = 0; n < CASES; n++) {
         make_any(GOE_PHASE_CHORD);
@@ -428,7 +428,7 @@ static void covariances_are_those_of_the_state(void) {
 /* GIVEN a state that is exact and an own velocity with a constant error WHEN the aircraft has flown for ten seconds THEN all lengths
  * are off by what the error makes of the path, as no image shows it; a path that leads back on itself is not scaled, but the place is
  * off by what has been added on the way; the walk of the own position moves the place, and from the track's first image on. */
-static void what_the_own_motion_is_off_by_is_in_the_sigmas(void) {
+static void errors_of_own_motion_are_in_the_sigmas(void) {
     any = check_random_start("drift");
     for (int n = 0; n < CASES; n++) {
         const double s = 10.0;
@@ -469,7 +469,7 @@ static void what_the_own_motion_is_off_by_is_in_the_sigmas(void) {
 
 /* GIVEN the same THEN that is on the covariance's diagonal alone; with what came before the filter's start for X0 and Z0, but not
  * where a hazard asks, as the camera now has no part in that. */
-static void what_the_own_motion_is_off_by_is_on_the_diagonal(void) {
+static void errors_of_own_motion_are_on_the_diagonal(void) {
     any = check_random_start("drift of covariances");
     for (int n = 0; n < CASES; n++) {
         float now[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -541,8 +541,8 @@ static void an_outline_is_less_certain_than_its_rows_say(void) {
         const double vx = (double)e.side.along.x / (double)e.side.length;
         const double vz = (double)e.side.along.z / (double)e.side.length;
         /* how far the camera is beside the box, square to the side; half a front is (FRONT_X / vz) / 2 long */
-        const double beside = fmax(fabs(vz * px - vx * pz) - 0.5 * (double)filter.state[GOE_FRONT_X] / vz, 0.0);
-        const double sine2 = beside * beside / (px * px + pz * pz);
+        const double augmented = fmax(fabs(vz * px - vx * pz) - 0.5 * (double)filter.state[GOE_FRONT_X] / vz, 0.0);
+        const double sine2 = augmented * augmented / (px * px + pz * pz);
         const double length = (double)quantities.value[side];
         const double lean = length * 0.04 / sqrt(sine2 + 1.0e-6);
         CHECK_CLOSE(1.0e-3, 0.04, quantities.sigma[GOE_ORIENTATION]);
@@ -591,7 +591,7 @@ static void sigmas_are_the_roots_of_the_diagonal(void) {
 
 /* GIVEN an image THEN what it knows is told only if the image before knew it, too; and what is known hangs on the shares of the
  * header: a range that is not known to its share hides everything, an extent only itself. */
-static void what_is_told_was_known_twice(void) {
+static void a_reported_value_was_known_twice(void) {
     any = check_random_start("known");
     make_any(GOE_PHASE_BOX);
     be_uncertain(0.1);
@@ -635,15 +635,15 @@ static void without_a_range_nothing_is_known(void) {
 
 /* GIVEN an obstacle that is followed WHEN its velocity has carried it farther than any obstacle lies, either way, THEN nothing is told
  * of it. */
-static void what_has_moved_beyond_all_bounds_is_not_told(void) {
+static void a_position_beyond_all_bounds_is_not_reported(void) {
     static const float far_m_s[] = {0.0f, 2.0e5f, -2.0e5f};
     any = check_random_start("carried off");
     for (size_t i = 0; i < 9; i++) {
         make_any(GOE_PHASE_CHORD);
         be_uncertain(1.0e-2);
         filter.mover.followed = true;
-        filter.mover.beside[GOE_BESIDE_VELOCITY_X] = far_m_s[i % 3];
-        filter.mover.beside[GOE_BESIDE_VELOCITY_Z] = far_m_s[i / 3];
+        filter.mover.augmented[GOE_AUGMENTED_VELOCITY_X] = far_m_s[i % 3];
+        filter.mover.augmented[GOE_AUGMENTED_VELOCITY_Z] = far_m_s[i / 3];
         goe_quantities_find(&filter, &settings, &motion, &quantities); /* 10 s after the start */
         TEST_ASSERT_EQUAL(i == 0, (quantities.known & GOE_HAS_POSITION) != 0);
     }
@@ -665,18 +665,18 @@ static void a_height_beyond_all_bounds_is_not_reported(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
-    RUN_TEST(what_no_image_shows_silences_nothing);
+    RUN_TEST(unobserved_depth_silences_nothing);
     RUN_TEST(a_disc_may_be_something_else);
-    RUN_TEST(what_is_estimated_beside_the_state_widens);
+    RUN_TEST(augmented_states_widen_the_sigmas);
     RUN_TEST(covariances_are_those_of_the_state);
-    RUN_TEST(what_the_own_motion_is_off_by_is_in_the_sigmas);
-    RUN_TEST(what_the_own_motion_is_off_by_is_on_the_diagonal);
+    RUN_TEST(errors_of_own_motion_are_in_the_sigmas);
+    RUN_TEST(errors_of_own_motion_are_on_the_diagonal);
     RUN_TEST(the_altimeters_error_is_not_between_camera_and_top);
     RUN_TEST(an_outline_is_less_certain_than_its_rows_say);
     RUN_TEST(sigmas_are_the_roots_of_the_diagonal);
-    RUN_TEST(what_is_told_was_known_twice);
+    RUN_TEST(a_reported_value_was_known_twice);
     RUN_TEST(without_a_range_nothing_is_known);
-    RUN_TEST(what_has_moved_beyond_all_bounds_is_not_told);
+    RUN_TEST(a_position_beyond_all_bounds_is_not_reported);
     RUN_TEST(a_height_beyond_all_bounds_is_not_reported);
     return UNITY_END();
 }

@@ -47,7 +47,7 @@ static void be_skewed(void) {
 
 /* GIVEN more than one reason THEN the most telling one is told: what moves before what is no corner, no disc, late, and only then that
  * something does not fit, which all of them bring about. Late poses alone are taken off, and make nothing suspect. */
-static void the_most_telling_reason_is_told(void) {
+static void the_most_informative_reason_is_reported(void) {
     check_reason(GOE_REASON_NONE, false);
     filter.health.mean_nis = 2.0f;
     check_reason(GOE_REASON_NOISE, true);
@@ -81,7 +81,7 @@ static void few_images_make_nothing_suspect(void) {
 }
 
 /* GIVEN a skewed silhouette THEN it is told as none of a disc only where a disc was asked for, and only while it is taken for one. */
-static void a_skew_matters_where_a_disc_was_asked_for(void) {
+static void a_skew_matters_where_a_disc_was_requested(void) {
     be_skewed();
     check_reason(GOE_REASON_SHAPE, true);
     settings.model = GOE_MODEL_AUTO;
@@ -122,8 +122,8 @@ static void the_windows_answer_is_doubted_too(void) {
 }
 
 /* GIVEN an answer THEN how it fits is told beside the refined method's alone; the latency, which both methods suffer from, always. */
-static void how_it_fits_is_told_of_the_filters_answer(void) {
-    filter.mover.beside[0] = 0.12f;
+static void the_fit_is_reported_with_the_filters_answer(void) {
+    filter.mover.augmented[0] = 0.12f;
     goe_report_fit(&filter, &settings, &estimate);
     TEST_ASSERT_EQUAL_INT(40, estimate.points);
     TEST_ASSERT_EQUAL_INT(9, estimate.nis_rows);
@@ -142,7 +142,7 @@ static void how_it_fits_is_told_of_the_filters_answer(void) {
 
 /* GIVEN quantities THEN each is told with its own sigma if its bit says so, and is 0 otherwise; X0 and Z0 with what the own position
  * was off by before the filter began, x and z without. */
-static void what_is_known_is_told_and_nothing_else(void) {
+static void only_known_values_are_reported(void) {
     static const unsigned bits[] = {GOE_HAS_WIDTH, GOE_HAS_LENGTH, GOE_HAS_HEIGHT, GOE_HAS_ORIENTATION, GOE_HAS_CENTER};
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         quantities.value[i] = (float)(10 * (i + 1));
@@ -241,12 +241,12 @@ static void an_image_that_knows_nothing_takes_nothing_back(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(the_most_telling_reason_is_told);
+    RUN_TEST(the_most_informative_reason_is_reported);
     RUN_TEST(few_images_make_nothing_suspect);
-    RUN_TEST(a_skew_matters_where_a_disc_was_asked_for);
+    RUN_TEST(a_skew_matters_where_a_disc_was_requested);
     RUN_TEST(the_windows_answer_is_doubted_too);
-    RUN_TEST(how_it_fits_is_told_of_the_filters_answer);
-    RUN_TEST(what_is_known_is_told_and_nothing_else);
+    RUN_TEST(the_fit_is_reported_with_the_filters_answer);
+    RUN_TEST(only_known_values_are_reported);
     RUN_TEST(an_image_that_knows_nothing_takes_nothing_back);
     return UNITY_END();
 }

@@ -113,7 +113,7 @@ static void check_header(const goe_estimate_t *e) {
     TEST_ASSERT_TRUE(!e->fresh || is_zero(&e->age_s));
 }
 
-static void check_nothing_beside_the_valid(const goe_estimate_t *e) {
+static void check_only_valid_fields(const goe_estimate_t *e) {
     const goe_sigma_t *s = &e->sigma;
     const float *positions[] = {&e->x0_m,       &e->z0_m, &e->x_m,  &e->z_m, &e->residual,
                                 &e->baseline_m, &s->x0_m, &s->z0_m, &s->x_m, &s->z_m};
@@ -164,7 +164,7 @@ static double widening(void) {
 
 /* What goe_sigma_t says of the refined method. */
 static void check_refined(const goe_estimate_t *e) {
-    static const float two_metres = 2.0f;
+    static const float two_meters = 2.0f;
     const goe_sigma_t *s = &e->sigma;
     if (e->method != GOE_METHOD_REFINED || !(e->valid & GOE_HAS_POSITION)) {
         return;
@@ -189,7 +189,7 @@ static void check_refined(const goe_estimate_t *e) {
     TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3 * wider, &e->width_m));
     TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3 * wider, &e->length_m));
     TEST_ASSERT_TRUE(
-        within_share(&s->height_m, 0.3 * wider, within(&e->height_m, two_metres) ? &two_metres : &e->height_m));
+        within_share(&s->height_m, 0.3 * wider, within(&e->height_m, two_meters) ? &two_meters : &e->height_m));
     TEST_ASSERT_TRUE(within(&s->orientation_deg, (float)(10.001 * wider)));
 }
 
@@ -269,7 +269,7 @@ static void check_estimate(void) {
     check_finite(&e->age_s, floats,
                  "estimate"); /* age_s and all behind it are floats, or a count that looks like one */
     check_header(e);
-    check_nothing_beside_the_valid(e);
+    check_only_valid_fields(e);
     check_ranges(e);
     check_refined(e);
     check_covariance(e);
@@ -287,9 +287,9 @@ static void check_filter(const goe_filter_t *filter) {
         check_finite(filter->state, GOE_STATES, "state");
         check_finite(filter->root.element, sizeof filter->root.element / sizeof(float), "root");
     }
-#if GOE_BESIDE
-    check_finite(filter->root.right, GOE_BESIDE, "right-hand side");
-    check_finite(filter->mover.beside, GOE_BESIDE, "latency, velocity");
+#if GOE_AUGMENTED
+    check_finite(filter->root.right, GOE_AUGMENTED, "right-hand side");
+    check_finite(filter->mover.augmented, GOE_AUGMENTED, "latency, velocity");
 #endif
 }
 

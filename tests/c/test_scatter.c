@@ -59,7 +59,7 @@ static void nothing_is_widened_without_need(void) {
 
 /* [goe_estimate_t.sigma, (R34)]
  * GIVEN residuals that keep a share from image to image THEN the factor is that of the variance of a long mean of them. */
-static void alike_residuals_count_less(void) {
+static void correlated_residuals_count_less(void) {
     static const double kept[] = {0.3, 0.5, 0.7};
     for (int i = 0; i < 3; i++) {
         const double expected = (1.0 + kept[i]) / (1.0 - kept[i]);
@@ -70,7 +70,7 @@ static void alike_residuals_count_less(void) {
 }
 
 /* [detector.point_correlation, (R34)] GIVEN a correlation that was told THEN it is not counted twice. */
-static void what_is_told_is_not_counted_twice(void) {
+static void an_external_value_is_not_counted_twice(void) {
     const double factor = mean_factor(0.5, 3.0f);
     TEST_ASSERT_TRUE(factor >= 1.0 && factor < 1.15);
 }
@@ -129,8 +129,8 @@ static void gaps_join_nothing_and_outliers_are_clipped(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(nothing_is_widened_without_need);
-    RUN_TEST(alike_residuals_count_less);
-    RUN_TEST(what_is_told_is_not_counted_twice);
+    RUN_TEST(correlated_residuals_count_less);
+    RUN_TEST(an_external_value_is_not_counted_twice);
     RUN_TEST(doubt_widens_and_trust_does_not_shrink);
     RUN_TEST(gaps_join_nothing_and_outliers_are_clipped);
     return UNITY_END();

@@ -181,7 +181,7 @@ static void an_upright_box_gives_the_middles_of_its_sides(void) {
 static void check_no_points(void) { TEST_ASSERT_FALSE(left.seen || right.seen || top.seen); }
 
 /* [goe_image_t.box] GIVEN a box that does not tell the width of what leans in it THEN it gives no points. */
-static void what_a_box_does_not_tell_gives_no_points(void) {
+static void missing_sides_of_a_box_give_no_points(void) {
     see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX & ~(unsigned)GOE_SEES_LEFT);
     check_no_points();
     look(20.0, 0.0); /* without its height */
@@ -209,6 +209,6 @@ int main(void) {
     RUN_TEST(sides_out_of_order_do_not_count);
     RUN_TEST(a_leaning_box_is_turned_back);
     RUN_TEST(an_upright_box_gives_the_middles_of_its_sides);
-    RUN_TEST(what_a_box_does_not_tell_gives_no_points);
+    RUN_TEST(missing_sides_of_a_box_give_no_points);
     return UNITY_END();
 }

@@ -35,7 +35,7 @@ static void make_it_move(float north_m_s, float east_m_s) {
 }
 
 /* GIVEN an obstacle that moves THEN it is met by the velocity relative to it; of one that is not known to, by the own. */
-static void what_moves_is_met_by_the_relative_velocity(void) {
+static void a_moving_target_is_met_by_the_relative_velocity(void) {
     const goe_plan_t plan = plan_of(10.0f, 2.0f);
     estimator.estimate.velocity_north_m_s = -7.0f; /* means nothing without its bit */
     goe_plan_t relative = goe_violation_relative(&estimator, &plan);
@@ -157,7 +157,7 @@ static void independent_errors_multiply(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(what_moves_is_met_by_the_relative_velocity);
+    RUN_TEST(a_moving_target_is_met_by_the_relative_velocity);
     RUN_TEST(a_velocitys_error_counts_until_it_is_met);
     RUN_TEST(the_plans_velocity_may_be_wrong);
     RUN_TEST(the_aircraft_has_flown_on_since_the_image);

@@ -160,7 +160,7 @@ static void a_height_counts_only_where_it_is_valid(void) {
 }
 
 /* Each refusal has its reason, is counted, and leaves the history as it was. */
-static void what_is_no_pose_is_refused_for_its_reason(void) {
+static void an_invalid_pose_is_refused_for_its_reason(void) {
     goe_flight_attitude_t attitude;
     goe_flight_position_t position;
     (void)flown_fly(&flown, 1.0);
@@ -364,7 +364,7 @@ int main(void) {
     RUN_TEST(a_withdrawn_offset_leaves_nothing_behind);
     RUN_TEST(doubt_about_the_time_is_doubt_about_the_attitude);
     RUN_TEST(a_height_counts_only_where_it_is_valid);
-    RUN_TEST(what_is_no_pose_is_refused_for_its_reason);
+    RUN_TEST(an_invalid_pose_is_refused_for_its_reason);
     RUN_TEST(a_pose_is_alive_while_both_its_parts_are);
     RUN_TEST(an_order_begins_where_the_aircraft_is);
     RUN_TEST(an_obstacle_is_reported_as_the_header_says);

@@ -132,7 +132,7 @@ static void a_wall_of_masts_is_a_reason_to_hold(void) {
 }
 
 /* A wall that is known too late to be turned away from: the middle of the gap keeps 8 m and is taken, and called the least bad. */
-static void what_has_no_free_way_says_so(void) {
+static void a_blocked_aircraft_reports_it(void) {
     put_wall(60.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LEAST_BAD, flight.reaction.reason);
@@ -153,7 +153,7 @@ static void a_standing_order_evades_to_its_own_side_first(void) {
 /* ---------------------------------------------------------------------------------------------------------------- end -- */
 
 /* The order about B is not over while A, which stands on the line, is not passed. */
-static void an_order_stands_while_another_one_stands_on_its_line(void) {
+static void an_order_stays_active_while_another_one_is_on_its_line(void) {
     put(0, 100.0f, 0.5f, 50.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     put(1, 90.0f, -60.0f, 50.0f);
@@ -189,7 +189,7 @@ static void an_order_that_finds_another_way_does_not_sink_with_the_aircraft(void
 }
 
 /* The way back to the line leads past a mast beside the line, which the line itself passes. */
-static void an_order_stands_while_the_way_back_is_not_clear(void) {
+static void an_order_stays_active_while_the_way_back_is_not_clear(void) {
     put(0, 100.0f, 0.5f, 50.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     own.ned_m[0] = 125.0f;
@@ -304,7 +304,7 @@ static void a_go_around_over_an_unknown_top_climbs(void) {
 }
 
 /* Behind a low one stands a high one: a climb over the first leads into the second. */
-static void a_climb_does_not_lead_into_what_stands_behind(void) {
+static void a_climb_does_not_lead_into_what_is_behind(void) {
     put(0, 110.0f, 0.5f, 12.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
     start(0.0f);
@@ -455,7 +455,7 @@ static void the_side_of_before_is_preferred(void) {
 }
 
 /* A slot that is free, or has no place, raises no climb. */
-static void what_is_not_there_raises_no_climb(void) {
+static void a_missing_obstacle_raises_no_climb(void) {
     put(0, 110.0f, 0.5f, 12.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
     put(1, 300.0f, 0.5f, 60.0f);
@@ -468,7 +468,7 @@ static void what_is_not_there_raises_no_climb(void) {
 }
 
 /* At most 1000 m are told, however large the margin. */
-static void what_is_clear_is_told_up_to_a_kilometre(void) {
+static void clear_sectors_are_reported_up_to_a_kilometer(void) {
     flight.settings.margin_m = 1000.0f;
     flight.reaction.action = GOE_FLIGHT_LEFT;
     flight.reaction.side = -1;
@@ -495,8 +495,8 @@ int main(void) {
     RUN_TEST(a_climb_is_left_when_it_comes_too_late);
     RUN_TEST(a_slow_aircraft_has_a_course);
     RUN_TEST(the_side_of_before_is_preferred);
-    RUN_TEST(what_is_not_there_raises_no_climb);
-    RUN_TEST(what_is_clear_is_told_up_to_a_kilometre);
+    RUN_TEST(a_missing_obstacle_raises_no_climb);
+    RUN_TEST(clear_sectors_are_reported_up_to_a_kilometer);
     RUN_TEST(a_mast_that_is_not_on_the_course_blocks_a_side);
     RUN_TEST(a_place_that_is_hardly_known_blocks_a_side);
     RUN_TEST(an_old_place_blocks_a_side);
@@ -504,12 +504,12 @@ int main(void) {
     RUN_TEST(the_circle_about_the_target_is_kept_clear);
     RUN_TEST(a_circle_is_never_smaller_than_the_turn);
     RUN_TEST(a_wall_of_masts_is_a_reason_to_hold);
-    RUN_TEST(what_has_no_free_way_says_so);
+    RUN_TEST(a_blocked_aircraft_reports_it);
     RUN_TEST(a_standing_order_evades_to_its_own_side_first);
-    RUN_TEST(an_order_stands_while_another_one_stands_on_its_line);
+    RUN_TEST(an_order_stays_active_while_another_one_is_on_its_line);
     RUN_TEST(an_order_turns_to_the_next_one_on_its_line);
     RUN_TEST(an_order_that_finds_another_way_does_not_sink_with_the_aircraft);
-    RUN_TEST(an_order_stands_while_the_way_back_is_not_clear);
+    RUN_TEST(an_order_stays_active_while_the_way_back_is_not_clear);
     RUN_TEST(no_order_is_given_too_low);
     RUN_TEST(a_height_below_the_ground_withholds_no_order);
     RUN_TEST(a_height_of_zero_gives_orders_at_any_height);
@@ -518,7 +518,7 @@ int main(void) {
     RUN_TEST(phases_reach_the_rule);
     RUN_TEST(a_go_around_carries_the_height_of_the_highest_top);
     RUN_TEST(a_go_around_over_an_unknown_top_climbs);
-    RUN_TEST(a_climb_does_not_lead_into_what_stands_behind);
+    RUN_TEST(a_climb_does_not_lead_into_what_is_behind);
     RUN_TEST(clearance_is_that_of_the_nearest_part_of_the_way);
     RUN_TEST(a_target_straight_ahead_takes_no_circle);
     RUN_TEST(every_reason_has_a_name);

@@ -95,7 +95,7 @@ static void a_side_that_is_not_clear_is_not_taken(void) {
 }
 
 /* Behind the target the line is flown on: for the turn's radius and what is flown while an order is obeyed, 71 + 90 m. */
-static void what_stands_on_the_line_behind_a_target_blocks_it(void) {
+static void an_obstacle_on_the_line_behind_a_target_blocks_it(void) {
     for (int blocked = 0; blocked < 2; blocked++) {
         goe_flight_reaction_clear(&flight.reaction);
         put(0, 100.0f, 2.0f);
@@ -214,7 +214,7 @@ static void a_climb_clears_every_known_top_ahead(void) {
 }
 
 /* GIVEN any places about a standing order THEN what is reported of it agrees: clear is nothing that leads into something. */
-static void what_is_reported_of_an_order_agrees(void) {
+static void the_reports_of_an_order_agree(void) {
     uint32_t state = 1u;
     int least_bad = 0;
     for (int flights = 0; flights < 300; flights++) {
@@ -277,7 +277,7 @@ static void doubt_orders_earlier_and_wider(void) {
 
 /* The order stands while the aircraft turns away from the obstacle, which ends the hazard on its present course; it ends when the
  * line of the order leads past the obstacle again. */
-static void the_order_stands_until_the_obstacle_lies_behind(void) {
+static void the_order_stays_active_until_the_obstacle_lies_behind(void) {
     put(0, 100.0f, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     flight.slot[0].hazard.violation = 0.0f;
@@ -425,7 +425,7 @@ int main(void) {
     RUN_TEST(a_range_that_is_hardly_known_orders_earlier_but_not_at_once);
     RUN_TEST(the_nearer_side_is_taken);
     RUN_TEST(a_side_that_is_not_clear_is_not_taken);
-    RUN_TEST(what_stands_on_the_line_behind_a_target_blocks_it);
+    RUN_TEST(an_obstacle_on_the_line_behind_a_target_blocks_it);
     RUN_TEST(no_side_and_no_climb_is_a_reason_to_hold);
     RUN_TEST(a_wide_obstacle_is_a_reason_to_hold);
     RUN_TEST(a_low_top_is_climbed_over);
@@ -435,12 +435,12 @@ int main(void) {
     RUN_TEST(an_approach_left_to_a_side_is_broken_off_once_there_is_time);
     RUN_TEST(a_climb_that_comes_too_late_gives_way_to_a_side);
     RUN_TEST(a_climb_clears_every_known_top_ahead);
-    RUN_TEST(what_is_reported_of_an_order_agrees);
+    RUN_TEST(the_reports_of_an_order_agree);
     RUN_TEST(a_wait_for_confirmation_is_not_afforded_when_it_is_late);
     RUN_TEST(an_unlikely_hazard_is_no_reason_when_it_is_late);
     RUN_TEST(no_hazard_is_no_reason);
     RUN_TEST(doubt_orders_earlier_and_wider);
-    RUN_TEST(the_order_stands_until_the_obstacle_lies_behind);
+    RUN_TEST(the_order_stays_active_until_the_obstacle_lies_behind);
     RUN_TEST(an_order_that_proves_wrong_is_taken_back);
     RUN_TEST(an_obstacle_that_is_given_up_ends_its_order);
     RUN_TEST(an_order_that_has_ended_reports_nothing);

@@ -248,11 +248,11 @@ static bool is_farther_out(const goe_flight_reaction_t *r, int next) {
  * GIVEN any order that stands THEN it ends once nothing is in the way and the way back is clear: at once if its obstacle lies behind,
  * else after hold_s. Till then it tells how clear it is, and turns to the next obstacle once its own is out of the way, but not back into
  * what lies ahead. */
-static void an_order_stands_as_long_as_something_is_in_the_way(void) {
+static void an_order_stays_active_as_long_as_something_is_in_the_way(void) {
     int ended = 0;
     int waits = 0;
     int turned_to = 0;
-    int told = 0;
+    int reported = 0;
     for (int n = 0; n < TRIALS; n++) {
         any_standing_order();
         const goe_flight_reaction_t before = flight.reaction;
@@ -312,14 +312,14 @@ static void an_order_stands_as_long_as_something_is_in_the_way(void) {
             CHECK_CLOSE(0.02, share * (double)flight.settings.margin_m, r->clear_m);
             CHECK_CLOSE(0.02, followed.target_ned_m[0], r->target_ned_m[0]);
             CHECK_CLOSE(0.02, followed.target_ned_m[1], r->target_ned_m[1]);
-            told++;
+            reported++;
         }
     }
     check_report("ended", (double)ended);
     check_report("over, and waits", (double)waits);
     check_report("turned to the next", (double)turned_to);
-    check_report("clear", (double)told);
-    TEST_ASSERT_TRUE(ended > 300 && waits > 100 && turned_to > 50 && told > 1000);
+    check_report("clear", (double)reported);
+    TEST_ASSERT_TRUE(ended > 300 && waits > 100 && turned_to > 50 && reported > 1000);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ choice -- */
@@ -569,6 +569,6 @@ static void the_way_that_is_taken_is_that_of_the_rule(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_way_that_is_taken_is_that_of_the_rule);
-    RUN_TEST(an_order_stands_as_long_as_something_is_in_the_way);
+    RUN_TEST(an_order_stays_active_as_long_as_something_is_in_the_way);
     return UNITY_END();
 }

@@ -377,11 +377,11 @@ static void a_quaternion_must_be_one(void) {
 }
 
 /* GIVEN a pose and no obstacle THEN none is there, in no slot. */
-static void an_empty_slot_holds_nothing(void) {
+static void an_empty_slot_contains_nothing(void) {
     goe_flight_obstacle_t o;
     static flown_t flown;
     flown_start(&flown, NULL);
-    flown.sees = false;
+    flown.detects = false;
     (void)flown_fly(&flown, 1.0);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, 0, &o));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, -1, &o));
@@ -416,7 +416,7 @@ int main(void) {
     RUN_TEST(anything_does_no_harm);
     RUN_TEST(settings_out_of_range_are_named);
     RUN_TEST(a_quaternion_must_be_one);
-    RUN_TEST(an_empty_slot_holds_nothing);
+    RUN_TEST(an_empty_slot_contains_nothing);
     RUN_TEST(null_pointers_are_refused);
     return UNITY_END();
 }

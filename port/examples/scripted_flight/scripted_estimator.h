@@ -42,9 +42,9 @@ typedef struct {
     scripted_cost_t assess; /* of goe_flight_assess() */
     uint32_t dropped;       /* images that were refused, or overtaken while they waited */
     scripted_image_t image;
-    bool image_waits; /* for a pose that is newer than its exposure */
-    bool told_alive;  /* as of the latest line: the detector, the action */
-    goe_flight_action_t told_action;
+    bool image_waits;    /* for a pose that is newer than its exposure */
+    bool reported_alive; /* as of the latest line: the detector, the action */
+    goe_flight_action_t reported_action;
 } scripted_estimator_t;
 
 /* false: the settings are refused, and the line tells why. */

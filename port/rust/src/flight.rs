@@ -198,19 +198,19 @@ impl Detection {
     /// A detection of this score, 0 to 1, without id, box or points.
     #[must_use]
     pub fn new(score: f32) -> Self {
-        let unseen = pixel_to_c(None);
+        let invisible = pixel_to_c(None);
         Self {
             c: ffi::goe_flight_detection_t {
                 id: 0,
                 score,
                 pixel_px: 0.0,
                 box_: BoundingBox::default().to_c(),
-                left: unseen,
-                right: unseen,
-                top: unseen,
-                base_left: unseen,
-                base_near: unseen,
-                base_right: unseen,
+                left: invisible,
+                right: invisible,
+                top: invisible,
+                base_left: invisible,
+                base_near: invisible,
+                base_right: invisible,
             },
         }
     }

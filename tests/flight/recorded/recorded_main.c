@@ -27,7 +27,7 @@
 #define PLACES 200    /* along a flight, with a mast on each side at two distances */
 #define FIRST_S 12.0  /* of the recording: abeam of the first mast */
 #define FIRST_M 170.0
-#define ASKED_M 70.0
+#define WANTED_M 70.0
 #define MASTS_MAX 4096
 #define PIXEL_PX 1.0
 #define STREAM_RECORDED 200
@@ -40,9 +40,9 @@
 #define EXIT_SKIPPED 77
 
 typedef struct {
-    double gap_s;     /* between samples; 0: the pose at the very time */
-    double late_s;    /* the pose is that of so much later */
-    uint32_t told_us; /* one sigma of the time */
+    double gap_s;       /* between samples; 0: the pose at the very time */
+    double late_s;      /* the pose is that of so much later */
+    uint32_t report_us; /* one sigma of the time */
     const char *name;
 } way_t;
 
@@ -101,18 +101,18 @@ static void give_sample(const recorded_flight_t *recording, double t_s) {
 /* The pose for an image at t_s. Samples come up to the first one behind it. */
 static bool find_pose(const recorded_flight_t *recording, const way_t *way, double t_s, double *sampled_s,
                       goe_pose_t *pose, float *sd_deg) {
-    const double asked_s = t_s + way->late_s;
+    const double wanted_s = t_s + way->late_s;
     const double gap_s = way->gap_s > 0.0 ? way->gap_s : 0.02;
-    while (*sampled_s < asked_s || *sampled_s + gap_s <= t_s + ARRIVAL_S + 1e-6) {
+    while (*sampled_s < wanted_s || *sampled_s + gap_s <= t_s + ARRIVAL_S + 1e-6) {
         *sampled_s += gap_s;
         give_sample(recording, *sampled_s);
     }
-    const uint32_t asked_us = (uint32_t)llround(1e6 * asked_s);
-    if (goe_flight_pose(&flight, asked_us, way->told_us, pose, sd_deg) != GOE_FLIGHT_OK) {
+    const uint32_t question_us = (uint32_t)llround(1e6 * wanted_s);
+    if (goe_flight_pose(&flight, question_us, way->report_us, pose, sd_deg) != GOE_FLIGHT_OK) {
         return false;
     }
     if (!(way->gap_s > 0.0)) {
-        const recorded_pose_t at = recorded_flight_at(recording, asked_s);
+        const recorded_pose_t at = recorded_flight_at(recording, wanted_s);
         to_floats(&at.estimated, pose->position_ned_m, pose->attitude);
     }
     pose->time_us = llround(1e6 * t_s);
@@ -185,7 +185,7 @@ static void fly(const recorded_flight_t *recording, bool wanders, const way_t *w
         (void)goe_update(&estimator, &image, &estimate);
         const double north = mast.center_n_m - truth.position_ned_m.x, east = mast.center_e_m - truth.position_ned_m.y;
         const double range_m = hypot(north, east);
-        if (range_m > ASKED_M || !(estimate.valid & GOE_HAS_CENTER)) {
+        if (range_m > WANTED_M || !(estimate.valid & GOE_HAS_CENTER)) {
             continue;
         }
         /* relative to where the aircraft believes to be */
@@ -252,10 +252,10 @@ static int judge(const char *path) {
         exact_m = i == 0 ? middle_m : exact_m;
         exact_covered = i == 0 ? covered : exact_covered;
         const bool interpolated = way->gap_s > 0.0 && !(way->late_s > 0.0);
-        const bool told = way->late_s > 0.0 && way->told_us > 1000u;
+        const bool reported = way->late_s > 0.0 && way->report_us > 1000u;
         const double share_max = way->gap_s > COARSE_S ? SHARE_COARSE_MAX : SHARE_MAX;
         bad += interpolated && !(middle_m <= share_max * exact_m) ? 1 : 0;
-        bad += told && !(covered >= fmin(COVERED_MIN, exact_covered - COVERED_RESOLVED)) ? 1 : 0;
+        bad += reported && !(covered >= fmin(COVERED_MIN, exact_covered - COVERED_RESOLVED)) ? 1 : 0;
     }
     recorded_flight_free(&recording);
     return bad;

@@ -152,7 +152,7 @@ void Goe::take_features(uint32_t now_us) {
             _images.note_lost(latest - before - 1u); /* the topic's queue was full */
         }
         before = latest;
-        goe_px4::sighting(topic, _images.room());
+        goe_px4::sighting(topic, _images.free_place());
         _images.keep(now_us);
     }
 }
@@ -162,7 +162,7 @@ void Goe::take_tunnel(uint32_t now_us) {
     unsigned offset = 0;
     if (_tunnel_sub.update(&topic) && (_parameters.inputs & GOE_IN_TUNNEL) != 0 &&
         goe_px4::is_addressed(topic, _vehicle_status.system_id, _vehicle_status.component_id)) {
-        while (goe_px4::next_of_tunnel(topic, offset, _images.room())) {
+        while (goe_px4::next_of_tunnel(topic, offset, _images.free_place())) {
             _images.keep(now_us);
         }
     }
@@ -172,7 +172,7 @@ void Goe::take_landing_target(uint32_t now_us) {
     irlock_report_s topic;
     if (_landing_target_sub.update(&topic) && (_parameters.inputs & GOE_IN_LANDING_TARGET) != 0 &&
         goe_px4::sighting(topic, _used.estimator, whole_us(_parameters.target_delay_s), TARGET_DELAY_SD_US,
-                          _images.room())) {
+                          _images.free_place())) {
         _images.keep(now_us);
     }
 }
@@ -285,11 +285,11 @@ void Goe::follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_
 }
 
 /* Orders, once each; at most 50 characters go to a ground station. */
-void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
-    if (assessment.action == static_cast<goe_flight_action_t>(_told_action)) {
+void Goe::report_operator(const goe_flight_assessment_t &assessment) {
+    if (assessment.action == static_cast<goe_flight_action_t>(_reported_action)) {
         return;
     }
-    _told_action = static_cast<uint8_t>(assessment.action);
+    _reported_action = static_cast<uint8_t>(assessment.action);
     if (assessment.action == GOE_FLIGHT_NONE) {
         mavlink_log_info(&_mavlink_log_pub, "goe: the order ends");
     } else {
@@ -325,7 +325,7 @@ void Goe::assess(uint64_t now_us) {
         _in_use = goe_flight_init(&_flight, sizeof _flight, &_used.estimator, &_used.flight, nullptr) == GOE_FLIGHT_OK;
     }
     follow_orders(assessment, now_us);
-    tell_operator(assessment);
+    report_operator(assessment);
     report_dead_reckoning(now_us);
     pthread_mutex_lock(&_overview_lock);
     publish_obstacles(assessment, now_us);
