@@ -9,9 +9,9 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 
-#define PACE_SPAN_S 0.09f        /* of the poses that tell rate and velocity: nearer ones tell their noise */
+#define PACE_SPAN_S 0.09f        /* of the poses that give rate and velocity: nearer ones give their noise */
 #define PACE_SPAN_MIN_S 0.045f   /* ... since the latest mark */
-#define PACE_SPAN_MAX_US 600000u /* farther ones tell a mean */
+#define PACE_SPAN_MAX_US 600000u /* farther ones give a mean */
 #define PACE_COSINE_MIN 0.9f     /* of half the angle between them: more is no flight, but a jump */
 #define LEVEL_NOSE_MIN 1.0e-3f   /* horizontal part of the nose's unit vector below which it has no heading */
 

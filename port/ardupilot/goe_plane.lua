@@ -514,7 +514,7 @@ local function is_over()
         (standing.is_past or not mode_before or millis() - standing.over_ms > SILENCE_MS)
 end
 
--- An order stands on, at its target, while nothing is heard.
+-- An order stays active, at its target, while no message arrives.
 local function watch_silence()
     local silent = millis() - received_ms > SILENCE_MS
     if silent and mode_before and not silence_reported then

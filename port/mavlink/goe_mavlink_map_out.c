@@ -266,7 +266,7 @@ static void fill_callsign(int slot, char callsign[9]) {
     }
 }
 
-/* Down of what is told as its altitude. */
+/* Down of the reported altitude. */
 static float reported_down_m(const goe_flight_obstacle_t *obstacle, const goe_mavlink_own_t *own) {
     const float below_m = own->position_ned_m[2] + BELOW_OWN_M;
     const float top_m = obstacle->center_ned_m[2] - obstacle->height_m;

@@ -25,7 +25,7 @@ typedef struct {
     } of; /* nothing of a timer or the end */
 } scripted_message_t;
 
-/* What is sent of a kind at a tick, 0 to SCRIPTED_TICKS - 1; false: nothing. */
+/* The message of a kind at a tick, 0 to SCRIPTED_TICKS - 1; false: none. */
 bool scripted_message(uint32_t tick, scripted_kind_t kind, scripted_message_t *message);
 
 typedef uint32_t (*scripted_clock_t)(void); /* may wrap; any unit, of which durations are then */
@@ -47,7 +47,7 @@ typedef struct {
     goe_flight_action_t reported_action;
 } scripted_estimator_t;
 
-/* false: the settings are refused, and the line tells why. */
+/* false: the settings are refused, and the line gives the reason. */
 bool scripted_start(scripted_estimator_t *estimator, scripted_clock_t clock, char line[SCRIPTED_LINE]);
 
 /* Takes a message. true: there is a line to print, one a second and one whenever the action changes or the detector falls silent or

@@ -10,13 +10,13 @@ namespace {
 /* Its own work queue. Stack: the deepest call is an image's update; README.md has the figures. Priority: as PX4's low one. */
 constexpr px4::wq_config_t work_queue{"wq:goe", 4600, -50};
 
-constexpr uint32_t CYCLE_US = 100000; /* assessments and what is published; also while no attitude comes */
+constexpr uint32_t CYCLE_US = 100000; /* assessments and publications; also while no attitude comes */
 constexpr uint64_t RANGE_FRESH_US = 300000;
 constexpr uint64_t DEAD_RECKONING_US =
     3000000; /* after which its end is believed: PX4's flag flickers once a second at first */
 constexpr float CM_PER_M = 100.f;
 constexpr float US_PER_S = 1.0e6f;
-constexpr float DISTANCE_MAX_M = 200.f; /* of obstacle_distance: what lies farther concerns nobody who reads it */
+constexpr float DISTANCE_MAX_M = 200.f; /* of obstacle_distance: its readers need no more */
 constexpr uint32_t TARGET_DELAY_SD_US = 20000; /* one sigma of GOE_LT_DELAY */
 
 uint32_t whole_us(float s) { return static_cast<uint32_t>(US_PER_S * s); }
@@ -85,8 +85,8 @@ void Goe::use_parameters() {
     }
 }
 
-/* What ends tracks waits for their end while armed: neither an obstacle that is followed nor an order that stands is forgotten for a
- * parameter. */
+/* A change that ends tracks waits while armed: a parameter must not make the module forget an obstacle that is followed or an
+ * active order. */
 void Goe::follow_parameters() {
     parameter_update_s update;
     if (_parameter_update_sub.update(&update) || _had_wings != has_wings()) {
@@ -293,7 +293,7 @@ void Goe::report_operator(const goe_flight_assessment_t &assessment) {
     if (assessment.action == GOE_FLIGHT_NONE) {
         mavlink_log_info(&_mavlink_log_pub, "goe: the order ends");
     } else {
-        const char *const who = _orders.overruled() ? " (overruled)" : _orders.flown() ? "" : " (told only)";
+        const char *const who = _orders.overruled() ? " (overruled)" : _orders.flown() ? "" : " (reported only)";
         mavlink_log_critical(&_mavlink_log_pub, "goe: obstacle in %.0f s, %s%s",
                              static_cast<double>(assessment.hazard.time_s), goe_flight_action_text(assessment.action),
                              who);

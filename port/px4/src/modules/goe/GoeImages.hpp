@@ -4,7 +4,7 @@
 #include "goe_flight.h"
 #include "goe_mavlink_map.h"
 
-/* First in, first out. A sighting holds a pointer into itself, so that it is filled where it stays. */
+/* First in, first out. A sighting contains a pointer into itself, so it is filled in place. */
 class GoeImages {
   public:
     static constexpr unsigned ROOM = 8;

@@ -87,7 +87,7 @@ const char *phase_text(uint8_t phase) {
 
 void report_order(const GoeOverview &o, char *line) {
     const goe_status_s &s = o.status;
-    const char *const who = s.overruled ? ", overruled" : s.flown ? ", given to PX4" : ", told only";
+    const char *const who = s.overruled ? ", overruled" : s.flown ? ", given to PX4" : ", reported only";
     if (s.action == goe_status_s::ACTION_NONE) {
         snprintf(line, GOE_TEXT_LINE, "order      none%s%s", o.react == 0 ? "; GOE_REACT is 0: none is ever flown" : "",
                  phase_text(o.phase));
