@@ -88,9 +88,9 @@ static char *scenario_path; /* from_file.path, to be freed */
 static struct poptOption scene_options[] = {
     WORD("obstacle", WORD_OBSTACLE, "WHAT", OBSTACLE_FORMS "; default cylinder"),
     NUMBER("x0", x0, "M",
-           "side distance of its centre from the course at the start, right positive, as x0_m of the answers"),
-    NUMBER("z0", z0, "M", "distance of its centre along the course, instead of the way flown by --reach"),
-    NUMBER("alpha", alpha, "DEG", "its length axis from the course, clockwise seen from above"),
+           "side distance of its center from the course at the start, right positive, as x0_m of the answers"),
+    NUMBER("z0", z0, "M", "distance of its center along the course, instead of the way flown by --reach"),
+    NUMBER("alpha", alpha, "DEG", "its length axis from the course, clockwise as viewed from above"),
     NUMBER("reach", reach, "S", "time to reach the obstacle"),
     NUMBER("run", run, "S", "length of the run"),
     NUMBER("altitude", altitude, "M", "height over ground at reach time"),
@@ -151,8 +151,8 @@ static struct poptOption noise_options[] = {
     NUMBER("detector-correlation", detector_correlation, "0..1", "detector noise, from frame to frame"),
     NUMBER("box-px", box_px, "PX", "a box's sides: one sigma, white; default of boxes 0.5"),
     NUMBER("box-share", box_share, "0..",
-           "one sigma that stays alike, share of the box's width (left, right) or height (top, bottom); default 0.04"),
-    NUMBER("box-correlation", box_correlation, "S", "how long it stays alike, time constant; default 1"),
+           "one sigma of the slowly varying error, share of the box's width (left, right) or height (top, bottom); default 0.04"),
+    NUMBER("box-correlation", box_correlation, "S", "correlation time of this error; default 1"),
     NUMBER("attitude-bias", attitude_bias, "DEG", "one sigma per body axis, constant over a run"),
     NUMBER("attitude-noise", attitude_noise, "DEG", "one sigma per body axis, white"),
     NUMBER("position-walk", position_walk, "M", "random walk, one sigma per axis after a second"),
@@ -379,7 +379,7 @@ static bool parse_features(const char *text, log_features_t *features) {
 /* The case of the command line; otherwise the name of the bad option, and what it may be. */
 static const char *set_case(flight_case_t *setup, const char **reason) {
     if (given.paper_case >= scenario_count() || given.paper_case < -1) {
-        *reason = "--list-cases tells which there are";
+        *reason = "--list-cases lists them";
         return "--case";
     }
     *reason = OBSTACLE_FORMS;

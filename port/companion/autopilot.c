@@ -11,10 +11,10 @@
 #define ASK_US 250000        /* between two questions for the clock */
 #define REQUEST_US 5000000   /* between two rounds of requests for rates, while no samples come */
 #define ORIGIN_US 5000000    /* between two requests for the origin */
-#define SILENT_US 3000000    /* without a sample for this long the autopilot is asked for its rates anew */
+#define SILENT_US 3000000    /* without a sample for this long the rates are requested again */
 #define CLOCK_OFF_US 1000000 /* a sample's time that far from the clock is another clock's */
 #define STRANGE_MAX 3
-#define UNANSWERED 40u        /* questions, after which it is told: ten seconds */
+#define UNANSWERED 40u        /* unanswered requests before a report: ten seconds */
 #define HEIGHT_OLD_US 2000000 /* a range finder or terrain that is older counts as none */
 
 /* A step between two positions that the velocities do not explain is a reset of the autopilot's filter: beyond what an
@@ -214,7 +214,7 @@ static bool find_step(const mavlink_local_position_ned_t *from, const mavlink_lo
     return hypotf(step_m[0], step_m[1]) > allowed_m || fabsf(step_m[2]) > allowed_m;
 }
 
-/* Heights come more rarely than positions: what is kept is where the ground is. */
+/* Heights come more rarely than positions: the ground's altitude is kept. */
 static void put_heights(const autopilot_t *autopilot, int64_t time_us, goe_flight_position_t *sample) {
     const float down_m = sample->position_ned_m[2];
     sample->height_m[GOE_FLIGHT_RANGE_FINDER] = autopilot->range_finder_down_m - down_m;
@@ -265,7 +265,7 @@ static void mark_step(autopilot_t *autopilot, const float step_m[3], int64_t now
           (double)step_m[2]);
 }
 
-/* As the flight layer asks it: here already, so that no step is made of it. NaN is in no range. */
+/* The flight layer's requirement, checked here already to keep an invalid value from becoming a step. NaN is in no range. */
 static bool is_in_range(const mavlink_local_position_ned_t *p) {
     return fabsf(p->x) <= POSITION_MAX_M && fabsf(p->y) <= POSITION_MAX_M && fabsf(p->z) <= POSITION_MAX_M &&
            fabsf(p->vx) <= SPEED_MAX_M_S && fabsf(p->vy) <= SPEED_MAX_M_S && fabsf(p->vz) <= SPEED_MAX_M_S;
@@ -299,8 +299,8 @@ static void take_position(autopilot_t *autopilot, const mavlink_message_t *messa
     }
 }
 
-/* Of ODOMETRY the counter of resets alone, which does not tell by how much. What is large enough is found in the samples, a
- * moment before or after: then the counter tells nothing new. */
+/* Of ODOMETRY only the reset counter, which does not give the size of the jump. A large jump is found in the samples, a
+ * moment before or after: then the counter adds nothing. */
 static void take_odometry(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     const uint8_t resets = mavlink_msg_odometry_get_reset_counter(message);
     if (autopilot->has_odometry_resets && resets != autopilot->odometry_resets) {
@@ -317,7 +317,7 @@ static void judge_reported_reset(autopilot_t *autopilot, int64_t now_us) {
     if (autopilot->jump_us == 0 || autopilot->report_us - autopilot->jump_us > RESET_BEFORE_US) {
         autopilot->reset_attitude++;
         count_reset(autopilot, false);
-        event("the autopilot tells of a reset, and not by how much: all tracks end");
+        event("the autopilot reports a reset of unknown size: all tracks end");
     }
     autopilot->report_us = 0;
 }
@@ -368,7 +368,7 @@ static void take_altitude(autopilot_t *autopilot, const mavlink_message_t *messa
     }
 }
 
-/* ArduPilot tells home in its own frame as the origin whatever its height: there the altitudes of both count. */
+/* ArduPilot reports home in its own frame as the origin whatever its height: there the altitudes of both count. */
 static void place_home(autopilot_t *autopilot) {
     if (autopilot->kind == MAV_AUTOPILOT_ARDUPILOTMEGA && autopilot->has_home_alt && autopilot->has_origin) {
         autopilot->home_down_m = autopilot->origin_alt_m - autopilot->home_alt_m;
@@ -413,7 +413,7 @@ static void take_heartbeat(autopilot_t *autopilot, const mavlink_message_t *mess
         return;
     }
     if (autopilot->heartbeat_us != 0 && !link_is_answered(autopilot->wire->link)) {
-        event("the autopilot is heard at another address now");
+        event("the autopilot now sends from another address");
     }
     if (autopilot->heartbeat_us == 0) {
         autopilot->system = message->sysid;

@@ -11,7 +11,7 @@
 #define DRIFT_SD_US 250.0 /* of 25 ppm over half of that time */
 #define UNIFORM_SD                                                                                                     \
     0.28867513 /* of a uniform distribution, by its width: the way there may be any share of the round trip */
-#define ROUND_MAX_US 1000000 /* a slower answer tells nothing */
+#define ROUND_MAX_US 1000000 /* a slower answer is useless */
 
 void clock_sync_reset(clock_sync_t *sync) { (void)memset(sync, 0, sizeof *sync); }
 

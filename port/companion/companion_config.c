@@ -147,7 +147,7 @@ typedef struct {
     input_error_t *error;
 } config_reader_t;
 
-/* The first fault counts; what follows from it is not told. */
+/* The first fault counts; faults that follow from it are not reported. */
 #define FAIL(reader, key, ...)                                                                                         \
     do {                                                                                                               \
         if (!(reader)->failed) {                                                                                       \
@@ -392,7 +392,7 @@ static void check_link(config_reader_t *reader, size_t offset, const char *none)
     }
 }
 
-/* What only holds of values together. */
+/* Rules for combinations of values. */
 static void check_whole(config_reader_t *reader) {
     check_link(reader, offsetof(companion_config_t, link_autopilot), NULL);
     check_link(reader, offsetof(companion_config_t, detections_from), "none");

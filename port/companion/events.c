@@ -15,7 +15,7 @@
 
 static int line_shown; /* a status line, on the terminal: it is cleared before the next event */
 
-/* Kinds of events are told apart by their format, each a constant of its own. */
+/* Kinds of events are distinguished by their format, each a constant of its own. */
 static struct {
     const char *format;
     time_t reported_s;
@@ -27,7 +27,7 @@ static void put(const char *text) {
     struct pollfd request = {.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
     if (poll(&request, 1, 0) > 0 && (request.revents & POLLOUT) != 0) {
         const ssize_t written = write(STDERR_FILENO, text, strlen(text));
-        (void)written; /* there is nobody to tell */
+        (void)written; /* no one can read it */
     }
 }
 
@@ -38,7 +38,7 @@ void events_show_line(const char *line, int on_terminal) {
     line_shown = on_terminal;
 }
 
-/* Whether an event of this kind is due; *left_out: how many were not told since. */
+/* Whether an event of this kind is due; *left_out: how many were dropped since. */
 static int is_due(const char *format, unsigned long *left_out) {
     struct timespec now;
     (void)clock_gettime(CLOCK_MONOTONIC, &now);

@@ -17,7 +17,7 @@ typedef struct {
     order_left_t left; /* what the log before this one leaves of an order */
     unsigned long rows;
     int64_t latest_us,
-        shift_us; /* time of the latest row; what is added so that times go on when the autopilot starts anew */
+        shift_us; /* time of the latest row; offset that keeps times increasing when the autopilot restarts */
     double written_mb, size_max_mb;
     bool failed; /* ended, as the disk did not take it */
 } flight_record_t;
@@ -30,7 +30,7 @@ bool flight_record_open(flight_record_t *record, const companion_config_t *confi
 void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame,
                        const autopilot_t *autopilot);
 
-/* To be called once a second: what was put is on the disk then. */
+/* To be called once a second: writes the rows to the disk. */
 void flight_record_flush(flight_record_t *record);
 
 void flight_record_close(flight_record_t *record);

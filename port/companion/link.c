@@ -86,7 +86,7 @@ static void set_nonblocking(int descriptor) {
     (void)fcntl(descriptor, F_SETFD, FD_CLOEXEC);
 }
 
-/* Frames are small and must not wait for each other; a peer that was cut off is told by no other sign. */
+/* Frames are small and must not wait for each other; nothing else reveals a peer that was cut off. */
 static void set_tcp(int descriptor) {
     const int on = 1, dead_after_ms = DEAD_AFTER_MS;
     (void)setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
@@ -237,7 +237,7 @@ static bool open_now(link_t *link, const char **why) {
     return link->descriptor >= 0;
 }
 
-/* What may come later is waited for; what is wrong for good is a failure. */
+/* A temporary fault is waited out; a permanent one is a failure. */
 static bool may_come(const link_t *link) { return link->kind == LINK_TCP || link->kind == LINK_SERIAL; }
 
 static bool is_port(const char *text) {

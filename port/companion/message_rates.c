@@ -109,7 +109,7 @@ void message_rates_answer(message_rates_t *rates, uint8_t result) {
         case MAV_RESULT_ACCEPTED:
             accept(rates);
             break;
-        case MAV_RESULT_IN_PROGRESS: /* it is asked again after ANSWER_US */
+        case MAV_RESULT_IN_PROGRESS: /* it is requested again after ANSWER_US */
             break;
         default: /* whatever it says of a rate that is beyond it: versions differ */
             refuse(rates);

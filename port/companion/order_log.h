@@ -15,7 +15,7 @@ typedef struct {
     FILE *stream; /* null: there is no log */
 } order_log_t;
 
-/* What is left of an order that still stands: enough to go back from it. */
+/* The rest of an active order: enough to return from it. */
 typedef struct {
     bool active;
     unsigned action; /* goe_flight_action_t */

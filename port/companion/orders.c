@@ -10,7 +10,7 @@
 #define REPEAT_US 500000        /* without an acknowledgement */
 #define TARGET_EVERY_US 1000000 /* a target that moves is sent at most that often ... */
 #define TARGET_MOVED_M 5.0f     /* ... and only when it has moved by so much */
-#define RESUMES_MAX 5           /* the mode before is asked for as often, until it is acknowledged */
+#define RESUMES_MAX 5           /* requests for the previous mode, until acknowledged */
 #define BEATS_TO_RESUME 2u      /* heartbeats that may still show the mode of the order before */
 #define SURE_SIGMA 2.0f         /* of a top */
 #define LEFT_OFF_US 2000000     /* by which both clocks may disagree on the time since an order that was left */
@@ -85,7 +85,7 @@ static bool suits_kind(const orders_t *orders) {
     return orders->config->reaction_mode == REACTION_PX4 ? is_px4 : is_ardupilot;
 }
 
-/* A go-around is for a landing: there it is asked for in every mode. */
+/* A go-around is for a landing: there it is requested in every mode. */
 static bool is_mode_allowed(const orders_t *orders, uint32_t mode, goe_flight_action_t action) {
     if (orders->config->reaction_mode != REACTION_PX4 || action == GOE_FLIGHT_GO_AROUND) {
         return true;
@@ -189,7 +189,7 @@ static bool is_obstacle_known(const orders_t *orders) {
            (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
-/* Back into the mode before, once the obstacle lies behind. What is only lost from sight may lie ahead there. */
+/* Back into the previous mode, once the obstacle is behind. An obstacle that is only out of view may be ahead there. */
 static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) {
     const bool is_past = is_obstacle_known(orders) &&
                          (ended == GOE_FLIGHT_LEFT || ended == GOE_FLIGHT_RIGHT || ended == GOE_FLIGHT_CLIMB);
@@ -294,7 +294,7 @@ static void watch_hindrance(orders_t *orders, goe_flight_action_t action, bool i
     }
 }
 
-/* Returns whether what was silent is no more: the order is sent at once. */
+/* Returns whether a silence has ended: the order is sent at once. */
 static bool watch(orders_t *orders, goe_flight_action_t action, bool is_new) {
     const bool was_silenced = orders->silenced;
     watch_pilot(orders);
@@ -338,7 +338,7 @@ static void report_left(orders_t *orders) {
     orders->active = orders->left;
     orders->watch.mode_before = orders->left.mode_before;
     put_log(orders, "taken over", "");
-    event("an order of before the restart stands in the log: %s",
+    event("the log has an active order from before the restart: %s",
           goe_flight_action_text((goe_flight_action_t)orders->left.action));
     screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_NOTICE, "GOE restarted in an order: Hold until passed");
 }
@@ -350,7 +350,7 @@ static void end_left(orders_t *orders, const char *how) {
     }
 }
 
-/* While no order of its own stands: back, once the obstacle of the log lies behind. */
+/* Without an active order of its own: back, once the obstacle of the log is behind. */
 static void follow_left(orders_t *orders, int64_t now_us) {
     const order_left_t *left = &orders->left;
     if (!left->active) {
@@ -428,7 +428,7 @@ static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
     orders->denied = false; /* a side that is denied says nothing of a go-around */
     orders->resumes_left = 0;
     orders->orders++;
-    event("order: %s; on this course %.0f m beside it in %.1f s%s", goe_flight_action_text(assessment->action),
+    event("order: %s; on this course %.0f m past it in %.1f s%s", goe_flight_action_text(assessment->action),
           (double)assessment->hazard.miss_m, (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
     show_order(orders, assessment);
     orders->action = assessment->action;
@@ -451,7 +451,7 @@ static void end(orders_t *orders, int64_t now_us) {
     orders->hindrance = NULL;
 }
 
-/* An autopilot that has started anew knows of no order. */
+/* An autopilot that has restarted knows of no order. */
 static void forget_after_restart(orders_t *orders) {
     if (orders->restarts_counted != orders->autopilot->restarts) {
         orders->restarts_counted = orders->autopilot->restarts;

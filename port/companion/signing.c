@@ -52,7 +52,7 @@ static void keep_time(signing_t *signing) {
         return;
     }
     if (!signing->failed) {
-        event("%s cannot be written: after a restart the autopilot may refuse what is sent", signing->path);
+        event("%s cannot be written: after a restart the autopilot may refuse messages", signing->path);
     }
     signing->failed = true;
 }

@@ -8,7 +8,7 @@
 
 #define LATE_MIN 128 /* a running number that far ahead is one that lies behind */
 
-/* Frames of the autopilot that never came: what its running number left out, less what comes late. */
+/* Frames of the autopilot that never came: gaps in its sequence numbers, less late arrivals. */
 static void count_lost(wire_t *wire, const mavlink_message_t *message) {
     if (wire->autopilot_system == 0 || message->sysid != wire->autopilot_system ||
         message->compid != MAV_COMP_ID_AUTOPILOT1) {
@@ -104,7 +104,7 @@ static void send_numbered(wire_t *wire, mavlink_message_t *message, uint8_t leng
     send_bytes(wire, bytes, mavlink_msg_to_send_buffer(bytes, message));
 }
 
-/* mavgen's functions number what they pack by a status of each source file's own: it is numbered anew here. */
+/* mavgen's functions number packed frames by a status of each source file's own: here they are numbered again. */
 void wire_send(wire_t *wire, mavlink_message_t *message) {
     const mavlink_msg_entry_t *entry = mavlink_get_msg_entry(message->msgid);
     if (entry != NULL) {

@@ -1,7 +1,7 @@
 /* Capture time. SPDX-License-Identifier: MIT
  *
  * One-way: a message cannot arrive before it was sent, so the least of (arrival - sending) is the offset of the clocks plus the
- * least delay of the link, which nothing but settings.delay_s tells. The least is that of two buckets of 10 s: a clock that
+ * least delay of the link, which only settings.delay_s gives. The least is that of two buckets of 10 s: a clock that
  * drifts by 50 ppm is off by 1 ms at most. */
 #include "goe_clock.h"
 

@@ -94,7 +94,7 @@ static void note_center(goe_flight_slot_t *slot, const goe_estimate_t *estimate)
     slot->covariance_ne_m2[2] = goe_flight_square(estimate->sigma.center_east_m);
 }
 
-/* A box or line whose length is not known has no centre: the middle of its front edge and the spread of that stand for it. */
+/* A box or line whose length is not known has no center: the middle of its front edge and the spread of that replace it. */
 static void note_front(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     float s;

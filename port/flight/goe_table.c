@@ -7,9 +7,9 @@
 
 #define COORDINATE_MAX_PX 1.0e5f
 #define PIXEL_SD_MAX_PX 100.0f
-#define UNDETECTED_S 2.0f /* after which what has no position, or is passed, may be given up */
+#define UNDETECTED_S 2.0f /* after which a track without a position, or a passed one, may be given up */
 #define WORTH_KEPT 0.5f   /* a slot of more worth is never given up for a new obstacle */
-#define ORDERED_S 30.0f   /* while an order stands every obstacle is kept so long: the way back leads past it */
+#define ORDERED_S 30.0f   /* while an order is active every obstacle is kept so long: the way back leads past it */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
@@ -39,7 +39,7 @@ static bool is_good(const goe_flight_detection_t *d) {
            is_good_pixel(&d->base_right);
 }
 
-/* What is to be looked at, as bits; the others are counted. *readable: there is a detection that can be read, or the image has none. */
+/* Detections to be used, as bits; the others are counted. *readable: there is a readable detection, or the image has none. */
 static uint32_t usable(goe_flight_t *flight, const goe_flight_frame_t *frame, bool *readable) {
     uint32_t bits = 0u;
     *readable = frame->number == 0u && frame->count == 0u;
@@ -224,7 +224,7 @@ bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *v
     return readable;
 }
 
-/* An obstacle that stands ahead on the course is not given up, however long it was not seen. */
+/* An obstacle ahead on the course is not given up, however long it was undetected. */
 static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     return slot->assessed && slot->hazard.time_s > 0.0f && slot->hazard.violation >= flight->settings.violation_max;
 }

@@ -80,7 +80,7 @@ static double median(double *numbers, size_t count) {
     return count % 2 == 1 ? numbers[count / 2] : 0.5 * (numbers[count / 2 - 1] + numbers[count / 2]);
 }
 
-/* Mean, then deviations from it: errors are large beside their spread. */
+/* Mean, then deviations from it: errors are large compared with their spread. */
 static error_statistics_t describe(const case_errors_t *errors, size_t count, case_quantity_t quantity) {
     error_statistics_t s = {errors[count - 1].truth[quantity], NONE, NONE, NONE};
     double sum = 0.0, squares = 0.0, deviations = 0.0;

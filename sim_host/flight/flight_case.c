@@ -262,7 +262,7 @@ static int choose_camera(const flight_case_t *setup, const obstacle_t *obstacle,
     return best;
 }
 
-/* What the image holds of the obstacle, from frame->truth. */
+/* The image features of the obstacle, from frame->truth. */
 static void look(const flight_case_t *setup, const flight_log_t *log, sensors_t *sensors, double t_s,
                  flight_frame_t *frame) {
     frame->camera = choose_camera(setup, &log->obstacle, &frame->truth);

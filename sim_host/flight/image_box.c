@@ -116,7 +116,7 @@ static void look_along(const outline_t *outline, extreme_t extremes[SIDE_COUNT],
     }
 }
 
-/* Of a straight edge with an image all along, which its ends tell as the field is convex. */
+/* Of a straight edge that is entirely visible, shown by its ends as the field is convex. */
 static bool look_at_ends(const outline_t *outline, extreme_t extremes[SIDE_COUNT], const curve_t *edge) {
     double from[2], to[2];
     if (!see(outline, edge, 0.0, from) || !see(outline, edge, 1.0, to)) {

@@ -166,7 +166,7 @@ static void check_neighbors(scenario_reader_t *reader) {
         const unsigned long *lines = reader->line_of[i + 1];
         const char *reason = neighbor_fault(&reader->scenario->neighbor[i]);
         if (lines[KEY_KIND] == 0) {
-            reason = "what it is, is missing";
+            reason = "the kind of obstacle (what) is missing";
         } else if (lines[KEY_Z0] == 0) {
             reason = "z0 is missing";
         }

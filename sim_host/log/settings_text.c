@@ -144,7 +144,7 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
 
 /* ------------------------------------------------------------------------------------------------------------ range -- */
 
-/* The name of the first setting beside the camera that goe_init() refuses; null if it refuses none. */
+/* The name of the first setting, camera excluded, that goe_init() refuses; null if it refuses none. */
 static const char *first_refused(const goe_settings_t *settings) {
     goe_settings_t trial = *settings;
     goe_estimator_t estimator;

@@ -1,4 +1,4 @@
-/* What is wrong with an input file, and where. SPDX-License-Identifier: MIT */
+/* A fault of an input file, with its position. SPDX-License-Identifier: MIT */
 #include "input_error.h"
 
 #include <stdarg.h>

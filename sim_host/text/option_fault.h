@@ -1,4 +1,4 @@
-/* What is wrong with a command line, from popt's verdict. SPDX-License-Identifier: MIT */
+/* The fault of a command line, from popt's result. SPDX-License-Identifier: MIT */
 #ifndef OPTION_FAULT_H
 #define OPTION_FAULT_H
 

@@ -31,7 +31,7 @@ static void on_interrupt(int number) {
     (void)raise(number); /* SA_RESETHAND: the default action ends the program, as soon as this returns */
 }
 
-/* What the caller's shell told the program to ignore stays ignored. */
+/* A signal that the caller's shell made the program ignore stays ignored. */
 static void catch_interrupts(void) {
     struct sigaction action;
     (void)memset(&action, 0, sizeof action);

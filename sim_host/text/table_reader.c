@@ -24,9 +24,9 @@ struct table_reader {
     double bytes, bytes_read; /* of the file; 0: not known */
     struct csv_parser parser;
     char *buffer;
-    size_t begin, end; /* what is not yet parsed of the buffer */
+    size_t begin, end; /* the part of the buffer that is not yet parsed */
     bool at_end;       /* of the file */
-    bool finished;     /* the parser was told so */
+    bool finished;     /* the parser knows the end */
 
     unsigned long line;     /* of the next byte to parse */
     unsigned long row_line; /* on which the current row began */
@@ -53,9 +53,9 @@ struct table_reader {
 /* The first fault of a file ends the reading. */
 #define FAIL(reader, ...) input_error_first(&(reader)->failed, &(reader)->error, (reader)->path, __VA_ARGS__)
 
-/* ------------------------------------------------------------------------------------------------------------ room -- */
+/* ------------------------------------------------------------------------------------------------------------ memory -- */
 
-/* False: there is no memory. *room: in items of so many bytes. */
+/* False: there is no memory. *capacity: in items of so many bytes. */
 static bool grow(void **items, size_t *capacity, size_t needed, size_t size) {
     if (needed <= *capacity) {
         return true;
@@ -230,10 +230,10 @@ static void on_field(void *text, size_t length, void *user) {
     } else if (!reader->header_done) {
         FAIL(reader, reader->row_line, NULL, "more than %u columns", TABLE_COLUMNS_MAX);
     }
-    reader->count++; /* of a row, more than there are columns, too: they are told when it ends */
+    reader->count++; /* of a row, more than there are columns, too: reported at its end */
 }
 
-/* Too few or too many fields are the cause of what else is wrong in a row: they are told first. */
+/* Too few or too many fields are the cause of other faults of a row: they are reported first. */
 static void check_row(table_reader_t *reader) {
     if (reader->count < reader->columns) {
         FAIL(reader, reader->row_line, name_of(reader, reader->count),
@@ -339,7 +339,7 @@ static void fill(table_reader_t *reader) {
     reader->at_end = got == 0;
 }
 
-/* One line, or what the buffer holds of it. */
+/* One line, or its part in the buffer. */
 static void parse_line(table_reader_t *reader) {
     const char *text = reader->buffer + reader->begin;
     const size_t held = reader->end - reader->begin;

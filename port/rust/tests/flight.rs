@@ -70,7 +70,7 @@ fn an_order_comes_in_time() {
                 seen.action
             );
             let obstacle = flight
-                .obstacle(seen.avoided.expect("what it is about"))
+                .obstacle(seen.avoided.expect("an order has an obstacle"))
                 .expect("an obstacle");
             assert_eq!(obstacle.id, 7);
             let place = obstacle.place.expect("a place");
