@@ -58,7 +58,7 @@ static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, f
 }
 
 #if GOE_AUGMENTED
-/* Of what is estimated beside the state. It moves the points of an image nearly alike, and is left out of their differences. */
+/* Of the augmented states. They move the points of an image nearly equally, and are left out of their differences. */
 static float augmented_variance(const goe_filter_t *filter, const float *row, const float weight[GOE_STATES]) {
     float part[GOE_AUGMENTED];
     goe_srif_augmented(&filter->inverse, weight, &row[GOE_AUGMENTED_COLUMN], part);
@@ -68,7 +68,7 @@ static float augmented_variance(const goe_filter_t *filter, const float *row, co
 
 GOE_STATIC_ASSERT(GOE_STATES % 5 == 0, a_difference_of_rows_is_taken_by_five_states_at_a_time);
 
-/* (R16): normalised square of a row's residual, or of the difference of two rows'. */
+/* (R16): normalized square of a row's residual, or of the difference of two rows'. */
 /*@ requires \valid_read(filter) && goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
 static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size_t row, size_t middle) {
     float weight[GOE_STATES];
@@ -127,7 +127,7 @@ static void judge(const goe_settings_t *settings, const goe_filter_t *filter, co
     const float huber = settings->refined.huber_sigma;
     gather(rows, along_x, &group);
     const float alone = group.count > 0 ? innovation(filter, rows, group.middle, group.middle) : 0.0f;
-    const bool common = alone <= gate * gate; /* a middle that is off itself tells nothing of the others */
+    const bool common = alone <= gate * gate; /* a wrong middle is no evidence about the others */
     for (size_t i = 0; i < group.count; i++) {
         const size_t row = group.row[i];
         const size_t feature = rows->feature[row];

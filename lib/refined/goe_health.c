@@ -59,7 +59,7 @@ void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis) {
     health->nis = goe_within(nis, NIS_MAX) ? nis : NIS_MAX;
     health->nis_rows = (int16_t)verdict.rows;
     const float ratio = health->nis / (float)verdict.rows;
-    average_track(health, is_poor(verdict) ? RATIO_MAX : ratio); /* what is left fits, and says nothing */
+    average_track(health, is_poor(verdict) ? RATIO_MAX : ratio); /* the rest fits, and is not informative */
     if (health->recent_nis < 0.0f) {
         health->recent_nis = 1.0f;
     } else {
@@ -130,7 +130,7 @@ static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) 
     }
 }
 
-/* One restart is an outlier's, or a crossing's; two of them so soon are none of a good track. */
+/* One restart is an outlier's, or a crossing's; two of them so soon mean a bad track. */
 static void count_restart(goe_health_t *health) {
     health->adrift = health->adrift || (health->steady > 0 && health->steady < RESTART_IMAGES);
     health->steady = 1;

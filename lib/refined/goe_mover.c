@@ -11,7 +11,7 @@
 
 #define LATENCY_PRIOR_S 0.05f /* one sigma of what poses are late by before anything is known */
 #define SPREAD_GROWN 4.0f     /* of a velocity's variance, when the obstacle begins to be followed */
-#define LATE_MIN_S 0.02f      /* poses are told as late from here on ... */
+#define LATE_MIN_S 0.02f      /* poses are reported as late from here on ... */
 #define LATE_SIGMAS 2.7f      /* ... and if it is that much more than nothing */
 #define RATE_PREDICTED 0.8f   /* of a rate of turn, by the one before it: the mean over usual swaying */
 #define MOVES_CHI2 25.0f      /* a velocity's two degrees of freedom: 4e-6 by chance, if nothing but noise is wrong */
@@ -19,15 +19,15 @@
 #define REST_CHI2 9.0f        /* something moves if a latency leaves at least this unexplained ... */
 #define REST_SHARE 0.15f      /* ... and a velocity at most this share of that */
 #define LATE_SHARE 0.3f       /* poses are late only if a velocity leaves more than this share of that */
-#define MOVING_SIGMAS2 9.0f   /* what is late moves as well if its velocity is that much more than nothing */
-#define MOVES_MIN_M_S 1.0f    /* what is slower is taken for none */
+#define MOVING_SIGMAS2 9.0f   /* a late track moves as well if its velocity is that significant */
+#define MOVES_MIN_M_S 1.0f    /* a slower motion counts as none */
 #define MOVES_S 0.4f          /* for which it says so, image after image ... */
 #define MOVES_IMAGES 3        /* ... of which there are at least so many */
-#define SETTLED_S 1.4f        /* that images told something: less says nothing of a velocity */
+#define SETTLED_S 1.4f        /* of informative images: less gives no velocity */
 #define SINCE_MAX_S 0.5f      /* a gap between images counts as that */
 #define COLUMN_MAX 1.0e3f     /* focal lengths per second, or per m/s: beyond that no flight is */
 #define AUGMENTED_MAX                                                                                                  \
-    1.0e9f              /* of what is beside the state, and of its rows of the triangle: more is none of a flight */
+    1.0e9f              /* of the augmented states, and of their rows of the triangle: more is impossible in a flight */
 #define TIME_MIN_S 0.1f /* keeps a walk over time finite */
 #define DETERMINANT_MIN 1.0e-5f /* of a covariance of two, over the product of the variances */
 
@@ -129,7 +129,7 @@ typedef struct {
     float latency_s;                   /* if nothing moves */
     float by_latency;                  /* what that explains of the sum of squares ... */
     float rest_latency, rest_velocity; /* ... and what the one or the other leaves */
-    float wider;                       /* by what the variance of the residuals is larger than told */
+    float wider;                       /* excess of the variance of the residuals over the configured one */
 } fit_t;
 
 static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *obs, fit_t *fit) {
@@ -165,12 +165,12 @@ static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *o
     return true;
 }
 
-/* Something in the image tells a scale that does not hang on the obstacle standing still: its foot, by the height. */
+/* The image gives a scale that does not require a static obstacle: its foot, by the height. */
 static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
     return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SEES_BOTTOM) : obs->base;
 }
 
-/* Of the covariance (x, both; both, z). One that is nearer to singular than float can tell is taken for as wide as it may be. */
+/* Of the covariance (x, both; both, z). One too close to singular for float is taken as wide as it may be. */
 static float determinant_of(float x, float both, float z) {
     return goe_larger(x * z - both * both, DETERMINANT_MIN * (x * z));
 }
@@ -196,8 +196,8 @@ static bool is_moving(goe_filter_t *filter, const fit_t *fit, float since_s) {
     return goe_count_image(&m->images) >= MOVES_IMAGES && m->unlike_s >= MOVES_S;
 }
 
-/* (R37): from the velocity that the images spoke of, as uncertain as it was, and more, as it was linearised at a place that was
- * wrong; the latency is open again. */
+/* (R37): from the velocity that the images showed, with more than its uncertainty, as it was linearized at a wrong
+ * place; the latency is open again. */
 static void follow(goe_filter_t *filter, const fit_t *fit) {
     goe_mover_t *m = &filter->mover;
     goe_triangle_t *root = &filter->root;
@@ -230,7 +230,7 @@ static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
     filter->mover.late = late && filter->root.estimated > 0;
 }
 
-/* Late poses in a turn look like a motion at first; followed, what moves and what is late come apart. */
+/* Late poses in a turn look like a motion at first; later, motion and latency separate. */
 static void judge_followed(goe_filter_t *filter) {
     goe_mover_t *m = &filter->mover;
     const goe_xz_t v = {m->augmented[GOE_AUGMENTED_VELOCITY_X], m->augmented[GOE_AUGMENTED_VELOCITY_Z]};

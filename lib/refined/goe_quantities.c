@@ -19,7 +19,7 @@
 
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
-#define FAR_ROOF 2.0f     /* of the width: one sigma of where the farthest corner of the roof stands */
+#define FAR_ROOF 2.0f     /* of the width: one sigma of the position of the farthest corner of the roof */
 #define ORIENTATION_MAX_RAD 0.174532925f
 #define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
 #define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
@@ -65,7 +65,7 @@ static float early_variance(const goe_filter_t *filter, const goe_navigation_t *
     return goe_square(navigation->velocity_bias_m_s * s) + goe_square(navigation->position_walk_m) * s;
 }
 
-/* The roof's corner that the top is over stands beside the middle; seen from above or from below it seems lower or higher, by the
+/* The roof's corner below the top is off the middle; from above or from below it appears lower or higher, by the
  * tangent of that angle, which from nearby is taken as its sine. */
 static float top_variance(const goe_motion_t *motion, drift_t drift, const goe_shape_t *shape) {
     const float x_m = shape->middle.at.x * shape->scale_m - drift.camera_m.x;
@@ -129,9 +129,9 @@ static float variance_of(const goe_filter_t *filter, const widening_t *wider, fl
     return dot(by, by, 0.0f);
 }
 
-/* ------------------------------------------------------------------------------------------------- beside the state -- */
+/* ------------------------------------------------------------------------------------------------- augmented --------- */
 
-/* What the estimates beside the state add, as independent unit errors. at_s: the place counts that long after the filter's start,
+/* The contribution of the augmented states, as independent unit errors. at_s: the place counts that long after the filter's start,
  * and (x, z), T axes, is its derivative by the place there; it matters of an obstacle that is followed. */
 #if GOE_AUGMENTED
 typedef struct {
@@ -188,7 +188,7 @@ static void augmented_scale(const augmented_t *augmented, float factor) {
 }
 #endif
 
-/*@ requires \valid_read(filter) && \valid_read(by + (0 .. GOE_STATES - 1)) && \valid(beside);
+/*@ requires \valid_read(filter) && \valid_read(by + (0 .. GOE_STATES - 1)) && \valid(augmented);
     requires 0 <= quantity < GOE_QUANTITIES; */
 static void augmented_quantity(const goe_filter_t *filter, const float by[GOE_STATES], int quantity, float at_s,
                                augmented_t *augmented) {
@@ -248,12 +248,12 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-/* What is no ellipse adds to a prism's sigmas. */
+/* Addition to a prism's sigmas for other shapes than an ellipse. */
 static float doubt_of(const goe_shape_t *shape, int quantity) {
     return quantity == GOE_WIDTH ? shape->width_m2 : (quantity == GOE_HEIGHT ? shape->top_m2 : 0.0f);
 }
 
-/* What the scatter adds widens the sigmas; what is known is decided without it, as doubt must
+/* The scatter widens the sigmas; validity is decided without it, as doubt must
  * not silence an answer. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            const widening_t *wider, goe_quantities_t *q) {
@@ -291,10 +291,10 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
     goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m + gone.x,
                      place.z * shape->scale_m + filter->axes.start_dz_m + gone.z, &q->center_m[0], &q->center_m[1]);
     const float drifted = drift_variance(motion, drift, shape, q->box, GOE_Z0);
-    float variance[3] = {0.0f, 0.0f, 0.0f}; /* along north, east, and (1, 1), which tells how the two go together */
+    float variance[3] = {0.0f, 0.0f, 0.0f}; /* along north, east, and (1, 1), which gives their correlation */
     float moved[3] = {0.0f, 0.0f, 0.0f};
     float by[3][GOE_STATES] = {{0.0f}};
-    const bool disc = filter->phase == GOE_PHASE_DISC; /* its derivatives tell by themselves */
+    const bool disc = filter->phase == GOE_PHASE_DISC; /* its derivatives suffice */
     for (int i = 0; i < (disc ? 2 : 3); i++) {
         const goe_xz_t along = {i == 0 ? -s : (i == 1 ? c : c - s), i == 0 ? c : (i == 1 ? s : c + s)};
         const goe_xz_t in_trajectory = goe_filter_into_trajectory(filter, along);
@@ -336,8 +336,8 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 #endif
 }
 
-/* (R42): the highest point of a roof seen from above is a far corner, and no image shows how far while one face is seen, or a disc stands
- * in for the box. */
+/* (R42): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a disc
+ * substitutes for the box. */
 static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *settings, goe_shape_t *shape) {
     const bool highest = settings->refined.top_is_highest;
     const bool is_substitute = filter->phase == GOE_PHASE_DISC && filter->candidate.stand_in && highest;

@@ -94,7 +94,7 @@ static bool is_misfit(const goe_health_t *health, const goe_settings_t *settings
     return health->images >= SUSPECT_IMAGES && health->mean_nis > settings->refined.misfit_max;
 }
 
-/* A disc was asked for, and it is none. */
+/* A disc was configured, and it is none. */
 static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings) {
     return settings->model == GOE_MODEL_DISC && filter->phase == GOE_PHASE_DISC && goe_disc_is_skewed(filter);
 }

@@ -1,4 +1,4 @@
-/* Scatter beyond what was told. SPDX-License-Identifier: MIT */
+/* Scatter beyond the configured noise. SPDX-License-Identifier: MIT */
 #include "refined/goe_scatter.h"
 
 #include "maths/goe_scalar.h"
@@ -9,7 +9,7 @@
 #define RESIDUAL_MAX 10.0f   /* sigmas: one outlier must not decide */
 #define SEED 10.0f           /* squares that are always there: few images alone say little */
 #define CHANCE 0.07f         /* one sigma that the mean of NIS and the correlation have over their memory */
-#define CORRELATION_MAX 0.9f /* beyond it the sums cannot tell */
+#define CORRELATION_MAX 0.9f /* beyond it the sums are not informative */
 
 static float clipped(float residual) {
     if (goe_within(residual, RESIDUAL_MAX)) {

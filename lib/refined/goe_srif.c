@@ -125,7 +125,7 @@ static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t 
     }
 }
 
-/* R x = right, in place; what is not estimated is 0. */
+/* R x = right, in place; 0 for states that are not estimated. */
 static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
     for (size_t i = count; i-- > 0;) {
@@ -222,7 +222,7 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
 
 GOE_STATIC_ASSERT(GOE_UNWEIGHTED == 3, as_many_elements_of_a_column_are_left_0);
 
-/* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column beside the state the first GOE_UNWEIGHTED elements, which
+/* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column of the augmented states the first GOE_UNWEIGHTED elements, which
  * no quantity depends on, are left 0. */
 /*@ requires \valid_read(root) && \valid(inverse) && first <= GOE_STATES; */
 static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t *inverse) {
@@ -413,7 +413,7 @@ void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float 
 
 GOE_STATIC_ASSERT(GOE_CHANGED <= GOE_ROWS_MAX && GOE_CHANGED < GOE_STATES, the_changed_states_fit_into_the_rows);
 
-/* R times the derivative is square from the changed states on: these rows go in anew, as if they were measured. */
+/* R times the derivative is square from the changed states on: these rows go in again, as if they were measured. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows) {
     const size_t kept = GOE_STATES - GOE_CHANGED;
     float change[GOE_UNKNOWNS];
@@ -439,7 +439,7 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
         memset(&r[i], 0, (GOE_UNKNOWNS - i) * sizeof r[0]);
     }
 #if GOE_AUGMENTED
-    const uint8_t estimated = root->estimated; /* what is beside the state keeps what it is yet to move by */
+    const uint8_t estimated = root->estimated; /* the augmented states keep their pending change */
     root->estimated = 0;
     (void)goe_srif_update(root, 1.0f, rows, change);
     root->estimated = estimated;

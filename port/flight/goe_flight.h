@@ -281,7 +281,7 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------------------------- state -- */
 
-/* Transparent so that it can be placed and counted; private but for counters and capture_us. Each type names the file that maintains it. */
+/* Transparent, for the caller to place and count; private but for counters and capture_us. Each type names the file that maintains it. */
 
 typedef struct { /* goe_history.c */
     uint32_t time_us;

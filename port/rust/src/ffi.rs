@@ -179,10 +179,10 @@ extern "C" {
     /// Takes one image and reports the estimate after it.
     pub fn goe_update(
         estimator: *mut goe_estimator_t,
-        /// Covariance of the latest estimate: meters and degrees.
+        image: *const goe_image_t,
         estimate: *mut goe_estimate_t,
     ) -> goe_status_t;
-    /// Covariance of the latest estimate: metres and degrees.
+    /// Covariance of the latest estimate: meters and degrees.
     pub fn goe_covariance(
         estimator: *const goe_estimator_t,
         covariance: *mut [[f32; GOE_QUANTITIES]; GOE_QUANTITIES],

@@ -124,7 +124,7 @@ void report_hazard(const goe_obstacle_s &obstacle, char *line) {
     } else if (obstacle.passed) {
         snprintf(line, GOE_TEXT_LINE, "     passed: its distance grows");
     } else {
-        snprintf(line, GOE_TEXT_LINE, "     in %.1f +- %.1f s %.0f m beside it%s; %.0f %% to violate the margins%s",
+        snprintf(line, GOE_TEXT_LINE, "     in %.1f +- %.1f s %.0f m past it%s; %.0f %% to violate the margins%s",
                  number(obstacle.time_to), number(obstacle.time_to_sd), number(obstacle.miss), over,
                  number(PER_CENT * obstacle.violation), obstacle.worst ? ", worst" : "");
     }
