@@ -105,8 +105,8 @@ typedef struct {
 } goe_triangle_t;
 
 typedef struct {
-    float
-        element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) / 2]; /* the inverse of one, column by column; of the estimated states */
+    float element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) /
+                  2]; /* the inverse of one, column by column; of the estimated states */
 #if GOE_AUGMENTED
     uint8_t estimated;
 #endif

@@ -151,7 +151,8 @@ static struct poptOption noise_options[] = {
     NUMBER("detector-correlation", detector_correlation, "0..1", "detector noise, from frame to frame"),
     NUMBER("box-px", box_px, "PX", "a box's sides: one sigma, white; default of boxes 0.5"),
     NUMBER("box-share", box_share, "0..",
-           "one sigma of the slowly varying error, share of the box's width (left, right) or height (top, bottom); default 0.04"),
+           "one sigma of the slowly varying error, share of the box's width (left, right) or height (top, bottom); "
+           "default 0.04"),
     NUMBER("box-correlation", box_correlation, "S", "correlation time of this error; default 1"),
     NUMBER("attitude-bias", attitude_bias, "DEG", "one sigma per body axis, constant over a run"),
     NUMBER("attitude-noise", attitude_noise, "DEG", "one sigma per body axis, white"),

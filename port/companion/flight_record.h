@@ -23,7 +23,8 @@ typedef struct {
 } flight_record_t;
 
 /* Makes the folder, with a copy of the camera's file. An old log there is not overwritten: then it is the first of folder-2,
- * folder-3, ... without one, and of the latest of them is read what it leaves. A folder that cannot be written is a failure. Nothing is done without a folder's name. */
+ * folder-3, ... without one, and of the latest of them is read what it leaves. A folder that cannot be written is a failure. Nothing is
+ * done without a folder's name. */
 bool flight_record_open(flight_record_t *record, const companion_config_t *config, char *fault, size_t fault_size);
 
 /* The detections of a frame that was taken, with the pose at its exposure. */

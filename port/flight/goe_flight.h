@@ -419,7 +419,8 @@ goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_a
 goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_position_t *sample);
 
 /* The pose at a time, height_m that of camera 0: position linear between the two samples about it, attitude by the cubic
- * through them and their neighbors, as far as these exist; the height by the best source known now. pose->time_us does not wrap and is in the same clock.
+ * through them and their neighbors, as far as these exist; the height by the best source known now. pose->time_us does not wrap and is in
+ * the same clock.
  *   attitude_sd_deg  uncertainty of the attitude for a time whose one sigma is time_sd_us; null if not wanted
  * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED; all zero unless _OK. */
 goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us, goe_pose_t *pose,

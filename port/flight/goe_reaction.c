@@ -436,8 +436,7 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     way.circle_m = look->circle_m;
     way.sigmas = LIKELY_SIGMA;
     way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
-    if (!(way.circle_m > 0.0f) &&
-        is_aside(r->action)) { /* it is flown through: also the line behind it counts */
+    if (!(way.circle_m > 0.0f) && is_aside(r->action)) { /* it is flown through: also the line behind it counts */
         const float on_m = goe_flight_larger(2.0f * look->at.turn_m - way.target_m[0], 0.0f);
         way.target_m[0] += on_m * way.line_m[0];
         way.target_m[1] += on_m * way.line_m[1];

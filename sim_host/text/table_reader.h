@@ -39,7 +39,8 @@ typedef enum {
 } table_result_t;
 
 /* Opens a file and reads its header line; the columns must outlive the reader. Null on failure, and *error gives the
- * reason: the file is unreadable, a required column is missing, one of the columns is there twice. It also suggests the probable name: another delimiter, a mistyped name.
+ * reason: the file is unreadable, a required column is missing, one of the columns is there twice. It also suggests the probable name:
+ * another delimiter, a mistyped name.
  *
  * Blank lines and a byte order mark are passed over. Rows end in LF, also CR LF, the last one too: a row at whose end the file
  * ends may have been cut off within its last number. */

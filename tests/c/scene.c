@@ -271,7 +271,7 @@ typedef struct {
 static void cylinder_points(const scene_t *scene, double x, double z, double h, points_t *points) {
     const double r = 0.5 * scene->width_m;
     const double d2 = x * x + z * z;
-    const double along = 1.0 - r * r / d2; /* foot of the tangent, in shares of the way to the centre */
+    const double along = 1.0 - r * r / d2; /* foot of the tangent, in shares of the way to the center */
     const double across = r * sqrt(d2 - r * r) / d2;
     const double middle = h - 0.5 * scene->height_m;
     points->left = (vector_t){{x * along - z * across, middle, z * along + x * across}};

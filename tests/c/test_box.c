@@ -15,7 +15,7 @@ typedef struct {
     double x, z;
 } corner_t;
 
-enum { FL, BL, BR, FR }; /* clockwise seen from above */
+enum { FL, BL, BR, FR }; /* clockwise as viewed from above */
 
 static check_random_t any;
 static sighting_t sighting;
@@ -46,7 +46,7 @@ static void corners_of(const double state[GOE_STATES], corner_t corner[4]) {
     }
 }
 
-/* The face from corner i clockwise to the next is seen if the camera lies on its outer side. */
+/* The face from corner i clockwise to the next is visible if the camera lies on its outer side. */
 static bool face_is_seen(const corner_t corner[4], int i) {
     const corner_t a = corner[i];
     const corner_t b = corner[(i + 1) % 4];
@@ -61,7 +61,7 @@ static bool face_is_hidden(const corner_t corner[4], int i) {
 
 static double range2(corner_t c) { return c.x * c.x + c.z * c.z; }
 
-/* Visible corners in image order; false if a face is seen from its end. */
+/* Visible corners in image order; false if a face is viewed from its end. */
 static bool find_visible(const corner_t corner[4], int visible[4], int *count) {
     bool seen[4] = {false, false, false, false};
     *count = 0;
@@ -105,10 +105,10 @@ static double down_of(corner_t c) {
     return seen[0] / seen[1];
 }
 
-/* What is least at the corner that the top is over: nearest to the camera, or highest in the raw image. */
+/* The quantity that is least at the corner below the top: distance from the camera, or height in the raw image. */
 static double rank(corner_t c, bool highest) { return highest ? down_of(c) : range2(c); }
 
-/* False if two are alike. */
+/* False if two are equal. */
 static bool find_top(const corner_t corner[4], bool highest, int *found) {
     bool clear = true;
     *found = 0;
@@ -219,8 +219,8 @@ static void check_rows(void) {
 static const int faces_to_feature[3] = {GOE_POINT_BASE_LEFT, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_RIGHT};
 
 /* [goe_image_t.base_left, goe_image_t.pose, goe_image_t.top, (R1), (R10), (R11), (R12), (R13), (R2), (R9)]
- * GIVEN boxes of any size, side and orientation WHEN all that can be seen is measured where brute force puts it THEN all
- * residuals are 0, so that the same corners were taken, and all derivatives are those of the projection. */
+ * GIVEN boxes of any size, side and orientation WHEN all visible features are measured at their brute-force places THEN all
+ * residuals are 0, which shows that the same corners were taken, and all derivatives are those of the projection. */
 static void rows_are_those_of_the_corners_that_are_visible(void) {
     int faces[3] = {0, 0, 0};
     any = check_random_start("all features");
@@ -252,8 +252,8 @@ static void rows_are_those_of_the_corners_that_are_visible(void) {
         check_rows();
         faces[count - 1]++;
     }
-    check_report("boxes of which one face is seen", faces[1]);
-    check_report("boxes of which two faces are seen", faces[2]);
+    check_report("boxes with one visible face", faces[1]);
+    check_report("boxes with two visible faces", faces[2]);
     TEST_ASSERT_TRUE(faces[1] > CASES / 20 && faces[2] > CASES / 2);
 }
 

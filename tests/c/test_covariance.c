@@ -1,4 +1,4 @@
-/* The latest estimate's covariance, and what goe_hazard asks beside it. SPDX-License-Identifier: MIT
+/* The latest estimate's covariance, and the further inputs of goe_hazard. SPDX-License-Identifier: MIT
  *
  * Estimates and states are written into the estimator, so that every number is known. */
 /* tests: lib/goe_covariance.c */
@@ -80,8 +80,8 @@ static void the_place_grows_uncertain_by_the_own_motion(void) {
     CHECK_SAME(4.0f, covariance[GOE_X0][GOE_X0]);
 }
 
-/* GIVEN an obstacle that moves, last seen four seconds ago THEN its place has become uncertain by four times the larger sigma of
- * its velocity, along both axes alike, as those of T are not north and east; and its size has not. */
+/* GIVEN an obstacle that moves, last detected four seconds ago THEN its place has become uncertain by four times the larger sigma of
+ * its velocity, along both axes equally, as those of T are not north and east; and its size has not. */
 static void the_position_of_a_moving_target_grows_uncertain(void) {
     for (int larger = 0; larger < 2; larger++) {
         goe_sigma_t *sigma = &estimator.estimate.sigma;
@@ -142,7 +142,7 @@ static void make_box(void) {
 }
 
 /* GIVEN a box's answer THEN its covariance is symmetric, in degrees where it is the orientation's; and of a quantity that is not
- * told rows and columns are 0, and no other. */
+ * reported rows and columns are 0, and no other. */
 static void an_unreported_quantity_has_no_covariance(void) {
     static const unsigned bits[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
                                                   GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};

@@ -14,7 +14,7 @@ static goe_plan_t plan;
 static goe_rule_t rule;
 static goe_hazard_t hazard;
 
-/* A mast 6 m wide, 100 m ahead and aside_m aside, higher than the path, of which everything is known to a metre. */
+/* A mast 6 m wide, 100 m ahead and aside_m aside, higher than the path, of which everything is known to a meter. */
 static void place(double aside_m) {
     const stated_t mast = {(float)aside_m, 100.0f, 6.0f, 40.0f, 1.0f, 1.0f, 20.0f};
     stated_answer(&estimator, &mast);
@@ -42,7 +42,7 @@ static void probability_and_time_decide(void) {
     rule.act_s = 1.01f * goe_soonest_s(&hazard);
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
     rule.act_s = 12.0f;
-    place(19.0); /* passed by a metre more than the margin */
+    place(19.0); /* passed by a meter more than the margin */
     (void)decide();
     TEST_ASSERT_TRUE(hazard.violation > 0.05f && hazard.violation < 0.5f);
     rule.violation_max = hazard.violation;

@@ -21,8 +21,8 @@ void tearDown(void) {}
 
 /* ---------------------------------------------------------------------------------------------------------- reference -- */
 
-/* Seen coordinate of a feature: left, right: the tangent's azimuth; top: the rim's nearest point, or the farthest if it is
- * the highest; base corners: a point of the centre's range on the ground. */
+/* Image coordinate of a feature: left, right: the tangent's azimuth; top: the rim's nearest point, or the farthest if it is
+ * the highest; base corners: a point of the center's range on the ground. */
 static double see(const double state[GOE_STATES], size_t feature) {
     const double h = (double)sighting.sight.height_m;
     const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
@@ -99,7 +99,7 @@ static void check_rows(void) {
 
 /* [goe_image_t.top, refined.top_is_highest, (R1), (R2), (R5), (R6)]
  * GIVEN discs of any size and place, with the roof below or above the camera THEN residuals are 0 at the truth and all
- * derivatives are those of tangents and rim; with base corners, of the ground below the centre, too. */
+ * derivatives are those of tangents and rim; with base corners, of the ground below the center, too. */
 static void rows_are_those_of_tangents_and_rim(void) {
     any = check_random_start("discs");
     for (int n = 0; n < CASES; n++) {
@@ -150,7 +150,7 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
 }
 
 /* [goe_image_t.left, (R18)]
- * GIVEN a disc of the typical size, noise-free and seen from a level camera WHEN the filter starts on it THEN the state is the
+ * GIVEN a disc of the typical size, noise-free and viewed from a level camera WHEN the filter starts on it THEN the state is the
  * truth; of another size, only the direction is. */
 static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
     any = check_random_start("start");
@@ -182,7 +182,7 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
 /* Twice the sine of half the angle between tangents at -0.05 and 0.05. */
 #define VISIBLE_WIDTH (0.1 / sqrt(1.0 + 0.05 * 0.05))
 
-/* [(R18)] GIVEN base corners clearly below the horizon THEN flat ground tells the first range; GIVEN ones that are not, or a camera
+/* [(R18)] GIVEN base corners clearly below the horizon THEN flat ground gives the first range; GIVEN ones that are not, or a camera
  * below the ground THEN the typical size does. */
 static void flat_ground_gives_the_first_range(void) {
     static const struct {
@@ -251,8 +251,8 @@ static void the_ground_gives_the_first_range_where_it_can(void) {
     }
 }
 
-/* GIVEN a start THEN the first image says of no state more than it can: the sensors' errors as they are told, the range within a factor
- * of three, and all extents by several times themselves, as the images to come will tell them better. */
+/* GIVEN a start THEN the first image gives no more information than it has: the sensors' errors as configured, the range within a factor
+ * of three, and all extents by several times themselves, as later images will determine them better. */
 static void a_start_is_as_uncertain_as_one_image(void) {
     goe_triangle_t root;
     float x[GOE_STATES];

@@ -344,7 +344,7 @@ static void without_a_height_the_margin_alone_counts(void) {
     const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
     give(&estimator.estimate, &o);
     estimator.estimate.sigma.x0_m = 4.0f;
-    CHECK_CLOSE(1e-6, 0.0, foresee(&plan).violation); /* 28 m above what asks for 10 */
+    CHECK_CLOSE(1e-6, 0.0, foresee(&plan).violation); /* 28 m above an obstacle that requires 10 */
     estimator.estimate.valid &= ~GOE_HAS_HEIGHT;
     CHECK_CLOSE(2e-6, 0.1586553, foresee(&plan).violation); /* 9 m off, 5 wanted: 1 sigma */
 }
@@ -410,7 +410,7 @@ static void give_sigmas(double position, double range, double extent, double ori
     sigma->height_m = (float)height;
 }
 
-/* Within 5 % or 2 cm: what is left of the curvature of corners and circles, and of the draw. */
+/* Within 5 % or 2 cm: the rest of the curvature of corners and circles, and of the draw. */
 static void check_sd(double expected, float actual) { CHECK_CLOSE(fmax(0.05 * expected, 0.02), expected, actual); }
 
 /* [goe_affine.c] */
@@ -471,7 +471,7 @@ static void a_grazed_edge_does_not_blow_the_sigma_of_the_time_up(void) {
 }
 
 /* [goe_hazard, goe_plan_t.clearance_m, goe_plan_t.margin_m, goe_violation.c]
- * The probability told may exceed the drawn one, by what goe.h says, but hardly fall short of it. */
+ * The reported probability may exceed the drawn one, as goe.h allows, but hardly fall short of it. */
 static void the_probability_is_that_of_random_truths(void) {
     check_random_t random = check_random_start("violation");
     double least = 0.0;
@@ -498,9 +498,9 @@ static void the_probability_is_that_of_random_truths(void) {
         sum += fabs(off);
         cases++;
     }
-    check_report("violation, told less drawn, least", least);
-    check_report("violation, told less drawn, most", most);
-    check_report("violation, told less drawn, mean magnitude", sum / cases);
+    check_report("violation, reported less drawn, least", least);
+    check_report("violation, reported less drawn, most", most);
+    check_report("violation, reported less drawn, mean magnitude", sum / cases);
     TEST_ASSERT_TRUE(least > -0.05 && most < 0.05 && sum / cases < 0.005);
 }
 
@@ -572,7 +572,7 @@ static void correlation_moves_the_probability(void) {
         plan.clearance_m = 14.0f;
         const double reported = (double)foresee(&plan).violation;
         const double drawn = draw(&mean, &plan, draw_from_covariance).violation;
-        check_report("shared errors: violation told", reported);
+        check_report("shared errors: violation reported", reported);
         check_report("shared errors: violation drawn", drawn);
         TEST_ASSERT_TRUE(reported > drawn - 0.03);
         TEST_ASSERT_TRUE(reported < drawn + 0.15);
@@ -629,7 +629,7 @@ static void correlated_errors_are_accounted_for(void) {
         plan.clearance_m = (float)truth_of(&mean, &plan).clearance_m;
         const goe_hazard_t hazard = foresee(&plan);
         const drawn_t drawn = draw(&mean, &plan, draw_from_covariance);
-        check_report("refined: violation told", (double)hazard.violation);
+        check_report("refined: violation reported", (double)hazard.violation);
         check_report("refined: violation drawn", drawn.violation);
         CHECK_CLOSE(1e-3, truth_of(&mean, &plan).clearance_m, hazard.clearance_m);
         check_sd(drawn.time_sd_s, hazard.time_sd_s);
@@ -643,7 +643,7 @@ static void correlated_errors_are_accounted_for(void) {
 
 /* [goe_covariance.c] */
 static void the_altimeters_bias_does_not_part_camera_and_top(void) {
-    /* GIVEN a height that is told 1 m too large THEN the clearance is the true one all the same */
+    /* GIVEN a height that is given 1 m too large THEN the clearance is the true one all the same */
     goe_plan_t plan = plan_of(0.0, 0.0, 0.0);
     for (int i = 0; i < 2; i++) {
         const scene_t scene = tower();

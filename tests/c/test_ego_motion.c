@@ -1,4 +1,4 @@
-/* What two poses tell of the own motion between them, and what a late pose makes of it. SPDX-License-Identifier: MIT */
+/* The own motion between two poses, and the effect of a late pose on it. SPDX-License-Identifier: MIT */
 /* tests: lib/image/goe_ego_motion.c */
 #include "image/goe_ego_motion.h"
 
@@ -84,8 +84,8 @@ static void pitch_and_roll_are_about_x_and_z(void) {
     }
 }
 
-/* GIVEN a camera on an arm of an aircraft that turns THEN the velocity is the vehicle's, not that with which the arm swings: two cameras
- * must tell the same of it. */
+/* GIVEN a camera on an arm of a turning aircraft THEN the velocity is the vehicle's, not that with which the arm swings: two cameras
+ * must give the same velocity. */
 static void the_velocity_is_the_vehicles(void) {
     settings.camera.offset_m[0] = 4.0f;
     settings.camera.offset_m[1] = -2.0f;
@@ -95,8 +95,8 @@ static void the_velocity_is_the_vehicles(void) {
     CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
 }
 
-/* GIVEN poses that lie too near to each other THEN they tell their own noise, and the ones before stand; too far apart, they tell a mean,
- * and nothing is told; nor over a jump of the autopilot's filter. */
+/* GIVEN poses too near to each other THEN they would give only noise, and the previous motion stays; too far apart, they would give a mean,
+ * and there is no motion; nor over a jump of the autopilot's filter. */
 static void only_distant_poses_give_motion(void) {
     follow(0.0);
     follow(0.04);
@@ -114,7 +114,7 @@ static void only_distant_poses_give_motion(void) {
     TEST_ASSERT_TRUE(motion.paced);
 }
 
-/* GIVEN a known jump of the autopilot's filter THEN it is in neither velocity nor rate: what is late is taken off in that image,
+/* GIVEN a known jump of the autopilot's filter THEN it is in neither velocity nor rate: the latency is corrected in that image,
  * too. */
 static void a_known_jump_is_in_no_velocity(void) {
     follow(0.0);

@@ -46,7 +46,7 @@ static void exact_rows_are_solved_exactly(void) {
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 0.0f, fit.sigma.width_m);
 }
 
-/* [(5)] The slope is shared: motion aside alone tells the width as well as motion ahead. */
+/* [(5)] The slope is shared: lateral motion alone determines the width as well as motion ahead. */
 static void motion_aside_is_a_baseline_too(void) {
     for (int k = 0; k < LENGTH; k++) {
         add(30.0f, 100.0f, 6.0f, (float)k - 3.0f, 0.0f);
@@ -140,7 +140,7 @@ static void the_oldest_rows_leave(void) {
     TEST_ASSERT_EQUAL_INT(13, window.count);
 }
 
-/* GIVEN a place in the ring that a flipped bit made none of it THEN nothing is written beside it, and the ring goes on. */
+/* GIVEN a place in the ring that a flipped bit made invalid THEN nothing is written outside of it, and the ring continues. */
 static void a_place_outside_the_ring_is_its_first(void) {
     static const int16_t places[] = {INT16_MIN, -1, LENGTH, INT16_MAX};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {

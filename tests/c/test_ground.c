@@ -1,5 +1,5 @@
-/* The height above the obstacle's ground: what its readings tell, and what stays told as the range becomes known, against the
- * same worked out at once in double. SPDX-License-Identifier: MIT */
+/* The height above the obstacle's ground: the information of its readings, and the part that stays as the range becomes known, against the
+ * same computed at once in double. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_ground.c */
 #include "refined/goe_ground.h"
 
@@ -46,7 +46,7 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-/* A filter at this range that was told this of the ground, and little else. */
+/* A filter at this range with this information on the ground, and little else. */
 static void start(float range_m, float height_sd_m) {
     memset(&filter.root, 0, sizeof filter.root);
     for (size_t i = 0; i < GOE_STATES; i++) {
@@ -61,7 +61,7 @@ static void start(float range_m, float height_sd_m) {
     goe_filter_invert(&filter);
 }
 
-/* Tells the filter what it is to hear, without any other row. Returns how many rows that were. */
+/* Gives the filter its height rows, without any other row. Returns how many rows that were. */
 static int give(void) {
     float change[GOE_UNKNOWNS];
     goe_rows_clear(&rows, &matrix);
@@ -87,8 +87,8 @@ static void read_height(float height_m, float sunk_m) {
 }
 
 /* [goe_pose_t.height_m]
- * GIVEN heights with a constant and a white error, of a flight that sinks THEN their offset is told as the mean of all, with the
- * constant error counted once; a mean that moves is told as it stands. */
+ * GIVEN heights with a constant and a white error, of a flight that sinks THEN the filter gets their offset as the mean of all, with the
+ * constant error counted once, and follows a mean that moves. */
 static void readings_give_the_mean_and_no_more(void) {
     settings.navigation.height_white_m = WHITE_M;
     for (int flight = 0; flight < FLIGHTS; flight++) {
@@ -114,8 +114,8 @@ static void readings_give_the_mean_and_no_more(void) {
     }
 }
 
-/* GIVEN a filter that was told the mean of its heights WHEN it starts again, as a track does that begins afresh at a place THEN it is
- * told the same mean once more, and nothing of what it was told before counts. */
+/* GIVEN a filter that was given the mean of its heights WHEN it starts again, like a track that begins again at a place THEN it is
+ * given the same mean once more, and nothing of the earlier information counts. */
 static void a_filter_that_starts_again_receives_the_same_mean(void) {
     settings.navigation.height_white_m = WHITE_M;
     for (int flight = 0; flight < FLIGHTS; flight++) {
@@ -137,7 +137,7 @@ static void a_filter_that_starts_again_receives_the_same_mean(void) {
     }
 }
 
-/* GIVEN more readings than are counted THEN the mean goes on as that of so many, and the count does not begin anew. */
+/* GIVEN more readings than are counted THEN the mean continues as that of so many, and the count does not begin again. */
 static void the_count_of_readings_saturates(void) {
     settings.navigation.height_white_m = WHITE_M;
     read_height(HEIGHT_M, 0.0f);
@@ -151,7 +151,7 @@ static void the_count_of_readings_saturates(void) {
     }
 }
 
-/* GIVEN an image whose rows are all taken THEN what the heights tell waits, and none of it is lost. */
+/* GIVEN an image whose rows are all taken THEN the information of the heights waits, and none of it is lost. */
 static void an_overflow_is_reported_later(void) {
     settings.navigation.height_white_m = WHITE_M;
     read_height(HEIGHT_M, 0.0f);
@@ -184,8 +184,8 @@ static void without_a_position_the_heights_wait(void) {
 }
 
 /* [navigation.height_bias_m]
- * GIVEN a first guess of the range that proves wrong THEN the height is known as it was told, in metres: no better when the
- * obstacle is nearer, and no worse when it is farther. */
+ * GIVEN a first guess of the range that proves wrong THEN the uncertainty of the height is the configured one, in meters: no better when
+ * the obstacle is nearer, and no worse when it is farther. */
 static void a_wrong_first_range_leaves_the_height_as_given(void) {
     static const float factor[] = {0.2f, 0.5f, 0.9f, 1.0f, 1.2f, 2.0f, 5.0f};
     for (size_t i = 0; i < sizeof factor / sizeof factor[0]; i++) {
@@ -196,7 +196,7 @@ static void a_wrong_first_range_leaves_the_height_as_given(void) {
         goe_ground_widen(&filter);
         goe_filter_invert(&filter);
         const int reported = give();
-        check_report("sigma of the height over the one told", ground_sd_m() / (double)CONSTANT_M);
+        check_report("sigma of the height over the configured one", ground_sd_m() / (double)CONSTANT_M);
         TEST_ASSERT_EQUAL_INT(factor[i] > 1.0f ? 1 : 0, reported);
         CHECK_CLOSE(0.02, 1.0, ground_sd_m() / (double)CONSTANT_M);
     }
@@ -215,8 +215,8 @@ static double sum_sd(void) {
     return sqrt((double)goe_srif_variance(&filter.inverse, sum));
 }
 
-/* GIVEN ground that rises or falls below the altimeter WHEN a way was flown THEN the height above the obstacle's ground is off by
- * slope times way more, once for each metre however many images it took; the obstacle's own height is none the worse. */
+/* GIVEN ground that rises or falls below the altimeter WHEN the aircraft has flown a distance THEN the height above the obstacle's ground
+ * is off by slope times distance more, once for each meter however many images it took; the obstacle's own height is not affected. */
 static void the_slope_of_the_ground_adds_up_over_the_way(void) {
     settings.navigation.slope = SLOPE;
     for (int steps = 1; steps <= 4; steps += 3) {
@@ -313,7 +313,7 @@ static void the_arm_moves_the_camera_up_and_down(void) {
     settings.camera.offset_m[0] = 3.0f;
     settings.camera.offset_m[1] = -1.0f;
     settings.camera.offset_m[2] = 0.5f;
-    settings.camera.width_px = 1280.0f; /* which stands behind the arm in memory */
+    settings.camera.width_px = 1280.0f; /* which is behind the arm in memory */
     view.camera_to_body = mounted;
     read_height(HEIGHT_M, 0.0f); /* level by the camera's axes: y is body's z */
     const double first_down = 0.5;

@@ -182,7 +182,7 @@ static void a_corrupted_track_begins_again(void) {
     TEST_ASSERT_TRUE((estimate.valid & GOE_HAS_POSITION) != 0u);
 }
 
-/* GIVEN a camera that is nowhere WHEN an image comes THEN the track begins anew, too. */
+/* GIVEN a camera at no valid place WHEN an image comes THEN the track begins again, too. */
 static void a_track_that_is_nowhere_begins_again(void) {
     start();
     estimator.motion.origin_ne_m[0] = check_from_bits(0xFF800000u);
@@ -190,7 +190,7 @@ static void a_track_that_is_nowhere_begins_again(void) {
     TEST_ASSERT_FALSE(estimator.motion.started);
 }
 
-/* ... also while there is no answer that would tell of it. */
+/* ... also while there is no answer that would show it. */
 static void a_track_that_is_nowhere_and_knows_nothing_begins_again(void) {
     const goe_settings_t settings = scene_settings(&scene);
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));

@@ -1,4 +1,4 @@
-/* How well images fit, and when the filter begins anew. SPDX-License-Identifier: MIT */
+/* How well images fit, and when the filter begins again. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_health.c */
 #include "refined/goe_health.h"
 
@@ -44,8 +44,8 @@ static bool judge(unsigned measured, unsigned refused) {
     return goe_health_judge(&filter, &settings, verdict_of(measured, refused));
 }
 
-/* GIVEN one point that is refused again and again, the others fitting THEN in the fourth image the state is taken to be captured, not
- * the point to be an outlier; an image in which it fits begins the count anew, one that does not show it does not. */
+/* GIVEN one point that is refused again and again, the others fitting THEN in the fourth image the state counts as captured, not
+ * the point as an outlier; an image in which it fits restarts the count, one without it does not. */
 static void a_point_that_is_always_refused_begins_again(void) {
     for (int i = 0; i < 3; i++) {
         TEST_ASSERT_FALSE(judge(ALL, LEFT));
@@ -63,7 +63,7 @@ static void a_point_that_is_always_refused_begins_again(void) {
     TEST_ASSERT_TRUE(judge(ALL, LEFT));
 }
 
-/* GIVEN images of which half the points are refused THEN the third in a row begins anew; less than half is none of these, and an
+/* GIVEN images with half of the points refused THEN the third in a row starts the filter again; less than half does not count, and an
  * image that fits ends the row. */
 static void images_of_which_half_is_refused_begin_again(void) {
     TEST_ASSERT_FALSE(judge(ALL, 0x07u));
@@ -79,8 +79,8 @@ static void images_of_which_half_is_refused_begin_again(void) {
     }
 }
 
-/* GIVEN a chord, whose end may leave it THEN a point has twice as long to come back, and none begins anew while an end is leaving:
- * it becomes a box. */
+/* GIVEN a chord, whose end may leave it THEN a point has twice as long to come back, and the filter does not start again while an end is
+ * leaving: it becomes a box. */
 static void an_end_of_a_chord_has_longer(void) {
     filter.phase = GOE_PHASE_CHORD;
     for (int i = 0; i < 7; i++) {
@@ -127,8 +127,8 @@ static void fail(goe_phase_t phase) {
     filter.health.recent_nis = 1.0f;
 }
 
-/* GIVEN a box by base corners that proves wrong twice, not early in the track THEN they are none, and are left out; a disc, a box by
- * its outline, or one that was asked for, says nothing of the corners. */
+/* GIVEN a box by base corners that proves wrong twice, not early in the track THEN they are wrong, and are left out; a disc, a box by
+ * its outline, or one that was configured, is no evidence about the corners. */
 static void corners_that_prove_wrong_twice_are_left_out(void) {
     static const goe_phase_t others[] = {GOE_PHASE_DISC, GOE_PHASE_CHORD, GOE_PHASE_BOX_OUTLINE, GOE_PHASE_PRISM};
     fail(GOE_PHASE_BOX);
@@ -154,7 +154,7 @@ static void corners_that_prove_wrong_twice_are_left_out(void) {
     TEST_ASSERT_FALSE(filter.health.base_refused);
 }
 
-/* GIVEN two new starts within 24 images THEN what is given does not belong together; one is an outlier's, and so are two that lie
+/* GIVEN two new starts within 24 images THEN the inputs contradict each other; one is an outlier's, and so are two that are
  * farther apart. */
 static void two_starts_in_short_order_are_reported(void) {
     const goe_verdict_t good = verdict_of(ALL, 0u);
@@ -189,8 +189,8 @@ static void a_state_that_is_none_is_not_kept(void) {
     }
 }
 
-/* GIVEN an image of which half is refused THEN it counts as the worst, as what is left fits by itself; and the means are those of the
- * header: over the latest 64, with eight images of none, and over all of the track. */
+/* GIVEN an image with half of its points refused THEN it counts as the worst, as the rest fits by itself; and the means are those of the
+ * header: over the latest 64, with eight images of prior, and over all of the track. */
 static void the_means_are_those_of_the_header(void) {
     goe_health_t *health = &filter.health;
     memset(health, 0, sizeof *health);

@@ -19,7 +19,7 @@ static void give(frame_value_t name, double value) {
     frame.given[name] = true;
 }
 
-/* One side after the other, so that no side can stand for another. */
+/* One side after the other, so that no side can replace another. */
 static void each_side_given_is_visible(void) {
     static const struct {
         frame_value_t name;
@@ -45,7 +45,7 @@ static void each_side_given_is_visible(void) {
     TEST_ASSERT_FALSE(image.left.seen || image.right.seen || image.top.seen);
 }
 
-/* As of a point: what is no number is for the library to refuse, not for the reader to hide. */
+/* As of a point: the library must refuse NaN, and the reader must not hide it. */
 static void a_side_that_is_no_number_is_shown(void) {
     give(FRAME_BOX_TOP_PX, (double)NAN);
     frame_to_image(&frame, &image);

@@ -33,7 +33,7 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-/* ------------------------------------------------------------------------------------------------- beside the state -- */
+/* ------------------------------------------------------------------------------------------------- augmented states --------- */
 
 typedef struct {
     double information[UNKNOWNS][UNKNOWNS];
@@ -65,8 +65,8 @@ static void add_rows(const goe_matrix_t *matrix, normal_t *n) {
     }
 }
 
-/* [(R35)] GIVEN any triangle, with what is beside the state, and any rows WHEN some of it is estimated THEN information and right-hand
- * side are those of the normal equations, and what is estimated solves these with the others as they are. */
+/* [(R35)] GIVEN any triangle, with augmented states, and any rows WHEN some of these are estimated THEN information and right-hand
+ * side are those of the normal equations, and the estimated ones solve these with the others as they are. */
 static void augmented_states_are_solved_with_the_state(void) {
     for (unsigned c = 0; c < CASES; c++) {
         goe_triangle_t root;
@@ -113,7 +113,7 @@ static void augmented_states_are_solved_with_the_state(void) {
     }
 }
 
-/* [(R21)] GIVEN a latency that is about to be estimated WHEN the states change by a substitution THEN what it is to move by is kept. */
+/* [(R21)] GIVEN a latency that is about to be estimated WHEN the states change by a substitution THEN its pending change is kept. */
 static void a_change_of_states_keeps_augmented_states(void) {
     goe_triangle_t root;
     goe_matrix_t rows;
@@ -135,7 +135,7 @@ static void a_change_of_states_keeps_augmented_states(void) {
     CHECK_CLOSE(1.0e-6, 0.5 * 2.0, *goe_srif_at(&root, GOE_TOP, GOE_STATES) * *goe_srif_at(&root, GOE_TOP, GOE_TOP));
 }
 
-/* [(R35), (R37)] GIVEN an estimate with something beside it THEN the variance of a quantity, on which the attitude's bias has
+/* [(R35), (R37)] GIVEN an estimate with augmented states THEN the variance of a quantity, on which the attitude's bias has
  * no part, is that of the whole inverse. */
 static void the_variance_includes_augmented_states(void) {
     goe_triangle_t root;
@@ -255,7 +255,7 @@ static void the_columns_are_derivatives(void) {
 
 /* ----------------------------------------------------------------------------------------------------------- followed -- */
 
-/* One image after an obstacle began to be followed, by what is known of it then. */
+/* One image after the start of following an obstacle, by its state at that time. */
 static goe_mover_t judge_followed(float latency_s, float velocity_m_s, float velocity_sd_m_s) {
     const float sd[GOE_AUGMENTED] = {0.01f, velocity_sd_m_s, velocity_sd_m_s};
     const float change[GOE_UNKNOWNS] = {0.0f};
@@ -275,7 +275,7 @@ static goe_mover_t judge_followed(float latency_s, float velocity_m_s, float vel
     return filter.mover;
 }
 
-/* GIVEN an obstacle that is followed THEN it moves, unless the poses have proved late meanwhile: then only what is fast, and
+/* GIVEN an obstacle that is followed THEN it moves, unless the poses have proved late meanwhile: then only a fast one, and
  * surely so, as late poses of a turn look like a motion. */
 static void late_poses_end_a_motion_that_is_none(void) {
     const goe_mover_t in_time = judge_followed(0.0f, 0.5f, 0.1f);
@@ -296,7 +296,7 @@ static goe_observation_t seen;
 static goe_sides_t seen_sides;
 static const double reported[3][3] = {{30.0, 2.0, 1.0}, {0.0, 6.0, 1.5}, {0.0, 0.0, 5.0}}; /* of latency and velocity */
 
-/* A box by its corners, long in flight, of which the images say this: T (latency, velocity) = z, with residuals of twice the told
+/* A box by its corners, long in flight, whose images give T (latency, velocity) = z, with residuals of twice the configured
  * variance, the latency so far being 30 ms. */
 static void give_rows(const double z[3]) {
     goe_settings_default(&judging);
@@ -334,7 +334,7 @@ static void by_velocity(double x, double z, double to[3]) {
     }
 }
 
-/* GIVEN images that tell of a velocity, one after the other THEN in the third the obstacle begins to be followed with just that
+/* GIVEN images with evidence of a velocity, one after the other THEN in the third the obstacle begins to be followed with just that
  * velocity, twice as uncertain as the residuals say and the own motion allows; the latency, which it may have been taken for, is open
  * again. */
 static void a_newly_followed_target_starts_from_the_images(void) {
@@ -371,8 +371,8 @@ static void a_newly_followed_target_starts_from_the_images(void) {
     CHECK_CLOSE(1.0e-3 * c[2], c[2], information[0] / determinant);
 }
 
-/* GIVEN the same of an obstacle whose foot no image shows THEN it is not followed, as its velocity may be another range; it is told to
- * move only if the images do not fit. */
+/* GIVEN the same of an obstacle whose foot no image shows THEN it is not followed, as its velocity may be another range; it is reported as
+ * moving only if the images do not fit. */
 static void a_target_without_scale_is_not_followed(void) {
     double z[3];
     by_velocity(4.0, -3.0, z);
@@ -390,7 +390,7 @@ static void a_target_without_scale_is_not_followed(void) {
     judged.phase = GOE_PHASE_PRISM;
     seen.base = false;
     seen_sides.usable = GOE_SEES_BOTTOM;
-    judged.mover.nis -= 100.0f; /* of which more is asked */
+    judged.mover.nis -= 100.0f; /* more is required */
     (void)judge_image();
     (void)judge_image();
     TEST_ASSERT_TRUE(judge_image());
@@ -403,7 +403,7 @@ static void chance_motion_is_not_followed(void) {
     for (int n = 0; n < 4; n++) {
         by_velocity(n == 0 ? 0.9 : 4.0, n == 0 ? 0.0 : -3.0, z);
         if (n == 1) {
-            z[0] += 30.0; /* what no velocity explains */
+            z[0] += 30.0; /* a part that no velocity explains */
         }
         give_rows(z);
         if (n == 2) {
@@ -418,8 +418,8 @@ static void chance_motion_is_not_followed(void) {
     }
 }
 
-/* GIVEN images that tell of a latency that no velocity explains THEN it is estimated from then on, and told; the same that a velocity
- * explains as well is not. */
+/* GIVEN images with evidence of a latency that no velocity explains THEN it is estimated from then on, and reported; if a velocity
+ * explains it as well, it is not. */
 static void a_latency_that_no_velocity_explains_is_estimated(void) {
     double z[3];
     const double late[3] = {30.0 * 0.4, 0.5, -0.5}; /* 0.4 s */
@@ -455,7 +455,7 @@ static void be_followed(float x_m_s, float z_m_s, float sd_m_s, float latency_s,
 }
 
 /* GIVEN an obstacle that is followed WHEN the poses prove late THEN it moves only as far as its velocity is still more than three
- * sigma and a metre a second; when they are in time it does. Late poses in a turn look like a motion at first. */
+ * sigma and a meter a second; when they are in time it does. Late poses in a turn look like a motion at first. */
 static void a_followed_target_may_prove_to_be_late_poses(void) {
     static const struct {
         float x, z, sd, latency, sd_s;
@@ -510,7 +510,8 @@ static void another_model_forgets_the_velocity_alone(void) {
     }
 }
 
-/* GIVEN numbers that are none of a flight THEN all beside the state begins anew, and with it the filter, if its axes moved along. */
+/* GIVEN numbers that are impossible in a flight THEN all augmented states begin again, and with them the filter, if its axes moved along.
+ * */
 static void values_outside_any_flight_are_forgotten(void) {
     for (int followed = 0; followed < 2; followed++) {
         be_followed(3.0f, 4.0f, 0.5f, 0.0f, 0.01f);
@@ -556,8 +557,8 @@ static flight_t fly(int late, double north_m_s, double east_m_s) {
     return flight;
 }
 
-/* GIVEN a turn of constant rate WHEN images come seldom or often THEN rate and velocity are the turn's; poses nearer than 45 ms tell
- * their noise and are waited for, and farther than 0.6 s a mean, which says nothing. */
+/* GIVEN a turn of constant rate WHEN images come seldom or often THEN rate and velocity are the turn's; poses nearer than 45 ms give only
+ * noise and are waited for, and farther than 0.6 s a mean, which is useless. */
 static void rate_and_velocity_are_those_of_the_flight(void) {
     static const double rates_hz[] = {80.0, 40.0, 20.0, 8.0, 2.0, 1.25};
     for (size_t i = 0; i < sizeof rates_hz / sizeof rates_hz[0]; i++) {
@@ -601,7 +602,7 @@ static void nothing_moves_that_does_not(void) {
 }
 
 /* [GOE_WITH_MOVERS, goe_ego_motion.c, (R36)]
- * GIVEN poses of a tenth of a second before, of an aircraft that sways THEN they are told as late, by about as much, and nothing
+ * GIVEN poses of a tenth of a second before, of an aircraft that sways THEN they are reported as late, by about as much, and nothing
  * moves. */
 static void late_poses_are_reported_and_taken_off(void) {
     double worst = 0.0;
@@ -615,7 +616,7 @@ static void late_poses_are_reported_and_taken_off(void) {
     TEST_ASSERT_TRUE(worst < 0.03);
 }
 
-/* [GOE_WITH_MOVERS, (R36), (R37)] GIVEN an obstacle that moves THEN that is told, and its velocity, within four sigma. */
+/* [GOE_WITH_MOVERS, (R36), (R37)] GIVEN an obstacle that moves THEN that is reported, and its velocity, within four sigma. */
 static void an_obstacle_that_moves_is_followed(void) {
     static const double velocity[][2] = {{0.0, 5.0}, {3.0, -4.0}, {-12.0, 0.0}, {0.0, -10.0}};
     for (size_t i = 0; i < sizeof velocity / sizeof velocity[0]; i++) {
@@ -635,7 +636,7 @@ static void an_obstacle_that_moves_is_followed(void) {
     }
 }
 
-/* GIVEN poses that are ahead of the images THEN the latency is told as negative. */
+/* GIVEN poses that are ahead of the images THEN the latency is reported as negative. */
 static void early_poses_are_reported_as_early(void) {
     const flight_t flight = fly(-(int)(0.1 * FINE_HZ), 0.0, 0.0);
     check_report("latency of -0.1 s", (double)flight.estimate.latency_s);
@@ -644,7 +645,7 @@ static void early_poses_are_reported_as_early(void) {
     TEST_ASSERT_TRUE(flight.estimate.sigma.latency_s > 0.0f && flight.estimate.sigma.latency_s < 0.03f);
 }
 
-/* GIVEN an obstacle that is followed WHEN it is not seen for a while THEN its place relative to the camera moves on with both, and
+/* GIVEN an obstacle that is followed WHEN it is not visible for a while THEN its place relative to the camera moves on with both, and
  * is known less well. */
 static void an_old_place_moves_on(void) {
     const flight_t flight = fly(0, -12.0, 0.0);
@@ -653,7 +654,7 @@ static void an_old_place_moves_on(void) {
     TEST_ASSERT_TRUE(flight.estimate.valid & GOE_HAS_VELOCITY);
     scene_image(&scene, 20 + STEP * (IMAGES - 1), &image, NULL);
     image.pose.position_ned_m[0] += (float)(-12.0 * (20 + STEP * (IMAGES - 1)) / FINE_HZ);
-    image.pose.time_us += 2000000; /* the camera stands, the obstacle comes */
+    image.pose.time_us += 2000000; /* the camera is at rest, the obstacle comes */
     scene_hide_points(&image);
     CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &old));
     const double heading = (double)old.trajectory_heading_deg * 0.017453292519943295;
@@ -685,8 +686,8 @@ static void an_outline_that_moves_is_not_followed(void) {
     check_report("images in which it is suspect", suspect);
 }
 
-/* GIVEN an obstacle that is followed WHEN it is not seen for two seconds THEN it has gone on with its velocity, relative to the camera
- * that has, too, and its place has become uncertain by what the velocity is. */
+/* GIVEN an obstacle that is followed WHEN it is not visible for two seconds THEN it has gone on with its velocity, relative to the camera
+ * that has, too, and its place has become uncertain by the uncertainty of the velocity. */
 static void a_followed_target_continues_without_detections(void) {
     const flight_t flight = fly(0, 3.0, -4.0);
     const goe_estimate_t *before = &flight.estimate;
@@ -765,7 +766,7 @@ static void the_hazard_counts_with_both_velocities(void) {
     goe_hazard_t hazard;
     memset(&plan, 0, sizeof plan);
     plan.velocity_ned_m_s[0] =
-        (float)scene.speed_mps - 12.0f; /* as it was told: what it saw come nearer is the obstacle's part */
+        (float)scene.speed_mps - 12.0f; /* as configured: the rest of the approach is the obstacle's part */
     plan.margin_m = 20.0f;
     CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
     const double apart_m = (double)flight.estimate.z_m;

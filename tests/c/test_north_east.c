@@ -1,4 +1,4 @@
-/* What is reported in north and east: T's heading, both axes, the centre and how it is uncertain.
+/* Reports in north and east: T's heading, both axes, the center and its uncertainty.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
@@ -50,7 +50,7 @@ static goe_estimate_t fly_after_turn(double before_deg, double after_deg) {
 /* Angle of b from a, folded into -180 to 180. */
 static double between_deg(double a, double b) { return remainder(b - a, 360.0); }
 
-/* [heading_auto] GIVEN a course WHEN an image was taken THEN T's heading is told, also while nothing else is known. */
+/* [heading_auto] GIVEN a course WHEN an image was taken THEN T's heading is reported, also while nothing else is known. */
 static void the_heading_is_reported_from_the_first_image_on(void) {
     for (double course = -170.0; course <= 180.0; course += 25.0) {
         goe_estimate_t estimate;
@@ -67,7 +67,7 @@ static void the_heading_is_reported_from_the_first_image_on(void) {
     }
 }
 
-/* GIVEN a heading that is set, in any turn THEN it is told between -180 and 180. */
+/* GIVEN a heading that is set, in any turn THEN it is reported between -180 and 180. */
 static void a_set_heading_is_reported(void) {
     settings.heading_auto = false;
     for (double heading = -360.0; heading <= 360.0; heading += 45.0) {
@@ -160,7 +160,7 @@ static void the_raw_orientation_is_that_of_the_latest_image(void) {
 }
 #endif
 
-/* Covariance of the centre along and across the course, and of the two. */
+/* Covariance of the center along and across the course, and of the two. */
 typedef struct {
     double along, across, both;
 } spread_t;
@@ -178,7 +178,7 @@ static spread_t spread_of(const goe_estimate_t *e, double course_deg) {
     return spread;
 }
 
-/* GIVEN one flight on two courses THEN the centre is as uncertain along and across the course, and the two go together alike. */
+/* GIVEN one flight on two courses THEN the center is as uncertain along and across the course, with the same correlation. */
 static void check_spread_turns(void) {
     const goe_estimate_t reference = fly(0.0);
     const spread_t expected = spread_of(&reference, 0.0);
@@ -228,8 +228,8 @@ static void a_track_that_began_before_a_turn_faces_forward(void) {
 }
 
 /* [goe_quantities.c]
- * GIVEN a place known in X and in Z to 800 km each, the two errors alike WHEN the course leads to the north-east THEN that makes
- * more than 1000 km along one of north and east, and no centre is told, whichever it is; the place is. */
+ * GIVEN a place known in X and in Z to 800 km each, the two errors equal WHEN the course leads to the north-east THEN that makes
+ * more than 1000 km along one of north and east, and no center is reported, whichever it is; the place is. */
 static void a_center_that_is_nowhere_is_not_reported(void) {
     static const float errors_correlated[] = {1.0f, -1.0f};
     const float range_m = 4.0e5f;

@@ -102,7 +102,7 @@ static void the_bias_is_turned_from_body_axes(void) {
     }
 }
 
-/* [(R3)] GIVEN a point beside or behind the camera THEN everything stays finite. */
+/* [(R3)] GIVEN a point next to or behind the camera THEN everything stays finite. */
 static void points_behind_the_camera_stay_finite(void) {
     static const float z[] = {1.0e-5f, 0.0f, -1.0e-5f, -1.0f, -1.0e6f};
     any = check_random_start("behind");
@@ -180,7 +180,7 @@ static void size_noise_is_a_share_of_the_width(void) {
     sighting.sight.point[GOE_POINT_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
     sighting.sight.point[GOE_POINT_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
     CHECK_CLOSE(1.0e-10, 3.6e-5, goe_observation_size_variance(&sighting.sight));
-    sighting.sight.point[GOE_POINT_RIGHT].usable = false; /* no width is seen */
+    sighting.sight.point[GOE_POINT_RIGHT].usable = false; /* no width is visible */
     CHECK_SAME(0.0f, goe_observation_size_variance(&sighting.sight));
 }
 
@@ -222,8 +222,8 @@ static void the_body_is_where_the_mounting_puts_it(void) {
 
 #if GOE_AUGMENTED
 /* [GOE_REASON_LATE]
- * GIVEN poses that are late WHEN an image is linearised THEN the attitude is that of the exposure: what the body turned by since is
- * taken off the bias. */
+ * GIVEN poses that are late WHEN an image is linearized THEN the attitude is that of the exposure: the turn of the body since then is
+ * removed from the bias. */
 static void pose_latency_is_corrected(void) {
     any = check_random_start("late");
     for (int n = 0; n < CASES; n++) {
@@ -279,7 +279,7 @@ static void an_edge_takes_two_base_corners(void) {
     TEST_ASSERT_TRUE(sight.edge);
 }
 
-/* GIVEN an image that knows its own errors THEN they stand in for the settings; 0 leaves these. */
+/* GIVEN an image with its own errors THEN they replace the settings; 0 leaves these. */
 static void an_image_may_know_its_own_errors(void) {
     goe_observation_t sight;
     start();

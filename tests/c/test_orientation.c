@@ -127,7 +127,7 @@ static void no_heading_leaves_everything_as_it_is(void) {
 }
 
 /* [W1] GIVEN a box at 44 degrees and noise of 3 degrees, which often makes the other edge's angle the smaller one
- * WHEN 500 images are seen THEN front and side never change places and the filtered angle stays near 44. */
+ * WHEN 500 images come THEN front and side never change places and the filtered angle stays near 44. */
 static void noise_near_45_degrees_does_not_swap_the_faces(void) {
     check_random_t random = check_random_start("near 45 degrees");
     int would_swap = 0;

@@ -97,7 +97,7 @@ static double value_at(const obstacle_t *obstacle, const question_t *question, a
     return (double)at.value;
 }
 
-/* Where the value has a corner the differences to both sides are not alike, and neither is the derivative. */
+/* Where the value has a corner the differences to both sides differ, and so does the derivative. */
 static void check_derivatives(const obstacle_t *obstacle, const question_t *question, answer_t answer) {
     const goe_outline_t o = outline_of(obstacle);
     goe_affine_t at;
@@ -201,8 +201,8 @@ static void a_crossing_ends_on_the_outline(void) {
     }
 }
 
-/* GIVEN a camera beside, before or in an outline THEN the way from it is a unit vector; outside, straight away from the nearest
- * point, and so far from the outline as that point is; inside, never out through what lies behind. */
+/* GIVEN a camera next to, before or in an outline THEN the way from it is a unit vector; outside, straight away from the nearest
+ * point, and so far from the outline as that point is; inside, never out through the part behind. */
 static void the_way_from_an_outline_is_the_shortest(void) {
     any = check_random_start("way");
     for (int k = 0; k < DIRECTIONS; k++) {

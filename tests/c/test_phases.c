@@ -1,6 +1,6 @@
 /* The phases of the filter: every transition by its name, and that there are no others. SPDX-License-Identifier: MIT
  *
- * The diagram stands above goe_phase_t in refined/goe_filter.h. */
+ * The diagram is above goe_phase_t in refined/goe_filter.h. */
 /* tests: lib/refined/goe_filter.c */
 #include <math.h>
 #include <string.h>
@@ -90,7 +90,7 @@ static void fly(sight_t sight, int images) {
     }
 }
 
-/* A box of which the front and the right face are seen until the front turns away. */
+/* A box of which the front and the right face are visible until the front turns away. */
 static void make_box_next_to(double alpha_deg) {
     scene.width_m = 5.0;
     scene.length_m = 9.0;
@@ -117,8 +117,8 @@ static void make_wall_ahead(void) {
 
 /* ------------------------------------------------------------------------------------------------------- transitions -- */
 
-/* GIVEN a filter that enters a phase THEN what was counted in the one before counts no more: neither what it knew, nor what was
- * refused, nor who agreed on a box. */
+/* GIVEN a filter that enters a phase THEN counters of the phase before count no more: neither known quantities, nor refused
+ * points, nor votes for a box. */
 static void a_phase_begins_with_nothing_counted(void) {
     start();
     goe_filter_t *filter = &estimator.filter;
@@ -277,7 +277,7 @@ static void an_invalid_phase_starts_the_filter_again(void) {
     }
 }
 
-/* GIVEN a state or a root that no images lead to, one element of it at a time THEN the filter starts anew, and nothing of it
+/* GIVEN a state or a root that no images lead to, one element of it at a time THEN the filter starts again, and nothing of it
  * reaches an answer. */
 static void a_state_that_is_not_finite_starts_the_filter_again(void) {
     const goe_verdict_t good = {1u, 0u, 1, GOE_FEATURES, 0.0f, false};
@@ -311,7 +311,7 @@ static goe_image_t stop(void) {
     return image;
 }
 
-/* GIVEN a filter that has stopped WHEN an image shows nothing THEN its last answer stands, as an old one: it follows the motion, and
+/* GIVEN a filter that has stopped WHEN an image shows nothing THEN its last answer stays, as an old one: it follows the motion, and
  * reports no innovation, as the image gave none. */
 static void a_stopped_filters_answer_stays_while_nothing_else_is_known(void) {
     goe_image_t image = stop();
@@ -329,8 +329,8 @@ static void a_stopped_filters_answer_stays_while_nothing_else_is_known(void) {
     TEST_ASSERT_EQUAL_INT(before.points, estimate.points);
 }
 
-/* GIVEN a filter that has stopped WHEN it cannot start from an image, as its first guess of the range is none THEN its last answer
- * stands. */
+/* GIVEN a filter that has stopped WHEN it cannot start from an image, as its first guess of the range is invalid THEN its last answer
+ * stays. */
 static void an_answer_stays_while_the_filter_cannot_start(void) {
     settings.refined.typical_size_m = 0.1f;
     goe_image_t image = stop();

@@ -1,4 +1,4 @@
-/* Images in which nothing is seen, before a track, tell where the aircraft was and nothing else.
+/* Images without a detection, before a track, give the position of the aircraft and nothing else.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>

@@ -103,7 +103,7 @@ static void the_line_is_exact_everywhere(void) {
         const goe_point_t right = at((x + 0.5 * w * c) / (z - 0.5 * w * s));
         goe_row_t row;
         goe_span_t span;
-        if (x * s + z * c > 0.2 * z) { /* the front is seen, not too flat */
+        if (x * s + z * c > 0.2 * z) { /* the front is visible, not too flat */
             CHECK_STATUS(GOE_OK, goe_projection_line(&left, &right, turn_of(b), &span, &row));
             check_worst(&worst, ((double)row.xi - x / w) * w / z);
             check_worst(&worst, ((double)row.zeta - z / w) * w / z);
@@ -147,7 +147,7 @@ static void a_virtual_rotation_subtracts_from_the_bearing(void) {
     }
 }
 
-/* [(4)] The limit of the alignment, 0.05 of a unit ray or 87.13 degrees, holds for the turned camera as well. */
+/* [(4)] The limit of the alignment, 0.05 of a unit ray or 87.13 degrees, applies to the turned camera as well. */
 static void a_virtual_rotation_stops_where_the_alignment_does(void) {
     float x = 0.0f;
     const goe_point_t inside = at(tan(27.0 * RAD_PER_DEG));

@@ -1,4 +1,4 @@
-/* How well the images fit, and when the filter has to start anew. SPDX-License-Identifier: MIT */
+/* How well the images fit, and when the filter has to start again. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_health.c */
 #include "refined/goe_health.h"
 
@@ -99,7 +99,7 @@ static void the_count_of_images_saturates(void) {
 
 /* ---------------------------------------------------------------------------------------------------------- recovery -- */
 
-/* [T1] GIVEN one point that is refused in 4 images in a row, of a chord in 8 THEN the filter starts anew; an image between in which it
+/* [T1] GIVEN one point that is refused in 4 images in a row, of a chord in 8 THEN the filter starts again; an image between in which it
  * fits begins the count again, one in which it is not measured does not. */
 static void a_point_refused_again_and_again_starts_the_filter_again(void) {
     for (int chord = 0; chord < 2; chord++) {
@@ -179,7 +179,7 @@ static void fail_once(void) {
 
 /* [GOE_REASON_BASE]
  * GIVEN a box of base corners that fails twice, late in its track THEN these are given up; a disc's failures, a box's in the first
- * 32 images, or one that was asked for, say nothing of them. */
+ * 32 images, or those of a configured box, are no evidence about them. */
 static void base_corners_that_fail_twice_are_given_up(void) {
     for (int phase = GOE_PHASE_DISC; phase <= GOE_PHASE_BOX_OUTLINE; phase++) {
         for (int late = 0; late < 2; late++) {
@@ -199,7 +199,7 @@ static void base_corners_that_fail_twice_are_given_up(void) {
 }
 
 /* [GOE_REASON_CONVENTION]
- * GIVEN two restarts within 24 images THEN what is given does not belong together; farther apart they are an outlier's. */
+ * GIVEN two restarts within 24 images THEN the inputs contradict each other; farther apart they are an outlier's. */
 static void two_restarts_soon_are_one_too_many(void) {
     for (int between = 22; between < 26; between++) {
         setUp();

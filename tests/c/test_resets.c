@@ -76,7 +76,7 @@ static void a_known_jump_is_compensated(void) {
     TEST_ASSERT_EQUAL_UINT32(0u, jumped.causes[RESETS]);
 }
 
-/* [goe_pose_t.reset_delta_ned_m] The sum is told if the filter jumped more than once between two images, the counter then skips. */
+/* [goe_pose_t.reset_delta_ned_m] The sum is given if the filter jumped more than once between two images, the counter then skips. */
 static void several_jumps_between_two_images_are_one_sum(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;
@@ -110,7 +110,7 @@ static void the_counter_wraps(void) {
 }
 
 /* [A22, A27, GOE_CAUSES, goe_pose_t.reset_delta_known]
- * GIVEN a track with a solution WHEN the filter jumps by an unknown amount THEN the track starts anew with this image:
+ * GIVEN a track with a solution WHEN the filter jumps by an unknown amount THEN the track starts again with this image:
  * as a new estimator's, and the jump is counted. */
 static void an_unknown_jump_starts_a_new_track(void) {
     for (int k = 0; k < 30; k++) {
@@ -120,7 +120,7 @@ static void an_unknown_jump_starts_a_new_track(void) {
         if (k < 12) {
             continue;
         }
-        CHECK_STATUS(goe_update(&plain, &image, &estimate_plain), status); /* sees only what comes after the jump */
+        CHECK_STATUS(goe_update(&plain, &image, &estimate_plain), status); /* gets only the input after the jump */
         CHECK_STATUS(k < 19 ? GOE_COLLECTING : GOE_OK, status);
         TEST_ASSERT_EQUAL_MEMORY(&estimate_plain, &estimate_jumped, sizeof estimate_plain);
     }
@@ -146,8 +146,8 @@ static void an_unknown_jump_leaves_no_old_answer(void) {
 
 #if GOE_WITH_REFINED
 /* [goe_estimator.c]
- * GIVEN an answer of the refined method WHEN the filter jumps while nothing is seen THEN the old answer's centre, told in the autopilot's
- * north and east, moves along with them; what counts from the camera stays. */
+ * GIVEN an answer of the refined method WHEN the filter jumps while nothing is detected THEN the old answer's center, reported in the
+ * autopilot's north and east, moves along with them; values relative to the camera stay. */
 static void an_old_answers_center_moves_along(void) {
     goe_image_t image;
     goe_settings_t settings = scene_settings(&scene);
@@ -193,7 +193,7 @@ static void jumps_are_never_motion(void) {
 }
 
 /* [goe_pose_t.reset_delta_ned_m]
- * A jump is told "since the image before", so one that comes with a refused image is told again with the next. */
+ * A jump is given "since the image before", so one that comes with a refused image is given again with the next. */
 static void a_refused_image_does_not_use_up_a_jump(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;
@@ -218,7 +218,7 @@ static void a_refused_image_does_not_use_up_a_jump(void) {
     }
 }
 
-/* [A27] A jump with an image in which nothing is seen counts as well. */
+/* [A27] A jump with an image without a detection counts as well. */
 static void a_jump_without_a_feature_is_compensated(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;

@@ -160,7 +160,7 @@ static dense_t noise_of(const goe_matrix_t *matrix, double nuisance_root) {
     return s;
 }
 
-/* R'R + A'S^-1A, its solution for A'S^-1r, and what is left: e'S^-1e + x'R'Rx, e = r - Ax. */
+/* R'R + A'S^-1A, its solution for A'S^-1r, and the rest: e'S^-1e + x'R'Rx, e = r - Ax. */
 static solution_t solve(const goe_triangle_t *root, double nuisance_root, const goe_matrix_t *matrix) {
     const dense_t weight = inverted(noise_of(matrix, nuisance_root), ROWS);
     const dense_t prior = information_of(root);
@@ -224,7 +224,7 @@ static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_
 }
 
 /* [GOE_METHOD_REFINED, goe_estimate_t.nis, (R17)]
- * GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and what is left are those of the
+ * GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and the rest are those of the
  * normal equations with the temporaries' noise in the rows' covariance. */
 static void an_update_solves_the_normal_equations(void) {
     any = check_random_start("update");
@@ -237,8 +237,8 @@ static void an_update_solves_the_normal_equations(void) {
     }
 }
 
-/* [T3] GIVEN the same WHEN the last state is considered THEN the others are those of the normal equations with that state held at 0,
- * their dependence on it is that of these equations, too, and what is known of it stays. */
+/* [T3] GIVEN the same WHEN the last state is considered THEN the others are those of the normal equations with that state fixed at 0,
+ * their dependence on it is that of these equations, too, and its own information stays. */
 static void a_considered_state_is_held_and_depended_on(void) {
     any = check_random_start("considering");
     for (int n = 0; n < CASES; n++) {

@@ -1,4 +1,4 @@
-/* Sides of upright bounding boxes on boxes, chords and discs, against the extremes of what is seen in double.
+/* Sides of upright bounding boxes on boxes, chords and discs, against the extremes of the visible points in double.
  * SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_touch.c */
 #include "refined/goe_touch.h"
@@ -130,7 +130,7 @@ static void sides_touch_a_chord_where_its_image_ends(void) { check_model(A_CHORD
 /* [A29, goe_image_t.box, (R27)] */
 static void sides_touch_a_disc_where_its_image_ends(void) { check_model(A_DISC, DISCS, "discs"); }
 
-/* [A29] GIVEN a side that is not seen THEN it gives no row, and the others give theirs. */
+/* [A29] GIVEN an invisible side THEN it gives no row, and the others give theirs. */
 static void a_side_that_is_not_visible_gives_no_row(void) {
     double truth[GOE_STATES];
     model = A_BOX;

@@ -111,7 +111,7 @@ static void the_aircraft_has_flown_on_since_the_image(void) {
     CHECK_CLOSE(1.0e-2, (double)then.clearance_m, hazard.clearance_m); /* at the same place */
 }
 
-/* ... and aside: what was ahead of a course across it lies abeam when it has been flown for long enough. */
+/* ... and aside: an obstacle ahead of a crossing course is abeam when it has been flown for long enough. */
 static void the_aircraft_has_flown_aside_since_the_image(void) {
     goe_plan_t plan = plan_of(0.0f, 10.0f);
     estimator.estimate.x_m = estimator.estimate.x0_m = 40.0f;
@@ -123,7 +123,7 @@ static void the_aircraft_has_flown_aside_since_the_image(void) {
     CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
     CHECK_CLOSE(1.0e-3, 1.0, hazard.time_s);
     CHECK_CLOSE(1.0e-3, 27.0, hazard.miss_m);
-    CHECK_CLOSE(1.0e-3, 0.2, hazard.time_sd_s); /* also of what is a second away: 2 m by 10 m/s */
+    CHECK_CLOSE(1.0e-3, 0.2, hazard.time_sd_s); /* also of an obstacle a second away: 2 m by 10 m/s */
     plan.since_image_s = 3.5f;
     CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
     CHECK_CLOSE(1.0e-3, 0.5, hazard.time_s);
@@ -139,7 +139,7 @@ static void the_aircraft_has_flown_aside_since_the_image(void) {
 static void independent_errors_multiply(void) {
     goe_plan_t plan = plan_of(10.0f, 0.0f);
     plan.margin_m = 0.0f;
-    estimator.estimate.x_m = estimator.estimate.x0_m = 4.0f; /* passed a metre aside of the rim, by half a sigma */
+    estimator.estimate.x_m = estimator.estimate.x0_m = 4.0f; /* passed a meter aside of the rim, by half a sigma */
     plan.clearance_m = 30.0f;                                /* as likely as not */
     CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
     TEST_ASSERT_TRUE(hazard.has_clearance);

@@ -98,7 +98,7 @@ static void a_pose_of_no_numbers_is_none(void) {
     CHECK_SAME(0.0f, sd_deg);
 }
 
-/* [goe_flight_attitude_t.q] A norm within 1 % of 1, whatever the parts; what is taken counts as one of norm 1. */
+/* [goe_flight_attitude_t.q] A norm within 1 % of 1, whatever the parts; an accepted one counts as one of norm 1. */
 static void a_norm_within_one_percent_is_taken(void) {
     for (int n = 0; n < 500; n++) {
         double q[4];
@@ -345,7 +345,7 @@ static void a_restart_forgets_waiting_images(void) {
 
 /* ------------------------------------------------------------------------------------------------------------ resets -- */
 
-/* GIVEN a jump of unknown size after a gap of the samples THEN what is kept moves by what the velocity does not explain. */
+/* GIVEN a jump of unknown size after a gap of the samples THEN the kept obstacles move by the part that the velocity does not explain. */
 static void an_unknown_jump_is_the_unexplained_motion(void) {
     put(0, 100.0f, 5.0f, 12.0f);
     const goe_flight_slot_t before = flight->slot[0];

@@ -73,7 +73,7 @@ static void give_frame(int c, int k, const goe_flight_detection_t *more) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
 }
 
-/* One sample on, and the frames that arrive then; `more` is what the second camera sees beside. */
+/* One sample on, and the frames that arrive then; `more` is the additional detection of the second camera. */
 static void step(const goe_flight_detection_t *more) {
     goe_flight_attitude_t attitude;
     goe_flight_position_t position;

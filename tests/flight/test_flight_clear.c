@@ -239,7 +239,7 @@ static void doubt_about_the_place_is_taken_off(void) {
     }
 }
 
-/* ... abeam of a turn along the line from its centre: half of a variance that lies ahead. */
+/* ... abeam of a turn along the line from its center: half of a variance that lies ahead. */
 static void doubt_abeam_of_a_turn_lies_along_its_radius(void) {
     for (int side = -1; side <= 1; side += 2) {
         any_encounter();

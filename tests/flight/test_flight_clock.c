@@ -93,7 +93,7 @@ static void a_drift_is_followed(void) {
     TEST_ASSERT_TRUE(worst_us < 3000);
 }
 
-/* The sender starts anew with another time: after a few messages that is believed. */
+/* The sender starts again with another time: after a few messages that is accepted. */
 static void another_clock_is_noticed(void) {
     uint32_t sd_us;
     for (uint32_t k = 0; k < 50u; k++) {

@@ -16,7 +16,7 @@ static uint16_t sector_cm[GOE_FLIGHT_SECTORS];
 void setUp(void) { any = check_random_start("flight geometry"); }
 void tearDown(void) {}
 
-/* The middle of the scene's box lies between the sides of its bounding box, seen by any camera at any attitude; and the point that
+/* The middle of the scene's box lies between the sides of its bounding box, observed by any camera at any attitude; and the point that
  * the scene draws as its top left corner lies on them. Mounting is that of the library: a wrong one would not hit the box. */
 static void a_point_is_visible_where_the_scene_draws_it(void) {
     int seen = 0;
@@ -25,7 +25,7 @@ static void a_point_is_visible_where_the_scene_draws_it(void) {
         goe_image_t image;
         scene_truth_t truth;
         scene_default(&scene);
-        scene.width_m = scene.length_m = 0.5; /* small: its box tells its place */
+        scene.width_m = scene.length_m = 0.5; /* small: its box gives its place */
         scene.height_m = 0.5;
         scene.x0_m = check_random_between(&any, -40.0, 40.0);
         scene.course_deg = check_random_between(&any, -180.0, 180.0);
@@ -145,7 +145,7 @@ static void close_sectors(void) {
     }
 }
 
-/* Each sector that a ray into the circle falls into has it, and none that no ray does but the two beside. */
+/* Each sector that contains a ray into the circle has it, and of the others only the two next to these. */
 static void a_circle_enters_the_sectors_that_it_touches(void) {
     for (int k = 0; k < 300; k++) {
         const double bearing = check_random_between(&any, 0.0, 360.0);

@@ -78,7 +78,7 @@ static void slow_samples_too(void) { check_flight(0u, 100000u, 60.0, 2e-3); }
 static void the_clock_may_wrap(void) { check_flight(0xFFFFFFFFu - 500000u, 4000u, 90.0, 2e-3); }
 
 /* A sine of the pitch: 10 degrees, 1 Hz. Between samples 100 ms apart a straight line is off by 0.49 degrees at most; the cubic
- * by a tenth of that, and the parabola at the newest samples by less than half. What is missed is told. */
+ * by a tenth of that, and the parabola at the newest samples by less than half. The error is reported. */
 static void a_bent_flight_is_followed(void) {
     double cubic_deg = 0.0;
     double parabola_deg = 0.0;
@@ -104,7 +104,7 @@ static void a_bent_flight_is_followed(void) {
     check_report("cubic, degrees", cubic_deg);
     check_report("parabola, degrees", parabola_deg);
     for (int i = 0; i < 2; i++) {
-        check_report("missed over told, rms", sqrt(missed[i] / reported[i]));
+        check_report("missed over reported, rms", sqrt(missed[i] / reported[i]));
         TEST_ASSERT_TRUE(missed[i] < reported[i] && missed[i] > 0.1 * reported[i]);
     }
     TEST_ASSERT_TRUE(cubic_deg < 0.06);
@@ -178,7 +178,7 @@ static void the_rings_are_independent(void) {
     CHECK_CLOSE(1e-3, 29.8, pose.ned_m[0]);
 }
 
-/* The attitude is that of its own samples, and what is newer or older than either ring is not known. */
+/* The attitude is that of its own samples, and times newer or older than either ring are not known. */
 static void each_ring_answers_for_itself(void) {
     float truth[4];
     for (int other = 0; other < 2; other++) {

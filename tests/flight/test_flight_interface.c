@@ -60,7 +60,7 @@ static void a_two_way_offset_dates_every_frame(void) {
     }
 }
 
-/* What was learnt before an exchange is forgotten when the exchange is withdrawn. */
+/* The clock's update before an exchange is forgotten when the exchange is withdrawn. */
 static void a_withdrawn_offset_leaves_nothing_behind(void) {
     const goe_flight_detection_t detection = flown_detection(&flown, 0);
     goe_flight_clock_t fresh;
@@ -310,7 +310,7 @@ static void a_new_track_begins_with_nothing(void) {
 
 /* -------------------------------------------------------------------------------------------------------------- boxes -- */
 
-/* The box of points: from the least to the largest of those that are seen, in any order; nothing without any. */
+/* The box of points: from the least to the largest of the visible ones, in any order; nothing without any. */
 static void points_make_a_box(void) {
     goe_flight_detection_t detection;
     int16_t box_px[4];

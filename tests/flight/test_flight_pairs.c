@@ -1,7 +1,8 @@
-/* Two masts and exact places: the layer's orders obeyed late by an aircraft that turns at the bank of the settings. SPDX-License-Identifier: MIT
+/* Two masts and exact places: the layer's orders obeyed late by an aircraft that turns at the bank of the settings.
+ * SPDX-License-Identifier: MIT
  *
- * The first mast stands on the course, the second one, known as well, beside it. No order may lead into either, and the order may
- * not end while one of them stands on the line that is flown again. */
+ * The first mast is on the course, the second one, known as well, next to it. No order may lead into either, and the order may
+ * not end while one of them is on the line that is flown again. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -49,7 +50,7 @@ void tearDown(void) {}
 
 static double radius_m(const pair_t *pair) { return pair->wide_m > 0.0 ? pair->wide_m : MAST_RADIUS_M; }
 
-/* As an estimator that knows both places tells it, on the present course. */
+/* The input of an estimator that knows both positions, on the present course. */
 static int look(const pair_t *pair, const double at_m[2], double course, uint32_t now_us) {
     int worst = -1;
     double most = -1.0;
@@ -80,7 +81,7 @@ static int look(const pair_t *pair, const double at_m[2], double course, uint32_
     return worst;
 }
 
-/* The course that the obeyed order asks for. */
+/* The course that the obeyed order requires. */
 static double wanted_course(const goe_flight_reaction_t *order, const double at_m[2], double course, double loiter_m) {
     const double north = (double)order->target_ned_m[0] - at_m[0], east = (double)order->target_ned_m[1] - at_m[1];
     const double distance_m = hypot(north, east);
@@ -181,7 +182,7 @@ static void a_second_mast_behind_the_first_one_is_passed_too(void) {
     }
 }
 
-/* GIVEN a wide obstacle beyond the first one and beside the line WHEN the first is passed THEN the aircraft, which passes the second
+/* GIVEN a wide obstacle beyond the first one and next to the line WHEN the first is passed THEN the aircraft, which passes the second
  * already, is not turned into it. */
 static void no_order_flies_into_a_second_obstacle(void) {
     for (int sd = 0; sd <= 2; sd++) {

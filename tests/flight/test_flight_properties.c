@@ -150,7 +150,7 @@ static void fly_points(flown_t *of, int samples) {
     }
 }
 
-/* Of a box of which one face is seen, the front edge is all that has a place; here in a T that lies across the course. */
+/* Of a box with one visible face, only the front edge has a position; here in a T that is across the course. */
 static void a_front_without_a_length_lies_where_it_is(void) {
     goe_flight_obstacle_t obstacle;
     for (int turned = 0; turned < 2; turned++) {

@@ -29,7 +29,7 @@ static void jump(flown_t *of, float north_m, float east_m) {
     of->reset_horizontal++;
 }
 
-/* GIVEN a flight with a jump whose size is told THEN its track is that of the flight without one, moved by the jump. Positions are
+/* GIVEN a flight with a jump whose size is given THEN its track is that of the flight without one, moved by the jump. Positions are
  * floats: 5 m of jump turn their last bits. */
 static void a_known_jump_changes_nothing_but_the_place(void) {
     (void)flown_fly(&flown, 2.5);
@@ -221,7 +221,7 @@ static void a_track_after_the_jump_has_the_ground_of_its_own_time(void) {
 
 /* ---------------------------------------------------------------------------------------------------- unknown, skipped -- */
 
-/* [GOE_FLIGHT_RESETS_COUNT] A counter that rose by two hides a jump that nobody told. */
+/* [GOE_FLIGHT_RESETS_COUNT] A counter that rose by two hides a jump that nobody reported. */
 static void a_counter_that_skips_is_an_unknown_jump(void) {
     (void)flown_fly(&flown, 3.0);
     flown.reset_horizontal++;
@@ -258,7 +258,7 @@ static void a_reset_of_the_heading_ends_the_tracks(void) {
     TEST_ASSERT_EQUAL(1, flown.flight.counters.lost);
 }
 
-/* The delta is told again after an image that was refused: it hangs on the slot's latest image that was taken. */
+/* The delta is given again after an image that was refused: it depends on the slot's latest accepted image. */
 static void a_jump_between_lost_images_is_reported_with_the_next_one(void) {
     (void)flown_fly(&flown, 2.5);
     (void)flown_fly(&other, 2.5);
@@ -276,7 +276,7 @@ static void a_jump_between_lost_images_is_reported_with_the_next_one(void) {
     CHECK_CLOSE(0.02, still.center_ned_m[1] + 1.0f, moved.center_ned_m[1]);
 }
 
-/* The autopilot starts anew: its clock begins at 0 again. */
+/* The autopilot starts again: its clock begins at 0 again. */
 static void a_clock_that_was_set_back_starts_everything_again(void) {
     flown.start_us = 900000000u;
     (void)flown_fly(&flown, 3.0);

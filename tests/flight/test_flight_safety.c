@@ -1,13 +1,13 @@
-/* Whatever comes in, nothing but finite numbers comes out. SPDX-License-Identifier: MIT
+/* Any input, only finite output. SPDX-License-Identifier: MIT
  *
- * Invariants, held after every call on random, extreme and broken input, spoiled flights among it:
+ * Invariants, checked after every call on random, extreme and broken input, spoiled flights among it:
  *   - the status is one of those that goe_flight.h names;
- *   - every number of every output is finite, told by its exponent bits, and so is every number of the layer's own state;
+ *   - every number of every output is finite, judged by its exponent bits, and so is every number of the layer's own state;
  *   - a call that failed, and one that was answered by GOE_FLIGHT_TOO_NEW, changed nothing but counters (a clock that was set
- *     back, which starts everything anew, is the one exception);
+ *     back, which starts everything again, is the one exception);
  *   - actions, slots and sectors lie in their ranges; probabilities lie in 0 to 1;
  *   - no byte before or behind the state is touched.
- * Floats are judged by bits alone, so that the test holds also where the layer was compiled with -ffast-math. GOE_TEST_SEED and
+ * Floats are judged by bits alone, so the test also works where the layer was compiled with -ffast-math. GOE_TEST_SEED and
  * GOE_TEST_UPDATES set seed and length. */
 #include <math.h>
 #include <stddef.h>

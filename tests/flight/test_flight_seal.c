@@ -21,7 +21,7 @@ static goe_flight_status_t assess(goe_flight_assessment_t *now) {
     return goe_flight_assess(&flown.flight, flown_now_us(&flown), false, now);
 }
 
-/* GIVEN any one flipped bit of what is sealed THEN frames and assessments say so, and nothing is "clear". */
+/* GIVEN any one flipped bit of the sealed memory THEN frames and assessments report it, and nothing is "clear". */
 static void every_flip_of_the_settings_is_reported(void) {
     const size_t first = 8u * offsetof(goe_flight_t, seal);
     const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_deg) + sizeof(float));
@@ -106,7 +106,7 @@ static bool is_finite(const void *at, size_t bytes) {
     return true;
 }
 
-/* GIVEN one flipped bit anywhere behind what is sealed WHEN pose, assessment and obstacles are asked for THEN no number is infinite and
+/* GIVEN one flipped bit anywhere behind the sealed memory WHEN pose, assessment and obstacles are requested THEN no number is infinite and
  * no enumerator is outside of its list. */
 static void no_flipped_bit_makes_an_output_infinite(void) {
     static goe_flight_t whole;
@@ -192,8 +192,8 @@ static int known_slot(void) {
     return -1;
 }
 
-/* GIVEN an obstacle ahead WHEN a setting or what is known of the track is lost in its estimator THEN it stays the worst one, no less
- * likely to be hit and suspect, until the estimator, begun anew with the settings of another, knows its place again. */
+/* GIVEN an obstacle ahead WHEN a setting or the state of its track is lost in its estimator THEN it stays the worst one, no less
+ * likely to be hit and suspect, until the estimator, started again with the settings of another, knows its position again. */
 static void warning_outlasts(size_t offset) {
     const goe_flight_assessment_t before = flown_fly(&flown, 7.0);
     const int slot = known_slot();
@@ -223,7 +223,7 @@ static void a_warning_outlasts_its_estimators_settings(void) {
 
 static void a_warning_outlasts_its_track(void) { warning_outlasts(offsetof(goe_estimator_t, motion.origin_ne_m)); }
 
-/* GIVEN that the settings of every estimator are lost WHEN one of them is to begin anew THEN the layer is to be begun anew. */
+/* GIVEN that the settings of every estimator are lost WHEN one of them must start again THEN the layer must be started again. */
 static void without_any_settings_the_layer_says_so(void) {
     goe_flight_assessment_t now;
     (void)flown_fly(&flown, 7.0);

@@ -1,7 +1,7 @@
 /* Neither the compass, nor a place, nor a hand is preferred. SPDX-License-Identifier: MIT
  *
  * Random encounters with one to four obstacles, whose orders are obeyed, are decided twice: as they are, and in a world that is turned,
- * moved or mirrored. Both decide alike. */
+ * moved or mirrored. Both decisions are the same. */
 #include <math.h>
 #include <string.h>
 
@@ -166,7 +166,7 @@ static void obey(double line) {
     }
 }
 
-/* The target of a side lies on that side of the obstacle that the order is about, as seen along the course on which it was chosen. */
+/* The target of a side is on that side of the order's obstacle, looking along the course on which it was chosen. */
 static bool is_on_its_side(void) {
     const goe_flight_reaction_t *r = &flight[0].reaction;
     if ((r->action != GOE_FLIGHT_LEFT && r->action != GOE_FLIGHT_RIGHT) || r->slot < 0) {
@@ -232,7 +232,7 @@ static void check_world(bool is_turned, bool is_moved, bool is_mirrored, bool ju
         any_encounter();
         equal += is_encounter_symmetric(&world, n % 2 == 0 ? 0.0 : between(60.0, 90.0), jumps) ? 1 : 0;
     }
-    TEST_ASSERT_TRUE_MESSAGE(100 * equal >= least * ENCOUNTERS, "encounters decided alike");
+    TEST_ASSERT_TRUE_MESSAGE(100 * equal >= least * ENCOUNTERS, "encounters decided equally");
     for (int action = GOE_FLIGHT_LEFT; action <= GOE_FLIGHT_HOLD; action++) {
         TEST_ASSERT_TRUE_MESSAGE(orders[action] > 0, "each order is given");
     }

@@ -135,7 +135,7 @@ static void unreadable_input_is_no_sign_of_life(void) {
     TEST_ASSERT_FALSE(lives_by(FRAME_PROMISED));
 }
 
-/* GIVEN an obstacle ahead on the course WHEN it is not seen for longer than forget_s THEN it is kept, and so is its warning, until it is
+/* GIVEN an obstacle ahead on the course WHEN it is undetected for longer than forget_s THEN it is kept, and so is its warning, until it is
  * passed. */
 static void an_obstacle_ahead_is_not_forgotten(void) {
     goe_flight_settings_t settings;
@@ -253,7 +253,7 @@ static void a_renumbered_obstacle_keeps_its_track(void) {
     TEST_ASSERT_TRUE((flown.flight.slot[0].valid & GOE_HAS_POSITION) != 0u);
 }
 
-/* While the obstacle is not seen, a box of another size over its place does not become its. */
+/* While the obstacle is undetected, a box of another size over its position does not join its track. */
 static void a_box_of_another_size_takes_nothing_over(void) {
     (void)flown_fly(&flown, 3.0);
     flown.detects = false;
@@ -308,7 +308,7 @@ static void a_vanished_obstacle_is_given_up(void) {
     TEST_ASSERT_EQUAL(0, slots_used());
 }
 
-/* What comes into a slot that was given up is not what an order was about. */
+/* A new track in a slot that was given up is not the obstacle of the order. */
 static void an_order_does_not_pass_to_the_next_in_its_slot(void) {
     (void)flown_fly(&flown, 3.04); /* an image came with sample 150 */
     flown.flight.reaction.action = GOE_FLIGHT_LEFT;
@@ -341,7 +341,7 @@ static void a_dead_detector_is_not_a_clear_sky(void) {
     TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[3]);
 }
 
-/* GIVEN an obstacle WHEN nothing is known of the own attitude or place any more THEN there is nowhere to tell of it from. */
+/* GIVEN an obstacle WHEN the own attitude or position is no longer known THEN it cannot be reported. */
 static void without_a_pose_no_obstacle_is_reported(void) {
     goe_flight_obstacle_t obstacle;
     (void)flown_fly(&flown, 3.0);

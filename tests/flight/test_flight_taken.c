@@ -77,7 +77,7 @@ static void sides_count_by_their_visible_part(void) {
     }
 }
 
-/* Left of right, and top above bottom, where both are seen. */
+/* Left of right, and top above bottom, where both are visible. */
 static void a_box_has_an_inside(void) {
     flight->had_frame = 0u;
     for (unsigned seen = 0u; seen <= GOE_SEES_BOX; seen++) {
@@ -119,7 +119,7 @@ static void points_and_numbers_have_their_ranges(void) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------------- room -- */
+/* -------------------------------------------------------------------------------------------------------------- free place -- */
 
 static void put_any(goe_flight_t *to, int i, uint32_t now_us) {
     goe_flight_slot_t *slot = &to->slot[i];
@@ -133,8 +133,8 @@ static void put_any(goe_flight_t *to, int i, uint32_t now_us) {
     slot->fresh_track = false;
 }
 
-/* The less, the sooner it is given up: a free slot; what has no position, or is passed, and was not seen for 2 s; the least violation and
- * nearness in time, below a half. */
+/* The less, the sooner it is given up: a free slot; a track without a position, or a passed one, undetected for 2 s; the least violation
+ * and nearness in time, below a half. */
 static double worth(const goe_flight_t *of, int i, uint32_t now_us) {
     const goe_flight_slot_t *slot = &of->slot[i];
     const bool undetected = (now_us - slot->detected_us) > 2000000u;
@@ -187,8 +187,8 @@ static void a_new_obstacle_takes_the_place_of_the_least_worth(void) {
 }
 
 /* [flight.forget_s]
- * GIVEN any table THEN what was not seen for forget_s is given up, or for 30 s while an order stands; but not what stands ahead. The
- * order forgets what is given up. */
+ * GIVEN any table THEN a track undetected for forget_s is given up, or for 30 s while an order is active; but not an obstacle ahead. The
+ * order forgets a track that is given up. */
 static void an_old_track_is_given_up(void) {
     int given_up = 0;
     int kept = 0;
@@ -280,7 +280,7 @@ static void images_of_one_candidate_lie_at_most_a_second_apart(void) {
     TEST_ASSERT_TRUE(seen(table, 9u, start_us + 400u, 0, 90, 1));
 }
 
-/* A full table forgets the one that was not seen for the longest. */
+/* A full table forgets the one undetected for the longest. */
 static void a_full_table_forgets_the_oldest(void) {
     for (int oldest = 0; oldest < GOE_FLIGHT_CANDIDATES; oldest++) {
         goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES];
@@ -298,7 +298,7 @@ static void a_full_table_forgets_the_oldest(void) {
 
 /* ------------------------------------------------------------------------------------------------------------- claims -- */
 
-/* From the least to the largest of what is seen, and no smaller than 8 px. */
+/* From the least to the largest of the visible points, and no smaller than 8 px. */
 static void any_points_make_their_box(void) {
     for (int n = 0; n < TRIALS; n++) {
         goe_flight_detection_t d;

@@ -57,7 +57,7 @@ EXCEPTIONS: tuple[tuple[str, str, str], ...] = (
 )
 
 # Folders whose text is not rewritten yet.
-PENDING: tuple[str, ...] = ("tools/", "tests/")
+PENDING: tuple[str, ...] = ()
 
 C_LIKE = {".c", ".h", ".cpp", ".hpp", ".ino", ".mjs", ".js", ".rs", ".css"}
 HASH = {".sh", ".cmake", ".yml", ".yaml", ".toml", ".ini", ".conf", ".msg", ".defs", ".gitignore", ".txt"}

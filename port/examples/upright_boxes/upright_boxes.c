@@ -96,7 +96,8 @@ static void fill(const detection_t *detection, goe_image_t *image) {
     image->box.top_px = detection->top_px;
     image->box.right_px = detection->right_px;
     image->box.bottom_px = detection->bottom_px;
-    image->box.seen = GOE_SEES_BOX; /* also of a box that the border cuts: the estimator knows it by the size of the image */
+    image->box.seen =
+        GOE_SEES_BOX; /* also of a box that the border cuts: the estimator knows it by the size of the image */
 }
 
 static void print(int k, goe_status_t status, const goe_estimate_t *now) {

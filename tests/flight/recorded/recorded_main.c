@@ -1,14 +1,14 @@
-/* What interpolation costs on recorded flights of real autopilots. SPDX-License-Identifier: MIT
+/* The cost of interpolation on recorded flights of real autopilots. SPDX-License-Identifier: MIT
  *
  *   flight_recorded FILE...
  *
- * Masts stand along each flight. The camera sees them from the true pose; the estimator is given what the autopilot believed: at
+ * Masts stand along each flight. The camera uses the true pose; the estimator gets the autopilot's estimate: at
  * the very time of each image, or as the flight layer finds it 100 ms later between samples so far apart; or late by so much, with
- * the clock's uncertainty told or not. For each: the median distance of the estimate from the truth along the line of sight when
+ * the clock's uncertainty given or not. For each: the median distance of the estimate from the truth along the line of sight when
  * the mast is 70 m ahead, and how often two of its sigmas cover it.
  *
  * Exit status: 0 if interpolation stays within its share of the exact time's median (SHARE_MAX, and SHARE_COARSE_MAX for samples
- * 200 ms apart), and what is late by 20 and by 100 ms, and tells it, covers the truth as often as it should, or as the exact time
+ * 200 ms apart), and poses late by 20 and by 100 ms, with a given uncertainty, cover the truth as often as required, or as the exact time
  * does; 1 otherwise; 77 if there is no such file. */
 #include <math.h>
 #include <stdio.h>
@@ -33,7 +33,7 @@
 #define STREAM_RECORDED 200
 #define SHARE_MAX 1.05
 #define SHARE_COARSE_MAX                                                                                               \
-    1.25 /* half of the images of a flight that pitches by 24 degrees a second, rms, tell little then */
+    1.25 /* half of the images of a flight that pitches by 24 degrees a second, rms, are hardly informative then */
 #define COARSE_S 0.15
 #define COVERED_MIN 0.88
 #define COVERED_RESOLVED 0.03 /* by the masts along the shorter flight */
@@ -141,7 +141,7 @@ static bool begins_anew(const recorded_flight_t *recording, const goe_settings_t
     return true;
 }
 
-/* Flies past the mast that stands aside of where the aircraft is at abeam_s. */
+/* Flies past the mast abeam of the aircraft's position at abeam_s. */
 static void fly(const recorded_flight_t *recording, bool wanders, const way_t *way, double abeam_s, uint64_t seed,
                 tally_t *tally) {
     camera_t camera = camera_default();

@@ -16,7 +16,7 @@ constexpr uint64_t DEAD_RECKONING_US =
     3000000; /* after which its end is believed: PX4's flag flickers once a second at first */
 constexpr float CM_PER_M = 100.f;
 constexpr float US_PER_S = 1.0e6f;
-constexpr float DISTANCE_MAX_M = 200.f; /* of obstacle_distance: its readers need no more */
+constexpr float DISTANCE_MAX_M = 200.f;        /* of obstacle_distance: its readers need no more */
 constexpr uint32_t TARGET_DELAY_SD_US = 20000; /* one sigma of GOE_LT_DELAY */
 
 uint32_t whole_us(float s) { return static_cast<uint32_t>(US_PER_S * s); }
