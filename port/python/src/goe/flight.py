@@ -480,8 +480,8 @@ class Flight:
         return {slot: found for slot in range(SLOTS) if (found := self.obstacle(slot)) is not None}
 
     def sectors(self, max_cm: int) -> npt.NDArray[np.uint16] | None:
-        """(72,) nearest obstacle by bearing, cm: sector i is centered on 5 i degrees from north; ``max_cm`` + 1: nothing
-        there as far as the camera sees; ``SECTOR_UNKNOWN`` elsewhere. None: there is no pose.
+        """(72,) nearest obstacle by bearing, cm: sector i is centered on 5 i degrees from north; ``max_cm`` + 1:
+        nothing within the camera's view; ``SECTOR_UNKNOWN`` elsewhere. None: there is no pose.
 
         ValueError: ``max_cm`` is not within 1 to 65000.
         """

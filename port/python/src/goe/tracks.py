@@ -80,7 +80,7 @@ class Images:
     points_px: Any = None
     """(K, 6, 2) u and v of ``POINTS``; NaN: not visible. None: no points."""
     points_seen: Any = None
-    """(K, 6) bool, where a NaN must not mean "not visible": the library refuses an image with a NaN in a visible feature."""
+    """(K, 6) bool, where a NaN must not mean "not visible": the library refuses a NaN in a visible feature."""
     reset_count: Any = None
     """(K,) of the autopilot's filter. None: no resets."""
     reset_delta_ned_m: Any = None
@@ -166,8 +166,8 @@ class Track:
     """The estimates after each of K images.
 
     ``track[k]`` is the ``Estimate`` after image k; columns are read from ``estimates``: ``track.estimates["z_m"]``,
-    ``track.estimates["sigma"]["z_m"]``. Fields are those of goe_estimate_t in goe.h, where ``valid`` marks those that mean
-    anything; ``values`` and ``sigma`` have NaN instead of what does not.
+    ``track.estimates["sigma"]["z_m"]``. Fields are those of goe_estimate_t in goe.h, where ``valid`` marks the valid
+    ones; ``values`` and ``sigma`` have NaN for the others.
     """
 
     status: Array
