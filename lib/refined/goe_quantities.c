@@ -272,9 +272,9 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
         q->value[i] = shape->quantity[i].value;
         q->sigma[i] =
             sqrtf(wider->scatter * found + given + turns * goe_square(q->sigma[GOE_ORIENTATION]) + moved * moved);
-        const float unwanted = q->prism ? unobserved + doubt_of(shape, i) : 0.0f;
+        const float excluded = q->prism ? unobserved + doubt_of(shape, i) : 0.0f;
         q->worked_out[i] =
-            sqrtf(goe_larger(found + given + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - unwanted, 0.0f));
+            sqrtf(goe_larger(found + given + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - excluded, 0.0f));
     }
 }
 
