@@ -59,7 +59,7 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
     estimate->age_s = goe_latest_since_s(estimator, now_us);
 }
 
-/* What every answer is told with, also a refused image's. */
+/* Fields that accompany every answer, also a refused image's. */
 static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     set_age(estimator, image_us, estimate);
     estimate->trajectory_heading_deg = goe_motion_heading_deg(&estimator->motion);
@@ -86,7 +86,7 @@ static void forget_track(goe_estimator_t *estimator) {
 }
 
 #if GOE_WITH_WINDOW
-/* Of the window, which tells by its answer alone whether it solved. */
+/* For the window, whose answer alone shows whether it solved. */
 static void note_solved(goe_estimator_t *estimator) {
     if (estimator->estimate.fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
@@ -246,10 +246,10 @@ static bool may_begin_again(const goe_estimator_t *estimator, const goe_view_t *
     const float x = to_trajectory[0] * nose[0] + to_trajectory[1] * nose[1] + to_trajectory[2] * nose[2];
     const float z = to_trajectory[6] * nose[0] + to_trajectory[7] * nose[1] + to_trajectory[8] * nose[2];
     const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
-    return goe_is_set(&estimator->settings.heading_auto) && estimator->motion.sighted && !known && goe_absolute(x) > z;
+    return goe_is_set(&estimator->settings.heading_auto) && estimator->motion.detected && !known && goe_absolute(x) > z;
 }
 
-/* Whether something is seen, and all of it more than 60 degrees from Z. */
+/* Whether features are visible, and all of them more than 60 degrees from Z. */
 /*@ requires \valid_read(view); */
 static bool lies_aside(const goe_view_t *view) {
     bool aside = view->seen;
@@ -259,8 +259,8 @@ static bool lies_aside(const goe_view_t *view) {
     return aside;
 }
 
-/* After a turn: what lies aside of T's Z axis would give little or nothing, and of the obstacle nothing is known yet that the track
- * could lose. It begins here, and the faults of this image are counted once. */
+/* After a turn: features far from T's Z axis would give little information, and a track without a known position has nothing to
+ * lose. The track begins here, and the faults of this image are counted once. */
 static GOE_NOINLINE void align_after_turn(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
     uint32_t causes[GOE_CAUSES];
     memcpy(causes, faults->causes, sizeof causes);
@@ -288,7 +288,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     } else {
         goe_align_points(camera, view, faults);
     }
-    estimator->motion.sighted = estimator->motion.sighted || view->seen;
+    estimator->motion.detected = estimator->motion.detected || view->seen;
 }
 
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
@@ -350,7 +350,7 @@ static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status,
     estimate->fresh = false;
 }
 
-/* Whether nothing but numbers leaves, and nothing but numbers is left to place what comes. */
+/* Whether all outputs, and the memory that places the next image, are numbers. */
 static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
     const uint32_t place =
         goe_larger_bits(goe_magnitude(estimator->motion.dx_m), goe_magnitude(estimator->motion.dz_m));

@@ -37,7 +37,7 @@ static inline uint32_t word_at(const void *from, size_t i) {
 #define SEALED_TO (offsetof(goe_estimator_t, settings) + sizeof(goe_settings_t))
 #define SEALED_WORDS ((SEALED_TO - SEALED_FROM) / WORD)
 
-GOE_STATIC_ASSERT(SEALED_FROM % WORD == 0 && SEALED_TO % WORD == 0, what_is_sealed_is_whole_words);
+GOE_STATIC_ASSERT(SEALED_FROM % WORD == 0 && SEALED_TO % WORD == 0, sealed_memory_is_whole_words);
 
 /* The sum finds every change of one word, and of two bits unless they are the same bit of two words; the turned one then finds these,
  * unless the words lie a multiple of 32 apart. */

@@ -53,16 +53,16 @@
     X(navigation.position_white_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of the own position that is new in each image; boxes") \
     X(navigation.height_white_m, REAL, "m", 0.0f, 1.0e3f, 0.0f, "error of the height that is new in each image") \
     X(navigation.slope, REAL, "", 0.0f, 1.0f, 0.0f, "slope of the ground that the height is above, m per m flown") \
-    X(navigation.ground_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "how far the obstacle's ground may lie off; boxes") \
+    X(navigation.ground_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "height uncertainty of the obstacle's ground; boxes") \
     X(detector.point_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image; rounding: 0.3") \
     X(detector.point_share, REAL, "", 0.0f, 1.0f, 0.0f, "error of left, right, top as points, of the width") \
     X(detector.point_correlation, REAL, "", 0.0f, 0.95f, 0.0f, "of a point's error from image to image") \
     X(detector.shape_share, REAL, "", 0.0f, 1.0f, 0.0f, "model error of the disc, of its width; cars: 0.12") \
     X(detector.box_px, REAL, "px", 0.05f, 100.0f, 1.0f, "error of a box's side, new in each image") \
-    X(detector.box_share, REAL, "", 0.0f, 1.0f, 0.07f, "error of a side that stays alike, of the box's width or height") \
-    X(detector.correlation_s, REAL, "s", 0.0f, 100.0f, 1.2f, "how long it stays alike") \
+    X(detector.box_share, REAL, "", 0.0f, 1.0f, 0.07f, "slowly varying error of a side, of the box's width or height") \
+    X(detector.correlation_s, REAL, "s", 0.0f, 100.0f, 1.2f, "correlation time of this error") \
     X(detector.cut_noise, REAL, "", 0.0f, 10.0f, 1.0f, "error of every side of a box that the border cuts, of the same") \
-    X(refined.typical_size_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "first guess of the width, where the ground tells no range") \
+    X(refined.typical_size_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "prior width, where the ground gives no range") \
     X(refined.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point farther off is left out") \
     X(refined.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point farther off counts less") \
     X(refined.misfit_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "misfit above which the obstacle is suspect") \

@@ -284,7 +284,7 @@ static void name_file(campaign_file_t *file, const char *name, const char *const
     file->count = count;
 }
 
-/* What tells the series of a flight's runs apart. */
+/* The difference between the series of a flight's runs. */
 static const char *series_name(case_setting_t setting) {
     return setting.method == GOE_METHOD_REFINED ? campaign_text_method(setting.method)
                                                 : campaign_text_model(setting.model);

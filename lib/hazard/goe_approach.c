@@ -34,7 +34,7 @@ void goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan, goe
 }
 
 /* Time to the closest approach, and the time at which the clearance counts: over the outline it is the lower end of the
- * flight. Value and derivatives are 0 for what is now. */
+ * flight. Value and derivatives are 0 for a time of now. */
 static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance,
                        const goe_approach_t *approach, goe_affine_t *first, goe_affine_t *lowest) {
     const goe_affine_t *side = approach->side;
@@ -94,7 +94,7 @@ static float time_sd(const goe_outline_t *o, const goe_course_t *course, const g
     return goe_bounded(sd < most ? sd : most);
 }
 
-/* The clearance at the time of `lowest`, sharing what the derivatives of a time do not tell of its sigma. */
+/* The clearance at the time of `lowest`, without the part of a time's sigma that its derivatives lack. */
 static void find_clearance(const goe_course_t *course, const goe_affine_t *lowest, float share, float height_m,
                            goe_affine_t *clearance) {
     clearance->value = height_m + course->climb_m_s * lowest->value;

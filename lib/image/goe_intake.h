@@ -1,4 +1,4 @@
-/* What is refused before anything is computed. SPDX-License-Identifier: MIT */
+/* Checks that refuse an image before anything is computed. SPDX-License-Identifier: MIT */
 #ifndef GOE_INTAKE_H
 #define GOE_INTAKE_H
 

@@ -6,7 +6,7 @@
 #include "maths/goe_scalar.h"
 
 #define UPRIGHT 0.01f      /* sine of a lean that needs no turning back */
-#define COSINE_MIN 0.5f    /* of twice the lean: beyond 30 degrees a box hardly tells its width from its height */
+#define COSINE_MIN 0.5f    /* of twice the lean: beyond 30 degrees width and height of a box hardly separate */
 #define DIRECTION_MIN 0.1f /* length of the vertical in the image, focal lengths: from straight above it has none */
 
 GOE_STATIC_ASSERT(GOE_SEES_LEFT == 1u << GOE_BOX_LEFT && GOE_SEES_TOP == 1u << GOE_BOX_TOP &&

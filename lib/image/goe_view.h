@@ -17,11 +17,11 @@ typedef enum {
 
 GOE_STATIC_ASSERT(GOE_POINT_COUNT == GOE_FEATURES, every_feature_has_a_name);
 
-/* An aligned image point: what a camera that looks along T's Z axis would see, X/Z and Y/Z of the ray in T, in units of the
- * focal length. x and y hold only if usable. */
+/* An aligned image point: the image of a camera that looks along T's Z axis, X/Z and Y/Z of the ray in T, in units of the
+ * focal length. x and y are valid only if usable. */
 typedef struct {
     float x, y;
-    bool usable; /* seen, ahead, and within the lens model */
+    bool usable; /* visible, ahead, and within the lens model */
 } goe_point_t;
 
 /* The sides of a box. */

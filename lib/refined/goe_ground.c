@@ -9,7 +9,7 @@
 
 #define UNKNOWN_SD_M 1.0e3f /* of a height that was not set */
 #define GROWN 1.0e-3f       /* of the information of the heights: less waits for more */
-#define NARROW 0.95f        /* of ground_scale: told too well */
+#define NARROW 0.95f        /* of ground_scale: information too strong */
 #define WIDE 1.05f          /* ... not well enough */
 #define SCALE_MIN 0.05f     /* a smaller one counts as this */
 
@@ -57,7 +57,7 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
     datum->height_m = datum->ground_m - down_m;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- told -- */
+/* --------------------------------------------------------------------------------------------------------------- known -- */
 
 void goe_ground_start(goe_filter_t *filter, float variance_m2) {
     filter->datum.first = 1.0f / variance_m2;
@@ -98,7 +98,7 @@ void goe_ground_widen(goe_filter_t *filter) {
     filter->ground_scale = 1.0f;
 }
 
-/* Of what is told first. */
+/* Of the first height. */
 static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
     const float scale = filter->ground_scale;
     if (filter->phase == GOE_PHASE_PRISM || !(scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
@@ -113,8 +113,8 @@ static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
     return 1;
 }
 
-/* All heights so far tell the offset of the first with the information 1/(constant error^2 + white^2/n). Of that a row adds
- * what it has grown by; the constant error is in all of them, and is not counted twice. */
+/* All heights so far give the offset of the first with the information 1/(constant error^2 + white^2/n). A row adds
+ * only its growth; the constant error is in all of them, and is not counted twice. */
 static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_datum_t *datum = &filter->datum;
     const float q = filter->state[GOE_INVERSE_RANGE];
@@ -135,7 +135,7 @@ static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_row
     return 1;
 }
 
-int goe_ground_tell(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+int goe_ground_row(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     const bool white = obs->settings->navigation.height_white_m > 0.0f;
     if ((filter->known & GOE_HAS_POSITION) == 0u) {
         return 0;

@@ -17,7 +17,7 @@
 #define AHEAD_MIN 0.02f        /* third component of a ray that is faced */
 #define DEPTH_MAX 2.0f         /* |s|: 7 times as deep as wide, or as flat */
 #define SHIFT_RATIO_MAX 300.0f /* of a shift that rows share, over a row's own noise */
-#define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearisation's */
+#define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearization's */
 #define GAP_MAX_US 1000000000u /* as the filter's: a longer gap counts as this one */
 #define GROUND_SIGMAS 3.0f     /* by which the foot must lie below the horizon to give the range */
 #define FOOT_SHARE 0.6f        /* of box_share of the width, in that sigma */
@@ -31,13 +31,13 @@
 #define HALF_FREEDOM 2.5f      /* ... of the half width, in widths */
 #define TOP_FREEDOM 10.0f      /* ... of the top, in the larger of top and width */
 #define DEPTH_FREEDOM 0.3f     /* ... of s */
-#define DEPTH_UNSEEN 3.0f      /* one sigma of c: a factor of 20 in depth, from a plate to a wall seen end-on */
+#define DEPTH_SD 3.0f          /* one sigma of c: a factor of 20 in depth, from a plate to a wall viewed end-on */
 #define TURNED_SHARE 1.3f      /* of the width by which it changes while the line of sight turns by a radian */
-#define TURNED_MAX 0.15f       /* ... up to which: what was seen before counts on */
+#define TURNED_MAX 0.15f       /* ... up to which: earlier images still count */
 #define ROOF_SHARE 0.15f /* of the depth beyond the width: where the point of the roof may lie that the top is over */
-#define DISC_FREEDOM 1.0e-3f  /* both, where a disc is asked for */
+#define DISC_FREEDOM 1.0e-3f  /* both, where a disc is configured */
 #define GROUND_MIN 1.0e-6f    /* one sigma of the ground's offset, units of Z0 */
-#define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one tells no range */
+#define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one gives no range */
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == GOE_BOX_SIDES * sizeof(goe_side_memory_t),
                   every_side_has_a_memory);
@@ -82,7 +82,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
     by[GOE_PRISM_HALF] = outward * t.reach / o->half;
     by[GOE_PRISM_TOP] = t.foot ? 0.0f : -g.y;
-    by[GOE_PRISM_UNSEEN] = by[GOE_PRISM_DEPTH];
+    by[GOE_PRISM_UNOBSERVED] = by[GOE_PRISM_DEPTH];
     const float shift = -obs->position_sd * obs->state[GOE_INVERSE_RANGE];
     float *common = rows->shift[rows->count - 1u];
     common[0] = shift * g.x;
@@ -198,7 +198,7 @@ static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], fl
     return ray->usable;
 }
 
-/* Of the box, as far as it is seen. */
+/* Of the visible part of the box. */
 static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
     *x =
         0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_LEFT) + goe_touch_coordinate(camera, sides, GOE_BOX_RIGHT));
@@ -255,7 +255,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
     sd[GOE_PRISM_HALF] = HALF_FREEDOM * width;
     sd[GOE_PRISM_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_PRISM_TOP]), width);
-    sd[GOE_PRISM_UNSEEN] = disc ? DISC_FREEDOM : DEPTH_UNSEEN;
+    sd[GOE_PRISM_UNOBSERVED] = disc ? DISC_FREEDOM : DEPTH_SD;
     goe_srif_clear(root);
     for (size_t i = 0; i < GOE_STATES; i++) {
         root->element[goe_srif_row(i) + i] = 1.0f / sd[i];

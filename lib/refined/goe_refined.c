@@ -2,8 +2,8 @@
  *
  *   time -> start, change of model -> rows of the model -> gate -> square-root update -> health
  *
- * One Gauss-Newton step per image, linearised at the predicted state: in these states the image is so nearly linear that
- * linearising older images anew gains next to nothing. */
+ * One Gauss-Newton step per image, linearized at the predicted state: in these states the image is so nearly linear that
+ * linearizing older images again gains next to nothing. */
 #include "refined/goe_refined.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 #define AGREE_SIGMA 3.0f       /* within which two answers say the same */
-#define STANDS_S 3.0f          /* since the new start, for which the answer before it may stand */
+#define KEPT_S 3.0f            /* since the new start, for which the answer before it may stand */
 #define REACH_MAX_M 1.0e6f     /* as all positions */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -39,7 +39,7 @@ static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     memcpy(direction, filter->state, sizeof direction);
     if (filter->phase == GOE_PHASE_PRISM) {
         direction[GOE_PRISM_DEPTH] = 0.0f;
-        direction[GOE_PRISM_UNSEEN] = 0.0f;
+        direction[GOE_PRISM_UNOBSERVED] = 0.0f;
     }
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
 }
@@ -70,7 +70,7 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->flown_m += sqrtf(dx_m * dx_m + dz_m * dz_m);
     filter->last.dx_m = motion->dx_m;
     filter->last.dz_m = motion->dz_m;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_filter_pace(filter, motion);
 #endif
 }
@@ -91,7 +91,7 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
 
-/* (R15): what linearising at an uncertain range may miss, the second order of 1/Z. */
+/* (R15): possible linearization error at an uncertain range, the second order of 1/Z. */
 static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) {
     const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
     const float missed = obs->camera_m.z * obs->range_variance / ahead;
@@ -107,7 +107,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
     goe_rows_end(&rows, obs);
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_mover_columns(obs, &rows);
 #endif
     allow_for_curvature(obs, &rows);
@@ -122,7 +122,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     filter->answer.outdated = true;
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
-    verdict->rows += goe_ground_tell(filter, obs, &rows);
+    verdict->rows += goe_ground_row(filter, obs, &rows);
     const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
@@ -132,7 +132,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
 
 /* -------------------------------------------------------------------------------------------------------------- image -- */
 
-/* Points that stand for the sides of a box have its errors; as they are not remembered, the variance counts
+/* Points that replace the sides of a box have its errors; as they are not modeled, the variance counts
  * (1 + fade)/(1 - fade) times, which for a first-order process is that of a long mean. */
 static float outline_share(const goe_detector_t *detector, float fade) {
     const float kept = fade < FADE_MAX ? fade : FADE_MAX;
@@ -146,7 +146,7 @@ static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *ob
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
     const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
-        const bool same = filter->camera == obs->number; /* what was alike in one camera says nothing of another */
+        const bool same = filter->camera == obs->number; /* a correlation in one camera is no evidence about another */
         obs->fade = same && detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
         obs->outline_share = outline_share(detector, obs->fade);
         filter->camera = obs->number;
@@ -176,7 +176,7 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
 /* Whether the obstacle has just been found to move. */
 static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
                            float since_s) {
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     return goe_mover_judge(filter, obs, change, since_s);
 #else
     (void)filter;
@@ -216,7 +216,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_health_expect(&filter->health);
     *swapped = 0;
     if (filter->phase > GOE_PHASE_BOX_OUTLINE) {
-        goe_filter_enter(filter, GOE_PHASE_NONE); /* none that there is: it starts anew */
+        goe_filter_enter(filter, GOE_PHASE_NONE); /* an unknown one: it starts again */
     }
     goe_ground_read(filter, &settings->navigation, view);
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
@@ -236,7 +236,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
 
 /* ------------------------------------------------------------------------------------------------------------- answer -- */
 
-/* Half of the extent about the reference point as far as it is seen, m, also while the width is not valid. */
+/* Half of the visible extent about the reference point, m, also while the width is not valid. */
 static float reach_of(const goe_filter_t *filter) {
     const float *x = filter->state;
     if (filter->phase == GOE_PHASE_PRISM) {
@@ -256,15 +256,15 @@ static bool agrees(const place_t *now, const place_t *before, float reach_m) {
     return goe_absolute(now->value - before->value) <= AGREE_SIGMA * sigma + reach_m;
 }
 
-/* Whether the answer from before a new start of the filter stands: the new one says the same, and knows it less well. One that
+/* Whether the answer from before a new start of the filter is kept: the new one agrees, and is less certain. One that
  * disagrees, or that is of an obstacle that moves, takes over; after some seconds any does. */
-static bool previous_stands(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
-                            const goe_estimate_t *estimate) {
+static bool keeps_previous(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
+                           const goe_estimate_t *estimate) {
     const place_t now[2] = {{quantities->value[GOE_X0], quantities->sigma[GOE_X0]},
                             {quantities->value[GOE_Z0], quantities->sigma[GOE_Z0]}};
     const place_t before[2] = {{estimate->x0_m, estimate->sigma.x_m}, {estimate->z0_m, estimate->sigma.z_m}};
     const bool answered = (estimate->valid & GOE_HAS_POSITION) != 0u && !quantities->moves && estimate->z_m > 0.0f &&
-                          goe_filter_elapsed_s(filter, motion) < STANDS_S;
+                          goe_filter_elapsed_s(filter, motion) < KEPT_S;
     const float reach_m = filter->answer.reach_m;
     return answered && (filter->answer.previous != 0u) &&
            goe_square(now[0].sigma) + goe_square(now[1].sigma) >
@@ -302,7 +302,7 @@ bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, co
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
     }
-    if (placed && previous_stands(filter, motion, &quantities, estimate)) {
+    if (placed && keeps_previous(filter, motion, &quantities, estimate)) {
         return false;
     }
     const bool fresh = goe_report_quantities(&quantities, motion, estimate);

@@ -94,13 +94,13 @@ static bool is_misfit(const goe_health_t *health, const goe_settings_t *settings
     return health->images >= SUSPECT_IMAGES && health->mean_nis > settings->refined.misfit_max;
 }
 
-/* A disc was asked for, and it is none. */
+/* A disc was configured, and it is none. */
 static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings) {
     return settings->model == GOE_MODEL_DISC && filter->phase == GOE_PHASE_DISC && goe_disc_is_skewed(filter);
 }
 
 static bool moves(const goe_filter_t *filter) {
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     return filter->mover.moves;
 #else
     (void)filter;
@@ -109,7 +109,7 @@ static bool moves(const goe_filter_t *filter) {
 }
 
 static bool is_late(const goe_filter_t *filter) {
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     return filter->mover.late;
 #else
     (void)filter;
@@ -152,8 +152,8 @@ void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, 
     estimate->reason = reason_of(filter, settings);
     estimate->suspect =
         is_misfit(health, settings) || (estimate->reason != GOE_REASON_NONE && estimate->reason != GOE_REASON_LATE);
-#if GOE_BESIDE
-    estimate->latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
+#if GOE_AUGMENTED
+    estimate->latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
     estimate->sigma.latency_s = goe_mover_latency_sd(filter);
 #endif
     if (estimate->method == GOE_METHOD_REFINED) {

@@ -1,4 +1,4 @@
-/* What all models' quantities have alike. SPDX-License-Identifier: MIT */
+/* Common quantities of all models. SPDX-License-Identifier: MIT */
 #include "refined/goe_shape.h"
 
 #include <math.h>

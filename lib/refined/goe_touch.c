@@ -152,7 +152,7 @@ static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y)
 
 static float sign_of(size_t side) { return side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f; }
 
-/* By the line as it lies where it touches, which the first call tells about, (R28). */
+/* By the line at its touching point, which the first call gives, (R28). */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && \valid_read(straight + (0 .. 2));
     requires \valid(t) && side < GOE_BOX_SIDES; */
 static bool touch_bent(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, const float straight[3],

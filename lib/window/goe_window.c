@@ -29,7 +29,7 @@ typedef struct {
     goe_edges_t edges;
     goe_faces_t faces;
     goe_turn_t turn;  /* filtered orientation */
-    goe_span_t front; /* holds if line_row */
+    goe_span_t front; /* valid if line_row */
     goe_faults_t faults;
     bool disc_row, line_row; /* the image added a row to that model's ring */
 } frame_t;

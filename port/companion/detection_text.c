@@ -1,4 +1,4 @@
-/* A line of JSON that tells an image's detections. SPDX-License-Identifier: MIT */
+/* A line of JSON with an image's detections. SPDX-License-Identifier: MIT */
 #include "detection_text.h"
 
 #include <jansson.h>

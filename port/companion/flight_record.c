@@ -160,7 +160,7 @@ static int put_reset(FILE *stream, const autopilot_t *autopilot) {
     return size;
 }
 
-/* Times of a log go on: those of an autopilot that started anew follow the latest by a second. */
+/* Times of a log increase: those of an autopilot that restarted follow the latest by a second. */
 static double time_s(flight_record_t *record, int64_t time_us) {
     if (record->rows > 0 && time_us + record->shift_us < record->latest_us - US_PER_S) {
         record->shift_us = record->latest_us + US_PER_S - time_us;

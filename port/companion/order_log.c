@@ -34,7 +34,7 @@ void order_log_put(order_log_t *log, const order_row_t *row) {
         return;
     }
     (void)fprintf(log->stream, "%" PRId64 ",%" PRId64 ",%d,%u,%" PRIu32 ",%.6g,%.6g,%.9g,%.9g,%.4g", left->unix_us,
-                  left->boot_us, left->stands ? 1 : 0, left->action, left->mode_before, (double)left->course_ne[0],
+                  left->boot_us, left->active ? 1 : 0, left->action, left->mode_before, (double)left->course_ne[0],
                   (double)left->course_ne[1], (double)left->obstacle_ne_m[0], (double)left->obstacle_ne_m[1],
                   (double)left->radius_m);
     (void)fprintf(log->stream, ",%s,%s,%" PRIu32 ",%d,%u,%.2f,%.1f,%" PRId32 ",%" PRId32 ",%.1f,%s\n", row->event,
@@ -75,7 +75,7 @@ static bool parse(const char *line, order_left_t *left) {
     }
     left->unix_us = (int64_t)number[UNIX_US];
     left->boot_us = (int64_t)number[BOOT_US];
-    left->stands = number[STANDS] > 0.5;
+    left->active = number[STANDS] > 0.5;
     left->action = (unsigned)number[ACTION];
     left->mode_before = (uint32_t)number[MODE_BEFORE];
     left->course_ne[0] = (float)number[COURSE_N];
@@ -99,5 +99,5 @@ bool order_log_read(const char *folder, order_left_t *left) {
         *left = parse(line, &row) ? row : *left;
     }
     (void)fclose(file);
-    return left->stands;
+    return left->active;
 }

@@ -15,9 +15,9 @@ typedef struct {
     FILE *stream; /* null: there is no log */
 } order_log_t;
 
-/* What is left of an order that still stands: enough to go back from it. */
+/* The rest of an active order: enough to return from it. */
 typedef struct {
-    bool stands;
+    bool active;
     unsigned action; /* goe_flight_action_t */
     uint32_t mode_before;
     int64_t unix_us, boot_us; /* when this was written, by both clocks */

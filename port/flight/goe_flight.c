@@ -156,7 +156,7 @@ static goe_flight_status_t check_ready(const goe_flight_t *flight) {
     return flight->tag == TAG ? GOE_FLIGHT_OK : GOE_FLIGHT_NOT_INITIALISED;
 }
 
-/* Where what is decided hangs on the settings. */
+/* Fields of the decision that depend on the settings. */
 static goe_flight_status_t check_sealed(const goe_flight_t *flight) {
     const goe_flight_status_t ready = check_ready(flight);
     return ready == GOE_FLIGHT_OK && !goe_flight_is_sealed(flight) ? GOE_FLIGHT_CORRUPTED : ready;
@@ -293,8 +293,8 @@ static bool has_bad_delta(const goe_flight_t *flight, const goe_flight_position_
            !goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M);
 }
 
-/* How far the position lies from where the velocity would have led it: an unknown jump, as near as that can be known. What is kept of
- * the obstacles moves along. */
+/* Distance of the position from its prediction by the velocity: an unknown jump, as well as it can be known. The kept
+ * obstacles move along. */
 static void guess_jump(const goe_flight_t *flight, const goe_flight_position_t *sample, float jump_ned_m[3]) {
     const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
     for (int i = 0; newest && i < 3; i++) {
@@ -484,7 +484,7 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
     if (status != GOE_FLIGHT_OK) {
         return refuse(flight, status);
     }
-    goe_flight_clock_t clock = flight->clock; /* what it learns is kept only with the frame, which may be asked again */
+    goe_flight_clock_t clock = flight->clock; /* its update is kept only with the frame, which may come again */
     status = find_view(flight, frame, &clock, &view);
     if (status != GOE_FLIGHT_OK) {
         goe_flight_count(status == GOE_FLIGHT_TOO_NEW ? &flight->counters.early : &flight->counters.late);
@@ -542,7 +542,7 @@ static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
     return alive;
 }
 
-/* What was dead once stays so until it gives a sign again: times of half an hour ago would look like times to come. */
+/* An input that was dead stays dead until it gives a sign again: times of half an hour ago would look like future times. */
 static void bury(goe_flight_t *flight, uint32_t now_us) {
     for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
         if (!camera_alive(flight, i, now_us)) {

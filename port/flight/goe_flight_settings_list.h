@@ -1,5 +1,5 @@
-/* GOE_FLIGHT_SETTING(field, least, most, default): every field of goe_flight_settings_t, in its order; goe_flight.h tells what
- * each means. SPDX-License-Identifier: MIT */
+/* GOE_FLIGHT_SETTING(field, least, most, default): every field of goe_flight_settings_t, in its order; goe_flight.h gives
+ * the meaning of each. SPDX-License-Identifier: MIT */
 GOE_FLIGHT_SETTING(score_min, 0.0f, 1.0f, 0.3f)
 GOE_FLIGHT_SETTING(confirm_images, 1.0f, 20.0f, 3.0f)
 GOE_FLIGHT_SETTING(alive_s, 0.05f, 60.0f, 1.0f)

@@ -17,7 +17,7 @@
 
 /* ------------------------------------------------------------------------------------------------------------ camera -- */
 
-/* As goe_camera_t tells: camera x, y, z are body y, z, x of the un-mounted camera, then yaw, pitch, roll. */
+/* As defined at goe_camera_t: camera x, y, z are body y, z, x of the un-mounted camera, then yaw, pitch, roll. */
 static void mount(const goe_camera_t *settings, float r[9]) {
     float sy;
     float cy;

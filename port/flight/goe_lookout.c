@@ -1,7 +1,7 @@
 /* Hazards from now. SPDX-License-Identifier: MIT
  *
- * The latest image is some tenths of a second old. What a turn has bent of the path since, in half a second at the longest
- * (goe_flight_table_follow), is less than a metre. */
+ * The latest image is some tenths of a second old. A turn has bent the path since then, in half a second at the longest
+ * (goe_flight_table_follow), by less than a meter. */
 #include "goe_lookout.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@
 #define SD_MIN_M2 0.25f
 #define SHORT_M2 1.0e-6f
 #define SLOW_M2_S2 0.01f
-#define SOON_S 0.01f /* left before what lies ahead is reached */
+#define SOON_S 0.01f /* left before the obstacle ahead is reached */
 
 float goe_flight_lookout_doubt(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     return slot->suspect ? flight->settings.doubt : 1.0f;

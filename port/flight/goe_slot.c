@@ -20,7 +20,7 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
     const size_t after = offsetof(goe_flight_slot_t, hazard);
     memset((unsigned char *)slot + after, 0, sizeof *slot - after);
     slot->id = id;
-    slot->taken_us = slot->seen_us = time_us;
+    slot->taken_us = slot->detected_us = time_us;
     slot->used = slot->fresh_track = true;
 }
 
@@ -94,7 +94,7 @@ static void note_center(goe_flight_slot_t *slot, const goe_estimate_t *estimate)
     slot->covariance_ne_m2[2] = goe_flight_square(estimate->sigma.center_east_m);
 }
 
-/* A box or line whose length is not known has no centre: the middle of its front edge and the spread of that stand for it. */
+/* A box or line whose length is not known has no center: the middle of its front edge and the spread of that replace it. */
 static void note_front(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     float s;
@@ -189,7 +189,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     if (taken) {
         const float since_s = goe_flight_between_s(view->time_us, slot->taken_us);
         slot->taken_us = view->time_us;
-        slot->seen_us = seen ? view->time_us : slot->seen_us;
+        slot->detected_us = seen ? view->time_us : slot->detected_us;
         slot->reset_count = image.pose.reset_count;
         slot->camera = number;
         memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
@@ -246,14 +246,14 @@ static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *ca
     return goe_flight_geometry_project(camera, pose, point, pixel);
 }
 
-static bool is_alike(const int16_t a[4], const int16_t b[4]) {
-    bool alike = true;
+static bool is_similar(const int16_t a[4], const int16_t b[4]) {
+    bool similar = true;
     for (int axis = 0; axis < 2; axis++) {
         const float one = (float)(a[axis + 2] - a[axis]);
         const float other = (float)(b[axis + 2] - b[axis]);
-        alike = alike && one <= ALIKE * other && other <= ALIKE * one;
+        similar = similar && one <= ALIKE * other && other <= ALIKE * one;
     }
-    return alike;
+    return similar;
 }
 
 float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
@@ -264,7 +264,8 @@ float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_cam
         const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
         return comparable && overlap >= OVERLAP_MIN ? overlap : 0.0f;
     }
-    if ((comparable && !is_alike(slot->box_px, box_px)) || !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
+    if ((comparable && !is_similar(slot->box_px, box_px)) ||
+        !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
         return 0.0f;
     }
     float claim = 1.0f;

@@ -10,11 +10,11 @@
  *   structure > goe_mavlink_pack_...() > payload > goe_mavlink_frame() > bytes of a MAVLink 2 frame
  *   payload of a received frame > goe_mavlink_read_...() > structure
  *
- * Structures   hold a message's fields in the order of the wire. NaN, or what the field says, stands for "not known".
+ * Structures   hold a message's fields in the order of the wire. NaN, or the value given at the field, means "not known".
  * Payload      little-endian, trailing zeros cut off, at least one byte: MAVLink 2. A read takes any length up to the message's
- *              own and beyond: what was cut is zero, what a newer dialect added is passed over.
+ *              own and beyond: cut bytes are zero, fields that a newer dialect added are ignored.
  * Safety       No heap, no statics that change, no recursion; only memcpy and memset. Nothing is read or written outside what
- *              the lengths allow. What is read is not judged: goe_flight refuses what is not finite.
+ *              the lengths allow. Values are not checked: goe_flight refuses those that are not finite.
  */
 #ifndef GOE_MAVLINK_H
 #define GOE_MAVLINK_H
@@ -74,7 +74,7 @@ enum { GOE_MAVLINK_LEFT, GOE_MAVLINK_TOP, GOE_MAVLINK_RIGHT, GOE_MAVLINK_BOTTOM,
  * 6,553 pixels. */
 typedef struct {
     uint64_t time_usec;   /* middle of the exposure, by the clock of time_base; AGE: not read */
-    uint32_t age_usec;    /* from there until this message was sent; 0: not known, which AGE takes as it stands */
+    uint32_t age_usec;    /* from there until this message was sent; 0: not known, which AGE takes unchanged */
     uint32_t obstacle_id; /* of the detector's tracker; 0: it has none */
     int16_t box[GOE_MAVLINK_SIDES]; /* upright bounding box, 0.1 px: left, top, right, bottom; all four, also at the border */
     uint16_t time_sd;     /* one sigma of time_usec or age_usec, us; 0: not known */
@@ -82,7 +82,7 @@ typedef struct {
     uint16_t seen;        /* GOE_MAVLINK_SEES_... */
     uint8_t camera_id;    /* from 0 */
     uint8_t time_base;    /* 0 autopilot's clock, 1 sender's, 2 age: as GOE_FLIGHT_AUTOPILOT_CLOCK, ... */
-    uint8_t number;       /* of messages like this of the image; 0: nothing in view, which tells that the detector is alive */
+    uint8_t number;       /* of messages like this of the image; 0: nothing in view, which shows that the detector is alive */
     uint8_t pixel_sd;     /* one sigma of box and points, 0.1 px; 0: not known */
     uint8_t score;        /* per cent; 255: not known, taken as 100 */
     int16_t u[GOE_MAVLINK_POINTS], v[GOE_MAVLINK_POINTS]; /* extension: points, 0.1 px */

@@ -266,8 +266,8 @@ static void fill_callsign(int slot, char callsign[9]) {
     }
 }
 
-/* Down of what is told as its altitude. */
-static float told_down_m(const goe_flight_obstacle_t *obstacle, const goe_mavlink_own_t *own) {
+/* Down of the reported altitude. */
+static float reported_down_m(const goe_flight_obstacle_t *obstacle, const goe_mavlink_own_t *own) {
     const float below_m = own->position_ned_m[2] + BELOW_OWN_M;
     const float top_m = obstacle->center_ned_m[2] - obstacle->height_m;
     return has(obstacle, GOE_HAS_HEIGHT) ? goe_flight_larger(top_m, below_m) : below_m;
@@ -275,7 +275,7 @@ static float told_down_m(const goe_flight_obstacle_t *obstacle, const goe_mavlin
 
 bool goe_mavlink_to_adsb_vehicle(const goe_flight_obstacle_t *obstacle, int slot, uint32_t icao_base,
                                  const goe_mavlink_own_t *own, goe_mavlink_adsb_vehicle_t *message) {
-    const float altitude_m = own->origin_alt_m - told_down_m(obstacle, own);
+    const float altitude_m = own->origin_alt_m - reported_down_m(obstacle, own);
     memset(message, 0, sizeof *message);
     if (!has(obstacle, GOE_HAS_POSITION) || !own->origin_known || !goe_flight_within(altitude_m, ALTITUDE_MAX_M)) {
         return false;

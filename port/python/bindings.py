@@ -5,7 +5,7 @@
 Types, constants and functions are taken from goe.h, goe_flight.h and the glue's headers as they are, and the C compiler
 holds cffi's idea of every size and offset against its own. CMakeLists.txt runs this whenever the package is built.
 
-``fingerprint`` tells which sources a module was built from: a checkout can ask whether the installed one is its own.
+``fingerprint`` identifies the sources of a module: a checkout can check whether the installed one is its own.
 Without ``--out`` it is printed.
 """
 
@@ -107,7 +107,7 @@ def declarations(headers: dict[str, str]) -> str:
 
 
 def sources(lib: Path, flight: Path, cmake: Path) -> Iterator[tuple[str, Path]]:
-    """All that a module is made of, named alike in a checkout and in a packed folder."""
+    """All sources of a module, with the same names in a checkout and in a packed folder."""
     folders = {
         "lib": lib.rglob("*"), "flight": flight.glob("*"), "cmake": cmake.glob("goe_compile.cmake"),
         "package": (path for folder in ("", "csrc", "src/goe") for path in (PACKAGE / folder).glob("*")),

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 const PARTS: [&str; 4] = ["window", "refined", "hazard", "movers"];
-const FLIGHT_OWN: usize = 1664; // bytes of the flight layer beside its obstacles
+const FLIGHT_OWN: usize = 1664; // bytes of the flight layer without its obstacles
 const SLOTS: usize = 4; // obstacles of the flight layer
-const SLOT: usize = 128; // bytes of an obstacle beside its estimator
+const SLOT: usize = 128; // bytes of an obstacle without its estimator
 
 // The same bits everywhere; sqrtf as an instruction; enumerations are int, as in ffi.rs.
 const FLAGS: [&str; 3] = ["-ffp-contract=off", "-fno-math-errno", "-fno-short-enums"];
@@ -42,7 +42,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 
 const CHECKED: &str = "#include \"goe.h\"\n#ifdef GOE_RUST_FLIGHT\n#include \"goe_flight.h\"\n#endif\n";
 
-/// Where a list of `src/layout.rs` holds, as C's preprocessor asks.
+/// The condition of a list of `src/layout.rs`, for C's preprocessor.
 fn condition(line: &str) -> Option<&'static str> {
     match line {
         "layout! {" => Some("1"),

@@ -7,8 +7,8 @@
 #define PI 3.14159265358979323846
 #define RIM_POINTS 48 /* of a mast's rim: 0.2 % of its radius is lost at most */
 #define POINTS_MAX (2 * RIM_POINTS)
-#define LEAST_BOX_PX 2.0       /* what is smaller no detector finds */
-#define KEPT_SHARE 0.904837418 /* exp(-1 / (APPROACH_RATE_HZ APPROACH_ALIKE_S)) */
+#define LEAST_BOX_PX 2.0       /* no detector finds a smaller box */
+#define KEPT_SHARE 0.904837418 /* exp(-1 / (APPROACH_RATE_HZ APPROACH_CORRELATION_S)) */
 #define NEW_SHARE 0.425755835  /* sqrt(1 - KEPT_SHARE^2) */
 
 typedef struct {

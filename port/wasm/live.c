@@ -41,7 +41,7 @@ const char *live_reason(void) { return goe_reason_text(estimate.reason); }
 
 static float larger(float a, float b) { return a > b ? a : b; }
 
-/* The noise that every flight has is always told: see approach.h. */
+/* The noise of every flight is always configured: see approach.h. */
 static void choose_settings(goe_settings_t *settings) {
     goe_settings_default(settings);
     settings->camera.fx_px = settings->camera.fy_px = (float)APPROACH_FOCAL_PX;
@@ -51,7 +51,7 @@ static void choose_settings(goe_settings_t *settings) {
     settings->camera.height_px = (float)APPROACH_IMAGE_HEIGHT_PX;
     settings->heading_auto = false; /* north, the course */
     settings->detector.box_share = (float)APPROACH_BOX_SHARE;
-    settings->detector.correlation_s = (float)APPROACH_ALIKE_S;
+    settings->detector.correlation_s = (float)APPROACH_CORRELATION_S;
     if (controls[CONTROL_knows] > 0.5f) {
         const float offset_m = controls[CONTROL_height_offset_m];
         settings->detector.box_px = larger(controls[CONTROL_pixel_px], 0.1f);
@@ -128,7 +128,7 @@ static void report_image(const goe_image_t *image) {
     fields[FIELD_box_bottom_px] = box.bottom_px;
 }
 
-/* The centre where there is one; otherwise the reference point, which of a prism is its middle. */
+/* The center if valid; otherwise the reference point, which of a prism is its middle. */
 static void report_place(const goe_image_t *image) {
     if (estimate.valid & GOE_HAS_CENTER) {
         fields[FIELD_ahead_m] = estimate.center_north_m - image->pose.position_ned_m[0];

@@ -11,19 +11,19 @@
 
 #include "goe.h"
 
-/* kind, detector: approach_kind_t and approach_detector_t. knows: 1 if the estimator is told the noise and offset that there are,
+/* kind, detector: approach_kind_t and approach_detector_t. knows: 1 if the true noise and offset are configured,
  * 0 if it has its defaults. The others as in approach_plan_t; seed: 0 to 2^24. */
 /* Tables, laid out by hand. */
 /* clang-format off */
 #define LIVE_CONTROLS(X) X(kind) X(detector) X(roll_deg) X(pixel_px) X(height_offset_m) X(side_m) X(knows) X(seed)
 
-/* Metres, seconds, degrees, pixels. A sigma of 0 beside a value of 0: not known.
- *   true_...   the aircraft, and of the obstacle what approach.h says
- *   box_...    what the image shows: the box, or the hull of the points that are seen; 0 if nothing is
+/* Meters, seconds, degrees, pixels. A sigma of 0 with a value of 0: not known.
+ *   true_...   the aircraft, and the obstacle as in approach.h
+ *   box_...    in the image: the box, or the hull of the visible points; 0 if none
  *   valid, model, suspect, fresh, age_s, misfit, points   of goe_estimate_t
  *   ahead_m, right_m   the middle of the estimate's outline, relative to the aircraft; of a face alone the middle of that
  *   ahead_ahead_m2, ahead_right_m2, right_right_m2   the covariance of these two
- *   across_.., along_..   unit vectors (north, east) of width and length; 0 of what is round
+ *   across_.., along_..   unit vectors (north, east) of width and length; 0 of a round obstacle
  *   order      0 nothing known yet, 1 clear, 2 the margin is in doubt but there is time, 3 go around, 4 too uncertain to say; by
  *              goe_decide: only "clear" ends 3
  *   the rest of goe_hazard_t, by the margins of goe_decide */

@@ -87,7 +87,7 @@ static void log_frame(const flight_frame_t *frame, log_features_t logged, frame_
 
 /* ----------------------------------------------------------------------------------------------------------- noise -- */
 
-/* Rounding to whole pixels is 1/sqrt(12) = 0.29 px, but on a slowly growing image its errors stay alike for some images. */
+/* Rounding to whole pixels is 1/sqrt(12) = 0.29 px, but on a slowly growing image its errors are correlated over some images. */
 #define ROUNDING_PX 0.35
 
 /* Figures that the library takes for "none": a pose without errors still carries those of single precision. */
@@ -115,7 +115,7 @@ void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings) {
 
 /* ------------------------------------------------------------------------------------------------------------- run -- */
 
-/* The condition is asked of the very points that were solved; only the library's own window knows them. The refined
+/* The condition is that of exactly the solved points, which only the library's own window knows. The refined
  * method does not answer by (5). */
 static double condition_behind(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
     const goe_window_t *window = &estimator->window;

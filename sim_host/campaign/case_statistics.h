@@ -2,7 +2,7 @@
  * How far the estimates of one run are off.
  *
  * The truth is what the estimate means, from the true motion, with the true camera of the first frame as the origin:
- *   disc model   reference point = the obstacle's centre
+ *   disc model   reference point = the obstacle's center
  *   line, box    reference point = middle of the front edge
  * Which side of a box is called the side edge is a convention; near 45 degrees noise decides it. An estimate that calls the
  * other one so (its orientation is more than 45 degrees off, modulo 180) is compared with the truth renamed accordingly:
@@ -31,7 +31,7 @@ typedef enum {
     CASE_QUANTITIES
 } case_quantity_t;
 
-/* Metres or degrees; NaN where there is none. */
+/* Meters or degrees; NaN where there is none. */
 typedef struct {
     double truth[CASE_QUANTITIES], error[CASE_QUANTITIES]; /* error: estimate minus truth */
     bool swapped;                                          /* the truth was renamed */

@@ -101,7 +101,7 @@ static void include_end(const outline_t *outline, extreme_t extremes[SIDE_COUNT]
 }
 
 static void look_along(const outline_t *outline, extreme_t extremes[SIDE_COUNT], const curve_t *curve) {
-    bool was_seen = false;
+    bool was_visible = false;
     for (int i = 0; i <= STEPS; i++) {
         const double s = (double)i / STEPS, before = (double)(i - 1) / STEPS;
         double pixel[2];
@@ -109,14 +109,14 @@ static void look_along(const outline_t *outline, extreme_t extremes[SIDE_COUNT],
         if (seen) {
             include(extremes, s, pixel);
         }
-        if (i > 0 && seen != was_seen) {
+        if (i > 0 && seen != was_visible) {
             include_end(outline, extremes, curve, seen ? s : before, seen ? before : s);
         }
-        was_seen = seen;
+        was_visible = seen;
     }
 }
 
-/* Of a straight edge with an image all along, which its ends tell as the field is convex. */
+/* Of a straight edge that is entirely visible, shown by its ends as the field is convex. */
 static bool look_at_ends(const outline_t *outline, extreme_t extremes[SIDE_COUNT], const curve_t *edge) {
     double from[2], to[2];
     if (!see(outline, edge, 0.0, from) || !see(outline, edge, 1.0, to)) {

@@ -33,7 +33,7 @@ static goe_pixel_t image_point(const frame_t *frame, frame_value_t name_u) {
     return point;
 }
 
-/* A side of the box: tells its bit, 0 if it is not seen. */
+/* A side of the box: returns its bit, 0 if it is not visible. */
 static unsigned box_side(const frame_t *frame, frame_value_t name, unsigned bit, float *side_px) {
     if (!frame->given[name]) {
         return 0;

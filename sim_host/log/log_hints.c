@@ -135,7 +135,7 @@ static void print_times(const log_hints_t *hints, const place_t *place) {
     } else if (speed > SPEED_MAX_M_S) {
         begin(place);
         (void)fprintf(place->stream,
-                      "n_m, e_m: the aircraft flies %.3g m/s: feet? positions are in metres, t_s in seconds\n", speed);
+                      "n_m, e_m: the aircraft flies %.3g m/s: feet? positions are in meters, t_s in seconds\n", speed);
     }
 }
 
@@ -178,7 +178,7 @@ static void print_heights(const log_hints_t *hints, const place_t *place) {
                       ratio < 0.0 ? "it grows as agl_m does" : "the camera is below the ground, and agl_m is empty");
     } else if (ratio > 0.0) {
         begin(place);
-        (void)fprintf(place->stream, "%s: %.3g times %s: feet? both are in metres\n", ratio > 1.0 ? "agl_m" : "d_m",
+        (void)fprintf(place->stream, "%s: %.3g times %s: feet? both are in meters\n", ratio > 1.0 ? "agl_m" : "d_m",
                       1.0 / FOOT_M, ratio > 1.0 ? "-d_m" : "-agl_m");
     }
 }

@@ -95,7 +95,7 @@ static void append(setting_fault_t *fault, const char *text) {
     (void)snprintf(fault->text + used, sizeof fault->text - used, "%s", text);
 }
 
-static bool tell_names(const char *name, size_t length, setting_fault_t *fault) {
+static bool list_names(const char *name, size_t length, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(name, length);
     nearest_name_t nearest = nearest_name_of(name, length);
     for (size_t i = 0; i < count_tuned(); i++) {
@@ -114,7 +114,7 @@ static bool tell_names(const char *name, size_t length, setting_fault_t *fault) 
     return false;
 }
 
-static bool tell_value(const setting_t *setting, const char *text, const char *reason, setting_fault_t *fault) {
+static bool describe_value(const setting_t *setting, const char *text, const char *reason, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(text, strlen(text));
     (void)snprintf(fault->text, sizeof fault->text, "%s: '%s' is not %s", setting->name, excerpt.text, reason);
     return false;
@@ -124,7 +124,7 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
     const size_t length = strcspn(assignment, "=");
     const setting_t *setting = find_setting(assignment, length, count_tuned());
     if (setting == NULL) {
-        return tell_names(assignment, length, fault);
+        return list_names(assignment, length, fault);
     }
     if (assignment[length] == '\0') {
         (void)snprintf(fault->text, sizeof fault->text, "%s: no value; write %s=VALUE", setting->name, setting->name);
@@ -133,10 +133,10 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
     const char *text = assignment + length + 1u;
     double value = 0.0;
     if (!number_parse(text, strlen(text), &value)) {
-        return tell_value(setting, text, "a number", fault);
+        return describe_value(setting, text, "a number", fault);
     }
     if (!suits(setting, value)) {
-        return tell_value(setting, text, setting->kind == KIND_TRUTH ? "0 or 1" : "a whole number", fault);
+        return describe_value(setting, text, setting->kind == KIND_TRUTH ? "0 or 1" : "a whole number", fault);
     }
     store(settings, setting, value);
     return true;
@@ -144,7 +144,7 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
 
 /* ------------------------------------------------------------------------------------------------------------ range -- */
 
-/* The name of the first setting beside the camera that goe_init() refuses; null if it refuses none. */
+/* The name of the first setting, camera excluded, that goe_init() refuses; null if it refuses none. */
 static const char *first_refused(const goe_settings_t *settings) {
     goe_settings_t trial = *settings;
     goe_estimator_t estimator;

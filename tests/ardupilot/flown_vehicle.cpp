@@ -101,7 +101,7 @@ void FlownVehicle::send_image() {
         return;
     }
     goe_flight_detection_t detection = flown_detection(&flown, exposed);
-    const bool sees = flown.sees && detection.box.seen == GOE_SEES_BOX;
+    const bool sees = flown.detects && detection.box.seen == GOE_SEES_BOX;
     const uint8_t number = sees ? copies : 0;
     const uint64_t exposed_us = first_us + uint64_t(exposed) * STEP_US + uint64_t(int64_t(ahead_us));
     images++;

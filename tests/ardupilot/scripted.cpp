@@ -73,16 +73,16 @@ int AP_HAL::Util::snprintf(char *text, size_t size, const char *format, ...) {
 static std::atomic<uint64_t> clock_us; // what the thread sees of scripted.now_us
 void show_clock() { clock_us = scripted.now_us; }
 
-static uint64_t seen_us() {
+static uint64_t detected_us() {
     if (!scripted.runs_at_once) {
         show_clock();
     }
     return clock_us;
 }
 
-uint32_t AP_HAL::micros() { return uint32_t(seen_us()); }
-uint64_t AP_HAL::micros64() { return seen_us(); }
-uint32_t AP_HAL::millis() { return uint32_t(seen_us() / 1000); }
+uint32_t AP_HAL::micros() { return uint32_t(detected_us()); }
+uint64_t AP_HAL::micros64() { return detected_us(); }
+uint32_t AP_HAL::millis() { return uint32_t(detected_us() / 1000); }
 
 void *operator new(size_t size, const ScriptedHeap &) noexcept {
     static std::vector<void *> &taken = *new std::vector<void *>; // what an object that a test has left still holds

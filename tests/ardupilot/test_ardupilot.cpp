@@ -169,7 +169,7 @@ static void test_without_a_pose_it_is_not_healthy(void) {
 
 static void test_healthy_means_alive_and_not_that_something_is_there(void) {
     FlownVehicle vehicle;
-    vehicle.flown.sees = false;
+    vehicle.flown.detects = false;
     vehicle.fly(3.0);
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
     TEST_ASSERT_EQUAL(0, vehicle.seen().obstacles);
@@ -336,7 +336,7 @@ static void test_parameters_wait_in_flight_until_nothing_is_followed(void) {
     vehicle.fly(3.0); // compared with the layer that has the old ones
     TEST_ASSERT_TRUE(scripted.has_said("parameters wait"));
     CHECK_CLOSE(0.0, 15.0, vehicle.flight().settings.margin_m);
-    vehicle.flown.sees = false;
+    vehicle.flown.detects = false;
     vehicle.fly(1.0);
     vehicle.compares = false;
     vehicle.fly(13.0); // forgotten by then
@@ -663,7 +663,7 @@ static void test_the_database_keeps_its_limits(void) {
 static void test_what_is_given_up_is_left_to_the_database(void) {
     FlownVehicle vehicle;
     vehicle.fly(6.0);
-    vehicle.flown.sees = false;
+    vehicle.flown.detects = false;
     vehicle.fly(5.0);
     TEST_ASSERT_EQUAL(AP_HAL::millis(), scripted.database().at(ID).timestamp_ms); // unseen for 5 s, and still followed
     vehicle.compares = false;
@@ -682,7 +682,7 @@ static void test_the_sphere_is_at_the_own_height_between_foot_and_top(void) {
     CHECK_CLOSE(0.3, fminf(fmaxf(own, foot), top), up);
     vehicle.compares = false;
     scripted.vertical_reset_ms = AP_HAL::millis();
-    vehicle.flown.sees = false;
+    vehicle.flown.detects = false;
     vehicle.jump = Vector3f(0.0f, 0.0f, -500.0f); // far over it
     vehicle.fly(0.4);
     TEST_ASSERT_TRUE(scripted.database().at(ID).pos.z < own + 100.0f);

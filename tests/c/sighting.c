@@ -82,7 +82,7 @@ double sighting_height(const sighting_t *sighting, const double state[GOE_STATES
     return y + e[0] * (1.0 + y * y) - e[2] * x - e[1] * x * y;
 }
 
-/* A ray r of the told axes is r + e x r in the true ones, and the other way round with the other sign. */
+/* A ray r of the given axes is r + e x r in the true ones, and the other way round with the other sign. */
 void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
                       double seen[2]) {
     double e[3];

@@ -63,7 +63,7 @@ static void every_feature_has_its_own_place(void) {
     CHECK_STATUS(GOE_OK, faults.first);
 }
 
-static void what_is_not_seen_is_not_usable(void) {
+static void invisible_features_are_not_usable(void) {
     see(&image.top, 320.0f, 240.0f);
     image.left.u_px = check_from_bits(0x7FC00000u); /* not read */
     align(unturned);
@@ -135,7 +135,7 @@ static void counters_saturate(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_feature_has_its_own_place);
-    RUN_TEST(what_is_not_seen_is_not_usable);
+    RUN_TEST(invisible_features_are_not_usable);
     RUN_TEST(own_rotation_is_taken_out);
     RUN_TEST(a_ray_too_far_aside_is_behind_the_camera);
     RUN_TEST(a_lens_that_cannot_be_inverted_loses_its_pixel_only);

@@ -82,8 +82,8 @@ static void a_silent_detector(void) {
     TEST_ASSERT_FALSE(estimate.suspect);
 }
 
-/* GIVEN a number that passes to another obstacle THEN within three seconds the estimate is suspect or began anew, and within six
- * it is at the one that is seen. */
+/* GIVEN a number that passes to another obstacle THEN within three seconds the estimate is suspect or began again, and within six
+ * it is at the visible one. */
 static void a_number_that_passes_to_another(void) {
     scene_truth_t truth;
     bool noticed = false;
@@ -106,7 +106,7 @@ static void a_number_that_passes_to_another(void) {
 }
 
 /* [goe_estimate_t.x_m, goe_hazard]
- * GIVEN an obstacle that is passed, and is seen no more THEN the hazard is over when it lies behind, though the estimate is old. */
+ * GIVEN an obstacle that is passed and no longer visible THEN the hazard is over when it is behind, though the estimate is old. */
 static void an_obstacle_that_is_passed(void) {
     scene_truth_t truth;
     for (int k = 0; k < 136; k++) {

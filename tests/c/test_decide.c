@@ -14,7 +14,7 @@ static goe_plan_t plan;
 static goe_rule_t rule;
 static goe_hazard_t hazard;
 
-/* A mast 6 m wide, 100 m ahead and aside_m aside, higher than the path, of which everything is known to a metre. */
+/* A mast 6 m wide, 100 m ahead and aside_m aside, higher than the path, of which everything is known to a meter. */
 static void place(double aside_m) {
     const stated_t mast = {(float)aside_m, 100.0f, 6.0f, 40.0f, 1.0f, 1.0f, 20.0f};
     stated_answer(&estimator, &mast);
@@ -42,7 +42,7 @@ static void probability_and_time_decide(void) {
     rule.act_s = 1.01f * goe_soonest_s(&hazard);
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
     rule.act_s = 12.0f;
-    place(19.0); /* passed by a metre more than the margin */
+    place(19.0); /* passed by a meter more than the margin */
     (void)decide();
     TEST_ASSERT_TRUE(hazard.violation > 0.05f && hazard.violation < 0.5f);
     rule.violation_max = hazard.violation;
@@ -53,7 +53,7 @@ static void probability_and_time_decide(void) {
 
 /* GIVEN a place so uncertain that hardly any of it lies within the margin THEN the small probability is no "clear": too little is known.
  * A place that is surely outside is clear, by either distance. */
-static void what_is_hardly_known_is_not_clear(void) {
+static void a_poorly_known_obstacle_is_not_clear(void) {
     for (int far_aside = 0; far_aside < 2; far_aside++) {
         place(far_aside == 1 ? 60.0 : 0.0);
         estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 5000.0f;
@@ -228,7 +228,7 @@ static void the_soonest_time_is_early(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(probability_and_time_decide);
-    RUN_TEST(what_is_hardly_known_is_not_clear);
+    RUN_TEST(a_poorly_known_obstacle_is_not_clear);
     RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(without_a_position_nothing_is_known);

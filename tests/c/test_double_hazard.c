@@ -39,7 +39,7 @@ void tearDown(void) {}
 
 /* ---------------------------------------------------------------------------------------------------------- the answer -- */
 
-static void tell(goe_estimate_t *e, const obstacle_t *o) {
+static void give(goe_estimate_t *e, const obstacle_t *o) {
     memset(e, 0, sizeof *e);
     e->model = o->box ? GOE_MODEL_LINE : GOE_MODEL_DISC;
     e->method = GOE_METHOD_WINDOW;
@@ -188,7 +188,7 @@ static void any_obstacle_is_met_as_brute_force_says(void) {
         if (speed < 1.0 || (truth.miss_m > 0.0 && truth.miss_m < 0.01)) {
             continue; /* a graze: rounding decides on which side, and the time jumps from a corner to an entry */
         }
-        tell(&estimator.estimate, &o);
+        give(&estimator.estimate, &o);
         const goe_hazard_t hazard = foresee(&plan);
         check_worst(&worst_miss, (double)hazard.miss_m - truth.miss_m);
         check_worst(&worst_time, ((double)hazard.time_s - truth.time_s) * speed);
@@ -207,7 +207,7 @@ static void any_obstacle_is_met_as_brute_force_says(void) {
 static void a_chimney_ahead_is_reached_at_its_near_side(void) {
     const obstacle_t chimney = {false, 0.0, 103.0, 6.0, 0.0, 0.0, 60.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, 1.0);
-    tell(&estimator.estimate, &chimney);
+    give(&estimator.estimate, &chimney);
     const goe_hazard_t hazard = foresee(&plan);
     CHECK_CLOSE(1e-5, 5.0, hazard.time_s);
     CHECK_CLOSE(0.0, 0.0, hazard.miss_m);
@@ -221,7 +221,7 @@ static void turning_t_turns_the_answer_along(void) {
     /* GIVEN T at 30 degrees from north THEN the same flight relative to T meets the same obstacle */
     const obstacle_t o = {true, -15.0, 80.0, 8.0, 20.0, 25.0, 12.0};
     goe_plan_t plan = plan_of(25.0, 3.0, -1.0);
-    tell(&estimator.estimate, &o);
+    give(&estimator.estimate, &o);
     const goe_hazard_t before = foresee(&plan);
     const double angle = 30.0 * RAD_PER_DEG;
     estimator.motion.heading_cos = (float)cos(angle);
@@ -234,10 +234,10 @@ static void turning_t_turns_the_answer_along(void) {
     CHECK_CLOSE(1e-4, before.clearance_m, after.clearance_m);
 }
 
-static void what_lies_behind_is_as_far_as_now(void) {
+static void an_obstacle_behind_is_as_far_as_now(void) {
     const obstacle_t behind = {true, 10.0, -60.0, 8.0, 20.0, 0.0, 12.0};
     const goe_plan_t plan = plan_of(25.0, 0.0, 2.0);
-    tell(&estimator.estimate, &behind);
+    give(&estimator.estimate, &behind);
     estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 1.0f;
     const goe_hazard_t hazard = foresee(&plan);
     CHECK_CLOSE(0.0, 0.0, hazard.time_s);
@@ -253,7 +253,7 @@ static void over_the_roof_the_distance_is_none(void) {
     const obstacle_t o = {true, 0.0, -10.0, 20.0, 30.0, 0.0, 45.0};
     const goe_plan_t level = plan_of(10.0, 0.0, 0.0);
     const goe_plan_t descending = plan_of(10.0, 0.0, -2.0);
-    tell(&estimator.estimate, &o);
+    give(&estimator.estimate, &o);
     const goe_hazard_t now = foresee(&level);
     CHECK_CLOSE(0.0, 0.0, now.time_s);
     CHECK_CLOSE(0.0, 0.0, now.miss_m);
@@ -268,7 +268,7 @@ static void standing_still_the_distance_is_that_of_now(void) {
     const obstacle_t boxes[2] = {{true, 30.0, 0.0, 20.0, 40.0, 0.0, 20.0}, {false, 26.0, 0.0, 12.0, 0.0, 0.0, 20.0}};
     const goe_plan_t still = plan_of(0.0, 0.0, -3.0);
     for (int i = 0; i < 2; i++) {
-        tell(&estimator.estimate, &boxes[i]);
+        give(&estimator.estimate, &boxes[i]);
         estimator.estimate.sigma.x0_m = 10.0f;
         estimator.estimate.sigma.height_m = 10.0f;
         const goe_hazard_t hazard = foresee(&still);
@@ -285,7 +285,7 @@ static void a_creep_is_taken_as_standing_still(void) {
     const obstacle_t chimney = {false, 0.0, 103.0, 6.0, 0.0, 0.0, 60.0};
     const goe_plan_t creeping = plan_of(0.0999, 0.0, 1.0);
     const goe_plan_t moving = plan_of(0.1001, 0.0, 1.0);
-    tell(&estimator.estimate, &chimney);
+    give(&estimator.estimate, &chimney);
     CHECK_CLOSE(0.0, 0.0, foresee(&creeping).time_s);
     CHECK_CLOSE(1e-4, 100.0, foresee(&creeping).miss_m);
     CHECK_CLOSE(0.1, 100.0 / 0.1001, foresee(&moving).time_s);
@@ -296,7 +296,7 @@ static void a_creep_is_taken_as_standing_still(void) {
 static void since_the_image_the_aircraft_has_flown_on(void) {
     const obstacle_t chimney = {false, 0.0, 143.0, 6.0, 0.0, 0.0, 60.0};
     goe_plan_t plan = plan_of(20.0, 0.0, 1.0);
-    tell(&estimator.estimate, &chimney);
+    give(&estimator.estimate, &chimney);
     CHECK_CLOSE(1e-5, 7.0, foresee(&plan).time_s);
     plan.since_image_s = 2.0f;
     const goe_hazard_t hazard = foresee(&plan);
@@ -311,7 +311,7 @@ static void since_the_image_the_aircraft_has_flown_on(void) {
 static void a_camera_in_the_middle_of_a_disc_has_an_answer(void) {
     const obstacle_t o = {false, 0.0, 0.0, 10.0, 0.0, 0.0, 45.0};
     const goe_plan_t plans[2] = {plan_of(0.0, 0.0, 0.0), plan_of(0.0, 15.0, 0.0)};
-    tell(&estimator.estimate, &o);
+    give(&estimator.estimate, &o);
     for (int i = 0; i < 2; i++) {
         const goe_hazard_t hazard = foresee(&plans[i]);
         CHECK_CLOSE(0.0, 0.0, hazard.miss_m);
@@ -320,10 +320,10 @@ static void a_camera_in_the_middle_of_a_disc_has_an_answer(void) {
 }
 
 /* [goe_hazard] */
-static void what_is_not_known_leaves_a_circle_or_a_point(void) {
+static void unknown_dimensions_leave_a_circle_or_a_point(void) {
     const obstacle_t o = {true, 20.0, 100.0, 10.0, 40.0, 0.0, 12.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
-    tell(&estimator.estimate, &o);
+    give(&estimator.estimate, &o);
     estimator.estimate.valid &= ~(GOE_HAS_LENGTH | GOE_HAS_HEIGHT);
     estimator.estimate.length_m = 0.0f;
     estimator.estimate.height_m = 0.0f;
@@ -342,9 +342,9 @@ static void what_is_not_known_leaves_a_circle_or_a_point(void) {
 static void without_a_height_the_margin_alone_counts(void) {
     const obstacle_t o = {false, 14.0, 100.0, 10.0, 0.0, 0.0, 12.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
-    tell(&estimator.estimate, &o);
+    give(&estimator.estimate, &o);
     estimator.estimate.sigma.x0_m = 4.0f;
-    CHECK_CLOSE(1e-6, 0.0, foresee(&plan).violation); /* 28 m above what asks for 10 */
+    CHECK_CLOSE(1e-6, 0.0, foresee(&plan).violation); /* 28 m above an obstacle that requires 10 */
     estimator.estimate.valid &= ~GOE_HAS_HEIGHT;
     CHECK_CLOSE(2e-6, 0.1586553, foresee(&plan).violation); /* 9 m off, 5 wanted: 1 sigma */
 }
@@ -410,7 +410,7 @@ static void give_sigmas(double position, double range, double extent, double ori
     sigma->height_m = (float)height;
 }
 
-/* Within 5 % or 2 cm: what is left of the curvature of corners and circles, and of the draw. */
+/* Within 5 % or 2 cm: the rest of the curvature of corners and circles, and of the draw. */
 static void check_sd(double expected, float actual) { CHECK_CLOSE(fmax(0.05 * expected, 0.02), expected, actual); }
 
 /* [goe_affine.c] */
@@ -421,7 +421,7 @@ static void sigmas_of_a_miss_are_those_of_random_truths(void) {
                                          {true, 30.0, -20.0, 8.0, 15.0, 20.0, 45.0}};
     for (int i = 0; i < 4; i++) {
         const goe_plan_t plan = plan_of(20.0, -1.0, i % 2 ? 1.5 : -1.5);
-        tell(&estimator.estimate, &missed[i]);
+        give(&estimator.estimate, &missed[i]);
         give_sigmas(1.5, 4.0, 1.0, 1.5, 1.2);
         const goe_hazard_t hazard = foresee(&plan);
         const drawn_t drawn = draw(&missed[i], &plan, draw_from_sigmas);
@@ -439,7 +439,7 @@ static void sigmas_of_a_crossing_are_those_of_random_truths(void) {
     for (int i = 0; i < 3; i++) {
         for (int sign = -1; sign <= 1; sign += 2) {
             const goe_plan_t plan = plan_of(20.0, 0.5, 1.5 * sign);
-            tell(&estimator.estimate, &crossed[i]);
+            give(&estimator.estimate, &crossed[i]);
             give_sigmas(1.5, 4.0, 1.0, 1.5, 1.2);
             const goe_hazard_t hazard = foresee(&plan);
             const drawn_t drawn = draw(&crossed[i], &plan, draw_from_sigmas);
@@ -458,7 +458,7 @@ static void a_grazed_edge_does_not_blow_the_sigma_of_the_time_up(void) {
     static const double half_m[3] = {10.0, 20.0, 20.0};
     const goe_plan_t plan = plan_of(20.0, 0.0, -2.0);
     for (int i = 0; i < 3; i++) {
-        tell(&estimator.estimate, &grazed[i]);
+        give(&estimator.estimate, &grazed[i]);
         give_sigmas(2.0, 4.0, 1.0, 1.0, 1.0);
         const drawn_t drawn = draw(&grazed[i], &plan, draw_from_sigmas);
         const goe_hazard_t hazard = foresee(&plan);
@@ -471,7 +471,7 @@ static void a_grazed_edge_does_not_blow_the_sigma_of_the_time_up(void) {
 }
 
 /* [goe_hazard, goe_plan_t.clearance_m, goe_plan_t.margin_m, goe_violation.c]
- * The probability told may exceed the drawn one, by what goe.h says, but hardly fall short of it. */
+ * The reported probability may exceed the drawn one, as goe.h allows, but hardly fall short of it. */
 static void the_probability_is_that_of_random_truths(void) {
     check_random_t random = check_random_start("violation");
     double least = 0.0;
@@ -488,7 +488,7 @@ static void the_probability_is_that_of_random_truths(void) {
                               check_random_between(&random, 30.0, 50.0)};
         const goe_plan_t plan =
             plan_of(20.0, check_random_between(&random, -2.0, 2.0), check_random_between(&random, -2.0, 2.0));
-        tell(&estimator.estimate, &o);
+        give(&estimator.estimate, &o);
         give_sigmas(check_random_between(&random, 0.5, 8.0), check_random_between(&random, 1.0, 10.0),
                     check_random_between(&random, 0.1, 1.0), check_random_between(&random, 0.2, 4.0),
                     check_random_between(&random, 0.5, 5.0));
@@ -498,9 +498,9 @@ static void the_probability_is_that_of_random_truths(void) {
         sum += fabs(off);
         cases++;
     }
-    check_report("violation, told less drawn, least", least);
-    check_report("violation, told less drawn, most", most);
-    check_report("violation, told less drawn, mean magnitude", sum / cases);
+    check_report("violation, reported less drawn, least", least);
+    check_report("violation, reported less drawn, most", most);
+    check_report("violation, reported less drawn, mean magnitude", sum / cases);
     TEST_ASSERT_TRUE(least > -0.05 && most < 0.05 && sum / cases < 0.005);
 }
 
@@ -563,21 +563,21 @@ static void correlation_moves_the_probability(void) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     for (int i = 0; i < 5; i++) {
         give_disc(shared[i]);
-        tell(&estimator.estimate, &mean);
+        give(&estimator.estimate, &mean);
         estimator.estimate.method = GOE_METHOD_REFINED;
         goe_latest_covariance(&estimator, true, 0.0f, covariance);
         factorise(covariance);
         goe_plan_t plan = plan_of(20.0, 0.0, 0.0);
         plan.margin_m = 23.0f;
         plan.clearance_m = 14.0f;
-        const double told = (double)foresee(&plan).violation;
+        const double reported = (double)foresee(&plan).violation;
         const double drawn = draw(&mean, &plan, draw_from_covariance).violation;
-        check_report("shared errors: violation told", told);
+        check_report("shared errors: violation reported", reported);
         check_report("shared errors: violation drawn", drawn);
-        TEST_ASSERT_TRUE(told > drawn - 0.03);
-        TEST_ASSERT_TRUE(told < drawn + 0.15);
+        TEST_ASSERT_TRUE(reported > drawn - 0.03);
+        TEST_ASSERT_TRUE(reported < drawn + 0.15);
         if (fabs((double)shared[i]) < 0.6) {
-            CHECK_CLOSE(0.1, drawn, told);
+            CHECK_CLOSE(0.1, drawn, reported);
         }
     }
 }
@@ -591,7 +591,7 @@ static scene_t tower(void) {
     return scene;
 }
 
-static void fly_towards_a_tower(float told_too_high_m) {
+static void fly_towards_a_tower(float reported_too_high_m) {
     const scene_t scene = tower();
     const goe_settings_t settings = scene_settings(&scene);
     goe_estimate_t estimate;
@@ -599,7 +599,7 @@ static void fly_towards_a_tower(float told_too_high_m) {
     for (int k = 0; k < 40; k++) {
         goe_image_t image;
         scene_image(&scene, k, &image, NULL);
-        image.pose.height_m += told_too_high_m;
+        image.pose.height_m += reported_too_high_m;
         (void)goe_update(&estimator, &image, &estimate);
     }
     TEST_ASSERT_EQUAL_HEX32(0x3Fu, estimate.valid & 0x3Fu);
@@ -629,7 +629,7 @@ static void correlated_errors_are_accounted_for(void) {
         plan.clearance_m = (float)truth_of(&mean, &plan).clearance_m;
         const goe_hazard_t hazard = foresee(&plan);
         const drawn_t drawn = draw(&mean, &plan, draw_from_covariance);
-        check_report("refined: violation told", (double)hazard.violation);
+        check_report("refined: violation reported", (double)hazard.violation);
         check_report("refined: violation drawn", drawn.violation);
         CHECK_CLOSE(1e-3, truth_of(&mean, &plan).clearance_m, hazard.clearance_m);
         check_sd(drawn.time_sd_s, hazard.time_sd_s);
@@ -643,7 +643,7 @@ static void correlated_errors_are_accounted_for(void) {
 
 /* [goe_covariance.c] */
 static void the_altimeters_bias_does_not_part_camera_and_top(void) {
-    /* GIVEN a height that is told 1 m too large THEN the clearance is the true one all the same */
+    /* GIVEN a height that is given 1 m too large THEN the clearance is the true one all the same */
     goe_plan_t plan = plan_of(0.0, 0.0, 0.0);
     for (int i = 0; i < 2; i++) {
         const scene_t scene = tower();
@@ -676,7 +676,7 @@ static void a_refusal_leaves_zeros(void) {
     check_refused(GOE_BAD_ARGUMENT, NULL, &good);
     check_refused(GOE_BAD_ARGUMENT, &estimator, NULL);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_hazard(&estimator, &good, NULL));
-    tell(&estimator.estimate, &o);
+    give(&estimator.estimate, &o);
     for (int field = 0; field < 6; field++) {
         static const float most[6] = {1e3f, 1e3f, 1e3f, 1e4f, 1e4f, 1e3f};
         goe_plan_t plan = good;
@@ -708,13 +708,13 @@ int main(void) {
     RUN_TEST(any_obstacle_is_met_as_brute_force_says);
     RUN_TEST(a_chimney_ahead_is_reached_at_its_near_side);
     RUN_TEST(turning_t_turns_the_answer_along);
-    RUN_TEST(what_lies_behind_is_as_far_as_now);
+    RUN_TEST(an_obstacle_behind_is_as_far_as_now);
     RUN_TEST(over_the_roof_the_distance_is_none);
     RUN_TEST(standing_still_the_distance_is_that_of_now);
     RUN_TEST(a_creep_is_taken_as_standing_still);
     RUN_TEST(since_the_image_the_aircraft_has_flown_on);
     RUN_TEST(a_camera_in_the_middle_of_a_disc_has_an_answer);
-    RUN_TEST(what_is_not_known_leaves_a_circle_or_a_point);
+    RUN_TEST(unknown_dimensions_leave_a_circle_or_a_point);
     RUN_TEST(without_a_height_the_margin_alone_counts);
     RUN_TEST(sigmas_of_a_miss_are_those_of_random_truths);
     RUN_TEST(sigmas_of_a_crossing_are_those_of_random_truths);

@@ -75,8 +75,8 @@ static void the_disc_solves_from_the_eighth_image_on(void) {
     }
 }
 
-/* [GOE_MODEL_AUTO] GIVEN a box whose corners are seen only from the 5th image on WHEN flown in auto THEN the disc is reported from the 8th
- * image, and the line from the 8th line point, which is the 13th image. */
+/* [GOE_MODEL_AUTO] GIVEN a box whose corners are visible only from the 5th image on WHEN flown in auto THEN the disc is reported from the
+ * 8th image, and the line from the 8th line point, which is the 13th image. */
 static void the_line_takes_over_at_the_eighth_line_point(void) {
     start();
     for (int k = 0; k < 30; k++) {
@@ -107,7 +107,7 @@ static void the_number_of_line_points_is_a_setting(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
     (void)fly(7, 8);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
-    start(); /* ... of line points, too: until it is, the disc is told */
+    start(); /* ... of line points, too: until it is, the disc is reported */
     for (int k = 0; k < 13; k++) {
         scene_image(&scene, k, &image, NULL);
         image.base_left.seen = image.base_near.seen = image.base_right.seen = k >= 5;
@@ -142,11 +142,11 @@ static void a_forced_model_is_never_left(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------ images that do not solve anew -- */
+/* ------------------------------------------------------------------------------------ images without a new solution - -- */
 
 /* [goe_estimate_t.x_m]
  * GIVEN a solution WHEN nothing is in view THEN the image's pose is followed, the answer ages, and nothing is at fault. */
-static void nothing_seen_is_no_fault(void) {
+static void no_detection_is_no_fault(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 16));
     const goe_estimate_t before = estimate;
@@ -169,7 +169,7 @@ static void nothing_seen_is_no_fault(void) {
 }
 
 /* [GOE_MODEL_AUTO, goe_window.c] GIVEN the line is reported WHEN an image shows the silhouette alone THEN the line's solution is held. */
-static void an_image_without_corners_holds_the_line(void) {
+static void an_image_without_corners_keeps_the_line(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 16));
     const goe_estimate_t before = estimate;
@@ -244,7 +244,7 @@ static void head_on_has_no_edge(void) {
 
 /* --------------------------------------------------------------------------------- faults of an image that was taken -- */
 
-static void swapped_left_and_right_are_told(void) {
+static void swapped_left_and_right_are_reported(void) {
     scene_make_cylinder(&scene);
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
@@ -261,7 +261,7 @@ static void swapped_left_and_right_are_told(void) {
 }
 
 /* [A21, GOE_CAUSES, GOE_IMAGE_TAKEN, goe_update] The camera looks back: every ray is behind. */
-static void what_lies_behind_is_told(void) {
+static void an_obstacle_behind_is_reported(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
     scene_image(&scene, 10, &image, NULL);
@@ -276,7 +276,7 @@ static void what_lies_behind_is_told(void) {
 }
 
 /* A fault of one feature does not lose the others. */
-static void a_fault_beside_a_solution_is_partial(void) {
+static void a_fault_next_to_a_solution_is_partial(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
     scene_image(&scene, 10, &image, NULL);
@@ -290,7 +290,7 @@ static void a_fault_beside_a_solution_is_partial(void) {
     CHECK_STATUS(GOE_PARTIAL, update());
     TEST_ASSERT_EQUAL_UINT32(2u, estimator.causes[-GOE_BAD_HEIGHT]);
     scene_image(&scene, 11, &image, NULL);
-    const goe_pixel_t left = image.left; /* the disc is not what is reported */
+    const goe_pixel_t left = image.left; /* the disc is not reported */
     image.left = image.right;
     image.right = left;
     CHECK_STATUS(GOE_PARTIAL, update());
@@ -309,7 +309,7 @@ static void a_negative_height_all_along_gives_no_height(void) {
     }
 }
 
-/* GIVEN a top that lies below the ground THEN the mean of the heights is none, and is not told. */
+/* GIVEN a top below the ground THEN the mean of the heights is not valid, and is not reported. */
 static void a_height_that_is_not_positive_is_none(void) {
     scene_make_cylinder(&scene);
     start();
@@ -323,8 +323,8 @@ static void a_height_that_is_not_positive_is_none(void) {
     }
 }
 
-/* [window.side_min_px] GIVEN a truck flown past so that its side points at the camera THEN lengths are skipped and it is told. */
-static void a_side_seen_edge_on_gives_no_length(void) {
+/* [window.side_min_px] GIVEN a truck flown past with its side pointing at the camera THEN lengths are skipped and the status reports it. */
+static void a_side_viewed_edge_on_gives_no_length(void) {
     scene.x0_m = -1.9; /* the plane of the right side passes 0.65 m from the camera */
     scene.z0_m = 80.0;
     start();
@@ -368,9 +368,9 @@ static void stopping_keeps_the_last_answer(void) {
 }
 
 /* [goe_update]
- * GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is told;
+ * GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is reported;
  * before there is one to solve, the feature's fault is. */
-static void a_failed_solution_is_told_before_a_feature_s_fault(void) {
+static void a_failed_solution_is_reported_before_a_feature_s_fault(void) {
     scene.speed_mps = 0.0;
     start();
     for (int k = 0; k < 12; k++) {
@@ -402,7 +402,7 @@ static void a_moving_obstacle_has_no_parallax(void) {
 }
 
 /* GIVEN an obstacle that grows faster than our own motion explains: the line through the window meets Z = 0 before its
- * end THEN it is told as passed, and no solution is made of it. */
+ * end THEN it is reported as passed, and no solution is made of it. */
 static void an_obstacle_that_is_said_to_lie_behind_is_passed(void) {
     scene_make_cylinder(&scene);
     start();
@@ -427,7 +427,7 @@ static void an_obstacle_that_is_said_to_lie_behind_is_passed(void) {
 /* The estimator is as it was, but for one counter. */
 static void check_refused(goe_status_t expected) {
     static goe_estimator_t before;
-    const goe_estimate_t told = estimate;
+    const goe_estimate_t reported = estimate;
     memcpy(&before, &estimator, sizeof before);
     memset(&estimate, 0xA5, sizeof estimate);
     CHECK_STATUS(expected, update());
@@ -435,12 +435,12 @@ static void check_refused(goe_status_t expected) {
     before.causes[-expected]++;
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
     TEST_ASSERT_FALSE(estimate.fresh); /* always written */
-    TEST_ASSERT_EQUAL_HEX32(told.valid, estimate.valid);
-    TEST_ASSERT_EQUAL_INT(told.model, estimate.model);
-    CHECK_SAME(told.z0_m, estimate.z0_m);
-    CHECK_SAME(told.x_m, estimate.x_m);
-    CHECK_SAME(told.length_m, estimate.length_m);
-    CHECK_SAME(told.sigma.height_m, estimate.sigma.height_m);
+    TEST_ASSERT_EQUAL_HEX32(reported.valid, estimate.valid);
+    TEST_ASSERT_EQUAL_INT(reported.model, estimate.model);
+    CHECK_SAME(reported.z0_m, estimate.z0_m);
+    CHECK_SAME(reported.x_m, estimate.x_m);
+    CHECK_SAME(reported.length_m, estimate.length_m);
+    CHECK_SAME(reported.sigma.height_m, estimate.sigma.height_m);
 }
 
 /* [A17, A21, GOE_CAUSES, goe_intake.c] */
@@ -512,7 +512,7 @@ static void the_ends_of_ranges_are_within(void) {
 }
 
 /* [goe_estimator.c]
- * GIVEN a box and points, one of both bad THEN the image is refused, whichever it is: the checks of the one do not stand for those of the
+ * GIVEN a box and points, one of both bad THEN the image is refused, whichever it is: the checks of the one do not replace those of the
  * other. */
 static void points_and_boxes_are_both_checked(void) {
     goe_image_t good;
@@ -531,14 +531,15 @@ static void points_and_boxes_are_both_checked(void) {
         check_refused(GOE_NOT_FINITE);
         image.box.seen = (uint8_t)(i == 0 ? 0 : GOE_SEES_BOX & ~(1u << (i - 1)));
         image.base_near.seen = i != 0;
-        TEST_ASSERT_TRUE(update() != GOE_NOT_FINITE); /* not seen: not read */
+        TEST_ASSERT_TRUE(update() != GOE_NOT_FINITE); /* not visible: not read */
         image.pose.time_us += 1;
         good.pose.time_us = image.pose.time_us;
     }
 }
 
 /* [goe_estimator.c]
- * GIVEN a box whose left is not left of its right, or whose top not above its bottom THEN none of its sides counts, and that is told. */
+ * GIVEN a box whose left is not left of its right, or whose top not above its bottom THEN none of its sides counts, and that is reported.
+ * */
 static void a_box_out_of_order_does_not_count(void) {
     for (int n = 0; n < 2; n++) {
         start();
@@ -554,7 +555,7 @@ static void a_box_out_of_order_does_not_count(void) {
 }
 
 /* [goe_pixel_t.seen] */
-static void what_is_not_seen_is_not_read(void) {
+static void invisible_features_are_not_read(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
     scene_image(&scene, 12, &image, NULL);
@@ -639,7 +640,7 @@ static void an_image_of_no_camera_is_refused(void) {
 }
 
 /* [goe_fault.c, goe_update] The order of the checks, each over the whole image. */
-static void the_first_fault_is_told(void) {
+static void the_first_fault_is_reported(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
     for (int i = 0; i < 4; i++) {
@@ -679,7 +680,7 @@ static void null_pointers_are_refused(void) {
 }
 
 /* [goe_update] */
-static void an_estimator_must_be_initialised(void) {
+static void an_estimator_must_be_initialized(void) {
     static const int fills[] = {0x00, 0xFF, 0xA5};
     goe_estimate_t nothing;
     memset(&nothing, 0, sizeof nothing);
@@ -696,7 +697,7 @@ static void an_estimator_must_be_initialised(void) {
     }
 }
 
-/* Of the window's answer: the sigmas squared, and nothing beside the diagonal; all 0 without a position. */
+/* Of the window's answer: the sigmas squared, and nothing next to the diagonal; all 0 without a position. */
 static void the_covariance_is_the_sigmas_squared(void) {
     static const float nothing[GOE_QUANTITIES][GOE_QUANTITIES];
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -739,7 +740,7 @@ static void a_reset_forgets_the_track_and_keeps_the_counters(void) {
     }
 }
 
-/* [A11] GIVEN two obstacles in the same images WHEN two estimators take turns THEN each is what it is alone. */
+/* [A11] GIVEN two obstacles in the same images WHEN two estimators take turns THEN each gives the same result as alone. */
 static void estimators_share_nothing(void) {
     static goe_estimator_t second;
     static goe_estimate_t alone[24];
@@ -784,14 +785,14 @@ static void a_set_heading_turns_the_trajectory_frame(void) {
     settings.heading_deg = 10.0f;
     start();
     CHECK_STATUS(GOE_OK, fly(0, 20));
-    /* (X, Z) = (-12, 100) seen from a frame turned by 10 degrees to the right */
+    /* (X, Z) = (-12, 100) viewed from a frame turned by 10 degrees to the right */
     TEST_ASSERT_FLOAT_WITHIN(0.05f, -12.0f * 0.98480775f - 100.0f * 0.17364818f, estimate.x0_m);
     TEST_ASSERT_FLOAT_WITHIN(0.05f, 100.0f * 0.98480775f - 12.0f * 0.17364818f, estimate.z0_m);
     TEST_ASSERT_FLOAT_WITHIN(0.05f, -10.0f, estimate.orientation_deg);
 }
 
 /* [A5, goe_estimator.c]
- * GIVEN images without a feature, on another heading WHEN something is seen for the first time THEN the track begins there, with
+ * GIVEN images without a feature, on another heading WHEN something is detected for the first time THEN the track begins there, with
  * heading, origin and time of that image. */
 static void a_track_begins_at_first_sight(void) {
     start();
@@ -811,8 +812,8 @@ static void a_track_begins_at_first_sight(void) {
 }
 
 /* [A7]
- * GIVEN a track that began before a turn, and no position yet WHEN everything that is seen lies more than 60 degrees from Z and the nose
- * has turned by more than 45 THEN the track begins again; one feature nearer to Z is enough to go on. The image's faults count once. */
+ * GIVEN a track that began before a turn, and no position yet WHEN all visible features are more than 60 degrees from Z and the nose
+ * has turned by more than 45 THEN the track begins again; one feature nearer to Z is enough to continue. The image's faults count once. */
 static void a_track_begins_again_after_a_turn(void) {
     goe_pixel_t *const features[] = {&image.left,      &image.right,     &image.top,
                                      &image.base_left, &image.base_near, &image.base_right};
@@ -878,37 +879,37 @@ int main(void) {
     RUN_TEST(the_number_of_line_points_is_a_setting);
     RUN_TEST(the_window_is_a_setting);
     RUN_TEST(a_forced_model_is_never_left);
-    RUN_TEST(nothing_seen_is_no_fault);
-    RUN_TEST(an_image_without_corners_holds_the_line);
+    RUN_TEST(no_detection_is_no_fault);
+    RUN_TEST(an_image_without_corners_keeps_the_line);
     RUN_TEST(an_age_is_bounded);
     RUN_TEST(an_estimate_grows_old_while_images_are_refused);
     RUN_TEST(times_may_start_anywhere);
     RUN_TEST(head_on_has_no_edge);
-    RUN_TEST(swapped_left_and_right_are_told);
-    RUN_TEST(what_lies_behind_is_told);
-    RUN_TEST(a_fault_beside_a_solution_is_partial);
+    RUN_TEST(swapped_left_and_right_are_reported);
+    RUN_TEST(an_obstacle_behind_is_reported);
+    RUN_TEST(a_fault_next_to_a_solution_is_partial);
     RUN_TEST(a_negative_height_all_along_gives_no_height);
     RUN_TEST(a_height_that_is_not_positive_is_none);
-    RUN_TEST(a_side_seen_edge_on_gives_no_length);
+    RUN_TEST(a_side_viewed_edge_on_gives_no_length);
     RUN_TEST(hovering_has_no_baseline);
     RUN_TEST(stopping_keeps_the_last_answer);
-    RUN_TEST(a_failed_solution_is_told_before_a_feature_s_fault);
+    RUN_TEST(a_failed_solution_is_reported_before_a_feature_s_fault);
     RUN_TEST(a_moving_obstacle_has_no_parallax);
     RUN_TEST(an_obstacle_that_is_said_to_lie_behind_is_passed);
     RUN_TEST(every_number_read_is_checked);
     RUN_TEST(the_ends_of_ranges_are_within);
     RUN_TEST(points_and_boxes_are_both_checked);
     RUN_TEST(a_box_out_of_order_does_not_count);
-    RUN_TEST(what_is_not_seen_is_not_read);
+    RUN_TEST(invisible_features_are_not_read);
     RUN_TEST(time_must_run_on);
     RUN_TEST(the_settings_are_copied_and_the_counters_zeroed);
     RUN_TEST(the_first_image_needs_a_time);
     RUN_TEST(a_quaternion_may_be_off_by_one_percent);
     RUN_TEST(an_image_of_no_camera_is_refused);
-    RUN_TEST(the_first_fault_is_told);
+    RUN_TEST(the_first_fault_is_reported);
     RUN_TEST(counters_saturate);
     RUN_TEST(null_pointers_are_refused);
-    RUN_TEST(an_estimator_must_be_initialised);
+    RUN_TEST(an_estimator_must_be_initialized);
     RUN_TEST(the_covariance_is_the_sigmas_squared);
     RUN_TEST(a_reset_forgets_the_track_and_keeps_the_counters);
     RUN_TEST(estimators_share_nothing);

@@ -20,7 +20,7 @@ static goe_matrix_t matrix;
 static goe_rows_t rows;
 static goe_verdict_t verdict;
 
-/* A box as it is seen from some way off: six points, base corners as two rows each. The filter is sure of its state. */
+/* A box viewed from some way off: six points, base corners as two rows each. The filter is sure of its state. */
 static const double points[GOE_FEATURES][2] = {{-0.12, 0.02}, {0.03, 0.02},  {-0.04, -0.05},
                                                {-0.12, 0.15}, {-0.04, 0.17}, {0.03, 0.16}};
 
@@ -225,22 +225,22 @@ static void an_unsure_state_opens_the_gate(void) {
  * of their differences, and an outlier among them is found. */
 static void the_own_position_s_error_opens_the_gate(void) {
     for (int shared = 0; shared < 2; shared++) {
-        for (int told = 0; told < 2; told++) {
+        for (int reported = 0; reported < 2; reported++) {
             setUp();
             memset(rows.shift, 0, sizeof rows.shift);
-            rows.shifts = told != 0;
+            rows.shifts = reported != 0;
             rows.count = GOE_BOX_SIDES; /* so many of a box: along x, x, y, x */
             for (size_t i = 0; i < rows.count; i++) {
                 rows.shift[i][1] = shared || i == 0 ? 0.01f : 0.0f;
             }
             *residual(0) = (float)(15.0 / FOCAL_PX);
             apply();
-            TEST_ASSERT_EQUAL_HEX32(told && !shared ? 0u : 1u << rows.feature[0], verdict.refused);
+            TEST_ASSERT_EQUAL_HEX32(reported && !shared ? 0u : 1u << rows.feature[0], verdict.refused);
         }
     }
 }
 
-/* Normalised residual of the left point, 3 px off, as Huber's weight tells it, if each row has an error of the image's own position
+/* Normalized residual of the left point, 3 px off, as Huber's weight gives it, if each row has an error of the image's own position
  * in it, along one axis; the attitude's own is white_deg. */
 static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, double others_sigmas) {
     setUp();
@@ -264,8 +264,8 @@ static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, d
     return 0.5 / (weight * weight);
 }
 
-/* GIVEN sides of a box and an image whose own position is off THEN it widens what a side may be off by, however well the attitude is
- * known; what it moves alike in both is not between them. */
+/* GIVEN sides of a box and an image with an own position error THEN it widens the possible error of a side, however well the attitude is
+ * known; an equal motion of both is not between them. */
 static void an_own_position_error_opens_the_gate(void) {
     for (size_t n = 0; n < 6; n++) {
         const double white_deg = n % 2 == 0 ? 1.0e-4 : 0.03;

@@ -91,7 +91,7 @@ static void two_flips_are_found(void) {
 }
 
 /* [A19] GIVEN settings with anything between their fields THEN the same settings give the same memory. */
-static void what_lies_between_the_settings_counts_for_nothing(void) {
+static void padding_between_settings_counts_for_nothing(void) {
     goe_settings_t settings;
     static goe_estimator_t first;
     memset(&settings, 0xA5, sizeof settings);
@@ -110,7 +110,7 @@ static void what_lies_between_the_settings_counts_for_nothing(void) {
 
 /* [A20] GIVEN any number of floats WHEN one of them is an infinity or a NaN THEN it is found, wherever it lies; the largest float is
  * none. */
-static void what_is_not_finite_is_found(void) {
+static void a_value_that_is_not_finite_is_found(void) {
     static const uint32_t bad[] = {0x7F800000u, 0xFF800000u, 0x7FC00000u, 0xFFFFFFFFu, 0x7F800001u};
     float x[11];
     for (size_t count = 0; count <= 11; count++) {
@@ -130,7 +130,7 @@ static void what_is_not_finite_is_found(void) {
 }
 
 /* [A20] GIVEN a good estimate WHEN a field of it is none that goe.h lists THEN that is found. */
-static void what_is_not_defined_is_found(void) {
+static void an_undefined_value_is_found(void) {
     start();
     TEST_ASSERT_TRUE(goe_guard_estimate(&estimate));
     for (size_t at = offsetof(goe_estimate_t, age_s); at < sizeof estimate; at += sizeof(float)) {
@@ -166,7 +166,7 @@ static void what_is_not_defined_is_found(void) {
 }
 
 /* [A22] GIVEN a stale answer that was flipped to none WHEN an image comes THEN nothing is handed out, and the next image begins a track. */
-static void a_corrupted_track_begins_anew(void) {
+static void a_corrupted_track_begins_again(void) {
     static const goe_estimate_t nothing;
     start();
     estimator.estimate.height_m = check_from_bits(0x7FC00000u);
@@ -182,16 +182,16 @@ static void a_corrupted_track_begins_anew(void) {
     TEST_ASSERT_TRUE((estimate.valid & GOE_HAS_POSITION) != 0u);
 }
 
-/* GIVEN a camera that is nowhere WHEN an image comes THEN the track begins anew, too. */
-static void a_track_that_is_nowhere_begins_anew(void) {
+/* GIVEN a camera at no valid place WHEN an image comes THEN the track begins again, too. */
+static void a_track_that_is_nowhere_begins_again(void) {
     start();
     estimator.motion.origin_ne_m[0] = check_from_bits(0xFF800000u);
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimator.motion.started);
 }
 
-/* ... also while there is no answer that would tell of it. */
-static void a_track_that_is_nowhere_and_knows_nothing_begins_anew(void) {
+/* ... also while there is no answer that would show it. */
+static void a_track_that_is_nowhere_and_knows_nothing_begins_again(void) {
     const goe_settings_t settings = scene_settings(&scene);
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     fly(0, 1);
@@ -204,7 +204,7 @@ static void a_track_that_is_nowhere_and_knows_nothing_begins_anew(void) {
 }
 
 /* [A20] GIVEN covariance and hazard of an answer that is no number THEN they are none, either. */
-static void no_call_hands_out_what_is_no_number(void) {
+static void no_call_returns_a_value_that_is_not_finite(void) {
     static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
@@ -242,13 +242,13 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_flip_of_the_settings_is_found);
     RUN_TEST(two_flips_are_found);
-    RUN_TEST(what_lies_between_the_settings_counts_for_nothing);
-    RUN_TEST(what_is_not_finite_is_found);
-    RUN_TEST(what_is_not_defined_is_found);
-    RUN_TEST(a_corrupted_track_begins_anew);
-    RUN_TEST(a_track_that_is_nowhere_begins_anew);
-    RUN_TEST(a_track_that_is_nowhere_and_knows_nothing_begins_anew);
-    RUN_TEST(no_call_hands_out_what_is_no_number);
+    RUN_TEST(padding_between_settings_counts_for_nothing);
+    RUN_TEST(a_value_that_is_not_finite_is_found);
+    RUN_TEST(an_undefined_value_is_found);
+    RUN_TEST(a_corrupted_track_begins_again);
+    RUN_TEST(a_track_that_is_nowhere_begins_again);
+    RUN_TEST(a_track_that_is_nowhere_and_knows_nothing_begins_again);
+    RUN_TEST(no_call_returns_a_value_that_is_not_finite);
     RUN_TEST(any_truth_but_none_is_one);
     return UNITY_END();
 }

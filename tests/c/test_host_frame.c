@@ -19,8 +19,8 @@ static void give(frame_value_t name, double value) {
     frame.given[name] = true;
 }
 
-/* One side after the other, so that no side can stand for another. */
-static void each_side_given_is_seen(void) {
+/* One side after the other, so that no side can replace another. */
+static void each_side_given_is_visible(void) {
     static const struct {
         frame_value_t name;
         unsigned bit;
@@ -45,7 +45,7 @@ static void each_side_given_is_seen(void) {
     TEST_ASSERT_FALSE(image.left.seen || image.right.seen || image.top.seen);
 }
 
-/* As of a point: what is no number is for the library to refuse, not for the reader to hide. */
+/* As of a point: the library must refuse NaN, and the reader must not hide it. */
 static void a_side_that_is_no_number_is_shown(void) {
     give(FRAME_BOX_TOP_PX, (double)NAN);
     frame_to_image(&frame, &image);
@@ -93,7 +93,7 @@ static void the_camera_s_number_is_shown_as_it_is(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(each_side_given_is_seen);
+    RUN_TEST(each_side_given_is_visible);
     RUN_TEST(a_side_that_is_no_number_is_shown);
     RUN_TEST(a_jump_is_known_by_all_three_numbers);
     RUN_TEST(a_wider_counter_goes_on_in_eight_bits);

@@ -74,7 +74,7 @@ static void start(void) {
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
 }
 
-/* Any obstacle near the course, from a mast to a wall, seen by any features. */
+/* Any obstacle near the course, from a mast to a wall, observed by any features. */
 static kind_t draw(int flight) {
     const kind_t kind = (kind_t)(flight % KINDS);
     scene_default(&scene);
@@ -97,8 +97,9 @@ static kind_t draw(int flight) {
 }
 
 /* [A34]
- * GIVEN random flights by any features, and an answer WHEN the next image shows nothing THEN the hazard is that which was predicted for that
- * moment: its probability falls by no more than the time explains, and distance and time are the same; ten such images in a row, too. */
+ * GIVEN random flights by any features, and an answer WHEN the next image shows nothing THEN the hazard is that which was predicted for
+ * that moment: its probability falls by no more than the time explains, and distance and time are the same; ten such images in a row, too.
+ * */
 static void an_image_without_a_detection_takes_no_warning_back(void) {
     static goe_estimator_t kept;
     double lost = 0.0;
@@ -141,8 +142,8 @@ static void an_image_without_a_detection_takes_no_warning_back(void) {
 }
 
 /* [A34]
- * GIVEN a warning WHEN the filter starts again, whatever comes next THEN the warning stays for as long as the truth is a violation: position
- * and size are kept until an answer replaces them that is better or says otherwise. */
+ * GIVEN a warning WHEN the filter starts again, whatever comes next THEN the warning stays for as long as the truth is a violation:
+ * position and size are kept until an answer replaces them that is better or says otherwise. */
 static void a_new_start_of_the_filter_takes_no_warning_back(void) {
     int warned = 0;
     double least = 1.0;
@@ -206,7 +207,7 @@ static void a_wide_building_stays_wide(void) {
     TEST_ASSERT_TRUE(missed >= 4);
 }
 
-/* Half of what is seen of the obstacle, by the filter's state. */
+/* Half of the visible extent of the obstacle, by the filter's state. */
 static double reach_by_state(void) {
     const float *x = estimator.filter.state;
     const double q = (double)x[GOE_INVERSE_RANGE];

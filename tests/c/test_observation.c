@@ -91,18 +91,18 @@ static void the_bias_is_turned_from_body_axes(void) {
     any = check_random_start("bias");
     for (int n = 0; n < CASES; n++) {
         sighting_start(&sighting, &any);
-        const float told[3] = {sighting.sight.ex, sighting.sight.ey, sighting.sight.ez};
+        const float reported[3] = {sighting.sight.ex, sighting.sight.ey, sighting.sight.ez};
         for (int i = 0; i < 3; i++) {
             double expected = 0.0;
             for (int j = 0; j < 3; j++) {
                 expected += (double)sighting.sight.body_to_axes[3 * i + j] * (double)sighting.state[j];
             }
-            CHECK_CLOSE(1.0e-7, expected, told[i]);
+            CHECK_CLOSE(1.0e-7, expected, reported[i]);
         }
     }
 }
 
-/* [(R3)] GIVEN a point beside or behind the camera THEN everything stays finite. */
+/* [(R3)] GIVEN a point next to or behind the camera THEN everything stays finite. */
 static void points_behind_the_camera_stay_finite(void) {
     static const float z[] = {1.0e-5f, 0.0f, -1.0e-5f, -1.0f, -1.0e6f};
     any = check_random_start("behind");
@@ -165,10 +165,10 @@ static void the_spread_is_that_of_the_alignment(void) {
         const double xx = variance * (by_u[0] * by_u[0] + by_v[0] * by_v[0]);
         const double xy = variance * (by_u[0] * by_u[1] + by_v[0] * by_v[1]);
         const double yy = variance * (by_u[1] * by_u[1] + by_v[1] * by_v[1]);
-        const goe_spread_t told = goe_observation_spread(&sighting.sight, GOE_POINT_TOP);
-        CHECK_CLOSE(1.0e-5 * xx, xx, told.xx);
-        CHECK_CLOSE(1.0e-5 * sqrt(xx * yy), xy, told.xy);
-        CHECK_CLOSE(1.0e-5 * yy, yy, told.yy);
+        const goe_spread_t reported = goe_observation_spread(&sighting.sight, GOE_POINT_TOP);
+        CHECK_CLOSE(1.0e-5 * xx, xx, reported.xx);
+        CHECK_CLOSE(1.0e-5 * sqrt(xx * yy), xy, reported.xy);
+        CHECK_CLOSE(1.0e-5 * yy, yy, reported.yy);
     }
 }
 
@@ -180,7 +180,7 @@ static void size_noise_is_a_share_of_the_width(void) {
     sighting.sight.point[GOE_POINT_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
     sighting.sight.point[GOE_POINT_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
     CHECK_CLOSE(1.0e-10, 3.6e-5, goe_observation_size_variance(&sighting.sight));
-    sighting.sight.point[GOE_POINT_RIGHT].usable = false; /* no width is seen */
+    sighting.sight.point[GOE_POINT_RIGHT].usable = false; /* no width is visible */
     CHECK_SAME(0.0f, goe_observation_size_variance(&sighting.sight));
 }
 
@@ -220,11 +220,11 @@ static void the_body_is_where_the_mounting_puts_it(void) {
     }
 }
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 /* [GOE_REASON_LATE]
- * GIVEN poses that are late WHEN an image is linearised THEN the attitude is that of the exposure: what the body turned by since is
- * taken off the bias. */
-static void what_the_poses_are_late_by_is_taken_off(void) {
+ * GIVEN poses that are late WHEN an image is linearized THEN the attitude is that of the exposure: the turn of the body since then is
+ * removed from the bias. */
+static void pose_latency_is_corrected(void) {
     any = check_random_start("late");
     for (int n = 0; n < CASES; n++) {
         sighting_start(&sighting, &any);
@@ -279,7 +279,7 @@ static void an_edge_takes_two_base_corners(void) {
     TEST_ASSERT_TRUE(sight.edge);
 }
 
-/* GIVEN an image that knows its own errors THEN they stand in for the settings; 0 leaves these. */
+/* GIVEN an image with its own errors THEN they replace the settings; 0 leaves these. */
 static void an_image_may_know_its_own_errors(void) {
     goe_observation_t sight;
     start();
@@ -349,8 +349,8 @@ int main(void) {
     RUN_TEST(the_spread_is_that_of_the_alignment);
     RUN_TEST(size_noise_is_a_share_of_the_width);
     RUN_TEST(the_body_is_where_the_mounting_puts_it);
-#if GOE_BESIDE
-    RUN_TEST(what_the_poses_are_late_by_is_taken_off);
+#if GOE_AUGMENTED
+    RUN_TEST(pose_latency_is_corrected);
 #endif
     RUN_TEST(points_out_of_order_do_not_count);
     RUN_TEST(an_edge_takes_two_base_corners);

@@ -32,7 +32,7 @@ typedef struct {
     double height_m;
 } body_t;
 
-/* What is seen, and by what; bits. */
+/* Visible features, as bits. */
 enum {
     POINTS = 1,
     BASE = 2,
@@ -345,7 +345,7 @@ static const flight_t flights[] = {
      GOE_MODEL_LINE, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x4A0B90AEECCBE289u},
     {"a mast by its outline", &mast, POINTS, 60, 150.0, 12.0, 15.0, 12.0, 0.03, 0.4, GOE_MODEL_AUTO, GOE_MODEL_DISC,
      0x35u, GOE_REASON_NONE, 0x9BF482CA0ACA31E9u},
-    {"a house for which a disc was asked", &turned_house, POINTS | WINDY, 60, 110.0, -25.0, 15.0, 11.0, 0.02, 0.2,
+    {"a house for which a disc was configured", &turned_house, POINTS | WINDY, 60, 110.0, -25.0, 15.0, 11.0, 0.02, 0.2,
      GOE_MODEL_DISC, GOE_MODEL_DISC, 0x01u, GOE_REASON_SHAPE, 0x49EAFD6BA9419ED8u},
     {"a house by its outline, one face turning away", &turned_house, POINTS | WINDY, 110, 130.0, 25.0, 15.0, 9.5, 0.02,
      0.2, GOE_MODEL_AUTO, GOE_MODEL_BOX, 0x01u, GOE_REASON_NONE, 0xE0E18C32CFF5C45Cu},
@@ -369,7 +369,7 @@ static void print_hash(const flight_t *flight) {
     UNITY_PRINT_EOL();
 }
 
-/* Flies it; the flight must show what it is there for. Says whether the bits are the stored ones. */
+/* Flies it; the flight must show its purpose. Returns whether the bits are the stored ones. */
 static bool is_as_stored(const flight_t *flight) {
     const goe_settings_t settings = settings_of(flight);
     goe_model_t model = GOE_MODEL_NONE;

@@ -1,14 +1,14 @@
-/* Whatever comes in, nothing but finite numbers comes out. SPDX-License-Identifier: MIT
+/* Any input, only finite output. SPDX-License-Identifier: MIT
  *
- * Invariants, held after every call on random, extreme and broken input:
+ * Invariants, checked after every call on random, extreme and broken input:
  *   - the status is one that goe.h allows for the call;
- *   - every number of the estimate and of the estimator is finite, told by its exponent bits;
+ *   - every number of the estimate and of the estimator is finite, judged by its exponent bits;
  *   - a quantity without its valid bit is 0, one with it lies in its range, sigmas and age are not negative;
- *   - the refined method tells no quantity whose sigma is larger than goe.h allows; the covariance is finite, symmetric and
+ *   - the refined method gives no quantity whose sigma is larger than goe.h allows; the covariance is finite, symmetric and
  *     not negative on its diagonal;
  *   - a refused image changes nothing in the estimator but one counter;
  *   - no byte before or behind the estimator and the estimate is touched.
- * Floats are judged by bits and by integer comparison of bits alone: the test must also hold for a library that was
+ * Floats are judged by bits and by integer comparison of bits alone: the test must also work for a library that was
  * compiled, and a program that was linked, with -ffast-math. GOE_TEST_SEED and GOE_TEST_UPDATES set seed and length. */
 #include <math.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@
 #include "scene.h"
 
 #define UPDATES_EACH 60000
-#define SCATTER_MAX 400.0f /* 21 times the told variance, 19 for residuals that are alike to 0.9 */
+#define SCATTER_MAX 400.0f /* 21 times the configured variance, 19 for residuals with a correlation of 0.9 */
 #define GUARD_BYTES 64
 #define GUARD 0xC3
 
@@ -113,7 +113,7 @@ static void check_header(const goe_estimate_t *e) {
     TEST_ASSERT_TRUE(!e->fresh || is_zero(&e->age_s));
 }
 
-static void check_nothing_beside_the_valid(const goe_estimate_t *e) {
+static void check_only_valid_fields(const goe_estimate_t *e) {
     const goe_sigma_t *s = &e->sigma;
     const float *positions[] = {&e->x0_m,       &e->z0_m, &e->x_m,  &e->z_m, &e->residual,
                                 &e->baseline_m, &s->x0_m, &s->z0_m, &s->x_m, &s->z_m};
@@ -164,12 +164,12 @@ static double widening(void) {
 
 /* What goe_sigma_t says of the refined method. */
 static void check_refined(const goe_estimate_t *e) {
-    static const float two_metres = 2.0f;
+    static const float two_meters = 2.0f;
     const goe_sigma_t *s = &e->sigma;
     if (e->method != GOE_METHOD_REFINED || !(e->valid & GOE_HAS_POSITION)) {
         return;
     }
-    if (!e->fresh) { /* of a filter that may have started anew since */
+    if (!e->fresh) { /* of a filter that may have started again since */
         return;
     }
     const double x_m = (double)e->x0_m - (double)memory.estimator.filter.axes.start_dx_m;
@@ -178,7 +178,7 @@ static void check_refined(const goe_estimate_t *e) {
     TEST_ASSERT_FALSE(is_zero(&range_m));
     TEST_ASSERT_TRUE(within(&e->x0_m, 1.0e6f) && within(&e->z0_m, 1.0e6f) && within(&s->x_m, 1.0e6f));
     if (e->model == GOE_MODEL_PRISM || e->model == GOE_MODEL_DISC) {
-        /* what no image can show, or that it may be no disc, widens the sigmas and silences none */
+        /* unobservable depth, or that it may be no disc, widens the sigmas and silences none */
         TEST_ASSERT_TRUE(within(&s->z_m, 1.0e6f) && within(&s->width_m, 1.0e6f) && within(&s->height_m, 1.0e6f));
         TEST_ASSERT_FALSE(e->valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH));
         return;
@@ -189,7 +189,7 @@ static void check_refined(const goe_estimate_t *e) {
     TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3 * wider, &e->width_m));
     TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3 * wider, &e->length_m));
     TEST_ASSERT_TRUE(
-        within_share(&s->height_m, 0.3 * wider, within(&e->height_m, two_metres) ? &two_metres : &e->height_m));
+        within_share(&s->height_m, 0.3 * wider, within(&e->height_m, two_meters) ? &two_meters : &e->height_m));
     TEST_ASSERT_TRUE(within(&s->orientation_deg, (float)(10.001 * wider)));
 }
 
@@ -269,7 +269,7 @@ static void check_estimate(void) {
     check_finite(&e->age_s, floats,
                  "estimate"); /* age_s and all behind it are floats, or a count that looks like one */
     check_header(e);
-    check_nothing_beside_the_valid(e);
+    check_only_valid_fields(e);
     check_ranges(e);
     check_refined(e);
     check_covariance(e);
@@ -283,13 +283,13 @@ static void check_filter(const goe_filter_t *filter) {
                           filter->leaving.outward, filter->leaving.turning};
     check_finite(sums, 5, "residuals");
     check_finite(filter->scatter.before, GOE_SERIES + 2, "scatter");
-    if (filter->phase != 0u) { /* otherwise the next image starts it anew */
+    if (filter->phase != 0u) { /* otherwise the next image starts it again */
         check_finite(filter->state, GOE_STATES, "state");
         check_finite(filter->root.element, sizeof filter->root.element / sizeof(float), "root");
     }
-#if GOE_BESIDE
-    check_finite(filter->root.right, GOE_BESIDE, "right-hand side");
-    check_finite(filter->mover.beside, GOE_BESIDE, "latency, velocity");
+#if GOE_AUGMENTED
+    check_finite(filter->root.right, GOE_AUGMENTED, "right-hand side");
+    check_finite(filter->mover.augmented, GOE_AUGMENTED, "latency, velocity");
 #endif
 }
 
@@ -589,7 +589,7 @@ static void spoil(float *x) {
     }
 }
 
-/* The points' box, as far as they are seen, in their place. */
+/* The box of the visible points, in their place. */
 static void put_into_box(goe_image_t *image) {
     goe_box_t *box = &image->box;
     box->left_px = image->left.u_px;
@@ -740,7 +740,7 @@ static void long_adversarial_tracks_do_no_harm(void) {
             if (n % 10 == 0) {
                 trick = one_in(2) ? (uint32_t)HONEST : below(TRICKS);
             }
-            if (n % 60 == 0) { /* another obstacle, and the flight from its start: nobody tells */
+            if (n % 60 == 0) { /* another obstacle, and the flight from its start, without notice */
                 any_scene(&scene);
                 k = 0;
             }

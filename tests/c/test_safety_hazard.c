@@ -80,7 +80,7 @@ static uint32_t magnitude(const float *x) {
     return bits & 0x7FFFFFFFu;
 }
 
-static void check_told(const goe_hazard_t *h) {
+static void check_reported(const goe_hazard_t *h) {
     static const float most = 1.0e9f;
     static const float one = 1.0f;
     const float *numbers[] = {&h->time_s,    &h->miss_m,    &h->clearance_m,   &h->violation,
@@ -114,7 +114,7 @@ static void any_answer_and_plan_give_finite_numbers(void) {
         const goe_estimator_t before = estimator;
         memset(&hazard, 0xFF, sizeof hazard);
         CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
-        check_told(&hazard);
+        check_reported(&hazard);
         TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
     }
 }
@@ -139,7 +139,7 @@ static void any_bits_of_a_plan_are_refused_or_answered(void) {
         }
         const goe_status_t status = goe_hazard(&estimator, &plan, &hazard);
         TEST_ASSERT_TRUE(finite ? status == GOE_OK || status == GOE_OUT_OF_RANGE : status == GOE_NOT_FINITE);
-        check_told(&hazard);
+        check_reported(&hazard);
     }
 }
 

@@ -143,7 +143,7 @@ static void check_bad(const char *name) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
 }
 
-/* [A26] GIVEN settings full of a sentinel WHEN defaults are asked for THEN no field is left out. */
+/* [A26] GIVEN settings full of a sentinel WHEN defaults are requested THEN no field is left out. */
 static void the_defaults_set_every_field(void) {
     goe_settings_t again;
     unsigned char heading_auto;
@@ -168,7 +168,7 @@ static void the_defaults_set_every_field(void) {
     TEST_ASSERT_EQUAL_MEMORY(&again, &settings, sizeof settings);
 }
 
-/* [A26] The tables above cover the whole structure: 4 bytes a field, but for the enumerations and the flags beside them. */
+/* [A26] The tables above cover the whole structure: 4 bytes a field, but for the enumerations and the flags next to them. */
 static void the_tables_of_this_test_are_complete(void) {
     const size_t head = offsetof(goe_settings_t, heading_deg) - offsetof(goe_settings_t, method);
     const size_t tail = sizeof settings - offsetof(goe_settings_t, refined.top_is_highest);

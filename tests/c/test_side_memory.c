@@ -1,4 +1,4 @@
-/* Memory of a side's error against generalised least squares over all images at once, in double. SPDX-License-Identifier: MIT */
+/* Memory of a side's error against generalized least squares over all images at once, in double. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_side_memory.c */
 #include "refined/goe_side_memory.h"
 
@@ -141,7 +141,7 @@ static void it_is_as_good_as_all_images_at_once(void) {
     }
 }
 
-/* [(R32)] GIVEN a row that was refused THEN nothing is learnt from it. */
+/* [(R32)] GIVEN a row that was refused THEN nothing is learned from it. */
 static void a_refused_row_teaches_nothing(void) {
     goe_side_memory_t side;
     goe_side_memory_t before;

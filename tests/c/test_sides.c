@@ -1,4 +1,4 @@
-/* The sides of a box: which count, and the points that stand for them, against leaning rectangles in double.
+/* The sides of a box: which count, and the points that replace them, against leaning rectangles in double.
  * SPDX-License-Identifier: MIT */
 /* tests: lib/image/goe_sides.c */
 #include "image/goe_sides.h"
@@ -113,7 +113,7 @@ static void a_box_is_cut_by_left_and_right_alone(void) {
     TEST_ASSERT_TRUE(view.sides.cut);
 }
 
-/* [goe_box_t.left_px] GIVEN sides out of order THEN none counts, and that is told; of sides that are not seen no order is asked. */
+/* [goe_box_t.left_px] GIVEN sides out of order THEN none counts, and that is reported; invisible sides may be in any order. */
 static void sides_out_of_order_do_not_count(void) {
     see(600.0f, 200.0f, 600.0f, 600.0f, GOE_SEES_BOX);
     TEST_ASSERT_EQUAL_HEX(0u, view.sides.usable);
@@ -163,7 +163,7 @@ static void a_leaning_box_is_turned_back(void) {
     }
 }
 
-/* GIVEN an upright box THEN its points are the middles of its sides, as far as these are seen: without bottom at the top's height,
+/* GIVEN an upright box THEN its points are the middles of its visible sides: without bottom at the top's height,
  * without both at the image's middle. */
 static void an_upright_box_gives_the_middles_of_its_sides(void) {
     see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX);
@@ -180,8 +180,8 @@ static void an_upright_box_gives_the_middles_of_its_sides(void) {
 
 static void check_no_points(void) { TEST_ASSERT_FALSE(left.seen || right.seen || top.seen); }
 
-/* [goe_image_t.box] GIVEN a box that does not tell the width of what leans in it THEN it gives no points. */
-static void what_a_box_does_not_tell_gives_no_points(void) {
+/* [goe_image_t.box] GIVEN a box too narrow for the lean of its content THEN it gives no points. */
+static void missing_sides_of_a_box_give_no_points(void) {
     see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX & ~(unsigned)GOE_SEES_LEFT);
     check_no_points();
     look(20.0, 0.0); /* without its height */
@@ -209,6 +209,6 @@ int main(void) {
     RUN_TEST(sides_out_of_order_do_not_count);
     RUN_TEST(a_leaning_box_is_turned_back);
     RUN_TEST(an_upright_box_gives_the_middles_of_its_sides);
-    RUN_TEST(what_a_box_does_not_tell_gives_no_points);
+    RUN_TEST(missing_sides_of_a_box_give_no_points);
     return UNITY_END();
 }

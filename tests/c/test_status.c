@@ -96,7 +96,7 @@ static void what_took_the_image(void) {
     }
 }
 
-/* GIVEN any number THEN a reason has a name of its own, and what is none is unknown. */
+/* GIVEN any number THEN a reason has a name of its own, and any other number is unknown. */
 static void reasons_have_names(void) {
     static const char *const names[] = {"none", "convention", "moves", "base", "shape", "late", "noise"};
     for (int reason = GOE_REASON_NONE; reason <= GOE_REASON_NOISE; reason++) {

@@ -1,4 +1,4 @@
-/* Sides of upright bounding boxes on boxes, chords and discs, against the extremes of what is seen in double.
+/* Sides of upright bounding boxes on boxes, chords and discs, against the extremes of the visible points in double.
  * SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_touch.c */
 #include "refined/goe_touch.h"
@@ -130,8 +130,8 @@ static void sides_touch_a_chord_where_its_image_ends(void) { check_model(A_CHORD
 /* [A29, goe_image_t.box, (R27)] */
 static void sides_touch_a_disc_where_its_image_ends(void) { check_model(A_DISC, DISCS, "discs"); }
 
-/* [A29] GIVEN a side that is not seen THEN it gives no row, and the others give theirs. */
-static void a_side_that_is_not_seen_gives_no_row(void) {
+/* [A29] GIVEN an invisible side THEN it gives no row, and the others give theirs. */
+static void a_side_that_is_not_visible_gives_no_row(void) {
     double truth[GOE_STATES];
     model = A_BOX;
     any = check_random_start("some sides");
@@ -265,7 +265,7 @@ int main(void) {
     RUN_TEST(sides_touch_a_box_where_its_image_ends);
     RUN_TEST(sides_touch_a_chord_where_its_image_ends);
     RUN_TEST(sides_touch_a_disc_where_its_image_ends);
-    RUN_TEST(a_side_that_is_not_seen_gives_no_row);
+    RUN_TEST(a_side_that_is_not_visible_gives_no_row);
     RUN_TEST(a_level_plane_touches_the_nearest_point);
     RUN_TEST(a_head_behind_the_camera_gives_no_row);
     RUN_TEST(a_house_by_its_box_and_its_corners_has_its_height);

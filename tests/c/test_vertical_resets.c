@@ -28,7 +28,7 @@ typedef struct {
     jump_t jump[JUMPS_MAX];
     int jumps;
     double height_sd_m;            /* noise of the height */
-    int blind_from, blind_until;   /* images in which nothing is seen ... */
+    int blind_from, blind_until;   /* images without a detection ... */
     bool looks_back;               /* ... as the aircraft flies backwards in them */
     int refused;                   /* of the flight with jumps, once before it is taken; -1: none */
     int broken_from, broken_until; /* images of something else: the filter starts again */
@@ -309,7 +309,7 @@ static void a_refused_image_leaves_the_jump_to_the_next_one(void) {
     check_source_by_source();
 }
 
-/* [A28] GIVEN images in which nothing is seen WHEN down jumps in them, and in the one in which something is seen first THEN the track is
+/* [A28] GIVEN images without a detection WHEN down jumps in them, and in the first one with a detection THEN the track is
  * that of a flight without jumps. */
 static void a_jump_in_the_first_image_with_a_feature_counts(void) {
     flight.blind_until = 10;
@@ -318,7 +318,7 @@ static void a_jump_in_the_first_image_with_a_feature_counts(void) {
     check_source_by_source();
 }
 
-/* [A28] GIVEN an aircraft that looks back until something is seen, so that the track begins there THEN a jump in that image counts,
+/* [A28] GIVEN an aircraft that looks back until the first detection, where the track begins THEN a jump in that image counts,
  * too. */
 static void a_jump_counts_where_the_track_begins_at_first_sight(void) {
     flight.settings.navigation.height_white_m = 1.0f;
@@ -348,7 +348,7 @@ static void a_jump_at_a_new_start_of_the_filter_counts(void) {
     TEST_ASSERT_TRUE(seen > 0);
 }
 
-/* [A28] GIVEN poses that are late WHEN the filter jumps THEN what they are late by is taken off in that image as in any other. */
+/* [A28] GIVEN poses that are late WHEN the filter jumps THEN the latency is corrected in that image as in any other. */
 static void a_jump_does_not_disturb_late_poses(void) {
     for (int source = 0; source < SOURCES; source++) {
         set_up_flight(CORNERS, (source_t)source);

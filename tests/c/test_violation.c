@@ -35,7 +35,7 @@ static void make_it_move(float north_m_s, float east_m_s) {
 }
 
 /* GIVEN an obstacle that moves THEN it is met by the velocity relative to it; of one that is not known to, by the own. */
-static void what_moves_is_met_by_the_relative_velocity(void) {
+static void a_moving_target_is_met_by_the_relative_velocity(void) {
     const goe_plan_t plan = plan_of(10.0f, 2.0f);
     estimator.estimate.velocity_north_m_s = -7.0f; /* means nothing without its bit */
     goe_plan_t relative = goe_violation_relative(&estimator, &plan);
@@ -111,7 +111,7 @@ static void the_aircraft_has_flown_on_since_the_image(void) {
     CHECK_CLOSE(1.0e-2, (double)then.clearance_m, hazard.clearance_m); /* at the same place */
 }
 
-/* ... and aside: what was ahead of a course across it lies abeam when it has been flown for long enough. */
+/* ... and aside: an obstacle ahead of a crossing course is abeam when it has been flown for long enough. */
 static void the_aircraft_has_flown_aside_since_the_image(void) {
     goe_plan_t plan = plan_of(0.0f, 10.0f);
     estimator.estimate.x_m = estimator.estimate.x0_m = 40.0f;
@@ -123,7 +123,7 @@ static void the_aircraft_has_flown_aside_since_the_image(void) {
     CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
     CHECK_CLOSE(1.0e-3, 1.0, hazard.time_s);
     CHECK_CLOSE(1.0e-3, 27.0, hazard.miss_m);
-    CHECK_CLOSE(1.0e-3, 0.2, hazard.time_sd_s); /* also of what is a second away: 2 m by 10 m/s */
+    CHECK_CLOSE(1.0e-3, 0.2, hazard.time_sd_s); /* also of an obstacle a second away: 2 m by 10 m/s */
     plan.since_image_s = 3.5f;
     CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
     CHECK_CLOSE(1.0e-3, 0.5, hazard.time_s);
@@ -139,7 +139,7 @@ static void the_aircraft_has_flown_aside_since_the_image(void) {
 static void independent_errors_multiply(void) {
     goe_plan_t plan = plan_of(10.0f, 0.0f);
     plan.margin_m = 0.0f;
-    estimator.estimate.x_m = estimator.estimate.x0_m = 4.0f; /* passed a metre aside of the rim, by half a sigma */
+    estimator.estimate.x_m = estimator.estimate.x0_m = 4.0f; /* passed a meter aside of the rim, by half a sigma */
     plan.clearance_m = 30.0f;                                /* as likely as not */
     CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
     TEST_ASSERT_TRUE(hazard.has_clearance);
@@ -157,7 +157,7 @@ static void independent_errors_multiply(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(what_moves_is_met_by_the_relative_velocity);
+    RUN_TEST(a_moving_target_is_met_by_the_relative_velocity);
     RUN_TEST(a_velocitys_error_counts_until_it_is_met);
     RUN_TEST(the_plans_velocity_may_be_wrong);
     RUN_TEST(the_aircraft_has_flown_on_since_the_image);

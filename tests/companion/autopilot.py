@@ -13,7 +13,7 @@ from links import Faults, UdpWire, Wire
 from loop import Loop
 
 LAT_E7, LON_E7, ALT_M = 473977420, 85455940, 488.0  # of the local frame's origin
-METRES_PER_DEGREE = 111319.49
+METERS_PER_DEGREE = 111319.49
 ARDUPILOT, PX4 = 3, 12
 MODES = {ARDUPILOT: 10, PX4: 4 << 16 | 4 << 24}  # AUTO; AUTO.MISSION
 LOITER = 4 << 16 | 3 << 24  # PX4: AUTO.LOITER
@@ -35,8 +35,8 @@ def numbered(message: Any, mavlink: Any) -> bytes:
 
 def local_m(lat_e7: int, lon_e7: int) -> tuple[float, float]:
     """North and east of the origin; good for some kilometres about it."""
-    north = (lat_e7 - LAT_E7) * 1e-7 * METRES_PER_DEGREE
-    east = (lon_e7 - LON_E7) * 1e-7 * METRES_PER_DEGREE * math.cos(math.radians(LAT_E7 * 1e-7))
+    north = (lat_e7 - LAT_E7) * 1e-7 * METERS_PER_DEGREE
+    east = (lon_e7 - LON_E7) * 1e-7 * METERS_PER_DEGREE * math.cos(math.radians(LAT_E7 * 1e-7))
     return north, east
 
 

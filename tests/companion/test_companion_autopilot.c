@@ -211,7 +211,7 @@ static void a_restart_of_the_autopilot_begins_a_new_clock(void) {
 /* An answer to the latest question, asked just now, by a clock that has slipped against the companion's. */
 static void answer(int32_t slipped_ms) {
     mavlink_message_t message;
-    autopilot.asked_us[0] = own_us;
+    autopilot.question_us[0] = own_us;
     (void)mavlink_msg_timesync_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message,
                                     ((int64_t)boot_ms + slipped_ms) * 1000000 + 1000, own_us * 1000);
     autopilot_take(&autopilot, &message, own_us);

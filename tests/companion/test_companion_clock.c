@@ -23,8 +23,8 @@ static int64_t delay_us(void) { return 300 + (int64_t)(-2000.0 * log(check_rando
 static bool exchange(int64_t own_us, int64_t offset_us, double ppm) {
     const int64_t there_us = delay_us(), back_us = delay_us();
     const int64_t at_us = own_us + there_us;
-    const int64_t told_us = at_us + offset_us + (int64_t)(ppm * 1e-6 * (double)at_us);
-    return clock_sync_answer(&sync, own_us, at_us + back_us, told_us);
+    const int64_t report_us = at_us + offset_us + (int64_t)(ppm * 1e-6 * (double)at_us);
+    return clock_sync_answer(&sync, own_us, at_us + back_us, report_us);
 }
 
 static double off_us(int64_t own_us, int64_t offset_us, double ppm) {

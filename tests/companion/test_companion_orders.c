@@ -139,7 +139,7 @@ static void ordered(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
-static void ordered_anew(void) {
+static void ordered_again(void) {
     autopilot.custom_mode = MISSION;
     ordered();
 }
@@ -214,7 +214,7 @@ static void a_side_that_was_not_sent_does_not_silence_a_go_around(void) {
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
     decide(GOE_FLIGHT_NONE);
     go_on(1, MISSION);
-    ordered_anew();
+    ordered_again();
     go_on(20, POSITION);
     decide(GOE_FLIGHT_GO_AROUND);
     go_on(20, POSITION);
@@ -255,7 +255,7 @@ static void the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed(void
     go_on(30, LOITER);
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
     know_obstacle(true);
-    ordered_anew();
+    ordered_again();
     flight.slot[0].valid = 0; /* the track ended, as by a reset of the heading: the slot waits for images */
     decide(GOE_FLIGHT_NONE);
     go_on(30, LOITER);
@@ -592,7 +592,7 @@ static void a_recovery_into_another_mode_is_the_autopilots(void) {
 
 /* --------------------------------------------------------------------------------------------------------- restarts -- */
 
-static const order_left_t left = {.stands = true,
+static const order_left_t left = {.active = true,
                                   .action = GOE_FLIGHT_LEFT,
                                   .mode_before = MISSION,
                                   .boot_us = 900000,

@@ -46,7 +46,7 @@ def flown(make_fleet: MakeFleet) -> Iterator[Fleet]:
     yield fleet
 
 
-def asked_hz(flight: Flight, message: int) -> list[float]:
+def requested_hz(flight: Flight, message: int) -> list[float]:
     asked = [m for m in flight.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL and int(m.param1) == message]
     return [round(1e6 / m.param2, 1) for m in asked]
 
@@ -61,8 +61,8 @@ def test_poses_come(fleet: Fleet, name: str) -> None:
 
 def test_it_starts_at_25_hz(fleet: Fleet) -> None:
     """What a stock ArduPlane accepts is asked for once."""
-    assert asked_hz(fleet[STOCK], ATTITUDE) == [25.0]
-    assert asked_hz(fleet[STOCK], POSITION) == [25.0]
+    assert requested_hz(fleet[STOCK], ATTITUDE) == [25.0]
+    assert requested_hz(fleet[STOCK], POSITION) == [25.0]
     assert fleet[STOCK].ended and "refuses ATT" not in fleet[STOCK].ended.err
 
 
@@ -73,28 +73,28 @@ LOWERED += [(name, [25.0, 20.0, 10.0]) for name in (TEMPORARILY, DENYING)]
 @pytest.mark.parametrize("name, rates", LOWERED)
 def test_what_is_refused_is_asked_for_less_often(fleet: Fleet, name: str, rates: list[float]) -> None:
     flight = fleet[name]
-    assert asked_hz(flight, ATTITUDE) == rates
-    assert asked_hz(flight, POSITION) == rates
+    assert requested_hz(flight, ATTITUDE) == rates
+    assert requested_hz(flight, POSITION) == rates
     assert flight.ended and flight.ended.err.count("ATTITUDE_QUATERNION") == 1, flight.ended.err
     assert f"ATTITUDE_QUATERNION at {rates[0]:.0f} Hz is refused: {rates[-1]:.0f} Hz" in flight.ended.err
 
 
 def test_what_is_not_answered_is_asked_for_again(fleet: Fleet) -> None:
-    assert asked_hz(fleet[SILENT], ATTITUDE) == 4 * [25.0]
+    assert requested_hz(fleet[SILENT], ATTITUDE) == 4 * [25.0]
 
 
 def test_what_was_refused_is_asked_for_again_while_no_poses_come(fleet: Fleet) -> None:
-    assert asked_hz(fleet[STUBBORN], ATTITUDE) == [25.0, 20.0, 10.0, 5.0, 25.0]
+    assert requested_hz(fleet[STUBBORN], ATTITUDE) == [25.0, 20.0, 10.0, 5.0, 25.0]
     assert fleet[STUBBORN].ended and fleet[STUBBORN].ended.err.count("does not send ATTITUDE_QUATERNION") == 1
 
 
 def test_an_autopilot_that_restarts_is_asked_again(fleet: Fleet) -> None:
     """Without poses its new clock is not seen at once: then once more."""
-    assert asked_hz(fleet[REBOOT], ATTITUDE) in (2 * [25.0], 3 * [25.0])
+    assert requested_hz(fleet[REBOOT], ATTITUDE) in (2 * [25.0], 3 * [25.0])
 
 
 def test_odometry_is_asked_of_every_autopilot(fleet: Fleet) -> None:
     """Whoever does not have it is asked for no rate twice, and that is reported once."""
-    assert asked_hz(fleet["px4"], ODOMETRY) == [10.0]
-    assert asked_hz(fleet[STOCK], ODOMETRY) == [10.0, 5.0]
+    assert requested_hz(fleet["px4"], ODOMETRY) == [10.0]
+    assert requested_hz(fleet[STOCK], ODOMETRY) == [10.0, 5.0]
     assert fleet[STOCK].ended and fleet[STOCK].ended.err.count("ODOMETRY") == 1

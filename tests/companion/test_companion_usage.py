@@ -285,7 +285,7 @@ def test_who_hears_nobody_learns_how_to_listen(make: Make) -> None:
     companion.start()
     companion.loop.run(13.0)
     ended = companion.stop()
-    assert ended.err.count("no autopilot is heard") == 1 and "0.0.0.0" in ended.err
+    assert ended.err.count("no message from an autopilot") == 1 and "0.0.0.0" in ended.err
 
 
 @pytest.mark.parametrize("host, warnings", [(HOST, 0), ("0.0.0.0", 2)])

@@ -60,7 +60,7 @@ static void a_two_way_offset_dates_every_frame(void) {
     }
 }
 
-/* What was learnt before an exchange is forgotten when the exchange is withdrawn. */
+/* The clock's update before an exchange is forgotten when the exchange is withdrawn. */
 static void a_withdrawn_offset_leaves_nothing_behind(void) {
     const goe_flight_detection_t detection = flown_detection(&flown, 0);
     goe_flight_clock_t fresh;
@@ -160,7 +160,7 @@ static void a_height_counts_only_where_it_is_valid(void) {
 }
 
 /* Each refusal has its reason, is counted, and leaves the history as it was. */
-static void what_is_no_pose_is_refused_for_its_reason(void) {
+static void an_invalid_pose_is_refused_for_its_reason(void) {
     goe_flight_attitude_t attitude;
     goe_flight_position_t position;
     (void)flown_fly(&flown, 1.0);
@@ -310,7 +310,7 @@ static void a_new_track_begins_with_nothing(void) {
 
 /* -------------------------------------------------------------------------------------------------------------- boxes -- */
 
-/* The box of points: from the least to the largest of those that are seen, in any order; nothing without any. */
+/* The box of points: from the least to the largest of the visible ones, in any order; nothing without any. */
 static void points_make_a_box(void) {
     goe_flight_detection_t detection;
     int16_t box_px[4];
@@ -364,7 +364,7 @@ int main(void) {
     RUN_TEST(a_withdrawn_offset_leaves_nothing_behind);
     RUN_TEST(doubt_about_the_time_is_doubt_about_the_attitude);
     RUN_TEST(a_height_counts_only_where_it_is_valid);
-    RUN_TEST(what_is_no_pose_is_refused_for_its_reason);
+    RUN_TEST(an_invalid_pose_is_refused_for_its_reason);
     RUN_TEST(a_pose_is_alive_while_both_its_parts_are);
     RUN_TEST(an_order_begins_where_the_aircraft_is);
     RUN_TEST(an_obstacle_is_reported_as_the_header_says);

@@ -1,7 +1,7 @@
-/* Places that are kept after an unknown reset, while no image places them again. SPDX-License-Identifier: MIT
+/* Positions that are kept after an unknown reset, while no image updates them. SPDX-License-Identifier: MIT
  *
- * A mast of 4 m stands ahead, or beside the course. Its boxes come until shortly before the heading's reset, then images are empty. What
- * is kept must be judged by where the aircraft flies now, and grow older. */
+ * A mast of 4 m is ahead, or next to the course. Its boxes come until shortly before the heading's reset, then images are empty. The
+ * kept positions must be judged by the present flight, and grow older. */
 #include <math.h>
 #include <string.h>
 
@@ -105,7 +105,7 @@ static void fly(const flight_t *flight, double end_s, bool assesses) {
     now_s = end_s;
 }
 
-/* GIVEN a mast beside the course and a reset WHEN the aircraft turns at the kept place THEN that is a hazard, with its time. */
+/* GIVEN a mast next to the course and a reset WHEN the aircraft turns at the kept place THEN that is a hazard, with its time. */
 static void a_turn_at_a_kept_place_is_warned_of(void) {
     const flight_t flight = {{300.0, 60.0}, 6.0, 5.9, 6.2, false};
     fly(&flight, 5.9, true);
@@ -124,7 +124,7 @@ static void a_turn_away_from_a_kept_place_ends_the_hazard(void) {
     TEST_ASSERT_TRUE(assessed.worst == 0 && assessed.hazard.violation < 0.2f);
 }
 
-/* GIVEN a reset before the first assessment WHEN nothing else is seen THEN the kept mast is a hazard, and counts. */
+/* GIVEN a reset before the first assessment WHEN no other detection comes THEN the kept mast is a hazard, and counts. */
 static void a_place_that_was_never_assessed_is_no_clear_sky(void) {
     const flight_t flight = {{300.0, 0.0}, 4.0, 3.9, 1e9, false};
     fly(&flight, 4.2, false);

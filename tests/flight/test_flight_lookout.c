@@ -134,7 +134,7 @@ static void a_kept_place_is_a_hazard_by_the_closest_approach(void) {
 }
 
 /* GIVEN a slot without a place, or that is free THEN it has no hazard, whatever it had. */
-static void what_has_no_place_has_no_hazard(void) {
+static void an_obstacle_without_position_has_no_hazard(void) {
     const float own_ned_m[3] = {0.0f, 0.0f, -20.0f};
     goe_hazard_t none;
     memset(&none, 0, sizeof none);
@@ -186,7 +186,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_hover_meets_nothing);
     RUN_TEST(a_kept_place_is_a_hazard_by_the_closest_approach);
-    RUN_TEST(what_has_no_place_has_no_hazard);
+    RUN_TEST(an_obstacle_without_position_has_no_hazard);
     RUN_TEST(over_the_middle_the_whole_spread_counts);
     return UNITY_END();
 }

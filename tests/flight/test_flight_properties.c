@@ -150,7 +150,7 @@ static void fly_points(flown_t *of, int samples) {
     }
 }
 
-/* Of a box of which one face is seen, the front edge is all that has a place; here in a T that lies across the course. */
+/* Of a box with one visible face, only the front edge has a position; here in a T that is across the course. */
 static void a_front_without_a_length_lies_where_it_is(void) {
     goe_flight_obstacle_t obstacle;
     for (int turned = 0; turned < 2; turned++) {
@@ -179,7 +179,7 @@ static void a_front_without_a_length_lies_where_it_is(void) {
 }
 
 /* Points work as boxes do, but for those at the border of the image: left, top or both at once. */
-static void points_at_the_border_are_not_seen(void) {
+static void points_at_the_border_are_not_visible(void) {
     start(&flown, 1.0);
     flown.scene.boxes = flown.scene.upright_boxes = false;
     flown.scene.camera.border_share = 0.012f;
@@ -229,6 +229,6 @@ int main(void) {
     RUN_TEST(the_mirror_image_turns_to_the_other_side);
     RUN_TEST(a_set_heading_changes_no_place);
     RUN_TEST(a_front_without_a_length_lies_where_it_is);
-    RUN_TEST(points_at_the_border_are_not_seen);
+    RUN_TEST(points_at_the_border_are_not_visible);
     return UNITY_END();
 }

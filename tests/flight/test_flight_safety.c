@@ -1,13 +1,13 @@
-/* Whatever comes in, nothing but finite numbers comes out. SPDX-License-Identifier: MIT
+/* Any input, only finite output. SPDX-License-Identifier: MIT
  *
- * Invariants, held after every call on random, extreme and broken input, spoiled flights among it:
+ * Invariants, checked after every call on random, extreme and broken input, spoiled flights among it:
  *   - the status is one of those that goe_flight.h names;
- *   - every number of every output is finite, told by its exponent bits, and so is every number of the layer's own state;
+ *   - every number of every output is finite, judged by its exponent bits, and so is every number of the layer's own state;
  *   - a call that failed, and one that was answered by GOE_FLIGHT_TOO_NEW, changed nothing but counters (a clock that was set
- *     back, which starts everything anew, is the one exception);
+ *     back, which starts everything again, is the one exception);
  *   - actions, slots and sectors lie in their ranges; probabilities lie in 0 to 1;
  *   - no byte before or behind the state is touched.
- * Floats are judged by bits alone, so that the test holds also where the layer was compiled with -ffast-math. GOE_TEST_SEED and
+ * Floats are judged by bits alone, so the test also works where the layer was compiled with -ffast-math. GOE_TEST_SEED and
  * GOE_TEST_UPDATES set seed and length. */
 #include <math.h>
 #include <stddef.h>
@@ -377,11 +377,11 @@ static void a_quaternion_must_be_one(void) {
 }
 
 /* GIVEN a pose and no obstacle THEN none is there, in no slot. */
-static void an_empty_slot_holds_nothing(void) {
+static void an_empty_slot_contains_nothing(void) {
     goe_flight_obstacle_t o;
     static flown_t flown;
     flown_start(&flown, NULL);
-    flown.sees = false;
+    flown.detects = false;
     (void)flown_fly(&flown, 1.0);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, 0, &o));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, -1, &o));
@@ -416,7 +416,7 @@ int main(void) {
     RUN_TEST(anything_does_no_harm);
     RUN_TEST(settings_out_of_range_are_named);
     RUN_TEST(a_quaternion_must_be_one);
-    RUN_TEST(an_empty_slot_holds_nothing);
+    RUN_TEST(an_empty_slot_contains_nothing);
     RUN_TEST(null_pointers_are_refused);
     return UNITY_END();
 }

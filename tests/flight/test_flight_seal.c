@@ -21,8 +21,8 @@ static goe_flight_status_t assess(goe_flight_assessment_t *now) {
     return goe_flight_assess(&flown.flight, flown_now_us(&flown), false, now);
 }
 
-/* GIVEN any one flipped bit of what is sealed THEN frames and assessments say so, and nothing is "clear". */
-static void every_flip_of_the_settings_is_told(void) {
+/* GIVEN any one flipped bit of the sealed memory THEN frames and assessments report it, and nothing is "clear". */
+static void every_flip_of_the_settings_is_reported(void) {
     const size_t first = 8u * offsetof(goe_flight_t, seal);
     const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_deg) + sizeof(float));
     goe_flight_assessment_t now;
@@ -106,7 +106,7 @@ static bool is_finite(const void *at, size_t bytes) {
     return true;
 }
 
-/* GIVEN one flipped bit anywhere behind what is sealed WHEN pose, assessment and obstacles are asked for THEN no number is infinite and
+/* GIVEN one flipped bit anywhere behind the sealed memory WHEN pose, assessment and obstacles are requested THEN no number is infinite and
  * no enumerator is outside of its list. */
 static void no_flipped_bit_makes_an_output_infinite(void) {
     static goe_flight_t whole;
@@ -183,7 +183,7 @@ static void step_anyhow(void) {
     (void)goe_flight_frame(&flown.flight, &frame);
 }
 
-static int seen_slot(void) {
+static int known_slot(void) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         if (flown.flight.slot[i].used) {
             return i;
@@ -192,11 +192,11 @@ static int seen_slot(void) {
     return -1;
 }
 
-/* GIVEN an obstacle ahead WHEN a setting or what is known of the track is lost in its estimator THEN it stays the worst one, no less
- * likely to be hit and suspect, until the estimator, begun anew with the settings of another, knows its place again. */
+/* GIVEN an obstacle ahead WHEN a setting or the state of its track is lost in its estimator THEN it stays the worst one, no less
+ * likely to be hit and suspect, until the estimator, started again with the settings of another, knows its position again. */
 static void warning_outlasts(size_t offset) {
     const goe_flight_assessment_t before = flown_fly(&flown, 7.0);
-    const int slot = seen_slot();
+    const int slot = known_slot();
     goe_flight_slot_t *s = &flown.flight.slot[slot];
     const goe_settings_t settings = s->estimator.settings;
     TEST_ASSERT_TRUE(before.worst == slot && before.hazard.violation > 0.5f && !before.suspect);
@@ -223,7 +223,7 @@ static void a_warning_outlasts_its_estimators_settings(void) {
 
 static void a_warning_outlasts_its_track(void) { warning_outlasts(offsetof(goe_estimator_t, motion.origin_ne_m)); }
 
-/* GIVEN that the settings of every estimator are lost WHEN one of them is to begin anew THEN the layer is to be begun anew. */
+/* GIVEN that the settings of every estimator are lost WHEN one of them must start again THEN the layer must be started again. */
 static void without_any_settings_the_layer_says_so(void) {
     goe_flight_assessment_t now;
     (void)flown_fly(&flown, 7.0);
@@ -243,7 +243,7 @@ static void without_any_settings_the_layer_says_so(void) {
 static void indices_stay_in_their_arrays(void) {
     goe_flight_assessment_t now;
     (void)flown_fly(&flown, 7.0);
-    const int slot = seen_slot();
+    const int slot = known_slot();
     const goe_flight_t good = flown.flight;
     for (int value = 0; value < 256; value++) {
         flown.flight = good;
@@ -273,7 +273,7 @@ int main(void) {
     RUN_TEST(settings_change_in_flight_and_nothing_is_lost);
     RUN_TEST(refused_settings_change_nothing);
     RUN_TEST(no_settings_are_the_defaults);
-    RUN_TEST(every_flip_of_the_settings_is_told);
+    RUN_TEST(every_flip_of_the_settings_is_reported);
     RUN_TEST(a_warning_outlasts_its_estimators_settings);
     RUN_TEST(a_warning_outlasts_its_track);
     RUN_TEST(without_any_settings_the_layer_says_so);

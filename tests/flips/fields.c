@@ -11,7 +11,7 @@
 const field_t fields[] = {
     NUMBER(motion.time_us) NUMBER(motion.start_time_us) NUMBER(motion.heading_cos) NUMBER(motion.heading_sin)
     NUMBER(motion.origin_ne_m) NUMBER(motion.dx_m) NUMBER(motion.dz_m)
-    NUMBER(motion.height_m) NUMBER(motion.height_jump_m) NUMBER(motion.ground_m) DECIDES(motion.started) DECIDES(motion.sighted) DECIDES(motion.reset_count)
+    NUMBER(motion.height_m) NUMBER(motion.height_jump_m) NUMBER(motion.ground_m) DECIDES(motion.started) DECIDES(motion.detected) DECIDES(motion.reset_count)
     DECIDES(motion.paced) NUMBER(motion.rate_rad_s) NUMBER(motion.velocity_m_s) NUMBER(motion.rate_before_rad_s)
     NUMBER(motion.mark_attitude) NUMBER(motion.mark_m) NUMBER(motion.mark_us)
     NUMBER(causes) DECIDES(ready) DECIDES(seal) DECIDES(camera_to_body) DECIDES(settings)
@@ -40,7 +40,7 @@ const field_t fields[] = {
     NUMBER(filter.datum.mean_m) NUMBER(filter.datum.first) NUMBER(filter.datum.information)
     NUMBER(filter.datum.moment) DECIDES(filter.datum.readings) NUMBER(filter.scatter.before)
     NUMBER(filter.scatter.products) NUMBER(filter.scatter.squares) DECIDES(filter.scatter.seen)
-    NUMBER(filter.mover.beside) NUMBER(filter.mover.nis) NUMBER(filter.mover.rows) NUMBER(filter.mover.heard_s)
+    NUMBER(filter.mover.augmented) NUMBER(filter.mover.nis) NUMBER(filter.mover.rows) NUMBER(filter.mover.observed_s)
     NUMBER(filter.mover.unlike_s) DECIDES(filter.mover.images) DECIDES(filter.mover.moves)
     DECIDES(filter.mover.followed) DECIDES(filter.mover.late) NUMBER(filter.side) NUMBER(filter.state)
     NUMBER(filter.root.element) NUMBER(filter.root.right) DECIDES(filter.root.estimated)

@@ -11,7 +11,7 @@
 #define WIDENING_MAX 20.0     /* of a sigma by the track's own scatter */
 #define UNIT_ROUNDING 2.0e-5f /* of a unit vector's squared norm */
 #define AGE_MAX_S 4000.5f     /* 4000 s, rounded to float */
-#define METRES_MAX 1.0e6f     /* no position and no sigma of the refined method lies beyond */
+#define METERS_MAX 1.0e6f     /* no position and no sigma of the refined method lies beyond */
 #define ROWS_MAX 9            /* of one image */
 #define VALID_BITS 0x7Fu
 #define WITH_POSITION (GOE_HAS_CENTER | GOE_HAS_WIDTH | GOE_HAS_VELOCITY) /* not known without a position */
@@ -121,8 +121,8 @@ static void check_refined(const goe_estimate_t *e) {
     FUZZ_HOLDS(!(e->valid & GOE_HAS_HEIGHT) || s->height_m > 0.0f);
     FUZZ_HOLDS(!(e->valid & GOE_HAS_ORIENTATION) || s->orientation_deg > 0.0f);
     FUZZ_HOLDS(!(e->valid & GOE_HAS_CENTER) || (s->center_north_m > 0.0f && s->center_east_m > 0.0f));
-    FUZZ_HOLDS(is_within(e->x0_m, METRES_MAX) && is_within(e->z0_m, METRES_MAX));
-    FUZZ_HOLDS(is_within(s->x_m, METRES_MAX) && is_within(s->z_m, METRES_MAX));
+    FUZZ_HOLDS(is_within(e->x0_m, METERS_MAX) && is_within(e->z0_m, METERS_MAX));
+    FUZZ_HOLDS(is_within(s->x_m, METERS_MAX) && is_within(s->z_m, METERS_MAX));
 }
 
 void check_estimate(const goe_settings_t *settings, goe_status_t status, const goe_estimate_t *estimate) {
@@ -155,19 +155,19 @@ static void check_diagonal(const goe_estimate_t *e, float covariance[GOE_QUANTIT
     const unsigned bit[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
                                           GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
     const bool of_filter = e->method == GOE_METHOD_REFINED && e->fresh;
-    const bool stands = (e->valid & GOE_HAS_VELOCITY) == 0u;
+    const bool stationary = (e->valid & GOE_HAS_VELOCITY) == 0u;
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         if (!(e->valid & bit[i]) || !(e->valid & GOE_HAS_POSITION)) {
             for (int j = 0; j < GOE_QUANTITIES; j++) {
                 FUZZ_HOLDS(is_zero(covariance[i][j]));
             }
         } else if (of_filter) {
-            const double told = sqrt((double)covariance[i][i]);
+            const double reported = sqrt((double)covariance[i][i]);
             const double most = e->model == GOE_MODEL_BOX ? WIDENING_MAX : 1.0 + ROUNDING;
-            FUZZ_HOLDS(told >= (double)sigma[i] * (1.0 - ROUNDING) && told <= (double)sigma[i] * most);
+            FUZZ_HOLDS(reported >= (double)sigma[i] * (1.0 - ROUNDING) && reported <= (double)sigma[i] * most);
         } else if (e->method == GOE_METHOD_REFINED) {
             FUZZ_HOLDS(sqrt((double)covariance[i][i]) >= (double)sigma[i] * (1.0 - ROUNDING));
-        } else if (stands || i > GOE_Z0) {
+        } else if (stationary || i > GOE_Z0) {
             FUZZ_HOLDS(fuzz_bits_of(covariance[i][i]) == fuzz_bits_of(sigma[i] * sigma[i]));
         }
     }

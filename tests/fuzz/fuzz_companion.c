@@ -177,7 +177,7 @@ static void try_orders(const uint8_t *data, size_t size) {
     order_left_t left;
     (void)snprintf(folder, sizeof folder, "%s", fuzz_file(2, "orders.csv", data, size));
     *strrchr(folder, '/') = '\0';
-    FUZZ_HOLDS(order_log_read(folder, &left) == left.stands);
+    FUZZ_HOLDS(order_log_read(folder, &left) == left.active);
     FUZZ_HOLDS(isfinite(left.obstacle_ne_m[0]) && isfinite(left.obstacle_ne_m[1]) && isfinite(left.radius_m));
     orders_take_over(&orders, &left);
 }

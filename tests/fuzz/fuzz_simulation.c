@@ -67,7 +67,7 @@ static void try_scenario(const char *text, size_t size) {
     const char *path = fuzz_file(0, "scenario.ini", text, size);
     if (scenario_file_read(path, take_option, &scenario, fault, sizeof fault)) {
         fuzz_counts[SCENARIOS].times++;
-        FUZZ_HOLDS(scenario.neighbours >= 0 && scenario.neighbours <= SCENARIO_NEIGHBOURS_MAX);
+        FUZZ_HOLDS(scenario.neighbors >= 0 && scenario.neighbors <= SCENARIO_NEIGHBORS_MAX);
     } else {
         fuzz_counts[SCENARIOS_REFUSED].times++;
         check_fault(fault, sizeof fault, path);

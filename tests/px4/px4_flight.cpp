@@ -87,11 +87,11 @@ void Px4Flight::publish_pose() {
 goe_features_s Px4Flight::features_of(int k) const {
     goe_features_s topic{};
     const goe_flight_detection_t detection = flown_detection(&flown, k);
-    const bool sees = flown.sees && detection.box.seen == GOE_SEES_BOX;
+    const bool detects = flown.detects && detection.box.seen == GOE_SEES_BOX;
     topic.timestamp = standin::now_us();
     topic.timestamp_sample = time_of(k);
     topic.time_sd = 1000u;
-    topic.number = sees ? 1 : 0;
+    topic.number = detects ? 1 : 0;
     topic.id = detection.id;
     topic.score = detection.score;
     topic.seen = detection.box.seen;
@@ -120,8 +120,8 @@ void Px4Flight::step() {
         publish_image(exposed, time_of(exposed));
         if (follows) {
             const goe_flight_detection_t detection = flown_detection(&flown, exposed);
-            const bool sees = flown.sees && detection.box.seen == GOE_SEES_BOX;
-            goe_flight_frame_t frame = flown_frame(&flown, exposed, &detection, sees ? 1 : 0);
+            const bool detects = flown.detects && detection.box.seen == GOE_SEES_BOX;
+            goe_flight_frame_t frame = flown_frame(&flown, exposed, &detection, detects ? 1 : 0);
             (void)goe_flight_frame(&reference, &frame);
         }
     }

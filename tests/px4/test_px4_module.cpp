@@ -259,12 +259,12 @@ static void a_distance_sensor_that_has_fallen_silent_tells_nothing() {
     const float by_terrain_m = obstacle.ground_down;
     flight.end();
     flight.begin();
-    flight.flown.sees = false;
+    flight.flown.detects = false;
     flight.fly(1.0);
     flight.follows = false;
     publish_range();
     flight.fly(0.5);
-    flight.flown.sees = true;
+    flight.flown.detects = true;
     flight.fly(3.0);
     TEST_ASSERT_TRUE(flight.obstacle(obstacle));
     CHECK_CLOSE(0.1, by_terrain_m, obstacle.ground_down);
@@ -281,7 +281,7 @@ static unsigned known_sectors() {
 }
 
 static void a_dead_detector_is_not_clear() {
-    flight.flown.sees = false;
+    flight.flown.detects = false;
     flight.fly(2.0);
     TEST_ASSERT_TRUE(flight.status().detector_alive); /* images with nothing in view */
     TEST_ASSERT_GREATER_THAN(5, known_sectors());

@@ -550,7 +550,7 @@ static void an_order_outlives_its_track() {
     start_towards_one(MISSION, false, ALL);
     standin::set("GOE_RESUME", 1);
     TEST_ASSERT_GREATER_THAN(0, fly_on(10.0));
-    flight.flown.sees = false;
+    flight.flown.detects = false;
     flight.quat_reset_counter++;
     (void)fly_on(0.2);
     TEST_ASSERT_EQUAL(1, flight.status().obstacles);

@@ -209,7 +209,7 @@ def test_obstacle_and_side(browser: Any, live: Path) -> None:
     drag(browser, "kind", 0)
     left, ahead, right = (drag(browser, "side_m", side) for side in (-40, 0, 40))
     assert left["side"][0] == pytest.approx(-40.0, abs=3.0) and right["side"][0] == pytest.approx(40.0, abs=3.0)
-    assert left["order"] == right["order"] == "clear" and "beside it" in left["line"]
+    assert left["order"] == right["order"] == "clear" and "past it" in left["line"]
     assert ahead["order"] == "go-around" and "through it" in ahead["line"]
 
 

@@ -21,7 +21,7 @@ from ci.packages.targets import COMMITTED, CONFIG, TARGETS
 ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
 WORDS = Words('NAME "N" <maintainer@goe.invalid>', "https://goe.invalid/?a=1&b=2")
-HEADINGS = ["From this tree", "Into a project", "Parts", "How it is checked", "What is missing"]
+HEADINGS = ["From this tree", "Into a project", "Parts", "Tests", "Limits"]
 PAGES = ("arduino", "conan", "debian", "esp-idf", "pkgconfig", "platformio", "python", "rust")
 
 # Of Arduino's library specification.
@@ -191,7 +191,7 @@ def test_page_licence_and_words(staged: Path, target: str) -> None:
         for link in re.findall(r"\]\(([^)#]+)\)", page):
             place = (stage / link).resolve()
             assert place.exists() and place.is_relative_to(stage), f"{target}: {link} leads nowhere"
-        assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Into a project", "Parts", "What is missing"]
+        assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Into a project", "Parts", "Limits"]
         assert "<version>" not in page and not re.search(r"goe_tools|python -m (bench|ci)\b", page)
     texts = [path.read_text() for path in (staged / target).rglob("*") if path.is_file() and path.suffix != ".zip"]
     assert not any("{{ facts" in text or "{%" in text for text in texts)

@@ -1,4 +1,4 @@
-/* Life of AP_GOE: start, parameters that change, assessment, what the operator is told. SPDX-License-Identifier: MIT */
+/* Life of AP_GOE: start, changes of parameters, assessment, texts for the operator. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED

@@ -24,7 +24,7 @@
 // @Field: NE: covariance of the middle, north and east
 // @Field: EE: variance of the middle, east
 // @Field: Age: time since it was measured
-// @Field: Mdl: what it is taken for: 2 disc, 3 line, 4 box, 5 something upright
+// @Field: Mdl: assumed shape: 2 disc, 3 line, 4 box, 5 something upright
 // @Field: Fl: 1 suspect, 2 passed, 4 in view
 void AP_GOE::log_obstacle(int slot, const goe_flight_obstacle_t &obstacle) const
 {

@@ -65,11 +65,10 @@ int main(void) {
         const goe_decision_t decision = goe_decide(&building, &plan, NULL, &hazard);
         order = decision == GOE_DECISION_ACT || (order && decision != GOE_DECISION_CLEAR);
         if ((order || k % 8 == 0) && (now.valid & GOE_HAS_POSITION) != 0u) {
-            printf(
-                "%4.1f s: in %4.1f +- %3.1f s %3.0f m beside it, %3.0f m over its top; margins violated: %3.0f %%%s\n",
-                (double)((float)k / IMAGES_PER_S), (double)hazard.time_s, (double)hazard.time_sd_s,
-                (double)hazard.miss_m, (double)hazard.clearance_m, (double)(100.0f * hazard.violation),
-                order ? ": GO AROUND" : "");
+            printf("%4.1f s: in %4.1f +- %3.1f s %3.0f m past it, %3.0f m over its top; margins violated: %3.0f %%%s\n",
+                   (double)((float)k / IMAGES_PER_S), (double)hazard.time_s, (double)hazard.time_sd_s,
+                   (double)hazard.miss_m, (double)hazard.clearance_m, (double)(100.0f * hazard.violation),
+                   order ? ": GO AROUND" : "");
         }
         if (order) {
             break;

@@ -13,7 +13,7 @@
 
 static goe_estimator_t chimney; /* one per obstacle, all the memory there is */
 
-/* What your autopilot and your detector tell; here a chimney 5 m wide and 35 m high, straight ahead. */
+/* Replace this by your autopilot and your detector; here a chimney 5 m wide and 35 m high, straight ahead. */
 static void take_image(int k, goe_image_t *image) {
     const float ahead_m = 150.0f - FLOWN_M * (float)k;
     image->pose.time_us = (int64_t)k * IMAGE_US;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define SPEED_M_S 18.0f /* north */
-#define METRES_PER_TICK 0.36f
+#define METERS_PER_TICK 0.36f
 #define HEIGHT_M 40.0f
 #define MAST_NORTH_M 230.0f
 #define MAST_EAST_M 10.0f
@@ -30,7 +30,7 @@ void scripted_settings(goe_settings_t *settings) {
     settings->camera.height_px = HEIGHT_PX;
 }
 
-static float north_m(uint32_t tick) { return METRES_PER_TICK * (float)tick; }
+static float north_m(uint32_t tick) { return METERS_PER_TICK * (float)tick; }
 
 void scripted_pose(uint32_t tick, scripted_pose_t *pose) {
     memset(pose, 0, sizeof *pose);

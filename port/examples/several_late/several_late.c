@@ -108,7 +108,7 @@ static void print_obstacles(const goe_flight_assessment_t *assessment) {
             continue;
         }
         const thing_t *truth = &things[found.id - 1u]; /* the tracker's numbers, here */
-        printf("  %-5s %3.0f +- %2.0f m north, %3.0f m east (stands at %3.0f, %3.0f), %2.0f m high (%2.0f); in %4.1f s "
+        printf("  %-5s %3.0f +- %2.0f m north, %3.0f m east (true: %3.0f, %3.0f), %2.0f m high (%2.0f); in %4.1f s "
                "%2.0f m aside%s%s\n",
                truth->name, (double)found.center_ned_m[0], (double)sqrtf(found.covariance_ne_m2[0]),
                (double)found.center_ned_m[1], (double)truth->north_m, (double)truth->east_m, (double)found.height_m,
@@ -117,7 +117,7 @@ static void print_obstacles(const goe_flight_assessment_t *assessment) {
     }
 }
 
-/* Ten times a second, whether images come or not: what is told late is not told. */
+/* Ten times a second, whether images come or not: a late report is useless. */
 static void assess(uint32_t step, goe_flight_action_t *ordered) {
     goe_flight_assessment_t now;
     const bool known = goe_flight_assess(&flight, step * STEP_US, false, &now) == GOE_FLIGHT_OK;

@@ -82,7 +82,7 @@ static bool detect(int k, detection_t *detection) {
 static goe_estimator_t mast;
 static uint32_t followed; /* the tracker's number; 0: none yet */
 
-/* An image in which nothing was seen is an image, too: the estimate grows older by it. */
+/* An image without a detection is an image, too: it ages the estimate. */
 static void fill(const detection_t *detection, goe_image_t *image) {
     if (detection == NULL || detection->score < SCORE_MIN) {
         return;
@@ -96,7 +96,8 @@ static void fill(const detection_t *detection, goe_image_t *image) {
     image->box.top_px = detection->top_px;
     image->box.right_px = detection->right_px;
     image->box.bottom_px = detection->bottom_px;
-    image->box.seen = GOE_SEES_BOX; /* also of a box that the border cuts: the size of the image tells the estimator */
+    image->box.seen =
+        GOE_SEES_BOX; /* also of a box that the border cuts: the estimator knows it by the size of the image */
 }
 
 static void print(int k, goe_status_t status, const goe_estimate_t *now) {

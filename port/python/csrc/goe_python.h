@@ -1,5 +1,5 @@
-/* What Python needs beside goe.h: settings by number, and whole tracks in one call. The package `goe` compiles it; so does
- * sim_host, in double precision, for the tools that ask what the rounding of floats does. SPDX-License-Identifier: MIT */
+/* Interface for Python in addition to goe.h: settings by number, and whole tracks in one call. The package `goe` compiles it; so does
+ * sim_host, in double precision, for the tools that measure the rounding of floats. SPDX-License-Identifier: MIT */
 #ifndef GOE_PYTHON_H
 #define GOE_PYTHON_H
 
@@ -40,11 +40,11 @@ typedef struct {
     float velocity_sd_m_s;
 } goe_python_rule_t;
 
-/* Images go in, one after the other, and what is known after each comes out.
+/* Takes the images in order, and writes the estimate after each.
  *   velocity_ned_m_s  [images] planned; read if there are rules
  *   covariance        [images]; null: not wanted
  *   decision, hazard_status, hazard  [images][rules]; written if there are rules. hazard_status: GOE_OK with a hazard, otherwise
- *                     why there is none: that of goe_hazard(), or GOE_OUT_OF_RANGE of a rule that goe_decide() refuses */
+ *                     the reason for none: that of goe_hazard(), or GOE_OUT_OF_RANGE of a rule that goe_decide() refuses */
 void goe_python_update(goe_estimator_t *estimator, size_t images, const goe_image_t *image, int32_t *status,
                        goe_estimate_t *estimate, float (*covariance)[GOE_QUANTITIES][GOE_QUANTITIES], size_t rules,
                        const goe_python_rule_t *rule, const float (*velocity_ned_m_s)[3], int32_t *decision,

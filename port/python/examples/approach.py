@@ -27,7 +27,7 @@ print(f"goe {goe.__version__}; arithmetic {'as on every target' if goe.self_chec
 # %%
 def approach(east_m: float, seed: int) -> goe.Images:
     """The flight past a mast `east_m` to the right of the path: boxes with 1 px of noise in each image, and with an
-    error of 3 % of the box that stays alike for about a second."""
+    error of 3 % of the box, correlated over about a second."""
     random = np.random.default_rng(seed)
     time_s = np.arange(IMAGES) / RATE_HZ
     ahead_m = MAST_NORTH_M - SPEED_M_S * time_s - MAST_WIDTH_M / 2
@@ -52,10 +52,10 @@ def approach(east_m: float, seed: int) -> goe.Images:
 images = approach(MAST_EAST_M, seed=1)
 
 # %% [markdown]
-# ## What is known after each image
+# ## The estimate after each image
 #
-# The settings say how wrong the sensors are: the sigmas are only as good as that. One call takes the whole track. The
-# decision rule is asked after each image what becomes of flying straight on, with margins that grow while the estimate
+# The settings define the sensor errors: the sigmas are only as good as these. One call takes the whole track. The
+# decision rule evaluates straight flight after each image, with margins that grow while the estimate
 # is in doubt or old.
 
 # %%

@@ -1,4 +1,4 @@
-//! Flies towards a mast of 6 m by 30 m and prints what is known of it, and when to go around it.
+//! Flies towards a mast of 6 m by 30 m and prints the estimate, and when to go around it.
 
 use goe::{BoundingBox, DecisionRule, Error, Estimator, Fault, Image, Plan, Pose, Settings};
 

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::ffi;
 use crate::{Method, Status};
 
-/// One sigma of each quantity of C's estimate, for [`crate::ffi`]; 0 of what is not valid.
+/// One sigma of each quantity of C's estimate, for [`crate::ffi`]; 0 of an invalid one.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sigma {
@@ -25,9 +25,9 @@ pub struct Sigma {
     pub height_m: f32,
     /// Of the orientation, degrees.
     pub orientation_deg: f32,
-    /// Of the centre, m.
+    /// Of the center, m.
     pub center_north_m: f32,
-    /// Of the centre, m.
+    /// Of the center, m.
     pub center_east_m: f32,
     /// Of the velocity, m/s.
     pub velocity_north_m_s: f32,
@@ -67,13 +67,13 @@ impl Model {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Reason {
-    /// What is given does not belong together: axes, signs or order of the attitude, the mounting, very late poses.
+    /// The inputs contradict each other: axes, signs or order of the attitude, the mounting, very late poses.
     Convention,
     /// The obstacle moves. Without [`Estimate::velocity`] it is not followed, and the position is wrong.
     Moves,
-    /// What was given as base corners proved to be none.
+    /// The given base corners proved to be wrong.
     Base,
-    /// A disc was asked for, and the silhouette is not that of one.
+    /// A disc was configured, and the silhouette is not that of one.
     Shape,
     /// Poses are late or early: [`Estimate::latency_s`]. Also of an estimate that is not suspect.
     Late,
@@ -118,7 +118,7 @@ pub struct Length {
     pub sd_m: f32,
 }
 
-/// Where the reference point is: of a disc the centre, of a line or box the middle of the front edge. X points right, Z ahead,
+/// Position of the reference point: of a disc the center, of a line or box the middle of the front edge. X points right, Z ahead,
 /// level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
@@ -136,10 +136,10 @@ pub struct Position {
     pub baseline_m: f32,
 }
 
-/// How a box or a line stands.
+/// Orientation of a box or a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
-    /// The side edge (length) from Z, clockwise seen from above, degrees; over -90, up to 90.
+    /// The side edge (length) from Z, clockwise as viewed from above, degrees; over -90, up to 90.
     pub side_deg: f32,
     /// Its one sigma, degrees.
     pub side_sd_deg: f32,
@@ -181,7 +181,7 @@ pub struct Velocity {
     pub east_sd_m_s: f32,
 }
 
-/// What is known after an image. A quantity that is not valid is `None`.
+/// The estimate after an image. A quantity that is not valid is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// What became of the image.
@@ -208,7 +208,7 @@ pub struct Estimate {
     pub length: Option<Length>,
     /// Top above ground.
     pub height: Option<Length>,
-    /// How it stands.
+    /// Orientation.
     pub orientation: Option<Orientation>,
     /// The middle of its base.
     pub center: Option<Center>,
@@ -220,7 +220,7 @@ pub struct Estimate {
     pub latency_s: f32,
     /// Its one sigma, s.
     pub latency_sd_s: f32,
-    /// Normalised innovation squared of the latest image. Refined method.
+    /// Normalized innovation squared of the latest image. Refined method.
     pub nis: f32,
     /// Its expectation: the rows that made it; 0: none.
     pub nis_rows: u16,

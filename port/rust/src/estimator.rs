@@ -27,7 +27,7 @@ impl Estimator {
     /// Checks the settings, copies them and starts with an empty track and zeroed counters.
     ///
     /// # Errors
-    /// [`Error::BadSetting`] with the name of the first setting that is outside its range, or asks for a method that was left out.
+    /// [`Error::BadSetting`] with the name of the first setting that is outside its range, or requires a method that was left out.
     pub fn new(settings: &Settings) -> Result<Self, Error> {
         let mut place = MaybeUninit::uninit();
         Self::start(&mut place, settings)?;
@@ -73,10 +73,10 @@ impl Estimator {
         }
     }
 
-    /// Takes one image, also one in which nothing is seen, and tells what is known after it.
+    /// Takes one image, also one without a detection, and returns the estimate after it.
     ///
     /// # Errors
-    /// [`Fault`]: the image gave no new solution; it carries the last good estimate, and [`Status`](crate::Status) tells why.
+    /// [`Fault`]: the image gave no new solution; it carries the last good estimate, and [`Status`](crate::Status) gives the reason.
     pub fn update(&mut self, image: &Image) -> Result<Estimate, Fault> {
         let image = image.to_c();
         let mut answer = MaybeUninit::<ffi::goe_estimate_t>::zeroed();
@@ -93,8 +93,8 @@ impl Estimator {
         }
     }
 
-    /// Covariance of the latest estimate, by [`QUANTITIES`]; `None`: there is no position, or the memory is corrupted. Rows and columns of what is not valid are
-    /// 0.
+    /// Covariance of the latest estimate, by [`QUANTITIES`]; `None`: there is no position, or the memory is
+    /// corrupted. Rows and columns of invalid quantities are 0.
     #[must_use]
     pub fn covariance(&self) -> Option<[[f32; QUANTITIES]; QUANTITIES]> {
         let mut covariance = [[0.0; QUANTITIES]; QUANTITIES];

@@ -1,6 +1,6 @@
 //! The C interface as it is: `lib/goe.h` and `port/flight/goe_flight.h` are its manuals.
 //!
-//! Enumerations of C are integers here, so that no number that C may return is undefined behaviour. They have C's `int`: the
+//! Enumerations of C are integers here, so no number that C may return is undefined behavior. They have C's `int`: the
 //! library is compiled with `-fno-short-enums`, also where the processor's ABI would make them shorter. `layout.rs` lists sizes and
 //! offsets; both compilers compare them whenever the crate is built, and that of C the constants below.
 
@@ -182,7 +182,7 @@ extern "C" {
         image: *const goe_image_t,
         estimate: *mut goe_estimate_t,
     ) -> goe_status_t;
-    /// Covariance of the latest estimate: metres and degrees.
+    /// Covariance of the latest estimate: meters and degrees.
     pub fn goe_covariance(
         estimator: *const goe_estimator_t,
         covariance: *mut [[f32; GOE_QUANTITIES]; GOE_QUANTITIES],
@@ -214,7 +214,7 @@ extern "C" {
     pub fn goe_status_text(status: goe_status_t) -> *const c_char;
     /// A short name for a reason.
     pub fn goe_reason_text(reason: goe_reason_t) -> *const c_char;
-    /// What is wrong with the arithmetic of this machine; 0: nothing.
+    /// Faults of the arithmetic of this machine; 0: none.
     pub fn goe_self_check() -> c_uint;
     /// The counters of an estimator: `causes` of `goe_estimator_t`. Of `shim.c`.
     pub fn goe_rust_causes(estimator: *const goe_estimator_t) -> *const [u32; GOE_CAUSES];
@@ -374,7 +374,7 @@ mod flight {
         pub fn goe_flight_timesync(flight: *mut goe_flight_t, offset_us: u32, sd_us: u32) -> goe_flight_status_t;
         /// Takes an image's detections.
         pub fn goe_flight_frame(flight: *mut goe_flight_t, frame: *const goe_flight_frame_t) -> goe_flight_status_t;
-        /// What is ahead from now on, and what to do about it.
+        /// The hazards ahead from now on, and the reaction.
         pub fn goe_flight_assess(
             flight: *mut goe_flight_t,
             now_us: u32,

@@ -17,7 +17,7 @@ pub struct Pose {
     /// Counts the resets of the autopilot's filter; any start, wraps.
     pub reset_count: u8,
     /// By what the position jumped with them, new minus old, summed over all resets since the last image that was taken, m; each
-    /// ±1e6. `None`: not known; then a change of `reset_count` starts the track anew.
+    /// ±1e6. `None`: not known; then a change of `reset_count` starts a new track.
     pub reset_delta_ned_m: Option<[f32; 3]>,
 }
 
@@ -60,7 +60,7 @@ pub struct BoundingBox {
 }
 
 impl BoundingBox {
-    /// A box of which all four sides are seen, px.
+    /// A box with all four sides visible, px.
     #[must_use]
     pub fn new(left_px: f32, top_px: f32, right_px: f32, bottom_px: f32) -> Self {
         Self {
@@ -98,7 +98,7 @@ pub struct ImageNoise {
     pub pixel_px: Option<f32>,
 }
 
-/// One image of one obstacle: a box, or points, or both. Any subset may be seen; none: give the image all the same.
+/// One image of one obstacle: a box, or points, or both. Any subset may be visible; none: pass the image anyway.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Image {
     /// Where the aircraft was.
@@ -111,7 +111,7 @@ pub struct Image {
     pub top: Option<Pixel>,
     /// Corner of the base on the ground, in image order.
     pub base_left: Option<Pixel>,
-    /// The one between two visible faces; not seen when one face alone is.
+    /// The one between two visible faces; not visible with a single face.
     pub base_near: Option<Pixel>,
     /// The last in image order.
     pub base_right: Option<Pixel>,

@@ -1,7 +1,7 @@
 //! Position, size and orientation of a ground obstacle, each with a 1-sigma uncertainty, from a detector's boxes or points and the
 //! aircraft's own motion; and what a planned flight will meet. Over the C library goe, which this crate compiles.
 //!
-//! No heap, no `std`, nothing outside an [`Estimator`]. All lengths are metres, angles degrees, times as their names say; axes are
+//! No heap, no `std`, nothing outside an [`Estimator`]. All lengths are meters, angles degrees, times as their names say; axes are
 //! north, east, down; forward, right, down; and of the trajectory X right, Z ahead, level.
 //!
 //! ```

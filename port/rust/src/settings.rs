@@ -87,9 +87,9 @@ pub struct Detector {
     pub shape_share: f32,
     /// Error of a box's side that is new in each image, px; 0.05 to 100; default 1.
     pub box_px: f32,
-    /// Error of a side that stays alike from image to image, fraction of the box's width or height; 0 to 1; default 0.07.
+    /// Slowly varying (correlated) error of a side, fraction of the box's width or height; 0 to 1; default 0.07.
     pub box_share: f32,
-    /// How long it stays alike, time constant, s; 0 to 100; default 1.2.
+    /// Correlation time of this error, s; 0 to 100; default 1.2.
     pub correlation_s: f32,
     /// Error of every side while the image's border cuts the box, fraction of the box; 0 to 10; default 1.
     pub cut_noise: f32,
@@ -129,7 +129,7 @@ pub struct RefinedSettings {
     pub misfit_max: f32,
     /// Sigma over range up to which a position is reported; 0.01 to 10; default 0.25.
     pub range_share: f32,
-    /// `top` is the highest point in the image also when seen from above the roof; default false.
+    /// `top` is the highest point in the image also from above the roof; default false.
     pub top_is_highest: bool,
 }
 
@@ -188,7 +188,7 @@ impl Shape {
     }
 }
 
-/// All that an estimator is told at its start. What belongs to a part that was left out is neither read nor checked.
+/// All settings of an estimator. Settings of a part that was left out are neither read nor checked.
 ///
 /// ```
 /// let mut settings = goe::Settings::for_camera(914.0, 914.0, 640.0, 640.0);

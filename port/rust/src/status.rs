@@ -45,9 +45,9 @@ statuses! {
     Partial = GOE_PARTIAL,
     /// Image taken; no solution yet.
     Collecting = GOE_COLLECTING,
-    /// Image taken; it adds no point to the reported model, whose older solution stands.
+    /// Image taken; it adds no point to the reported model, whose older solution stays.
     Held = GOE_HELD,
-    /// Image taken for its pose; no feature was seen.
+    /// Image taken for its pose; no feature was visible.
     NothingSeen = GOE_NOTHING_SEEN,
     /// Image taken; a ray points backwards or sideways.
     BehindCamera = GOE_BEHIND_CAMERA,
@@ -55,7 +55,7 @@ statuses! {
     LensFailed = GOE_LENS_FAILED,
     /// Image taken; left is not left of right.
     Swapped = GOE_SWAPPED,
-    /// Image taken; the front edge is seen from its end or from behind.
+    /// Image taken; the camera views the front edge from its end or from behind.
     EdgeOn = GOE_EDGE_ON,
     /// Image taken; no edge has a measurable orientation.
     NoEdge = GOE_NO_EDGE,

@@ -226,10 +226,10 @@ fn decisions() {
     assert_eq!(estimator.decide(&plan, &bad_rule), (Decision::Keep, None));
     assert!(Decision::Act.acts(false) && Decision::Keep.acts(true) && Decision::Unknown.acts(true));
     assert!(!Decision::Clear.acts(true) && !Decision::Keep.acts(false));
-    let mut unseen = image(12);
-    unseen.bounding_box = None;
-    unseen.pose.time_us += 1_000_000;
-    estimator.update(&unseen).expect("no fault");
+    let mut invisible = image(12);
+    invisible.bounding_box = None;
+    invisible.pose.time_us += 1_000_000;
+    estimator.update(&invisible).expect("no fault");
     assert_ne!(estimator.decide(&plan, &rule).1, estimator.hazard(&plan).ok());
 }
 

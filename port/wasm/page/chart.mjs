@@ -6,7 +6,7 @@ import { HAS } from "./words.mjs";
 const TICKS = [1, 2, 4, 5, 10, 20, 40, 100]; // m
 const PAD = { left: 34, right: 6, top: 6, bottom: 16 };
 
-/** Whether the width is that of the front edge, of a line or box; otherwise it is what is seen across the line of sight. */
+/** Whether the width is that of the front edge, of a line or box; otherwise it is the extent across the line of sight. */
 export const isEdge = (r) => r.model === 3 || r.model === 4;
 
 /** The four charts: value, one sigma and truth of a report, null while the value is not known. */

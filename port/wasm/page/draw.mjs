@@ -13,7 +13,7 @@ export const points = (list) => list.map(([x, y]) => `${short(x)},${short(y)}`).
 
 export const text = (x, y, words, more = {}) => el("text", { x, y, ...more }, words);
 
-/** Corners about a middle, in metres (ahead, right): of a box by its two axes, of what is round a polygon. */
+/** Corners about a middle, in meters (ahead, right): of a box by its two axes, of a round obstacle a polygon. */
 export function outline(middle, width_m, length_m, across, along) {
   if (!across) {
     return Array.from({ length: 48 }, (_, i) => {

@@ -1,4 +1,5 @@
-// The page: modules loaded and proved, controls read, the flight flown anew at each change and played. SPDX-License-Identifier: MIT
+// The page: loads and verifies the modules, reads the controls, recomputes the flight at each change and plays it.
+// SPDX-License-Identifier: MIT
 
 import { Goe, LiveFlight } from "../goe.mjs";
 import { drawCamera } from "./camera.mjs";

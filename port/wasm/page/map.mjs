@@ -3,14 +3,14 @@
 import { el, ellipse, outline, points, text, trueOutline } from "./draw.mjs";
 import { HAS, ORDER } from "./words.mjs";
 
-const BEHIND_M = 12, BEYOND_M = 62; // what is shown at least, behind the aircraft's start and beyond the obstacle
+const BEHIND_M = 12, BEYOND_M = 62; // least extent of the map, behind the aircraft's start and beyond the obstacle
 const ASIDE_M = 56; // ... and on either side
 const MARGIN_M = 15; // as in live.c
 const NAMES_PX = 18; // below, for what the lines are called
 const FIELD_DEG = 35; // half the camera's field of view
 const NARROW_PX = 560; // a narrower map moves along with the aircraft
 
-/** Metres on the ground to pixels of the map. */
+/** Meters on the ground to pixels of the map. */
 function plane(width, height, r, first_m) {
   const here_m = first_m - r.true_ahead_m;
   const left_m = width < NARROW_PX ? here_m - BEHIND_M : -BEHIND_M;
@@ -18,7 +18,7 @@ function plane(width, height, r, first_m) {
   return { scale, x: (north) => (north - left_m) * scale, y: (east) => 0.5 * (height - NAMES_PX) + east * scale, here_m };
 }
 
-/** Lines every 100 m to go, below all else, and what they are called, above all else. */
+/** Lines every 100 m to go, below all else, and their labels, above all else. */
 function grid(p, height, first_m) {
   let lines = "", names = "";
   for (let left_m = 0; left_m <= first_m; left_m += 100) {

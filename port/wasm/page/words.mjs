@@ -4,38 +4,38 @@ export const HAS = { position: 1, length: 2, height: 4, orientation: 8, center: 
 export const ORDER = { nothing: 0, clear: 1, doubt: 2, goAround: 3, uncertain: 4 };
 
 const REASONS = {
-  convention: "what is given does not belong together",
+  convention: "the inputs contradict each other",
   moves: "the obstacle seems to move",
   base: "the base corners are none",
   shape: "its shape is not that of a disc",
   late: "the poses come late against the images",
-  noise: "the errors are larger than told, or the shape is another",
-  none: "the images do not fit what is told",
+  noise: "the errors are larger than configured, or the shape is another",
+  none: "the images do not fit the settings",
 };
 
 const STATUS = {
   collecting: "collecting images",
-  nothing_seen: "nothing is seen",
-  box_incomplete: "only a part of the box is seen",
+  nothing_seen: "no detection",
+  box_incomplete: "only a part of the box is visible",
   no_height: "the height above ground is not set",
 };
 
-/** Metres or degrees as one reads them: 3.2, 18, 182. */
+/** Meters or degrees, rounded for reading: 3.2, 18, 182. */
 export function amount(value) {
   const size = Math.abs(value);
   const text = size.toFixed(size < 9.95 ? 1 : 0);
   return value < 0 && Number(text) !== 0 ? `−${text}` : text;
 }
 
-/** Where a thing stands relative to the track: "18 m left". */
+/** Position relative to the track: "18 m left". */
 export function side(value_m) {
   return Math.abs(value_m) < 0.05 ? "on the track" : `${amount(Math.abs(value_m))} m ${value_m < 0 ? "left" : "right"}`;
 }
 
-/** How the flight will pass, after "in 8 s": "3.0 m beside it". */
+/** How the flight will pass, after "in 8 s": "3.0 m past it". */
 function passing(r) {
   if (r.has_clearance && r.clearance_m > 0 && r.miss_m < 15) return `${amount(r.clearance_m)} m over its top (± ${amount(r.clearance_sd_m)})`;
-  return r.miss_m > 0 ? `${amount(r.miss_m)} m beside it (± ${amount(r.miss_sd_m)})` : "through it";
+  return r.miss_m > 0 ? `${amount(r.miss_m)} m past it (± ${amount(r.miss_sd_m)})` : "through it";
 }
 
 function when(r) {

@@ -1,4 +1,4 @@
-// Flies towards a mast of 6 m by 30 m that stands 200 m ahead and prints what is known of it.
+// Flies towards a mast of 6 m by 30 m, 200 m ahead, and prints its estimate.
 // In an aircraft the pose is the autopilot's at the time of exposure, and the box is the detector's.
 #include <goe.h>
 

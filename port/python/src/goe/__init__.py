@@ -18,7 +18,7 @@ Frames      earth: north, east, down (NED), m, local. Body: forward, right, down
             the first one that shows a feature.
 Units       stand in the names: _m, _deg, _px, _s, _us, _m_s.
 Not known   is None, or NaN in an array. "No position" does not mean "safe".
-Faults      of an image are told by ``Estimate.status``; a bad setting raises ``SettingError`` with field and range.
+Faults      of an image are in ``Estimate.status``; a bad setting raises ``SettingError`` with field and range.
 Threads     calls release Python's lock; one estimator serves one thread at a time.
 
 ``Estimator.update`` takes one image, ``run`` a whole track of numpy arrays, ``run_parallel`` several tracks at a time.

@@ -20,7 +20,7 @@ class Row:
 
     name: str  # as in C: "detector.point_px"
     unit: str  # "px"; "": none, or the flight layer's, where the name ends in it
-    text: str  # what it is; "" of the flight layer
+    text: str  # description; "" in the flight layer
     kind: int
     low: float
     high: float

@@ -1,4 +1,4 @@
-"""What the estimator answers. All lengths are metres, angles degrees; X points right, Z ahead, both level."""
+"""The estimator's output. All lengths are meters, angles degrees; X points right, Z ahead, both level."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Length(NamedTuple):
 
 
 class Position(NamedTuple):
-    """Where the reference point is: of a disc the centre, of a line or box the middle of the front edge."""
+    """Position of the reference point: of a disc the center, of a line or box the middle of the front edge."""
 
     x0: Length
     """From where the camera was at the track's first image, across."""
@@ -34,10 +34,10 @@ class Position(NamedTuple):
 
 
 class Orientation(NamedTuple):
-    """How a box or a line stands."""
+    """Orientation of a box or a line."""
 
     side_deg: float
-    """The side edge (length) from Z, clockwise seen from above; over -90, up to 90."""
+    """The side edge (length) from Z, clockwise as viewed from above; over -90, up to 90."""
     side_sd_deg: float
     """Its one sigma."""
     side_raw_deg: float
@@ -76,7 +76,7 @@ class Velocity(NamedTuple):
 
 @dataclass(frozen=True)
 class Estimate:
-    """What is known after an image. A quantity that is not valid is None: "no position" does not mean "safe"."""
+    """The estimate after an image. A quantity that is not valid is None: "no position" does not mean "safe"."""
 
     status: Status
     """What became of the image."""
@@ -103,7 +103,7 @@ class Estimate:
     height: Length | None
     """Top above ground."""
     orientation: Orientation | None
-    """How it stands."""
+    """Orientation."""
     center: Center | None
     """The middle of its base."""
     velocity: Velocity | None
@@ -115,7 +115,7 @@ class Estimate:
     latency_sd_s: float
     """Its one sigma, s."""
     nis: float
-    """Normalised innovation squared of the latest image. Refined method."""
+    """Normalized innovation squared of the latest image. Refined method."""
     nis_rows: int
     """Its expectation: the rows that made it; 0: none."""
     misfit: float

@@ -41,9 +41,9 @@ class Estimator:
             raise SettingError(ffi.string(bad[0]).decode(), ": refused by the library")
 
     def update(self, image: Image) -> Estimate:
-        """Takes one image, also one in which nothing is seen, and tells what is known after it.
+        """Takes one image, also one without a detection, and returns the estimate after it.
 
-        A fault of the image is no exception: ``Estimate.status`` tells it, and the rest is the last good estimate.
+        A fault of the image is no exception: ``Estimate.status`` reports it, and the rest is the last good estimate.
         ValueError: a vector of another length; OverflowError: a whole number that C cannot hold.
         """
         with self._lock:
@@ -57,7 +57,7 @@ class Estimator:
         """Takes K images in one call, as ``update`` would one by one, with the same bits; Python's lock is released.
 
         images            ``Images``, or (K,) of goe_image_t (``goe.IMAGE``)
-        rules             R rules by which ``decide`` is asked after each image
+        rules             R rules for ``decide`` after each image
         velocity_ned_m_s  (K, 3) planned, m/s; None: that of ``images``. Needed if there are rules
         covariance        whether it is wanted after each image
 
@@ -85,7 +85,7 @@ class Estimator:
         return track
 
     def covariance(self) -> npt.NDArray[np.float32] | None:
-        """(6, 6) of ``QUANTITIES`` of the latest estimate, m and degrees; rows and columns of what is not valid are 0.
+        """(6, 6) of ``QUANTITIES`` of the latest estimate, m and degrees; rows and columns of invalid quantities are 0.
         None: there is no position."""
         result = np.zeros((len(QUANTITIES), len(QUANTITIES)), np.float32)
         with self._lock:

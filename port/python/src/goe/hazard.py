@@ -109,7 +109,7 @@ class DecisionRule:
 
 
 class Rule(NamedTuple):
-    """What is asked after each image of a whole track: a ``Plan`` and a ``DecisionRule`` in one. The velocity is that
+    """The decision after each image of a whole track: a ``Plan`` and a ``DecisionRule`` in one. The velocity is that
     of ``Images.velocity_ned_m_s``. For margins that never grow: ``doubt=1, drift_m_s=0``."""
 
     margin_m: float

@@ -66,7 +66,7 @@ class Pose:
     """Counts the resets of the autopilot's filter; any start; its lowest 8 bits count."""
     reset_delta_ned_m: Sequence[float] | None = None
     """By what the position jumped with them, new minus old, summed over all resets since the last image that was taken,
-    m. None: not known; then a change of ``reset_count`` starts the track anew."""
+    m. None: not known; then a change of ``reset_count`` starts a new track."""
 
 
 @dataclass
@@ -84,7 +84,7 @@ class ImageNoise:
 
 @dataclass
 class Image:
-    """One image of one obstacle: a box, or points, or both. Any subset may be seen; none: give it all the same."""
+    """One image of one obstacle: a box, or points, or both. Any subset may be visible; none: pass it anyway."""
 
     pose: Pose = field(default_factory=Pose)
     """Where the aircraft was."""
@@ -97,7 +97,7 @@ class Image:
     base_left: Pixel | None = None
     """Corner of the base on the ground, in image order."""
     base_near: Pixel | None = None
-    """The one between two visible faces; not seen when one face alone is."""
+    """The one between two visible faces; not visible with a single face."""
     base_right: Pixel | None = None
     """The last in image order."""
     bounding_box: BoundingBox | None = None

@@ -131,9 +131,9 @@ class Detector(_Group):
     box_px: float = real("detector.box_px")
     """Error of a box's side that is new in each image, px."""
     box_share: float = real("detector.box_share")
-    """Error of a side that stays alike from image to image, fraction of the box's width or height."""
+    """Slowly varying (correlated) error of a side, fraction of the box's width or height."""
     correlation_s: float = real("detector.correlation_s")
-    """How long it stays alike, time constant, s."""
+    """Correlation time of this error, s."""
     cut_noise: float = real("detector.cut_noise")
     """Error of every side while the image's border cuts the box, fraction of the box."""
 
@@ -153,7 +153,7 @@ class RefinedSettings(_Group):
     range_share: float = real("refined.range_share")
     """Sigma over range up to which a position is reported."""
     top_is_highest: bool = bool(whole("refined.top_is_highest"))
-    """``top`` is the highest point in the image, also when seen from above the roof."""
+    """``top`` is the highest point in the image, also from above the roof."""
 
 
 @dataclass
@@ -367,24 +367,24 @@ _FLIGHT_BOUNDS = _bounds_of(FLIGHT_ROWS)
 
 @dataclass
 class FlightSettings(_Group):
-    """Settings of the flight layer, beside those of the estimators."""
+    """Settings of the flight layer, in addition to those of the estimators."""
 
     score_min: float = flight("score_min")
     """A detection of less is not looked at."""
     confirm_images: float = flight("confirm_images")
-    """Images that a new obstacle must be seen in before it is followed."""
+    """Images with a detection of a new obstacle before it is followed."""
     alive_s: float = flight("alive_s")
     """Without a frame for this long the detector counts as dead, s."""
     forget_s: float = flight("forget_s")
-    """An obstacle that was not seen for this long is given up, s."""
+    """An obstacle undetected for this long is given up, s."""
     delay_s: float = flight("delay_s")
     """Least time from sending to arrival, s."""
     delay_sd_s: float = flight("delay_sd_s")
-    """Its one sigma, and that of any capture time whose sender tells none, s."""
+    """Its one sigma, and that of any capture time whose sender gives none, s."""
     delay_max_s: float = flight("delay_max_s")
     """A frame that comes later after its exposure is refused, s."""
     resets: float = flight("resets")
-    """How the autopilot tells resets: 0 by counters (PX4), 1 by times (ArduPilot)."""
+    """How the autopilot reports resets: 0 by counters (PX4), 1 by times (ArduPilot)."""
     range_finder_sd_m: float = flight("range_finder_sd_m")
     """One sigma of the range finder, m."""
     range_finder_max_m: float = flight("range_finder_max_m")

@@ -17,9 +17,9 @@ class Status(IntEnum):
     COLLECTING = 2
     """Image taken; no solution yet."""
     HELD = 3
-    """Image taken; it adds no point to the reported model, whose older solution stands."""
+    """Image taken; it adds no point to the reported model, whose older solution stays."""
     NOTHING_SEEN = 4
-    """Image taken for its pose; no feature was seen."""
+    """Image taken for its pose; no feature was visible."""
     BEHIND_CAMERA = -1
     """Image taken; a ray points backwards or sideways."""
     LENS_FAILED = -2
@@ -27,7 +27,7 @@ class Status(IntEnum):
     SWAPPED = -3
     """Image taken; left is not left of right."""
     EDGE_ON = -4
-    """Image taken; the front edge is seen from its end or from behind."""
+    """Image taken; the camera views the front edge from its end or from behind."""
     NO_EDGE = -5
     """Image taken; no edge has a measurable orientation."""
     BAD_HEIGHT = -6
@@ -113,13 +113,13 @@ class Reason(IntEnum):
     """Why an estimate is suspect, the most significant one. Refined method."""
 
     CONVENTION = 1
-    """What is given does not belong together: axes, signs or order of the attitude, the mounting, very late poses."""
+    """The inputs contradict each other: axes, signs or order of the attitude, the mounting, very late poses."""
     MOVES = 2
     """The obstacle moves. Without ``Estimate.velocity`` it is not followed, and the position is wrong."""
     BASE = 3
-    """What was given as base corners proved to be none."""
+    """The given base corners proved to be wrong."""
     SHAPE = 4
-    """A disc was asked for, and the silhouette is not that of one."""
+    """A disc was configured, and the silhouette is not that of one."""
     LATE = 5
     """Poses are late or early: ``Estimate.latency_s``. Also of an estimate that is not suspect."""
     NOISE = 6

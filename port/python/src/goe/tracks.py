@@ -64,7 +64,7 @@ SIDE_PLACES = _Places(np.float32, _SIDES[0], (_step(_SIDES),), (len(SIDES),))
 class Images:
     """K images of one obstacle, as columns; meaning, units and frames as in ``Image`` and ``Pose``.
 
-    Boxes or points, or both; what is NaN in them is not seen. Anything that numpy can turn into an array of the shape.
+    Boxes or points, or both; NaN in them means not visible. Anything that numpy can turn into an array of the shape.
     """
 
     time_us: Any
@@ -76,11 +76,11 @@ class Images:
     height_m: Any
     """(K,) of the camera above the ground at the obstacle."""
     box_px: Any = None
-    """(K, 4) left, top, right, bottom; NaN: that side is not seen. None: no boxes."""
+    """(K, 4) left, top, right, bottom; NaN: that side is not visible. None: no boxes."""
     points_px: Any = None
-    """(K, 6, 2) u and v of ``POINTS``; NaN: not seen. None: no points."""
+    """(K, 6, 2) u and v of ``POINTS``; NaN: not visible. None: no points."""
     points_seen: Any = None
-    """(K, 6) bool, where a NaN is not to mean "not seen": the library refuses an image with a NaN in what is seen."""
+    """(K, 6) bool, where a NaN must not mean "not visible": the library refuses a NaN in a visible feature."""
     reset_count: Any = None
     """(K,) of the autopilot's filter. None: no resets."""
     reset_delta_ned_m: Any = None
@@ -90,7 +90,7 @@ class Images:
     camera: Any = None
     """(K,) number of the camera that took it. None: the first."""
     velocity_ned_m_s: Any = None
-    """(K, 3) planned, for the decisions; None: no decision is asked for."""
+    """(K, 3) planned, for the decisions; None: no decisions."""
 
     def __len__(self) -> int:
         return len(self.time_us)
@@ -163,11 +163,11 @@ def _put(place: Array, field: str, values: Any, name: str) -> None:
 
 @dataclass
 class Track:
-    """What is known after each of K images.
+    """The estimates after each of K images.
 
     ``track[k]`` is the ``Estimate`` after image k; columns are read from ``estimates``: ``track.estimates["z_m"]``,
-    ``track.estimates["sigma"]["z_m"]``. Fields are those of goe_estimate_t in goe.h, where ``valid`` tells which mean
-    anything; ``values`` and ``sigma`` have NaN instead of what does not.
+    ``track.estimates["sigma"]["z_m"]``. Fields are those of goe_estimate_t in goe.h, where ``valid`` marks the valid
+    ones; ``values`` and ``sigma`` have NaN for the others.
     """
 
     status: Array

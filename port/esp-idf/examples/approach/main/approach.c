@@ -1,4 +1,4 @@
-/* Flies towards a mast of 6 m by 30 m that stands 200 m ahead and prints what is known of it. SPDX-License-Identifier: MIT */
+/* Flies towards a mast of 6 m by 30 m, 200 m ahead, and prints its estimate. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
 #include "goe.h"

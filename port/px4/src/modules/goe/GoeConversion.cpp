@@ -178,7 +178,7 @@ bool sighting(const irlock_report_s &topic, const goe_settings_t &settings, uint
 
 /* -------------------------------------------------------------------------------------------------------------- out -- */
 
-static void tell_hazard(const goe_flight_obstacle_t &from, goe_obstacle_s &topic) {
+static void report_hazard(const goe_flight_obstacle_t &from, goe_obstacle_s &topic) {
     const goe_hazard_t &hazard = from.hazard;
     const bool has_top = from.has_hazard && hazard.has_clearance;
     topic.time_to = known(hazard.time_s, from.has_hazard);
@@ -190,7 +190,7 @@ static void tell_hazard(const goe_flight_obstacle_t &from, goe_obstacle_s &topic
     topic.violation = known(hazard.violation, from.has_hazard);
 }
 
-static void tell_size(const goe_flight_obstacle_t &from, goe_obstacle_s &topic) {
+static void report_size(const goe_flight_obstacle_t &from, goe_obstacle_s &topic) {
     const bool has_height = (from.valid & GOE_HAS_HEIGHT) != 0u;
     topic.radius = from.radius_m;
     topic.width = known(from.width_m, (from.valid & GOE_HAS_WIDTH) != 0u);
@@ -222,8 +222,8 @@ goe_obstacle_s obstacle(const goe_flight_t &flight, const goe_flight_obstacle_t 
     topic.lon = flight.origin_known ? static_cast<double>(from.lon_e7) / E7_PER_DEG : unknown;
     memcpy(topic.nearest, from.nearest_ned_m, sizeof topic.nearest);
     topic.age = from.age_s;
-    tell_size(from, topic);
-    tell_hazard(from, topic);
+    report_size(from, topic);
+    report_hazard(from, topic);
     return topic;
 }
 
@@ -282,11 +282,11 @@ uint8_t conflict_level(const goe_flight_obstacle_t &from, int slot, const goe_fl
 }
 
 /* The distance in space came a month after the others. */
-template <typename T> auto tell_distance(T &topic, float distance_m, int) -> decltype(topic.aircraft_dist, void()) {
+template <typename T> auto report_distance(T &topic, float distance_m, int) -> decltype(topic.aircraft_dist, void()) {
     topic.aircraft_dist = distance_m;
 }
 
-template <typename T> void tell_distance(T &, float, long) {}
+template <typename T> void report_distance(T &, float, long) {}
 
 } // namespace
 
@@ -304,7 +304,7 @@ detect_and_avoid_s detect_and_avoid(const goe_flight_obstacle_t &from, int slot,
     topic.aircraft_dist_hor = sqrtf(north_m * north_m + east_m * east_m);
     topic.aircraft_dist_vert = fabsf(down_m);
     topic.expected_min_dist_time = known(from.hazard.time_s, from.has_hazard);
-    tell_distance(topic, sqrtf(north_m * north_m + east_m * east_m + down_m * down_m), 0);
+    report_distance(topic, sqrtf(north_m * north_m + east_m * east_m + down_m * down_m), 0);
     return topic;
 }
 

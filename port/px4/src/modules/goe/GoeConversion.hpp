@@ -35,7 +35,7 @@ inline uint32_t time_us(uint64_t timestamp) { return static_cast<uint32_t>(times
 
 goe_flight_attitude_t attitude(const vehicle_attitude_s &topic);
 
-/* Heights above the ground, m, that other topics tell. */
+/* Heights above the ground, m, from other topics. */
 struct Heights {
     bool has_range{false}, has_home{false};
     float range_m{0.f}; /* by a distance sensor that looks down */
