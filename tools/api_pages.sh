@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the pages of the C interface from lib/goe.h and port/flight/goe_flight.h with Doxygen, whose warnings are errors.
+# Builds the pages of the C interface from lib/goe.h and port/flight/goe_flight.h with Doxygen; its warnings are errors.
 #
-#   tools/api_pages.sh [DIR]   writes DIR/html/index.html; DIR is by default build/api
+#   tools/api_pages.sh [DIR]   writes DIR/html/index.html; default: build/api
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 if [ $# -gt 1 ] || [[ ${1:-} == -* ]]; then

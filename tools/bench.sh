@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Speeds on one core of this machine, which no test holds: rows per second of goe_replay, over a long log made of a recorded
-# flight repeated, and through a pipe with every column filled; the share of a core that goe_companion takes in flight.
+# Speeds on one core of this machine, not asserted by any test: rows per second of goe_replay, over a long log of a repeated
+# recorded flight, and through a pipe with every column filled; the share of a core that goe_companion takes in flight.
 #
 #   tools/bench.sh [rows]   default 1000000
 set -euo pipefail
@@ -15,7 +15,7 @@ cmake --build build --target goe_replay >/dev/null
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Each repetition is a later obstacle: a new id, and times after those before it.
+# Each repetition is a new obstacle at a later time.
 awk -F, -v OFS=, -v rows="$rows" '
     NR == 1 { for (i = 1; i <= NF; i++) { if ($i == "t_s") t = i; if ($i == "id") id = i } print; next }
     { sub(/\r$/, ""); line[NR - 1] = $0; last = $t }
@@ -44,10 +44,10 @@ best() {
     echo $best
 }
 
-# filled: rows per second of the processor, best of the runs
+# filled: rows per second of processor time, best of the runs
 filled() { GOE_REPLAY=build/sim_host/goe_replay "$python" tests/host/bench_replay.py "$rows"; }
 
-# in_flight: seconds of the processor for each second of a flight, least of the runs
+# in_flight: seconds of processor time for each second of a flight, least of the runs
 in_flight() { GOE_COMPANION=build/port/companion/goe_companion "$python" tests/companion/bench_companion.py; }
 
 cached() { sed -n "s/^$1:[A-Z]*=//p" build/CMakeCache.txt; }

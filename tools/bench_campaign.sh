@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Cases per second of goe_campaign on all cores. A case is one flight with all that is run over it.
+# Cases per second of goe_campaign on all cores. A case is one flight with all estimators.
 #
 #   tools/bench_campaign.sh [seeds] [program]   default 10, build/sim_host/goe_campaign
 #   tools/bench_campaign.sh --quick             the paper's study alone, once

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# What shows that the library is as it says, as one table of figures, goals and dates.
+# Evidence for the library's promises, as one table of figures, goals and dates.
 #
-#   tools/evidence.sh --quick             what fits ten minutes
-#   tools/evidence.sh --long              all of it; keeps its figures in build/evidence/record.json
+#   tools/evidence.sh --quick             parts that fit in ten minutes
+#   tools/evidence.sh --long              everything; keeps the figures in build/evidence/record.json
 #   tools/evidence.sh --show              prints that record, or the newest release's
-#   tools/evidence.sh --release VERSION   makes tests/evidence/VERSION.json of that record
+#   tools/evidence.sh --release VERSION   makes tests/evidence/VERSION.json from that record
 #
 # Further options are those of python -m ci evidence --help. Exit status 1: a goal was missed.
 set -euo pipefail

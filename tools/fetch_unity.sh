@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Fetches the sources of the Unity test framework into .cache/unity/src, pinned by checksums: from its own repository,
-# or else out of the Debian source package that carries them. Does nothing if they are there.
+# Fetches the sources of the Unity test framework into .cache/unity/src, pinned by checksums: from its repository,
+# or otherwise from the Debian source package that contains them. Does nothing if they exist.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 target=$root/.cache/unity
@@ -27,7 +27,7 @@ from_archive() {
         tar -xzf unity.tar.gz && mv Unity-$version/src src
 }
 
-# apt-get with lists of its own, which hold source packages. The machine's own lists stay as they are.
+# apt-get with separate lists of source packages. The machine's lists stay unchanged.
 private_apt() {
     apt-get -qq -o "Dir::Etc::SourceList=$scratch/sources.list" -o Dir::Etc::SourceParts=- \
         -o "Dir::Etc::TrustedParts=$scratch/keys" -o "Dir::State::Lists=$scratch/lists" -o "Dir::Cache=$scratch/cache" \
@@ -35,7 +35,7 @@ private_apt() {
         -o Acquire::https::Timeout=15 "$@"
 }
 
-# The places that the machine gets its packages from, tried one by one: a mirror may lack some of the sources.
+# Tries the machine's package sources one by one: a mirror may lack some of the source packages.
 from_debian() {
     mkdir -p keys lists/partial cache/archives/partial
     find /etc/apt/trusted.gpg.d /etc/apt/keyrings /usr/share/keyrings \( -name '*.gpg' -o -name '*.asc' \) \

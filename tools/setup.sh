@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Gets what the project needs: Debian packages, the Unity test framework, a Python environment in .venv with the package goe
-# of port/python, compiled from the present sources.
+# Installs the project's requirements: Debian packages, the Unity test framework, a Python environment in .venv with the package goe
+# of port/python, compiled from the current sources.
 #
 #   tools/setup.sh          everything
 #   tools/setup.sh --demo   only what tools/demo.sh needs
 #   tools/setup.sh --rivals everything, and GTSAM in .cache/rivals for the comparison with other estimators
 #
-# Packages are installed by root or through a sudo that asks no password; otherwise the line to type is printed. What is
-# there already is left alone, so that a second run takes a moment. Exit status 1: something needed is missing.
+# Packages are installed as root or with a sudo that needs no password; otherwise the command to type is printed. Existing
+# installations are left alone, so a second run takes a moment. Exit status 1: something needed is missing.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
@@ -34,7 +34,7 @@ die() {
 
 # -------------------------------------------------------------------------------------------------------------- packages
 
-# want <list> <package> <command that succeeds if it is there>...
+# want <list> <package> <command that succeeds if it is installed>...
 want() {
     local -n list=$1
     local package=$2
@@ -98,7 +98,7 @@ may_install() {
     command -v sudo >/dev/null && sudo -n true 2>/dev/null && as_root=(sudo -n)
 }
 
-# Whether apt's lists, as they are, know all of the packages.
+# Whether apt's current lists contain all of the packages.
 known() { apt-get install --simulate --no-install-recommends "$@" >>"$log" 2>&1; }
 
 install_packages() {
@@ -117,7 +117,7 @@ if [ $((${#needed[@]} + ${#extra[@]})) != 0 ]; then
     if may_install; then
         known "${needed[@]}" "${extra[@]}" || update_lists
         if [ ${#needed[@]} != 0 ] && ! install_packages "${needed[@]}"; then
-            update_lists # the packages may have moved on since
+            update_lists # the lists may be outdated
             install_packages "${needed[@]}" || die "apt-get cannot install ${needed[*]}"
         fi
         # All at once, which takes a fraction of the time; one by one if that fails, to find the one that is missing.
@@ -162,8 +162,8 @@ if [ ! -e $stamp ] || [ "$(cat $stamp)" != "$state" ]; then
     echo "$state" >$stamp
 fi
 
-# The Python package goe, always of the present sources: goe.FINGERPRINT tells which ones an installed package is made of, and
-# goe_tools refuses any other. It is compiled from nothing: no time stamp can keep an old object.
+# The Python package goe, always from the current sources: goe.FINGERPRINT identifies those of an installed package, and
+# goe_tools refuses any other. It is compiled from scratch: no time stamp can keep an old object.
 present=$(.venv/bin/python port/python/bindings.py --lib lib --flight port/flight --cmake port/cmake) ||
     die "port/python/bindings.py does not run"
 if [ "$(.venv/bin/python -I -c 'import goe; print(goe.FINGERPRINT)' 2>>"$log")" != "$present" ]; then
@@ -179,7 +179,7 @@ if $rivals; then
         echo "setup: making .cache/rivals"
         rm -rf .cache/rivals
         mkdir .cache/rivals
-        # Without dependencies and apart from .venv: tools/requirements-rivals.txt says why.
+        # Without dependencies and outside .venv; tools/requirements-rivals.txt has the reason.
         .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --target .cache/rivals \
             -r tools/requirements-rivals.txt >>"$log" 2>&1 || die "pip cannot install tools/requirements-rivals.txt"
         [ -e .cache/rivals/gtsam ] || echo "setup: there is no GTSAM for this Python; the comparison goes without it"

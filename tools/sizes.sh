@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Memory of one estimator and code of the library, as the tables of lib/README.md; of the flight layer, as those of
-# port/flight/README.md; and of its MAVLink messages, as that of port/mavlink/README.md.
+# Memory of one estimator and code of the library, for the tables of lib/README.md; of the flight layer, for those of
+# port/flight/README.md; and of its MAVLink messages, for that of port/mavlink/README.md.
 #
 #   tools/sizes.sh          prints the tables
 #   tools/sizes.sh <words>  ... of the code only the rows whose name has these words, such as "Cortex-M4F gcc"
 #   tools/sizes.sh --check  fails if an estimator at the default window is larger than 2.9 KiB, or if lib/README.md
-#                           states bytes per estimator that are not these
+#                           states other bytes per estimator
 set -euo pipefail
 . "$(dirname "$0")/../tests/flags/common.sh"
 cd "$scratch"
@@ -37,7 +37,7 @@ code_row() {
     [[ $name == *"$wanted"* ]] || return 0
     if command -v "$1" >/dev/null; then
         "$@" -std=c99 -ffp-contract=off -fno-math-errno "${all_includes[@]}" -c "${sources[@]}"
-        # .data.rel.ro holds constants that are addresses: read-only once loaded
+        # .data.rel.ro contains constants that are addresses: read-only once loaded
         "$size" -A ./*.o | awk -v name="$name ($("$1" -dumpversion))" \
             '/^\.(text|rodata|data\.rel\.ro)/ { code += $2 } /^\.(data|bss)/ && !/^\.data\.rel\.ro/ { data += $2 }
              END { printf "| %s | %d | %d |\n", name, code, data }'

@@ -48,8 +48,8 @@ typedef enum {
     OUTCOMES
 } outcome_t;
 
-static const char *const outcome_names[OUTCOMES] = {"crashed", "hung", "not_finite", "undefined", "corrupted",
-                                                    "suspect", "told", "wrong",      "was_wrong", "masked"};
+static const char *const outcome_names[OUTCOMES] = {"crashed", "hung",     "not_finite", "undefined", "corrupted",
+                                                    "suspect", "reported", "wrong",      "was_wrong", "masked"};
 
 typedef struct {
     goe_status_t status, covariance_status, hazard_status;

@@ -189,7 +189,7 @@ def goals() -> list[dict[str, Any]]:
         _goal("kitti", "68 moving cars caught, at a share of false flags", {"0 %": 20.0, "5 %": 34.7, "20 %": 50.0},
               (60, 100), ("5 %",), "%"),
         _goal("kitti", "misfit as a flag", {"area under the curve": 0.661}),
-        _goal("kitti", "told as suspect with the default threshold", {"parked": 1.0, "moving": 14.0}, unit="%"),
+        _goal("kitti", "flagged as suspect with the default threshold", {"parked": 1.0, "moving": 14.0}, unit="%"),
     ]  # fmt: skip
     for name, errors in (
         ("refined", _six(0.7, 0.6, 0.15, 0.021, 0.06, 0.02)), ("window", _six(2.1, 5.0, 1.4, 0.37, 1.6, 0.9)),
@@ -204,7 +204,7 @@ def goals() -> list[dict[str, Any]]:
 
 def hostile_goals() -> list[dict[str, Any]]:
     """Lines of the groups attack and hazard: two attacks, of which one misses its goal, and a row of warnings."""
-    slope, mover = "attack: told errors", "attack: movers"
+    slope, mover = "attack: configured errors", "attack: moving obstacles"
     return [
         _goal(slope, "slope 3 %: within 2 sigma", _six(73.1, 50.2, 64.3, 54.4, None, 67.6), (90, 100), ("X0", "Z0"),
               "%"),

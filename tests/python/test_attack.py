@@ -13,7 +13,7 @@ from bench.__main__ import main
 from bench.attack import approach, errors, judging, rows, scenario, turns, view
 from bench.attack import command as attack_command
 from bench.attack.judging import BOX, DISC, PRISM, X0, Z0, Answers, Outcome
-from bench.attack.scenario import Scenario, Told, Truth
+from bench.attack.scenario import Inputs, Scenario, Truth
 from bench.attack.solids import Solid
 from bench.optimum.goals import attack, hazard
 from bench.optimum.goals.goal import NAMES, Goal
@@ -41,7 +41,7 @@ def turned(q: np.ndarray, v: np.ndarray) -> np.ndarray:
     return v + 2.0 * np.cross(u, np.cross(u, v) + w * v)
 
 
-def pixel(told: Told, image: int, point_ned: np.ndarray) -> np.ndarray:
+def pixel(told: Inputs, image: int, point_ned: np.ndarray) -> np.ndarray:
     """Of a point, from what is told: a pose without error, a camera that looks ahead or aside by its yaw."""
     back = told.attitude[image] * [1.0, -1.0, -1.0, -1.0]
     forward, right, down = turned(back, point_ned - told.position_ned_m[image])
@@ -54,7 +54,7 @@ def pixel(told: Told, image: int, point_ned: np.ndarray) -> np.ndarray:
     return 640.0 + focal / ahead * np.array([aside, down])
 
 
-def bearing(told: Told, image: int, shown: np.ndarray) -> float:
+def bearing(told: Inputs, image: int, shown: np.ndarray) -> float:
     """Of a pixel's ray from north, rad."""
     x, y = (shown - 640.0) / told.settings["camera.fx_px"]
     yaw = math.radians(told.settings["camera.mount_yaw_deg"])
@@ -63,7 +63,7 @@ def bearing(told: Told, image: int, shown: np.ndarray) -> float:
     return math.atan2(east, north)
 
 
-def in_ned(told: Told, image: int, x: float, z: float, up: float) -> np.ndarray:
+def in_ned(told: Inputs, image: int, x: float, z: float, up: float) -> np.ndarray:
     """A point of the obstacle, given about its middle in T's axes, where it is in an image."""
     truth, t = told.truth, told.time_s[image]
     heading = math.radians(told.settings["heading_deg"])
@@ -236,11 +236,11 @@ def test_boxes_are_cut_at_the_border() -> None:
 
 def test_told_errors_have_the_told_size() -> None:
     rng = np.random.default_rng(1)
-    process = errors.alike(np.arange(4000) * 0.125, 1.0, 4, rng)
+    process = errors.correlated(np.arange(4000) * 0.125, 1.0, 4, rng)
     assert process.std() == pytest.approx(1.0, abs=0.06)
     after_1_s = (process[8:] * process[:-8]).mean()
     assert after_1_s == pytest.approx(math.exp(-1.0), abs=0.06)
-    mount = errors.told_mounting((0.0, 0.0, 0.0), errors.Wrong(mount_off_deg=2.0), rng)
+    mount = errors.configured_mounting((0.0, 0.0, 0.0), errors.Wrong(mount_off_deg=2.0), rng)
     assert np.abs(mount) == pytest.approx(2.0, abs=0.1)
 
 
@@ -290,12 +290,12 @@ def test_confident_errors_are_runs_of_five(error: list[float], suspect: list[boo
 
 def test_flags_and_reasons() -> None:
     quiet, late, early = (outcome([0.0] * 10, [k >= first for k in range(10)]) for first in (10, 6, 2))
-    assert judging.told_within([quiet, late, early], "moves", 4.0) == pytest.approx(100 / 3)
-    assert judging.told_within([quiet, late, early], "moves", math.inf) == pytest.approx(200 / 3)
+    assert judging.flagged_within([quiet, late, early], "moves", 4.0) == pytest.approx(100 / 3)
+    assert judging.flagged_within([quiet, late, early], "moves", math.inf) == pytest.approx(200 / 3)
     assert judging.suspected([quiet, early]) == {"tracks": 50.0, "images": 40.0}
     said = outcome([0.0] * 4, [True] * 4, ["", "poses late", "it moves", "it moves"])
-    assert judging.first_flag_s(said.answers, judging.told(said.answers, "moves")) == 2.0
-    assert judging.told_within([said], "late", 3.0) == 100.0 and judging.told_within([said], "shape", 3.0) == 0.0
+    assert judging.first_flag_s(said.answers, judging.flagged(said.answers, "moves")) == 2.0
+    assert judging.flagged_within([said], "late", 3.0) == 100.0 and judging.flagged_within([said], "shape", 3.0) == 0.0
     assert judging.suspect_or_covered([quiet, outcome([3.0] * 9), early, outcome([NAN])]) == 50.0
 
 
@@ -423,7 +423,7 @@ def test_halves_share_no_track_and_two_of_three_are_boxes() -> None:
     assert kinds.count("box") == 80 and kinds.count("cylinder") == 40
 
 
-def good_track(told: Told, more: dict[str, np.ndarray] | None = None) -> Track:
+def good_track(told: Inputs, more: dict[str, np.ndarray] | None = None) -> Track:
     """Right answers of sigma 1 m, as a disc or a box from the first image on."""
     count, solid = len(told.time_s), told.truth.solid
     values = np.tile(judging.namings(told.truth)[0], (count, 1))
@@ -438,7 +438,7 @@ def good_track(told: Told, more: dict[str, np.ndarray] | None = None) -> Track:
 
 
 def test_good_answers_meet_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    truths: list[Told] = []
+    truths: list[Inputs] = []
     fly = scenario.fly
     monkeypatch.setattr(scenario, "fly", lambda *given: truths.append(fly(*given)) or truths[-1])
     monkeypatch.setattr(attack, "run", lambda images, settings: good_track(truths[-1]))
@@ -472,7 +472,7 @@ def test_reasons_and_velocities_of_a_later_library_are_read(monkeypatch: pytest.
     more["reason"] = np.arange(count) // 4 % 2
     monkeypatch.setattr(attack, "reason_names", lambda: ("none", "moves"))
     answers = attack.answers_of(good_track(told, more), told.time_s)
-    assert judging.first_flag_s(answers, judging.told(answers, rows.MOVES)) == pytest.approx(0.5)
+    assert judging.first_flag_s(answers, judging.flagged(answers, rows.MOVES)) == pytest.approx(0.5)
     outcome_told = Outcome(answers, answers.values, answers.sigma)
     assert judging.velocity_covered([outcome_told], [velocity]) == 100.0
     assert judging.velocity_covered([outcome_told], [velocity - [2.0, 0.0]]) == 50.0
@@ -506,7 +506,7 @@ def test_the_library_over_some_rows(
     assert left.values == {"navigation.no_such_setting": 1.0} and left.met is None
     said = capsys.readouterr().out
     assert "left out: settings that the library does not have: navigation.no_such_setting" in said
-    assert "left out: recorded flights are not there" in said
+    assert "left out: no recorded flights" in said
 
 
 def test_the_library_warns_of_collision_courses(built: None) -> None:
@@ -534,10 +534,12 @@ def test_tables_of_the_page_tell_what_the_goals_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     found = [
-        _goal("attack: as told", f"calm: {attack_lines.COVER}", {"X0": 97.4, "Z0": 88.6}, (90.0, 100.0)),
-        _goal("attack: as told", f"calm: {attack_lines.WRONG}", {attack_lines.ANY: 2.0, attack_lines.POSITION: 1.0}),
+        _goal("attack: as configured", f"calm: {attack_lines.COVER}", {"X0": 97.4, "Z0": 88.6}, (90.0, 100.0)),
         _goal(
-            "attack: movers",
+            "attack: as configured", f"calm: {attack_lines.WRONG}", {attack_lines.ANY: 2.0, attack_lines.POSITION: 1.0}
+        ),
+        _goal(
+            "attack: moving obstacles",
             f"away: {attack_lines.REASON}",
             {attack_lines.IN_4_S: 24.0, attack_lines.IN_8_S: 56.0, attack_lines.EVER: 78.0},
         ),

@@ -76,9 +76,9 @@ def test_the_windows_answers_and_other_quantities_are_not_judged(monkeypatch: py
 def test_answers_are_held_against_the_fit(monkeypatch: pytest.MonkeyPatch, solid: boxes.Solid) -> None:
     monkeypatch.setattr(boxes, "estimate", lambda flight, settings: made_up(flight))
     (task,) = boxes._gauss_tasks(solid, 10.0, AMOUNT)
-    ours, best = boxes.beside_fit(task)
-    assert ours[list(boxes.TOLD)] == pytest.approx(0.5) and np.isnan(ours[WIDTH])
-    assert (best[list(boxes.TOLD)] < [1.0, 5.0, 1.0]).all() and (best[list(boxes.TOLD)] > 1e-3).all()
+    ours, best = boxes.with_fit(task)
+    assert ours[list(boxes.JUDGED)] == pytest.approx(0.5) and np.isnan(ours[WIDTH])
+    assert (best[list(boxes.JUDGED)] < [1.0, 5.0, 1.0]).all() and (best[list(boxes.JUDGED)] > 1e-3).all()
 
 
 @pytest.fixture
@@ -169,7 +169,7 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     odmd = {goal.name: goal for goal in goals if goal.group == "boxes: ODMD, val_robot"}
     assert odmd["depth error, mean"].values["Z0"] == pytest.approx(0.75)  # 0.5 m of 100 m and of 50 m
     assert odmd["answered, of 2"].values == {"tracks": 100.0} and odmd["answered, of 2"].met
-    default = odmd["depth error by default settings"]
+    default = odmd["depth error with default settings"]
     assert default.values["mean"] == pytest.approx(0.5) and default.values["answered"] == 50.0
     assert default.met is None
     assert len(settings_told) == 6
@@ -187,7 +187,7 @@ def test_the_library_tells_prisms() -> None:
     track = estimate(flight, camera_settings(flight))
     assert set(track.model[track.valid[:, Z0]]) == {MODEL_PRISM}
     judged = boxes.perform(boxes.Simulated(MAST, BoxOptions(roll_deg=10.0), 2))
-    told = judged.error[-1, list(boxes.TOLD)]
-    assert (np.abs(told) < 4 * judged.sigma[-1, list(boxes.TOLD)]).all()
+    told = judged.error[-1, list(boxes.JUDGED)]
+    assert (np.abs(told) < 4 * judged.sigma[-1, list(boxes.JUDGED)]).all()
     assert abs(judged.error[-1, Z0]) < 0.03 * flight.truth.z0_m
     assert boxes.images_until_answer(judged) <= 6

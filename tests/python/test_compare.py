@@ -39,7 +39,7 @@ def test_options_reach_all_three(options: tuple[str, ...], corner_folder: Path, 
     ("change", "message"),
     [
         ({"columns": ["x0_m"], "ulp": 5, "rows": [30]}, "float32: 5 ULP apart, 4 allowed"),
-        ({"columns": ["z0_m"], "ulp": 1}, "values have identical bits, 99.9% needed"),
+        ({"columns": ["z0_m"], "ulp": 1}, "values have identical bits, minimum 99.9%"),
         ({"columns": ["width_m"], "ulp": 30000}, "float64: width_m: 99th percentile"),
         ({"columns": ["x0_sd_m"], "ulp": 3000000}, "float64: x0_sd_m: 99th percentile"),
         ({"columns": ["orientation_deg"], "ulp": 20000}, "float64: orientation_deg: 99th percentile"),

@@ -103,7 +103,7 @@ def test_an_offset_is_looked_for_where_the_user_says(convert: Callable[..., tupl
 
 def test_an_offset_that_nothing_tells_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = autopilot_log(tmp_path, "ulog", FLOWN)
-    reasons = {(0.9, (8, 80)): "turns and boxes tell no time offset", (0.0, (8, 14)): "no track whose poses are known"}
+    reasons = {(0.9, (8, 80)): "turns and boxes determine no offset", (0.0, (8, 14)): "no track has known poses"}
     for (offset_s, images), reason in reasons.items():
         write_detections(tmp_path, FLOWN, offset_s, images=images)
         assert main(words("ulog", log)) == 2
@@ -153,7 +153,7 @@ def test_a_log_without_a_sensor_of_the_height(tmp_path: Path, capsys: pytest.Cap
     log = autopilot_log(tmp_path, "tlog", FLOWN)
     write_detections(tmp_path, FLOWN, 0.0)
     assert main(words("tlog", log, "--offset", "0", "--height", "sensor")) == 2
-    assert "a.tlog: no sensor of the height above the ground was logged" in capsys.readouterr().err
+    assert "a.tlog: no sensor of the height above ground was logged" in capsys.readouterr().err
 
 
 # --------------------------------------------------------------------------------------------------------------- resets
@@ -200,7 +200,7 @@ def test_a_jump_of_all_three_axes(convert: Callable[..., tuple[ObservationLog, s
 def test_a_jump_of_the_heading_cuts_the_track(convert: Callable[..., tuple[ObservationLog, str]], kind: str) -> None:
     at = START_S + 5.34
     log, text = convert(kind, replace(FLOWN, faults=[Fault(at, yaw_deg=20.0)]), 0.0, "--offset", "0")
-    assert re.search(r"reset at 25\.3[34]\d s, .*: the track is cut", text)
+    assert re.search(r"reset at 25\.3[34]\d s, .*: the track is split", text)
     for frames in log.tracks().values():
         before, after = around(frames, at)
         assert (before.reset_count, after.reset_count, after.reset_delta_m) == (0, 1, None)
@@ -236,7 +236,7 @@ def test_odometry_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     log = write_tlog(tmp_path / "a.tlog", flown, odometry=True)
     write_detections(tmp_path, flown, 0.0)
     assert main(words("tlog", log, "--offset", "0")) == 0
-    assert "ODOMETRY.reset_counter: the track is cut" in capsys.readouterr().out
+    assert "ODOMETRY.reset_counter: the track is split" in capsys.readouterr().out
     _, after = around(read_log(tmp_path / "log").tracks()[4], START_S + 5.34)
     assert (after.reset_count, after.reset_delta_m) == (1, None)
 
@@ -287,7 +287,7 @@ def test_samples_that_are_wrong_are_told_with_their_time(tmp_path: Path, capsys:
     back = spoilt("vehicle_local_position", "timestamp_sample", 100, 1e6)
     assert where + "time runs back from 21.980000 s to 1.000000 s" in back
     told = spoilt("vehicle_attitude", "q", 50, 0.0)
-    assert f"{path}: vehicle_attitude.q: is no unit quaternion at 21.000000 s" in told
+    assert f"{path}: vehicle_attitude.q: is not a unit quaternion at 21.000000 s" in told
 
 
 @pytest.mark.parametrize("kind", FORMATS)
@@ -303,7 +303,7 @@ def test_files_that_are_none(tmp_path: Path, capsys: pytest.CaptureFixture[str],
     )
     path.unlink()
     path.symlink_to("/dev/zero")
-    assert f"goe_tools convert: {path}: is no file" in refused(capsys, words(kind, path))
+    assert f"goe_tools convert: {path}: is not a file" in refused(capsys, words(kind, path))
     path.unlink()
     with path.open("wb") as file:
         file.truncate(2**31 + 1)
@@ -318,7 +318,7 @@ def test_an_input_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[
     (tmp_path / "camera.ini").rename(tmp_path / "log" / "camera.ini")
     (tmp_path / "camera.ini").symlink_to(tmp_path / "log" / "camera.ini")
     assert main(words("ulog", path, "--offset", "0")) == 2
-    assert f"the output would replace {tmp_path / 'camera.ini'}, which is read" in capsys.readouterr().err
+    assert f"the output would replace the input {tmp_path / 'camera.ini'}" in capsys.readouterr().err
     assert [file.name for file in (tmp_path / "log").iterdir()] == ["camera.ini"]
 
 
@@ -389,4 +389,4 @@ def test_systems_of_a_tlog(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert main(words("tlog", path, "--offset", "0", "--system", "1")) == 0
     assert "system 1, component 1" in capsys.readouterr().out
     assert main(words("tlog", path, "--system", "7")) == 2
-    assert f"{path}: HEARTBEAT: the log has none of system 7 of an autopilot" in capsys.readouterr().err
+    assert f"{path}: HEARTBEAT: the log has none of system 7 from an autopilot" in capsys.readouterr().err

@@ -6,7 +6,7 @@ import pytest
 from ci.evidence import flips
 
 HEADER = (
-    "flips,flight,images,field,bits,crashed,hung,not_finite,undefined,corrupted,suspect,told,wrong,was_wrong,masked"
+    "flips,flight,images,field,bits,crashed,hung,not_finite,undefined,corrupted,suspect,reported,wrong,was_wrong,masked"
 )
 
 
@@ -28,7 +28,7 @@ def met(text: str) -> list[bool | None]:
 def test_lines_are_counted_by_what_they_say() -> None:
     found = flips.counts(GOOD)
     assert [count.flight for count in found] == ["window, disc", "window, disc", "refined, disc"]
-    assert found[1].of(["corrupted", "suspect", "told"]) == 4
+    assert found[1].of(["corrupted", "suspect", "reported"]) == 4
     by_field = flips.summed(found, "field")
     assert by_field["motion.dx_m"]["bits"] == 20 and by_field["motion.dx_m"]["wrong"] == 3
     figures = [row.figure for row in flips.rows(found)]

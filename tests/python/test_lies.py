@@ -68,15 +68,15 @@ def solids(count: int, rng: np.random.Generator) -> Solid:
     is_round = rng.random(count) < 0.4
     half = rng.uniform(1.0, 12.0, (count, 2))
     half[is_round, 1] = half[is_round, 0]
-    centre = away[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1)
+    center = away[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1)
     foot = rng.uniform(2.0, 40.0, count)
-    return Solid(is_round, centre, half, rng.uniform(0, np.pi, count), foot, foot - rng.uniform(2.0, 60.0, count))
+    return Solid(is_round, center, half, rng.uniform(0, np.pi, count), foot, foot - rng.uniform(2.0, 60.0, count))
 
 
 def views(solid: Solid, rng: np.random.Generator, lens: bool) -> optics.View:
     """Cameras that look about towards the middle, rolled and pitched."""
     count = len(solid.round)
-    yaw = np.arctan2(solid.centre[:, 1], solid.centre[:, 0]) + rng.uniform(-0.2, 0.2, count)
+    yaw = np.arctan2(solid.center[:, 1], solid.center[:, 0]) + rng.uniform(-0.2, 0.2, count)
     angles = [yaw, rng.uniform(-0.4, 0.1, count), rng.uniform(-0.5, 0.5, count)]
     axes = optics.mounted(*(np.degrees(angle) for angle in angles))
     bends = rng.uniform(-0.05, 0.05, (count, 4)) * np.array([1.0, 0.3, 0.02, 0.02]) * lens
@@ -135,7 +135,7 @@ def test_visible_corners_are_those_that_no_wall_hides() -> None:
     steps = np.linspace(0.05, 0.9995, 400)
     for i in np.flatnonzero(~solid.round):
         path = corners[i][:, None] * steps[:, None]  # from the camera, at the origin, to each corner
-        own = np.abs((path - solid.centre[i]) @ axes[i].T)
+        own = np.abs((path - solid.center[i]) @ axes[i].T)
         free = corners[i][~np.any(np.all(own < solid.half[i] - 1e-9, 2), 1)]
         shown = found[i][there[i]]
         assert len(shown) == len(free) in (2, 3)
@@ -169,7 +169,7 @@ def test_the_upright_box_touches_the_silhouette(lens: bool) -> None:
 def test_the_sides_of_a_cylinder_are_where_lines_touch_it() -> None:
     solid = solids(200, np.random.default_rng(RNG_SEED)).take(np.arange(200))
     posts = shapes.sides(solid)[solid.round]
-    radius = posts - solid.centre[solid.round][:, None]
+    radius = posts - solid.center[solid.round][:, None]
     np.testing.assert_allclose(np.hypot(*np.moveaxis(radius, -1, 0)), solid.half[solid.round][:, :1].repeat(2, 1))
     np.testing.assert_allclose(np.sum(radius * posts, -1), 0.0, atol=1e-9)
 
@@ -187,7 +187,7 @@ def test_errors_are_as_configured() -> None:
     assert found.height[:, 0].std() == pytest.approx(0.5, rel=0.15)
     walked = found.position[:, 16] - found.position[:, 0]
     assert walked.std() == pytest.approx(0.5 * np.sqrt(4.0), rel=0.1)
-    fading = errors.alike(np.random.default_rng(1).standard_normal((500, 30, 4)), np.full((500, 30), 0.8))
+    fading = errors.correlated(np.random.default_rng(1).standard_normal((500, 30, 4)), np.full((500, 30), 0.8))
     assert fading.std() == pytest.approx(1.0, rel=0.03)
     assert np.mean(fading[:, 5:] * fading[:, :-5]) == pytest.approx(0.8**5, abs=0.05)
 
@@ -195,14 +195,14 @@ def test_errors_are_as_configured() -> None:
 def test_a_closest_approach_is_that_of_many_small_steps() -> None:
     rng = np.random.default_rng(RNG_SEED)
     solid = solids(400, rng)
-    start, velocity = -solid.centre, rng.uniform(-15, 15, (400, 2))
+    start, velocity = -solid.center, rng.uniform(-15, 15, (400, 2))
     towards = rng.random(400) < 0.6
-    velocity[towards] = (solid.centre + rng.normal(0, 10, (400, 2)))[towards] * 0.2
+    velocity[towards] = (solid.center + rng.normal(0, 10, (400, 2)))[towards] * 0.2
     found = approach.closest(solid.round, solid.axes(), solid.half, start, velocity)
     times = np.linspace(0.0, 30.0, 30001)
     for i in range(400):
         moved = Solid(*(np.repeat(getattr(solid, n)[i : i + 1], len(times), 0) for n in Solid.__dataclass_fields__))
-        moved.centre = -(start[i] + velocity[i] * times[:, None])
+        moved.center = -(start[i] + velocity[i] * times[:, None])
         away = np.maximum(moved.distance(), 0.0)
         if found.time_s[i] < 29.0:
             assert found.miss_m[i] == pytest.approx(away.min(), abs=0.02)
@@ -262,7 +262,7 @@ def truthful(flown: world.World) -> answers.Answers:
     e["trajectory_heading_deg"] = heading - 20.0
     side, ahead = np.radians(heading), np.radians(heading - 20.0)
     along = np.stack([np.cos(side), np.sin(side)], 1)
-    spot = own.centre - along * own.half[:, :1]
+    spot = own.center - along * own.half[:, :1]
     first = search.judge.first_seen(flown, search.judge.track_begins(flown))
     for name, camera in (("x0_m", flown.camera[first]), ("x_m", flown.camera)):
         to = spot - camera[:, :2]
@@ -270,7 +270,7 @@ def truthful(flown: world.World) -> answers.Answers:
         e["z" + name[1:]] = to[:, 0] * np.cos(ahead) + to[:, 1] * np.sin(ahead)
     e["width_m"], e["length_m"], e["orientation_deg"] = 2 * own.half[:, 1], 2 * own.half[:, 0], 20.0
     e["height_m"] = flown.height_m[flown.flight]
-    e["center_north_m"], e["center_east_m"] = (own.centre + (flown.reported - flown.vehicle)[:, :2]).T
+    e["center_north_m"], e["center_east_m"] = (own.center + (flown.reported - flown.vehicle)[:, :2]).T
     for name in goe.ESTIMATE["sigma"].names or ():
         e["sigma"][name] = 0.5
     h, numbers = found.hazards, answers.rule_numbers(flown.p)[flown.flight]
@@ -299,7 +299,7 @@ def test_names_of_sides_may_be_exchanged(honest: Flown) -> None:
         e = found.estimates
         own = honest.world.solid.take(honest.world.flight)
         along = own.heading - np.pi / 2  # the other side edge
-        spot = own.centre - np.stack([np.cos(along), np.sin(along)], 1) * own.half[:, 1:]
+        spot = own.center - np.stack([np.cos(along), np.sin(along)], 1) * own.half[:, 1:]
         to, ahead = spot - honest.world.camera[:, :2], np.radians(e["trajectory_heading_deg"].astype(float))
         e["orientation_deg"] = -70.0
         e["width_m"], e["length_m"] = e["length_m"].copy(), e["width_m"].copy()
@@ -469,8 +469,8 @@ def test_a_find_is_the_same_log(tmp_path: Path) -> None:
     estimator = goe.Estimator(answers.settings(small, 0))
     replayed = [estimator.update(image_of(frame)) for frame in read.frames]
     assert [int(e.status) for e in replayed] == TRUE_FLY(small).status.tolist()
-    truth, centre = read.truth[1], small.solid.centre[0]
-    assert truth.center_n_m - p["origin_n_m"][0] == pytest.approx(centre[0])
+    truth, center = read.truth[1], small.solid.center[0]
+    assert truth.center_n_m - p["origin_n_m"][0] == pytest.approx(center[0])
 
 
 def test_breeding_goes_on_from_the_worst(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -562,7 +562,7 @@ def test_finds_are_written_as_logs(
     words = ["lies", "--flights", "30", "--mix", "outlines", "--evolve", "1", "--jobs", "1", "--out", str(tmp_path)]
     assert main(words) == 0
     printed = capsys.readouterr().out
-    assert "bred" in printed and "outlines: confident, x: 10.00" in printed
+    assert "evolved" in printed and "outlines: confident, x: 10.00" in printed
     folders = sorted(tmp_path.iterdir())
     assert sum(not folder.name.startswith("bred-") for folder in folders) == 2
     assert (tmp_path / "bred-confident-outlines-x" / "frames.csv").exists()

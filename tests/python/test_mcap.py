@@ -187,4 +187,4 @@ def test_wrong_input(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture
     (tmp_path / "camera.ini").write_text((folder / "camera.ini").read_text())
     assert "frames.csv:2: t_s: 'soon' is not a number" in refused(str(tmp_path), "--out", str(out))
     monkeypatch.setenv("GOE_REPLAY", str(tmp_path / "nothing"))
-    assert "not there; build it" in refused(str(folder), "--out", str(tmp_path / "log.mcap"))
+    assert "not found; build it" in refused(str(folder), "--out", str(tmp_path / "log.mcap"))

@@ -139,7 +139,7 @@ def test_the_noise_of_boxes_is_found(boxes: list[Path], capsys: pytest.CaptureFi
     assert set(found(text)) == set(detector)
     assert main(["noise", *logs, "--all"]) == 0
     text = capsys.readouterr().out
-    assert "by the errors, as the truth is known" in text
+    assert "from the errors, as the truth is known" in text
     assert_close(found(text), *detector, "navigation.attitude_bias_deg")
     shares = re.search(r"the 12 tracks, as fitted: X0 (\S+) %, Z0 (\S+) %, H (\S+) %", text)
     assert shares is not None and all(float(share) > 80.0 for share in shares.groups())  # twelve tracks

@@ -197,7 +197,7 @@ def test_time_stamps(tmp_path: Path, t_s: str, time_us: int) -> None:
     [
         ((HEADER.replace(",qy", ""), ROW), "1: qy: column is missing"),
         ((HEADER + ",left_u", ROW + ",3"), "1: left_v: column is missing"),
-        ((HEADER + ",reset_n_m", ROW + ",3"), "1: reset_count: column is missing, reset_n_m is there"),
+        ((HEADER + ",reset_n_m", ROW + ",3"), "1: reset_count: column is missing, but reset_n_m is present"),
         ((HEADER + ",box_top_px,box_top_px", ROW + ",3,3"), "1: box_top_px: column is given twice"),
         ((HEADER + ",box_top_px", ROW + ",high"), "2: box_top_px: 'high' is not a number"),
         ((HEADER + ",reset_count", ROW + ",1.0"), "2: reset_count: '1.0' is not an integer"),

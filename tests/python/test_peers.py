@@ -190,7 +190,7 @@ def random_recorded() -> np.ndarray:
 
 def test_a_wrong_update_shows() -> None:
     group = Group("one", update.case_of(random_recorded())[None])
-    holder = update.UpdatePeer("of factors", Path(), "", held="factors")
+    holder = update.UpdatePeer("of factors", Path(), "", form="factors")
     job = update.UpdateJob([holder], [group])
     truth = job.exact["one"][0]
 

@@ -23,11 +23,11 @@ from goe_tools.models.prism import (
     A,
     C,
     E,
+    ErrorModel,
     G,
     Q,
     S,
     Sight,
-    Told,
     W,
     exact_side,
     measured_sides,
@@ -77,7 +77,7 @@ def without(flight: Flight, sides: tuple[int, ...], first: int, last: int | None
     return replace(flight, box_px=boxes)
 
 
-def both(flight: Flight, told: Told, double: bool) -> tuple[PrismTrack, Track]:
+def both(flight: Flight, told: ErrorModel, double: bool) -> tuple[PrismTrack, Track]:
     flight = rounded(flight)
     settings = camera_settings(flight) | told.settings() | EVERY_IMAGE
     return follow(flight, told), estimate(flight, settings, double=double)
@@ -103,7 +103,7 @@ def assert_alike(reference: PrismTrack, track: Track, double: bool) -> None:
 
 def test_the_references_defaults_are_the_librarys(built: None) -> None:
     flight = box_flight(BUILDING, BoxOptions(roll_deg=10.0), 2)
-    usual, told = (estimate(flight, camera_settings(flight) | more) for more in ({}, Told().settings()))
+    usual, told = (estimate(flight, camera_settings(flight) | more) for more in ({}, ErrorModel().settings()))
     for name in ("values", "sigma", "nis", "misfit"):
         assert np.array_equal(getattr(usual, name), getattr(told, name), equal_nan=True)
 
@@ -114,7 +114,7 @@ def test_the_references_defaults_are_the_librarys(built: None) -> None:
 def test_rolling(built: None, solid: object, roll: float, double: bool) -> None:
     """[A29, GOE_MODEL_PRISM]"""
     for seed in (1, 2):
-        reference, track = both(box_flight(solid, BoxOptions(roll_deg=roll), seed), Told(), double)
+        reference, track = both(box_flight(solid, BoxOptions(roll_deg=roll), seed), ErrorModel(), double)
         assert not reference.refused.any()
         assert_alike(reference, track, double)
         assert np.isfinite(track.values[-1][TOLD]).all()
@@ -133,7 +133,7 @@ def test_sides_that_are_missing(
     built: None, sides: tuple[int, ...], first: int, last: int | None, double: bool
 ) -> None:
     flight = without(box_flight(BUILDING, BoxOptions(roll_deg=10.0), 3), sides, first, last)
-    reference, track = both(flight, Told(), double)
+    reference, track = both(flight, ErrorModel(), double)
     assert_alike(reference, track, double)
 
 
@@ -145,22 +145,24 @@ WHITE = replace(USUAL, box_share=0.0, image_rate_hz=30.0)
 @pytest.mark.parametrize(
     ("solid", "options", "told"),
     [
-        (MAST, replace(USUAL, height_white_m=3.0), Told()),
-        (MAST, replace(USUAL, altimeter=False), Told(height_bias_m=1000.0)),
-        (MAST, replace(USUAL, altimeter=False), Told(height_bias_m=1000.0, disc=True)),
-        (BUILDING, USUAL, Told(position_white_m=0.5)),
-        (BUILDING, USUAL, Told(attitude_drift_deg=0.1)),
-        (BUILDING, USUAL, Told(correlation_s=0.0)),
-        (MAST, WHITE, Told(box_px=0.5, box_share=0.0, disc=True)),
-        (MAST, replace(USUAL, aside_m=(-60.0, -50.0), ahead_m=(150.0, 180.0)), Told()),
-        (MAST, replace(USUAL, roll_deg=25.0, altitude_m=60.0), Told(border_share=0.03, cut_noise=0.3)),
+        (MAST, replace(USUAL, height_white_m=3.0), ErrorModel()),
+        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_m=1000.0)),
+        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_m=1000.0, disc=True)),
+        (BUILDING, USUAL, ErrorModel(position_white_m=0.5)),
+        (BUILDING, USUAL, ErrorModel(attitude_drift_deg=0.1)),
+        (BUILDING, USUAL, ErrorModel(correlation_s=0.0)),
+        (MAST, WHITE, ErrorModel(box_px=0.5, box_share=0.0, disc=True)),
+        (MAST, replace(USUAL, aside_m=(-60.0, -50.0), ahead_m=(150.0, 180.0)), ErrorModel()),
+        (MAST, replace(USUAL, roll_deg=25.0, altitude_m=60.0), ErrorModel(border_share=0.03, cut_noise=0.3)),
     ],
     ids=[
         "altimeter noise", "no altimeter", "disc without altimeter", "position noise", "drift", "no correlation",
         "30 images/s", "clipped soon", "from above, few sides at the border",
     ],
 )  # fmt: skip
-def test_other_flights_and_noise(built: None, solid: object, options: BoxOptions, told: Told, double: bool) -> None:
+def test_other_flights_and_noise(
+    built: None, solid: object, options: BoxOptions, told: ErrorModel, double: bool
+) -> None:
     """[navigation.ground_m, navigation.position_white_m]"""
     reference, track = both(box_flight(solid, options, 3), told, double)
     assert_alike(reference, track, double)
@@ -174,7 +176,7 @@ def test_other_cameras(built: None, change: dict[str, float], double: bool) -> N
     """The boxes were not seen by such a camera, which both sides must make the same of."""
     flight = box_flight(MAST, BoxOptions(roll_deg=25.0), 3)
     reference, track = both(
-        replace(flight, camera=replace(flight.camera, **change)), Told(attitude_bias_deg=5.0), double
+        replace(flight, camera=replace(flight.camera, **change)), ErrorModel(attitude_bias_deg=5.0), double
     )
     assert_alike(reference, track, double)
 
@@ -183,16 +185,16 @@ def test_other_cameras(built: None, change: dict[str, float], double: bool) -> N
 def test_residuals_that_are_doubted(built: None, double: bool) -> None:
     """Noise that is told too small: rows count less or not at all, but none so often that the library starts anew."""
     flight = box_flight(BUILDING, BoxOptions(roll_deg=10.0), 3)
-    reference, track = both(flight, Told(box_px=0.3, box_share=0.02), double)
+    reference, track = both(flight, ErrorModel(box_px=0.3, box_share=0.02), double)
     assert reference.doubted.sum() >= 10 and reference.refused.sum() >= 3
     assert_alike(reference, track, double)
 
 
 def test_images_too_soon_are_not_used() -> None:
     flight = box_flight(MAST, WHITE, 3)
-    every = np.diff(flight.time_s[follow(flight, Told()).fresh])
+    every = np.diff(flight.time_s[follow(flight, ErrorModel()).fresh])
     assert np.allclose(every, 0.1, atol=1e-3)  # 0.08 * 1.2 s, in steps of 1/30 s
-    assert follow(flight, Told(correlation_s=0.0)).fresh.all()
+    assert follow(flight, ErrorModel(correlation_s=0.0)).fresh.all()
 
 
 # -------------------------------------------------------------------------------------------------- the measurement
@@ -200,7 +202,7 @@ def test_images_too_soon_are_not_used() -> None:
 
 def shown(change: dict[str, float]) -> list[Sight]:
     flight = box_flight(MAST, BoxOptions(roll_deg=25.0), 5)
-    images = sights(replace(flight, camera=replace(flight.camera, **change)), Told())
+    images = sights(replace(flight, camera=replace(flight.camera, **change)), ErrorModel())
     return images[10:80:14]
 
 
@@ -276,18 +278,18 @@ def test_sides_that_are_measured() -> None:
         [nan, 200.0, 300.0, 400.0],
         [100.0, 20.0, 300.0, 460.0],  # top and bottom near it: not cut
     ])  # fmt: skip
-    sides, cut = measured_sides(boxes, (1000.0, 480.0), Told())
+    sides, cut = measured_sides(boxes, (1000.0, 480.0), ErrorModel())
     assert np.isfinite(sides).sum(1).tolist() == [4, 0, 0, 4, 1, 3, 4]
     assert cut.tolist() == [False, True, True, True, True, True, False]
-    assert np.isfinite(measured_sides(boxes, (0.0, 0.0), Told())[0]).sum(1).tolist() == [4, 0, 0, 4, 4, 3, 4]
+    assert np.isfinite(measured_sides(boxes, (0.0, 0.0), ErrorModel())[0]).sum(1).tolist() == [4, 0, 0, 4, 4, 3, 4]
 
 
 # -------------------------------------------------------------------------------------------------------- the bound
 
 
-def noise(times: float, **change: float) -> Told:
+def noise(times: float, **change: float) -> ErrorModel:
     """All that counts for the bound."""
-    usual = Told(box_share=0.0, ground_m=0.0, disc=True)
+    usual = ErrorModel(box_share=0.0, ground_m=0.0, disc=True)
     names = ("box_px", "attitude_bias_deg", "attitude_white_deg", "height_bias_m", "velocity_bias_m_s")
     return replace(usual, **{name: times * getattr(usual, name) for name in names}, **change)
 
@@ -324,4 +326,4 @@ def test_a_recursive_estimator_does_not_undercut_the_bound(monkeypatch: pytest.M
 def test_the_bound_is_that_of_a_mast() -> None:
     assert true_state(box_flight(MAST, EXACT, 1))[S] == 0.0
     with pytest.raises(ValueError, match="disc"):
-        bound_of(box_flight(BUILDING, EXACT, 1), Told())
+        bound_of(box_flight(BUILDING, EXACT, 1), ErrorModel())

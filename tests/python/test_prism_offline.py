@@ -14,9 +14,9 @@ from goe_tools.models.prism import (
     UNKNOWNS,
     A,
     E,
+    ErrorModel,
     Q,
     S,
-    Told,
     W,
     exact_side,
     focal_px,
@@ -29,13 +29,13 @@ from goe_tools.models.prism_offline import Track, fit
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
 TOLD = [X0, Z0, WIDTH, HEIGHT]
-GAUSS = Told(box_px=0.5, box_share=0.0, ground_m=0.0, disc=True)
+GAUSS = ErrorModel(box_px=0.5, box_share=0.0, ground_m=0.0, disc=True)
 WHITE = BoxOptions(box_px=0.5, box_share=0.0)
 LENS = {"k1": -0.1, "k2": 0.02, "p1": 0.001, "p2": 0.0005, "k3": -0.003}
 OTHER_CAMERA = {"offset_x_m": 1.0, "offset_z_m": 0.2, "mount_pitch_deg": 2.0, "mount_roll_deg": 3.0, "fy": 900.0}
 
 
-def framed(flight: Flight, told: Told, state: np.ndarray) -> Flight:
+def framed(flight: Flight, told: ErrorModel, state: np.ndarray) -> Flight:
     """With the boxes of a prism, of which the state is told in the track's axes, at full accuracy."""
     track, boxes = Track(flight, told), flight.box_px.copy()
     unknowns = np.append(state[: len(STATES)], np.zeros(UNKNOWNS - len(STATES)))
@@ -67,7 +67,7 @@ def true_place(flight: Flight, track: Track) -> np.ndarray:
 def test_sides_are_those_of_one_image(change: dict[str, float], most: float, slope_most: float) -> None:
     """Coordinates and derivatives: ``prism`` takes one side after the other, and with a lens stops a step sooner."""
     flight = box_flight(MAST, BoxOptions(roll_deg=25.0), 3)
-    track = Track(replace(flight, camera=replace(flight.camera, **change)), Told())
+    track = Track(replace(flight, camera=replace(flight.camera, **change)), ErrorModel())
     state = track.start()
     state[:3], state[S], state[Q] = [0.01, -0.005, 0.008], 0.4, 0.9 * state[Q]
     predicted, slope = track.predicted(state)
@@ -92,8 +92,8 @@ def test_a_velocity_error_moves_the_camera() -> None:
     assert track.predicted(state)[0] == pytest.approx(shifted.predicted(still)[0], abs=1e-12)
 
 
-@pytest.mark.parametrize("told", [GAUSS, Told(attitude_drift_deg=0.1, position_white_m=0.5)], ids=["disc", "any"])
-def test_derivatives_of_all_that_counts(told: Told) -> None:
+@pytest.mark.parametrize("told", [GAUSS, ErrorModel(attitude_drift_deg=0.1, position_white_m=0.5)], ids=["disc", "any"])
+def test_derivatives_of_all_that_counts(told: ErrorModel) -> None:
     """By central differences: sides and what is known beforehand."""
     track = Track(box_flight(MAST, BoxOptions(roll_deg=25.0), 2), told)
     state = track.start()
@@ -112,9 +112,11 @@ def test_derivatives_of_all_that_counts(told: Told) -> None:
 # -------------------------------------------------------------------------------------------------------------- the fit
 
 
-@pytest.mark.parametrize("told", [GAUSS, replace(GAUSS, disc=False), Told()], ids=["disc", "any depth", "defaults"])
+@pytest.mark.parametrize(
+    "told", [GAUSS, replace(GAUSS, disc=False), ErrorModel()], ids=["disc", "any depth", "defaults"]
+)
 @pytest.mark.parametrize("roll", [0.0, 10.0, 25.0])
-def test_exact_boxes_give_the_truth(roll: float, told: Told) -> None:
+def test_exact_boxes_give_the_truth(roll: float, told: ErrorModel) -> None:
     """Of a mast that is as deep as wide, so that the first guess of the depth is right, too."""
     flight = box_flight(MAST, replace(EXACT, roll_deg=roll), 2)
     state = true_place(flight, Track(flight, told))
@@ -136,8 +138,8 @@ def test_a_depth_that_roll_shows() -> None:
     assert found.values[TOLD] == pytest.approx(wanted, abs=0.1)
 
 
-@pytest.mark.parametrize(("solid", "told"), [(MAST, GAUSS), (BUILDING, Told())], ids=["mast", "building"])
-def test_the_optimum_is_one_whatever_the_start(solid: Solid, told: Told) -> None:
+@pytest.mark.parametrize(("solid", "told"), [(MAST, GAUSS), (BUILDING, ErrorModel())], ids=["mast", "building"])
+def test_the_optimum_is_one_whatever_the_start(solid: Solid, told: ErrorModel) -> None:
     for seed in (1, 3):
         flight = box_flight(solid, replace(WHITE, roll_deg=10.0), seed)
         once, again = fit(flight, told), fit(flight, told, true_place(flight, Track(flight, told)))

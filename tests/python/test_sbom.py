@@ -14,7 +14,7 @@ import pytest
 from ci.__main__ import main
 from ci.packages.facts import Facts
 from ci.packages.installed import PINNED, Sources, array_of, canonical, requirement
-from ci.packages.licences import PYTHON
+from ci.packages.licenses import PYTHON
 from ci.packages.sbom import make
 from ci.packages.sbom_rules import faults
 

@@ -243,7 +243,7 @@ def test_the_track_begins_with_the_first_image_that_shows_a_feature(shape: str, 
 
 
 def test_a_path_into_the_ground_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"meets the ground after 1.1"):
+    with pytest.raises(ValueError, match=r"hits the ground after 1.1"):
         make_log(Scene(altitude_m=2.0, glide_deg=6.0, run_s=8.0))
 
 
@@ -276,7 +276,7 @@ def test_bad_usage(arguments: list[str], tmp_path, capsys) -> None:
 
 def test_bad_scene_writes_nothing(tmp_path, capsys) -> None:
     assert main(["scene", "--altitude", "1", "--glide", "6", "--out", str(tmp_path / "log")]) == 2
-    assert "meets the ground" in capsys.readouterr().err
+    assert "hits the ground" in capsys.readouterr().err
     assert not (tmp_path / "log").exists()
 
 

@@ -261,10 +261,11 @@ def test_words() -> None:
     number = r"[\d.]+ ± [\d.]+ m"
     assert re.fullmatch(f"{number} ahead, {number} left, {number} wide, {number} long, {number} high", said)
     assert words.place(track.answers, 0) == "No answer yet: collecting images"
-    assert "beside it" in words.approach(track.answers, len(track.answers) - 1)
+    assert "away" in words.approach(track.answers, len(track.answers) - 1)
     moving = story(view_logs.moving()).tracks[0].answers
     told = {words.doubt(moving, k) for k in range(len(moving))}
-    assert any(text.startswith("Suspect: it moves, ") and text.endswith("m/s, and is followed") for text in told)
+    end = "m/s, and its velocity is estimated"
+    assert any(text.startswith("Suspect: it moves, ") and text.endswith(end) for text in told)
 
 
 @pytest.mark.parametrize(

@@ -266,7 +266,7 @@ def test_several_obstacles(make_page: Callable[..., Path], browser: Any, replay:
         )
         assert drawn == {"names": ["3", "7", "11"], "own": 1, "others": 2, "truths": 3}
     moved(browser, 10)  # the chimney, chosen, comes later
-    assert said(browser)["place"] == "Not seen yet"
+    assert said(browser)["place"] == "No detection yet"
     for index in (0, 2):  # chosen anew it is shown when it is seen
         browser.execute_script(
             "const e = document.getElementById('obstacle'); e.value = arguments[0];"
@@ -385,7 +385,7 @@ def with_nan_truth(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ("name", "log", "place"),
     [
         ("one", view_logs.one_frame, "No answer yet: collecting images"),
-        ("nothing", view_logs.nothing_answered, "No answer yet: nothing is seen"),
+        ("nothing", view_logs.nothing_answered, "No answer yet: no detection"),
         ("spoiled", view_logs.spoiled, ""), ("long", view_logs.long, ""), ("nan", view_logs.boxes, ""),
     ],
 )  # fmt: skip

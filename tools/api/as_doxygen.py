@@ -1,8 +1,7 @@
-"""A header as Doxygen reads it, on standard output: python as_doxygen.py HEADER.
+"""Converts a header for Doxygen, to standard output: python as_doxygen.py HEADER.
 
-The headers are the manual and keep plain C comments. Here the first comment of a file becomes its description, laid out
-as it stands; a comment before a declaration describes it, and one behind a declaration describes that. Rulers stay
-comments.
+The headers are the manual and keep plain C comments. Here the first comment of a file becomes its description, with
+unchanged layout; a comment before or after a declaration becomes its description. Separator lines remain comments.
 """
 
 from __future__ import annotations
@@ -13,14 +12,14 @@ from pathlib import Path
 
 COMMENT = re.compile(r"/\*(.*?)\*/", re.DOTALL)
 RULER = re.compile(r"-{20,}")
-MARKS = re.compile(r" ?\[[A-Z]\d+(?:, ?[A-Z]\d+)*\]")  # that join promises and tests
+MARKS = re.compile(r" ?\[[A-Z]\d+(?:, ?[A-Z]\d+)*\]")  # marks that join promises and tests
 NAME = r"\w+(?:\[\w+\])*"
 SHARED = re.compile(rf"^( +)(\w+) ({NAME}(?:, {NAME})+); +/\*(.*?)\*/", re.MULTILINE | re.DOTALL)
 SPECIAL = re.compile(r"([\\@<>#%&$\"])")
 
 
 def plain(text: str) -> str:
-    """Words that Doxygen takes for nothing else."""
+    """Escapes Doxygen's special characters."""
     return SPECIAL.sub(r"\\\1", text)
 
 
@@ -30,7 +29,7 @@ def described(text: str) -> str:
 
 
 def one_by_one(match: re.Match[str]) -> str:
-    """Members of one declaration share its comment: each gets it."""
+    """Gives each member of a declaration a copy of the common comment."""
     indent, kind, names, text = match.groups()
     *others, last = names.split(", ")
     short = " ".join(re.sub(r"\n\s*\* ?", " ", text).split())
@@ -38,7 +37,7 @@ def one_by_one(match: re.Match[str]) -> str:
 
 
 def converted(source: str, name: str) -> str:
-    """No line more than the source but two at the head: a warning of line N is about line N - 2."""
+    """The output has two more lines than the source, at its head: a warning for line N is about line N - 2."""
     first = True
     source = SHARED.sub(one_by_one, source)
 

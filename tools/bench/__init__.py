@@ -1,1 +1,1 @@
-"""What the estimator is held against, for those who change it. ``python -m bench --help``."""
+"""Comparisons of the estimator with references and goals. ``python -m bench --help``."""

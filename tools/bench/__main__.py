@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from goe_tools import cli
 
-COMMANDS = {  # name: module with add_arguments and run, and what it does
+COMMANDS = {  # name: module with add_arguments and run, and its description
     "attack_tables": (".attack.command", "print or write the tables of hostile flights from a file of goals"),
     "compare": (
         ".reference.compare",
@@ -15,14 +15,14 @@ COMMANDS = {  # name: module with add_arguments and run, and what it does
     ),
     "golden": (".reference.golden", "write or check the C headers with the unit tests' reference data"),
     "lies": (".lies.command", "search for confident errors and warnings that vanish, in random legal flights"),
-    "goals": (".optimum.goals.command", "print what the project promises beside what is reached"),
+    "goals": (".optimum.goals.command", "print the project's goals and the figures reached"),
     "minimax": (".reference.minimax", "print the constants of the library's polynomials and their error bounds"),
-    "peers": (".peers.command", "hold the window fit and the filter update against other solvers"),
+    "peers": (".peers.command", "compare the window fit and the filter update with other solvers"),
 }
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    return cli.main("bench", "What the ground obstacle estimator is held against.", COMMANDS, argv)
+    return cli.main("bench", "Comparisons of the ground obstacle estimator with references and goals.", COMMANDS, argv)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Builds the plugin of QEMU that counts instructions."""
+"""Builds the QEMU plugin that counts instructions."""
 
 from __future__ import annotations
 

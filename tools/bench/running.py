@@ -1,4 +1,4 @@
-"""Runs programs and returns what they print."""
+"""Runs programs and returns their output."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ EMULATOR_SECONDS = 600
 
 
 class LedgerError(RuntimeError):
-    """A figure cannot be had, or is not what it must be."""
+    """A figure cannot be determined, or has a wrong value."""
 
 
 def output_of(command: Sequence[str | Path], cwd: Path | None = None) -> str:
-    """Standard output of a command; LedgerError with what it printed if it fails."""
+    """Standard output of a command; raises LedgerError with its output if it fails."""
     done = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True)
     if done.returncode != 0:
         raise LedgerError(f"{' '.join(map(str, command))}: exit status {done.returncode}\n{done.stdout}{done.stderr}")
@@ -23,7 +23,8 @@ def output_of(command: Sequence[str | Path], cwd: Path | None = None) -> str:
 
 
 def emulated(command: Sequence[str]) -> str:
-    """All that an emulator prints: the image's console is standard output or error, as the machine has it."""
+    """All output of an emulator: the image's console is standard output or error, depending on the machine."""
+
     done = subprocess.run(command, capture_output=True, text=True, timeout=EMULATOR_SECONDS)
     if done.returncode != 0:
         raise LedgerError(f"{' '.join(command)}: exit status {done.returncode}\n{done.stdout}{done.stderr}")

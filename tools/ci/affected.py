@@ -1,8 +1,8 @@
-"""Which Python tests a change affects: ``python -m ci affected`` prints their files for ``tools/test.sh --quick``.
+"""Python tests that a change affects: ``python -m ci affected`` prints their files for ``tools/test.sh --quick``.
 
-A test file is affected if it changed, if it imports a module that changed, directly or through one other module, or if
-it names a changed file. A change of the library or the flight layer affects the tests of the package goe, too. Deeper
-dependencies are left to the whole run.
+A test file is affected if it changed, if it imports a changed module, directly or through one other module, or if
+it names a changed file. A change of the library or the flight layer also affects the tests of the package goe. Deeper
+dependencies are covered by the whole run only.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 IMPORTED_FROM = (ROOT / "tools", ROOT / "tests" / "python")
-DEPTH = 2  # modules between a test and what it depends on, the changed one included
+DEPTH = 2  # longest chain of imports from a test to a changed module
 LIBRARY = ("lib/", "port/flight/", "port/python/")
 LIBRARY_TESTS = ("tests/python/test_port_python.py", "tests/python/test_port_python_golden.py")
 
@@ -28,7 +28,7 @@ def git(*arguments: str) -> list[str]:
 
 
 def base() -> str:
-    """GOE_SINCE, or where this branch left main, or the commit before the newest."""
+    """GOE_SINCE, or the commit where this branch left main, or the commit before the newest."""
     if "GOE_SINCE" in os.environ:
         return os.environ["GOE_SINCE"]
     branch = git("rev-parse", "--abbrev-ref", "HEAD")[0]
@@ -38,7 +38,7 @@ def base() -> str:
 
 
 def changed() -> set[str]:
-    """Paths of all files that differ from the base, in the commits, the work tree or not yet added."""
+    """Paths of all files that differ from the base: committed, in the work tree, or not yet added."""
     return {*git("diff", "--name-only", base()), *git("ls-files", "--others", "--exclude-standard")}
 
 
@@ -88,7 +88,7 @@ def affected(paths: set[str]) -> list[str]:
 
 
 def add_arguments(_: argparse.ArgumentParser) -> None:
-    """It has none."""
+    """No arguments."""
 
 
 def run(_: argparse.Namespace) -> int:

@@ -1,14 +1,13 @@
 """Embedded logs: synthetic tracks as C arrays for the replay images that run on every target.
 
-Writes ``embedded_logs.c``. Numbers are stored as the bits of IEEE 754 singles, so that no compiler reads them
-differently and a NaN stays the NaN it is. All tracks come from ``scene``: nothing recorded, nothing random but seeded
-noise.
+Writes ``embedded_logs.c``. Numbers are stored as the bits of IEEE 754 singles, so every compiler reads the same values,
+also NaN. All tracks come from ``scene``: no recordings, and no random numbers except seeded noise.
 
-    corner       a box met at its corner, whole pixels, oscillating attitude, all six features: read by each model
-    kitti_like   a parked car passed at 9 m/s, boxes of a detector (0.7 px and 2.5 % of the width, one-sigma)
+    corner       a box with its corner ahead, whole pixels, oscillating attitude, all six features: for each model
+    kitti_like   a parked car passed at 9 m/s, boxes from a detector (0.7 px and 2.5 % of the width, one-sigma)
     lens         the corner through a distorting lens and a mounted camera off the vehicle's reference point
-    boxes        upright boxes of a detector in a bank, cut by the border; with position noise; through the lens
-    degenerate   every fault, reset and refusal of the header, and inputs at the ends of their ranges
+    boxes        upright boxes in banked flight, cut by the border; with position noise; through the lens
+    degenerate   every fault, reset and refusal in the header, and inputs at the limits of their ranges
 """
 
 from __future__ import annotations
@@ -47,12 +46,12 @@ class Image:
     pixels: dict[str, tuple[float, float]]
     reset_count: int = 0
     reset_delta_m: tuple[float, float, float] | None = None
-    box_px: dict[str, float] = field(default_factory=dict)  # by side, those that are seen
+    box_px: dict[str, float] = field(default_factory=dict)  # by side, visible ones only
 
 
 @dataclass
 class Track:
-    """Images replayed by one estimator. ``own_images`` False: those of the track before."""
+    """Images replayed by one estimator. ``own_images`` False: those of the previous track."""
 
     name: str
     camera: Camera
@@ -76,7 +75,7 @@ class Book:
         self.tracks.append(track)
 
     def again(self, name: str, **changes: object) -> None:
-        """The images of the last track once more, with other settings."""
+        """The images of the last track again, with other settings."""
         self.tracks.append(dataclasses.replace(self.tracks[-1], name=name, own_images=False, **changes))  # type: ignore[arg-type]
 
 
@@ -132,7 +131,7 @@ def detector_boxes(scene: Scene, seed: int) -> list[Image]:
 
 
 def upright_boxes(scene: Scene, seed: int) -> list[Image]:
-    """The points' bounding boxes, noisy; now and then a side is missing, a box is swapped or not there."""
+    """The points' bounding boxes, noisy; sometimes a side is missing, a box is swapped or absent."""
     generator = random.Random(seed)
     result = []
     for k, image in enumerate(images_of(scene)):
@@ -151,7 +150,7 @@ def upright_boxes(scene: Scene, seed: int) -> list[Image]:
 
 
 def moving(scene: Scene, north_m_s: float, east_m_s: float) -> list[Image]:
-    """An obstacle that moves: the images of one that stands still, of a camera that is told to move along."""
+    """A moving obstacle: the images of a static one, with poses of a camera that moves along."""
     result = images_of(scene)
     for image in result:
         s = 1.0e-6 * (image.time_us - result[0].time_us)
@@ -161,7 +160,7 @@ def moving(scene: Scene, north_m_s: float, east_m_s: float) -> list[Image]:
 
 
 def late(scene: Scene) -> list[Image]:
-    """Each image with the pose of the one before."""
+    """Each image with the pose of the previous one."""
     images = images_of(scene)
     poses = [(image.position_m, image.height_m, image.attitude) for image in images]
     for image, (position, height, attitude) in zip(images[1:], poses):
@@ -267,7 +266,7 @@ def still() -> list[Image]:
 
 
 def receding() -> list[Image]:
-    """The images shrink on the way: no static obstacle ahead."""
+    """The images shrink over time: not a static obstacle ahead."""
     images = images_of(dataclasses.replace(CORNER, run_s=2.0))
     poses = [(image.time_us, image.position_m, image.attitude) for image in images]
     images.reverse()
@@ -277,12 +276,12 @@ def receding() -> list[Image]:
 
 
 def passing() -> list[Image]:
-    """Flies by at a small distance until the obstacle is abeam and behind."""
+    """Flies past at a small distance until the obstacle is abeam and behind."""
     return images_of(dataclasses.replace(CORNER, run_s=4.0, x0_m=-8.0, z0_m=35.0, glide_deg=0.0))
 
 
 def head_on() -> list[Image]:
-    """One face alone, square to the flight path."""
+    """One face alone, perpendicular to the flight path."""
     return images_of(dataclasses.replace(CORNER, run_s=3.0, x0_m=0.0, alpha_deg=0.0, wobble_deg=0.0))
 
 
@@ -292,7 +291,7 @@ def ambiguous() -> list[Image]:
 
 
 def numbers_at_random(count: int, seed: int) -> list[Image]:
-    """Any bits at all in every number, within what the intake lets through now and then."""
+    """Random bits in every number, within limits that the intake sometimes accepts."""
     generator = random.Random(seed)
 
     def number(limit: float) -> float:
@@ -435,7 +434,7 @@ def c_text(book: Book) -> str:
 
 
 def agrees(text: str, other: str) -> bool:
-    """Whether two files are the same but for last bits, in which other versions of the generator's libraries differ."""
+    """Whether two files agree except for last bits, which depend on the versions of the generator's libraries."""
     word = re.compile(r"0x([0-9A-F]{8})u")
     if word.sub("", text) != word.sub("", other):
         return False
@@ -444,7 +443,7 @@ def agrees(text: str, other: str) -> bool:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="C file to write")
-    parser.add_argument("--check", action="store_true", help="write nothing; fail if FILE is not what would be written")
+    parser.add_argument("--check", action="store_true", help="write nothing; fail if FILE differs")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -455,5 +454,5 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if agrees(arguments.out.read_text(encoding="utf-8"), text):
         return 0
-    print(f"{arguments.out}: not what this generator writes")
+    print(f"{arguments.out}: differs from this generator's output")
     return 1

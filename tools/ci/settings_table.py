@@ -1,8 +1,9 @@
-"""The table of settings in the manual, from the library's one list.
+"""The manual's table of settings, from the library's list.
 
     python -m ci settings [--check FILE | --write FILE]
 
-Without options the table is printed. FILE has it between <!-- settings: begin --> and <!-- settings: end -->.
+Without options the command prints the table. FILE contains it between <!-- settings: begin --> and <!-- settings: end
+-->.
 """
 
 from __future__ import annotations
@@ -31,13 +32,13 @@ class Setting:
 
     @property
     def default(self) -> str:
-        """A default outside its range says that the user has to set it."""
+        """A default outside its range means that the user must set it."""
         inside = float(self.low) <= float(self.value) <= float(self.high)
         return self.value if inside and self.name not in ("camera.cx_px", "camera.cy_px") else "must be set"
 
     @property
     def limit(self) -> str:
-        """The programs are built with the largest window that there is; a firmware has its own."""
+        """The programs are built with the largest possible window; a firmware has its own limit."""
         return "`GOE_WINDOW_MAX`" if self.name == "window.points" else self.high
 
 
@@ -46,7 +47,7 @@ def program() -> Path:
 
 
 def settings(replay: Path | None = None) -> list[Setting]:
-    """Every setting, as the library has it."""
+    """Every setting of the library."""
     lines = subprocess.run([replay or program(), "--settings"], capture_output=True, text=True, check=True).stdout
     return [Setting(*line.split("\t")) for line in lines.splitlines()]
 
@@ -72,6 +73,6 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.write:
         TABLE.write(file, text)
     elif TABLE.of(file) != text:
-        print(f"{file}: its table of settings is not the library's; python -m ci settings --write {file}")
+        print(f"{file}: its table of settings differs from the library's; run python -m ci settings --write {file}")
         return 1
     return 0

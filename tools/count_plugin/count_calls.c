@@ -4,11 +4,11 @@
  *   qemu-system-... -plugin count_calls.so,map=FILE,out=FILE
  *
  * map: one line per function, sorted by address: "<start> <end> <kind> <name>", numbers in hexadecimal, end exclusive.
- *   kind E  an entry: a call begins with its first instruction
- *        C  counted within calls: what the entries call
+ *   kind E  an entry: a call starts with its first instruction
+ *        C  counted within calls: functions called by the entries
  *   Everything else is the caller: a call ends with the first instruction executed there.
  * out: one line per call: "<index of the entry> <total> <index>:<count> ...", indices being line numbers of the map
- *   from 0. Instructions are counted as executed, so that the figures repeat exactly.
+ *   from 0. Instructions are counted as executed; the figures repeat exactly.
  */
 #include <inttypes.h>
 #include <stdbool.h>
@@ -26,7 +26,7 @@ EXPORT int qemu_plugin_version = 1;
 
 typedef struct {
     uint64_t start, end;
-    uint64_t count; /* instructions executed since a call began */
+    uint64_t count; /* instructions executed since a call started */
     bool entry;
 } function_t;
 
@@ -85,7 +85,7 @@ static void end_call(void) {
     running = NULL;
 }
 
-/* Comes before the entry's first instruction is counted. What was counted outside of calls is forgotten. */
+/* Called before the entry's first instruction is counted. Discards counts from outside of calls. */
 static void on_entry(unsigned int cpu, void *data) {
     (void)cpu;
     if (!running) {

@@ -1,16 +1,16 @@
-/* The most turns that loops take, and the most that sums of calls come to: a plugin of QEMU's code generator.
+/* Largest number of turns of loops, and largest sums of calls: a plugin of QEMU's code generator.
  * SPDX-License-Identifier: MIT
  *
  *   qemu-system-... -plugin count_loops.so,map=FILE,out=FILE
  *
- * map: a line for each thing that happens at an address, numbers but the address decimal:
- *   "count <address> <counter>"   the counter counts one more
- *   "less <address> <counter>"    ... one less
- *   "reset <address> <counter>"   ... begins anew; if both happen at an address, first
- *   "needs <counter> <switch>"    ... counts only while the switch is on
- *   "bars <counter> <switch>"     ... only while it is off
- *   "on <address> <switch>", "off <address> <switch>"
- * out: the most that each counter ever held, one per line. */
+  * map: a line for each event at an address, numbers except the address decimal:
+  *   "count <address> <counter>"   increments the counter
+  *   "less <address> <counter>"    decrements it
+  *   "reset <address> <counter>"   resets it to 0; comes first if several events are at an address
+  *   "needs <counter> <switch>"    the counter is active only while the switch is on
+  *   "bars <counter> <switch>"     ... only while it is off
+  *   "on <address> <switch>", "off <address> <switch>"
+  * out: the maximum of each counter, one per line. */
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -162,7 +162,7 @@ int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info, int argc, 
     }
     out = files.out;
     if (!files.map || !out || !read_map(files.map)) {
-        (void)fprintf(stderr, "count_loops: needs map=FILE (what happens where) and out=FILE (to write)\n");
+        (void)fprintf(stderr, "count_loops: needs map=FILE (events) and out=FILE (to write)\n");
         return -1;
     }
     qemu_plugin_register_vcpu_tb_trans_cb(id, on_translated);

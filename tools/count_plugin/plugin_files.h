@@ -1,4 +1,4 @@
-/* The two files that a counting plugin is given: what to count, where to write. SPDX-License-Identifier: MIT */
+/* The two files of a counting plugin: the map and the output. SPDX-License-Identifier: MIT */
 #ifndef PLUGIN_FILES_H
 #define PLUGIN_FILES_H
 

@@ -1,4 +1,4 @@
-/* The part of QEMU's plugin interface, version 1, that the plugins here use: no header package is needed.
+/* The part of QEMU's plugin interface, version 1, that these plugins use; needs no header package.
  * SPDX-License-Identifier: MIT */
 #ifndef QEMU_INTERFACE_H
 #define QEMU_INTERFACE_H

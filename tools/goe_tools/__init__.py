@@ -1,6 +1,6 @@
 """Logs, numerical references and comparisons for goe, the ground obstacle estimator.
 
-README.md, beside this file, tells what is in which folder.
+README.md in this folder describes the source layout.
 """
 
 __version__ = "0.3.0"

@@ -7,21 +7,21 @@ from collections.abc import Sequence
 
 from . import cli
 
-COMMANDS = {  # name: module with add_arguments and run, and what it does
+COMMANDS = {  # name: module with add_arguments and run, and its description
     "bound": (".models.bound", "print the Cramer-Rao bound of a log with truth"),
     "scene": (".logs.scene_command", "write a synthetic observation log of a box or a cylinder"),
     "campaign": (".report.campaign_command", "fly goe_campaign in parts, over processes or a cluster"),
-    "convert": (".exchange.convert", "make an observation log of an autopilot's log and a detector's table"),
+    "convert": (".exchange.convert", "make an observation log from an autopilot's log and a detector's table"),
     "jsbsim_flight": (".logs.jsbsim_flight", "fly a scenario with JSBSim and write it as an observation log"),
-    "live": (".live.command", "write a page in which the library runs, compiled to WebAssembly"),
+    "live": (".live.command", "write a page that runs the library, compiled to WebAssembly"),
     "mcap": (".exchange.mcap_command", "write a log and its estimates as MCAP, for Foxglove and PlotJuggler"),
     "montecarlo": (
         ".montecarlo.command",
         "fly a scenario many times in simulation: errors in sigmas, coverage, warnings",
     ),
-    "noise": (".noise.command", "find the settings of the noise that logs ask for"),
+    "noise": (".noise.command", "find the noise settings that fit logs"),
     "offline": (".models.offline", "fit all images of a log with truth at once"),
-    "rare": (".report.rare_command", "fly the flight layer's orders many times and keep what rarely happens"),
+    "rare": (".report.rare_command", "fly the flight layer's orders many times and keep rare events"),
     "report": (".report.command", "write the campaign's report and print Table 3"),
     "view": (".view.command", "show a log: a page with a map and a slider over time, or a picture"),
     "table": (".logs.table", "print estimates as a table that a pilot can read"),

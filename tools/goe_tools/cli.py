@@ -1,6 +1,6 @@
 """The command line of the three packages: python -m goe_tools COMMAND ..., python -m bench ..., python -m ci ...
 
-A package's ``COMMANDS`` have by name a module with add_arguments and run, and what it does."""
+A package's ``COMMANDS`` map a name to a module with add_arguments and run, and its description."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EXIT_INTERRUPTED = 130  # as a shell reports Ctrl-C
 
 
 def commands_of(package: str) -> Sequence[str]:
-    """Nothing of a package that is not installed."""
+    """Names of a package's commands; empty if it is not installed."""
     try:
         return tuple(importlib.import_module(f"{package}.__main__").COMMANDS)
     except ModuleNotFoundError:
@@ -29,17 +29,18 @@ def commands_of(package: str) -> Sequence[str]:
 
 
 class Parser(argparse.ArgumentParser):
-    """Tells the name that a mistyped command or option was probably meant to be, and the package that has it."""
+    """Suggests the command or option that a mistyped one probably means, and the package that has it."""
 
-    package = ""  # of the commands; empty for the parser of one of them
+    package = ""  # whose commands this parser has; empty for the parser of a single command
 
     def elsewhere(self) -> dict[str, str]:
-        """How the commands of the other packages are called, by name."""
+        """Command lines of the other packages' commands, by name."""
         others = [package for package in PACKAGES if self.package and package != self.package]
         return {name: f"python -m {package} {name}" for package in others for name in commands_of(package)}
 
     def words(self) -> list[str]:
-        """Its options, its commands, and their options: a command hands back what it does not know."""
+        """Its options, its commands, and their options: a command's parser returns words it does not know to this
+        one."""
         found = [word for action in self._actions for word in action.option_strings]
         for action in self._actions:
             if isinstance(action, argparse._SubParsersAction):
@@ -60,15 +61,15 @@ class Parser(argparse.ArgumentParser):
 def parser_for(
     package: str, what: str, known: Mapping[str, tuple[str, str]], words: Sequence[str]
 ) -> argparse.ArgumentParser:
-    """The parser of a command line. Only the module of the command that is asked for is imported: plots, tables and
-    solvers take their time to start."""
+    """The parser of a command line. It imports only the module of the named command: plots, tables and solvers load
+    slowly."""
     parser = Parser(prog=package, description=what)
     parser.package = package
     commands = parser.add_subparsers(dest="command", required=True)
-    asked = next((word for word in words if not word.startswith("-")), None)
+    chosen = next((word for word in words if not word.startswith("-")), None)
     for name, (module_name, text) in known.items():
         command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
-        if name == asked:
+        if name == chosen:
             module = importlib.import_module(module_name, package)
             module.add_arguments(command)
             command.set_defaults(entry=module.run)
@@ -76,14 +77,15 @@ def parser_for(
 
 
 def fault_of(error: OSError) -> str:
-    """The file first; an error of the system that names none is of standard output: a full disk, a closed pipe."""
+    """Starts with the file. A system error without a file name is one of standard output: a full disk, a closed
+    pipe."""
     if error.strerror is None:
         return str(error)
     return f"{error.filename or 'standard output'}: {error.strerror}"
 
 
 def drop_output() -> None:
-    """What standard output did not take: Python would try again on leaving."""
+    """Discards what standard output did not take; otherwise Python would try again on exit."""
     try:
         sys.stdout.flush()
     except OSError:

@@ -1,7 +1,7 @@
 """The library computing in float64, over whole tracks: sim_host's shared library goe_python_double (ctypes).
 
-It is compiled from the same sources as the package ``goe`` with every float a double, and takes and gives what that one
-does: inputs are rounded to float32 before, answers after."""
+It is compiled from the same sources as the package ``goe`` with every float a double, and has the same interface:
+inputs are rounded to float32 before the call, answers after it."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ LIBRARY_NAMES = ("libgoe_python_double.so", "libgoe_python_double.dylib")
 
 
 def library_path() -> Path:
-    """$GOE_PYTHON_DOUBLE, or that of the host build of this checkout."""
-    told = os.environ.get("GOE_PYTHON_DOUBLE")
-    candidates = [Path(told)] if told else [ROOT / "build" / "sim_host" / name for name in LIBRARY_NAMES]
+    """$GOE_PYTHON_DOUBLE, or the library in this checkout's host build."""
+    configured = os.environ.get("GOE_PYTHON_DOUBLE")
+    candidates = [Path(configured)] if configured else [ROOT / "build" / "sim_host" / name for name in LIBRARY_NAMES]
     for path in candidates:
         if path.is_file():
             return path
@@ -35,7 +35,7 @@ def library_path() -> Path:
 
 
 def widened(dtype: np.dtype[Any]) -> np.dtype[Any]:
-    """The type of the same C struct where every float is a double."""
+    """The type of the same C struct with every float a double."""
     if dtype.subdtype is not None:
         item, shape = dtype.subdtype
         return np.dtype((widened(item), shape))
@@ -46,7 +46,7 @@ def widened(dtype: np.dtype[Any]) -> np.dtype[Any]:
 
 @lru_cache(maxsize=1)
 def library() -> tuple[ctypes.CDLL, tuple[np.dtype[Any], ...]]:
-    """And the types of its image, its estimate and its hazard."""
+    """The library and the types of its image, its estimate and its hazard."""
     import goe
 
     path = library_path()
@@ -62,7 +62,7 @@ def library() -> tuple[ctypes.CDLL, tuple[np.dtype[Any], ...]]:
     sizes = (size * 3)()
     found.goe_python_sizes(sizes)
     if tuple(sizes) != tuple(dtype.itemsize for dtype in types):
-        raise ValueError(f"{path}: is of another version; build its target anew")
+        raise ValueError(f"{path}: is of another version; rebuild its target")
     return found, types
 
 
@@ -73,7 +73,7 @@ def _pointer(array: np.ndarray | None) -> int | None:
 def run(
     settings: goe.Settings, images: goe.Images, *, rules: Sequence[goe.Rule] = (), covariance: bool = False
 ) -> goe.Track:
-    """As goe.run."""
+    """Like goe.run."""
     from goe.tracks import Track, empty_track, velocities
 
     found, (image_type, estimate_type, hazard_type) = library()

@@ -1,7 +1,7 @@
 """The C library over a whole flight: the Python package ``goe`` (port/python).
 
-Pixels and poses go in as they are, in float32; what comes out is what firmware would get, image by image. The same
-library computing in float64 (``double_precision``) gets the same inputs and settings, rounded to float32, too."""
+Pixels and poses go in unchanged, in float32; the answers are those that firmware would get, image by image. The
+float64 build of the library (``double_precision``) gets the same inputs and settings, also rounded to float32."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ HAZARD = (
     "time_s", "miss_m", "clearance_m", "time_sd_s", "miss_sd_m", "clearance_sd_m", "violation", "has_clearance",
 )  # fmt: skip
 TO_RADIANS = np.where(np.arange(6) == 2, np.pi / 180.0, 1.0)
-SETTING_OF = {  # the library's setting for each figure of a noise
+SETTING_OF = {  # noise figure: setting of the library
     "sigma_px": "detector.point_px",
     "size_share": "detector.point_share",
     "correlation": "detector.point_correlation",
@@ -41,7 +41,7 @@ SETTING_OF = {  # the library's setting for each figure of a noise
     "position_walk_m": "navigation.position_walk_m",
     "typical_size_m": "refined.typical_size_m",
 }
-SMALLEST = {  # that the library takes
+SMALLEST = {  # values that the library accepts
     "detector.point_px": 0.05, "navigation.attitude_bias_deg": 1e-3, "navigation.attitude_white_deg": 1e-4,
     "navigation.height_bias_m": 1e-3,
 }  # fmt: skip
@@ -49,8 +49,8 @@ SMALLEST = {  # that the library takes
 
 @dataclass(frozen=True)
 class Plan:
-    """What goe_decide is asked after each image. ``grows``: margins grow with doubt and age, by the library's own rule;
-    otherwise they are as they are, and the hazard is that of goe_hazard."""
+    """Distances for goe_decide after each image. ``grows``: margins grow with suspicion and age, by the library's own
+    rule; otherwise they are constant, and the hazard is that of goe_hazard."""
 
     margin_m: float
     clearance_m: float
@@ -59,20 +59,20 @@ class Plan:
 
 @dataclass
 class Images:
-    """What the library is given over a track of K images."""
+    """The library's inputs over a track of K images."""
 
     time_s: np.ndarray  # (K,)
     position_ned_m: np.ndarray  # (K, 3)
     attitude: np.ndarray  # (K, 4) w, x, y, z
     height_m: np.ndarray  # (K,) of the camera above the ground
-    pixel_px: np.ndarray  # (K, 6, 2) left, right, top, base left, near, right; any number where not seen
+    pixel_px: np.ndarray  # (K, 6, 2) left, right, top, base left, near, right; any number where not visible
     seen: np.ndarray  # (K, 6)
-    box_px: np.ndarray | None = None  # (K, 4) left, top, right, bottom; NaN where not seen
+    box_px: np.ndarray | None = None  # (K, 4) left, top, right, bottom; NaN where not visible
     reset_count: np.ndarray | None = None  # (K,) of the autopilot's filter
-    reset_m: np.ndarray | None = None  # (K, 3) by how much it jumped; NaN: not known
-    velocity_m_s: np.ndarray | None = None  # (K, 3) planned, for goe_hazard
+    reset_m: np.ndarray | None = None  # (K, 3) size of its jump; NaN: unknown
+    velocity_m_s: np.ndarray | None = None  # (K, 3) intended, for goe_hazard
     plans: tuple[Plan, ...] = ()
-    camera: np.ndarray | None = None  # (K,) number of the camera; number 1 is that of the settings more_cameras[0]
+    camera: np.ndarray | None = None  # (K,) camera number; the settings more_cameras[0] describe number 1
 
 
 @dataclass
@@ -84,26 +84,26 @@ class Track:
     method: np.ndarray  # (K,) 1 window, 2 refined, 0 none
     model: np.ndarray  # (K,) goe_model_t
     fresh: np.ndarray  # (K,) solved from this image
-    suspect: np.ndarray  # (K,) does not look like a static obstacle
+    suspect: np.ndarray  # (K,) the track does not fit a static obstacle
     values: np.ndarray  # (K, 6)
     sigma: np.ndarray  # (K, 6)
     covariance: np.ndarray  # (K, 6, 6), 0 where not valid
     nis: np.ndarray  # (K,)
     nis_rows: np.ndarray  # (K,)
     misfit: np.ndarray  # (K,)
-    points: np.ndarray | None = None  # (K,) images behind the answer
+    points: np.ndarray | None = None  # (K,) images used by the answer
     hazard: dict[str, np.ndarray] = field(default_factory=dict)  # "status", "act", columns of ``HAZARD``: (K, plans)
-    more: dict[str, np.ndarray] = field(default_factory=dict)  # columns that not every version has, (K,)
+    more: dict[str, np.ndarray] = field(default_factory=dict)  # columns that some versions lack, (K,)
 
     @property
     def valid(self) -> np.ndarray:
-        """(K, 6)"""
+        """Whether each quantity is valid: (K, 6)."""
         return np.isfinite(self.values)
 
 
 @lru_cache(maxsize=1)
 def _bindings() -> Any:
-    """port/python/bindings.py, which knows what the package is made of."""
+    """port/python/bindings.py, which knows the sources of the package."""
     spec = importlib.util.spec_from_file_location("goe_bindings", PACKAGE / "bindings.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -113,23 +113,23 @@ def _bindings() -> Any:
 
 @lru_cache(maxsize=1)
 def package() -> Any:
-    """The package goe. FileNotFoundError: it is not installed, or was made of other sources than this checkout's."""
+    """The package goe. FileNotFoundError: it is not installed, or was built from other sources than this checkout's."""
     try:
         goe = importlib.import_module("goe")
     except ImportError as error:
         raise FileNotFoundError(
-            f"the Python package goe is not installed ({error}); tools/setup.sh does that"
+            f"the Python package goe is not installed ({error}); tools/setup.sh installs it"
         ) from None
     if PACKAGE.is_dir():
         here = _bindings().fingerprint(ROOT / "lib", ROOT / "port" / "flight", ROOT / "port" / "cmake")
         if here != goe.FINGERPRINT:
             place = Path(goe.__file__).parent
-            raise FileNotFoundError(f"{place}: made of other sources than those of {ROOT}; tools/setup.sh renews it")
+            raise FileNotFoundError(f"{place}: not built from the sources in {ROOT}; tools/setup.sh rebuilds it")
     return goe
 
 
 def ready(double: bool = False) -> None:
-    """Raises FileNotFoundError, with what to do, if the library cannot be called; ``double``: that in float64."""
+    """Raises FileNotFoundError, with a remedy, if the library (``double``: its float64 build) cannot be called."""
     package()
     if double:
         double_precision.library_path()
@@ -141,7 +141,7 @@ def has_setting(name: str) -> bool:
 
 
 def reason_names() -> tuple[str, ...]:
-    """Of the numbers in the column ``reason`` of ``Track.more``."""
+    """Names for the numbers in the column ``reason`` of ``Track.more``."""
     return ("none", *(str(reason) for reason in package().Reason))
 
 
@@ -157,7 +157,7 @@ def camera_settings(flight: Flight) -> dict[str, float]:
 
 
 def settings_of(flight: Flight, noise: Noise | None = None, method: str = "refined") -> dict[str, float]:
-    """Settings by name for a flight's camera and for its noise, as a user would state them."""
+    """Settings by name for a flight's camera and noise, as a user would configure them."""
     noise = flight.noise if noise is None else noise
     result = camera_settings(flight) | {
         "refined.top_is_highest": float(flight.top_is_highest),
@@ -171,9 +171,9 @@ def estimate(
     flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False,
     cameras: np.ndarray | None = None, **change: float,
 ) -> Track:  # fmt: skip
-    """Runs the library over a flight. ``settings``: by default ``settings_of(flight)``; ``change``: single ones on top,
-    with "__" for the dot (``noise__pixel_px=0.5``). ``double``: computed in float64.
-    ``cameras``: (K,) number of the camera of each image; number 1 is that of the settings ``more_cameras[0]``."""
+    """Runs the library over a flight. ``settings``: by default ``settings_of(flight)``; ``change``: single settings on
+    top, with "__" for the dot (``noise__pixel_px=0.5``). ``double``: in float64.
+    ``cameras``: (K,) camera number of each image; the settings ``more_cameras[0]`` describe number 1."""
     values = dict(settings_of(flight) if settings is None else settings)
     values.update({name.replace("__", "."): value for name, value in change.items()})
     return run(replace(images_of(flight), camera=cameras), values, double=double)
@@ -187,7 +187,7 @@ def images_of(flight: Flight) -> Images:
 
 
 def to_package(images: Images) -> Any:
-    """As goe.Images."""
+    """Converts to goe.Images."""
     return package().Images(
         np.rint(images.time_s * 1e6).astype(np.int64), images.position_ned_m, images.attitude, images.height_m,
         images.box_px, images.pixel_px, images.seen, images.reset_count, images.reset_m, camera=images.camera,
@@ -197,7 +197,7 @@ def to_package(images: Images) -> Any:
 
 @lru_cache(maxsize=64)
 def named_settings(named: tuple[tuple[str, float], ...]) -> Any:
-    """As goe.Settings; the tracks of a case have the same ones."""
+    """Converts to goe.Settings; cached, since the tracks of a case share their settings."""
     return package().Settings.from_names(dict(named))
 
 
@@ -208,32 +208,32 @@ def run(images: Images, settings: dict[str, float], *, double: bool = False) -> 
     fixed = {"doubt": 1.0, "drift_m_s": 0.0}
     rules = [goe.Rule(p.margin_m, p.clearance_m, **({} if p.grows else fixed)) for p in plans]
     run_track = double_precision.run if double else goe.run
-    told = run_track(named_settings(tuple(settings.items())), to_package(images), rules=rules, covariance=True)
-    return _track(told)
+    output = run_track(named_settings(tuple(settings.items())), to_package(images), rules=rules, covariance=True)
+    return _track(output)
 
 
-def _hazard(told: Any) -> dict[str, np.ndarray]:
-    """Of a goe.Track; nothing without rules."""
-    if not told.hazards.shape[1]:
+def _hazard(output: Any) -> dict[str, np.ndarray]:
+    """The hazard columns of a goe.Track; empty without rules."""
+    if not output.hazards.shape[1]:
         return {}
-    columns = {name: told.hazards[name].astype(float) for name in HAZARD}
-    return {"status": told.hazard_status.astype(float), "act": told.decision == package().Decision.ACT, **columns}
+    columns = {name: output.hazards[name].astype(float) for name in HAZARD}
+    return {"status": output.hazard_status.astype(float), "act": output.decision == package().Decision.ACT, **columns}
 
 
-def _track(told: Any) -> Track:
-    """Of a goe.Track."""
-    column, sigma = told.estimates, told.estimates["sigma"]
+def _track(output: Any) -> Track:
+    """Converts a goe.Track."""
+    column, sigma = output.estimates, output.estimates["sigma"]
     values, sigmas = (np.stack([of[name] for name in QUANTITIES], 1) * TO_RADIANS for of in (column, sigma))
-    valid = told.valid
+    valid = output.valid
     more = {name: column[name] for name in ("reason", "age_s", "trajectory_heading_deg")}
     for name in NUMBERS:
         unit = "_m_s" if name.endswith("_m_s") else name[-2:]
         sd_name = f"{name[: -len(unit)]}_sd{unit}"
         more |= {name: column[name].astype(float), sd_name: sigma[name].astype(float)}
     return Track(
-        told.status, column["method"], column["model"], column["fresh"], column["suspect"],
+        output.status, column["method"], column["model"], column["fresh"], column["suspect"],
         np.where(valid, values, np.nan), np.where(valid, sigmas, np.nan),
-        told.covariance * TO_RADIANS[:, None] * TO_RADIANS,
+        output.covariance * TO_RADIANS[:, None] * TO_RADIANS,
         column["nis"].astype(float), column["nis_rows"], column["misfit"].astype(float), column["points"],
-        _hazard(told), more,
+        _hazard(output), more,
     )  # fmt: skip

@@ -1,7 +1,7 @@
-"""Where the project around this package lies."""
+"""Paths of the project around this package."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]  # of the project
+ROOT = Path(__file__).resolve().parents[2]

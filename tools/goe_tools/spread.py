@@ -1,7 +1,7 @@
 """Work spread over processes of this machine, or over a Dask cluster.
 
-The results are those of one process, in the order of the tasks, whatever does the work: a task holds the seed that its
-random numbers come from, and nothing is summed before all are there.
+The results do not depend on where a task runs: they come in the order of the tasks, each task contains the seed of its
+random numbers, and sums are formed only when all results are there.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ CONNECT_S = 10
 @dataclass(frozen=True)
 class Workers:
     jobs: int = 1  # processes of this machine
-    scheduler: str = ""  # address of a Dask scheduler; its workers then, and as many of them as it has
+    scheduler: str = ""  # address of a Dask scheduler; uses all its workers
 
 
 ALONE = Workers()
@@ -56,7 +56,7 @@ def workers_of(arguments: argparse.Namespace) -> Workers:
 
 @lru_cache(maxsize=1)
 def _client(address: str) -> Any:
-    """Connected until the process ends."""
+    """Stays connected until the process ends."""
     from distributed import Client
 
     try:
@@ -73,8 +73,8 @@ def _cluster(address: str) -> Iterator[None]:
 
 @contextmanager
 def _deaf_children() -> Iterator[None]:
-    """Processes that are born meanwhile never see Ctrl-C: it is for this one, which then ends them."""
-    if threading.current_thread() is not threading.main_thread():  # who may not say what signals do
+    """Processes started meanwhile ignore Ctrl-C; this process handles it and then ends them."""
+    if threading.current_thread() is not threading.main_thread():  # only the main thread may set signal handlers
         yield
         return
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -85,21 +85,21 @@ def _deaf_children() -> Iterator[None]:
 
 
 def _begun(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers) -> Iterator[Result]:
-    """The back end is chosen for what starts here, not for what the caller does between the results."""
+    """The back end applies to the tasks started here, not to the caller's work between the results."""
     backend = _cluster(workers.scheduler) if workers.scheduler else parallel_config("loky", n_jobs=workers.jobs)
     with backend, _deaf_children():
         return Parallel(return_as="generator")(delayed(work)(task) for task in tasks)
 
 
 def spread(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers) -> Iterator[Result]:
-    """Results in the order of the tasks, as they come. ``work`` and tasks are pickled."""
+    """Results in the order of the tasks, as they arrive. ``work`` and tasks are pickled."""
     if workers.jobs == 1 and not workers.scheduler:
         yield from map(work, tasks)
         return
     try:
         yield from _begun(work, tasks, workers)
     except TerminatedWorkerError:
-        raise ValueError("a process of --jobs was killed (by a lack of memory?); its flights are lost") from None
+        raise ValueError("a process of --jobs was killed (out of memory?); its flights are lost") from None
     except (ConnectionError, OSError, TimeoutError) as error:
         if not workers.scheduler:
             raise
@@ -107,5 +107,5 @@ def spread(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers
 
 
 def each(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers, title: str) -> list[Result]:
-    """All results, with a bar that counts the tasks."""
+    """All results, with a progress bar."""
     return list(tqdm(spread(work, tasks, workers), total=len(tasks), desc=title, disable=None, leave=False))

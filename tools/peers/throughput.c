@@ -1,10 +1,10 @@
-/* Updates per second on one core of the host: 1, 10, ... 10,000 obstacles, each fed image after image in turn, so that many
- * obstacles no longer fit into the caches. Each number by each kind of update, in turn, so that a slow minute of the machine
- * meets them all.
+/* Updates per second on one core of the host: 1, 10, ... 10,000 obstacles, each with image after image in turn; many
+ * obstacles no longer fit into the caches. Numbers and kinds of update alternate, so a slow minute of the machine
+ * affects all of them.
  *
- *   throughput OBSTACLES UPDATES   the most obstacles; updates of each number and kind, at least
+ *   throughput OBSTACLES UPDATES   largest number of obstacles; minimum number of updates of each number and kind
  *
- * Prints of each number of obstacles: the number, KiB of state, nanoseconds per update of each kind.
+ * Prints for each number of obstacles: the number, KiB of state, nanoseconds per update of each kind.
  * SPDX-License-Identifier: MIT */
 #define _POSIX_C_SOURCE 199309L
 #include <stdio.h>
@@ -13,10 +13,10 @@
 
 #include "replay.h"
 
-#define ROUND_UPDATES 5000 /* in a round, at least; the best round counts: everything else on the machine only adds */
+#define ROUND_UPDATES 5000 /* in a round, at least; the best round counts, since other load only adds time */
 #define ROUNDS_LEAST 5
 #define IMAGES_MAX 256
-#define REPEAT_US 60000000 /* after which a flight is flown again */
+#define REPEAT_US 60000000 /* after which a flight is repeated */
 
 typedef enum { WINDOW, REFINED, REFINED_AND_HAZARD, KINDS } kind_t;
 
@@ -37,7 +37,7 @@ static void check(bool good, const char *what) {
     }
 }
 
-/* Reads the track; or, at its repetition, the same images later, after a filter reset of unknown size. */
+/* Reads the track; when repeated, the same images at a later time, after a filter reset of unknown size. */
 static void make_images(int repetition) {
     for (int k = 0; k < track->count; k++) {
         replay_read_image(&logged_images[track->first + k], &images[k]);

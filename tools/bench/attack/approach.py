@@ -1,6 +1,6 @@
-"""Warnings against what would have happened: closest approach, violations, who was warned and when.
+"""Warnings against the true course of events: closest approach, violations, warned runs and warning times.
 
-The aircraft flies on as it does, straight and at a constant climb: the truth of a run holds for all of its images."""
+The aircraft continues straight at a constant climb rate, so the truth of a run is valid for all of its images."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from goe_tools.report.attack_lines import AHEAD_S
 
 from .scenario import Scenario, Truth
 
-MARGIN_M, CLEARANCE_M = 15.0, 10.0  # README.md, "Going around, or not"
+MARGIN_M, CLEARANCE_M = 15.0, 10.0  # README.md, "The decision"
 
-STEP_S = 0.01  # in which the closest approach is looked for
+STEP_S = 0.01  # of the search for the closest approach
 INSIDE_M = 1e-9
-JUDGED_S = 1.0  # images nearer than that are not judged
-EVERY_S = 1.0  # of a run an image of each such span counts for the probabilities
-BINS = (0.05, 0.2, 0.5, 0.8, 0.95)  # of told probabilities; between the first and the last they are judged
-BIN_LEAST = 30  # images in a bin, to be judged
+JUDGED_S = 1.0  # images nearer to the closest approach are not judged
+EVERY_S = 1.0  # one image of each such interval of a run counts for the probabilities
+BINS = (0.05, 0.2, 0.5, 0.8, 0.95)  # of predicted probabilities; judged between the first and the last
+BIN_LEAST = 30  # least number of images in a judged bin
 COVERED_SIGMA = 2.0
 RUNS = 1000
 
@@ -31,13 +31,13 @@ HAZARD_BASE = Scenario(collides=True, size_m=(3.0, 25.0)).by(
 
 @dataclass(frozen=True)
 class HazardRow:
-    """Runs with the same errors. ``told_within``: how far told probabilities may be from true ones; ``unwarned_most``:
-    percent of the violators."""
+    """Runs with the same errors. ``error_max``: largest difference of predicted and true probabilities;
+    ``unwarned_most``: percent of the violators."""
 
     name: str
     scenario: Scenario
     if_known: dict[str, float] = field(default_factory=dict)
-    told_within: float = 0.1
+    error_max: float = 0.1
     unwarned_most: float = 0.0
 
 
@@ -64,7 +64,7 @@ ROWS = tuple(_rows())
 
 @dataclass
 class Approach:
-    """What happens if it is flown on: times from the flight's first image; clearance at the closest approach."""
+    """The true outcome without a maneuver: times from the flight's first image; clearance at the closest approach."""
 
     time_s: float
     miss_m: float
@@ -77,11 +77,11 @@ class Approach:
 
 @dataclass
 class Warnings:
-    """Answers of goe_hazard over K images, with the plain margins, and what goe_decide decides. NaN where there is
-    none."""
+    """Answers of goe_hazard over K images, with constant margins, and decisions of goe_decide. NaN without an
+    answer."""
 
     time_s: np.ndarray
-    refined: np.ndarray  # (K,) by the refined method: the window's sigmas are not judged
+    refined: np.ndarray  # (K,) answered by the refined method: the window's sigmas are not judged
     to_go_s: np.ndarray
     to_go_sd_s: np.ndarray
     miss_m: np.ndarray
@@ -99,7 +99,8 @@ class Run:
 
 
 def outline_distance(truth: Truth, place_m: np.ndarray) -> np.ndarray:
-    """(N,) from points (N, 2) north, east about the middle to the footprint; 0 inside. Of a cylinder or a rectangle."""
+    """(N,): distance from points (N, 2) north, east about the middle to the footprint of a cylinder or rectangle; 0
+    inside."""
     solid, axis = truth.solid, truth.axis_rad
     z = place_m @ [math.cos(axis), math.sin(axis)]
     x = place_m @ [-math.sin(axis), math.cos(axis)]
@@ -113,8 +114,8 @@ def outline_distance(truth: Truth, place_m: np.ndarray) -> np.ndarray:
 
 
 def closest(truth: Truth, image: int = 0, velocity_m_s: np.ndarray | None = None, until_s: float = 60.0) -> Approach:
-    """From an image on, at the aircraft's velocity there (3,) relative to the obstacle. Crossing the outline: when it
-    is entered; descending, the clearance is that over the far edge."""
+    """The closest approach after an image, at the aircraft's velocity there (3,) relative to the obstacle. If the path
+    crosses the outline: the time of entry; in descent, the clearance is that over the far edge."""
     velocity = truth.path_velocity_ned_m_s[image] if velocity_m_s is None else velocity_m_s
     t = np.arange(0.0, until_s, STEP_S)
     place = truth.eye_ned_m[image] + velocity * t[:, None]
@@ -126,7 +127,7 @@ def closest(truth: Truth, image: int = 0, velocity_m_s: np.ndarray | None = None
 
 
 def first_warning_s(warnings: Warnings) -> float:
-    """By the decision rule; infinite without one."""
+    """Time of the first warning of the decision rule; infinite without one."""
     return float(warnings.time_s[np.argmax(warnings.acts)]) if warnings.acts.any() else math.inf
 
 
@@ -134,26 +135,26 @@ def first_warning_s(warnings: Warnings) -> float:
 
 
 def _judged(run: Run) -> np.ndarray:
-    """(K,) images that are held against the truth."""
+    """(K,): images that are compared with the truth."""
     w = run.warnings
     return w.refined & np.isfinite(w.violation) & (run.approach.time_s - w.time_s > JUDGED_S)
 
 
 def probabilities(runs: Sequence[Run]) -> dict[str, tuple[float, float, int]]:
-    """Bin of told probabilities -> mean told, share true, images: of each run one image in every ``EVERY_S``."""
-    told, true = [], []
+    """Bin of predicted probabilities -> predicted mean, true share, images: one image per ``EVERY_S`` of each run."""
+    predicted, true = [], []
     for run in runs:
         chosen = np.flatnonzero(_judged(run))
         seconds = np.floor(run.warnings.time_s[chosen] / EVERY_S)
         chosen = chosen[np.unique(seconds, return_index=True)[1]]
-        told.append(run.warnings.violation[chosen])
+        predicted.append(run.warnings.violation[chosen])
         true.append(np.full(len(chosen), run.approach.violates))
-    all_told, all_true = np.concatenate(told), np.concatenate(true)
+    all_predicted, all_true = np.concatenate(predicted), np.concatenate(true)
     result = {}
     for low, high in zip((0.0, *BINS), (*BINS, 1.0 + 1e-9)):
-        inside = (all_told >= low) & (all_told < high)
+        inside = (all_predicted >= low) & (all_predicted < high)
         if inside.any():
-            values = float(all_told[inside].mean()), float(all_true[inside].mean()), int(inside.sum())
+            values = float(all_predicted[inside].mean()), float(all_true[inside].mean()), int(inside.sum())
             result[f"{low:g} to {min(high, 1.0):g}"] = values
     return result
 
@@ -175,7 +176,7 @@ def coverage(runs: Sequence[Run]) -> dict[str, float]:
 
 
 def unwarned(runs: Sequence[Run]) -> float:
-    """Percent of the violators that the rule does not warn of ``AHEAD_S`` before."""
+    """Percent of the violators without a warning of the rule ``AHEAD_S`` ahead."""
     late = [
         run.approach.time_s - first_warning_s(run.warnings) < AHEAD_S
         for run in runs
@@ -185,7 +186,7 @@ def unwarned(runs: Sequence[Run]) -> float:
 
 
 def false_warnings(runs: Sequence[Run]) -> float:
-    """Percent warned of, of those that keep twice the margin, below the clearance."""
+    """Percent of warned runs among those that keep twice the margin, below the clearance."""
     wide = [
         math.isfinite(first_warning_s(run.warnings))
         for run in runs

@@ -16,16 +16,18 @@ PAGE = ROOT / "tools" / "bench" / "attack" / "README.md"
 TABLES = MarkedBlock("attack")
 VERDICT = {True: "met", False: "missed", None: ""}
 HEADS = {
-    "movers": ("mover", "moves within 4 s/8 s/ever", "velocity in 2 sigma"),
-    "conventions": ("what is wrong", "told within 3 s"),
+    "moving obstacles": ("motion", "moves within 4 s/8 s/ever", "velocity in 2 sigma"),
+    "conventions": ("error", "detected within 3 s"),
 }
-ANSWERS = ("attack", "in 2 sigma", "5 sigma off", "suspect", "told late or as wrong", "answers")
-WARNINGS = ("features, errors", "true share by told", "off by", "time/miss/clearance in 2 sigma", "unwarned", "false")
+ANSWERS = ("attack", "in 2 sigma", "5 sigma off", "suspect", "flagged late or inconsistent", "answers")
+WARNINGS = (
+    "features, errors", "true share by predicted", "off by", "time/miss/clearance in 2 sigma", "unwarned", "false",
+)  # fmt: skip
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("goals", type=Path, metavar="FILE", help="what goals --only attack,hazard --json FILE wrote")
-    parser.add_argument("--write", action="store_true", help="into attack/README.md, in place of the tables there")
+    parser.add_argument("goals", type=Path, metavar="FILE", help="output of goals --only attack,hazard --json FILE")
+    parser.add_argument("--write", action="store_true", help="replace the tables in attack/README.md")
 
 
 def _percents(attack: Attack, line: str, names: tuple[str, ...]) -> str:
@@ -40,15 +42,15 @@ def _line(cells: list[str]) -> str:
 
 
 def _table(heads: tuple[str, ...], lines: list[list[str]]) -> list[str]:
-    """Without the columns that no line fills."""
+    """Without columns that are empty in all lines."""
     kept = [i for i in range(len(heads)) if i == 0 or any(line[i] for line in lines)]
-    told = [_line([*(heads[i] for i in kept), "goal"]), "|" + "---|" * (len(kept) + 1)]
-    return told + [_line([*(line[i] for i in kept), line[-1]]) for line in lines] + [""]
+    text = [_line([*(heads[i] for i in kept), "goal"]), "|" + "---|" * (len(kept) + 1)]
+    return text + [_line([*(line[i] for i in kept), line[-1]]) for line in lines] + [""]
 
 
 def _cells(attack: Attack) -> list[str]:
     verdict = VERDICT[attack.met]
-    if attack.section == "movers":
+    if attack.section == "moving obstacles":
         moves = _percents(attack, attack_lines.REASON, (attack_lines.IN_4_S, attack_lines.IN_8_S, attack_lines.EVER))
         return [attack.title, moves, _percents(attack, attack_lines.VELOCITY, (attack_lines.IMAGES,)), verdict]
     if attack.section == "conventions":
@@ -75,17 +77,17 @@ def _warning(row: Attack) -> list[str]:
 
 
 def tables(goals: Goals) -> str:
-    told: list[str] = []
+    text: list[str] = []
     found = attacks(goals)
     for section in dict.fromkeys(attack.section for attack in found):
         lines = [_cells(attack) for attack in found if attack.section == section]
         if not any(any(line[1:-1]) for line in lines):
             continue
-        told += [f"### {section[0].upper()}{section[1:]}", "", *_table(HEADS.get(section, ANSWERS), lines)]
+        text += [f"### {section[0].upper()}{section[1:]}", "", *_table(HEADS.get(section, ANSWERS), lines)]
     if warnings(goals):
-        told += ["### Warnings", "", *_table(WARNINGS, [_warning(row) for row in warnings(goals)])]
+        text += ["### Warnings", "", *_table(WARNINGS, [_warning(row) for row in warnings(goals)])]
     asked = [row for row in goals.rows if row.met is not None]
-    return "\n".join([*told, f"{sum(bool(row.met) for row in asked)} of {len(asked)} goals are met."])
+    return "\n".join([*text, f"{sum(bool(row.met) for row in asked)} of {len(asked)} goals are met."])
 
 
 def run(arguments: argparse.Namespace) -> int:

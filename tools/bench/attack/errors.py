@@ -1,4 +1,4 @@
-"""What of the truth is told, and how wrong: one sigma each, anew for each track, unless it says otherwise."""
+"""Errors of the reported quantities: one sigma each, drawn for each track, unless noted otherwise."""
 
 from __future__ import annotations
 
@@ -14,48 +14,48 @@ from .view import BASE_LEFT, BASE_NEAR, BASE_RIGHT, LEFT, RIGHT, TOP
 
 FEET_PER_M = 1.0 / 0.3048
 FALSE_POINT_PX = (8.0, 60.0)  # of an outlier, from the truth
-NED_TO_ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])  # its own inverse
+NED_TO_ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])  # equals its inverse
 FLIPPED = np.diag([1.0, -1.0, -1.0])  # FRD and FLU, NED and NWU
-WRONG_NEAR_SHARE = (0.2, 0.5)  # where along the base's edge the wrong near corner lies
+WRONG_NEAR_SHARE = (0.2, 0.5)  # place of the wrong near corner along an edge of the base
 
 
 @dataclass(frozen=True)
 class Wrong:
-    """By default the errors that the library's default settings tell of."""
+    """The defaults are the errors in the library's default settings."""
 
     point_px: float = 0.5
-    point_share: float = 0.0  # of left, right, top: of the width in the image, correlated over alike_s
+    point_share: float = 0.0  # of left, right, top: share of the width in the image, correlated over correlation_s
     box_px: float = 0.5
-    box_share: float = 0.04  # of a side, of the box's width or height, correlated over alike_s
-    alike_s: float = 1.0
+    box_share: float = 0.04  # of a side: share of the box's width or height, correlated over correlation_s
+    correlation_s: float = 1.0
     attitude_bias_deg: float = 0.5  # each body axis
     attitude_white_deg: float = 0.1
     velocity_bias_m_s: float = 0.05  # north, east
     position_walk_m: float = 0.05  # per sqrt(s), each axis
     height_bias_m: float = 0.5
     height_white_m: float = 0.0
-    ground_off_m: float = 0.0  # by exactly so much, up or down
-    slope: float = 0.0  # the ground under the aircraft rises or falls by this towards the obstacle
-    reset_m: float = 0.0  # halfway the told down jumps by so much, up or down, and the height with it; the jump is told
-    late_s: float = 0.0  # the pose is that of so long before
-    mount_off_deg: float = 0.0  # the told mounting, about each axis by exactly so much, either way
-    focal_share: float = 0.0  # the told focal length is too long by this
-    k1: float = 0.0  # of the lens, not told
-    outliers: float = 0.0  # share of the points that lie anywhere near
-    near_wrong: bool = False  # the near base corner is a point of a base's edge, the same one in every image
+    ground_off_m: float = 0.0  # exact size, up or down
+    slope: float = 0.0  # rise or fall of the ground under the aircraft towards the obstacle
+    reset_m: float = 0.0  # halfway the reported down and height jump by this size, up or down; the jump is reported
+    late_s: float = 0.0  # age of the pose
+    mount_off_deg: float = 0.0  # error of the configured mounting about each axis, exact size, either sign
+    focal_share: float = 0.0  # relative error of the configured focal length
+    k1: float = 0.0  # of the lens, not configured
+    outliers: float = 0.0  # share of the points at random places nearby
+    near_wrong: bool = False  # the near base corner is a fixed point on an edge of the base
     convention: str = ""  # one of CONVENTIONS
-    mount_told_deg: tuple[float, float, float] | None = None  # yaw, pitch, roll; None: as it is
+    mount_configured_deg: tuple[float, float, float] | None = None  # yaw, pitch, roll; None: the true ones
 
 
 @dataclass
 class Pose:
-    """As told, over K images: NED, matrices body -> NED, heights above ground."""
+    """As reported, over K images: NED, matrices body -> NED, heights above ground."""
 
     position_m: np.ndarray
     attitude: np.ndarray
     quaternion: np.ndarray
     height_m: np.ndarray
-    velocity_error_m_s: np.ndarray  # (3,) of the told velocity
+    velocity_error_m_s: np.ndarray  # (3,) of the reported velocity
 
 
 def _of_matrix(change: Callable[[np.ndarray], np.ndarray]) -> Callable[[Pose], None]:
@@ -115,8 +115,8 @@ CONVENTIONS: dict[str, Callable[[Pose], None]] = {
 }
 
 
-def alike(time_s: np.ndarray, constant_s: float, columns: int, rng: np.random.Generator) -> np.ndarray:
-    """(K, columns) of sigma 1 that forgets with a time constant."""
+def correlated(time_s: np.ndarray, constant_s: float, columns: int, rng: np.random.Generator) -> np.ndarray:
+    """(K, columns) with sigma 1 and an exponential correlation."""
     result = rng.standard_normal((len(time_s), columns))
     kept = np.exp(-np.diff(time_s) / constant_s)
     for k, share in enumerate(kept, start=1):
@@ -125,9 +125,9 @@ def alike(time_s: np.ndarray, constant_s: float, columns: int, rng: np.random.Ge
 
 
 def spoil_points(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.random.Generator) -> np.ndarray:
-    """Points (K, 6, 2) as a detector gives them."""
+    """Points (K, 6, 2) with a detector's errors."""
     pixel = exact + wrong.point_px * rng.standard_normal(exact.shape)
-    drawn = alike(time_s, wrong.alike_s, 3, rng)
+    drawn = correlated(time_s, wrong.correlation_s, 3, rng)
     if wrong.point_share:
         width = exact[:, RIGHT, 0] - exact[:, LEFT, 0]
         error = wrong.point_share * width[:, None] * drawn
@@ -144,18 +144,18 @@ def spoil_points(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.ra
 
 
 def spoil_boxes(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.random.Generator) -> np.ndarray:
-    """Boxes (K, 4) as a detector gives them, not yet cut by the border."""
+    """Boxes (K, 4) with a detector's errors, before clipping at the border."""
     size = np.tile(exact[:, 2:] - exact[:, :2], 2)
     white = wrong.box_px * rng.standard_normal(exact.shape)
-    return exact + wrong.box_share * size * alike(time_s, wrong.alike_s, 4, rng) + white
+    return exact + wrong.box_share * size * correlated(time_s, wrong.correlation_s, 4, rng) + white
 
 
-def told_pose(
+def reported_pose(
     path: Path, time_s: np.ndarray, to_ned: np.ndarray, origin_m: np.ndarray, obstacle_m: np.ndarray, wrong: Wrong,
     rng: np.random.Generator,
 ) -> tuple[Pose, np.ndarray]:  # fmt: skip
-    """The pose at some of the path's times, and what the autopilot's filter jumped by up to each of them (K, 3).
-    ``to_ned``: the course's axes, which begin at ``origin_m``; ``obstacle_m``: forward, right."""
+    """The pose at some of the path's times, and the sum of the filter's jumps up to each of them (K, 3).
+    ``to_ned``: the course's axes, with their origin at ``origin_m``; ``obstacle_m``: forward, right."""
     place, body = path.at(time_s - wrong.late_s)
     place, height = origin_m + place @ to_ned.T, -place[:, 2]
     count, flown_s = len(time_s), time_s - time_s[0]
@@ -166,23 +166,24 @@ def told_pose(
     drift = np.append(wrong.velocity_bias_m_s * rng.standard_normal(2), 0.0)
     place = place + drift * flown_s[:, None]
     up, slope, jump = rng.choice([-1.0, 1.0], 3) * [wrong.ground_off_m, wrong.slope, wrong.reset_m]
-    told = height + up + wrong.height_bias_m * rng.standard_normal() + wrong.height_white_m * rng.standard_normal(count)
-    told = told + slope * np.linalg.norm(path.at(time_s)[0][:, :2] - obstacle_m, axis=1)
+    reported = height + up + wrong.height_bias_m * rng.standard_normal()
+    reported = reported + wrong.height_white_m * rng.standard_normal(count)
+    reported = reported + slope * np.linalg.norm(path.at(time_s)[0][:, :2] - obstacle_m, axis=1)
     jumped = np.zeros((count, 3))
     jumped[count // 2 :, 2] = jump
     attitude = to_ned @ body @ turns.of_vector(bias + white)
-    pose = Pose(place + jumped, attitude, turns.quaternion(attitude), told - jumped[:, 2], drift)
+    pose = Pose(place + jumped, attitude, turns.quaternion(attitude), reported - jumped[:, 2], drift)
     if wrong.convention:
         CONVENTIONS[wrong.convention](pose)
     return pose, jumped
 
 
-def told_mounting(
+def configured_mounting(
     mount_deg: tuple[float, float, float], wrong: Wrong, rng: np.random.Generator
 ) -> tuple[float, float, float]:
     """Yaw, pitch, roll, degrees."""
-    if wrong.mount_told_deg is not None:
-        return wrong.mount_told_deg
+    if wrong.mount_configured_deg is not None:
+        return wrong.mount_configured_deg
     off = math.radians(wrong.mount_off_deg) * rng.choice([-1.0, 1.0], 3)
     matrix = turns.of_angles(*np.radians(mount_deg)) @ turns.of_vector(off)
     yaw, pitch, roll = np.degrees(turns.angles_of(matrix))

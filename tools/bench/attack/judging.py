@@ -1,4 +1,4 @@
-"""Answers of an estimator against the truth of a track, and the figures of many tracks."""
+"""Answers of an estimator against the truth of a track, and statistics of many tracks."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from .scenario import Truth
 
 X0, Z0, ORIENTATION, WIDTH, LENGTH, HEIGHT = range(6)
 POSITION = (X0, Z0)
-CONFIDENT_SIGMA = 5.0  # an error beyond that ...
-CONFIDENT_IMAGES = 5  # ... in so many images on end, nothing being suspect
-COVERED_SHARE = 0.9  # of a track's answers, for one that is called covered
-RESTARTS = 2  # of the filter: no good track has so many in three seconds
+CONFIDENT_SIGMA = 5.0  # an error beyond this ...
+CONFIDENT_IMAGES = 5  # ... in this many consecutive images, none of them suspect
+COVERED_SHARE = 0.9  # least share of a covered track's answers within two sigma
+RESTARTS = 2  # of the filter: a consistent track has fewer in three seconds
 DISC, LINE, BOX, PRISM = 2, 3, 4, 5  # the library's models
 
 
 @dataclass
 class Answers:
-    """Of one track, K images. Quantities in the order X0, Z0, orientation (rad), width, length, height; NaN without an
-    answer of the refined method."""
+    """Answers for one track, K images. Quantities in the order X0, Z0, orientation (rad), width, length, height; NaN
+    without an answer of the refined method."""
 
     time_s: np.ndarray
     values: np.ndarray  # (K, 6)
@@ -31,18 +31,18 @@ class Answers:
     model: np.ndarray  # (K,)
     status: np.ndarray  # (K,)
     suspect: np.ndarray  # (K,)
-    restarted: np.ndarray  # (K,) the filter forgot what it had
-    reason: np.ndarray | None = None  # (K,) of suspicion, as text; None: the library tells none
+    restarted: np.ndarray  # (K,) the filter restarted
+    reason: np.ndarray | None = None  # (K,) of suspicion, as text; None: not reported by the library
     velocity_m_s: np.ndarray | None = (
-        None  # (K, 2) of the obstacle, north and east, NaN where not told; None: never told
+        None  # (K, 2) of the obstacle, north and east, NaN if not reported; None: never reported
     )
     velocity_sigma_m_s: np.ndarray | None = None
-    time_to_go_s: np.ndarray | None = None  # (K,) until the closest approach, NaN where not told; None: not asked for
+    time_to_go_s: np.ndarray | None = None  # (K,) until the closest approach, NaN if not reported; None: not requested
 
 
 @dataclass
 class Outcome:
-    """One track, judged: errors and sigmas (K, 6), NaN where nothing was answered or it cannot be judged."""
+    """One judged track: errors and sigmas (K, 6), NaN without an answer that can be judged."""
 
     answers: Answers
     error: np.ndarray
@@ -54,7 +54,7 @@ class Outcome:
 
 
 def folded(angle: np.ndarray) -> np.ndarray:
-    """To +-90 degrees: an edge has no direction."""
+    """Folds to +-90 degrees: an edge has no direction."""
     return (angle + math.pi / 2) % math.pi - math.pi / 2
 
 
@@ -62,21 +62,21 @@ def folded(angle: np.ndarray) -> np.ndarray:
 
 
 def namings(truth: Truth) -> np.ndarray:
-    """(2, 6) what a box may rightly be told as: either of the faces that are seen at first may be the front. The
-    first is that whose side edge is nearer to the truth's own."""
+    """(2, 6): correct answers for a box: either of the initially visible faces may be the front. The first one has the
+    side edge nearer to that of the truth."""
     solid, result = truth.solid, []
     for turn in (0, 1):
         angle = solid.orientation_rad - turn * math.pi / 2
         width, length = (solid.width_m, solid.length_m) if turn == 0 else (solid.length_m, solid.width_m)
         out = np.array([math.sin(angle), math.cos(angle)])  # along the side edge
         faces = [truth.middle_m - sign * 0.5 * length * out for sign in (1.0, -1.0)]
-        front = min(faces, key=lambda face: float(np.hypot(*face)))  # it faces the camera
+        front = min(faces, key=lambda face: float(np.hypot(*face)))  # the face towards the camera
         result.append([*front, folded(np.array(angle)), width, length, solid.height_m])
     return np.array(result)
 
 
 def _known(angle: np.ndarray) -> np.ndarray:
-    """(K,) gaps filled from the next answer, or else from the last; all NaN without any."""
+    """(K,): fills gaps from the next answer, otherwise from the last; all NaN without any."""
     known = np.flatnonzero(np.isfinite(angle))
     if not len(known):
         return angle
@@ -84,7 +84,7 @@ def _known(angle: np.ndarray) -> np.ndarray:
 
 
 def width_across(truth: Truth) -> float:
-    """Of the footprint, square to the line of sight at first sight."""
+    """Width of the footprint, perpendicular to the first line of sight."""
     solid = truth.solid
     if solid.kind == "cylinder":
         return solid.width_m
@@ -94,9 +94,9 @@ def width_across(truth: Truth) -> float:
 
 
 def judge(answers: Answers, truth: Truth) -> Outcome:
-    """Of a box, either naming of front and side is right, the nearer one in angle counts. A disc that stands for
-    something else tells the place of its middle and no size; a prism (upright boxes) its middle, and the width at first
-    sight."""
+    """For a box, either naming of front and side is right; the one nearer in angle counts. A disc that represents
+    another shape gives the place of its middle and no size; a prism (upright boxes) its middle, and the width across
+    the first line of sight."""
     values, solid = answers.values, truth.solid
     error = np.full_like(values, np.nan)
     if solid.kind == "cylinder":
@@ -119,13 +119,13 @@ def judge(answers: Answers, truth: Truth) -> Outcome:
 
 
 def longest_run(flags: np.ndarray) -> int:
-    """Images on end that are flagged."""
+    """Largest number of consecutive flagged images."""
     ends = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
     return int((ends[1::2] - ends[::2]).max(initial=0))
 
 
 def is_confidently_wrong(outcome: Judged, quantities: Sequence[int] = range(6)) -> bool:
-    """Whether one of the quantities is far outside its own sigma for several images on end, and nothing warns of it."""
+    """Whether one of the quantities is far outside its sigma in several consecutive images without any warning."""
     with np.errstate(invalid="ignore"):
         far = np.abs(outcome.error) > CONFIDENT_SIGMA * outcome.sigma
     return longest_run(far[:, list(quantities)].any(1) & ~outcome.suspect) >= CONFIDENT_IMAGES
@@ -137,16 +137,16 @@ def first_flag_s(answers: Answers, flags: np.ndarray) -> float:
     return float(answers.time_s[flagged[0]] - answers.time_s[0]) if len(flagged) else math.inf
 
 
-def told(answers: Answers, word: str) -> np.ndarray:
-    """(K,) whether an image's reason has the word in it; of a library that tells no reasons: whether it is suspect."""
+def flagged(answers: Answers, word: str) -> np.ndarray:
+    """(K,): whether an image's reason contains the word; for a library without reasons: whether it is suspect."""
     if answers.reason is None:
         return answers.suspect
     return np.array([word in reason for reason in answers.reason], bool)
 
 
 def is_odd_within(answers: Answers, limit_s: float) -> bool:
-    """Whether something is told to be wrong with the whole track by a time: suspect, the filter restarting again and
-    again, or most images with a fault."""
+    """Whether an inconsistency of the whole track is reported by a time: suspect, repeated restarts of the filter, or
+    faults in most images."""
     early = answers.time_s - answers.time_s[0] <= limit_s
     faults = float(np.mean(answers.status[early] < 0))
     return bool(answers.suspect[early].any()) or int(answers.restarted[early].sum()) >= RESTARTS or faults > 0.5
@@ -156,7 +156,7 @@ def is_odd_within(answers: Answers, limit_s: float) -> bool:
 
 
 def share(flags: Sequence[bool]) -> float:
-    """Percent."""
+    """Percentage of true flags."""
     return 100.0 * float(np.mean(flags)) if len(flags) else math.nan
 
 
@@ -179,14 +179,14 @@ def answered(outcomes: Sequence[Outcome]) -> float:
     return share([bool(np.isfinite(o.error[:, Z0]).any()) for o in outcomes])
 
 
-def told_within(outcomes: Sequence[Outcome], word: str, limit_s: float) -> float:
-    """Percent of the tracks of which a reason is told by a time; an infinite limit: ever."""
-    times = [first_flag_s(o.answers, told(o.answers, word)) for o in outcomes]
+def flagged_within(outcomes: Sequence[Outcome], word: str, limit_s: float) -> float:
+    """Percent of the tracks with this reason by a time; an infinite limit: ever."""
+    times = [first_flag_s(o.answers, flagged(o.answers, word)) for o in outcomes]
     return share([math.isfinite(time) and time <= limit_s for time in times])
 
 
 def suspect_or_covered(outcomes: Sequence[Outcome]) -> float:
-    """Percent of the tracks that are suspect in some image, or whose answers are as good as their sigmas say."""
+    """Percent of the tracks that are suspect in some image or covered by their sigmas."""
     good = []
     for o in outcomes:
         there = np.isfinite(o.error)
@@ -197,8 +197,8 @@ def suspect_or_covered(outcomes: Sequence[Outcome]) -> float:
 
 
 def velocity_covered(outcomes: Sequence[Outcome], velocity_m_s: Sequence[np.ndarray]) -> float:
-    """Percent of the told velocities, north and east, within two sigma of the true ones (2,), one for each track; NaN
-    if none is told."""
+    """Percent of the reported velocities, north and east, within two sigma of the true ones (2,), one for each track;
+    NaN if none is reported."""
     inside = []
     for o, true in zip(outcomes, velocity_m_s):
         if o.answers.velocity_m_s is None or o.answers.velocity_sigma_m_s is None:
@@ -209,11 +209,11 @@ def velocity_covered(outcomes: Sequence[Outcome], velocity_m_s: Sequence[np.ndar
 
 
 def time_error(outcomes: Sequence[Outcome], true_s: Sequence[np.ndarray], word: str, least_s: float) -> float:
-    """Median over the tracks of the told time to go's error, percent of the true one (K,), from the flag on while at
-    least ``least_s`` are left; NaN if no track is flagged so early."""
+    """Median over the tracks of the error of the reported time to go, percent of the true one (K,), from the flag on
+    while at least ``least_s`` are left; NaN if no track is flagged early enough."""
     medians = []
     for o, true in zip(outcomes, true_s):
-        flags = told(o.answers, word)
+        flags = flagged(o.answers, word)
         if o.answers.time_to_go_s is None or not flags.any():
             continue
         after = np.arange(len(flags)) >= np.argmax(flags)
@@ -224,5 +224,5 @@ def time_error(outcomes: Sequence[Outcome], true_s: Sequence[np.ndarray], word: 
 
 
 def odd_within(outcomes: Sequence[Outcome], limit_s: float) -> float:
-    """Percent; ``is_odd_within``."""
+    """Percent of the tracks that are ``is_odd_within``."""
     return share([is_odd_within(o.answers, limit_s) for o in outcomes])

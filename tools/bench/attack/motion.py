@@ -1,5 +1,5 @@
-"""Where the aircraft is and how it stands, as functions of time. Course axes: forward, right, down from where the
-flight begins over the obstacle's ground; heights are above that ground."""
+"""Position and attitude of the aircraft as functions of time. Course axes: forward, right, down, with their origin at
+the start of the flight, on the obstacle's ground; heights are above that ground."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from . import turns
 
-Span = tuple[float, float]  # from, to: a number is drawn evenly from between
+Span = tuple[float, float]  # from, to: limits of a uniformly drawn number
 GRAVITY_M_S2 = 9.81
 SWAY_PERIODS_S = ((1.8, 3.0), (2.5, 4.0), (2.0, 3.5))  # of yaw, pitch, roll
 VELOCITY_STEP_S = 1e-3  # of the difference quotient
@@ -23,20 +23,20 @@ TURN_RATE_RAD_S = math.radians(15.0)
 
 @dataclass(frozen=True)
 class Flown:
-    """How it is flown; spans are drawn from evenly."""
+    """Description of a flight; numbers are drawn uniformly from spans."""
 
     path: str = "past"  # one of PATHS
     speed_m_s: Span = (12.0, 30.0)
-    reach_s: Span = (10.0, 20.0)  # past: until the obstacle is abeam, without gap; other paths: how long it is flown
-    ahead_m: Span | None = None  # range of the obstacle at first; None: of speed and reach
-    height_m: Span = (15.0, 60.0)  # of the camera over the obstacle's ground
+    reach_s: Span = (10.0, 20.0)  # past: until the obstacle is abeam, without gap; other paths: duration
+    ahead_m: Span | None = None  # range of the obstacle at first; None: from speed and reach
+    height_m: Span = (15.0, 60.0)  # of the camera above the obstacle's ground
     climb_m_s: float = 0.7  # at most, up or down
-    aside_m: Span = (3.0, 40.0)  # the obstacle's outline lies so far beside the path, left or right
+    aside_m: Span = (3.0, 40.0)  # lateral distance of the obstacle's outline from the path, left or right
     weave_m: float = 6.0  # amplitude at most; half of the flights go straight
     sway_deg: tuple[float, float, float] = (2.0, 1.5, 5.0)  # amplitudes of yaw, pitch, roll
     rate_hz: float = 8.0
-    stop_s: float = 1.0  # a pass ends so long before the outline is abeam
-    gap_s: float = 0.0  # after the first third nothing is taken for so long
+    stop_s: float = 1.0  # a pass ends this long before the outline is abeam
+    gap_s: float = 0.0  # duration without images after the first third
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ class Path:
 
     time_s: np.ndarray
     at: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-    obstacle_m: np.ndarray  # (2,) forward, right: where the middle of the obstacle stands at first
+    obstacle_m: np.ndarray  # (2,) forward, right: initial place of the obstacle's middle
     axis_rad: float = 0.0  # T's Z axis, clockwise from the course's forward
     mount_yaw_deg: float = 0.0
-    trimmed: bool = True  # the track begins with the first image that shows the obstacle
+    trimmed: bool = True  # the track starts with the first image that shows the obstacle
 
     def velocity(self, time_s: np.ndarray) -> np.ndarray:
         """(K, 3) over the ground."""
@@ -57,7 +57,7 @@ class Path:
 
 
 def _sway(flown: Flown, rng: np.random.Generator) -> Callable[[np.ndarray], np.ndarray]:
-    """Yaw, pitch and roll (3, K), rad, about the path's own."""
+    """Yaw, pitch and roll (3, K), rad, relative to the path."""
     amplitude = np.radians(flown.sway_deg)
     period = np.array([rng.uniform(*p) for p in SWAY_PERIODS_S])
     phase = rng.uniform(0.0, 2 * math.pi, 3)
@@ -80,7 +80,7 @@ def _steered(
     flown: Flown,
     rng: np.random.Generator,
 ) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]:
-    """The nose along the path, the bank that the turn asks for, sway on top. ``heading``: angle and lateral
+    """The nose along the path, the bank angle of the turn, plus sway. ``heading``: angle and lateral
     acceleration."""
     sway = _sway(flown, rng)
     height, climb = rng.uniform(*flown.height_m), rng.uniform(-1.0, 1.0) * flown.climb_m_s
@@ -118,7 +118,7 @@ def past(flown: Flown, half_m: float, rng: np.random.Generator) -> Path:
 
 
 def hover(flown: Flown, half_m: float, rng: np.random.Generator) -> Path:
-    """In place, drifting about by a metre or less."""
+    """In place, with a drift of a meter or less."""
     size = rng.uniform(0.2, 1.0, 3)
     rate = 2 * math.pi / rng.uniform(*HOVER_PERIODS_S, 3)
     phase = rng.uniform(0.0, 2 * math.pi, 3)
@@ -148,13 +148,14 @@ def _circle(
 
 
 def orbit(flown: Flown, half_m: float, rng: np.random.Generator) -> Path:
-    """Part of a circle round the obstacle, which a camera that looks aside keeps in view. T's Z axis is the middle one
-    of the lines of sight: none lies more than 75 degrees from it."""
+    """Part of a circle around the obstacle, with a camera that looks sideways and keeps it in view. T's Z axis is the
+    middle line of sight; none is more than 75 degrees from it."""
     return _round(flown, half_m, (100.0, 150.0), 0.5, rng)
 
 
 def full_orbit(flown: Flown, half_m: float, rng: np.random.Generator) -> Path:
-    """Most of a circle round the obstacle; T's Z axis is the first line of sight, the last ones point back along it."""
+    """Most of a circle around the obstacle; T's Z axis is the first line of sight, the last ones point back along
+    it."""
     return _round(flown, half_m, (200.0, 330.0), 0.0, rng)
 
 
@@ -168,7 +169,7 @@ def _round(flown: Flown, half_m: float, arc_deg: Span, axis_share: float, rng: n
 
 
 def circling(flown: Flown, half_m: float, rng: np.random.Generator) -> Path:
-    """Circles beside the obstacle, which comes into view once in each."""
+    """Circles next to the obstacle, which comes into view once in each."""
     radius, speed = rng.uniform(100.0, 160.0), rng.uniform(*flown.speed_m_s)
     distance = radius + half_m + rng.uniform(60.0, 160.0)
     bearing = rng.uniform(0.0, 2 * math.pi)
@@ -178,7 +179,7 @@ def circling(flown: Flown, half_m: float, rng: np.random.Generator) -> Path:
 
 
 def after_turn(flown: Flown, half_m: float, rng: np.random.Generator) -> Path:
-    """The track begins before a turn by 95 to 150 degrees; the obstacle is ahead only then."""
+    """The track starts before a turn of 95 to 150 degrees; the obstacle is ahead only after it."""
     speed, turn = rng.uniform(*flown.speed_m_s), math.radians(rng.uniform(95.0, 150.0))
     sense = float(rng.choice([-1.0, 1.0]))
     radius, ends = speed / TURN_RATE_RAD_S, turn / TURN_RATE_RAD_S

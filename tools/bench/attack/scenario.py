@@ -17,15 +17,15 @@ SEED = 20260511
 MIN_IMAGES = 12  # with features, for a track
 MIXED = "mixed"  # two boxes to one cylinder
 FEATURES = ("corners", "outline", "boxes")
-ATTEMPTS = 200  # to draw a flight that sees its obstacle
-BEHIND_COS = math.cos(math.radians(87.0))  # of T's Z axis: what lies farther from it cannot be used
-KEPT_M = 3.0  # the camera stays so far off the obstacle's outline
-ORIGIN_M = 3000.0  # where the flight begins in NED: within this each way
+ATTEMPTS = 200  # to draw a flight with the obstacle in view
+BEHIND_COS = math.cos(math.radians(87.0))  # from T's Z axis: a larger angle cannot be used
+KEPT_M = 3.0  # least distance of the camera from the obstacle's outline
+ORIGIN_M = 3000.0  # largest coordinate of the flight's start in NED
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """What is drawn for a track; every number of it holds for all tracks of a row."""
+    """The random generation of a track; the same values apply to all tracks of a row."""
 
     flown: Flown = field(default_factory=Flown)
     kind: str = MIXED  # a solid's, or mixed
@@ -40,7 +40,7 @@ class Scenario:
     collides: bool = False  # the camera may come nearer than KEPT_M
 
     def by(self, **changes: object) -> Scenario:
-        """With other values; those of flight and errors go by their own names."""
+        """With other values; those of flight and errors are given by their names."""
         inner = {name: getattr(self, name) for name in ("flown", "wrong")}
         own: dict[str, object] = {}
         for name, value in changes.items():
@@ -55,7 +55,7 @@ class Scenario:
 
 @dataclass
 class Truth:
-    """T axes."""
+    """The truth in T axes."""
 
     solid: Solid
     middle_m: np.ndarray  # (2,) X, Z
@@ -66,8 +66,8 @@ class Truth:
 
 
 @dataclass
-class Told:
-    """What an estimator gets: K images; settings by the library's names."""
+class Inputs:
+    """Input of an estimator: K images, and settings by the library's names."""
 
     number: int
     time_s: np.ndarray
@@ -85,20 +85,20 @@ class Told:
 
     @property
     def shown(self) -> np.ndarray:
-        """(K,) whether anything of the obstacle is in an image."""
+        """(K,): whether an image shows a part of the obstacle."""
         shown = self.seen.any(1)
         return shown if self.box_px is None else shown | np.isfinite(self.box_px).any(1)
 
 
 def kind_of(scenario: Scenario, number: int) -> str:
-    """Of three tracks of a half two pass boxes, one a cylinder."""
+    """Of three tracks of a half, two pass boxes and one passes a cylinder."""
     if scenario.kind != MIXED:
         return scenario.kind
     return "cylinder" if number // 2 % 3 == 2 else "box"
 
 
 def _velocity(scenario: Scenario, rng: np.random.Generator) -> np.ndarray:
-    """(2,) forward, right, of the obstacle."""
+    """(2,): forward and right velocity of the obstacle."""
     side = float(rng.choice([-1.0, 1.0]))
     away = float(rng.choice([-1.0, 1.0]))
     direction = {
@@ -110,7 +110,7 @@ def _velocity(scenario: Scenario, rng: np.random.Generator) -> np.ndarray:
 
 def _settings(camera: Camera, wrong: Wrong, axis_deg: float, rng: np.random.Generator) -> dict[str, float]:
     focal = camera.focal_px * (1.0 + wrong.focal_share)
-    mount = errors.told_mounting(camera.mount_deg, wrong, rng)
+    mount = errors.configured_mounting(camera.mount_deg, wrong, rng)
     result = {"camera.fx_px": focal, "camera.fy_px": focal}
     result |= {"camera.cx_px": camera.middle_px, "camera.cy_px": camera.middle_px}
     result |= {"camera.width_px": camera.width_px, "camera.height_px": camera.height_px}
@@ -120,7 +120,7 @@ def _settings(camera: Camera, wrong: Wrong, axis_deg: float, rng: np.random.Gene
 
 @dataclass(frozen=True)
 class _World:
-    """A flight as it is, over all images of its path; course axes (forward, right, down)."""
+    """The true flight over all images of its path; course axes (forward, right, down)."""
 
     path: motion.Path
     to_ned: np.ndarray
@@ -136,7 +136,7 @@ def _world(scenario: Scenario, number: int, rng: np.random.Generator) -> _World:
     solid = solids.drawn(kind_of(scenario, number), scenario.size_m, rng)
     path = motion.PATHS[scenario.flown.path](scenario.flown, solid.half_m, rng)
     heading, velocity, time = rng.uniform(-math.pi, math.pi), _velocity(scenario, rng), path.time_s
-    crosses = scenario.moves in ("across", "diagonal")  # then it is where the path wants it halfway
+    crosses = scenario.moves in ("across", "diagonal")  # then it reaches the path's obstacle place halfway
     middle = path.obstacle_m + velocity * (time - (0.5 * (time[0] + time[-1]) if crosses else time[0]))[:, None]
     place, body = path.at(time)
     yaw, pitch, roll = scenario.mount_deg
@@ -147,8 +147,8 @@ def _world(scenario: Scenario, number: int, rng: np.random.Generator) -> _World:
     return _World(path, turns.about(2, heading), heading + path.axis_rad, turned, velocity, middle, place, stand)
 
 
-def _seen(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray | None]:
-    """Points (K, 6, 2) and boxes (K, 4), NaN where there is none."""
+def _detected(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray | None]:
+    """Points (K, 6, 2) and boxes (K, 4), NaN without one."""
     time, none = world.path.time_s, np.full((len(world.path.time_s), 6, 2), np.nan)
     if scenario.features == "boxes":
         exact = view.boxes(world.solid, world.stand)
@@ -160,11 +160,11 @@ def _seen(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[
     return np.where(whole[:, None, None], pixel, np.nan), None
 
 
-def _is_behind(world: _World, start: int, first_seen: int) -> bool:
-    """Whether the obstacle, when it is first seen, lies behind the path's own Z axis: then the nose sets T's."""
-    away = world.middle_m[first_seen] - world.place_m[first_seen, :2]
+def _is_behind(world: _World, start: int, visible: int) -> bool:
+    """Whether the obstacle is first visible behind the path's Z axis; then the nose sets T's axis."""
+    away = world.middle_m[visible] - world.place_m[visible, :2]
     axis = world.path.axis_rad
-    return start != first_seen and float(away @ [math.cos(axis), math.sin(axis)]) < BEHIND_COS * float(np.hypot(*away))
+    return start != visible and float(away @ [math.cos(axis), math.sin(axis)]) < BEHIND_COS * float(np.hypot(*away))
 
 
 def _truth(world: _World, part: slice, origin: int, axis: float) -> Truth:
@@ -181,35 +181,35 @@ def _truth(world: _World, part: slice, origin: int, axis: float) -> Truth:
     )  # fmt: skip
 
 
-def _one(scenario: Scenario, number: int, attempt: int) -> Told | None:
+def _one(scenario: Scenario, number: int, attempt: int) -> Inputs | None:
     """None if too few images show the obstacle, or the camera comes too near."""
     rng, noise = (np.random.default_rng([SEED, number, attempt, part]) for part in (0, 1))
     world = _world(scenario, number, rng)
     away = np.linalg.norm(world.place_m[:, :2] - world.middle_m, axis=1)
     if (away < world.solid.half_m + KEPT_M).any() and not scenario.collides:
         return None
-    pixel, box = _seen(scenario, world, noise)
+    pixel, box = _detected(scenario, world, noise)
     shown = np.isfinite(pixel).any((1, 2)) if box is None else np.isfinite(box).any(1)
     if shown.sum() < MIN_IMAGES:
         return None
     part = slice(int(np.argmax(shown)) if world.path.trimmed else 0, len(shown) - int(np.argmax(shown[::-1])))
     time = world.path.time_s[part]
     origin = np.append(rng.uniform(-ORIGIN_M, ORIGIN_M, 2), 0.0)
-    pose, jumped = errors.told_pose(
+    pose, jumped = errors.reported_pose(
         world.path, time, world.to_ned, origin, world.path.obstacle_m, scenario.wrong, noise
     )
     steps = np.diff(jumped, axis=0, prepend=jumped[:1])
     seen = np.isfinite(pixel[part]).all(-1)
-    first_seen, axis = int(np.argmax(shown)), world.path.axis_rad  # that image fixes T and its origin
-    by_nose = _is_behind(world, part.start, first_seen)
+    first_visible, axis = int(np.argmax(shown)), world.path.axis_rad  # that image fixes T and its origin
+    by_nose = _is_behind(world, part.start, first_visible)
     if by_nose:
-        nose = pose.attitude[first_seen - part.start, :, 0]
+        nose = pose.attitude[first_visible - part.start, :, 0]
         axis = math.atan2(nose[1], nose[0]) - world.axis_rad + world.path.axis_rad
-    truth = _truth(world, part, first_seen, axis)
+    truth = _truth(world, part, first_visible, axis)
     settings = _settings(world.stand.camera, scenario.wrong, math.degrees(truth.axis_rad), noise)
     if by_nose:
         settings |= {"heading_auto": 1.0, "heading_deg": 0.0}
-    return Told(
+    return Inputs(
         number, time - time[0], pose.position_m, pose.quaternion, pose.height_m,
         np.where(seen[..., None], pixel[part], 0.0), seen, None if box is None else box[part],
         np.cumsum(np.abs(steps).max(1) > 0), steps, truth.path_velocity_ned_m_s + pose.velocity_error_m_s,
@@ -217,10 +217,10 @@ def _one(scenario: Scenario, number: int, attempt: int) -> Told | None:
     )  # fmt: skip
 
 
-def fly(scenario: Scenario, number: int) -> Told:
-    """The track of a number: the same number gives the same flight; rows whose errors alone differ share flights."""
+def fly(scenario: Scenario, number: int) -> Inputs:
+    """The track with a number: the same number gives the same flight; rows that differ only in errors share flights."""
     for attempt in range(ATTEMPTS):
-        told = _one(scenario, number, attempt)
-        if told is not None:
-            return told
-    raise ValueError(f"track {number}: no flight in {ATTEMPTS} sees its obstacle; change the scenario")
+        inputs = _one(scenario, number, attempt)
+        if inputs is not None:
+            return inputs
+    raise ValueError(f"track {number}: no flight of {ATTEMPTS} has its obstacle in view; change the scenario")

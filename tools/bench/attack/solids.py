@@ -1,5 +1,5 @@
-"""What stands in the way, in T-like level axes about the middle of its footprint: X right, Z forward, heights up from
-the ground."""
+"""The obstacles, in level T-like axes about the middle of the footprint: X right, Z forward, heights above the
+ground."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-RIM_POINTS = 180  # that stand for a circle: its outline is at most 1.5e-4 of the radius too narrow
+RIM_POINTS = 180  # in place of a circle: the outline is at most 1.5e-4 of the radius too narrow
 EAVES_SHARE = 0.6  # of a gable roof's height
 TOP_SHARE = 0.2  # of a pylon's width at the top
-NOTCH_SHARE = 0.5  # of an L's width and length
+NOTCH_SHARE = 0.5  # share of an L's width and length
 GAP_M = (2.0, 8.0)  # between two buildings
-LEVELS = 9  # of a pylon's legs, which are what is seen of it
+LEVELS = 9  # of a pylon's legs, its visible part
 
 
 @dataclass(frozen=True)
 class Solid:
-    """``orientation_rad``: of the side edge (length) from Z, clockwise from above, as the library tells it. Width and
-    length are those of the smallest rectangle along these axes that holds the footprint."""
+    """``orientation_rad``: of the side edge (length) from Z, clockwise from above, as the library reports it. Width and
+    length are those of the smallest rectangle along these axes that contains the footprint."""
 
     kind: str  # cylinder, box, roof, pylon, L or two
     orientation_rad: float
@@ -27,7 +27,7 @@ class Solid:
     length_m: float
     height_m: float
     gap_m: float = 0.0  # two: between the buildings
-    setback_m: float = 0.0  # two: how much farther back the second one stands
+    setback_m: float = 0.0  # two: distance of the second one farther back
 
     @property
     def across(self) -> np.ndarray:
@@ -41,7 +41,7 @@ class Solid:
 
     @property
     def half_m(self) -> float:
-        """No part of it lies farther from its middle."""
+        """Largest distance of its points from its middle."""
         return 0.5 * (self.width_m if self.kind == "cylinder" else math.hypot(self.width_m, self.length_m))
 
     def _placed(self, shares: np.ndarray) -> np.ndarray:
@@ -71,8 +71,8 @@ class Solid:
         return [self.rectangle()]
 
     def points(self) -> np.ndarray:
-        """(N, 3) X, Z, height: the outline from anywhere is that of these points' hull; an L's hull has its notch
-        filled, which no extreme point feels."""
+        """(N, 3) X, Z, height: points with the same outline as the solid from any side; an L's notch does not change
+        it, since none of its points is extreme."""
         base = np.concatenate(self.bases())
         if self.kind == "roof":
             ridge = self._placed(np.array([[0.0, -0.5], [0.0, 0.5]]))
@@ -86,7 +86,7 @@ class Solid:
         return np.concatenate(rows)
 
     def tops(self) -> np.ndarray:
-        """(N, 3) the corners of what is highest; of a cylinder its upper rim."""
+        """(N, 3): the corners of the highest part; for a cylinder the upper rim."""
         points = self.points()
         return points[points[:, 2] >= self.height_m * (1 - 1e-9)]
 
@@ -96,7 +96,7 @@ def _log(rng: np.random.Generator, low: float, high: float) -> float:
 
 
 def drawn(kind: str, size_m: tuple[float, float], rng: np.random.Generator) -> Solid:
-    """A solid whose width, length and height lie within ``size_m``."""
+    """A solid with width, length and height within ``size_m``."""
     low, high = size_m
     width, height = _log(rng, low, high), _log(rng, max(low, 3.0), high)
     turned, ratio = math.radians(rng.uniform(-45.0, 45.0)), _log(rng, 0.5, 2.5)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-CAMERA_TO_BODY = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # un-mounted: looks along body x
+CAMERA_TO_BODY = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # unmounted: along body x
 
 
 def about(axis: int, angle: np.ndarray | float) -> np.ndarray:
@@ -20,7 +20,7 @@ def about(axis: int, angle: np.ndarray | float) -> np.ndarray:
 
 
 def of_angles(yaw: np.ndarray | float, pitch: np.ndarray | float, roll: np.ndarray | float) -> np.ndarray:
-    """About z, then the new y, then the newest x."""
+    """Rotations about z, then the new y, then the newest x."""
     return about(2, yaw) @ about(1, pitch) @ about(0, roll)
 
 
@@ -32,7 +32,7 @@ def angles_of(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def of_vector(vector: np.ndarray) -> np.ndarray:
-    """Of rotation vectors (..., 3) in rad: I + sin(a)/a K + (1 - cos(a))/a^2 K K."""
+    """Rotations by vectors (..., 3) in rad: I + sin(a)/a K + (1 - cos(a))/a^2 K K."""
     size = np.linalg.norm(vector, axis=-1)[..., None, None]
     x, y, z = np.moveaxis(vector, -1, 0)
     none = np.zeros_like(x)
@@ -41,8 +41,8 @@ def of_vector(vector: np.ndarray) -> np.ndarray:
 
 
 def quaternion(matrix: np.ndarray) -> np.ndarray:
-    """Of rotation matrices: the row of q q' that has the largest diagonal (Bar-Itzhack's symmetric matrix without the
-    search for eigenvectors), w >= 0."""
+    """Quaternions of rotation matrices: the row of q q' with the largest diagonal (Bar-Itzhack's symmetric matrix
+    without the search for eigenvectors), w >= 0."""
     m = np.asarray(matrix, float)
     d = [m[..., i, i] for i in range(3)]
     products = np.empty((*m.shape[:-2], 4, 4))  # 4 q q'

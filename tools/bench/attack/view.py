@@ -1,4 +1,4 @@
-"""What a camera sees of a solid: points of its outline and base corners, or the upright box around it."""
+"""A solid in a camera's image: points of its outline and base corners, or the upright box around it."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from . import turns
 from .solids import Solid
 
 LEFT, RIGHT, TOP, BASE_LEFT, BASE_NEAR, BASE_RIGHT = range(6)
-AHEAD_MIN = 0.05  # of a ray's length: what is nearer to the image plane has no image
-EDGE_STEPS = 33  # along a cylinder's edge, to find the part of it that is in the image
-MIN_WIDTH_PX = 2.0  # of an obstacle that a detector finds
-MIN_INSIDE_PX = 20.0  # so much of its width and height must be in the image
+AHEAD_MIN = 0.05  # of a ray's length: points nearer to the image plane have no image
+EDGE_STEPS = 33  # along a cylinder's edge, to find its part inside the image
+MIN_WIDTH_PX = 2.0  # least width of an obstacle that a detector finds
+MIN_INSIDE_PX = 20.0  # least part of its width and height inside the image
 
 
 @dataclass(frozen=True)
 class Camera:
-    """70 degrees wide and high; the mounting as ``goe_camera_t`` has it."""
+    """70 degrees wide and high; mounting angles as in ``goe_camera_t``."""
 
     width_px: float = 1280.0
     height_px: float = 1280.0
@@ -31,13 +31,13 @@ class Camera:
         return turns.of_angles(*np.radians(self.mount_deg)) @ turns.CAMERA_TO_BODY
 
     def project(self, rays: np.ndarray) -> np.ndarray:
-        """Pixels (..., 2) of rays (..., 3) in camera axes; NaN of those that do not point ahead."""
+        """Pixels (..., 2) of rays (..., 3) in camera axes; NaN for rays that do not point ahead."""
         size = np.linalg.norm(rays, axis=-1)
         depth = np.where(rays[..., 2] > AHEAD_MIN * size, rays[..., 2], np.nan)
         x = rays[..., :2] / depth[..., None]
         return self.middle_px + self.focal_px * x * (1.0 + self.k1 * (x * x).sum(-1, keepdims=True))
 
-    def holds(self, pixel: np.ndarray) -> np.ndarray:
+    def contains(self, pixel: np.ndarray) -> np.ndarray:
         with np.errstate(invalid="ignore"):
             inside = (pixel >= -0.5) & (pixel < np.array([self.width_px, self.height_px]) - 0.5)
         return inside.all(-1)
@@ -56,8 +56,8 @@ class Standpoint:
         """Pixels (K, N, 2) of points (N, 3) or (K, N, 3) about the solid's middle."""
         offset = np.pad(self.middle_m, ((0, 0), (0, 1))) - self.eye_m
         x, z, up = np.moveaxis(points + offset[:, None], -1, 0)
-        seen_from = self.to_body @ self.camera.to_body()
-        return self.camera.project(np.stack([z, x, -up], -1) @ seen_from)
+        to_course = self.to_body @ self.camera.to_body()
+        return self.camera.project(np.stack([z, x, -up], -1) @ to_course)
 
     @property
     def eye_about_middle(self) -> np.ndarray:
@@ -77,7 +77,7 @@ def _box_points(solid: Solid, stand: Standpoint) -> np.ndarray:
     u = np.where(whole[:, None], pixel[..., 0], 0.0)
     tops = solid.tops()
     top = stand.look(tops)
-    if solid.kind == "roof":  # the ridge: of its ends the one that lies higher in the image
+    if solid.kind == "roof":  # the ridge: its end that is higher in the image
         nearest = np.argmin(np.where(whole[:, None], top[..., 1], 0.0), 1)
     else:
         nearest = np.argmin(np.linalg.norm(tops[:, :2] - stand.eye_about_middle[:, None], axis=-1), 1)
@@ -102,7 +102,7 @@ def _cylinder_points(solid: Solid, stand: Standpoint) -> np.ndarray:
 
     result = np.full((len(eye), 6, 2), np.nan)
     for feature, angle in ((LEFT, toward + half), (RIGHT, toward - half)):
-        inside = stand.camera.holds(wall(angle, np.broadcast_to(levels, (len(eye), EDGE_STEPS))))
+        inside = stand.camera.contains(wall(angle, np.broadcast_to(levels, (len(eye), EDGE_STEPS))))
         lowest, highest = np.argmax(inside, 1), EDGE_STEPS - 1 - np.argmax(inside[:, ::-1], 1)
         middle = wall(angle, 0.5 * (levels[lowest] + levels[highest])[:, None])[:, 0]
         result[:, feature] = np.where(inside.any(1)[:, None], middle, np.nan)
@@ -112,8 +112,8 @@ def _cylinder_points(solid: Solid, stand: Standpoint) -> np.ndarray:
 
 
 def base_corners(solid: Solid, stand: Standpoint) -> np.ndarray:
-    """(K, 3, 2): left, near, right of the base corners that are seen; near is NaN where one face alone is. Of two
-    buildings: those of both as of one."""
+    """(K, 3, 2): left, near, right of the visible base corners; near is NaN if only one face is visible. Two buildings
+    have the corners of both together."""
     corners = np.concatenate(solid.bases())
     pixel = stand.look(np.pad(corners, ((0, 0), (0, 1))))
     ray = stand.eye_about_middle[:, None] - corners  # (K, N, 2)
@@ -144,18 +144,19 @@ def points(solid: Solid, stand: Standpoint, corners: bool) -> np.ndarray:
         if corners:
             result[:, BASE_LEFT:] = np.where(np.isfinite(result[:, LEFT]).all(-1)[:, None, None],
                                              base_corners(solid, stand), np.nan)  # fmt: skip
-    return np.where(stand.camera.holds(result)[..., None], result, np.nan)
+    return np.where(stand.camera.contains(result)[..., None], result, np.nan)
 
 
 def boxes(solid: Solid, stand: Standpoint) -> np.ndarray:
-    """Sides (K, 4) left, top, right, bottom of the smallest upright box around it, beyond the border too; NaN if a part
-    of it has no image."""
+    """Sides (K, 4) left, top, right, bottom of the smallest upright box around it, also beyond the border; NaN if a
+    part of it has no image."""
     pixel = stand.look(solid.points())
     return np.concatenate([pixel.min(1), pixel.max(1)], 1)
 
 
 def cut_at_border(box: np.ndarray, exact: np.ndarray, camera: Camera) -> np.ndarray:
-    """Boxes as a detector gives them: clipped; NaN of those that are too narrow, or of which too little is inside."""
+    """Boxes as reported by a detector: clipped; NaN if too narrow, or if too little is inside."""
+
     size = np.array([camera.width_px, camera.height_px])
     with np.errstate(invalid="ignore"):
         inside = (box[:, 2:] > MIN_INSIDE_PX).all(1) & (box[:, :2] < size - MIN_INSIDE_PX).all(1)

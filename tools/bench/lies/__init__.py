@@ -1,27 +1,28 @@
 """A search for lies: confident errors, false safety and warnings that vanish, in random legal flights.
 
-Simulator and judge are written from goe.h alone: no code and no idea is that of the library, of the other simulators or
-of the other judges, so that an error that they share shows. float64, arrays over all images of many flights.
+Simulator and judge are written from goe.h alone: they share neither code nor ideas with the library, the other
+simulators or the other judges, which exposes their common errors. float64, arrays over all images of many
+flights.
 
-genes      unit numbers that a flight is made of, and its seed
+genes      unit numbers of a flight, and its seed
 decode     parameters of flights from unit numbers
-motion     where the aircraft truly is
+motion     true position and attitude of the aircraft
 shapes     cuboids and cylinders
 optics     directions to raw pixels
-seen       what an ideal detector sees
-errors     random numbers, and what they do to poses
+seen       the output of an ideal detector
+errors     random numbers, and the errors of poses
 mishaps    missed detections, resets, refused images
-features   what the detector reports
-world      all of these together: what the library is given, and what is true
-answers    the library, flown
+features   the detector's reported features
+world      all of these together: the library's input, and the truth
+answers    runs the library
 approach   exact closest approach
 judge      errors over sigmas
-finds      which answers are lies
-tally      counts of many flights
+finds      classifies answers as lies
+tally      counts over many flights
 search     flights in batches, over processes
-evolve     the worst flights bred
-shrink     a find made small
-record     a find as a log
+evolve     evolves the worst flights
+shrink     reduces a find
+record     writes a find as a log
 show       the table and its goals
 command    the command
 """

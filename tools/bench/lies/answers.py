@@ -1,4 +1,4 @@
-"""The library, flown over all flights of a world."""
+"""Runs the library over all flights of a world."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RULES = 3
 
 @dataclass
 class Answers:
-    """Flat, as the world: (N,) or (N, RULES)."""
+    """Flat, like the world: (N,) or (N, RULES)."""
 
     status: np.ndarray
     estimates: np.ndarray  # of goe_estimate_t
@@ -25,7 +25,7 @@ class Answers:
 
 
 def rules(p: Params, i: int) -> list[goe.Rule]:
-    """Plans of a flight: margin and clearance; half the margin and little clearance; later, and more of both."""
+    """Rules of a flight: margin and clearance; half the margin and little clearance; later, and more of both."""
     margin, clearance = float(p["margin_m"][i]), float(p["clearance_m"][i])
     since = float(p["since_s"][i])
     return [
@@ -40,7 +40,7 @@ def rule_numbers(p: Params) -> np.ndarray:
     return np.stack([np.stack(row, -1) for row in rows], 1)
 
 
-SETTINGS = {  # by group of goe_settings_t: its field, and the parameter that it is set to
+SETTINGS = {  # by group of goe_settings_t: its field, and the parameter with its value
     "navigation": (
         ("attitude_bias_deg", "attitude_bias"), ("attitude_white_deg", "attitude_white"),
         ("attitude_drift_deg", "attitude_drift"), ("height_bias_m", "height_bias"),
@@ -72,7 +72,7 @@ def _camera(world: World, i: int, number: int) -> dict[str, Any]:
 
 
 def settings(world: World, i: int) -> goe.Settings:
-    """Of a flight."""
+    """The settings for a flight."""
     p, heading = world.p, world.heading_deg[i].item()
     group = {name: {field: p[own][i].item() for field, own in rows} for name, rows in SETTINGS.items()}
     return goe.Settings(

@@ -1,4 +1,4 @@
-"""Closest approach of a straight flight to an upright solid, exactly, in float64. Flat arrays, broadcast."""
+"""Exact closest approach of a straight flight to an upright solid, in float64. Flat arrays, broadcast."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ TINY = 1e-12
 
 @dataclass
 class Approach:
-    time_s: Array  # until the distance is smallest for the first time, or the outline is entered
-    leaves_s: Array  # ... and left; time_s where it is not entered
-    miss_m: Array  # 0 if it is entered
+    time_s: Array  # until the first minimum of the distance, or the entry into the outline
+    leaves_s: Array  # until the exit; time_s without an entry
+    miss_m: Array  # 0 if the outline is entered
 
 
 def _to_disc(start: Array, velocity: Array, radius: Array) -> Approach:
-    """``start``: (..., 2) from the centre."""
+    """``start``: (..., 2) from the center."""
     speed2 = np.maximum(np.sum(velocity**2, -1), TINY)
     along = -np.sum(start * velocity, -1) / speed2
     time = np.maximum(along, 0.0)
@@ -34,7 +34,7 @@ def _to_disc(start: Array, velocity: Array, radius: Array) -> Approach:
 
 
 def _inside_times(start: Array, velocity: Array, half: Array) -> tuple[Array, Array]:
-    """When a line is between two pairs of parallel sides; from > to: never."""
+    """Times at which a line enters and leaves two pairs of parallel sides; from > to: never inside."""
     still = np.abs(velocity) < TINY
     safe = np.where(still, 1.0, velocity)
     one, other = (-half - start) / safe, (half - start) / safe
@@ -45,7 +45,7 @@ def _inside_times(start: Array, velocity: Array, half: Array) -> tuple[Array, Ar
 
 
 def _to_cuboid(start: Array, velocity: Array, half: Array) -> Approach:
-    """``start`` and ``velocity`` (..., 2) along the cuboid's own axes, from its centre."""
+    """``start`` and ``velocity`` (..., 2) along the cuboid's axes, from its center."""
     enter, leave = _inside_times(start, velocity, half)
     enters = (enter < leave) & (leave > 0.0)
     times, distances = (
@@ -67,7 +67,8 @@ def _to_cuboid(start: Array, velocity: Array, half: Array) -> Approach:
 
 
 def closest(is_round: np.ndarray, axes: Array, half: Array, start: Array, velocity: Array) -> Approach:
-    """``start``: (..., 2) of the aircraft, from the solid's centre, NED; ``axes`` (..., 2, 2) rows are its own."""
+    """``start``: (..., 2) of the aircraft, from the solid's center, NED; the rows of ``axes`` (..., 2, 2) are its
+    axes."""
     own = np.einsum("...ij,...j->...i", axes, start)
     moving = np.einsum("...ij,...j->...i", axes, velocity)
     disc, cuboid = _to_disc(start, velocity, half[..., 0]), _to_cuboid(own, moving, half)

@@ -34,17 +34,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--flights", type=int, metavar="N", help=f"random flights (default {FLIGHTS}; with --seconds: no limit)")
     add("--seconds", type=float, metavar="S", help="stop after this time")
     add("--seed", type=int, default=1, metavar="N", help="of the flights (default 1)")
-    add("--mix", action="append", choices=MIXES, help="features; several times for several (default: all)")
-    add("--evolve", type=int, default=0, metavar="GENERATIONS", help="then breed the worst flights of each mix")
-    add("--out", type=Path, metavar="DIR", help="shrink a flight of each class, and write it as a log")
+    add("--mix", action="append", choices=MIXES, help="features; may be repeated (default: all)")
+    add("--evolve", type=int, default=0, metavar="GENERATIONS", help="then evolve the worst flights of each mix")
+    add("--out", type=Path, metavar="DIR", help="reduce a flight of each class, and write it as a log")
     add("--json", type=Path, metavar="FILE", help="write the counts")
-    add("--show", type=Path, metavar="FILE", help="print the table of such a file, and search nothing")
-    add("--page", type=Path, metavar="FILE", help="with --show: write the table of goals into this page")
+    add("--show", type=Path, metavar="FILE", help="print the table of such a file without a search")
+    add("--page", type=Path, metavar="FILE", help="with --show: write the table of goals to this page")
     spread.add_arguments(parser)
 
 
 def _checked(arguments: argparse.Namespace) -> int:
-    """How many flights."""
+    """The number of flights."""
     most = 10**12 if arguments.seconds is not None else FLIGHTS
     flights = most if arguments.flights is None else arguments.flights
     for name, value in (("--flights", flights), ("--seed", arguments.seed + 1), ("--evolve", arguments.evolve + 1)):
@@ -54,7 +54,7 @@ def _checked(arguments: argparse.Namespace) -> int:
 
 
 def _chosen(tally: Tally, seed: int, mixes: list[int]) -> dict[str, tuple[Key, Flights]]:
-    """A flight of each class, by the folder that it goes to: lost warnings first, then the most frequent classes."""
+    """A flight of each class, by output folder: lost warnings first, then the most frequent classes."""
     keys = sorted(tally.examples, key=lambda key: (-KINDS.index(key[0]), -tally.counts[("class", *key)], key))
     keys = keys[:LOGS_MOST]
     found = {}
@@ -84,7 +84,7 @@ def _write(out: Path, chosen: dict[str, tuple[Key, Flights]], workers: Workers) 
 
 def _bred(best: dict[Key, Best]) -> None:
     console = Console(highlight=False)
-    console.print("bred (1 and more: a find; confident errors as multiples of the limit)")
+    console.print("evolved (1 and more: a find; confident errors as multiples of the limit)")
     for key, one in sorted(best.items()):
         console.print(f"  {key[1]}: {key[0]}, {key[2]}: {one.score:.2f}")
 

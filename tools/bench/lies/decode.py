@@ -45,7 +45,7 @@ ASPECTS = np.array([1.0, 4.0 / 3.0, 16.0 / 9.0])
 MARGINS = np.array([3.0, 5.0, 10.0, 15.0, 25.0])
 CLEARANCES = np.array([2.0, 5.0, 10.0, 20.0])
 TYPICAL_M, TYPICAL_FACTOR = 6.0, 3.0
-SPREAD = 4.0  # drawn noise lies within the default times and over this
+SPREAD = 4.0  # drawn noise is at most this factor above or below the default
 
 
 def log(u: Array, low: Array | float, high: Array | float) -> Array:
@@ -61,7 +61,7 @@ def pick(u: Array, among: np.ndarray) -> np.ndarray:
 
 
 def rest(u: Array, share: float) -> Array:
-    """What lies below ``share``, spread over 0 to 1."""
+    """Maps the part below ``share`` to 0 to 1."""
     return np.minimum(u / share, 1.0)
 
 
@@ -127,7 +127,7 @@ def _camera(g: Units) -> Params:
     return {
         "width_px": width, "image_height_px": height, "fx_px": fx,
         "fy_px": fx * np.where(g["pixel_shape"] < 0.8, 1.0, linear(g["pixel_shape"], 0.9, 1.1)),
-        "cx_px": width * linear(g["centre"], 0.47, 0.53), "cy_px": height * linear(1.0 - g["centre"], 0.47, 0.53),
+        "cx_px": width * linear(g["center"], 0.47, 0.53), "cy_px": height * linear(1.0 - g["center"], 0.47, 0.53),
         "k1": np.where(lens, linear(g["lens_k1"], -0.1, 0.08), 0.0) / corner**2,
         "k2": np.where(lens, linear(g["lens_k2"], -0.015, 0.02), 0.0) / corner**4,
         "p1": np.where(lens, linear(g["lens_p1"], -2e-3, 2e-3), 0.0),
@@ -169,7 +169,7 @@ def _noise(g: Units, mix: np.ndarray) -> Params:
 
 
 def _typical(g: Units, p: Params) -> Params:
-    """The default where it is right to a factor of 3."""
+    """The default if it is correct to a factor of 3."""
     width = np.sqrt(p["a_m"] * p["b_m"])
     near = (width > TYPICAL_M / TYPICAL_FACTOR) & (width < TYPICAL_M * TYPICAL_FACTOR) & (g["typical"] < 0.5)
     wide = width * TYPICAL_FACTOR ** linear(g["typical"], -1.0, 1.0)
@@ -233,7 +233,7 @@ def _plan(g: Units) -> Params:
 
 
 def decode(flights: Flights) -> Params:
-    """Parameters, in the units that their names end in; those of noise as the setting of goe.h has them."""
+    """Parameters, in the units of their names; noise as in the settings of goe.h."""
     g, mix = Units(flights.unit), flights.mix
     p: Params = {"mix": mix, "seed": flights.seed} | _shape(g, mix)
     p |= _motion(g, p["h_m"], 0.5 * np.hypot(p["a_m"], p["b_m"])) | _camera(g) | _features(g, mix, p["round"])

@@ -1,4 +1,4 @@
-"""Random numbers of flights, and what they do to poses: errors as goe.h declares them, one sigma each."""
+"""Random numbers of flights and the resulting pose errors, as defined by goe.h, one sigma each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ CONSTANTS = 12
 (WHITE_ATTITUDE, DRIFT_ATTITUDE, WALK, WHITE_POSITION) = (slice(3 * i, 3 * i + 3) for i in range(4))
 WHITE_HEIGHT = 12
 PIXELS = slice(13, 25)  # of six points
-SIDE_WHITE, SIDE_ALIKE, SIDE_CUT = slice(25, 29), slice(29, 33), slice(33, 37)
+SIDE_WHITE, SIDE_CORRELATED, SIDE_CUT = slice(25, 29), slice(29, 33), slice(33, 37)
 SERIES = 37
 (EVEN_JITTER, EVEN_MISSED, EVEN_CUT, EVEN_PARTLY) = (0, 1, 2, slice(3, 13))
 EVENS = 13
@@ -20,7 +20,7 @@ EVENS = 13
 
 @dataclass
 class Draws:
-    """Standard normal and even (0 to 1) numbers of each flight, from its own seed."""
+    """Standard normal and uniform (0 to 1) numbers of each flight, from its seed."""
 
     constant: Array  # (F, CONSTANTS)
     series: Array  # (F, K, SERIES)
@@ -39,8 +39,8 @@ def draw(seeds: np.ndarray, counts: np.ndarray) -> Draws:
     return Draws(constant, series, even)
 
 
-def alike(white: Array, share: Array) -> Array:
-    """(F, K, ...) of unit variance, each number correlated with the one before by ``share`` (F, K)."""
+def correlated(white: Array, share: Array) -> Array:
+    """(F, K, ...) of unit variance, each number correlated with the previous one by ``share`` (F, K)."""
     found = white.copy()
     fresh = np.sqrt(1.0 - share**2)
     for k in range(1, white.shape[1]):
@@ -50,7 +50,7 @@ def alike(white: Array, share: Array) -> Array:
 
 @dataclass
 class PoseErrors:
-    """What is reported less what is true."""
+    """Reported minus true values."""
 
     attitude: Array  # (F, K, 3) about body axes, rad
     position: Array  # (F, K, 3) m
@@ -63,7 +63,7 @@ def _walk(white: Array, per_root_s: Array, t: Array) -> Array:
 
 
 def pose_errors(p: Params, draws: Draws, t: Array, after_reset: np.ndarray) -> PoseErrors:
-    """``after_reset``: (F, K) after a reset of unknown size, which gives attitude another constant error."""
+    """``after_reset``: (F, K) after a reset of unknown size, which gives the attitude another constant error."""
     fixed, series = draws.constant * p["constant_scale"][:, None], draws.series * p["pose_scale"][:, None, None]
 
     def column(name: str) -> Array:

@@ -1,6 +1,6 @@
-"""The worst flights bred: genes mutated and crossed, errors drawn again, for some generations.
+"""Evolves the worst flights: genes mutated and crossed, errors drawn again, for some generations.
 
-What comes of it is no sample of anything: it shows what there is, not how often.
+The result is not a random sample: it shows what exists, not how often.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from .tally import Key, worst_images
 PER_MIX = 500
 NICHE = 12  # survivors of one class
 SURVIVORS = 100
-MUTATED, STEP, REDRAWN = 0.08, 0.15, 0.02  # shares of genes, and how far
+MUTATED, STEP, REDRAWN = 0.08, 0.15, 0.02  # shares of genes, and size of a step
 CROSSED, SAME_ERRORS = 0.3, 0.4  # shares of children
 WORST_VIOLATION = 1e-9
 
 
 @dataclass
 class Best:
-    """A flight of a class, and how bad it is."""
+    """A flight of a class, and its score."""
 
     score: float
     flights: Flights
@@ -39,7 +39,7 @@ class Best:
 
 @dataclass
 class Scored:
-    """Of F flights: how near the worst each is, 1 and more: a find; and of which class it would be."""
+    """Of F flights: the score of each (1 and more: a find), and its class."""
 
     score: np.ndarray
     niche: np.ndarray
@@ -47,13 +47,13 @@ class Scored:
 
 
 def _safety(judged: Judged, lies: Finds) -> np.ndarray:
-    """(N,) 1 where a true violation has a probability of a hundredth."""
+    """(N,): 1 if a true violation has a probability of a hundredth."""
     low = np.log10(np.clip(judged.violation, WORST_VIOLATION, 1.0))
     return np.where(judged.violated & np.isfinite(judged.violation), -0.5 * low, 0.0).max(1) * ~lies.doubted.any(1)
 
 
 def _vanishing(flown: Flown) -> np.ndarray:
-    """(N,) 1 where a warning fell from 0.5 to 0.05 from one image to the next."""
+    """(N,): 1 if a warning fell from 0.5 to 0.05 from one image to the next."""
     judged, world = flown.judged, flown.world
     now = np.nan_to_num(judged.violation)
     before = np.roll(now, 1, 0)
@@ -86,7 +86,7 @@ def score(flights: Flights) -> Scored:
 
 
 def survivors(flights: Flights, scored: Scored) -> Flights:
-    """The worst, but few of one class, so that it does not crowd out the others."""
+    """The worst flights, with a limit for each class to keep all classes."""
     order = np.argsort(-scored.score, kind="stable")
     taken: dict[int, int] = {}
     chosen = []

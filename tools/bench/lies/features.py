@@ -1,4 +1,4 @@
-"""What the detector reports: the features of a mix, with their errors, less what is missed or cut."""
+"""The detector's reported features: those of a mix, with their errors, without missed or cut ones."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import errors
-from .errors import EVEN_CUT, EVEN_PARTLY, PIXELS, SIDE_ALIKE, SIDE_CUT, SIDE_WHITE, Draws
+from .errors import EVEN_CUT, EVEN_PARTLY, PIXELS, SIDE_CORRELATED, SIDE_CUT, SIDE_WHITE, Draws
 from .genes import Array, Params
 from .motion import Motion
 from .optics import View
@@ -20,16 +20,16 @@ BOTTOM = 3
 
 @dataclass
 class Detections:
-    points: Array  # (N, 6, 2) NaN: not seen
+    points: Array  # (N, 6, 2) NaN: not visible
     box: Array  # (N, 4)
     any_seen: np.ndarray  # (N,)
-    near_hidden: np.ndarray  # (N,) base corners left and right are marked, and the one between two visible faces is not
-    cut: np.ndarray  # (N,) some side is marked of a box that the image's border cuts
+    near_hidden: np.ndarray  # (N,) base corners left and right are marked, but not the one between two visible faces
+    cut: np.ndarray  # (N,) a side of a box cut by the image border is marked
 
 
 def _points(p: Params, draws: Draws, kept: np.ndarray, flight: np.ndarray, looking: View, ideal: Seen) -> Array:
     rho = np.broadcast_to(p["point_correlation"][:, None], kept.shape)
-    noise = errors.alike(draws.series[..., PIXELS], rho)[kept].reshape(-1, 6, 2)
+    noise = errors.correlated(draws.series[..., PIXELS], rho)[kept].reshape(-1, 6, 2)
     share = np.where(np.arange(6) < BASE_LEFT, p["point_share"][flight, None], 0.0) * ideal.width[:, None]
     sigma = np.hypot(p["point_px"][flight, None], share) * p["pixel_scale"][flight, None]
     found = ideal.points + noise * sigma[..., None]
@@ -46,14 +46,15 @@ def _points(p: Params, draws: Draws, kept: np.ndarray, flight: np.ndarray, looki
 
 
 def _cut(p: Params, flight: np.ndarray, looking: View, ideal: Seen) -> np.ndarray:
-    """The image's border cuts the box, as the library finds: left or right is not there, or close to the border."""
+    """Whether the image border cuts the box by the library's definition: left or right is absent, or close to the
+    border."""
     near = CUT_SHARE * looking.size[:, 0]
     right = looking.size[:, 0] - ideal.box[:, 2]
     return (ideal.box[:, 0] < near) | (right < near) | ~ideal.side_there[:, 0] | ~ideal.side_there[:, 2]
 
 
 def _at_border(ideal: Seen, looking: View, even: Array) -> Array:
-    """Where a detector draws the sides of a box that the border cuts."""
+    """Sides of a box cut by the border, as a detector reports them."""
     inwards = even[:, None] * BORDER_SHARE * looking.size[:, :1] * 0.98
     limits = np.concatenate([0.0 * looking.size, looking.size], 1)
     sign = np.array([1.0, 1.0, -1.0, -1.0])
@@ -66,7 +67,7 @@ def _boxes(
 ) -> Array:
     step = np.diff(moved.t_s, axis=1, prepend=moved.t_s[:, :1])
     fades = np.exp(-step / np.maximum(p["correlation_s"], 1e-6)[:, None])
-    slow = errors.alike(draws.series[..., SIDE_ALIKE], fades)[kept]
+    slow = errors.correlated(draws.series[..., SIDE_CORRELATED], fades)[kept]
     extent = np.stack([ideal.width, ideal.height] * 2, 1)
     cut = (_cut(p, flight, looking, ideal) & p["cut_drawn"][flight])[:, None] * p["cut_noise"][flight, None]
     noise = p["box_px"][flight, None] * draws.series[..., SIDE_WHITE][kept]

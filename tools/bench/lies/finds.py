@@ -1,4 +1,4 @@
-"""Which answers are lies: confident errors, false safety, and warnings that vanish."""
+"""Classifies answers as lies: confident errors, false safety, and warnings that vanish."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ CAUSES = (
     "other model",
     "held", "other",
 )  # fmt: skip
-PROMISED = 2  # the first causes are none of the library's: the truth changed, or goe.h says that the track ends
+PROMISED = 2  # the first causes are legal: the truth changed, or the track ends by goe.h
 MOVED_M = 0.5  # of the true miss or clearance, from one image to the next
 JUDGED = (*QUANTITIES, *FLIGHT_QUANTITIES)
-CIRCLE = len(JUDGED)  # more columns: hazards of the circle that replaces a cuboid of unknown outline
+CIRCLE = len(JUDGED)  # further columns: hazards with a circle in place of a cuboid of unknown outline
 COLUMNS = (*JUDGED, *(f"{name} of a circle" for name in FLIGHT_QUANTITIES))
 
 
@@ -34,16 +34,16 @@ COLUMNS = (*JUDGED, *(f"{name} of a circle" for name in FLIGHT_QUANTITIES))
 class Finds:
     """Of N images."""
 
-    ratio: np.ndarray  # (N, COLUMNS) error over sigma of what counts: refined, not suspect; NaN otherwise
+    ratio: np.ndarray  # (N, COLUMNS) error over sigma of refined answers that are not suspect; NaN otherwise
     confident: np.ndarray  # (N, COLUMNS)
     false_safety: np.ndarray  # (N, RULES)
-    doubted: np.ndarray  # (N, RULES) the same, suspect or old
+    doubted: np.ndarray  # (N, RULES) false safety of suspect or old answers
     vanished: np.ndarray  # (N, RULES)
-    cause: np.ndarray  # (N, RULES) of what would vanish with this image, index into CAUSES
+    cause: np.ndarray  # (N, RULES) cause if a warning vanishes with this image, index into CAUSES
 
 
 def _causes(world: World, found: Answers, judged: Judged) -> np.ndarray:
-    """(N, RULES)"""
+    """(N, RULES): index into CAUSES."""
     e = found.estimates
     before = np.maximum(np.arange(len(e)) - 1, 0)
     late = world.refused[before] & world.unknown[before]  # the next image shows the counter of a refused one
@@ -76,7 +76,7 @@ def find(world: World, found: Answers, judged: Judged) -> Finds:
     outline_known = np.where(is_round, e["model"] == DISC, whole_box) & counts
     hazard = np.abs(judged.hazard_ratio)
     worst = np.where(np.isnan(hazard).all(1), np.nan, np.nanmax(np.where(np.isnan(hazard), -1.0, hazard), 1))
-    level = np.abs(world.velocity[:, 2]) < LEVEL_M_S  # the top is passed by as much wherever the outline lies
+    level = np.abs(world.velocity[:, 2]) < LEVEL_M_S  # the clearance then does not depend on the place of the outline
     exact = np.stack([outline_known, outline_known, outline_known | (counts & level)], 1)
     ratio = np.column_stack([
         np.where(counts[:, None], np.abs(judged.ratio), np.nan), np.where(exact, worst, np.nan),
@@ -94,7 +94,7 @@ def find(world: World, found: Answers, judged: Judged) -> Finds:
 
 
 def flags(world: World) -> dict[str, np.ndarray]:
-    """(F,) bool: what is out of the usual in each flight."""
+    """(F,) bool: unusual circumstances of each flight."""
     p = world.p
 
     def any_of(images: np.ndarray) -> np.ndarray:

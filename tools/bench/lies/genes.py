@@ -1,7 +1,7 @@
-"""Unit numbers that flights are made of.
+"""Unit numbers that define flights.
 
-A flight is a row of numbers from 0 to 1 and the seed of its errors: evolution moves the numbers, and ``decode.py``
-makes parameters in physical units of them, one array for each name with one entry for each flight.
+A flight is a row of numbers from 0 to 1 and the seed of its errors. Evolution changes the numbers, and ``decode.py``
+converts them to parameters in physical units: one array for each name, with one entry for each flight.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ GENES = (
     "round", "kind", "size_a", "size_b", "size_h", "square", "turned", "speed", "rate", "images", "roof", "height",
     "flight_kind", "amplitude", "period", "phase", "climb", "crab", "side", "offset", "reach", "course", "pre_turn",
     "pre_turn_angle", "mid", "look", "mount_roll", "mount_jitter_yaw", "mount_jitter_pitch", "image_size", "aspect",
-    "view_angle", "pixel_shape", "centre", "lens", "lens_k1", "lens_k2", "lens_p1", "lens_p2", "lever", "lever_x",
+    "view_angle", "pixel_shape", "center", "lens", "lens_k1", "lens_k2", "lens_p1", "lens_p2", "lever", "lever_x",
     "lever_y", "lever_z", "heading_auto", "heading", "size_known", "cameras", "second_yaw", "second_share",
     "origin_n", "origin_e", "origin_d", "attitude_bias", "attitude_white", "attitude_drift", "height_bias",
     "velocity_bias", "position_walk", "position_white", "height_white", "ground", "ground_drawn", "point_px",
@@ -46,7 +46,7 @@ DEFAULTS = {  # of goe.h
 
 @dataclass
 class Flights:
-    """What flights are made of."""
+    """The numbers that define flights."""
 
     mix: npt.NDArray[np.int64]  # (F,)
     unit: Array  # (F, genes)
@@ -60,6 +60,6 @@ class Flights:
 
 
 def draw(count: int, mixes: Sequence[int], rng: np.random.Generator) -> Flights:
-    """Random flights, each of the mixes as often as the others."""
+    """Random flights, the same number of each mix."""
     mix = np.asarray(mixes, np.int64)[np.arange(count) % len(mixes)]
     return Flights(mix, rng.random((count, len(GENES))), rng.integers(0, 2**63, count).astype(np.uint64))

@@ -1,4 +1,4 @@
-"""The table of the goals, as the README shows it: what a recorded search found, and why a goal is missed."""
+"""The table of goals for the README: results of a recorded search, and causes of missed goals."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .tally import Key
 RECORD = ROOT / "tests" / "data" / "lies.json"
 REASONS = Path(__file__).with_name("reasons.csv")
 BLOCK = MarkedBlock("lies")
-CLASS_SHARE = 0.0003  # of a mix's flights: from here on a class of confident errors needs a reason
+CLASS_SHARE = 0.0003  # of a mix's flights: larger classes of confident errors need a reason
 CONFIDENT, VANISHED = "confident", "vanished"
 ALL = "all"  # mixes, of a reason
-Class = tuple[str, str, str]  # kind, mix, what: the model of which solid, or the cause of a vanished warning
+Class = tuple[str, str, str]  # kind, mix, what: model and solid, or the cause of a vanished warning
 
 
 def reasons() -> dict[Class, str]:
@@ -33,7 +33,7 @@ def reason_of(known: dict[Class, str], found: Class) -> str | None:
 
 
 def classes(counts: Counter[Key]) -> dict[Class, int]:
-    """Flights by kind, mix and what: each vanished warning, and the confident errors that are frequent enough."""
+    """Flights by kind, mix and what: each vanished warning, and confident errors above the share."""
     found: Counter[Class] = Counter()
     for word, *key in counts:
         if word == "class" and key[0] in (CONFIDENT, VANISHED):
@@ -50,7 +50,7 @@ def unexplained(counts: Counter[Key]) -> list[Class]:
 
 
 def idle(counts: Counter[Key]) -> list[Class]:
-    """Reasons of what is no longer found."""
+    """Reasons for classes that are no longer found."""
     found = classes(counts)
     return sorted(
         known for known in reasons() if known not in found and not any((k, ALL, w) == known for k, _, w in found)

@@ -1,4 +1,4 @@
-"""Errors of answers over their own sigmas, against the truth."""
+"""Errors of answers over their sigmas, against the truth."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ WINDOW, REFINED = 1, 2
 QUANTITIES = ("x0", "z0", "x", "z", "width", "length", "height", "orientation", "north", "east")
 FLIGHT_QUANTITIES = ("time", "miss", "clearance")
 REFUSED_STATUS = (-13, -10)
-SIGMA_LEAST = 1e-4  # of any quantity: what float rounds
-TOLERANCE_M = 0.5  # by which margin and clearance must truly be violated
-HEADING_STEP_DEG = 0.01  # of T: more than a float rounds
-LATERAL_SLACK = 0.02  # of a width that is "of what is seen"
+SIGMA_LEAST = 1e-4  # of any quantity: float rounding
+TOLERANCE_M = 0.5  # least true violation of margin and clearance
+HEADING_STEP_DEG = 0.01  # of T: more than float rounding
+LATERAL_SLACK = 0.02  # of a width defined by the visible part
 
 
 @dataclass
 class Judged:
-    """Of N images; NaN where there is nothing to judge."""
+    """Of N images; NaN if there is nothing to judge."""
 
     ratio: Array  # (N, quantities) error over sigma
     error: Array  # (N, quantities)
     hazard_ratio: Array  # (N, RULES, flight quantities)
     violation: Array  # (N, RULES) NaN: no answer
-    violated: np.ndarray  # (N, RULES) truly, and by more than a tolerance
+    violated: np.ndarray  # (N, RULES) true violation beyond the tolerance
     met: Array  # (N, RULES, 2) true miss and clearance, m
 
 
@@ -41,17 +41,17 @@ def _wrapped(degrees: Array, period: float) -> Array:
 
 
 def _extent(world: World, camera: Array) -> Array:
-    """(N,) of the outline across the line of sight from ``camera`` (N, 2) to its middle."""
+    """(N,): extent of the outline across the line of sight from ``camera`` (N, 2) to its middle."""
     own = world.solid.take(world.flight)
-    to = own.centre - camera
+    to = own.center - camera
     across = np.stack([-to[:, 1], to[:, 0]], 1) / np.hypot(*to.T)[:, None]
     spans = np.abs(np.einsum("nij,nj->ni", own.axes(), across)) * own.half
     return np.where(own.round, 2.0 * own.half[:, 0], 2.0 * spans.sum(1))
 
 
 def track_begins(world: World) -> np.ndarray:
-    """(N,) the image with which the present track began: the flight's first, or that of an unknown reset; if that image
-    was refused, the next one."""
+    """(N,): first image of the current track: the flight's first, or that of an unknown reset; if that image was
+    refused, the next one."""
     begin = np.zeros(len(world.flight), int)
     begin[world.start[:-1]] = world.start[:-1]
     taken = world.unknown & ~world.refused
@@ -63,7 +63,7 @@ def track_begins(world: World) -> np.ndarray:
 
 
 def first_seen(world: World, begin: np.ndarray) -> np.ndarray:
-    """(N,) the first image of the present track in which something was seen; the latest one if nothing was yet."""
+    """(N,): first image of the current track with a detection; the latest image if there is none yet."""
     number = np.arange(len(begin))
     at = np.where(world.detected & ~world.refused, number, len(begin))
     key = np.unique(begin, return_inverse=True)[1]
@@ -73,7 +73,7 @@ def first_seen(world: World, begin: np.ndarray) -> np.ndarray:
 
 
 def latest_taken(world: World, status: np.ndarray) -> np.ndarray:
-    """(N,) the image that x, z and the hazards go by: this one, or the last before it that was not refused."""
+    """(N,): reference image of x, z and the hazards: this one, or the last before it that was not refused."""
     number = np.arange(len(status))
     refused = (status >= REFUSED_STATUS[0]) & (status <= REFUSED_STATUS[1])
     at = np.maximum.accumulate(np.where(refused, 0, number))
@@ -81,7 +81,7 @@ def latest_taken(world: World, status: np.ndarray) -> np.ndarray:
 
 
 class _Truth:
-    """What each answer should have said, by its model and by how it names the sides."""
+    """The correct values of each answer, for its model and its naming of the sides."""
 
     def __init__(self, world: World, found: Answers) -> None:
         e = found.estimates
@@ -96,7 +96,7 @@ class _Truth:
         self.is_box = np.isin(self.model, (LINE, BOX)) & ~self.own.round
 
     def _name_sides(self, z_axis: Array) -> None:
-        """Length is along the side that lies closest to the reported orientation."""
+        """Length is along the side nearest to the reported orientation."""
         reported = z_axis + np.radians(self.e["orientation_deg"].astype(float))
         off = _wrapped(np.degrees(reported - self.own.heading), 180.0)
         swapped = np.abs(off) > 45.0
@@ -108,18 +108,18 @@ class _Truth:
         self.side_axis = np.stack([np.cos(true), np.sin(true)], 1)
 
     def references(self) -> Array:
-        """(N, candidates, 2): middle of the front edge; the centre of anything else. Without orientation the middle of
-        any side will do."""
-        centre = self.own.centre
-        front = centre - 0.5 * self.length[:, None] * self.side_axis
+        """(N, candidates, 2): middle of the front edge; otherwise the center. Without orientation the middle of any
+        side is accepted."""
+        center = self.own.center
+        front = center - 0.5 * self.length[:, None] * self.side_axis
         oriented = (self.valid & ORIENTATION) != 0
         steep = np.abs(self.e["orientation_deg"]) > 80.0
         axes = self.own.axes()
-        others = [centre + sign * self.own.half[:, i : i + 1] * axes[:, i] for i in (0, 1) for sign in (-1.0, 1.0)]
-        back = np.where(steep[:, None], centre + 0.5 * self.length[:, None] * self.side_axis, front)
+        others = [center + sign * self.own.half[:, i : i + 1] * axes[:, i] for i in (0, 1) for sign in (-1.0, 1.0)]
+        back = np.where(steep[:, None], center + 0.5 * self.length[:, None] * self.side_axis, front)
         known = np.stack([front, back, front, back], 1)
         any_side = np.where(oriented[:, None, None], known, np.stack(others, 1))
-        return np.where(self.is_box[:, None, None], any_side, centre[:, None])
+        return np.where(self.is_box[:, None, None], any_side, center[:, None])
 
     def in_t(self, level: Array) -> Array:
         """(N, ..., 2): X and Z."""
@@ -129,7 +129,7 @@ class _Truth:
 
 
 def _nearest(reported: Array, candidates: Array, sigma: Array) -> Array:
-    """(N, 2) errors against the candidate (N, C, 2) that is fewest sigmas away."""
+    """(N, 2): errors against the candidate (N, C, 2) that is the fewest sigmas away."""
     errors = reported[:, None] - candidates
     with np.errstate(invalid="ignore", divide="ignore"):
         size = np.sum((errors / np.maximum(sigma, SIGMA_LEAST)[:, None]) ** 2, -1)
@@ -141,8 +141,8 @@ def _pair(e: np.ndarray, one: str, other: str) -> Array:
 
 
 def _origin(world: World, e: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """(N,) the image in which x0 and z0 begin: the track's first one that shows a feature; with ``heading_auto`` a
-    later one in which T's heading changes, as the track begins again there."""
+    """(N,): origin image of x0 and z0: the track's first one with a feature; with ``heading_auto`` a later one in which
+    T's heading changes, since the track starts again there."""
     number = np.arange(len(seen))
     before = np.maximum(number - 1, 0)
     heading = e["trajectory_heading_deg"].astype(float)
@@ -160,13 +160,13 @@ def _positions(truth: _Truth) -> tuple[Array, Array]:
     now = truth.in_t(spots - world.camera[truth.at, None, :2])
     first = _nearest(_pair(e, "x0_m", "z0_m"), started, _pair(sigma, "x0_m", "z0_m"))
     latest = _nearest(_pair(e, "x_m", "z_m"), now, _pair(sigma, "x_m", "z_m"))
-    centre = truth.own.centre + (world.reported - world.vehicle)[truth.at, :2]
-    return np.concatenate([first, latest], 1), _pair(e, "center_north_m", "center_east_m") - centre
+    center = truth.own.center + (world.reported - world.vehicle)[truth.at, :2]
+    return np.concatenate([first, latest], 1), _pair(e, "center_north_m", "center_east_m") - center
 
 
 def _width(truth: _Truth) -> Array:
-    """(N,) errors. Of a cuboid that is not reported as a box: "the lateral extent of what is seen of it", across the
-    line of sight, of the first image or of this one, or along X of T."""
+    """(N,): errors. For a cuboid that is not reported as a box: the extent of its visible part, across the line of
+    sight, of the first image or of this one, or along X of T."""
     world, e = truth.world, truth.e
     reported = e["width_m"].astype(float)
     begin = track_begins(world)
@@ -183,12 +183,12 @@ def _width(truth: _Truth) -> Array:
 
 def _quantities(world: World, found: Answers) -> tuple[Array, Array]:
     truth, e = _Truth(world, found), found.estimates
-    position, centre = _positions(truth)
+    position, center = _positions(truth)
     box = truth.is_box
     oriented = ((truth.valid & ORIENTATION) != 0) & box
     length = np.where(oriented, e["length_m"] - truth.length, np.nan)
     height = e["height_m"] - world.height_m[world.flight]
-    error = np.column_stack([position, _width(truth), length, height, np.where(box, truth.turned, np.nan), centre])
+    error = np.column_stack([position, _width(truth), length, height, np.where(box, truth.turned, np.nan), center])
     error[truth.own.round & np.isin(truth.model, (LINE, BOX)), :6] = np.nan  # a cylinder has no front edge
     bits = np.array([POSITION] * 4 + [WIDTH, LENGTH, HEIGHT, ORIENTATION, CENTER, CENTER])
     error[(truth.valid[:, None] & bits) == 0] = np.nan
@@ -210,12 +210,12 @@ def _quantities(world: World, found: Answers) -> tuple[Array, Array]:
 
 @dataclass
 class Met:
-    """What each plan truly meets: (N, RULES)."""
+    """The true encounter of each plan: (N, RULES)."""
 
     time_s: Array
     miss_m: Array
     clearance_m: Array
-    at_reported_m: Array  # clearance at the time that the answer reports
+    at_reported_m: Array  # clearance at the reported time
 
 
 def meet(world: World, at: np.ndarray, reported_s: Array) -> Met:
@@ -226,7 +226,7 @@ def meet(world: World, at: np.ndarray, reported_s: Array) -> Met:
     start = world.camera[at, None] + velocity * since[..., None]
     near = approach.closest(
         own.round[:, None], np.repeat(own.axes()[:, None], RULES, 1), np.repeat(own.half[:, None], RULES, 1),
-        start[..., :2] - own.centre[:, None], velocity[..., :2],
+        start[..., :2] - own.center[:, None], velocity[..., :2],
     )  # fmt: skip
     over = -start[..., 2] - world.height_m[world.flight][:, None]
     crosses = near.miss_m <= 0.0

@@ -1,4 +1,4 @@
-"""What goes wrong on the way: detections that are missed, resets of the autopilot's filter, images that are refused."""
+"""Disturbances of a flight: missed detections, resets of the autopilot's filter, refused images."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class Mishaps:
     jump: Array  # (F, K, 3) of the reported position, since the first image
     jump_height: Array  # (F, K) of the reported height
     count: np.ndarray  # resets so far
-    delta: Array  # (F, K, 3) reported: since the last image that was taken; NaN: not known
+    delta: Array  # (F, K, 3) reported: since the last accepted image; NaN: unknown
     refused: np.ndarray  # bool
 
 
 def at_share(p: Params, motion: Motion, name: str) -> np.ndarray:
-    """(F, 1): image number of a share of the images in which the obstacle may be seen; never the first one."""
+    """(F, 1): image number at a share of the images that may show the obstacle; never the first one."""
     span = motion.count - motion.first - 2
     return np.asarray(motion.first + 1 + (p[name] * span).astype(int))[:, None]
 
@@ -50,7 +50,7 @@ def _refused(p: Params, motion: Motion) -> np.ndarray:
 
 
 def _summed(step: Array, refused: np.ndarray) -> Array:
-    """What is reported: an image after a refused one gives its reset again."""
+    """The reported jumps: an image after a refused one repeats its reset."""
     found = step.copy()
     for k in range(1, step.shape[1]):
         found[:, k] += np.where(refused[:, k - 1, None], found[:, k - 1], 0.0)

@@ -1,4 +1,4 @@
-"""Where the aircraft truly is and how it hangs in the air: (F, K) arrays over flights and their images."""
+"""True position and attitude of the aircraft: (F, K) arrays over flights and their images."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Motion:
     """NED, origin on the ground; angles in radians."""
 
     t_s: Array  # (F, K)
-    first: np.ndarray  # (F,) image from which on the obstacle may be seen
+    first: np.ndarray  # (F,) first image that may show the obstacle
     count: np.ndarray  # (F,) images
     position: Array  # (F, K, 3)
     velocity: Array  # (F, K, 3)
@@ -33,7 +33,7 @@ class Motion:
 
 
 def rotation(yaw: Array, pitch: Array, roll: Array) -> Array:
-    """About z, then the new y, then the newest x: (..., 3, 3), columns are the turned axes."""
+    """Rotation about z, then the new y, then the newest x: (..., 3, 3), columns are the rotated axes."""
     cy, sy, cp, sp, cr, sr = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch), np.cos(roll), np.sin(roll)
     rows = [
         [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
@@ -53,7 +53,7 @@ def _times(p: Params, draws: Draws, pre: np.ndarray, count: np.ndarray) -> Array
 
 
 def _course(p: Params, t: Array, start: Array) -> tuple[Array, Array]:
-    """Radians, and their rate; ``start``: when the turn before the first detection ends."""
+    """Course and its rate, rad; ``start``: end time of the turn before the first detection."""
     omega, phase = 2.0 * np.pi / p["period_s"][:, None], p["phase_rad"][:, None]
     since = t - start
     weave = np.radians(p["weave_deg"])[:, None]
@@ -79,7 +79,7 @@ def _path(p: Params, t: Array, first: np.ndarray, course: Array) -> tuple[Array,
 
 
 def pre_images(p: Params) -> np.ndarray:
-    """Images before anything may be seen: as many as a turn takes."""
+    """Number of images before the obstacle may be visible: those of a turn."""
     count = np.ceil(np.abs(p["pre_turn_deg"]) / PRE_TURN_DEG_S * p["rate_hz"])
     return np.where(p["pre_turn"], np.clip(count, 1, PRE_IMAGES_MOST), 0).astype(int)
 

@@ -1,4 +1,4 @@
-"""A find as a log that goe_replay reads, and find.json with what a log cannot carry: settings, plan, what is wrong."""
+"""A find as a log for goe_replay, plus find.json with the content that a log lacks: settings, plan, error."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _camera(world: World, number: int) -> Camera:
 
 
 def _short(value: np.floating[Any] | float) -> float:
-    """The shortest decimal number that is the same in single precision."""
+    """The shortest decimal number with the same single-precision value."""
     return float(str(np.float32(value))) + 0.0
 
 
@@ -49,7 +49,7 @@ def _triple(values: np.ndarray) -> tuple[float, float, float]:
 
 
 def _frame(image: np.ndarray, reset: bool) -> Frame:
-    """``reset``: the filter's counter changed with it."""
+    """``reset``: the filter's counter changed with this image."""
     pose, box = image["pose"], image["box"]
     w, x, y, z = (_short(value) for value in pose["attitude"])
     pixels = {
@@ -68,7 +68,7 @@ def _frame(image: np.ndarray, reset: bool) -> Frame:
 def _truth(world: World) -> Truth:
     origin = [float(world.p[f"origin_{axis}_m"][0]) for axis in "ned"]
     solid, is_round = world.solid, bool(world.solid.round[0])
-    north, east = (float(value) for value in solid.centre[0])
+    north, east = (float(value) for value in solid.center[0])
     return Truth(
         TRACK, True, north + origin[0], east + origin[1], origin[2], 2.0 * float(solid.half[0, 1]),
         None if is_round else 2.0 * float(solid.half[0, 0]),
@@ -77,7 +77,7 @@ def _truth(world: World) -> Truth:
 
 
 def log_of(world: World) -> ObservationLog:
-    """Of one flight."""
+    """The log of one flight."""
     count = world.images["pose"]["reset_count"]
     frames = [_frame(world.images[k], k > 0 and count[k] != count[k - 1]) for k in range(len(count))]
     camera2 = _camera(world, 1) if world.p["two_cameras"][0] else None
@@ -85,7 +85,7 @@ def log_of(world: World) -> ObservationLog:
 
 
 def settings_beyond(world: World) -> dict[str, float]:
-    """What camera.ini does not say and is not by default: for goe_replay --set."""
+    """Settings that are not in camera.ini and differ from the defaults: for goe_replay --set."""
     numbers = answers.settings(world, 0).numbers()
     rows = {row.name: (number, row.default) for row, number in zip(goe.setting_rows(), numbers)}
     found = {name: float(number) for name, (number, usual) in rows.items() if number != np.float32(usual)}
@@ -94,7 +94,7 @@ def settings_beyond(world: World) -> dict[str, float]:
 
 
 def _wrong(flown: Flown, want: Want, k: int) -> tuple[str, int]:
-    """In words, and the plan that it shows in."""
+    """The error in words, and the plan in which it appears."""
     violation, lies = flown.found.hazards["violation"], flown.lies
     if want.kind == KINDS[0]:
         rule = int(np.argmax(np.nan_to_num(np.abs(flown.judged.hazard_ratio[k])).max(1)))
@@ -103,7 +103,7 @@ def _wrong(flown: Flown, want: Want, k: int) -> tuple[str, int]:
     rules = lies.false_safety[k] if safe else lies.vanished[k] & (lies.cause[k] == CAUSES.index(want.what))
     rule = int(np.argmax(rules))
     miss, clearance = flown.judged.met[k, rule]
-    truth = f"truly {miss:.1f} m past the outline and {clearance:.1f} m over the top"
+    truth = f"in truth {miss:.1f} m from the outline and {clearance:.1f} m over the top"
     now = "no answer" if flown.found.hazard_status[k, rule] else f"{violation[k, rule]:.3g}"
     if safe:
         return f"violation {now}, {truth}", rule
@@ -130,7 +130,7 @@ def describe(flown: Flown, want: Want) -> dict[str, Any]:
 
 
 def write(folder: Path, world: World, want: Want) -> dict[str, Any]:
-    """The log and find.json of one flight."""
+    """Writes the log and find.json of one flight."""
     found = describe(search.look_at(world), want)
     write_log(folder, log_of(world), f"{found['mix']}, image {found['image']}: {found['wrong']}")
     (folder / "find.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")

@@ -44,7 +44,7 @@ def fly(p: Params) -> Flown:
 
 
 def look_at(flown: World, found: Answers | None = None) -> Flown:
-    """``found``: other answers than the library's own."""
+    """``found``: answers to use in place of the library's."""
     found = answers.fly(flown) if found is None else found
     with np.errstate(invalid="ignore", divide="ignore"):
         judged = judge.judge(flown, found)
@@ -52,7 +52,7 @@ def look_at(flown: World, found: Answers | None = None) -> Flown:
 
 
 def flights_of(task: Task) -> Flights:
-    """The same ones, however many of them are flown."""
+    """The flights of a task, independent of the total number."""
     rng = np.random.default_rng([task.seed, task.batch])
     return genes.draw(BATCH, task.mixes, rng).take(np.arange(task.count))
 
@@ -68,7 +68,7 @@ def tasks_for(seed: int, flights: int, mixes: Sequence[int], first: int = 0) -> 
 
 
 def _rounds(seed: int, mixes: Sequence[int], most: int, until: float, jobs: int) -> Iterator[list[Task]]:
-    """So many flights, or as many as there is time for."""
+    """The requested number of flights, or as many as the time allows."""
     if until == np.inf:
         yield tasks_for(seed, most, mixes)
         return

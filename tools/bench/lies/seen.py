@@ -1,6 +1,6 @@
-"""What an ideal detector sees of a solid: image points and the upright box around its silhouette.
+"""Output of an ideal detector for a solid: image points and the upright box around its silhouette, without errors.
 
-And which of them lie in the image. No errors yet.
+Also whether they are inside the image.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .shapes import Solid
 LEFT, RIGHT, TOP, BASE_LEFT, BASE_NEAR, BASE_RIGHT = range(6)  # points, as goe.POINTS
 SIDES = 4  # left, top, right, bottom, as goe.SIDES
 SIDE_AXIS = np.array([0, 1, 0, 1])
-SIDE_SIGN = np.array([1.0, 1.0, -1.0, -1.0])  # of what is smallest at it
+SIDE_SIGN = np.array([1.0, 1.0, -1.0, -1.0])  # sign of the coordinate that is smallest at the side
 
 
 @dataclass
@@ -27,17 +27,17 @@ class Seen:
     points: Array  # (N, 6, 2)
     point_there: np.ndarray  # (N, 6) in the image and not hidden by the solid itself
     box: Array  # (N, 4) of the whole silhouette
-    side_there: np.ndarray  # (N, 4) the point that a side touches is in the image
-    two_faces: np.ndarray  # (N,) of a cuboid
-    whole_ahead: np.ndarray  # (N,) all of the solid lies ahead of the camera
+    side_there: np.ndarray  # (N, 4) the touching point of the side is in the image
+    two_faces: np.ndarray  # (N,) of a cuboid are visible
+    whole_ahead: np.ndarray  # (N,) the whole solid is ahead of the camera
     width: Array  # (N,) of the silhouette inside the image
     height: Array  # (N,)
 
 
 def _rim_extremes(seen_by: View, solid: Solid, down: Array) -> Array:
-    """(N, 4, 3): where a rim is leftmost, rightmost, highest and lowest in the image, without a lens. On a circle
+    """(N, 4, 3): leftmost, rightmost, highest and lowest point of a rim in the image, without a lens. On a circle
     u = (a . e) / (d . e), e = (1, cos, sin), is stationary where P cos + Q sin + R = 0."""
-    middle = np.einsum("nij,nj->ni", seen_by.axes, np.concatenate([solid.centre, down[:, None]], 1))
+    middle = np.einsum("nij,nj->ni", seen_by.axes, np.concatenate([solid.center, down[:, None]], 1))
     radius = solid.half[:, 0]
     e1, e2 = seen_by.axes[:, :, 0] * radius[:, None], seen_by.axes[:, :, 1] * radius[:, None]
     found = []
@@ -48,13 +48,13 @@ def _rim_extremes(seen_by: View, solid: Solid, down: Array) -> Array:
         size = np.maximum(np.hypot(p, q), 1e-12)
         turn, start = np.arccos(np.clip(-r / size, -1.0, 1.0)), np.arctan2(q, p)
         for angle in (start + turn, start - turn):
-            level = solid.centre + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1)
+            level = solid.center + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1)
             found.append(np.concatenate([level, down[:, None]], 1))
     return np.stack(found, 1)
 
 
 def _outline(seen_by: View, solid: Solid) -> Array:
-    """(N, P, 3): among them are the points that the upright box touches, if no lens bends straight edges."""
+    """(N, P, 3): points that include those touched by the upright box, unless a lens bends straight edges."""
     corners = solid.corners()
     cuboid = np.concatenate([shapes.upright(corners, solid.foot), shapes.upright(corners, solid.roof)], 1)
     cylinder = np.concatenate([_rim_extremes(seen_by, solid, solid.foot), _rim_extremes(seen_by, solid, solid.roof)], 1)
@@ -62,7 +62,7 @@ def _outline(seen_by: View, solid: Solid) -> Array:
 
 
 def extremes(pixels: Array, ahead: np.ndarray) -> Array:
-    """(N, 4, 2): the points at which the left, top, right and lower side touch."""
+    """(N, 4, 2): the touching points of the left, top, right and bottom side."""
     rows = np.arange(len(pixels))
     found = []
     for axis, sign in zip(SIDE_AXIS, SIDE_SIGN):
@@ -92,7 +92,7 @@ def _roof_extreme(seen_by: View, solid: Solid) -> Array:
 
 
 def look(p: Params, flight: np.ndarray, seen_by: View, solid: Solid) -> Seen:
-    """``flight``: (N,) which one an image belongs to."""
+    """``flight``: (N,) flight of each image."""
     touching, whole = _touching(seen_by, solid)
     posts = shapes.sides(solid)
     level = solid.foot + (solid.roof - solid.foot) * p["side_height"][flight]

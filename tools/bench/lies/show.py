@@ -1,4 +1,4 @@
-"""The table of what was found, and the goals; and the file that it is printed from."""
+"""The table of finds and goals, and the file it is printed from."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SEPARATOR = "|"
 CONFIDENT_GOAL = 0.003
 CLASSES_SHOWN = 40
 LIFT_LEAST, LIFT_SHOWN = 1.5, 4
-LIFT_SHARE = 0.25  # of a class's finds that must have the circumstance
+LIFT_SHARE = 0.25  # least share of a class's finds with the circumstance
 FORMAT = 1
 JSON_BYTES_MAX = 1 << 26
 
@@ -31,7 +31,7 @@ def to_json(tally: Tally, about: dict[str, Any]) -> dict[str, Any]:
 
 
 def from_json(path: Path) -> tuple[dict[str, Any], Counter[Key]]:
-    """What the file says of itself, and its counts; ValueError names a file that is none of ours."""
+    """The file's metadata and its counts; ValueError names a file of another format."""
     try:
         with open(path, encoding="utf-8") as file:
             found = json.loads(file.read(JSON_BYTES_MAX))
@@ -52,7 +52,7 @@ def mixes_of(counts: Counter[Key]) -> list[str]:
 
 
 def misses(counts: Counter[Key]) -> Iterator[str]:
-    """The goals that are missed, in words."""
+    """The missed goals, in words."""
     for mix in mixes_of(counts):
         flights, confident = counts["flights", mix], counts["confident", mix, "any"]
         if confident > CONFIDENT_GOAL * flights:
@@ -91,13 +91,13 @@ def _overview(counts: Counter[Key]) -> Table:
         if any(counts["vanished", mix, cause] for mix in mixes):
             row(f"  {cause}" + (" (not counted)" if number < PROMISED else ""), "vanished", cause)
     pairs = [(counts["safety found", m] / 1e6, counts["safety allowed", m] / 1e6) for m in mixes]
-    table.add_row("false safety, images: found/own figure", *(f"{found:.0f}/{own:.0f}" for found, own in pairs))
+    table.add_row("false safety, images: found/implied", *(f"{found:.0f}/{own:.0f}" for found, own in pairs))
     return table
 
 
 def _coverage(counts: Counter[Key]) -> Table:
     mixes = mixes_of(counts)
-    table = _table(f"% of the answers within {COVER_SIGMA:g} sigma (95.4 is right; 100 is a miss, too)", ["", *mixes])
+    table = _table(f"% of the answers within {COVER_SIGMA:g} sigma (95.4 is right; 100 is wrong, too)", ["", *mixes])
     for column in COLUMNS:
         parts = [percent(counts["within", mix, column], counts["judged", mix, column]) for mix in mixes]
         if set(parts) != {"-"}:
@@ -106,7 +106,7 @@ def _coverage(counts: Counter[Key]) -> Table:
 
 
 def lifts(counts: Counter[Key], key: Key) -> list[str]:
-    """Circumstances that a class of finds has more often than the flights of its mix have them."""
+    """Circumstances that are more frequent in a class of finds than in the flights of its mix."""
     mix, total = key[1], counts[("class", *key)]
     found = []
     for word, name, *rest in [k for k in counts if k[0] == "flag" and k[1] == mix]:

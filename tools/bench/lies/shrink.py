@@ -1,6 +1,6 @@
-"""A find made small: whatever may be left out or rounded without losing it is.
+"""Reduces a find: leaves out or rounds everything that the find does not need.
 
-First the parameters of its flight, each change flown again; then its images, as they are given to the library.
+First the parameters of its flight, which is flown again after each change; then its images as given to the library.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from .search import Flown
 from .tally import Key
 from .world import OF_IMAGES, World
 
-KEPT_SHARE, KEPT_SIGMA = 0.6, 12.0  # of a confident error: it stays as large
-ROUNDED = (  # parameter, to so many digits of this unit
+KEPT_SHARE, KEPT_SIGMA = 0.6, 12.0  # of a confident error: share and limit of its size that must remain
+ROUNDED = (  # parameter, and its digits or unit
     ("a_m", 1.0), ("b_m", 1.0), ("h_m", 1.0), ("speed_m_s", 1.0), ("rate_hz", 1.0), ("height_m", 1.0),
     ("range_m", 10.0), ("turned_deg", 5.0),
     ("a_m", 0.1), ("b_m", 0.1), ("h_m", 0.1), ("speed_m_s", 0.1), ("rate_hz", 0.1), ("height_m", 0.1),
@@ -58,15 +58,15 @@ SIMPLE: tuple[dict[str, float], ...] = (
 
 @dataclass
 class Want:
-    """What must stay: a kind of find, and the quantity that is wrong or the cause that a warning vanished by."""
+    """The find to keep: its kind, and the wrong quantity or the cause of a vanished warning."""
 
     kind: str
     what: str
-    least: float = CONFIDENT_SIGMA  # sigmas that it must be wrong by
+    least: float = CONFIDENT_SIGMA  # least error in sigmas
 
 
 def hits(flown: Flown, want: Want) -> np.ndarray:
-    """(N,) images with such a find."""
+    """(N,): images with such a find."""
     lies = flown.lies
     if want.kind == KINDS[0]:
         with np.errstate(invalid="ignore"):
@@ -110,7 +110,7 @@ def _changes(p: Params) -> Iterator[dict[str, float]]:
 
 
 def parameters(p: Params, want: Want) -> Params:
-    """Of one flight, simplified. What comes later in the flight is left out."""
+    """Simplified parameters of one flight, which ends with the find."""
     flown = search.fly(p)
     last = int(np.flatnonzero(hits(flown, want))[0])
     shorter = changed(p, {"images": last + 1 - int(motion.pre_images(p)[0])})
@@ -140,8 +140,8 @@ def _noisy(world: World) -> bool:
 
 
 def fewer(world: World, want: Want) -> World:
-    """Images are left out in ever smaller runs; where there is noise, from both ends only, as choosing among its draws
-    would make it another noise. An image with a reset stays, as the next one would have to report it."""
+    """Leaves out ever shorter runs of images. With noise only from both ends, since a choice among its values would
+    change its distribution. An image with a reset stays; otherwise the next one would have to report the reset."""
     fixed = world.known | world.unknown | world.refused
     keep = np.ones(len(fixed), bool)
     last = int(np.flatnonzero(hits(search.look_at(world), want))[0])
@@ -183,7 +183,7 @@ def rounder(world: World, want: Want) -> World:
 
 
 def shrink(p: Params, want: Want) -> World:
-    """``p``: of one flight that has the find. What is far off stays so."""
+    """``p``: of one flight with the find. Large errors stay large."""
     if want.kind == KINDS[0]:
         worst = np.nanmax(search.fly(p).lies.ratio[:, COLUMNS.index(want.what)])
         want = dataclasses.replace(want, least=max(CONFIDENT_SIGMA, min(KEPT_SHARE * worst, KEPT_SIGMA)))

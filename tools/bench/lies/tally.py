@@ -1,4 +1,4 @@
-"""Counts of many flights: what was judged, what was found, and in which circumstances."""
+"""Counts over many flights: judged answers, finds, and their circumstances."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Key = tuple[str, ...]
 
 @dataclass
 class Example:
-    """A flight of a class, and where in it the find is. The one with the fewest circumstances is kept."""
+    """A flight of a class, and the place of the find. The one with the fewest circumstances is kept."""
 
     flags: int
     batch: int
@@ -44,7 +44,7 @@ class Tally:
 
 
 def per_flight(world: World, images: np.ndarray) -> np.ndarray:
-    """(F,) how many images of each flight."""
+    """(F,): number of images of each flight."""
     return np.bincount(world.flight, images, len(world.start) - 1)
 
 
@@ -80,7 +80,7 @@ def _basics(tally: Tally, world: World, found: Answers, found_lies: Finds, judge
 
 
 def worst_images(world: World, score: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Flights with a positive score, and of each the first image with its largest."""
+    """Flights with a positive score, and the first image with the largest score of each."""
     best = np.zeros(len(world.start) - 1)
     np.maximum.at(best, world.flight, score)
     flights = np.flatnonzero(best > 0.0)
@@ -91,7 +91,7 @@ def worst_images(world: World, score: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def scores(found_lies: Finds) -> dict[str, np.ndarray]:
-    """(N,) of each kind: 0 where nothing was found."""
+    """(N,) for each kind: 0 without a find."""
     judged = np.where(found_lies.confident, found_lies.ratio, 0.0)[:, : len(JUDGED)]
     return {
         KINDS[0]: judged.max(1), KINDS[1]: found_lies.false_safety.any(1) * 1.0,

@@ -1,4 +1,4 @@
-"""Flights, flown: what the library is given in every image, and what is true.
+"""Generated flights: the library's input in every image, and the truth.
 
 Flat arrays of all images of all flights.
 """
@@ -18,7 +18,7 @@ from .shapes import Solid
 
 COLLISION_SHARE = 0.45  # of the offsets
 MARGINS_MOST = 4.0
-CLOSEST_M = 1.0  # a flight ends where the camera comes nearer to the outline
+CLOSEST_M = 1.0  # a flight ends when the camera comes nearer to the outline
 NEAREST_START_M = 20.0
 PITCH_MOST_DEG = 50.0
 ALTERNATING = 0.3
@@ -26,7 +26,7 @@ ALTERNATING = 0.3
 
 @dataclass
 class World:
-    """F flights of N images in all; the images of flight i are those from ``start[i]`` to ``start[i + 1]``."""
+    """F flights with N images in all; those of flight i are ``start[i]`` to ``start[i + 1]``."""
 
     p: Params
     start: np.ndarray  # (F + 1,)
@@ -36,10 +36,10 @@ class World:
     vehicle: Array  # (N, 3) true
     reported: Array  # (N, 3) position as given
     velocity: Array  # (N, 3) planned
-    detected: np.ndarray  # (N,) something is marked as seen
-    known: np.ndarray  # (N,) a filter reset of known size came with it
+    detected: np.ndarray  # (N,) a feature is marked as visible
+    known: np.ndarray  # (N,) with a filter reset of known size
     unknown: np.ndarray  # (N,)
-    refused: np.ndarray  # (N,) it must be
+    refused: np.ndarray  # (N,) must be refused
     near_hidden: np.ndarray  # (N,) as in features.Detections
     cut: np.ndarray  # (N,)
     roll_deg: Array  # (N,)
@@ -60,7 +60,7 @@ OF_IMAGES = (
 
 
 def quaternion(angles: Array, error: Array) -> Array:
-    """(..., 4) of yaw, pitch, roll, off by small turns about the body's axes, rad."""
+    """(..., 4) from yaw, pitch, roll, with an error of small rotations about the body's axes, rad."""
     cy, cp, cr = (np.cos(0.5 * angles[..., i]) for i in range(3))
     sy, sp, sr = (np.sin(0.5 * angles[..., i]) for i in range(3))
     w, x = cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr
@@ -94,18 +94,18 @@ def _solid(p: Params, moved: Motion) -> Solid:
     flown = np.hypot(*(here - begun).T)
     distance = np.maximum(p["range_m"] - flown, NEAREST_START_M + extent)
     distance = np.sqrt(np.maximum(distance**2 - aside**2, (0.5 * distance) ** 2))
-    centre = here + ahead * distance[:, None] + right * aside[:, None]
+    center = here + ahead * distance[:, None] + right * aside[:, None]
     wobble = (p["offset"] - 0.5) * 0.4 * p["range_m"]
     orbit = begun + right * (p["side"] * p["range_m"])[:, None] + ahead * wobble[:, None]
-    centre = np.where((p["kind"] == ORBIT)[:, None], orbit, centre)
+    center = np.where((p["kind"] == ORBIT)[:, None], orbit, center)
     zero = np.zeros(len(rows))
-    return Solid(p["round"], centre, half, np.radians(p["course_deg"]) + turned, zero, -p["h_m"])
+    return Solid(p["round"], center, half, np.radians(p["course_deg"]) + turned, zero, -p["h_m"])
 
 
 def _mount(p: Params, moved: Motion, solid: Solid) -> Array:
-    """(F, 2, 3) degrees: both cameras look about where the obstacle is in the middle of the flight."""
+    """(F, 2, 3) degrees: both cameras point approximately at the obstacle in the middle of the flight."""
     rows, mid = np.arange(len(p["mix"])), moved.first + (p["mid"] * (moved.count - moved.first - 1)).astype(int)
-    to = solid.centre - moved.position[rows, mid, :2]
+    to = solid.center - moved.position[rows, mid, :2]
     yaw = np.arctan2(to[:, 1], to[:, 0]) - moved.angles[rows, mid, 0]
     yaw = np.degrees((yaw + np.pi) % (2.0 * np.pi) - np.pi)
     looks = p["look"] | (p["kind"] == ORBIT)
@@ -128,17 +128,17 @@ def _camera_number(p: Params, moved: Motion) -> np.ndarray:
 
 
 def _heading(p: Params, camera: Array, solid: Solid) -> Array:
-    to = solid.centre - camera[:, 0, :2]
+    to = solid.center - camera[:, 0, :2]
     given = np.degrees(np.arctan2(to[:, 1], to[:, 0])) + p["heading_off_deg"]
     given = (given + 180.0) % 360.0 - 180.0
     return np.where(p["heading_auto"] & (p["kind"] != ORBIT), np.nan, given)
 
 
 def relative_to(solid: Solid, flight: np.ndarray, camera: Array) -> Solid:
-    """(N,) of (F,): as cameras see them."""
+    """(N,) from (F,): relative to the cameras."""
     own = solid.take(flight)
     return Solid(
-        own.round, own.centre - camera[:, :2], own.half, own.heading, own.foot - camera[:, 2], own.roof - camera[:, 2]
+        own.round, own.center - camera[:, :2], own.half, own.heading, own.foot - camera[:, 2], own.roof - camera[:, 2]
     )
 
 
@@ -153,7 +153,7 @@ def _kept(moved: Motion, camera: Array, solid: Solid) -> np.ndarray:
 
 
 def _plan(p: Params, moved: Motion) -> Array:
-    """(F, K, 3) planned velocities: as the aircraft flies, held for a while."""
+    """(F, K, 3): planned velocities: as flown, constant for a while."""
     number = np.arange(moved.t_s.shape[1])
     block = np.maximum(number - moved.first[:, None], 0) // p["plan_hold"][:, None] * p["plan_hold"][:, None]
     at = np.minimum(block + moved.first[:, None], moved.t_s.shape[1] - 1)
@@ -165,7 +165,7 @@ def _plan(p: Params, moved: Motion) -> Array:
 
 
 def _given_pose(world: dict[str, Array], attitude: Array, refused: np.ndarray, kind: np.ndarray) -> None:
-    """Spoils the pose of images that are to be refused."""
+    """Makes the poses of images to be refused invalid."""
     attitude[refused & (kind == NAN_ATTITUDE)] = np.nan
     attitude[refused & (kind == LONG_ATTITUDE)] *= 1.1
     late = np.flatnonzero(refused & (kind == OLD_TIME))

@@ -1,8 +1,8 @@
-"""Scenes anywhere within the ranges that lib/goe.h allows, for a search of where float32 rounds worst.
+"""Scenes anywhere within the ranges of lib/goe.h, for a search for the worst float32 rounding.
 
-A scene is a point of the unit cube; each coordinate is a figure of it, from the least to the most, mostly by its
-logarithm. The two domains differ in the ranges alone: ``USUAL`` is what flies, ``WHOLE`` reaches to the header's
-ends."""
+A scene is a point of the unit cube; each coordinate is a figure of it, from the smallest to the largest, mostly on a
+logarithmic scale. The two domains differ only in the ranges: ``USUAL`` covers real flights, ``WHOLE`` the limits of the
+header."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from goe_tools.flights.scene import Scene, look
 from goe_tools.library import METHODS, MODEL_DISC, Images
 from goe_tools.logs.obslog import Camera
 
-KINDS = ("disc", "outline", "corners", "boxes")  # what is seen of the obstacle
+KINDS = ("disc", "outline", "corners", "boxes")  # visible features of the obstacle
 NONE = np.zeros((0, 6))
 SWAY_PERIOD_S = 3.0
 PIXEL_MAX_PX = 1e5  # of a coordinate, lib/goe.h
-SHARE = 0.3  # of the errors that the settings tell which a scene has: outliers are not what is asked about
+SHARE = 0.3  # of the configured errors in a scene: the search is not about outliers
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def _domain(name: str, words: str, **changed: tuple[float, float]) -> Domain:
 NEAR = _domain(
     "near",
     "positions within 1 km of the autopilot's origin, lever arms up to 3 m, focal lengths of 300 to 3,000 px, "
-    "obstacles 40 m to 2 km away, an attitude good to 0.02 degrees at best, points to 0.3 px",
+    "obstacles 40 m to 2 km away, an attitude sigma of at least 0.02 degrees, points of 0.3 px",
     north_m=(1.0, 1e3), east_m=(1.0, 1e3), arm_m=(1e-3, 3.0),
 )  # fmt: skip
 FAR = _domain("far", "the same, but positions within 10 km and lever arms up to 10 m")
@@ -83,12 +83,12 @@ LIMITS = {
 SHARP = _domain(
     "sharp",
     "positions within 1 km, lever arms up to 3 m; focal lengths to 100,000 px, obstacles 5 m to 100 km away, a "
-    "baseline of a thousandth of that, the least noise that the settings take, tracks of up to 4,000 s",
+    "baseline of a thousandth of that, the smallest noise that the settings allow, tracks of up to 4,000 s",
     **LIMITS | {"north_m": (1.0, 1e3), "east_m": (1.0, 1e3), "arm_m": (1e-3, 3.0)},
 )  # fmt: skip
 WHOLE = _domain(
     "whole",
-    "the same, but positions to 1,000 km and lever arms to 10 km, the header's ends",
+    "the same, but positions to 1,000 km and lever arms to 10 km, the limits of the header",
     **LIMITS | {"north_m": (1.0, 1e6), "east_m": (1.0, 1e6), "arm_m": (1e-3, 1e4)},
 )  # fmt: skip
 DOMAINS = (NEAR, FAR, SHARP, WHOLE)
@@ -96,7 +96,7 @@ DOMAINS = (NEAR, FAR, SHARP, WHOLE)
 
 @dataclass(frozen=True)
 class Case:
-    """What is seen, the method, and whether the obstacle moves."""
+    """Visible features, method, and whether the obstacle moves."""
 
     kind: str
     method: str = "refined"
@@ -116,7 +116,7 @@ CASES = (
 
 
 def _path(f: dict[str, float], time_s: np.ndarray) -> np.ndarray:
-    """(K, 3) of the camera, metres north, east and down: towards the north, bent aside."""
+    """(K, 3) of the camera, meters north, east and down: northward, bent sideways."""
     share = time_s / time_s[-1]
     way_m = f["flown"] * f["range_m"]
     side_m = f["bend"] * way_m * share * (1.0 - share) * 4.0
@@ -146,7 +146,7 @@ def _points(case: Case, scene: Scene, f: dict[str, float], rng: np.random.Genera
 
 
 def _boxes(scene: Scene, pixels: np.ndarray) -> np.ndarray:
-    """(K, 4): of an outline without roll the sides are those of its points and of the nearest corner."""
+    """(K, 4): for an outline without roll, the sides from its points and from the nearest corner."""
     lowest = np.where(scene.seen[:, 3:], pixels[:, 3:, 1], -np.inf).max(1)
     boxes = np.stack([pixels[:, 0, 0], pixels[:, 2, 1], pixels[:, 1, 0], lowest], 1)
     known = scene.seen[:, :3].all(1) & np.isfinite(lowest)
@@ -154,7 +154,7 @@ def _boxes(scene: Scene, pixels: np.ndarray) -> np.ndarray:
 
 
 def size_px(f: dict[str, float]) -> float:
-    """Of the image: 90 degrees, or what pixels the header takes."""
+    """Size of the image: 90 degrees, or the largest pixel coordinate of the header."""
     return min(2.0 * f["focal_px"], PIXEL_MAX_PX)
 
 

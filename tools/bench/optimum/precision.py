@@ -1,8 +1,8 @@
-"""What the rounding of float32 does to the answers: the same filter in float32, as firmware runs it, and in float64.
+"""Effect of float32 rounding on the answers: the same filter in float32, as in firmware, and in float64.
 
-Both get the same numbers. Where a decision falls differently in the two (a model, an outlier on the edge of the gate),
-the answers differ by more than rounding; images with another method or model, or another set of valid quantities, are
-counted and not compared."""
+Both get the same numbers. If a decision differs (a model, an outlier at the edge of the gate), the answers differ by
+more than rounding; images with different methods, models or sets of valid quantities are
+counted but not compared."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from goe_tools.models.judge import ORIENTATION
 
 @dataclass
 class Rounding:
-    """Of one flight with K images."""
+    """One flight with K images."""
 
     sigmas: np.ndarray  # (K, 6) |float32 - float64| over the float64 filter's one sigma; NaN where not compared
-    answered: int  # images with an answer of the refined method in either
+    answered: int  # images with an answer of the refined method in either build
     apart: int  # of these, those where method, model or validity differ
 
     @property

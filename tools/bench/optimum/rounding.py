@@ -1,5 +1,5 @@
-"""What float32 does to every reported quantity of a track, in sigmas, until the two builds decide something
-otherwise."""
+"""Effect of float32 on every reported quantity of a track, in sigmas, until a decision differs between the two
+builds."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from goe_tools import double_precision
 from goe_tools.library import Images, named_settings, package, to_package
 
-# Reported quantities: by name the column, its bit, the turn after which it is the same again.
+# Reported quantities: name: column, validity bit, and period.
 POSITION, LENGTH, HEIGHT, ORIENTATION, CENTER, WIDTH, VELOCITY = 1, 2, 4, 8, 16, 32, 64
 QUANTITIES: dict[str, tuple[int, float]] = {
     "x0_m": (POSITION, 0.0), "z0_m": (POSITION, 0.0), "x_m": (POSITION, 0.0), "z_m": (POSITION, 0.0),
@@ -19,37 +19,37 @@ QUANTITIES: dict[str, tuple[int, float]] = {
     "velocity_north_m_s": (VELOCITY, 0.0), "velocity_east_m_s": (VELOCITY, 0.0),
 }  # fmt: skip
 DECISIONS = ("method", "model", "valid", "fresh", "suspect", "points", "nis_rows", "reason")
-MOVES = 2  # reason of an estimate that is suspect, and follows what moves
-NIS_APART = 0.05  # of 1 + NIS: what it differs by where a decision fell otherwise that no output names
+MOVES = 2  # reason of a suspect estimate of a moving obstacle
+NIS_APART = 0.05  # of 1 + NIS: a larger difference indicates a different internal decision
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Of one track of K images, by quantity: (K,) |float32 - float64| over the latter's sigma; NaN: not compared.
+    """One track of K images; by quantity (K,) |float32 - float64| over the sigma of float64; NaN: not compared.
 
-    Until something is decided otherwise the two differ by rounding alone. Decisions that no output names (which
-    corner of a box is taken for which, an outlier's weight) show in the NIS."""
+    As long as all decisions agree, the two differ by rounding alone. The NIS reveals decisions that no output contains
+    (the association of a box's corners, an outlier's weight)."""
 
-    sigmas: dict[str, np.ndarray]  # while all was decided alike, and the estimate was not suspect but for a motion
-    ever: dict[str, np.ndarray]  # while all that is told was decided alike
+    sigmas: dict[str, np.ndarray]  # while all decisions agree, and the estimate is not suspect except for motion
+    ever: dict[str, np.ndarray]  # while all reported decisions agree
     sigma: dict[str, np.ndarray]  # relative difference of the sigma itself, where `sigmas` are compared
     answered: int  # images with an answer in both
-    apart: int  # of these, those from which on something was decided otherwise
+    apart: int  # of these, those after the first different decision
 
 
 def most(column: np.ndarray) -> float:
     return float(np.nanmax(column)) if np.isfinite(column).any() else 0.0
 
 
-def _told_alike(single: Any, double: Any) -> np.ndarray:
-    """(K,): up to this image all that is told was decided alike."""
+def _outputs_agree(single: Any, double: Any) -> np.ndarray:
+    """(K,): whether all reported decisions agree up to this image."""
     same = single.status == double.status
     for name in DECISIONS:
         same = same & (single.estimates[name] == double.estimates[name])
     return np.logical_and.accumulate(same)
 
 
-def _fits_alike(single: Any, double: Any) -> np.ndarray:
+def _fits_agree(single: Any, double: Any) -> np.ndarray:
     one, other = (track.estimates["nis"].astype(float) for track in (single, double))
     near = np.abs(one - other) <= NIS_APART * (1.0 + other)
     doubted = single.estimates["suspect"].astype(bool) & (single.estimates["reason"] != MOVES)
@@ -60,8 +60,8 @@ def difference(images: Images, settings: dict[str, float]) -> Difference:
     given, named = to_package(images), named_settings(tuple(settings.items()))
     single, double = package().run(named, given), double_precision.run(named, given)
     both = (single.estimates["valid"] & double.estimates["valid"] & POSITION) != 0
-    told = _told_alike(single, double)
-    alike = told & _fits_alike(single, double)
+    reported = _outputs_agree(single, double)
+    agree = reported & _fits_agree(single, double)
     sigmas, ever, sigma = {}, {}, {}
     for name, (bit, turn) in QUANTITIES.items():
         off = np.abs(single.estimates[name].astype(float) - double.estimates[name].astype(float))
@@ -70,7 +70,7 @@ def difference(images: Images, settings: dict[str, float]) -> Difference:
         one, other = (track.estimates["sigma"][name].astype(float) for track in (single, double))
         known = ((double.estimates["valid"] & bit) != 0) & double.estimates["fresh"].astype(bool) & (other > 0.0)
         with np.errstate(invalid="ignore", divide="ignore"):
-            sigmas[name] = np.where(known & alike, off / other, np.nan)
-            ever[name] = np.where(known & told, off / other, np.nan)
-            sigma[name] = np.where(known & alike, np.abs(one / other - 1.0), np.nan)
-    return Difference(sigmas, ever, sigma, int(both.sum()), int((both & ~alike).sum()))
+            sigmas[name] = np.where(known & agree, off / other, np.nan)
+            ever[name] = np.where(known & reported, off / other, np.nan)
+            sigma[name] = np.where(known & agree, np.abs(one / other - 1.0), np.nan)
+    return Difference(sigmas, ever, sigma, int(both.sum()), int((both & ~agree).sum()))

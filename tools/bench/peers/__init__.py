@@ -1,10 +1,10 @@
-"""The library beside other solvers of the same problems: speed and size, on this machine and on a Cortex-M4F.
+"""Speed and size of the library and of other solvers of the same problems, on this machine and on a Cortex-M4F.
 
-job           what a problem, its cases and its solvers are
+job           a problem with its cases and solvers
 window        problem: the window's fit
 update        problem: the refined filter's measurement update
-lower_bound   how few operations such an update can do with
-others        whose solvers can be had here
+lower_bound   minimum number of operations of such an update
+others        solvers that are installed here
 build         programs for this machine and images for the Cortex-M4F
 measure       runs them: nanoseconds, instructions, stack, code, error of the answers
 throughput    updates per second of the whole library on one core

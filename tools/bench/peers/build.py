@@ -13,16 +13,16 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from ..count_plugin import build_plugin  # noqa: F401 - measure takes it from here
-from ..running import ROOT, LedgerError, emulated, output_of  # noqa: F401 - measure takes them from here
+from ..count_plugin import build_plugin  # noqa: F401 - measure imports it from here
+from ..running import ROOT, LedgerError, emulated, output_of  # noqa: F401 - measure imports them from here
 
 PEERS = ROOT / "tools" / "peers"
 FRAME = PEERS / "frame"
 LIBRARY = ROOT / "lib"
 BARE_METAL = ROOT / "port" / "baremetal"
 FLAG_SETS = {"own": ("-O2", "-ffp-contract=off", "-fno-math-errno"), "best": ("-O3", "-ffast-math")}
-BEST_HOST_FLAGS = ("-march=native",)  # beside them, on the host
-STRICT = ("-Wall", "-Wextra", "-Werror")  # for what is in this repository
+BEST_HOST_FLAGS = ("-march=native",)  # in addition, on the host
+STRICT = ("-Wall", "-Wextra", "-Werror")  # for sources of this repository
 C = ("-std=gnu11",)
 CPP = ("-std=c++17", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
 M4F = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
@@ -37,7 +37,7 @@ TARGET_TOOLS = ("arm-none-eabi-gcc", "arm-none-eabi-g++", "qemu-system-arm")
 
 
 def missing_tool() -> str | None:
-    """The first program that the emulated part needs and that is not there."""
+    """The first missing program of the emulated part."""
     return next((tool for tool in TARGET_TOOLS if shutil.which(tool) is None), None)
 
 
@@ -46,7 +46,7 @@ def library_sources() -> tuple[Path, ...]:
 
 
 def library_includes() -> tuple[str, ...]:
-    """Also of the folders with its private headers."""
+    """Include paths, also of the folders with private headers."""
     return tuple(f"-I{folder}" for folder in sorted({path.parent for path in LIBRARY.rglob("*.h")}))
 
 
@@ -59,7 +59,7 @@ class Step:
 
 
 class Builder:
-    """Collects what is to be compiled and linked, each once, and then makes it."""
+    """Collects the files to compile and link, each once, and then makes them."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -67,7 +67,7 @@ class Builder:
         self.linking: dict[Path, Step] = {}
 
     def objects(self, role: str, compiler: str, flags: Iterable[str], sources: Iterable[Path]) -> list[str]:
-        """Objects of sources. role: a folder's name, by which a map tells them."""
+        """Objects of sources. role: a folder name that identifies them in a linker map."""
         words = (compiler, *flags)
         digest = hashlib.sha256("\0".join(words).encode()).hexdigest()[:12]
         folder = self.folder / role / digest
@@ -90,7 +90,7 @@ class Builder:
 
 
 def run_all(steps: list[Step]) -> None:
-    """On all cores."""
+    """Runs the steps on all cores."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         running = [pool.submit(output_of, step.command) for step in steps]
         try:
@@ -104,6 +104,6 @@ def run_all(steps: list[Step]) -> None:
 def own_program(
     builder: Builder, name: str, sources: Iterable[Path], flags: Iterable[str], links: Iterable[str] = ()
 ) -> Path:
-    """A program of this repository, with the library's own flags; to be made."""
+    """A program of this repository, with the library's flags; the builder makes it."""
     objects = builder.objects("program", "gcc", [*C, *STRICT, *FLAG_SETS["own"], *flags], sources)
     return builder.program(name, "gcc", [*links, *objects, "-lm"])

@@ -1,12 +1,12 @@
-"""Side by side: what the library computes and what others would do with the same numbers, in one run on one machine.
+"""Comparison of the library with other solvers of the same problems, in one run on one machine.
 
-Each solver solves the same cases: on the host it is timed; on a Cortex-M4F under QEMU its instructions are counted one
-by one and its stack is painted; on both its answers are held against double precision. Every solver is built twice:
-with the library's own flags, and with flags that leave a compiler all freedom, which most peers profit from.
+All solvers solve the same cases. On the host they are timed; on a Cortex-M4F under QEMU their instructions are counted
+and their stack is painted; on both, their answers are compared with double precision. Every solver is built twice:
+with the library's flags, and with flags that allow the compiler everything, from which most peers profit.
 
     python -m bench peers [--cmsis-dsp DIR] [--tinyekf DIR] [window | update | throughput ...]
 
-tools/peers/README.md tells what is compared and what the columns mean.
+tools/peers/README.md describes the comparisons and the columns.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .window import window_job
 JOBS = {"window": window_job, "update": update_job}
 THROUGHPUT = "throughput"
 PARTS = (*JOBS, THROUGHPUT)
-SECONDS, QUICK_SECONDS = 0.5, 0.01  # of a solver and a group of cases, on the host
+SECONDS, QUICK_SECONDS = 0.5, 0.01  # for a solver and a group of cases, on the host
 EXIT_FAILED = 1
 
 # -------------------------------------------------------------------------------------------------------------- tables
@@ -96,7 +96,7 @@ def processor() -> str:
 
 
 def closing(with_target: bool) -> Iterator[str]:
-    """What the figures are of."""
+    """Compilers and flags of the figures."""
     own, best = (" ".join(flags) for flags in FLAG_SETS.values())
     yield f"own: {own}; best: {best}, on the host with {' '.join(BEST_HOST_FLAGS)}"
     yield f"host: {processor()}, {output_of(['gcc', '--version']).splitlines()[0]}"
@@ -109,11 +109,11 @@ def closing(with_target: bool) -> Iterator[str]:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("parts", nargs="*", metavar="PART", help=f"what to compare: {', '.join(PARTS)}; default: all")
+    add("parts", nargs="*", metavar="PART", help=f"parts to compare: {', '.join(PARTS)}; default: all")
     add("--eigen", type=Path, default=Path("/usr/include/eigen3"), metavar="DIR", help="folder of Eigen/")
     add("--cmsis-dsp", type=Path, metavar="DIR", help="sources of CMSIS-DSP (its folder with Include and Source)")
     add("--tinyekf", type=Path, metavar="DIR", help="sources of TinyEKF")
-    add("--quick", action="store_true", help="own flags only, few cases: to test this command")
+    add("--quick", action="store_true", help="library flags only, few cases: to test this command")
 
 
 def measured(bench: Bench, set_names: Sequence[str]) -> list[Results]:

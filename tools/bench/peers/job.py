@@ -8,31 +8,31 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-SLOTS = 64  # cases of a group at most: PEER_SLOTS in tools/peers/frame/peer.h
+SLOTS = 64  # most cases of a group: PEER_SLOTS in tools/peers/frame/peer.h
 
 
 @dataclass(frozen=True)
 class Peer:
-    """A solver: its source, what it needs to compile and link, and what it can do."""
+    """A solver: its source, needs for compiling and linking, and properties."""
 
     name: str
     source: Path
-    against: str  # name of the solver of ours that does the same and that its ratios are taken of
+    against: str  # name of our solver of the same task, the reference of its ratios
     flags: tuple[str, ...] = ()
-    defines: tuple[str, ...] = ()  # for its own source alone
+    defines: tuple[str, ...] = ()  # for its source alone
     more_sources: tuple[Path, ...] = ()
     libraries: tuple[str, ...] = ()
     on_target: bool = True
 
     @property
     def all_ours(self) -> bool:
-        """No source or header of it is another's."""
+        """Whether all its sources and headers are ours."""
         return not self.libraries and not any(flag.startswith("-isystem") for flag in self.flags)
 
 
 @dataclass(frozen=True)
 class Group:
-    """Cases that are told together. ``cases``: one a row, the floats of peer_case_t."""
+    """Cases reported together. ``cases``: one a row, the floats of peer_case_t."""
 
     name: str
     cases: NDArray[np.float32]
@@ -40,11 +40,11 @@ class Group:
 
 @dataclass(frozen=True)
 class Counted:
-    """What a solver cannot go below, by instructions."""
+    """A solver's lower limit, in instructions."""
 
     name: str
     against: str
-    set_name: str  # of compiler's flags
+    set_name: str  # of compiler flags
     instructions: list[int]
 
 
@@ -59,14 +59,14 @@ class Job:
         self.peers, self.groups = peers, groups
 
     def errors(self, peer: Peer, group: Group, answers: NDArray[np.float32]) -> tuple[float | None, ...]:
-        """Errors of a solver's answers, one a row, by error_names; None: it does not tell that."""
+        """Errors of a solver's answers, one a row, for error_names; None: not reported by the solver."""
         raise NotImplementedError
 
     def bounds(self, group: Group) -> list[Counted]:
         return []
 
     def cases_in_c(self) -> str:
-        """The source that tools/peers/frame/peer.h declares."""
+        """The source declared in tools/peers/frame/peer.h."""
         rows = [row for group in self.groups for row in group.cases]
         firsts = np.cumsum([0, *(len(group.cases) for group in self.groups)])
         lines = ['#include "peer.h"', "const peer_case_t peer_cases[] = {"]
@@ -76,5 +76,5 @@ class Job:
 
 
 def printed_cases(text: str) -> NDArray[np.float32]:
-    """What a program of ours prints: one case a line, its numbers with nine digits, which tell a float exactly."""
+    """Output of one of our programs: one case a line, its numbers with nine digits, which identify a float exactly."""
     return np.array([[np.float32(word) for word in line.split()] for line in text.splitlines()], dtype=np.float32)

@@ -1,9 +1,9 @@
-"""How few floating-point operations a Householder update can do with.
+"""Minimum number of floating-point operations of a Householder update.
 
-The update is done here in double precision and each operation is counted as it is done; none where a factor is zero,
-so that what is zero in the triangle, in a row, in a state that no row sees or in the nuisances' prior costs nothing.
-What remains is a lower bound for a program of this method on a processor with a scalar unit in which each operation is
-one instruction, as on the Cortex-M4F: no load, no store, no branch, no address.
+The update runs in double precision and counts each operation; none if a factor is zero, so zeros
+in the triangle, in a row, in a state that affects no row or in the nuisances' prior cost nothing.
+The count is a lower bound for a program with this method on a processor with a scalar unit that takes one instruction
+for each operation, such as the Cortex-M4F: no load, no store, no branch, no address.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Vector = NDArray[np.float64]
 
 @dataclass
 class Operations:
-    """pairs: a product and the sum that takes it, which a fused multiply-add does as one."""
+    """pairs: a product and the sum that uses it, one operation with a fused multiply-add."""
 
     products: int = 0
     sums: int = 0
@@ -60,7 +60,7 @@ class Solution:
 def reflect(row: Vector, columns: NDArray[np.float64], first: int, keeps_row: bool, operations: Operations) -> None:
     """The reflection that clears a column of the measurement against the diagonal of a row of the triangle, in place.
 
-    keeps_row: the row is wanted afterwards; otherwise only what it does to the measurement.
+    keeps_row: the row is needed afterwards; otherwise only the measurement is.
     """
     pivot = columns[:, first].copy()
     if not pivot.any():
@@ -114,10 +114,10 @@ def householder_update(
 
 
 def triangle_inverse(root: NDArray[np.float64], operations: Operations) -> NDArray[np.float64]:
-    """Of an update's triangle; it shares the reciprocals of the diagonal with the solution for the change."""
+    """Inverse of an update's triangle; it shares the reciprocals of the diagonal with the solution for the change."""
     size = len(root)
     inverse = np.diag(1.0 / np.diag(root))
-    operations.products += size  # in place of the solution's divisions, which are made here
+    operations.products += size  # instead of the solution's divisions
     for j in range(size):
         for i in reversed(range(j)):
             total = operations.dot(root[i, i + 1 : j + 1], inverse[i + 1 : j + 1, j])

@@ -47,7 +47,7 @@ class Result:
 
 @dataclass(frozen=True)
 class Programs:
-    """What runs a solver, and what shows how large it is. image: None if it does not run on the target."""
+    """Programs that run a solver or show its size. image: None if it does not run on the target."""
 
     host: Path
     image: Path | None = None
@@ -56,7 +56,7 @@ class Programs:
 
 
 class Bench:
-    """A job on both machines. seconds: on the host, for each group. plugin: that counts; None: host only."""
+    """A job on both machines. seconds: on the host, for each group. plugin: counts instructions; None: host only."""
 
     def __init__(self, builder: Builder, job: Job, seconds: float, plugin: Path | None) -> None:
         self.builder, self.job, self.seconds, self.plugin = builder, job, seconds, plugin
@@ -69,7 +69,7 @@ class Bench:
     def solver(self, prefix: str, peer: Peer, base: Iterable[str]) -> list[str]:
         cpp = peer.source.suffix == ".cpp"
         flags = [*base, *peer.flags]
-        strict = STRICT if peer.all_ours else ()  # inlined, others' headers warn here
+        strict = STRICT if peer.all_ours else ()  # headers of others cause warnings when inlined
         own = [*flags, *peer.defines, *self.includes, *strict, *(CPP if cpp else C)]
         objects = self.builder.objects(SOLVER_ROLE, prefix + ("g++" if cpp else "gcc"), own, [peer.source])
         return objects + self.builder.objects(SOLVER_ROLE, prefix + "gcc", [*flags, *C], peer.more_sources)
@@ -101,7 +101,7 @@ class Bench:
         return re.sub(r"\W+", "_", f"{self.job.folder.name} {peer.name} {set_name} {main}")
 
     def programs(self, peer: Peer, set_name: str) -> Programs:
-        """To be made by the builder."""
+        """Programs that the builder makes."""
         host = self.host_program(peer, set_name)
         if self.plugin is None or not peer.on_target:
             return Programs(host)
@@ -127,11 +127,11 @@ class Bench:
     def by_group(self, rows: list[int] | NDArray[np.float32]) -> list[list[int] | NDArray[np.float32]]:
         ends = np.cumsum([len(group.cases) for group in self.job.groups])
         if len(rows) != ends[-1]:
-            raise LedgerError(f"{self.job.title}: {len(rows)} solves are told, not {ends[-1]}")
+            raise LedgerError(f"{self.job.title}: {len(rows)} solves are reported, not {ends[-1]}")
         return [rows[end - len(group.cases) : end] for end, group in zip(ends, self.job.groups)]
 
     def check(self, peer: Peer, text: str, results: list[Result]) -> None:
-        """Enters the errors of the answers that a program printed."""
+        """Stores the errors of a program's printed answers."""
         lines = re.findall(r"^answer ([0-9a-f ]+)$", text, re.MULTILINE)
         words = np.array([[int(word, 16) for word in line.split()] for line in lines], dtype=np.uint32)
         for group, result, answers in zip(self.job.groups, results, self.by_group(words.view(np.float32))):
@@ -140,7 +140,7 @@ class Bench:
             result.errors = tuple(worse(a, b) for a, b in zip(before, errors))
 
     def count(self, image: Path) -> tuple[str, list[int]]:
-        """What an image prints, and the instructions of each solve."""
+        """Output of an image, and the instructions of each solve."""
         ranges, counts = image.with_suffix(".ranges"), image.with_suffix(".counts")
         ranges.write_text(solver_ranges(image), encoding="utf-8")
         text = emulated([*EMULATOR, "-plugin", f"{self.plugin},map={ranges},out={counts}", "-kernel", str(image)])
@@ -148,7 +148,7 @@ class Bench:
 
 
 def worse(a: float | None, b: float | None) -> float | None:
-    """NaN is the worst."""
+    """The larger one; NaN is the largest."""
     return None if a is None or b is None else float(np.maximum(a, b))
 
 
@@ -158,7 +158,7 @@ def code_bytes(image: Path) -> int:
 
 
 def solver_ranges(image: Path) -> str:
-    """The plugin's map: everything but the frame's own code; peer_solve is the entry."""
+    """The plugin's map: everything except the frame's code; peer_solve is the entry."""
     text = Path(f"{image}.map").read_text(encoding="utf-8")
     text = text[text.index("Linker script and memory map") :]
     pattern = re.compile(r"^ \.text[\w.$]*\s+0x([0-9a-f]+)\s+0x([0-9a-f]+) (\S+)$", re.MULTILINE)

@@ -1,4 +1,4 @@
-"""Whose solvers can be had here."""
+"""Finds the solvers that are installed here."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Others:
-    """What a source needs to include them; None: not there. cmsis_dsp: the folder of their sources."""
+    """Options to include them; None: not installed. cmsis_dsp: the folder of their sources."""
 
     eigen: tuple[str, ...] | None
     lapack: bool
@@ -26,24 +26,24 @@ def has_header(name: str) -> bool:
 def tinyekf_folder(named: Path) -> Path:
     found = next((path.parent for path in sorted(named.rglob("tinyekf.h"))), None)
     if found is None:
-        raise ValueError(f"--tinyekf {named}: there is no tinyekf.h in it")
+        raise ValueError(f"--tinyekf {named}: contains no tinyekf.h")
     return found
 
 
 def find_others(arguments: argparse.Namespace) -> Others:
-    """Names those that are not there."""
+    """Reports the missing ones."""
     eigen = (arguments.eigen / "Eigen" / "Dense").exists()
     lapack = has_header("lapacke.h")
     if not eigen:
-        print(f"skipped: Eigen: there is no {arguments.eigen}/Eigen/Dense (libeigen3-dev)")
+        print(f"skipped: Eigen: no {arguments.eigen}/Eigen/Dense (libeigen3-dev)")
     if not lapack:
-        print("skipped: LAPACK: there is no lapacke.h (liblapacke-dev)")
+        print("skipped: LAPACK: no lapacke.h (liblapacke-dev)")
     if not arguments.cmsis_dsp:
-        print("skipped: CMSIS-DSP: name its sources with --cmsis-dsp")
+        print("skipped: CMSIS-DSP: give its sources with --cmsis-dsp")
     if not arguments.tinyekf:
-        print("skipped: TinyEKF: name its sources with --tinyekf")
+        print("skipped: TinyEKF: give its sources with --tinyekf")
     return Others(
-        # without a heap: the Cortex-M4F's images have none, and would end with an error
+        # without a heap: the Cortex-M4F's images have none, and would fail
         (f"-isystem{arguments.eigen}", "-DNDEBUG", "-DEIGEN_NO_MALLOC") if eigen else None,
         lapack,
         arguments.cmsis_dsp,

@@ -7,7 +7,7 @@ from pathlib import Path
 from .build import PEERS, ROOT, Builder, library_includes, library_sources, output_of, own_program
 
 REPLAY = ROOT / "tests" / "targets"
-FULL = (10000, 1000000)  # most obstacles; updates of each number and kind, at least
+FULL = (10000, 1000000)  # most obstacles; least updates of each number and kind
 QUICK = (10, 1)
 KINDS = ("window", "refined", "refined and hazard")
 COLUMNS = (
@@ -17,11 +17,11 @@ COLUMNS = (
     "time of refined over window",
     "of refined and hazard over refined",
 )
-TITLE = "Updates of the whole library on one core, built with the own flags"
+TITLE = "Updates of the whole library on one core, built with the library's flags"
 
 
 def throughput_program(builder: Builder) -> Path:
-    """To be made by the builder."""
+    """The program, which the builder makes."""
     sources = [PEERS / "throughput.c", REPLAY / "replay.c", REPLAY / "embedded_logs.c", *library_sources()]
     return own_program(builder, "throughput", sources, [*library_includes(), f"-I{REPLAY}"])
 

@@ -1,9 +1,9 @@
-"""The refined filter's measurement update: ten states, up to nine rows, three nuisances that the rows share.
+"""The refined filter's measurement update: ten states, up to nine rows, three nuisances common to the rows.
 
-A filter holds its covariance in a form of its own from update to update. Each solver begins with the same prior in its
-form, rounded once, and is measured until it holds the posterior in the same form and the change of the state. The
-triangle of an information filter tells no variance yet: beside the solvers that hold a covariance, ours is measured
-with the triangle's inverse, too.
+Filters differ in the form of their covariance. Each solver starts with the same prior in its form, rounded once, and is
+measured until it has the posterior in the same form and the change of the state. The triangle of an information filter
+contains no variances yet: for the comparison with solvers that keep a covariance, ours is also measured with the
+inverse of the triangle.
 """
 
 from __future__ import annotations
@@ -38,17 +38,17 @@ STATES, NUISANCES, ROWS = 10, 3, 9  # tools/peers/update/job.h
 COLUMNS = NUISANCES + STATES + 1
 TRIANGLE = STATES * (STATES + 1) // 2
 UPPER = np.triu_indices(STATES)  # row by row
-RECORDED = (TRIANGLE, 1, COLUMNS * ROWS)  # what record.c prints
+RECORDED = (TRIANGLE, 1, COLUMNS * ROWS)  # output of record.c
 CASE = (TRIANGLE, TRIANGLE, STATES**2, 1, COLUMNS * ROWS)  # peer_case_t
 ANSWER = (STATES, 1, STATES**2)  # peer_answer_t
 QUICK_CASES = 4
-TEN_STATES = "-DGOE_WITH_MOVERS=0"  # without the columns beside them, which no peer has
-GROUPS = (9, 5, 3)  # by rows that are used: a box with every point seen, mostly discs, bounding boxes with nothing else
+TEN_STATES = "-DGOE_WITH_MOVERS=0"  # without augmented states, which no peer has
+GROUPS = (9, 5, 3)  # by used rows: a box with all points visible, mostly discs, bounding boxes alone
 
 
 @dataclass(frozen=True)
 class Update:
-    """One case, as the library holds it, in double precision."""
+    """One case in the library's form, in double precision."""
 
     root: NDArray[np.float64]
     nuisances_root: float
@@ -89,7 +89,7 @@ def to_columns(full: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def exact(update: Update) -> Posterior:
-    """The triangle of all rows together, by numpy's QR."""
+    """The triangle of all rows together, from numpy's QR."""
     prior = np.zeros((NUISANCES + STATES, COLUMNS))
     prior[:NUISANCES, :NUISANCES] = np.eye(NUISANCES) * update.nuisances_root
     prior[NUISANCES:, NUISANCES:-1] = update.root
@@ -99,30 +99,30 @@ def exact(update: Update) -> Posterior:
     return Posterior(change, np.sum(np.linalg.inv(root) ** 2, axis=1), triangle[-1, -1] ** 2)
 
 
-def variance_of_root(held: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.sum(np.linalg.inv(from_rows(held[:TRIANGLE])) ** 2, axis=1)
+def variance_of_root(kept: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.sum(np.linalg.inv(from_rows(kept[:TRIANGLE])) ** 2, axis=1)
 
 
-def variance_of_inverse(held: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.sum(from_columns(held[:TRIANGLE]) ** 2, axis=1)
+def variance_of_inverse(kept: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.sum(from_columns(kept[:TRIANGLE]) ** 2, axis=1)
 
 
-def variance_of_factors(held: NDArray[np.float64]) -> NDArray[np.float64]:
-    factors = from_columns(held[:TRIANGLE])
+def variance_of_factors(kept: NDArray[np.float64]) -> NDArray[np.float64]:
+    factors = from_columns(kept[:TRIANGLE])
     unit = np.triu(factors, 1) + np.eye(STATES)
     return unit**2 @ np.diag(factors)
 
 
-def variance_of_covariance(held: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.diag(held.reshape(STATES, STATES))
+def variance_of_covariance(kept: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.diag(kept.reshape(STATES, STATES))
 
 
 @dataclass(frozen=True)
 class UpdatePeer(Peer):
-    """held: the form in which it holds the covariance."""
+    """form: form of the covariance that it keeps."""
 
-    held: str = "root"
-    tells_nis: bool = True
+    form: str = "root"
+    reports_nis: bool = True
 
 
 VARIANCE_OF = {
@@ -151,18 +151,18 @@ class UpdateJob(Job):
         assert isinstance(peer, UpdatePeer)
         worst = np.zeros(3)
         for update, truth, answer in zip(self.updates[group.name], self.exact[group.name], answers):
-            change, nis, held = np.split(answer.astype(float), np.cumsum(ANSWER)[:-1])
+            change, nis, kept = np.split(answer.astype(float), np.cumsum(ANSWER)[:-1])
             rows = np.count_nonzero(update.rows.any(axis=1))  # the NIS' expectation
             here = [
                 np.max(np.abs(change - truth.change) / np.sqrt(truth.variance)),
-                np.max(np.abs(VARIANCE_OF[peer.held](held) / truth.variance - 1.0)),
+                np.max(np.abs(VARIANCE_OF[peer.form](kept) / truth.variance - 1.0)),
                 abs(nis[0] - truth.nis) / max(truth.nis, rows),
             ]
             worst = np.maximum(worst, here)
-        return float(worst[0]), float(worst[1]), float(worst[2]) if peer.tells_nis else None
+        return float(worst[0]), float(worst[1]), float(worst[2]) if peer.reports_nis else None
 
     def bounds(self, group: Group) -> list[Counted]:
-        """What a Householder update of these rows must at least compute; and its inverse."""
+        """Minimum operations of a Householder update of these rows, and of its inverse."""
         counted = []
         for name, against in (("flop count", OURS), ("flop count, with inverse", OURS_INVERSE)):
             counts = []
@@ -182,7 +182,7 @@ class UpdateJob(Job):
 
 
 def recorded_updates(builder: Builder) -> NDArray[np.float32]:
-    """What record.c prints, each update once: some tracks are flown twice, with other settings."""
+    """Output of record.c, each update once: some tracks are flown twice, with other settings."""
     source = FOLDER / "record.c"
     names = sorted(set(re.findall(r"\b__wrap_(\w+)", source.read_text(encoding="utf-8"))))
     sources = [source, REPLAY / "replay.c", REPLAY / "embedded_logs.c", *library_sources()]
@@ -211,7 +211,7 @@ def used_rows(recorded: NDArray[np.float32]) -> int:
 
 
 def make_groups(recorded: NDArray[np.float32], most: int) -> list[Group]:
-    """Evenly chosen among the updates with as many rows."""
+    """Evenly chosen among the updates with the same number of rows."""
     groups = []
     for rows in GROUPS:
         found = [update for update in recorded if used_rows(update) == rows]
@@ -228,15 +228,15 @@ def update_peers(others: Others) -> list[Peer]:
     peers: list[Peer] = []
     kinds = ((OURS, "Eigen HouseholderQR", "root"), (OURS_INVERSE, "Eigen HouseholderQR and inverse", "inverse"))
     defines = [(f"-DWITH_INVERSE={number}",) for number in range(len(kinds))]
-    for (ours, _, held), define in zip(kinds, defines):
-        peers.append(UpdatePeer(ours, FOLDER / "peer_goe.c", ours, include, define, library, held=held))
+    for (ours, _, form), define in zip(kinds, defines):
+        peers.append(UpdatePeer(ours, FOLDER / "peer_goe.c", ours, include, define, library, form=form))
     if others.eigen is not None:
-        for (ours, name, held), define in zip(kinds, defines):
-            peers.append(UpdatePeer(name, FOLDER / "peer_eigen.cpp", ours, others.eigen, define, held=held))
-    peers.append(UpdatePeer("sequential UD", FOLDER / "peer_ud.c", OURS_INVERSE, held="factors"))
+        for (ours, name, form), define in zip(kinds, defines):
+            peers.append(UpdatePeer(name, FOLDER / "peer_eigen.cpp", ours, others.eigen, define, form=form))
+    peers.append(UpdatePeer("sequential UD", FOLDER / "peer_ud.c", OURS_INVERSE, form="factors"))
     if others.tinyekf is not None:
         source = FOLDER / "peer_tinyekf.c"
-        peers.append(UpdatePeer("TinyEKF", source, OURS_INVERSE, others.tinyekf, held="covariance", tells_nis=False))
+        peers.append(UpdatePeer("TinyEKF", source, OURS_INVERSE, others.tinyekf, form="covariance", reports_nis=False))
     return peers
 
 

@@ -1,6 +1,6 @@
 """The window's fit: a 16 x 3 least squares problem.
 
-Ours tells sigmas and refuses bad windows, and is measured with that; the others only solve.
+Our solver also computes sigmas and rejects bad windows, and is measured with both; the others only solve.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class WindowJob(Job):
     error_names = ("error of W, relative: worst", "root mean square")
 
     def errors(self, peer: Peer, group: Group, answers: NDArray[np.float32]) -> tuple[float | None, ...]:
-        if peer.name.startswith("TinyEKF"):  # one step of a filter is another problem
+        if peer.name.startswith("TinyEKF"):  # one step of a filter is a different problem
             return (None, None)
         error = answers[:, 0].astype(float) / np.array([exact_width(case) for case in group.cases]) - 1.0
         return float(np.max(np.abs(error))), float(np.sqrt(np.mean(error**2)))

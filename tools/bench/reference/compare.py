@@ -1,27 +1,27 @@
 """Compares goe_replay with the window method in both precisions, value by value.
 
 C against float32: the bits. C against float64: the difference relative to the size of the
-quantity, over the rows whose solution is well conditioned, baseline / W > 0.5 (baseline: root of the summed squared
-deviations of the camera's path over the window). Length and height are sliding means, of one value per solution; they
-count where every solution in the mean is well conditioned, and so does the centre of a box, which hangs on the length.
+quantity, over the rows with a well-conditioned solution, baseline / W > 0.5 (baseline: root of the summed squared
+deviations of the camera's path over the window). Length and height are sliding means with one value per solution; they
+count if every solution in the mean is well conditioned, and so does the center of a box, which depends on the length.
 
-What "relative" means for a column:
+Meaning of "relative" for a column:
   * x0, z0, x, z, width, length, height: relative to the value. Coordinates and height are differences (z = z0 - dZ,
-    height = h - y z), and float32 leaves them the absolute error of what they are taken from; so they are measured
-    against no less than a tenth of that: of the distance to the reference point, of the camera's height;
-  * orientation: difference of undirected lines (modulo 180 degrees), relative to not less than 1 degree;
-  * centre: relative to the distance between the reference point and the start, whatever the NED origin;
-  * a sigma: it comes from residuals, and where the data are noise-free these are nothing but the rounding of float32,
-    which says nothing. So the difference is taken relative to the sigma plus a multiple of what the rounding of the
-    rows would show by itself (the float64 method propagates the rounding unit of the aligned points through the same
+    height = h - y z), and inherit float32's absolute error of the terms; so the difference is relative to at least a
+    tenth of the term: of the distance to the reference position, of the camera's height;
+  * orientation: difference of undirected lines (modulo 180 degrees), relative to at least 1 degree;
+  * center: relative to the distance between the reference position and the start, for any NED origin;
+  * a sigma: it comes from residuals, which for noise-free data are only float32 rounding and carry no
+    information. So the difference is relative to the sigma plus a multiple of the sigma that rounding of the
+    rows alone would give (the float64 method propagates the rounding unit of the aligned points through the same
     covariance). At the limit of 1e-3 this allows 1e-3 of the sigma plus five such rounding sigmas.
 
-Decisions. float32 and float64 may decide differently at a threshold when the value lies within rounding of it, and the
-rows after that would compare two different computations. The float64 method therefore follows the decisions of the
-float32 method there, and only there (gates.py). Decisions followed are counted and bounded: 1 % of a log's decisions,
-which whole pixels reach, since they meet a gate of 2 px exactly. Decisions that differ farther from the threshold are
-*disputed*: none is allowed. No row is left out because of a decision, and statuses, models and numbers of points must
-agree in all rows.
+Decisions. float32 and float64 may decide differently at a threshold if the value is within rounding of it; the rows
+after that would then compare two different computations. The float64 method therefore follows the decisions of the
+float32 method there, and only there (gates.py). Followed decisions are counted and limited to 1 % of a log's decisions,
+which logs of whole pixels reach, since they meet a gate of 2 px exactly. Decisions that differ farther from the
+threshold are *disputed*: none is allowed. No row is left out because of a decision, and statuses, models and numbers of
+points must agree in all rows.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ MAX_RELATIVE = 1e-3  # 99th percentile, C against float64
 MIN_BASELINE_RATIO = 0.5
 MAX_FOLLOWED = 1e-2  # share of decisions
 PERCENTILE = 99.0
-DIFFERENCE_FLOOR = 0.1  # of what a difference is taken from
+DIFFERENCE_FLOOR = 0.1  # of the terms of a difference
 ANGLE_FLOOR_DEG = 1.0
 ROUNDING_FACTOR = 5.0 / MAX_RELATIVE
 CANDIDATES = ("build/sim_host/goe_replay", "build/bin/goe_replay", "build/goe_replay")
@@ -61,7 +61,7 @@ SIGMA_OWNER = {sigma_name(quantity): quantity for quantity in QUANTITIES}
 
 
 def ulp_index(value: np.ndarray) -> np.ndarray:
-    """float32 -> integers in which neighbouring floats differ by one; +0 and -0 are the same."""
+    """float32 -> integers that differ by one for neighboring floats; +0 and -0 are equal."""
     bits = np.asarray(value, dtype=np.float32).view(np.int32).astype(np.int64)
     return np.where(bits < 0, -(bits & 0x7FFFFFFF), bits)
 
@@ -74,12 +74,12 @@ class Column:
     same_bits: int = 0
     ulp_double: list[int] = field(default_factory=list)  # well-conditioned rows
     relative: list[float] = field(default_factory=list)  # well-conditioned rows
-    presence: int = 0  # rows where one side has the value and the other has not
+    presence: int = 0  # rows in which only one side has the value
 
 
 @dataclass
 class Labels:
-    """Rows that differ in what is not a number."""
+    """Rows that differ in labels, not numbers."""
 
     status: int = 0
     model: int = 0
@@ -97,7 +97,7 @@ class Labels:
 
 @dataclass
 class Result:
-    """Everything that was found in one log."""
+    """The findings in one log."""
 
     rows: int = 0
     solved: int = 0
@@ -111,13 +111,13 @@ class Result:
     disputed: list[str] = field(default_factory=list)
 
     def failures(self) -> list[str]:
-        """What lies beyond the limits, in words."""
+        """The exceeded limits, in words."""
         found = []
         values = sum(len(column.ulp_single) for column in self.columns.values())
         same = sum(column.same_bits for column in self.columns.values())
         worst = max((max(column.ulp_single, default=0) for column in self.columns.values()), default=0)
         if values and same < MIN_SAME_BITS * values:
-            found.append(f"float32: {same} of {values} values have identical bits, {MIN_SAME_BITS:.1%} needed")
+            found.append(f"float32: {same} of {values} values have identical bits, minimum {MIN_SAME_BITS:.1%}")
         if worst > MAX_ULP:
             found.append(f"float32: {worst} ULP apart, {MAX_ULP} allowed")
         if self.single.total or self.presence_single:
@@ -143,7 +143,7 @@ def percentile(values: Sequence[float]) -> float:
 
 
 def relative_difference(name: str, value: float, report: Report) -> float:
-    """|value - reference| in the column's own measure; see the module's text."""
+    """|value - reference| in the column's measure; see the module docstring."""
     values = report.estimate.values
     quantity = SIGMA_OWNER.get(name)
     if quantity is not None:
@@ -182,7 +182,7 @@ def run_replay(replay: Path, folder: Path, settings: Settings) -> list[tuple[flo
             done = subprocess.run(command, capture_output=True, text=True, check=False)
         except OSError as error:
             raise LogError(replay, 0, "", f"cannot be run: {error.strerror}") from None
-        if done.returncode not in (0, 1):  # 1: no row gave an estimate, which is an answer, too
+        if done.returncode not in (0, 1):  # 1: no row gave an estimate, which is a valid result
             raise LogError(replay, 0, "", f"exit status {done.returncode}: {done.stderr.strip()}")
         return read_estimates(out)
 
@@ -191,11 +191,11 @@ def check_comparable(log: ObservationLog, folder: Path) -> None:
     """The method follows the paper: points, and a position that does not jump."""
     path = folder / "frames.csv"
     if any(frame.box_px is not None for frame in log.frames):
-        raise LogError(path, 0, "", "holds bounding boxes, which the references do not know")
+        raise LogError(path, 0, "", "contains bounding boxes, which the references do not support")
     if log.camera2 is not None:
-        raise LogError(folder / "camera.ini", 0, "camera2", "a second camera, which the references do not know")
+        raise LogError(folder / "camera.ini", 0, "camera2", "a second camera, which the references do not support")
     if log.resets():
-        raise LogError(path, 0, RESET_COLUMN, "changes within a track, and the references know no resets")
+        raise LogError(path, 0, RESET_COLUMN, "changes within a track, and the references do not support resets")
 
 
 def compare_rows(
@@ -208,29 +208,29 @@ def compare_rows(
     singles: dict[int, WindowMethod] = {}
     doubles: dict[int, WindowMethod] = {}
     rows = zip(log.frames, answers)
-    for frame, (t_s, track, told) in tqdm(rows, total=len(log.frames), desc=label, leave=False, disable=None):
+    for frame, (t_s, track, answer) in tqdm(rows, total=len(log.frames), desc=label, leave=False, disable=None):
         if track != frame.id or (t_s != frame.t_s and t_s == t_s):
-            raise ValueError(f"{label}: the estimate at {t_s!r} s of track {track} stands at {frame.t_s!r} s")
+            raise ValueError(f"{label}: the estimate at {t_s!r} s of track {track} is at {frame.t_s!r} s")
         if frame.id not in singles:
             singles[frame.id] = WindowMethod(log.camera, settings, np.float32)
             doubles[frame.id] = WindowMethod(log.camera, settings, np.float64)
         single = singles[frame.id].update(frame)
         double = doubles[frame.id].update(frame, single.gates.taken)
-        _count_row(result, told, single.estimate, double)
+        _count_row(result, answer, single.estimate, double)
     return result
 
 
-def _count_row(result: Result, told: Estimate, single: Estimate, report: Report) -> None:
+def _count_row(result: Result, answer: Estimate, single: Estimate, report: Report) -> None:
     exact = report.estimate
-    result.single.count(told, single)
-    result.double.count(told, exact)
-    result.solved += told.status in ("ok", "partial")
+    result.single.count(answer, single)
+    result.double.count(answer, exact)
+    result.solved += answer.status in ("ok", "partial")
     result.decisions += len(report.gates.taken)
     result.followed += report.gates.followed
     result.disputed += report.gates.disputed
     result.conditioned += report.conditioning["x0_m"] > MIN_BASELINE_RATIO
     for name, column in result.columns.items():
-        value = told.values.get(name)
+        value = answer.values.get(name)
         result.presence_single += (value is None) != (name not in single.values)
         column.presence += (value is None) != (name not in exact.values)
         if value is None:
@@ -280,8 +280,8 @@ def _counts(labels: Labels) -> str:
 
 
 def find_replay(given: Path | None) -> Path:
-    """The program to compare: as given, from GOE_REPLAY, or where the build puts it below the working folder or the
-    project's."""
+    """The program to compare: the given one, from GOE_REPLAY, or from the build folder below the working folder or the
+    project."""
     if given is not None:
         return given
     if os.environ.get("GOE_REPLAY"):
@@ -290,7 +290,7 @@ def find_replay(given: Path | None) -> Path:
         for candidate in CANDIDATES:
             if (root / candidate).is_file():
                 return root / candidate
-    raise LogError(Path(CANDIDATES[0]), 0, "", "not built; --replay names another place")
+    raise LogError(Path(CANDIDATES[0]), 0, "", "not built; use --replay for another place")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,6 +1,6 @@
-"""Equation (5) as the paper writes it: a dense least-squares problem in X0/W, Z0/W, 1/W, by numpy.linalg.
+"""Equation (5) as the paper writes it: a dense least-squares problem in X0/W, Z0/W, 1/W, solved with numpy.linalg.
 
-It shares nothing with the window method's closed form (window/fit.py), which it is there to judge.
+It shares nothing with the window method's closed form (window/fit.py), which it verifies.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 @dataclass
 class DenseRow:
-    """The two rows of (5) of one image, in the image turned by b."""
+    """The two rows of (5) for one image, in the image turned by b."""
 
     forward: float  # m/S
     aside: float  # m x/S

@@ -1,10 +1,10 @@
-"""Threshold decisions, named, so that two precisions can be compared decision by decision.
+"""Named threshold decisions, which allow a comparison of two precisions decision by decision.
 
-A chain in float32 and one in float64 cannot agree on every threshold: where a value lies within rounding of it, either
-answer is right. A reference that carries on with its own answer would then be compared with a different computation.
-So the float64 method may be given the decisions of the float32 one (``guide``). Where they differ and the value lies
-within rounding of the threshold it follows the guide and counts a *followed* decision; where they differ and the value
-does not, it keeps its own and counts a *disputed* one. Neither is hidden: the comparison bounds the first and allows
+A chain in float32 and one in float64 cannot agree at every threshold: if a value is within rounding of it, either
+answer is right. A reference that continued with its answer would then be compared with a different computation.
+So the float64 method may get the decisions of the float32 one (``guide``). If they differ and the value is
+within rounding of the threshold, it follows the guide and counts a *followed* decision; if they differ and the value is
+not, it keeps its decision and counts a *disputed* one. Both are reported: the comparison limits the first and allows
 none of the second.
 """
 
@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 UNIT_ROUNDOFF = 2.0**-24  # of float32
-ROUNDINGS = 64.0  # how many roundings of its operands' size a value may be off by the accumulated rounding of the chain
+ROUNDINGS = 64.0  # accumulated rounding error of the chain, in roundings of the operands' size
 
 
 @dataclass
@@ -28,7 +28,7 @@ class Gates:
     def decide(self, name: str, answer: bool, distance: float, size: float) -> bool:
         """Takes a decision.
 
-        distance: of the value from the threshold; size: of the operands behind the value, in the same unit.
+        distance: of the value from the threshold; size: of the value's operands, in the same unit.
         """
         answer = bool(answer)
         if self.guide is not None and name in self.guide and self.guide[name] != answer:

@@ -1,11 +1,11 @@
-"""Reference data of the C unit tests, as headers that are committed beside the tests.
+"""Reference data of the C unit tests, as committed headers.
 
     python -m bench golden --out tests/c/golden     writes them
-    python -m bench golden --check tests/c/golden   tells whether they are what this program makes
+    python -m bench golden --check tests/c/golden   compares them with this program's output
 
-Inputs are hexadecimal floats, made with additions, multiplications and Python's own generator only, so that they are
-the same on every machine. Expected results in double come from numpy (trigonometry, Newton's method, lstsq), whose last
-bits depend on its version; --check allows them a relative 1e-9 and everything else nothing.
+Inputs are hexadecimal floats, computed with additions, multiplications and Python's generator only, so they are
+equal on every machine. Expected results in double come from numpy (trigonometry, Newton's method, lstsq), whose
+last bits depend on its version; --check allows a relative difference of 1e-9 for them and none elsewhere.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ ARCTAN_CASES, SINCOS_CASES, LENS_CASES, WINDOW_CASES = 240, 200, 24, 48
 DOUBLE_TOLERANCE = 1e-9
 EXIT_DIFFERENT = 1
 CORNER = ROOT / "tests" / "data" / "corner"
-# The window method, which this data is of, knows neither boxes nor the errors of an image.
-NO_BOX = "{.seen = 0}, {.pixel_px = 0}, 0"  # and by the first camera
+# This data is for the window method, which uses neither boxes nor the errors of an image.
+NO_BOX = "{.seen = 0}, {.pixel_px = 0}, 0"  # and from the first camera
 VALID = {
     "GOE_HAS_POSITION": "x0_m",
     "GOE_HAS_LENGTH": "length_m",
@@ -218,7 +218,7 @@ def window_header() -> str:
             points.append((dx, dz, xi, zeta))
         fitted = [Row(*(np.float64(value) for value in (xi, zeta, dx, dz))) for dx, dz, xi, zeta in points]
         fit = solve(numbers(np.float64), fitted, np.float64(0.1), Gates())[1]
-        if fit is None or fit.ratio < 0.5:  # the library would refuse it, or rounding governs it
+        if fit is None or fit.ratio < 0.5:  # the library would refuse it, or rounding dominates
             continue
         # b = 0: the rows of (5) are zeta and xi themselves
         answer = dense.solve([dense.DenseRow(zeta, xi, 1.0, 0.0, dx, dz) for dx, dz, xi, zeta in points])
@@ -309,7 +309,7 @@ def corner_header() -> str:
         ("mount_roll_deg", camera.mount_roll_deg),
     )
     if camera.heading_deg is not None:
-        raise ValueError(f"{CORNER}: the unit test flies with an automatic heading")
+        raise ValueError(f"{CORNER}: the unit test uses an automatic heading")
     offset = ", ".join(hex_float(v) for v in (camera.offset_x_m, camera.offset_y_m, camera.offset_z_m))
     body = ["static const goe_camera_t golden_corner_camera = {"]
     body += [f"    .{name} = {hex_float(value)}," for name, value in fields]
@@ -351,7 +351,7 @@ DOUBLE_LITERAL = re.compile(r"(?<![\w.])-?\d\.\d{17}e[+-]\d+")
 
 
 def difference(found: str, made: str) -> str:
-    """Where two headers differ beyond the last bits of doubles: "line N: ..."; empty if nowhere."""
+    """Place where two headers differ beyond the last bits of doubles: "line N: ..."; empty if nowhere."""
     lines, wanted = found.splitlines(), made.splitlines()
     for number, (line, want) in enumerate(zip(lines, wanted), start=1):
         if line == want:
@@ -365,7 +365,7 @@ def difference(found: str, made: str) -> str:
 
 
 def check(folder: Path) -> list[str]:
-    """What is wrong with the headers in a folder, a line for each."""
+    """Errors of the headers in a folder, a line for each."""
     found = []
     for name, make in MAKERS.items():
         path = folder / name

@@ -132,11 +132,11 @@ def remez(problem: Problem) -> Polynomial:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """There are none."""
+    """No arguments."""
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Prints the constants as they stand in the C sources."""
+    """Prints the constants in the format of the C sources."""
     for problem in PROBLEMS:
         polynomial = remez(problem)
         for number, coefficient in enumerate(polynomial.coefficients, start=1):

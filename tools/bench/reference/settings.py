@@ -1,4 +1,4 @@
-"""The settings of the window method, beside the camera."""
+"""The settings of the window method, except the camera."""
 
 from __future__ import annotations
 

@@ -1,18 +1,18 @@
-"""What the library costs on each target, measured, not estimated.
+"""The measured cost of the library on each target.
 
-targets       the presets, and what each of them needs
+targets       the presets, and the tools they need
 building      a target's build
 modules       bytes of code and constants by module, bytes of the state
 stack         worst-case stack of each public function
-instructions  instructions of each call of a public function, counted one by one under QEMU
-longest/      the most instructions that a call can take, proved by the longest path through the machine code
-parts         what a firmware pays that leaves parts of the library out
+instructions  instructions of each call of a public function, counted under QEMU
+longest/      most instructions of a call, proved by the longest path through the machine code
+parts         cost of a firmware without some parts of the library
 measuring     all figures of a target
 book          the ledger's file
-growth        what grew over the ledger
-stated        what goe.h states of each function
-guarantees    what README.md promises, and on which targets it holds
-pages         the tables that people read
+growth        figures that grew compared with the ledger
+stated        the costs in goe.h
+guarantees    the guarantees in README.md, and the targets that meet them
+pages         the tables for readers
 ledger        the command: python -m ci ledger
-flight        the command: python -m ci flight_cost, of the flight layer
+flight        the command: python -m ci flight_cost, for the flight layer
 """

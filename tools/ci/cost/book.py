@@ -1,6 +1,6 @@
-"""The ledger's file: a row for each figure, a column for each target, so that what changes reads as a few rows.
+"""The ledger's file: a row for each figure, a column for each target; a change then affects only a few rows.
 
-The name of a figure is words with ": " between them, from the general to the particular.
+The name of a figure consists of words separated by ": ", from the general to the particular.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ TOTAL = "total"
 STATE = "state bytes"  # ...: window <length>
 STACK, PAINTED = "stack bytes computed", "stack bytes painted"  # ...: <public function>
 INSTRUCTIONS = "instructions"  # ...: <public function>: min, mean, max
-PROVED = "instructions proved"  # ...: <public function>: the longest path. Of the targets that it is proved of
+PROVED = "instructions proved"  # ...: <public function>: the longest path. For proved targets only
 OF_UPDATE = "instructions of goe_update"  # ...: <module>: min, mean, max
-WORST = "worst goe_update"  # ...: track; ...: <module>: <function>. Of one target; may shift between functions
-PART_BYTES, PART_STATE = "code and constants bytes with parts", "state bytes with parts"  # ...: <combination>. Of one
+WORST = "worst goe_update"  # ...: track; ...: <module>: <function>. For one target; may shift between functions
+PART_BYTES, PART_STATE = "code and constants bytes with parts", "state bytes with parts"  # ...: <combination>
 
 
 def key(*words: object) -> str:
@@ -32,22 +32,22 @@ def key(*words: object) -> str:
 
 
 def below(figures: Figures, *words: object) -> list[str]:
-    """The words that follow directly, in the order of the ledger: below(figures, CODE) are total and the modules."""
+    """The words that follow directly, in the order of the ledger: below(figures, CODE) gives total and the modules."""
     start = key(*words, "")
     return list(dict.fromkeys(name[len(start) :].split(": ")[0] for name in figures if name.startswith(start)))
 
 
 def number(figures: Figures, *words: object) -> float:
-    """A figure; 0 where it was not worth a row."""
+    """A figure; 0 if it has no row."""
     value = figures.get(key(*words), 0)
     if isinstance(value, str):
-        raise ValueError(f"{key(*words)}: {value} is no number")
+        raise ValueError(f"{key(*words)}: {value} is not a number")
     return value
 
 
 def text_of(ledger: Ledger) -> str:
     names = list(dict.fromkeys(name for figures in ledger.values() for name in figures))
-    # Targets may have figures that others lack: rows of a kind stay together, sorted below their kind.
+    # Targets may have figures that others lack; rows of a kind stay together, sorted below their kind.
     kinds = list(dict.fromkeys(name.split(": ")[0] for name in names))
     place = {name: number for number, name in enumerate(names)}
     names.sort(key=lambda name: (kinds.index(name.split(": ")[0]), place[name]))
@@ -73,7 +73,7 @@ def value_of(text: str) -> Value:
 def ledger_of(text: str) -> Ledger:
     rows = list(csv.reader(io.StringIO(text)))
     if not rows or rows[0][:1] != [HEAD]:
-        raise ValueError(f"no ledger: its first cell is not {HEAD}")
+        raise ValueError(f"not a ledger: its first cell is not {HEAD}")
     ledger: Ledger = {target: {} for target in rows[0][1:]}
     for line, row in enumerate(rows[1:], 2):
         if len(row) != len(rows[0]):

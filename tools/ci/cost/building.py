@@ -1,4 +1,4 @@
-"""Builds a target's preset, or brings the build up to date that the tests have left."""
+"""Builds a target's preset, or updates the build left by the tests."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from bench.running import ROOT, emulated, output_of
 
 OBJECTS = "lib/CMakeFiles/goe.dir"  # of the library, in a build's folder
-WRITES_BESIDE = ("-fstack-usage", "-fcallgraph", "-g1")  # options that change no figure
+EXTRA_OUTPUT = ("-fstack-usage", "-fcallgraph", "-g1")  # options that change no figure
 
 
 @dataclass
@@ -36,11 +36,11 @@ class Build:
         return self.tree / "tests" / "targets" / f"replay_{self.board}.map"
 
     def library_files(self, ending: str) -> list[Path]:
-        """What the compiler wrote for the library's sources, those in folders too."""
+        """Files that the compiler wrote for the library's sources, also in subfolders."""
         return sorted((self.tree / OBJECTS).rglob(f"*.{ending}"))
 
     def module(self, path: Path) -> str:
-        """The module of an object or of what lies beside it: <file>, or <room>/<file>."""
+        """The module of an object or another output of its source: <file>, or <folder>/<file>."""
         return (path.relative_to(self.tree / OBJECTS).parent / path.name.split(".")[0]).as_posix()
 
     def run_image(self, image: Path, *options: str) -> str:
@@ -58,7 +58,7 @@ def library_command(commands: list[dict[str, str]]) -> list[str]:
 
 
 def build(preset: str, folder: Path) -> Build:
-    """The replay and the stack of a preset, in a folder's folder of its name."""
+    """Builds the replay and the stack programs of a preset, in a subfolder of that name."""
     tree = folder / preset
     cache_file = tree / "CMakeCache.txt"
     if not cache_file.exists():
@@ -68,7 +68,7 @@ def build(preset: str, folder: Path) -> Build:
     cache = cache_file.read_text(encoding="utf-8")
     board = re.search(r"^GOE_TARGET_BOARD:INTERNAL=(.*)$", cache, re.MULTILINE)
     qemu = re.search(r"^GOE_QEMU_COMMAND:INTERNAL=(.*)$", cache, re.MULTILINE)
-    assert board and qemu, "the toolchain file tells how its images are run"
+    assert board and qemu, "the toolchain file must define how to run images"
     output_of(["cmake", "--build", tree, "--target", f"replay_{board.group(1)}", f"stack_{board.group(1)}"])
     command = library_command(json.loads((tree / "compile_commands.json").read_text(encoding="utf-8")))
     return Build(
@@ -83,6 +83,6 @@ def build(preset: str, folder: Path) -> Build:
 
 
 def shown_flags(command: Iterable[str]) -> str:
-    """The flags that matter for the figures: not what is written beside the code, nor the folders of a machine."""
-    shown = (w for w in command if re.match(r"-(O|m|f|std=)", w) and not w.startswith(WRITES_BESIDE))
+    """The flags that affect the figures: no extra outputs, no machine's folders."""
+    shown = (w for w in command if re.match(r"-(O|m|f|std=)", w) and not w.startswith(EXTRA_OUTPUT))
     return " ".join(w for w in shown if not re.match(r"-f\w+-prefix-map=", w))

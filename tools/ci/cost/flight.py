@@ -1,9 +1,9 @@
-"""What the calls of the flight layer (port/flight) take: instructions, counted under QEMU over the embedded logs.
+"""Cost of the flight layer's calls (port/flight): instructions, counted under QEMU over the embedded logs.
 
 python -m ci flight_cost            on the Cortex-M4F with gcc -Os and -O2
 python -m ci flight_cost m33-gcc-o2
 
-It fails if a call on the Cortex-M4F takes more than goe_flight.h states.
+The command fails if a call on the Cortex-M4F takes more than goe_flight.h states.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from .instructions import Spread
 from .ledger import BUILDS
 from .targets import compiler_title, missing_tool, processor_title
 
-PRESETS = ("m4f-gcc-os", "m4f-gcc-o2")  # of which goe_flight.h states the cost
+PRESETS = ("m4f-gcc-os", "m4f-gcc-o2")  # whose cost goe_flight.h states
 HEADER = ROOT / "port" / "flight" / "goe_flight.h"
 SLOTS = 4
 EXIT_MORE = 1
-PUBLIC = (  # those that are called in flight
+PUBLIC = (  # called in flight
     "goe_flight_init",
     "goe_flight_attitude",
     "goe_flight_position",
@@ -46,14 +46,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def ranges_of(symbols: str) -> list[tuple[int, int, str]]:
-    """Start, end and name of each function that nm -S tells of, but those that call the layer: a call ends in them."""
+    """Start, end and name of each function in the output of nm -S, except the callers of the layer, where a call
+    ends."""
     found = re.findall(r"^([0-9a-f]+) ([0-9a-f]+) [tTwW] ([\w.]+)$", symbols, re.MULTILINE)
     starts = {int(start, 16) & ~1: (int(size, 16), name) for start, size, name in found if name not in CALLERS}
     return [(start, start + size, name) for start, (size, name) in sorted(starts.items())]
 
 
 def calls_of(counts: str, names: list[str]) -> dict[str, Spread]:
-    """Instructions of the calls of each function, from what the plugin writes."""
+    """Instructions of the calls of each function, from the plugin's output."""
     totals: dict[str, list[int]] = defaultdict(list)
     for line in counts.splitlines():
         entry, total, *_ = line.split()
@@ -76,7 +77,7 @@ def measured(built: Build, folder: Path) -> dict[str, Spread]:
 
 
 def stated(header: str) -> dict[str, int]:
-    """The most instructions of each call, by the paragraph of the manual."""
+    """The most instructions of each call, from the manual's paragraph."""
     (paragraph,) = re.findall(r"^ \* Cost +(.*?)^ \* Failure", header, re.MULTILINE | re.DOTALL)
     numbers = [int(n.replace(",", "")) for n in re.findall(r"\b\d{1,3}(?:,\d{3})+\b|\b\d{3}\b", paragraph)]
     sample, frame, assessment, _further, obstacle, sectors, slot = numbers

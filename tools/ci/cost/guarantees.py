@@ -1,4 +1,4 @@
-"""What README.md guarantees of the cost, on which targets it must hold, and on which it does."""
+"""README.md's guarantees of cost, and the targets on which they must be met and are met."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def targets_of(processor: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Guarantee:
-    """A figure and what it may be at most."""
+    """A figure and its upper limit."""
 
     words: str  # the limit is {limit}
-    stated: str  # how README.md's own words give the limit
+    stated: str  # the limit as README.md's text gives it
     figure: str
     limit: int
-    told: tuple[str, ...]  # targets of which README.md says whether it holds
-    promised: tuple[str, ...]  # those on which it must
+    listed: tuple[str, ...]  # targets in README.md's table
+    promised: tuple[str, ...]  # targets that must meet it
 
 
 EVERYWHERE = tuple(presets())
@@ -71,7 +71,7 @@ GUARANTEES = (
         M4F_GCC_O2,
     ),
 )
-# Of the C library; sqrtf is an instruction there.
+# From the C library; sqrtf is an instruction there.
 CALLS_ALLOWED = {"memcpy", "memset"}
 CALLS_PROMISED = M4F_GCC_O2
 
@@ -83,7 +83,7 @@ def value_of(figures: Figures, guarantee: Guarantee) -> float:
 
 
 def broken_promises(ledger: Ledger) -> list[str]:
-    """What is promised of these targets and does not hold."""
+    """Promises that these targets break."""
     broken = []
     for preset, figures in ledger.items():
         for guarantee in (guarantee for guarantee in GUARANTEES if preset in guarantee.promised):
@@ -108,12 +108,12 @@ def listed(ledger: Ledger, chosen: list[str], guarantee: Guarantee) -> str:
 
 
 def rows(ledger: Ledger) -> list[str]:
-    """README.md's table: each guarantee, and where it holds and where it does not."""
+    """README.md's table: each guarantee, and the targets that meet it or not."""
     lines = ["| guarantee | holds for | does not hold for |", "|---|---|---|"]
     for guarantee in GUARANTEES:
-        told = [preset for preset in guarantee.told if preset in ledger]
-        good = [preset for preset in told if value_of(ledger[preset], guarantee) <= guarantee.limit]
-        bad = [preset for preset in told if preset not in good]
+        chosen = [preset for preset in guarantee.listed if preset in ledger]
+        good = [preset for preset in chosen if value_of(ledger[preset], guarantee) <= guarantee.limit]
+        bad = [preset for preset in chosen if preset not in good]
         if good == list(EVERYWHERE):
             most = max(value_of(ledger[preset], guarantee) for preset in good)
             where = "every target and compiler" + (f" (at most {most:,})" if guarantee.limit else "")
@@ -125,7 +125,7 @@ def rows(ledger: Ledger) -> list[str]:
 
 
 def not_stated(readme: str) -> list[str]:
-    """Guarantees whose limit README.md does not give in its own words."""
+    """Guarantees whose limit is not in README.md's text."""
     return [
         f"README.md does not say “{guarantee.stated}”: {guarantee.words.format(limit=guarantee.limit)}"
         for guarantee in GUARANTEES

@@ -1,7 +1,7 @@
 """Instructions of each call of a public function over the embedded logs.
 
-They are counted one by one by a plugin of QEMU (tools/count_plugin): figures repeat exactly. They are instructions, not
-cycles. They include what the compiler's run-time library and memcpy/memset do for the library.
+A plugin of QEMU (tools/count_plugin) counts them one by one: figures repeat exactly. They are instructions, not
+cycles. They include the work of the compiler's run-time library and of memcpy/memset for the library.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ PUBLIC = (
     "goe_reason_text",
     "goe_self_check",
 )
-METHODS = ("window", "refined")  # each track is flown by each, in this order
-UPDATES = {"refined": "goe_update", "window": "goe_update, window"}  # how its figures are named
-LENS_TRACKS = "lens"  # tracks whose name begins so are flown with lens distortion
+METHODS = ("window", "refined")  # each track is flown with each, in this order
+UPDATES = {"refined": "goe_update", "window": "goe_update, window"}  # names of the figures
+LENS_TRACKS = "lens"  # prefix of the tracks with lens distortion
 WITH_LENS = "with lens distortion"
 
 
 @dataclass
 class Code:
-    """A stretch of the image's code that belongs to one function."""
+    """A range of the image's code that belongs to one function."""
 
     start: int
     end: int
@@ -71,7 +71,7 @@ class Spread:
 
 @dataclass
 class Count:
-    """What the calls take: by public function; goe_update without lens distortion, refined, also by module, and its
+    """Cost of the calls: by public function; for goe_update without lens distortion, refined, also by module, and its
     worst call by (module, function)."""
 
     functions: dict[str, Spread]
@@ -81,7 +81,7 @@ class Count:
 
 
 def module_names(built: Build) -> dict[str, str]:
-    """Modules by the name of their object: that is all a linker's map tells of what an archive holds."""
+    """Modules by the name of their object, the only name of an archive's members in a linker's map."""
     names: dict[str, str] = {}
     for path in built.library_files("obj"):
         if path.name in names:
@@ -91,7 +91,7 @@ def module_names(built: Build) -> dict[str, str]:
 
 
 def code_of_map(text: str, modules: dict[str, str]) -> list[Code]:
-    """Library code in an image, by the linker's map, sorted by address; code of the test program is left out."""
+    """Library code in an image, from the linker's map, sorted by address; without the code of the test program."""
     text = text[text.index("Linker script and memory map") :]
     result = []
     pattern = re.compile(r"^ (\.text[\w.$]*)\s+0x([0-9a-f]+)\s+0x([0-9a-f]+) (\S+)$", re.MULTILINE)

@@ -1,15 +1,15 @@
-"""Cost ledger: what the library costs on each target, measured, not estimated.
+"""Cost ledger: the measured cost of the library on each target.
 
     python -m ci ledger                  measure and print the tables
-    python -m ci ledger m4f-gcc-o2       ... of one target
-    python -m ci ledger --check          measure, compare, fail if a figure grew or a page shows other tables
-    python -m ci ledger --check-pages    measure nothing: do the pages show the ledger?
+    python -m ci ledger m4f-gcc-o2       ... for one target
+    python -m ci ledger --check          measure, compare, fail if a figure grew or a page has other tables
+    python -m ci ledger --check-pages    measure nothing, compare the pages with the ledger
     python -m ci ledger --write          measure, write the ledger and the pages
 
 The ledger is tests/targets/ledger.csv, its pages are tests/targets/LEDGER.md and a part of README.md. Figures: bytes of
 code, constants and data per module and in total; bytes of the state per window length; the worst-case stack of each
 public function, from the call graph and from painting under QEMU; instructions per call of each public function over
-the embedded logs, and of goe_update per module; what the library's parts cost.
+the embedded logs, and of goe_update per module; cost of the library's parts.
 """
 
 from __future__ import annotations
@@ -34,24 +34,24 @@ from .pages import ledger_tables, write_pages, wrong_pages
 from .targets import missing_tool, presets
 
 LEDGER = ROOT / "tests" / "targets" / "ledger.csv"
-BUILDS = ROOT / "build" / "tests" / "targets"  # where ctest builds the targets: what is there is not built again
+BUILDS = ROOT / "build" / "tests" / "targets"  # where ctest builds the targets; existing builds are reused
 EXIT_GREW = 1
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("presets", nargs="*", metavar="PRESET", help="targets to measure; default: all whose tools are installed")
+    add("presets", nargs="*", metavar="PRESET", help="targets to measure (default: all with installed tools)")
     add("--build", type=Path, default=BUILDS, metavar="DIR", help="folder with the builds; default build/tests/targets")
-    add("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="targets at a time; default: processors")
+    add("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="targets at a time (default: processors)")
     add("--ledger", type=Path, default=LEDGER, metavar="FILE", help="default tests/targets/ledger.csv")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--check", action="store_true", help="fail if a figure is more than 2 %% above the ledger's")
-    what.add_argument("--check-pages", action="store_true", help="measure nothing, fail if a page shows other tables")
+    what.add_argument("--check-pages", action="store_true", help="measure nothing, fail if a page has other tables")
     what.add_argument("--write", action="store_true", help="write the ledger and its pages")
 
 
 def measured(wanted: Sequence[str], folder: Path, jobs: int) -> Ledger:
-    """The ledger of the presets whose tools are installed; the others are named."""
+    """The ledger of the presets with installed tools; reports the others."""
     folder.mkdir(parents=True, exist_ok=True)
     plugin = build_plugin(folder)
     able = []
@@ -74,7 +74,7 @@ def measured(wanted: Sequence[str], folder: Path, jobs: int) -> Ledger:
 
 
 def merged(before: Ledger, now: Ledger) -> Ledger:
-    """The ledger with what was measured, in the order of the presets."""
+    """The ledger with the new measurements, in the order of the presets."""
     both = before | now
     return {preset: both[preset] for preset in presets() if preset in both}
 

@@ -18,7 +18,7 @@ from .modules import KINDS, external_calls, module_bytes, state_bytes
 from .parts import PARTS_PRESET, measured_parts
 from .stack import computed_stack, painted_stack
 
-FULL_PRESET = "m4f-gcc-o2"  # whose worst update is told function by function
+FULL_PRESET = "m4f-gcc-o2"  # with the worst update by function
 
 
 def size_figures(built: Build, scratch: Path) -> Figures:
@@ -26,8 +26,8 @@ def size_figures(built: Build, scratch: Path) -> Figures:
     figures: Figures = {}
     for kind, name in zip(KINDS, (book.CODE, book.CONSTANTS, book.DATA)):
         figures[key(name, book.TOTAL)] = sum(sizes[kind] for sizes in modules.values())
-        told = modules if kind != "data" else {module for module, sizes in modules.items() if sizes["data"]}
-        figures |= {key(name, module): modules[module][kind] for module in told}
+        named = modules if kind != "data" else {module for module, sizes in modules.items() if sizes["data"]}
+        figures |= {key(name, module): modules[module][kind] for module in named}
     figures |= {key(book.STATE, f"window {n}"): size for n, size in state_bytes(built, scratch).items()}
     return figures
 
@@ -61,7 +61,7 @@ def instruction_figures(built: Build, plugin: Path, scratch: Path) -> Figures:
 
 
 def proved_figures(built: Build, measured: Figures, scratch: Path) -> Figures:
-    """By the longest path; an error if a call took more, or a loop more turns than the table of bounds has."""
+    """Figures of the longest path; an error if a call took more, or a loop more turns than the table's bound."""
     code = code_of(built, built.image("replay"))
     proved = {name: proof.most for name, proof in proofs(code).items()}
     wrong = [*unused(code), *exceeded(turns(built, code, scratch))]

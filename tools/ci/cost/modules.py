@@ -8,14 +8,14 @@ from pathlib import Path
 
 from bench.running import LedgerError, output_of
 
-from .building import WRITES_BESIDE, Build
+from .building import EXTRA_OUTPUT, Build
 
 WINDOWS = (3, 8, 16, 32, 64)  # of the table with bytes of state
 KINDS = ("code", "constants", "data")
 
 
 def bytes_of_object(sizes: str) -> dict[str, int]:
-    """Bytes of each kind, from what size -A prints of an object."""
+    """Bytes of each kind, from the output of size -A for an object."""
     figures = dict.fromkeys(KINDS, 0)
     for name, size in re.findall(r"^(\.[\w.$]+)\s+(\d+)\s+\d+$", sizes, re.MULTILINE):
         if name.startswith(".text"):
@@ -41,20 +41,20 @@ def external_calls(built: Build) -> list[str]:
 
 
 def plain_command(built: Build) -> list[str]:
-    """The library's command without what it writes beside the object and without what its user may define."""
-    left_out = ("-DGOE_WINDOW_MAX", "-DGOE_WITH_", *WRITES_BESIDE)
+    """The library's command without extra outputs and without user definitions."""
+    left_out = ("-DGOE_WINDOW_MAX", "-DGOE_WITH_", *EXTRA_OUTPUT)
     return [word for word in built.command if not word.startswith(left_out)]
 
 
 def size_of_state(built: Build, folder: Path, definitions: Sequence[str]) -> int:
-    """sizeof(goe_estimator_t) as a program sees it that is compiled with these definitions."""
+    """sizeof(goe_estimator_t) for a program compiled with these definitions."""
     source, target = folder / "state.c", folder / "state.obj"
     lines = ['#include "goe.h"', "extern char state[];", "char state[sizeof(goe_estimator_t)];", ""]
     source.write_text("\n".join(lines), encoding="utf-8")
     output_of([*plain_command(built), *definitions, "-o", target, "-c", source])
     size = re.search(r"^\w+ (\w+) \w state$", built.tool("nm", "-S", target), re.MULTILINE)
     if not size:
-        raise LedgerError(f"{built.preset}: the compiler made no array of the state's size")
+        raise LedgerError(f"{built.preset}: the compiler produced no array of the state's size")
     return int(size.group(1), 16)
 
 

@@ -1,4 +1,4 @@
-"""The tables that people read: all of them in tests/targets/LEDGER.md, a few rows of the first in README.md."""
+"""The tables for readers: all of them in tests/targets/LEDGER.md, a few rows of the first in README.md."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def state_table(figures: Figures) -> list[str]:
 
 
 def part_table(figures: Figures) -> list[str]:
-    """Nothing, where the library has no parts."""
+    """Empty if the library has no parts."""
     parts = below(figures, book.PART_BYTES)
     if not parts:
         return []
@@ -118,9 +118,9 @@ PAGES = {Path("README.md"): readme_tables, Path("tests/targets/LEDGER.md"): ledg
 
 
 def wrong_pages(root: Path, ledger: Ledger) -> list[str]:
-    """Pages that do not show this ledger, guarantees that README.md does not state, costs that goe.h understates."""
+    """Pages with other tables than the ledger's, guarantees missing in README.md, understated costs in goe.h."""
     wrong = [
-        f"{page}: its tables are not those of the ledger: run python -m ci ledger --write"
+        f"{page}: its tables differ from the ledger: run python -m ci ledger --write"
         for page, tables in PAGES.items()
         if TABLES.of(root / page) != tables(ledger).strip()
     ]

@@ -1,8 +1,8 @@
-"""What a firmware pays that leaves parts of the library out: GOE_WITH_WINDOW, GOE_WITH_REFINED, GOE_WITH_HAZARD, and of
-the refined method GOE_WITH_MOVERS.
+"""Cost of a firmware without some parts of the library: GOE_WITH_WINDOW, GOE_WITH_REFINED, GOE_WITH_HAZARD, and
+GOE_WITH_MOVERS of the refined method.
 
-Each combination of parts that lib/goe.h does not refuse is compiled for one target. While the header knows no such
-parts, there is nothing to tell.
+Each combination of parts that lib/goe.h accepts is compiled for one target. There are no figures if the header has no
+such parts.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from .building import Build
 from .modules import bytes_of_object, plain_command, size_of_state
 
 PARTS = ("window", "refined", "hazard")
-PARTS_PRESET = "m4f-gcc-os"  # the smallest code that the project's usual processor runs
+PARTS_PRESET = "m4f-gcc-os"  # the smallest code for the project's usual processor
 
 
 @dataclass
 class Part:
-    """A combination of parts and what it costs."""
+    """A combination of parts and its cost."""
 
     name: str
     code: int  # and constants, bytes
@@ -33,7 +33,7 @@ class Part:
 
 
 def parts_known(header: str) -> bool:
-    """Whether the text of goe.h knows the parts."""
+    """Whether goe.h has the parts."""
     return all(re.search(rf"\bGOE_WITH_{part.upper()}\b", header) for part in PARTS)
 
 
@@ -44,11 +44,11 @@ def combinations() -> list[tuple[str, list[str]]]:
         words = [part for part, is_in in zip(PARTS, chosen) if is_in]
         name = "everything" if len(words) == len(PARTS) else " and ".join(words)
         result.append((name, [f"-DGOE_WITH_{part.upper()}={is_in}" for part, is_in in zip(PARTS, chosen)]))
-    return result[1:]  # nothing at all is no library
+    return result[1:]  # without the empty combination
 
 
 def is_refused(command: Sequence[str], definitions: Sequence[str]) -> bool:
-    """Whether goe.h says #error to these definitions."""
+    """Whether goe.h refuses these definitions with #error."""
     words = [*command, *definitions, "-E", "-x", "c", "-"]
     done = subprocess.run(words, input='#include "goe.h"\n', capture_output=True, text=True)
     if done.returncode != 0 and "#error" not in done.stderr:
@@ -68,7 +68,7 @@ def code_bytes(built: Build, sources: Sequence[Path], definitions: Sequence[str]
 
 
 def measured_parts(built: Build, folder: Path, library: Path = ROOT / "lib") -> list[Part]:
-    """One entry for each combination of parts; none where goe.h knows no parts."""
+    """One entry for each combination of parts; none if goe.h has no parts."""
     if not parts_known((library / "goe.h").read_text(encoding="utf-8")):
         return []
     sources = sorted(library.rglob("*.c"))

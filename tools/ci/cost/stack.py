@@ -13,7 +13,8 @@ from .instructions import PUBLIC, UPDATES
 
 @dataclass
 class Function:
-    """A function of the image. ``frame``: bytes; ``callees``: addresses, or a word for what cannot be followed."""
+    """A function of the image. ``frame``: bytes; ``callees``: addresses, or a word for a call that cannot be
+    followed."""
 
     name: str
     frame: int = 0
@@ -23,7 +24,7 @@ class Function:
 CALL = re.compile(
     r"\t(?:bl|blx|bl[a-z]{2}|b|b\.w|b\.n|b[a-z]{2}(?:\.[wn])?|jal|j|call|tail)\t(?:\w+,)?\s*([0-9a-f]+) <[^>+]+>"
 )
-INDIRECT = re.compile(r"\tblx\tr\d|\tjalr\t")  # jumps through a register also return, and serve switches
+INDIRECT = re.compile(r"\tblx\tr\d|\tjalr\t")  # jumps through a register are also returns and switches
 
 VARIABLE_FRAME = re.compile(r"\tsub(?:\.w|s)?\tsp,(?: ?sp,)? ?(?!sp\b)[a-z]")
 
@@ -62,7 +63,7 @@ def disassembled_graph(built: Build) -> dict[int, Function]:
                 function.callees.add("an indirect call")
             if VARIABLE_FRAME.search(line):
                 function.callees.add("a frame of unknown size")
-    # A jump within a function may be shown by the name of a constant of the linker script that happens to be as large.
+    # objdump may show a jump in a function with the name of an unrelated linker constant of the same value.
     starts = sorted(graph)
     for start, end in zip(starts, [*starts[1:], float("inf")]):
         inner = {to for to in graph[start].callees if isinstance(to, int) and to not in graph and start < to < end}
@@ -71,7 +72,7 @@ def disassembled_graph(built: Build) -> dict[int, Function]:
 
 
 def compiled_frames(built: Build) -> dict[str, int]:
-    """Frames in bytes as the compiler tells them (-fstack-usage). One that grows at run time is an error."""
+    """Frames in bytes as reported by the compiler (-fstack-usage). A frame that grows at run time is an error."""
     frames: dict[str, int] = {}
     for path in built.library_files("su"):
         for line in path.read_text(encoding="utf-8").splitlines():
@@ -84,20 +85,20 @@ def compiled_frames(built: Build) -> dict[str, int]:
 
 
 def refuse_indirect_calls(built: Build) -> None:
-    """The compiler's own call graph names what the machine code may hide behind a jump."""
+    """Fails for indirect calls in the compiler's call graph, which the machine code may hide behind a jump."""
     for path in built.library_files("ci"):
         if "__indirect_call" in path.read_text(encoding="utf-8"):
             raise LedgerError(f"{path.stem}: an indirect call")
 
 
 def deepest(graph: dict[int, Function], address: int | str, path: tuple[str, ...] = ()) -> int:
-    """Bytes of stack of a function and all that it calls."""
+    """Bytes of stack of a function and all its callees."""
     function = graph.get(address) if isinstance(address, int) else None
     if function is None:
         raise LedgerError(f"unknown callee: {' -> '.join((*path, str(address)))}")
     if function.name in path:
         raise LedgerError(f"recursion: {' -> '.join((*path, function.name))}")
-    others = (callee for callee in function.callees if callee != address)  # a loop's jump to the start is no call
+    others = (callee for callee in function.callees if callee != address)  # a loop's jump to the start is not a call
     return function.frame + max((deepest(graph, callee, (*path, function.name)) for callee in others), default=0)
 
 
@@ -105,7 +106,7 @@ def computed_stack(built: Build) -> dict[str, int]:
     """Worst-case stack in bytes by public function: the compiler's frames over the calls in the machine code."""
     graph = disassembled_graph(built)
     frames = compiled_frames(built)
-    for function in graph.values():  # several files may have a static function of one name: the largest counts for all
+    for function in graph.values():  # static functions of several files may share a name: use the largest
         function.frame = frames.get(function.name, function.frame)
     refuse_indirect_calls(built)
     entries = {function.name: address for address, function in graph.items()}

@@ -1,4 +1,4 @@
-"""What lib/goe.h states at each function as its most, held against what is proved."""
+"""Compares the limits that lib/goe.h states for each function with the proved figures."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from . import book
 from .book import Figures, key, number
 from .instructions import PUBLIC, UPDATES, WITH_LENS
 
-TARGET = "m4f-gcc-o2"  # the one that goe.h's words name
+TARGET = "m4f-gcc-o2"  # the target named in goe.h
 COST = re.compile(
     r"Cost: at most (?P<instructions>\d+) instructions, (?P<stack>\d+) bytes of stack"
     r"(?:; (?P<lens>\d+) with lens distortion)?(?:; window: (?P<window>\d+))?\."
@@ -36,7 +36,7 @@ def stated(header: str) -> dict[str, int]:
 
 
 def understated(header: str, figures: Figures) -> list[str]:
-    """What costs more than the header says."""
+    """Costs above the header's limits."""
     return [
         f"lib/goe.h: {name}: at most {limit}, but {TARGET} has {number(figures, name):g}"
         for name, limit in stated(header).items()

@@ -19,7 +19,7 @@ def presets() -> list[str]:
 
 
 def missing_tool(preset: str) -> str | None:
-    """The first program that a preset needs and that is not installed."""
+    """The first missing program that a preset needs."""
     tools = ["cmake", "ninja", "cc"]
     if preset.startswith("rv32"):
         tools += ["riscv64-unknown-elf-gcc", "qemu-system-riscv32"]

@@ -1,6 +1,6 @@
-"""Analysers that compilers bring, over lib/ and port/flight: each must find nothing.
+"""Static analyzers of the compilers, over lib/ and port/flight: each must report nothing.
 
-What they are told to leave out is in .clang-tidy, each check with its reason, and beside the code (NOLINT).
+.clang-tidy disables checks, each with its reason; so do comments in the code (NOLINT).
 """
 
 from __future__ import annotations
@@ -26,35 +26,35 @@ STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", *INCLUDES]
 TIDY_CHECKS = "-*,bugprone-*,cert-*,clang-analyzer-*"
 CPPCHECK_OPTIONS = [
     "--enable=warning,style,performance,portability",
-    "--suppress=variableScope",  # a declaration stands where its meaning is told
-    "--suppress=unusedStructMember",  # of files that are seen alone
+    "--suppress=variableScope",  # a declaration is placed with its explanation
+    "--suppress=unusedStructMember",  # in files that are analyzed alone
 ]
 
 
 @dataclass(frozen=True)
-class Analyser:
+class Analyzer:
     name: str
-    program: str  # that is looked for
-    command: tuple[str, ...]  # the source follows
-    minutes: bool = False  # of the processor: only in a long run
+    program: str  # that must be installed
+    command: tuple[str, ...]  # followed by the source
+    minutes: bool = False  # takes minutes: only in a long run
 
 
-ANALYSERS = (
-    Analyser("gcc -fanalyzer", "gcc", ("gcc", *STRICT, "-O2", "-fanalyzer", "-c", "-o", "/dev/null")),
-    Analyser("clang --analyze", "clang-19", ("clang-19", *STRICT, "--analyze", "-o", "/dev/null"), minutes=True),
+ANALYZERS = (
+    Analyzer("gcc -fanalyzer", "gcc", ("gcc", *STRICT, "-O2", "-fanalyzer", "-c", "-o", "/dev/null")),
+    Analyzer("clang --analyze", "clang-19", ("clang-19", *STRICT, "--analyze", "-o", "/dev/null"), minutes=True),
 )
-FALSE_ALARMS = {  # analyser, file, what it says: why it is false
+FALSE_ALARMS = {  # analyzer, file, message: why it is false
     (
         "gcc -fanalyzer",
         "lib/window/goe_orientation.c",
         "dereference of NULL 'front'",
     ): "hypothesis_deg() is called only if"
-    " one of two edges has a heading: where the side has none, the front has it, so that it is there",
+    " one of two edges has a heading: if the side has none, the front has one, so it is not null",
     (
         "cppcheck",
         "lib/refined/goe_touch.c",
         "Using argument solid that points at uninitialized variable solid",
-    ): "goe_touch_open() is what initialises it: it writes the rotation, and reads nothing of it",
+    ): "goe_touch_open() initializes it: it writes the rotation, and reads nothing from it",
 }
 
 
@@ -62,24 +62,24 @@ def sources() -> list[Path]:
     return [path for folder in FOLDERS for path in sorted(folder.rglob("*.c"))]
 
 
-def warnings_of(told: str) -> list[str]:
-    """Distinct ones: a header's comes once for each source."""
-    shown = re.findall(r"^(\S+:\d+:\d+: (?:warning|error): .*)$", told, re.MULTILINE)
+def warnings_of(log: str) -> list[str]:
+    """Distinct warnings: a header's warning appears once for each source."""
+    shown = re.findall(r"^(\S+:\d+:\d+: (?:warning|error): .*)$", log, re.MULTILINE)
     return sorted({line.replace(f"{ROOT}/", "") for line in shown})
 
 
 def split_false(name: str, found: list[str]) -> tuple[list[str], list[str]]:
-    """What is left without the false alarms, and those that no longer come."""
-    known = {(file, text) for analyser, file, text in FALSE_ALARMS if analyser == name}
+    """The real warnings, and the false alarms that no longer appear."""
+    known = {(file, text) for analyzer, file, text in FALSE_ALARMS if analyzer == name}
     met = {(file, text) for file, text in known for line in found if line.startswith(f"{file}:") and text in line}
     left = [line for line in found if not any(line.startswith(f"{file}:") and text in line for file, text in known)]
     return left, sorted(f"{file}: {text}" for file, text in known - met)
 
 
 def look(command: Iterable[str], source: Path) -> str:
-    plain = {**os.environ, "LC_ALL": "C"}  # quotation marks, too
-    told = subprocess.run([*command, str(source)], cwd=ROOT, env=plain, capture_output=True, text=True, check=False)
-    return told.stdout + told.stderr
+    plain = {**os.environ, "LC_ALL": "C"}  # plain quotation marks
+    done = subprocess.run([*command, str(source)], cwd=ROOT, env=plain, capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr
 
 
 def find(command: tuple[str, ...], jobs: int) -> list[str]:
@@ -88,7 +88,7 @@ def find(command: tuple[str, ...], jobs: int) -> list[str]:
 
 
 def tidy_command(checks: str) -> tuple[str, ...]:
-    """With what .clang-tidy leaves out of these families left out."""
+    """With the exclusions of .clang-tidy from these families."""
     left_out = re.findall(r"^\s+(-(?:bugprone|cert|clang-analyzer)-[\w.-]+)", (ROOT / ".clang-tidy").read_text(), re.M)
     return ("clang-tidy-19", "--quiet", f"--checks={','.join([checks, *left_out])}")
 
@@ -99,10 +99,10 @@ def find_tidy(jobs: int) -> list[str]:
     with ThreadPoolExecutor(max_workers=max(jobs, 1)) as pool:
 
         def one(source: Path) -> str:
-            told = subprocess.run(
+            done = subprocess.run(
                 [*command, str(source), *flags], cwd=ROOT, capture_output=True, text=True, check=False
             )
-            return told.stdout + told.stderr
+            return done.stdout + done.stderr
 
         return warnings_of("\n".join(pool.map(one, sources())))
 
@@ -115,12 +115,12 @@ def find_cppcheck(jobs: int) -> list[str]:
 def run(amount: Amount) -> Result:
     found: dict[str, list[str]] = {}
     gone: list[str] = []
-    for analyser in ANALYSERS:
-        if analyser.minutes and not amount.long:
+    for analyzer in ANALYZERS:
+        if analyzer.minutes and not amount.long:
             continue
-        if not shutil.which(analyser.program):
-            raise NotHereError(f"no {analyser.program}")
-        found[analyser.name], no_longer = split_false(analyser.name, find(analyser.command, amount.jobs))
+        if not shutil.which(analyzer.program):
+            raise NotHereError(f"no {analyzer.program}")
+        found[analyzer.name], no_longer = split_false(analyzer.name, find(analyzer.command, amount.jobs))
         gone += no_longer
     if amount.long:
         if not shutil.which("clang-tidy-19"):
@@ -131,7 +131,9 @@ def run(amount: Amount) -> Result:
     found["cppcheck"], no_longer = split_false("cppcheck", find_cppcheck(amount.jobs))
     gone += no_longer
     number = len(sources())
-    rows = [Row(f"{name} over {number} files", f"{len(told)} warnings", "0", not told) for name, told in found.items()]
-    rows.append(Row("false alarms, each with its reason, that no longer come", str(len(gone)), "0", not gone))
-    report = "\n\n".join(f"{name}: {len(told)}\n" + "\n".join(told) for name, told in found.items())
+    rows = [
+        Row(f"{name} over {number} files", f"{len(lines)} warnings", "0", not lines) for name, lines in found.items()
+    ]
+    rows.append(Row("known false alarms that no longer appear", str(len(gone)), "0", not gone))
+    report = "\n\n".join(f"{name}: {len(lines)}\n" + "\n".join(lines) for name, lines in found.items())
     return Result(rows, report)

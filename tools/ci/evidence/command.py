@@ -1,9 +1,9 @@
-"""The command ``evidence``: runs the parts, prints the table, keeps the record, makes a release's file of it.
+"""The command ``evidence``: runs the parts, prints the table, keeps the record, makes the file of a release.
 
 python -m ci evidence --quick | --long | --show [--only PART] ... [--record FILE]
 python -m ci evidence --release VERSION [--record FILE]
 
-Whatever a run writes goes to build/evidence. A release commits one file, tests/evidence/VERSION.json.
+All output of a run goes to build/evidence. A release commits one file, tests/evidence/VERSION.json.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ RELEASES = ROOT / "tests" / "evidence"
 
 def machine() -> str:
     """Processor and compiler."""
-    told = Path("/proc/cpuinfo").read_text(encoding="utf-8") if Path("/proc/cpuinfo").exists() else ""
-    names = [line.split(":", 1)[1].strip() for line in told.splitlines() if line.startswith("model name")]
+    info = Path("/proc/cpuinfo").read_text(encoding="utf-8") if Path("/proc/cpuinfo").exists() else ""
+    names = [line.split(":", 1)[1].strip() for line in info.splitlines() if line.startswith("model name")]
     compiler = subprocess.run(["cc", "--version"], capture_output=True, text=True, check=False).stdout.splitlines()[:1]
     return ", ".join([names[0] if names else platform.machine(), *compiler])
 
 
 def commit() -> str:
-    """The checkout's; with "+" if files differ from it; "" outside a repository."""
+    """The checkout's commit; with "+" if files differ from it; "" outside a repository."""
 
     def git(*words: str) -> str:
         done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
@@ -60,7 +60,7 @@ def run_part(name: str, amount: Amount) -> Kept:
 
 
 def release(version: str, kept: dict[str, Kept]) -> Path:
-    """Writes the file of a release: all parts, of one commit."""
+    """Writes the file of a release: all parts, from one commit."""
     if not re.fullmatch(r"\d+\.\d+\.\d+", version):
         raise ValueError(f"--release {version}: not a version such as 0.4.0")
     missing = [name for name in MODULES if name not in kept or kept[name].amount != "long"]
@@ -78,14 +78,14 @@ def release(version: str, kept: dict[str, Kept]) -> Path:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     how = parser.add_mutually_exclusive_group(required=True)
-    how.add_argument("--quick", action="store_true", help="what fits ten minutes")
-    how.add_argument("--long", action="store_true", help="all of it, and keep the figures in the record")
+    how.add_argument("--quick", action="store_true", help="the parts that fit in ten minutes")
+    how.add_argument("--long", action="store_true", help="everything; keeps the figures in the record")
     how.add_argument(
-        "--show", action="store_true", help="run nothing, print the record's table or the newest release's"
+        "--show", action="store_true", help="run nothing, print the table of the record or of the newest release"
     )
     how.add_argument("--release", metavar="VERSION", help="make the release's file, tests/evidence/VERSION.json")
     parser.add_argument("--only", action="append", choices=sorted(MODULES), metavar="PART", help=", ".join(MODULES))
-    parser.add_argument("--updates", type=int, default=0, metavar="N", help="fuzzing: at least so many updates")
+    parser.add_argument("--updates", type=int, default=0, metavar="N", help="fuzzing: minimum number of updates")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes")
     parser.add_argument("--record", type=Path, default=RECORD, metavar="FILE", help="the record of long runs")
 

@@ -1,7 +1,7 @@
-"""ACSL contracts that say no more than that pointers are valid: made from the signatures, on a copy that Frama-C reads.
+"""ACSL contracts that only require valid pointers: generated from the signatures, in a copy for Frama-C.
 
-A contract at a function replaces the one that would be made: for what may be null, for runs of a length, for ranges. A
-line keeps its number. tests/proof/README.md has the rules.
+A contract at a function replaces the generated one, for pointers that may be null, for lengths and for ranges.
+Lines keep their numbers. tests/proof/README.md has the rules.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ PARAMETER = re.compile(
     r"(?P<const>const )?(?P<type>(?:unsigned )?\w+) (?P<stars>\**)(?:const )?(?P<name>\w+)(?P<runs>\[.*)?"
 )
 ARRAYS = {"goe_covariance_t": "[GOE_QUANTITIES]"}  # types that are arrays
-OPEN = {  # what else holds of every such structure, once it is filled in
+OPEN = {  # further conditions of every such structure, once it is filled in
     "goe_faults_t": "goe_faults_are_open",
     "goe_observation_t": "goe_observation_is_open",
     "goe_rows_t": "goe_rows_hold",
     "goe_solid_t": "goe_solid_is_closed",
     "goe_view_t": "goe_view_is_open",
 }
-WRITTEN = ("goe_observation_t", "goe_view_t")  # of these the structure itself, too, where it is not const
-PUBLIC = "goe.h"  # its functions take a null pointer for any argument
+WRITTEN = ("goe_observation_t", "goe_view_t")  # for these also the structure itself, if it is not const
+PUBLIC = "goe.h"  # its functions accept a null pointer for any argument
 
 
 def blank(match: re.Match[str]) -> str:
@@ -35,7 +35,7 @@ def blank(match: re.Match[str]) -> str:
 
 
 def without_comments(text: str) -> str:
-    """And without directives; everything stays where it is."""
+    """Without comments and directives; everything else keeps its place."""
     text = re.sub(r"/\*.*?\*/", blank, text, flags=re.DOTALL)
     return re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*$", blank, text, flags=re.MULTILINE)
 
@@ -45,14 +45,14 @@ def is_static(function: re.Match[str]) -> bool:
 
 
 def functions(text: str, is_source: bool) -> Iterator[re.Match[str]]:
-    """Those whose contract stands here: external ones have theirs in the header."""
+    """Functions with their contract in this file: external ones have it in the header."""
     for match in FUNCTION.finditer(without_comments(text)):
         if not match["head"].startswith(NO_FUNCTION) and (is_static(match) or not is_source):
             yield match
 
 
 def clause(parameter: str, public: bool) -> str:
-    """That one pointer is valid; "" of what is none."""
+    """The clause that a pointer is valid; "" for another parameter."""
     match = PARAMETER.fullmatch(" ".join(parameter.split()))
     runs = match and (match["runs"] or ("" if match["stars"] else ARRAYS.get(match["type"], "")))
     if not match or not (match["stars"] or runs):
@@ -61,18 +61,18 @@ def clause(parameter: str, public: bool) -> str:
     if runs:
         length = re.sub(r"\b(restrict|static) ", "", runs[1 : runs.index("]")])
         last = str(int(length) - 1) if length.isdigit() else f"{length} - 1"
-        told = f"{valid}({name} + (0 .. {last}))"
+        text = f"{valid}({name} + (0 .. {last}))"
     elif match["type"] in OPEN:
         written = match["type"] in WRITTEN and not match["const"]
-        told = (rf"\valid({name}) && " if written else "") + f"{OPEN[match['type']]}({name})"
+        text = (rf"\valid({name}) && " if written else "") + f"{OPEN[match['type']]}({name})"
     else:
-        told = f"{valid}({name})"
-    return rf"{name} == \null || {told}" if public else told
+        text = f"{valid}({name})"
+    return rf"{name} == \null || {text}" if public else text
 
 
 def contract(parameters: str, public: bool) -> str:
-    clauses = [told for parameter in parameters.split(",") if (told := clause(parameter, public))]
-    return f"/*@ {' '.join(f'requires {told};' for told in clauses)} */ " if clauses else ""
+    clauses = [text for parameter in parameters.split(",") if (text := clause(parameter, public))]
+    return f"/*@ {' '.join(f'requires {text};' for text in clauses)} */ " if clauses else ""
 
 
 def has_contract(before: str) -> bool:
@@ -91,7 +91,7 @@ def with_contracts(text: str, name: str) -> str:
 
 
 def copy(library: Path, to: Path) -> None:
-    """The library, with a contract for each function that takes a pointer."""
+    """Copies the library and adds a contract to each function with a pointer parameter."""
     shutil.rmtree(to, ignore_errors=True)
     for path in library.rglob("*.[ch]"):
         target = to / path.relative_to(library)

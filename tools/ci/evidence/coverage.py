@@ -1,9 +1,9 @@
-"""Coverage: which lines, branches and independent conditions of the library its unit tests reach.
+"""Coverage: the lines, branches and independent conditions of the library that its unit tests reach.
 
-Of lib/ every line, every outcome of every condition, and every condition of a decision shown to decide alone (MC/DC) is
-reached by tests/c, or has its reason in tests/coverage/reasons.csv; a reason that fits nothing any more, or whose
-condition is covered now, is a fault, too. Told without a goal: the same without the safety tests, which reach much and
-ask for little; port/flight; in long runs what reads text in sim_host, by the tests in Python of the programs.
+tests/c reaches every line of lib/, every outcome of every condition, and every condition of a decision shown to decide
+alone (MC/DC), or tests/coverage/reasons.csv has the reason; a reason that fits nothing, or a covered condition, is a
+fault, too. Reported without a goal: the same without the safety tests, which reach much and check
+little; port/flight; in long runs the text readers of sim_host, with the Python tests of the programs.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ READERS = Readers(
     {"GOE_REPLAY": "goe_replay", "GOE_SIM": "goe_sim"},
     ("tests/host", "tests/sim/test_sim_scenario.py", "tests/sim/test_sim_log.py"),
 )
-READING = (  # folders and files of it that read text
+READING = (  # its folders and files that read text
     "sim_host/log/",
     "sim_host/text/",
     "sim_host/flight/recorded_flight.c",
@@ -45,7 +45,7 @@ WHAT = {
 
 @dataclass(frozen=True)
 class Count:
-    """Of one kind, in one file or folder."""
+    """Counts of one kind, in one file or folder."""
 
     of: int = 0
     covered: int = 0
@@ -57,16 +57,16 @@ class Count:
 
     def figure(self) -> str:
         share = 100.0 * self.covered / self.of if self.of else 100.0
-        told = f"{share:.2f} % ({self.covered:,} of {self.of:,}"
+        text = f"{share:.2f} % ({self.covered:,} of {self.of:,}"
         return (
-            told
+            text
             + "".join(f", {n} {word}" for n, word in ((self.reasoned, "reasoned"), (self.missing, "missing")) if n)
             + ")"
         )
 
 
 def count(found: Sequence[Item], verdict: Verdict, kind: str, file: str = "") -> Count:
-    """Of all files, or of one."""
+    """Counts over all files, or in one."""
 
     def here(item: Item) -> bool:
         return KINDS[item.outcome] == kind and (not file or item.file == file)
@@ -76,7 +76,7 @@ def count(found: Sequence[Item], verdict: Verdict, kind: str, file: str = "") ->
 
 
 def per_file(found: Sequence[Item], verdict: Verdict) -> str:
-    """A line for each file, of each kind: how many were reached, of how many; reasoned; missing."""
+    """A line for each file, with the counts of each kind: reached, total, reasoned, missing."""
     files = sorted({item.file for item in found})
     width = max(map(len, [*files, "all"]))
     blank = " " * width
@@ -92,21 +92,21 @@ def per_file(found: Sequence[Item], verdict: Verdict) -> str:
 
 
 def faults(verdict: Verdict) -> list[str]:
-    """What stands between the library and its goal, one a line."""
-    told = [f"{i.file}:{i.line}: {i.function}: {i.text}: not reached: {i.outcome}" for i in verdict.missing]
+    """Everything that violates the goal, one a line."""
+    missing = [f"{i.file}:{i.line}: {i.function}: {i.text}: not reached: {i.outcome}" for i in verdict.missing]
     place = REASONS.relative_to(ROOT)
-    return told + [f"{place}:{r.row}: {r.function}: {r.text}: {r.outcome}: {fault}" for r, fault in verdict.stale]
+    return missing + [f"{place}:{r.row}: {r.function}: {r.text}: {r.outcome}: {fault}" for r, fault in verdict.stale]
 
 
-def reasons_told(verdict: Verdict) -> list[str]:
+def reason_lines(verdict: Verdict) -> list[str]:
     by_reason: dict[str, list[Item]] = {}
     for item, reason in verdict.reasoned:
         by_reason.setdefault(reason.reason, []).append(item)
-    told: list[str] = []
+    lines: list[str] = []
     for reason, because in by_reason.items():
-        told.append(f"* {reason}")
-        told += [f"    {item.file}:{item.line}: {item.function}: {item.text}: {item.outcome}" for item in because]
-    return told
+        lines.append(f"* {reason}")
+        lines += [f"    {item.file}:{item.line}: {item.function}: {item.text}: {item.outcome}" for item in because]
+    return lines
 
 
 def rows_of(name: str, found: Sequence[Item], verdict: Verdict, goal: str) -> list[Row]:
@@ -121,17 +121,17 @@ def of_library(jobs: int) -> Result:
     every, judging = count_tests(LIBRARY, jobs)
     found = items(every, ROOT)
     verdict = settle(found, read(REASONS))
-    stale = Row("reasons that fit nothing, or what is covered", str(len(verdict.stale)), "0", not verdict.stale)
-    told = [per_file(found, verdict), "", *faults(verdict), "", "Not reached, and why:", *reasons_told(verdict), ""]
+    stale = Row("reasons that fit nothing, or a covered item", str(len(verdict.stale)), "0", not verdict.stale)
+    text = [per_file(found, verdict), "", *faults(verdict), "", "Not reached:", *reason_lines(verdict), ""]
     judged = of_others("lib/, safety tests left out", items(judging, ROOT))
-    return Result([*rows_of("lib/", found, verdict, GOAL), stale, *judged.rows], "\n".join([*told, judged.report]))
+    return Result([*rows_of("lib/", found, verdict, GOAL), stale, *judged.rows], "\n".join([*text, judged.report]))
 
 
 def of_others(name: str, found: Sequence[Item]) -> Result:
     """Figures without a goal."""
     verdict = settle(found, [])
-    told = [f"{name}:", "", per_file(found, verdict), "", *faults(verdict), ""]
-    return Result(rows_of(name, found, verdict, ""), "\n".join(told))
+    text = [f"{name}:", "", per_file(found, verdict), "", *faults(verdict), ""]
+    return Result(rows_of(name, found, verdict, ""), "\n".join(text))
 
 
 def run(amount: Amount) -> Result:
@@ -145,6 +145,6 @@ def run(amount: Amount) -> Result:
     if amount.long:
         found = items(count_readers(READERS), ROOT, strict=False)
         results.append(
-            of_others("sim_host/, what reads text", [item for item in found if item.file.startswith(READING)])
+            of_others("sim_host/, text readers", [item for item in found if item.file.startswith(READING)])
         )
     return Result([row for result in results for row in result.rows], "\n".join(result.report for result in results))

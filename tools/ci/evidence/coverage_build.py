@@ -1,4 +1,4 @@
-"""An instrumented build of the unit tests, their run, and what llvm-cov counts in it."""
+"""An instrumented build of the unit tests, their run, and the counts of llvm-cov."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from goe_tools.places import ROOT
 from .parts import NotHereError
 
 PRESET = "coverage"
-BUILD = ROOT / ".cache" / "evidence" / "coverage"  # as CMakePresets.json names it
+BUILD = ROOT / ".cache" / "evidence" / "coverage"  # the folder in CMakePresets.json
 PROFILES = ROOT / ".cache" / "evidence" / "coverage-profiles"
-SAFETY = "safety"  # in the names of the tests of any input
+SAFETY = "safety"  # in the names of the tests with arbitrary input
 TOOLS = ("cmake", "ninja", "clang-19", "llvm-profdata-19", "llvm-cov-19")
 
 
 class BuildError(ValueError):
-    """A command of the build or a test failed; holds the end of what it wrote."""
+    """A command of the build or a test failed; contains the end of its output."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class Group:
     """Tests that count for the sources of one folder."""
 
     folder: str  # of the sources, in the project
-    library: str  # that these are compiled into: its target in the build
+    library: str  # with these sources: its target in the build
     tests: str  # folder of the tests' programs, in the build
-    prefix: str  # of the names of the tests in ctest; the programs are test_<name>, all have the label unit
+    prefix: str  # of the tests' names in ctest; the programs are test_<name>, all with the label unit
     cut: bool = False  # ... without the prefix
 
 
@@ -43,8 +43,8 @@ def _run(command: Sequence[str | Path], **environment: str) -> str:
         command, cwd=ROOT, env={**os.environ, **environment}, capture_output=True, text=True, check=False
     )
     if ended.returncode:
-        told = "\n".join((ended.stdout + ended.stderr).splitlines()[-40:])
-        raise BuildError(f"{' '.join(map(str, command[:8]))}: exit status {ended.returncode}\n{told}")
+        tail = "\n".join((ended.stdout + ended.stderr).splitlines()[-40:])
+        raise BuildError(f"{' '.join(map(str, command[:8]))}: exit status {ended.returncode}\n{tail}")
     return ended.stdout
 
 
@@ -67,7 +67,7 @@ def _select(group: Group, but: str = "") -> list[str]:
 
 
 def programs(group: Group) -> list[str]:
-    """Of the group's tests."""
+    """The programs of the group's tests."""
     tests = json.loads(_run([*_select(group), "--show-only=json-v1"]))["tests"]
     names = [str(test["name"]) for test in tests]
     return sorted("test_" + (name[len(group.prefix) :] if group.cut else name) for name in names)
@@ -78,7 +78,7 @@ def build(targets: Iterable[str], jobs: int) -> None:
 
 
 def _profile(name: str, command: Sequence[str | Path], **environment: str) -> Path:
-    """Runs what leaves profiles, and merges these."""
+    """Runs a command that leaves profiles, and merges them."""
     raw = PROFILES / name
     shutil.rmtree(raw, ignore_errors=True)
     raw.mkdir(parents=True)
@@ -90,7 +90,7 @@ def _profile(name: str, command: Sequence[str | Path], **environment: str) -> Pa
 
 def _merge(name: str, profiles: Sequence[Path]) -> Path:
     merged = PROFILES / f"{name}.profdata"
-    # A program that a test kills may leave half a profile: that one is left out.
+    # A program killed by a test may leave an incomplete profile, which is left out.
     _run(["llvm-profdata-19", "merge", "--sparse", "--failure-mode=all", "-o", merged, *profiles])
     return merged
 
@@ -98,21 +98,21 @@ def _merge(name: str, profiles: Sequence[Path]) -> Path:
 def _export(profile: Path, objects: Sequence[str], folder: str) -> dict[str, Any]:
     first, *more = [str(BUILD / name) for name in objects]
     command = ["llvm-cov-19", "export", "--instr-profile", profile, first, *(f"--object={name}" for name in more)]
-    told: dict[str, Any] = json.loads(_run([*command, "--sources", ROOT / folder]))["data"][0]
-    return told
+    export: dict[str, Any] = json.loads(_run([*command, "--sources", ROOT / folder]))["data"][0]
+    return export
 
 
 def _objects(group: Group) -> list[str]:
-    """Of the library. Not its archive, in which llvm-cov reads what lies at odd places wrongly."""
+    """The objects of the library. Not its archive, in which llvm-cov misreads members at odd offsets."""
     sources = sorted((ROOT / group.folder).rglob("*.c"))
     folder = f"{group.folder}/CMakeFiles/{group.library}.dir"
     return [f"{folder}/{source.relative_to(ROOT / group.folder).as_posix()}.o" for source in sources]
 
 
 def count_tests(group: Group, jobs: int) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Runs the tests. Returns llvm-cov's counts of the sources, also as a test compiles them for itself.
+    """Runs the tests. Returns llvm-cov's counts of the sources, including copies that a test compiles itself.
 
-    First those of all tests, then without the safety tests, which ask of any input no more than that it does no harm.
+    First with all tests, then without the safety tests, which only check that arbitrary input does no harm.
     """
     name = group.folder.replace("/", "_")
     how = ["-j", str(jobs), "--output-on-failure", "--no-tests=error"]
@@ -124,10 +124,10 @@ def count_tests(group: Group, jobs: int) -> tuple[dict[str, Any], dict[str, Any]
 
 @dataclass(frozen=True)
 class Readers:
-    """Programs for the host, run by tests in Python."""
+    """Programs for the host, run by Python tests."""
 
     folder: str  # of the sources, in the project, and of the programs, in the build
-    programs: dict[str, str]  # by the variable that names it to the tests
+    programs: dict[str, str]  # by the environment variable that the tests read
     tests: tuple[str, ...]  # files or folders
 
 
@@ -135,6 +135,6 @@ def count_readers(readers: Readers) -> dict[str, Any]:
     places = {variable: f"{readers.folder}/{name}" for variable, name in readers.programs.items()}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-c", "tools/pyproject.toml"]
     named = {variable: str(BUILD / place) for variable, place in places.items()}
-    counting = ["-k", "not full_disk"]  # where a program can write no file, it cannot write its counts either
+    counting = ["-k", "not full_disk"]  # a program that cannot write files cannot write its counts either
     profile = _profile(readers.folder, [*command, *counting, *readers.tests], **named)
     return _export(profile, list(places.values()), readers.folder)

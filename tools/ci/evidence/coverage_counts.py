@@ -1,4 +1,4 @@
-"""What is to be reached in a source, and what was: lines, outcomes of conditions, independent conditions of decisions.
+"""Coverage items of a source and whether they were reached: lines, outcomes of conditions, independent conditions.
 
 llvm-cov counts a function of a header once for every file that includes it; here each place of a source counts once,
 reached if any copy of it was.
@@ -17,19 +17,19 @@ from typing import Any
 OUTCOMES = ("line", "true", "false", "independent")
 KINDS = {"line": "lines", "true": "branches", "false": "branches", "independent": "MC/DC"}
 
-_CONDITION_OF_DECISION = 6  # kind of a region, as llvm-cov numbers them
+_CONDITION_OF_DECISION = 6  # kind of a region in llvm-cov's numbering
 _NO_CODE = re.compile(r"[\s{}();]*(/\*.*|\*.*|//.*|#.*|else)?[\s{}]*")  # nothing to execute; inside of a comment
 
 _Span = tuple[int, int, int, int]  # line and column of the start, of the end
 
 
 class CountError(ValueError):
-    """llvm-cov's answer is not of the shape that it has in version 19."""
+    """llvm-cov's output does not have the format of version 19."""
 
 
 @dataclass(frozen=True)
 class Item:
-    """One thing that a test should bring about."""
+    """One item that a test should reach."""
 
     file: str  # path in the project
     function: str
@@ -40,7 +40,7 @@ class Item:
 
 
 class _Source:
-    """Text of a file by lines and columns, which count from 1."""
+    """Text of a file by lines and columns, which start at 1."""
 
     def __init__(self, text: str) -> None:
         self.lines = text.splitlines()
@@ -58,7 +58,7 @@ def plain(text: str) -> str:
 
 
 def _line_counts(segments: Sequence[Sequence[Any]]) -> dict[int, int]:
-    """How often each line was reached, as llvm-cov lists it: the most of what begins in it or goes on."""
+    """Executions of each line, as llvm-cov lists them: the maximum over the segments that start in it or continue."""
     by_line: dict[int, list[Sequence[Any]]] = defaultdict(list)
     for segment in segments:
         by_line[segment[0]].append(segment)
@@ -85,7 +85,7 @@ def _inside(inner: _Span, outer: _Span) -> bool:
 
 
 def _functions(functions: Iterable[dict[str, Any]], file: str) -> Callable[[int], str]:
-    """The name of the function that a line of the file lies in."""
+    """The name of the function that contains a line of the file."""
     begun: dict[int, str] = {}
     for function in functions:
         if function["filenames"][0] == file:
@@ -101,7 +101,7 @@ def _functions(functions: Iterable[dict[str, Any]], file: str) -> Callable[[int]
 
 def _lines(source: _Source, segments: Sequence[Sequence[Any]]) -> Iterable[tuple[int, str, str, bool]]:
     for line, count in _line_counts(segments).items():
-        text = source.lines[line - 1] if line <= len(source.lines) else ""  # an included file ends behind its last line
+        text = source.lines[line - 1] if line <= len(source.lines) else ""  # an included file ends after its last line
         if not _NO_CODE.fullmatch(text):
             yield line, plain(text), "line", count > 0
 
@@ -113,7 +113,7 @@ def _marked(source: _Source, decision: _Span, condition: _Span) -> str:
 
 
 def _conditions(decision: _Span, decisions: Iterable[_Span], branches: Iterable[tuple[_Span, int]]) -> list[_Span]:
-    """Of the decision itself, not of one within it."""
+    """Conditions of the decision itself, not of one nested in it."""
     inner = [other for other in decisions if other != decision and _inside(other, decision)]
     return sorted(
         {
@@ -134,26 +134,26 @@ def _independent(records: Iterable[Sequence[Any]], file: str) -> dict[_Span, lis
         conditions = list(record[-1])
         known = shown.setdefault(span, [False] * len(conditions))
         if len(known) != len(conditions):
-            raise CountError(f"{file}:{span[0]}: a decision of {len(known)} and of {len(conditions)} conditions")
+            raise CountError(f"{file}:{span[0]}: a decision with {len(known)} and with {len(conditions)} conditions")
         shown[span] = [a or b for a, b in zip(known, conditions)]
     return shown
 
 
-def _branches(source: _Source, told: dict[str, Any], file: str, strict: bool) -> Iterable[tuple[int, str, str, bool]]:
+def _branches(source: _Source, export: dict[str, Any], file: str, strict: bool) -> Iterable[tuple[int, str, str, bool]]:
     counts: dict[_Span, list[int]] = {}
     kinds: dict[_Span, int] = {}
-    for branch in told["branches"]:
+    for branch in export["branches"]:
         span = _span(branch)
         known = counts.setdefault(span, [0, 0])
         counts[span] = [known[0] + branch[4], known[1] + branch[5]]
         kinds[span] = branch[8]
-    decisions = _independent(told["mcdc_records"], file)
+    decisions = _independent(export["mcdc_records"], file)
     text: dict[_Span, str] = {span: plain(source.at(*span)) for span in counts}
     for decision, shown in decisions.items():
         conditions = _conditions(decision, decisions, kinds.items())
         if len(conditions) != len(shown):
             if strict:
-                raise CountError(f"{file}:{decision[0]}: {len(shown)} conditions, of which {len(conditions)} are found")
+                raise CountError(f"{file}:{decision[0]}: {len(shown)} conditions, but {len(conditions)} found")
             for number, alone in enumerate(shown, start=1):
                 yield decision[0], f"{plain(source.at(*decision))}, condition {number}", "independent", alone
             continue
@@ -166,21 +166,21 @@ def _branches(source: _Source, told: dict[str, Any], file: str, strict: bool) ->
 
 
 def items(export: dict[str, Any], root: Path, strict: bool = True) -> list[Item]:
-    """All that is to be reached in the files of an export of llvm-cov, by file and line.
+    """All coverage items in the files of an llvm-cov export, by file and line.
 
-    strict: a macro with a condition is refused; otherwise outcomes in macros, which are the system's, do not count.
+    strict: a macro with a condition is refused; otherwise outcomes in macros, which belong to the system, do not count.
     """
     found: list[Item] = []
-    for told in export["files"]:
-        path = Path(told["filename"])
+    for part in export["files"]:
+        path = Path(part["filename"])
         file = path.relative_to(root).as_posix()
-        if strict and any(expansion["branches"] for expansion in told.get("expansions", [])):
+        if strict and any(expansion["branches"] for expansion in part.get("expansions", [])):
             raise CountError(f"{file}: a macro with a condition: its places are those of the macro's text")
         source = _Source(path.read_text(encoding="utf-8"))
-        function = _functions(export["functions"], told["filename"])
+        function = _functions(export["functions"], part["filename"])
         for line, text, outcome, reached in [
-            *_lines(source, told["segments"]),
-            *_branches(source, told, file, strict),
+            *_lines(source, part["segments"]),
+            *_branches(source, part, file, strict),
         ]:
             found.append(Item(file, function(line), text, outcome, line, reached))
     return sorted(found, key=lambda item: (item.file, item.line, OUTCOMES.index(item.outcome), item.text))

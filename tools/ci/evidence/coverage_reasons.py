@@ -1,4 +1,4 @@
-"""Reasons why something is not reached, and how they fit what is not."""
+"""Reasons for items that are not reached, and their comparison with the coverage."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COLUMNS = ["file", "function", "text", "outcome", "reason"]
 
 @dataclass(frozen=True)
 class Reason:
-    """Why an outcome of a condition is not taken, or a line not reached."""
+    """Why an outcome of a condition is never taken, or a line never reached."""
 
     file: str
     function: str
@@ -26,7 +26,7 @@ class Reason:
     row: int  # in the file of reasons
 
     def fits(self, item: Item) -> bool:
-        """An outcome that is never taken keeps its condition from deciding alone, too."""
+        """Whether it applies. An outcome that is never taken also keeps its condition from deciding alone."""
         place = (item.file, item.function, item.text) == (self.file, self.function, self.text)
         also = item.outcome == "independent" and self.outcome in ("true", "false")
         return place and (item.outcome == self.outcome or (also and not item.reached))
@@ -36,7 +36,7 @@ class Reason:
 class Verdict:
     reasoned: list[tuple[Item, Reason]]
     missing: list[Item]  # not reached, and no reason
-    stale: list[tuple[Reason, str]]  # and what is wrong with it
+    stale: list[tuple[Reason, str]]  # with the fault
 
 
 def read(path: Path) -> list[Reason]:
@@ -51,7 +51,7 @@ def read(path: Path) -> list[Reason]:
     reasons: list[Reason] = []
     for number, row in enumerate(rows[1:], start=2):
         if len(row) != len(COLUMNS) or not all(cell.strip() for cell in row):
-            raise LogError(path, number, "", f"{len(COLUMNS)} cells, none of them empty")
+            raise LogError(path, number, "", f"{len(COLUMNS)} cells are required, all with text")
         if row[3] not in OUTCOMES:
             raise LogError(path, number, "outcome", f"one of {', '.join(OUTCOMES)}")
         reasons.append(Reason(row[0], row[1], plain(row[2]), row[3], row[4], number))
@@ -59,10 +59,10 @@ def read(path: Path) -> list[Reason]:
 
 
 def _fault(reason: Reason, items: Iterable[Item]) -> str:
-    """What is wrong with a reason; empty if nothing is."""
+    """The fault of a reason; empty without one."""
     fits = [item for item in items if reason.fits(item) and item.outcome == reason.outcome]
     if not fits:
-        return "fits nothing any more"
+        return "no longer fits anything"
     return "is covered now" if all(item.reached for item in fits) else ""
 
 

@@ -1,4 +1,4 @@
-"""cppcheck with its MISRA addon, away from the sources: it writes files beside what it reads.
+"""Runs cppcheck with its MISRA addon away from the sources, since it writes files next to its input.
 
 Needs cppcheck 2.10 (Debian: cppcheck). The addon names rules by their numbers only; their texts are MISRA's.
 """
@@ -21,7 +21,7 @@ from .parts import NotHereError
 
 LIBRARY = ROOT / "lib"
 PARTS = ("WINDOW", "REFINED", "HAZARD", "MOVERS")
-CONFIGURATIONS: dict[str, tuple[str, ...]] = {  # name: parts that are left out
+CONFIGURATIONS: dict[str, tuple[str, ...]] = {  # name: omitted parts
     "default": (),
     **{f"without {part}": (part,) for part in PARTS},
 }
@@ -45,7 +45,7 @@ def cppcheck() -> str:
 
 
 def definitions(left_out: Iterable[str]) -> list[str]:
-    """All of them, so that cppcheck tries no others."""
+    """All definitions, so cppcheck tries no other configurations."""
     off = set(left_out)
     values = {f"GOE_WITH_{part}": 0 if part in off else 1 for part in PARTS}
     values |= {"GOE_WINDOW_MAX": 8, "GOE_CAMERAS_MAX": 1, "__GNUC__": 12}
@@ -65,7 +65,7 @@ def findings_of(log: str) -> set[Finding]:
 
 def check(sources: Iterable[Path], includes: Iterable[Path], options: Iterable[str], jobs: int) -> set[Finding]:
     with tempfile.TemporaryDirectory() as build:
-        told = subprocess.run(
+        done = subprocess.run(
             [cppcheck(), "--std=c99", "--platform=arm32-wchar_t4", f"--cppcheck-build-dir={build}", "-q", f"-j{jobs}"]
             + [f"--addon-python={sys.executable}"]
             + [f"--template={TEMPLATE}", "--inline-suppr", *options, *(f"-I{path}" for path in includes)]
@@ -74,18 +74,18 @@ def check(sources: Iterable[Path], includes: Iterable[Path], options: Iterable[s
             text=True,
             check=False,
         )
-    if told.returncode != 0:
-        raise RuntimeError(f"cppcheck: exit status {told.returncode}\n{told.stdout[-2000:]}{told.stderr[-2000:]}")
-    return findings_of(told.stderr)
+    if done.returncode != 0:
+        raise RuntimeError(f"cppcheck: exit status {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    return findings_of(done.stderr)
 
 
 def misra(left_out: Iterable[str], jobs: int) -> set[Finding]:
-    """Violations that the addon sees in lib/, headers once."""
+    """Violations reported by the addon in lib/; those in headers count once."""
     sources = sorted(LIBRARY.rglob("*.c"))
     found = check(sources, [LIBRARY], ["--addon=misra", "--enable=style", *definitions(left_out)], jobs)
     return {finding for finding in found if re.fullmatch(r"\d+\.\d+", finding.rule)}
 
 
 def counts(findings: Iterable[Finding]) -> Counter[tuple[str, str]]:
-    """By rule and file."""
+    """Counts by rule and file."""
     return Counter((finding.rule, finding.file) for finding in findings)

@@ -1,4 +1,4 @@
-"""Part ``flips``: one flipped bit anywhere in the estimator's memory, and what became of it (tests/flips)."""
+"""Part ``flips``: the effect of one flipped bit anywhere in the estimator's memory (tests/flips)."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ FLIGHTS = 7
 LONG = ("--stride", "1", "--images", "60")
 FATAL = ("crashed", "hung")
 BAD = ("not_finite", "undefined")
-FOUND = ("corrupted", "suspect", "told")
+FOUND = ("corrupted", "suspect", "reported")
 SEALED = ("ready", "seal", "camera_to_body", "settings")
-CHUNK = 25  # fields of the report that are wrong most often
+CHUNK = 25  # number of fields in the report, those most often wrong
 
 
 @dataclass(frozen=True)
 class Count:
-    """What became of the bits of one field, flipped after so many images of one flight."""
+    """Outcomes of the bits of one field, flipped after a number of images of one flight."""
 
     flight: str
     images: int
@@ -41,7 +41,7 @@ class Count:
 
 
 def counts(text: str) -> list[Count]:
-    """Of the program's lines, headers among them."""
+    """Parses the program's lines, including headers."""
     found: list[Count] = []
     names: list[str] = []
     for line in csv.reader(text.splitlines()):
@@ -83,10 +83,10 @@ def rows(found: list[Count]) -> list[Row]:
         Row("one flipped bit: a trap, a sanitizer's finding, a hang", share(fatal, bits), "0", bits > 0 and fatal == 0),
         Row("... an output not finite, or not of its enumeration", share(bad, bits), "0", bits > 0 and bad == 0),
         Row(
-            "... of settings and mounting, not found", share(missed, sealed_bits), "0", sealed_bits > 0 and missed == 0
+            "... in settings and mounting, missed", share(missed, sealed_bits), "0", sealed_bits > 0 and missed == 0
         ),
         Row(
-            "... of the rest: found (corrupted, suspect, stale, none)", share(number(FOUND, track), open_bits), "", None
+            "... elsewhere: reported (corrupted, suspect, stale)", share(number(FOUND, track), open_bits), "", None
         ),
         Row("... never off by 5 sigma", share(number(["masked"], track), open_bits), "", None),
         Row("... off by 5 sigma for some images, then right", share(number(["was_wrong"], track), open_bits), "", None),
@@ -105,7 +105,7 @@ def report(found: list[Count]) -> str:
     by_field = summed(found, "field")
     worst = sorted(by_field, key=lambda name: -by_field[name]["wrong"] / by_field[name]["bits"])[:CHUNK]
     wrong = {name: by_field[name] for name in worst if by_field[name]["wrong"]}
-    parts = ["Flipped between two images, then flown on; each bit has the first outcome that holds, from the left."]
+    parts = ["Flipped between two images of a flight; each bit has the first applicable outcome, from the left."]
     parts += ["By flight:", table(summed(found, "flight"), "flight"), "By field:", table(by_field, "field")]
     if wrong:
         parts += ["Fields by the share of bits that make the answer silently wrong:", table(wrong, "field")]
@@ -125,19 +125,19 @@ def build() -> None:
 
 
 def fly(program: Path, flight: int, options: Iterable[str]) -> str:
-    """The lines of one flight. The program ends with 1 where a bit was fatal or bad: its lines count that."""
-    told = subprocess.run(
+    """The lines of one flight. Exit status 1 means that a bit was fatal or bad; its lines count that."""
+    done = subprocess.run(
         [str(program), "--flight", str(flight), *options], capture_output=True, text=True, check=False
     )
-    if told.returncode not in (0, 1):
-        raise NotHereError(f"{program.name}: {told.stderr[-2000:]}")
-    return told.stdout
+    if done.returncode not in (0, 1):
+        raise NotHereError(f"{program.name}: {done.stderr[-2000:]}")
+    return done.stdout
 
 
 def run(amount: Amount) -> Result:
     build()
     options = LONG if amount.long else ()
     with ThreadPoolExecutor(amount.jobs) as pool:
-        told = list(pool.map(lambda flight: fly(PROGRAM, flight, options), range(FLIGHTS)))
-    found = counts("\n".join(told))
+        lines = list(pool.map(lambda flight: fly(PROGRAM, flight, options), range(FLIGHTS)))
+    found = counts("\n".join(lines))
     return Result(rows(found), report(found))

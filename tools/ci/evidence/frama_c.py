@@ -1,6 +1,7 @@
-"""Frama-C's Eva over the library: one parse, then one run for each driver; what it says of every property.
+"""Frama-C's Eva over the library: one parse, one run for each driver, and the status of every property.
 
-Needs frama-c 25 (Debian: frama-c-base). A driver is a function of tests/proof that calls the library with any bits.
+Needs frama-c 25 (Debian: frama-c-base). A driver is a function of tests/proof that calls the library with arbitrary
+bits.
 """
 
 from __future__ import annotations
@@ -21,24 +22,24 @@ from . import contracts
 from .parts import NotHereError
 
 LIBRARY = ROOT / "lib"
-COPY = ROOT / "build" / "proof" / "lib"  # with all contracts: contracts.py
+COPY = ROOT / "build" / "proof" / "lib"  # with all contracts, from contracts.py
 DRIVERS = ROOT / "tests" / "proof"
 PROVED = ("Valid", "Considered valid", "Dead")
 
 
 @dataclass(frozen=True)
 class Driver:
-    """A function of tests/proof, and how it is analysed."""
+    """A function of tests/proof, and options of its analysis."""
 
     name: str
     options: tuple[str, ...] = ()
-    finite: bool = False  # a result that is not finite is an alarm
+    finite: bool = False  # a non-finite result is an alarm
     quick: bool = False
 
 
 @dataclass(frozen=True)
 class Property:
-    """What Eva says of one property. The line is not part of what it is."""
+    """Eva's status of one property. The line is not part of its identity."""
 
     file: str  # from lib/ or tests/proof/
     function: str
@@ -72,7 +73,7 @@ def frama_c() -> str:
 
 
 def place(folder: str, file: str) -> str:
-    """As tests/proof/alarms.csv has it; "" of what is neither the library's nor a driver's."""
+    """Name of the file in tests/proof/alarms.csv; "" for files of neither the library nor a driver."""
     path = Path(folder.replace("FRAMAC_SHARE", "/")) / file
     path = path if path.is_absolute() else ROOT / path
     for base in (LIBRARY, COPY, DRIVERS):
@@ -82,7 +83,7 @@ def place(folder: str, file: str) -> str:
 
 
 def read_properties(path: Path) -> tuple[Property, ...]:
-    """Of the report's table, tabs between its columns."""
+    """Parses the report's table, with tabs between its columns."""
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file, delimiter="\t", quoting=csv.QUOTE_NONE))
     found = set()
@@ -94,19 +95,19 @@ def read_properties(path: Path) -> tuple[Property, ...]:
 
 
 def reached_functions(log: str) -> frozenset[str]:
-    """As "lib/x.c:name": a static function is called from its own file, where others may have one of the same name."""
-    told = re.sub(r"<- *\n +", "<- ", log)
-    calls = re.findall(r"computing for function (\w+) <- [^\n]*\n +Called from (\S+?):\d+", told)
+    """Functions as "lib/x.c:name": a static function is called from its file, and others may have the same name."""
+    text = re.sub(r"<- *\n +", "<- ", log)
+    calls = re.findall(r"computing for function (\w+) <- [^\n]*\n +Called from (\S+?):\d+", text)
     return frozenset(found for name, file in calls for found in (f"{place('', file)}:{plain(name)}", plain(name)))
 
 
 def plain(name: str) -> str:
-    """Without the number that tells static functions of one name apart."""
+    """Without the number that distinguishes static functions of the same name."""
     return re.sub(r"_\d+$", "", name)
 
 
 def library_functions(library: Path = LIBRARY) -> frozenset[str]:
-    """As reached_functions() tells them: external ones and those of headers by their name alone."""
+    """In the format of reached_functions(): external functions and those of headers by their name alone."""
     found = set()
     for path in sorted(library.rglob("*.[ch]")):
         for match in contracts.functions(path.read_text(encoding="utf-8"), path.suffix == ".c"):
@@ -115,8 +116,8 @@ def library_functions(library: Path = LIBRARY) -> frozenset[str]:
     return frozenset(found)
 
 
-class Analyser:
-    """The library and the drivers, parsed once for a machine; runs of drivers."""
+class Analyzer:
+    """The library and the drivers, parsed once for a machine; runs drivers."""
 
     def __init__(self, work: Path, machine: str) -> None:
         self.machine = machine
@@ -130,13 +131,13 @@ class Analyser:
         )
 
     def call(self, arguments: list[str]) -> str:
-        told = subprocess.run(
+        done = subprocess.run(
             [frama_c(), *arguments], cwd=ROOT, capture_output=True, text=True, check=False, encoding="utf-8"
         )
-        if told.returncode != 0:
-            tail = "\n".join((told.stdout + told.stderr).splitlines()[-20:])
-            raise RuntimeError(f"frama-c {' '.join(arguments[-6:])}: exit status {told.returncode}\n{tail}")
-        return told.stdout
+        if done.returncode != 0:
+            tail = "\n".join((done.stdout + done.stderr).splitlines()[-20:])
+            raise RuntimeError(f"frama-c {' '.join(arguments[-6:])}: exit status {done.returncode}\n{tail}")
+        return done.stdout
 
     def run(self, driver: Driver) -> Run:
         begun = time.monotonic()
@@ -153,6 +154,6 @@ class Analyser:
         return Run(driver.name, self.machine, seconds, read_properties(table), reached_functions(log) | {driver.name})
 
 
-def run_all(analyser: Analyser, drivers: Iterable[Driver], jobs: int) -> list[Run]:
+def run_all(analyzer: Analyzer, drivers: Iterable[Driver], jobs: int) -> list[Run]:
     with ThreadPoolExecutor(max_workers=max(jobs, 1)) as pool:
-        return list(pool.map(analyser.run, drivers))
+        return list(pool.map(analyzer.run, drivers))

@@ -1,7 +1,7 @@
-"""Fuzzing: what it takes until something does not hold, and how much held.
+"""Fuzzing: looks for inputs that violate a promise, and counts those that do not.
 
-Targets are those of tests/fuzz. Quick: every corpus, and some seconds of random inputs. Long: slices of a minute, added
-up in ``.cache/evidence/fuzz_state.json``, so that a run that was stopped goes on; updates of the library until the goal
+Targets are those of tests/fuzz. Quick: every corpus, and some seconds of random inputs. Long: slices of a minute, with
+counts kept in ``.cache/evidence/fuzz_state.json``, so a stopped run continues; updates of the library until the goal
 is reached, plain and under the sanitizers, and a share of time for every other target.
 """
 
@@ -26,23 +26,23 @@ HASH = ROOT / "tests" / "targets" / "golden_hash.txt"
 CORPUS = ROOT / "tests" / "fuzz" / "corpus"
 FOLDER = ROOT / ".cache" / "evidence"
 UPDATES = 1_000_000_000
-SANITIZED_SHARE = 10  # one update in so many is to run under the sanitizers
+SANITIZED_SHARE = 10  # one update in this many runs under the sanitizers
 SLICE_S = 60.0
-OTHERS_S = {"quick": 1.0, "long": 180.0}  # for each target but the estimator, in each build
-FUZZER_S = 120  # libFuzzer's own search, each target
-QUICK_S = 14.0  # of the estimator, quick
+OTHERS_S = {"quick": 1.0, "long": 180.0}  # for each target except the estimator, in each build
+FUZZER_S = 120  # libFuzzer's search, each target
+QUICK_S = 14.0  # for the estimator, quick
 SCRATCH = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None  # for parsers of files: in memory
 BROKEN = "inputs that broke something"
-LEAST_SEEN = 1  # updates with a status, for it to count as reached
+LEAST_SEEN = 1  # least updates with a status that counts as reached
 
 PLAIN = Build("default", "build")
 SANITIZED = Build("fuzz", "build-fuzz")
 MEMORY = Build("fuzz-msan", "build-fuzz-msan")
-# What MSan can run: no code but the project's.
+# Targets for MSan: code of the project only.
 WITHOUT_LIBRARIES = ("estimator", "flips", "flight", "mavlink", "text")
 TARGETS = (*WITHOUT_LIBRARIES, "log", "simulation", "companion")
 
-# Ended by a signal, so that the input is kept; and no leak checks of a program that counts its own end by atexit().
+# Abort on errors, which keeps the input; no leak checks of a program that counts its end with atexit().
 OPTIONS = {
     "ASAN_OPTIONS": "abort_on_error=1:detect_leaks=1",
     "UBSAN_OPTIONS": "print_stacktrace=1:halt_on_error=1:abort_on_error=1",
@@ -51,20 +51,20 @@ OPTIONS = {
 
 
 class BrokenError(Exception):
-    """A target ended where it should not; the text says how."""
+    """A target failed; the text describes how."""
 
 
 # ------------------------------------------------------------------------------------------------------------- programs
 
 
 def build(of: Build, targets: list[str], jobs: int) -> None:
-    """Brings a build folder up to date."""
+    """Updates a build folder."""
     if not (ROOT / of.folder / "CMakeCache.txt").exists():
-        _told(["cmake", "--preset", of.preset, "-DGOE_BUILD_TESTS=ON"])
-    _told(["cmake", "--build", "--preset", of.preset, "-j", str(jobs), "--target", *targets])
+        _run(["cmake", "--preset", of.preset, "-DGOE_BUILD_TESTS=ON"])
+    _run(["cmake", "--build", "--preset", of.preset, "-j", str(jobs), "--target", *targets])
 
 
-def _told(command: list[str]) -> str:
+def _run(command: list[str]) -> str:
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise BrokenError(
@@ -78,12 +78,12 @@ def program(of: Build, target: str, kind: str = "fuzz") -> Path:
 
 
 def corpus(target: str) -> list[str]:
-    """Text is mutated from its corpus; the estimator and the flight layer take any bytes, and longer ones."""
+    """Text is mutated from its corpus; the estimator and the flight layer also take longer, arbitrary bytes."""
     return [] if target in ("estimator", "flips", "flight", "mavlink") else [str(CORPUS / target)]
 
 
 def drive(of: Build, target: str, arguments: list[str], keep: Path) -> dict[str, float]:
-    """Runs a target; its counts."""
+    """Runs a target and returns its counts."""
     with tempfile.TemporaryDirectory(dir=SCRATCH) as scratch:
         command = [str(program(of, target)), "--keep", str(keep), *arguments]
         environment = {**os.environ, **OPTIONS, "TMPDIR": scratch}
@@ -101,7 +101,7 @@ def edges_of(log: str) -> int:
 
 
 def search(target: str, keep: Path, seconds: int) -> dict[str, float]:
-    """libFuzzer from the corpus on, over a copy of it that grows in .cache."""
+    """Runs libFuzzer from a growing copy of the corpus in .cache."""
     grown = FOLDER / "corpus" / target
     grown.mkdir(parents=True, exist_ok=True)
     command = [
@@ -126,7 +126,7 @@ class Job:
     of: Build
     target: str
     seconds: float
-    fuzzer: bool = False  # libFuzzer's own search
+    fuzzer: bool = False  # libFuzzer's search
 
     @property
     def name(self) -> str:
@@ -134,7 +134,7 @@ class Job:
 
 
 def next_job(state: State, updates: int, busy: list[Job]) -> Job | None:
-    """What is farthest from its goal; None once all are met, or under way."""
+    """The job farthest from its goal; None once all goals are met, or in progress."""
     goals = {PLAIN: updates - updates // SANITIZED_SHARE, SANITIZED: updates // SANITIZED_SHARE}
     share: dict[Job, float] = {}
     for of, goal in goals.items():
@@ -153,7 +153,7 @@ def next_job(state: State, updates: int, busy: list[Job]) -> Job | None:
 def _has(of: Build, target: str) -> bool:
     if of == MEMORY:
         return target in WITHOUT_LIBRARIES
-    return target != "estimator"  # has a goal of its own
+    return target != "estimator"  # has a separate goal
 
 
 def run_job(job: Job, seed: int, keep: Path) -> dict[str, float]:
@@ -164,7 +164,7 @@ def run_job(job: Job, seed: int, keep: Path) -> dict[str, float]:
 
 
 def run_slices(state: State, updates: int, jobs: int, keep: Path, place: Path) -> None:
-    """Until all goals are met, or something broke. What is done is kept after every slice."""
+    """Runs until all goals are met, or something broke. Keeps the counts after every slice."""
     running: dict[Future[dict[str, float]], Job] = {}
     with ThreadPoolExecutor(jobs) as pool:
         while True:
@@ -203,24 +203,23 @@ def rows_of(state: State, updates: int) -> list[Row]:
     plain = state.count("default/estimator", "updates")
     sanitized = state.sum_over("fuzz/estimator", "updates")
     memory = state.count("fuzz-msan/estimator", "updates")
-    told = state.all_of("estimator")
-    statuses = {name: count for name, count in told.items() if name.startswith("status_")}
+    counts = state.all_of("estimator")
+    statuses = {name: count for name, count in counts.items() if name.startswith("status_")}
     reached = [name for name, count in statuses.items() if count >= LEAST_SEEN]
-    fresh = (
-        told.get("fresh_window", 0.0) + told.get("fresh_refined", 0.0) + told.get("fresh_window_beside_refined", 0.0)
-    )
+    kinds = ("fresh_window", "fresh_refined", "fresh_window_with_refined")
+    fresh = sum(counts.get(name, 0.0) for name in kinds)
     goal = updates // SANITIZED_SHARE
     rows = [
-        Row("updates through goe_update, every answer judged", number(plain + sanitized + memory), number(updates),
+        Row("updates through goe_update, every answer checked", number(plain + sanitized + memory), number(updates),
             plain + sanitized + memory >= updates),
         Row("... of them under ASan and UBSan", number(sanitized), number(goal), sanitized >= goal),
         Row("... under MSan", number(memory), "some", memory > 0),
-        Row("... by method window, refined", f"{number(told.get('updates_window', 0))}, "
-            f"{number(told.get('updates_refined', 0))}", "both", None),
+        Row("... with method window, refined", f"{number(counts.get('updates_window', 0))}, "
+            f"{number(counts.get('updates_refined', 0))}", "both", None),
         Row("... with a new solution", number(fresh), "", None),
-        Row("... of a mover that is followed; with late poses told",
-            f"{number(told.get('movers_followed', 0))}; {number(told.get('latency_told', 0))}", "both",
-            min(told.get("movers_followed", 0), told.get("latency_told", 0)) > 0),
+        Row("... with target motion estimated; with late poses detected",
+            f"{number(counts.get('movers_followed', 0))}; {number(counts.get('latency_reported', 0))}", "both",
+            min(counts.get("movers_followed", 0), counts.get("latency_reported", 0)) > 0),
         Row("bits flipped in flight", number(state.all_of("flips").get("flips", 0.0)), "some",
             state.all_of("flips").get("flips", 0.0) > 0),
         Row("statuses of images reached", f"{len(reached)} of {len(statuses)}", "all", len(reached) == len(statuses)),
@@ -244,7 +243,7 @@ def report_of(state: State) -> str:
 
 
 def run_quick(jobs: int, keep: Path) -> State:
-    """Only what the default build has: the tests run the corpora under the sanitizers."""
+    """Uses only the default build: the tests run the corpora under the sanitizers."""
     state = State(HASH.read_text().split()[0])
     build(PLAIN, [f"fuzz_{target}" for target in TARGETS], jobs)
     run_corpora(state, PLAIN, TARGETS, keep)
@@ -258,8 +257,8 @@ def run_quick(jobs: int, keep: Path) -> State:
 
 
 def still_broken(keep: Path) -> list[str]:
-    """What was kept of earlier runs and breaks yet; the others are removed, and fuzzing goes on."""
-    told = []
+    """Kept inputs of earlier runs that still fail; removes the others, and fuzzing continues."""
+    failing = []
     for path in sorted(keep.glob("broken-*")):
         name = path.name.split("-")
         target = name[2] if name[1] == "libfuzzer" else name[1].replace("fuzz_", "", 1)
@@ -267,8 +266,8 @@ def still_broken(keep: Path) -> list[str]:
             drive(SANITIZED, target, [str(path)], keep)
             path.unlink()
         except BrokenError as error:
-            told.append(f"{path.name}: {error}")
-    return told
+            failing.append(f"{path.name}: {error}")
+    return failing
 
 
 def run_long(updates: int, jobs: int, keep: Path) -> State:
@@ -293,7 +292,7 @@ def run(amount: Amount) -> Result:
     except BrokenError as error:
         raise NotHereError(f"the targets cannot be built: {error}") from None
     rows = rows_of(state, updates)
-    if not amount.long:  # the goals of the long run are none of a quick one
+    if not amount.long:  # the goals of a long run do not apply to a quick one
         rows = [
             row if row.what.startswith("inputs that broke") else Row(row.what, row.figure, "", None) for row in rows
         ]

@@ -1,4 +1,4 @@
-"""What fuzzing has done so far: counts that are added up over slices, and the file that keeps them between runs."""
+"""Fuzzing done so far: counts added up over slices, and the file that keeps them between runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Build:
 
 @dataclass
 class State:
-    """``counts``: by "preset/target[/how]", what the target counted there. Of one library: its golden hash."""
+    """``counts``: by "preset/target[/how]", the target's counts. For one library, identified by its golden hash."""
 
     golden_hash: str
     seed: int = 0
@@ -25,7 +25,7 @@ class State:
     broken: list[str] = field(default_factory=list)
 
     def next_seed(self) -> int:
-        """Never the same twice, so that no slice runs the inputs of another."""
+        """Never the same twice, so no slice repeats the inputs of another."""
         self.seed += 1
         return self.seed
 
@@ -39,7 +39,7 @@ class State:
         return self.counts.get(name, {}).get(what, 0.0)
 
     def sum_over(self, prefix: str, what: str) -> float:
-        """Over a build's target, however it was run."""
+        """Sum over all runs of a build's target."""
         return sum(counts.get(what, 0.0) for name, counts in self.counts.items() if f"{name}/".startswith(f"{prefix}/"))
 
     def all_of(self, target: str) -> dict[str, float]:
@@ -53,7 +53,7 @@ class State:
 
 
 def read_state(place: Path, golden_hash: str) -> State:
-    """What was done with the same library; nothing, if it was another one, or the file cannot be read."""
+    """The state for the same library; empty for another one, or if the file is unreadable."""
     try:
         state = State(**json.loads(place.read_text(encoding="utf-8")))
     except (OSError, TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""The search for confident errors and vanished warnings, as a user runs it: ``python -m bench lies``."""
+"""The search for confident errors and vanished warnings, as users run it: ``python -m bench lies``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CONFIDENT_MOST = 0.003  # share of the flights of a mix
 
 
 def rows_of(counts: dict[str, int], mixes: list[str]) -> list[Row]:
-    """Of the counts of a search."""
+    """Rows of a search's counts."""
     flights = {mix: counts.get(f"flights|{mix}", 0) for mix in mixes}
     rows = [Row("flights", f"{sum(flights.values()):,}", "", None)]
     for mix, flown in flights.items():
@@ -44,5 +44,5 @@ def run(amount: Amount) -> Result:
         done = subprocess.run([*words, "--json", str(path)], cwd=ROOT, capture_output=True, text=True, check=False)
         if not path.exists():
             raise NotHereError(f"python -m bench lies: {done.stderr.strip()[-500:]}")
-        told = json.loads(path.read_text(encoding="utf-8"))
-    return Result(rows_of(told["counts"], told["mixes"]), done.stdout)
+        found = json.loads(path.read_text(encoding="utf-8"))
+    return Result(rows_of(found["counts"], found["mixes"]), done.stdout)

@@ -1,7 +1,7 @@
-"""MISRA C:2012 over lib/: each violation that cppcheck's addon sees is one that lib/MISRA.md answers for.
+"""MISRA C:2012 over lib/: lib/MISRA.md justifies each violation that cppcheck's addon reports.
 
-tests/static/misra.csv holds how many there are, by configuration, rule and file. One more fails; one less asks to write
-the table anew: ``python -m ci.evidence.misra``, which also sets the counts in lib/MISRA.md.
+tests/static/misra.csv contains their number by configuration, rule and file. An additional violation fails; a missing
+one requires an update of the table: ``python -m ci.evidence.misra``, which also sets the counts in lib/MISRA.md.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .record import Result, Row
 
 BASELINE = ROOT / "tests" / "static" / "misra.csv"
 PAGE = LIBRARY / "MISRA.md"
-# Of MISRA C:2012 with its first amendment.
+# From MISRA C:2012 with its first amendment.
 MANDATORY = frozenset(
     (
         *("9.1", "12.5", "13.6", "17.3", "17.4", "17.6", "19.1", "21.13", "21.17", "21.18", "21.19", "21.20"),
@@ -51,12 +51,12 @@ def write_baseline(path: Path, found: Counts) -> None:
 
 
 def page_counts(page: str) -> dict[str, int]:
-    """By rule, of the page's tables: the first column names the rule, the second how often."""
+    """Counts by rule in the page's tables: the first column has the rule, the second the count."""
     return {rule: int(count) for rule, count in re.findall(r"^\| (\d+\.\d+) \| (\d+) \|", page, re.MULTILINE)}
 
 
 def by_rule(found: Mapping[tuple[str, str, str], int]) -> Counter[str]:
-    """In the default configuration."""
+    """Counts in the default configuration."""
     total: Counter[str] = Counter()
     for (configuration, rule, _), count in found.items():
         if configuration == "default":
@@ -65,7 +65,7 @@ def by_rule(found: Mapping[tuple[str, str, str], int]) -> Counter[str]:
 
 
 def differences(found: Counts, kept: Counts, configurations: set[str]) -> tuple[list[str], list[str]]:
-    """What is more than the baseline has, and what is less."""
+    """Counts above the baseline, and counts below it."""
     more, less = [], []
     for key in sorted(set(found) | {key for key in kept if key[0] in configurations}):
         now, then = found.get(key, 0), kept.get(key, 0)
@@ -94,25 +94,29 @@ def run(amount: Amount) -> Result:
     found = measure(configurations, amount.jobs)
     more, less = differences(found, read_baseline(BASELINE), set(configurations))
     total = by_rule(found)
-    told = page_counts(PAGE.read_text(encoding="utf-8"))
-    untold = sorted(set(total) - set(told), key=rule_order)
-    stale = [f"{rule}: {told[rule]}, found {total.get(rule, 0)}" for rule in told if told[rule] != total.get(rule, 0)]
+    justified = page_counts(PAGE.read_text(encoding="utf-8"))
+    unjustified = sorted(set(total) - set(justified), key=rule_order)
+    stale = [
+        f"{rule}: {count}, found {total.get(rule, 0)}"
+        for rule, count in justified.items()
+        if count != total.get(rule, 0)
+    ]
     mandatory = sum(count for (_, rule, _), count in found.items() if rule in MANDATORY)
     shown = ", ".join(f"{rule} {total[rule]}" for rule in sorted(total, key=rule_order))
     rows = [
         Row("mandatory rules violated", str(mandatory), "0", mandatory == 0),
         Row("violations beyond the baseline", str(len(more)), "0", not more),
-        Row("entries of the baseline that no longer come", str(len(less)), "0: renew it", not less),
+        Row("entries of the baseline that no longer appear", str(len(less)), "0: update it", not less),
         Row(
-            "rules that are violated, each with its reason in lib/MISRA.md",
-            f"{len(total) - len(untold)} of {len(total)}, {sum(total.values())} places",
+            "violated rules with a reason in lib/MISRA.md",
+            f"{len(total) - len(unjustified)} of {len(total)}, {sum(total.values())} places",
             "all, with these counts",
-            not untold and not stale,
+            not unjustified and not stale,
         ),
         Row("configurations checked", f"{len(configurations)} of {len(CONFIGURATIONS)}", "", None),
     ]
     report = [f"default configuration: {shown}", "", *(f"new: {line}" for line in more)]
-    report += [f"renew: {line}" for line in less] + [f"no reason: {rule}" for rule in untold]
+    report += [f"update: {line}" for line in less] + [f"no reason: {rule}" for rule in unjustified]
     report += [f"count in lib/MISRA.md: {line}" for line in stale]
     return Result(rows, "\n".join(report))
 

@@ -1,7 +1,7 @@
 """Small changes of C sources, found in clang's syntax tree.
 
-What the preprocessor made, declarations, static asserts and comments are left alone: a change stands in a function's
-body or in a table of numbers, in text that is written there. A named constant is changed where it is used.
+Macro expansions, declarations, static asserts and comments are left alone: a change is in a function's
+body or in a table of numbers, in text written there. A named constant is changed at its use.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ UNREAD = ("StaticAssertDecl", "UnaryExprOrTypeTraitExpr", "OffsetOfExpr", "Typed
 REMOVED = ("BinaryOperator", "CompoundAssignOperator", "CallExpr", "UnaryOperator", "CStyleCastExpr")
 JUMPS = ("ReturnStmt", "ContinueStmt", "BreakStmt")
 NUMBERS = re.compile(r"_Bool|float|double|(unsigned |signed )?(char|short|int|long|long long)|unsigned")
-TOP_BEGIN, TOP_END = "    {\n", ("    },\n", "    }\n")  # of a declaration of the file, in clang's JSON
-FAMILIES = {  # by the first word of a kind; operators that do not compare: "arithmetic and logic"
+TOP_BEGIN, TOP_END = "    {\n", ("    },\n", "    }\n")  # of a top-level declaration in clang's JSON
+FAMILIES = {  # by kind; operators other than comparisons: "arithmetic and logic"
     "removed statement": "statement removed",
     "removed jump": "return, continue or break removed",
     "swapped arguments": "arguments swapped",
@@ -76,14 +76,14 @@ class Mutant:
     function: str  # "" for a table
     begin: int
     end: int
-    text: str  # what stands there instead
+    text: str  # the replacement
     kind: str
-    source: str  # the lines that it touches, each run of white space as one blank
-    mutation: str  # the same lines after it
+    source: str  # the changed lines, with white space reduced to single blanks
+    mutation: str  # the same lines after the change
 
     @property
     def key(self) -> tuple[str, str, str, str]:
-        """What it is known by as long as nobody touches its lines."""
+        """Its identity as long as its lines do not change."""
         return self.file, self.function, self.source, self.mutation
 
     @property
@@ -92,14 +92,14 @@ class Mutant:
 
 
 def sources(folder: Path = LIBRARY) -> list[str]:
-    """Files that hold functions, in a fixed order."""
+    """Files with functions, in a fixed order."""
     headers = [path for path in folder.rglob("*.h") if "static inline" in path.read_text(encoding="utf-8")]
     return sorted(str(path.relative_to(folder)) for path in [*folder.rglob("*.c"), *headers])
 
 
 def declarations(file: str, folder: Path = LIBRARY, flags: Sequence[str] = ()) -> tuple[list[Node], dict[str, str]]:
     """clang's syntax tree of one source or header: its own declarations; and for each enumerator another one of its
-    enumeration. Headers of others, of which the tree is 200 MB in some files, are not decoded."""
+    enumeration. Headers of others, whose tree is 200 MB in some files, are not decoded."""
     if shutil.which(CLANG) is None:
         raise NotHereError(CLANG)
     command = [CLANG, *FLAGS[:1], f"-I{folder}", *(flags or FLAGS[2:]), "-w", "-fsyntax-only"]
@@ -111,7 +111,7 @@ def declarations(file: str, folder: Path = LIBRARY, flags: Sequence[str] = ()) -
         for text in top_level(clang.stdout):
             if "EnumConstantDecl" in text or not is_of_another_file(text):
                 node: Node = json.loads(text)
-                others.update(neighbours(node))
+                others.update(next_names(node))
                 found.append(node)
     if clang.returncode:
         raise RuntimeError(f"{CLANG} refuses {folder / file}")
@@ -132,13 +132,13 @@ def top_level(lines: Iterable[str]) -> Iterator[str]:
 
 
 def is_of_another_file(text: str) -> bool:
-    """By the range, which stands before what the declaration is made of; where a macro begins it, it is decoded."""
+    """By the range, which precedes the parts of a declaration; a declaration that starts with a macro is decoded."""
     place = text.partition('"kind"')[2].partition('"inner"')[0]
     return "includedFrom" in place and "expansionLoc" not in place
 
 
-def neighbours(node: Node) -> dict[str, str]:
-    """Of an enumeration: of each name the next one."""
+def next_names(node: Node) -> dict[str, str]:
+    """For an enumeration: each name with the next one."""
     if node.get("kind") != "EnumDecl":
         return {}
     names = [part["name"] for part in node.get("inner", []) if part.get("kind") == "EnumConstantDecl"]
@@ -146,7 +146,7 @@ def neighbours(node: Node) -> dict[str, str]:
 
 
 def mutants(file: str, folder: Path = LIBRARY, flags: Sequence[str] = ()) -> list[Mutant]:
-    """All of a file, by place, then by kind."""
+    """All mutants of a file, by place, then by kind."""
     text = (folder / file).read_text(encoding="ascii")
     nodes, others = declarations(file, folder, flags)
     found = Finder(file, text, others)
@@ -186,18 +186,18 @@ class Finder:
 
     @staticmethod
     def is_here(node: Node) -> bool:
-        """Whether the file itself, not one that it includes, has the node."""
+        """Whether the node is in the file itself, not in an included one."""
         begin = node.get("range", {}).get("begin", {})
         return "offset" in at(begin) and "includedFrom" not in at(begin)
 
     @staticmethod
     def is_written(node: Node) -> bool:
-        """Whether both ends stand in the text as they are, not in a macro."""
+        """Whether both ends are in the text itself, not in a macro."""
         ends = node.get("range", {})
         return all("offset" in ends.get(end, {}) and "includedFrom" not in ends[end] for end in ("begin", "end"))
 
     def span(self, node: Node) -> tuple[int, int]:
-        """Of a node that may be a macro by name: from its first to behind its last character."""
+        """Range of a node that may be a macro's name: from its first to after its last character."""
         begin, end = (at(node["range"][name]) for name in ("begin", "end"))
         stop = end["offset"] + end["tokLen"]
         if "expansionLoc" in node["range"]["end"] and self.text[stop : stop + 1] == "(":
@@ -255,7 +255,7 @@ class Finder:
                 self.add("removed statement", begin, end, "")
 
     def jumps(self, block: Node, ends_function: bool) -> None:
-        """Removed; not the one that ends a function, which has no value then."""
+        """Removes jumps, except one that ends a function, which would then lack a return value."""
         statements = block.get("inner", [])
         for statement in statements[:-1] if ends_function else statements:
             if statement.get("kind") in JUMPS and self.is_written(statement):
@@ -344,7 +344,7 @@ class Finder:
                 self.add("swapped arguments", begin, end, swapped)
 
     def drop_call(self, node: Node, arguments: list[Node], texts: list[str]) -> None:
-        """Its first argument for its value, or 0."""
+        """Replaces a call by its first argument, or 0."""
         begin, end = self.span(node)
         if arguments and type_of(arguments[0]) == type_of(node):
             self.add("dropped call", begin, end, f"({texts[0]})")
@@ -353,7 +353,7 @@ class Finder:
 
 
 def at(end: Node) -> Node:
-    """Where an end of a range stands in the file."""
+    """Place of an end of a range in the file."""
     place: Node = end.get("expansionLoc", end)
     return place
 
@@ -363,12 +363,12 @@ def one_line(text: str) -> str:
 
 
 def type_of(node: Node) -> str:
-    told = node.get("type", {})
-    return str(told.get("desugaredQualType", told.get("qualType", id(node))))
+    found = node.get("type", {})
+    return str(found.get("desugaredQualType", found.get("qualType", id(node))))
 
 
 def is_value_used(parent: Node | None) -> bool:
-    """Of a call within the parent."""
+    """Whether the parent uses the value of a call."""
     kind = (parent or {}).get("kind")
     return kind != "CompoundStmt" and not (kind == "CStyleCastExpr" and type_of(parent or {}) == "void")
 
@@ -380,7 +380,7 @@ def callee_name(node: Node) -> str:
 
 
 def conditions(node: Node) -> Iterator[Node]:
-    """What the statement or the expression decides by."""
+    """The conditions of a statement or an expression."""
     parts = node.get("inner", [])
     kind = node.get("kind")
     if kind in ("IfStmt", "WhileStmt", "ConditionalOperator"):
@@ -390,7 +390,7 @@ def conditions(node: Node) -> Iterator[Node]:
 
 
 def other_numbers(text: str) -> Iterator[tuple[str, str]]:
-    """Of a literal, its suffix kept: 0 for 1, twice as much, the other sign, another last digit."""
+    """Other values for a literal, with its suffix: 0 for 1, twice as much, the other sign, another last digit."""
     whole = re.fullmatch(r"(\d+)([uUlL]*)", text)
     real = re.fullmatch(r"(\d+\.\d+)((?:e[-+]?\d+)?)(f?)", text)
     if whole:

@@ -1,9 +1,9 @@
-"""Whether the tests notice small changes of lib/, port/flight and port/companion: the part ``mutation``.
+"""Part ``mutation``: whether the tests detect small changes of lib/, port/flight and port/companion.
 
-A mutant of lib/ counts if it changes something that can be noticed: a unit test fails, or the hash over all outputs of
-the probe (tests/mutation/probe.c) is another. It is killed if a unit test of tests/c fails, ends by a signal, or takes
-several times as long. What each mutant came to is kept in .cache/evidence, so that a long run may be ended and begun
-again. For the other two folders see mutation_trees.
+A mutant of lib/ counts if it changes something detectable: a unit test fails, or the hash over all outputs of
+the probe (tests/mutation/probe.c) changes. It is killed if a unit test of tests/c fails, ends by a signal, or takes
+several times as long. The outcome of each mutant is kept in .cache/evidence, so a long run may be stopped and
+continued. For the other two folders see mutation_trees.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ LONG = 500
 LONG_OF_LAYER = 200
 QUICK = 15
 SEED = 1  # of the mutants of port/flight and port/companion
-TRIES = 6  # neighbours that are tried where a compiler refuses a mutant
+TRIES = 6  # next mutants to try if a compiler refuses one
 CACHE = ROOT / ".cache" / "evidence" / "mutation"
 
 
@@ -51,7 +51,7 @@ CACHE = ROOT / ".cache" / "evidence" / "mutation"
 
 
 def shares(sizes: Sequence[int], count: int) -> list[int]:
-    """How many of ``count`` each gets, by size; what is left over goes to the largest remainders."""
+    """The share of ``count`` for each size; the rest goes to the largest remainders."""
     whole = sum(sizes)
     exact = [size * count / whole for size in sizes]
     found = [int(share) for share in exact]
@@ -62,8 +62,8 @@ def shares(sizes: Sequence[int], count: int) -> list[int]:
 
 
 def strided(all_of_file: Sequence[Mutant], count: int) -> list[list[Mutant]]:
-    """One at each of ``count`` places at even distances, of the place's changes each in its turn; with those to try if
-    a compiler refuses it."""
+    """One mutant at each of ``count`` evenly spaced places, alternating among the changes at a place; with alternatives
+    in case a compiler refuses it."""
     places = [list(at) for _, at in itertools.groupby(all_of_file, key=lambda mutant: mutant.begin)]
     groups = []
     for i in range(count):
@@ -81,7 +81,7 @@ def code_lines(file: str) -> int:
 
 
 def chosen(count: int) -> list[list[Mutant]]:
-    """Spread over the files by their lines of code."""
+    """Mutants spread over the files by their lines of code."""
     files = sources()
     counts = shares([code_lines(file) for file in files], count)
     return [group for file, share in zip(files, counts) if share for group in strided(mutants(file), share)]
@@ -89,7 +89,7 @@ def chosen(count: int) -> list[list[Mutant]]:
 
 # -------------------------------------------------------------------------------------------------------------- running
 
-_bench: Bench | None = None  # in each process that tries mutants
+_bench: Bench | None = None  # one per worker process
 
 
 def try_one(bench: Bench, mutant: Mutant, folder: Path) -> Outcome:
@@ -101,19 +101,19 @@ def try_one(bench: Bench, mutant: Mutant, folder: Path) -> Outcome:
         if not ran.good:
             return Outcome(mutant, BY_HASH if name == BITS else KILLED, name, ran.why)
     probed = bench.ran("probe", folder, bench.limit("probe"))
-    if probed.good and probed.told == bench.probe_told:
+    if probed.good and probed.output == bench.probe_output:
         return Outcome(mutant, EQUIVALENT)
-    return Outcome(mutant, SURVIVED, "", differing(bench.probe_told, probed.told))
+    return Outcome(mutant, SURVIVED, "", differing(bench.probe_output, probed.output))
 
 
 def differing(one: str, other: str) -> str:
-    """The first words of the probe's lines that are not alike."""
+    """The first words of the probe's lines that differ."""
     lines = other.splitlines()
     return ", ".join(sorted({line.split()[0] for line in one.splitlines() if line not in lines}))
 
 
 def try_group(group: list[Mutant]) -> list[Outcome]:
-    """The first that compiles, and those before it."""
+    """The first mutant that compiles, and those before it."""
     assert _bench
     folder = _bench.folder / f"process_{os.getpid()}"
     found: list[Outcome] = []
@@ -127,8 +127,8 @@ def try_group(group: list[Mutant]) -> list[Outcome]:
 
 
 class Kept:
-    """What was found before: a line of JSON for each mutant. One that was killed counts as long as the library and the
-    test that killed it are what they were; any other as long as all tests are."""
+    """Earlier outcomes: a line of JSON for each mutant. The outcome of a killed mutant is valid while the library and
+    the killing test are unchanged, any other while all tests are."""
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / "outcomes.jsonl"
@@ -136,9 +136,9 @@ class Kept:
         self.all_tests = hash_of([PROBE], json.dumps(self.tests))
         self.known: dict[tuple[int, int, str, str], Outcome] = {}
         for line in self.path.read_text(encoding="utf-8").splitlines() if self.path.exists() else ():
-            told = json.loads(line)
-            outcome = Outcome(**{**told["outcome"], "mutant": Mutant(**told["outcome"]["mutant"])})
-            if told["tests"] == self.stamp(outcome):
+            entry = json.loads(line)
+            outcome = Outcome(**{**entry["outcome"], "mutant": Mutant(**entry["outcome"]["mutant"])})
+            if entry["tests"] == self.stamp(outcome):
                 self.known[self.place(outcome.mutant)] = outcome
 
     @staticmethod
@@ -151,7 +151,7 @@ class Kept:
         return self.tests.get(outcome.test, "") if outcome.came_to == KILLED else self.all_tests
 
     def of_group(self, group: list[Mutant]) -> list[Outcome] | None:
-        """All that there is to know of it, if it is known."""
+        """The outcomes of a group, if all are known."""
         found: list[Outcome] = []
         for mutant in group:
             outcome = self.known.get(self.place(mutant))
@@ -177,7 +177,7 @@ def try_all(groups: list[list[Mutant]], jobs: int) -> list[Outcome]:
     new = [group for group, known in zip(groups, found) if known is None]
     new.sort(
         key=lambda group: hash_of([], *group[0].key)
-    )  # so that a run which is ended early has tried some of every file
+    )  # a run stopped early has then tried some of every file
     outcomes = [outcome for known in found if known for outcome in known]
     with multiprocessing.get_context("fork").Pool(jobs) as pool:
         for of_group in pool.imap_unordered(try_group, new):
@@ -204,8 +204,8 @@ def of_layer(layer: mutation_trees.Layer, amount: Amount) -> Result:
 
 
 def row_of_strangers(listed: Path, wrong: Sequence[survivors.Survivor]) -> Row:
-    told = ", ".join(f"line {entry.line}" for entry in wrong) or "none"
-    return Row(f"entries of {listed.relative_to(ROOT)} that fit no mutant", told, "none", not wrong)
+    lines = ", ".join(f"line {entry.line}" for entry in wrong) or "none"
+    return Row(f"entries of {listed.relative_to(ROOT)} that fit no mutant", lines, "none", not wrong)
 
 
 def of_library(amount: Amount) -> Result:

@@ -1,7 +1,7 @@
-"""Builds the library once and each mutant's one file anew, and runs the unit tests and the probe on it.
+"""Builds the library once and only the changed file for each mutant, and runs the unit tests and the probe.
 
-The library is a shared one, which tests and probe find by a path that is told when they start: a mutant costs its own
-file's compilation and a link of the library.
+The library is shared; tests and probe get its path when they start. A mutant costs the compilation of its
+file and a link of the library.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ LINKED = ("-shared", "-Wl,-Bsymbolic")
 C_TESTS = ROOT / "tests" / "c"
 TARGETS = ROOT / "tests" / "targets"
 PROBE = ROOT / "tests" / "mutation" / "probe.c"
-BITS = "refined_bits"  # the test that holds a hash alone
+BITS = "refined_bits"  # the test of a hash alone
 GOLDEN = TARGETS / "golden_hash.txt"
-SPARE = 4.0  # a mutant may take so many times what the library takes, ...
-SPARE_S = 1.0  # ... and a second
+SPARE = 4.0  # a mutant may take this multiple of the library's time ...
+SPARE_S = 1.0  # ... plus a second
 WALL_S = 300.0
-# A long test is run for the files that it is about, and random input is shorter than in a run of the tests: what is
-# left out can only let a mutant live.
+# A long test runs only for the files it is about, and random input is shorter than in a normal test run: leaving
+# something out can only let a mutant survive.
 ABOUT = {
     "double_hazard": ("hazard/", "goe_covariance", "maths/"),
     "double_angle": ("maths/",),
@@ -50,11 +50,11 @@ UNITY_PLACES = (".cache/unity/src", ".cache/unity")
 
 @dataclass(frozen=True)
 class Ran:
-    """A program's end. ``why``: the test that failed and where, or how it ended."""
+    """A program's end. ``why``: the test that failed and its place, or how the program ended."""
 
     good: bool
-    seconds: float  # of the processor
-    told: str
+    seconds: float  # of processor time
+    output: str
     why: str = ""
 
 
@@ -67,7 +67,7 @@ def unity_folder() -> Path:
 
 
 def hash_of(paths: Iterable[Path], *words: str) -> str:
-    """Of the files' texts, in this order."""
+    """Hash of the files' texts, in this order."""
     made = hashlib.sha256("\0".join(words).encode())
     for path in paths:
         made.update(path.read_bytes())
@@ -75,13 +75,13 @@ def hash_of(paths: Iterable[Path], *words: str) -> str:
 
 
 def unit_tests() -> list[str]:
-    """Those of the library alone, by name."""
+    """Unit tests of the library alone, by name."""
     names = sorted(path.stem[len("test_") :] for path in C_TESTS.glob("test_*.c"))
     return [name for name in names if not name.startswith("host_")]
 
 
 def shared_by_tests() -> list[Path]:
-    """What all tests are made of beside their own file."""
+    """Files that all tests share."""
     own = sorted(path for path in C_TESTS.glob("*.[ch]") if not path.name.startswith("test_"))
     return [*own, *sorted((C_TESTS / "golden").glob("*.h"))]
 
@@ -100,13 +100,13 @@ def test_hash(name: str) -> str:
 
 
 def inline_functions(file: str) -> list[tuple[str, str]]:
-    """Name and text of each in a header; the text may reach further, up to the next one."""
+    """Name and text of each inline function in a header; the text may extend up to the next one."""
     parts = re.split(r"^static inline ", (LIBRARY / file).read_text(encoding="ascii"), flags=re.MULTILINE)[1:]
     return [(found[1], part) for part in parts if (found := re.search(r"(\w+)\(", part))]
 
 
 def stem(mutant: Mutant) -> str:
-    """Of its file, as tests are named."""
+    """The stem of its file, as in the names of tests."""
     return Path(mutant.file).stem[len("goe_") :]
 
 
@@ -128,7 +128,7 @@ class Bench:
         self.unity = unity_folder()
         self.tests = unit_tests()
         self.include = ["-I" + str(place) for place in (LIBRARY, C_TESTS, TARGETS, self.unity)]
-        self.users: dict[str, set[str]] = {}  # sources that a header is in
+        self.users: dict[str, set[str]] = {}  # sources that include a header
         self.seconds: dict[str, float] = {}
         self.objects = folder / "objects"
         self.programs = folder / "programs"
@@ -140,7 +140,7 @@ class Bench:
             self.shared = list(pool.map(self.compile_shared, [*support_of_tests(), self.unity / "unity.c"]))
             for failed in pool.map(self.build_program, [*self.tests, "probe"]):
                 failed and must(failed)
-        self.probe_told = self.ran("probe", folder, None).told
+        self.probe_output = self.ran("probe", folder, None).output
         self.check()
 
     # ------------------------------------------------------------------------------------------------------------ build
@@ -152,7 +152,7 @@ class Bench:
         return [COMPILER, *FLAGS, *DEFINED, *more, *self.include, "-c", str(source), "-o", str(made)]
 
     def compile_library(self, file: str) -> None:
-        """Kept by the hash of the whole library, which is in the folder's name."""
+        """Cached by the hash of the whole library, in the folder's name."""
         made = self.object_of(file)
         needs = made.with_suffix(".d")
         if not made.exists():
@@ -163,7 +163,7 @@ class Bench:
                 self.users.setdefault(str(path.relative_to(LIBRARY)), set()).add(file)
 
     def compile_shared(self, source: Path) -> str:
-        """What every program is linked with, but for its own file."""
+        """The objects that every program is linked with, except its own file."""
         made = self.objects / f"shared_{source.stem}_{hash_of([source, *shared_by_tests()])}.o"
         if not made.exists():
             must(self.command(source, made))
@@ -189,7 +189,7 @@ class Bench:
         ]
 
     def build_program(self, name: str) -> list[str] | None:
-        """The command that fails, if one does."""
+        """Returns the failing command, if one fails."""
         own = [C_TESTS / f"test_{name}.c"]
         if name == "probe":
             own = [PROBE, TARGETS / "replay.c", TARGETS / "embedded_logs.c"]
@@ -208,21 +208,21 @@ class Bench:
         return self.programs / name
 
     def check(self) -> None:
-        """As it is, the library passes all tests; and takes so long."""
+        """Checks that the unchanged library passes all tests, and measures their time."""
         for name in self.tests:
             ran = self.ran(name, self.folder, None)
             if not ran.good:
-                raise RuntimeError(f"the library as it is fails the unit test {name}: {ran.why}")
+                raise RuntimeError(f"the unchanged library fails the unit test {name}: {ran.why}")
             self.seconds[name] = ran.seconds
         golden = GOLDEN.read_text().split()[0]
-        if f"replay {golden}" not in self.probe_told:
-            raise RuntimeError(f"the library as it is built here does not give the golden hash:\n{self.probe_told}")
+        if f"replay {golden}" not in self.probe_output:
+            raise RuntimeError(f"the library built here does not give the golden hash:\n{self.probe_output}")
 
     # ---------------------------------------------------------------------------------------------------------- mutants
 
     def build(self, mutant: Mutant, folder: Path) -> str:
-        """Makes the mutant's libgoe.so in the folder. Says "made"; or "no code" if a compiler refuses it, "same code"
-        if its code is that of the library."""
+        """Builds the mutant's libgoe.so in the folder. Returns "made"; or "no code" if a compiler refuses it, "same
+        code" if its code equals the library's."""
         text = apply(mutant, (LIBRARY / mutant.file).read_text(encoding="ascii"))
         instead: dict[str, Path] = {}
         same = True
@@ -251,14 +251,14 @@ class Bench:
         return "made"
 
     def rebuild_own_test(self, mutant: Mutant, folder: Path, tree: Path) -> None:
-        """The test of a header calls its functions where they are compiled anew: in the test."""
+        """A header's test calls its functions in the test program, which is therefore rebuilt."""
         name = stem(mutant)
         if name in self.tests:
             command = self.linking([C_TESTS / f"test_{name}.c"], folder / name)
             compiled([word.replace(f"-I{LIBRARY}", f"-I{tree}") for word in command])
 
     def users_of(self, mutant: Mutant) -> list[str]:
-        """Of a header's function: sources that include the header and name it, or what is made of it in a header."""
+        """For a header's function: sources that include the header and use it, directly or through the header."""
         names = {mutant.function}
         inline = [(name, body) for file in sources() if file.endswith(".h") for name, body in inline_functions(file)]
         for _ in inline:
@@ -267,7 +267,7 @@ class Bench:
         return [file for file in users if names & set(re.findall(r"\w+", (LIBRARY / file).read_text()))]
 
     def order(self, mutant: Mutant) -> list[str]:
-        """The tests of the file's own name first, then by what they take; the hash last."""
+        """The tests with the file's name first, then by their time; the hash last."""
         own_name = stem(mutant)
 
         def place(name: str) -> tuple[int, float]:
@@ -281,7 +281,7 @@ class Bench:
         return SPARE * self.seconds.get(name, 10.0) + SPARE_S
 
     def ran(self, name: str, folder: Path, seconds: float | None) -> Ran:
-        """With the library of the folder; within so many seconds of the processor."""
+        """Runs a program with the library in the folder, within this processor time."""
 
         def bounded() -> None:
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -290,10 +290,10 @@ class Bench:
 
         program = folder / name if (folder / name).exists() else self.program(name)
         environment = {**os.environ, **SHORTER, "LD_LIBRARY_PATH": str(folder)}
-        with tempfile.TemporaryFile() as told:
+        with tempfile.TemporaryFile() as output:
             before = time.monotonic()
             process = subprocess.Popen(
-                [str(program)], stdout=told, stderr=told, cwd=ROOT, env=environment, preexec_fn=bounded
+                [str(program)], stdout=output, stderr=output, cwd=ROOT, env=environment, preexec_fn=bounded
             )
             used = 0.0
             try:
@@ -302,8 +302,8 @@ class Bench:
                 if process.returncode is None:
                     process.kill()
                     process.wait()
-            told.seek(0)
-            text = told.read(200_000).decode("utf-8", "replace")
+            output.seek(0)
+            text = output.read(200_000).decode("utf-8", "replace")
         if status == 0:
             return Ran(True, used, text)
         failed = re.search(r":(\d+):(\w+):FAIL", text)
@@ -312,7 +312,7 @@ class Bench:
 
 
 def wait(process: subprocess.Popen[bytes], until: float) -> tuple[int, float]:
-    """Exit status and seconds of the processor."""
+    """Exit status and seconds of processor time."""
     while True:
         found, status, used = os.wait4(process.pid, os.WNOHANG)
         if found:

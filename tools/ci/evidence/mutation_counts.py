@@ -1,4 +1,4 @@
-"""What mutants came to, and how they are counted."""
+"""Outcomes of mutants, and their counts."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Reasons = dict[tuple[str, str, str, str], str]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a mutant came to. ``test``: the one that killed it."""
+    """The outcome of a mutant. ``test``: the one that killed it."""
 
     mutant: Mutant
     came_to: str
@@ -57,9 +57,9 @@ def rows(outcomes: Iterable[Outcome], reasons: Reasons) -> list[Row]:
         ),
         Row("... ... without the hash over the refined method's bits", percent(count[KILLED], changed), "", None),
         Row("... ... by that hash alone", str(count[BY_HASH]), "", None),
-        Row("mutants of which the object code is the same", str(count[SAME_CODE]), "", None),
-        Row("mutants that neither a unit test nor the probe notices", str(count[EQUIVALENT]), "", None),
-        Row("killed, where those count as alive", percent(killed, changed + count[EQUIVALENT]), "", None),
+        Row("mutants with the same object code", str(count[SAME_CODE]), "", None),
+        Row("mutants that neither a unit test nor the probe detects", str(count[EQUIVALENT]), "", None),
+        Row("killed, if those count as alive", percent(killed, changed + count[EQUIVALENT]), "", None),
         Row(
             "mutants that survive: with a written reason, and without",
             f"{len(alive) - unexplained} and {unexplained}",
@@ -70,7 +70,8 @@ def rows(outcomes: Iterable[Outcome], reasons: Reasons) -> list[Row]:
 
 
 def rows_of_layer(name: str, outcomes: Iterable[Outcome], reasons: Reasons) -> list[Row]:
-    """Of a folder without a probe: what changes the object code counts, but for mutants with a written reason."""
+    """Rows of a folder without a probe: every mutant with other object code counts, except those with a written
+    reason."""
     outcomes = list(outcomes)
     count = Counter(outcome.came_to for outcome in outcomes)
     killed = sum(count[end] for end in ALL_KILLED)
@@ -96,8 +97,8 @@ def rows_of_layer(name: str, outcomes: Iterable[Outcome], reasons: Reasons) -> l
 
 
 def by_family(outcomes: Iterable[Outcome], reasons: Reasons) -> list[str]:
-    """A table: of each family what its mutants came to."""
-    columns = ("all", "no code", "same code", "unseen", "killed in C", "by program", "reasoned", "survived")
+    """A table: outcomes of the mutants of each family."""
+    columns = ("all", "no code", "same code", "undetected", "killed in C", "by program", "reasoned", "survived")
     ends = {NO_CODE: 1, SAME_CODE: 2, EQUIVALENT: 3, KILLED: 4, BY_HASH: 4, KILLED_BY_PROGRAM: 5, SURVIVED: 7}
     counts: dict[str, list[int]] = {}
     for outcome in outcomes:
@@ -112,7 +113,7 @@ def by_family(outcomes: Iterable[Outcome], reasons: Reasons) -> list[str]:
 
 
 def report(outcomes: Iterable[Outcome], reasons: Reasons, seconds: float) -> str:
-    """Survivors first, then what only the hash notices, then all that killed."""
+    """Survivors first, then mutants that only the hash detects, then all killed ones."""
     outcomes = sorted(outcomes, key=lambda o: (o.mutant.file, o.mutant.begin, o.mutant.text))
     lines = [f"{len(outcomes)} mutants in {seconds:.0f} s"]
     for title, name in (("Survivors", SURVIVED), ("Killed by the hash alone", BY_HASH), ("Equivalent", EQUIVALENT)):

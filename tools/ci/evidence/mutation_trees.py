@@ -1,7 +1,7 @@
-"""Mutants of port/flight and port/companion: each is written into a copy of the project, which ninja builds.
+"""Mutants of port/flight and port/companion: each is applied to a copy of the project, which ninja builds.
 
-Only the changed file is compiled, and the tests of its folder are linked. The tests in C run first, the fastest first;
-then those in Python that run the program. The first that fails ends the trial.
+Only the changed file is compiled, and the tests of its folder are linked. The C tests run first, the fastest first;
+then the Python tests of the program. The first failure ends the trial.
 """
 
 from __future__ import annotations
@@ -31,21 +31,21 @@ CACHE = ROOT / ".cache" / "evidence" / "mutation"
 LEFT_OUT = shutil.ignore_patterns(".git", ".cache", ".venv", "build*", "__pycache__")
 OPTIONS = ("-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_FLAGS_RELEASE=-O2", "-DGOE_BUILD_TESTS=ON")
 OPTIONS += ("-DGOE_WERROR=OFF", "-DGOE_INSTALL=OFF")
-PROGRAM = "program"  # its tests in Python, all of them, by this name
-SPARE, SPARE_S = 10.0, 5.0  # a mutant's test may take so many times what it takes without, and so many seconds more
-SPARE_OF_PROGRAM = 2.0  # its tests wait for it and take long as it is: one that hangs is to end soon
+PROGRAM = "program"  # name of all Python tests of the program
+SPARE, SPARE_S = 10.0, 5.0  # a mutant's test may take this multiple of its normal time, plus these seconds
+SPARE_OF_PROGRAM = 2.0  # its tests are slow already, so a hanging program must end soon
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A folder of sources, their tests in C, and a program that tests in Python run."""
+    """A folder of sources, its C tests, and a program run by Python tests."""
 
     name: str  # of the folder
     tests: str  # the folder of its tests: test_*.c and test_*.py
-    listed: str  # in tests/mutation: its mutants that no test kills, with reasons
+    listed: str  # in tests/mutation: its mutants that survive, with reasons
     flags: tuple[str, ...]
-    programs: dict[str, str] = field(default_factory=dict)  # in the environment of the tests: target, by path
-    slow: tuple[str, ...] = ()  # tests in Python that run last
+    programs: dict[str, str] = field(default_factory=dict)  # environment variable of the tests: build target
+    slow: tuple[str, ...] = ()  # Python tests that run last
 
     @property
     def folder(self) -> Path:
@@ -56,7 +56,7 @@ class Layer:
         return ROOT / "tests" / "mutation" / self.listed
 
     def mutants(self) -> list[Mutant]:
-        """All. What the flags name in build/ stands in the first copy."""
+        """All mutants. The flags refer to files in build/ of the first copy."""
         build = str(Tree(self, 0).build)
         flags = [flag.replace("build/", f"{build}/") for flag in self.flags]
         return [mutant for file in sources(self.folder) for mutant in mutants(file, self.folder, flags)]
@@ -99,7 +99,7 @@ class Tree:
                 shutil.rmtree(path) if path.is_dir() else path.unlink()
         shutil.copytree(ROOT, self.folder, ignore=LEFT_OUT, dirs_exist_ok=True)
         for source in (self.folder / self.layer.name).glob("*.[ch]"):
-            source.touch()  # an ended run may have left a mutant's object
+            source.touch()  # a stopped run may have left a mutant's object
         unity = os.environ.get("UNITY_DIR", str(ROOT / ".cache" / "unity"))
         configured = ["cmake", "-S", self.folder, "-B", self.build, *OPTIONS, f"-DUNITY_DIR={unity}"]
         subprocess.run([*map(str, configured), f"-DGOE_PYTHON={sys.executable}"], check=True, capture_output=True)
@@ -108,7 +108,7 @@ class Tree:
         for name in [*self.tests, *([PROGRAM] if self.python_tests else [])]:
             before = time.monotonic()
             if not self.passes(name):
-                raise RuntimeError(f"{self.layer.name} as it is fails {name}")
+                raise RuntimeError(f"{self.layer.name} without a mutant fails {name}")
             self.seconds[name] = time.monotonic() - before
         self.tests.sort(key=self.seconds.__getitem__)
         self.objects = self.object_code()
@@ -123,7 +123,7 @@ class Tree:
         return {str(path): path.read_bytes() for path in sorted(folder.rglob("*.o"))}
 
     def passes(self, name: str) -> bool:
-        """A test in C by its name, or those of the program."""
+        """Runs a C test by its name, or those of the program."""
         command = [str(self.build / self.layer.tests / name)]
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
         if name == PROGRAM:
@@ -178,7 +178,7 @@ class Tree:
 
 
 def sampled(every: Sequence[Mutant], count: int, seed: int) -> list[Mutant]:
-    """As many of each family, as far as it has them."""
+    """The same number from each family, as far as it has them."""
     families: dict[str, list[Mutant]] = defaultdict(list)
     for mutant in every:
         families[mutant.family].append(mutant)
@@ -198,7 +198,7 @@ def prepared(layer: Layer, jobs: int) -> list[Tree]:
 
 
 def try_all(trees: Sequence[Tree], chosen: Sequence[Mutant]) -> list[Outcome]:
-    """In all trees at a time."""
+    """Tries the mutants in all trees in parallel."""
     free: SimpleQueue[Tree] = SimpleQueue()
     for tree in trees:
         free.put(tree)
@@ -218,16 +218,16 @@ def try_all(trees: Sequence[Tree], chosen: Sequence[Mutant]) -> list[Outcome]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Mutants of one folder, of a chosen seed.")
+    parser = argparse.ArgumentParser(description="Mutants of one folder, with a chosen seed.")
     parser.add_argument("folder", choices=[layer.name for layer in LAYERS])
     parser.add_argument("--count", type=int, default=150)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    asked = parser.parse_args()
-    layer = next(layer for layer in LAYERS if layer.name == asked.folder)
+    arguments = parser.parse_args()
+    layer = next(layer for layer in LAYERS if layer.name == arguments.folder)
     begun = time.monotonic()
-    trees = prepared(layer, asked.jobs)
-    outcomes = try_all(trees, sampled(layer.mutants(), asked.count, asked.seed))
+    trees = prepared(layer, arguments.jobs)
+    outcomes = try_all(trees, sampled(layer.mutants(), arguments.count, arguments.seed))
     print(report(outcomes, reasons_of(layer.reasons), time.monotonic() - begun))
 
 

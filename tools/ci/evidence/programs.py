@@ -1,5 +1,5 @@
-"""The programs against hostile files, full disks, closed pipes and careless command lines: each finding of the attack,
-and the tests that would fail if it came back."""
+"""The programs against hostile files, full disks, closed pipes and careless command lines: each earlier finding,
+and the tests that detect its return."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ FINDINGS = (
         (f"{REPLAY}::test_bad_frames", f"{SCHEMA}::test_a_last_row_that_may_be_cut_off", BAD_RECORDINGS),
     ),
     Finding(
-        "--out onto an input, by whatever link",
+        "--out onto an input, through any link",
         (
             f"{REPLAY}::test_out_never_replaces_the_log",
             f"{SIM}::test_out_never_replaces_an_input",
@@ -48,7 +48,7 @@ FINDINGS = (
         ),
     ),
     Finding(
-        "--out through a link that leads nowhere",
+        "--out through a dangling link",
         (
             f"{REPLAY}::test_out_through_a_link_that_leads_nowhere",
             f"{AVOID}::test_a_table_goes_through_no_link_that_leads_nowhere",
@@ -63,7 +63,7 @@ FINDINGS = (
         ),
     ),
     Finding(
-        "memory bounded whatever the input",
+        "memory bounded for any input",
         (
             f"{ENDLESS}::test_frames",
             f"{ENDLESS}::test_recorded_flights",
@@ -86,7 +86,7 @@ FINDINGS = (
         ),
     ),
     Finding(
-        "Ctrl-C in the midst of writing",
+        "Ctrl-C while writing",
         (
             f"{REPLAY}::test_interrupt_leaves_nothing",
             f"{SIM}::test_interrupted_runs_leave_no_part_of_a_log",
@@ -95,7 +95,7 @@ FINDINGS = (
         ),
     ),
     Finding(
-        "bad values name their option, mistyped words are guessed",
+        "bad values name their option, mistyped words get a suggestion",
         (
             f"{REPLAY}::test_bad_usage",
             f"{AVOID}::test_bad_values_name_their_option",
@@ -106,21 +106,21 @@ FINDINGS = (
 
 
 def outcomes(tests: list[str]) -> dict[str, list[bool]]:
-    """Whether each case of each test passed, by file::test. A case that was skipped did not."""
+    """Whether each case of each test passed, by file::test. A skipped case did not."""
     with tempfile.TemporaryDirectory() as scratch:
-        told = Path(scratch) / "told.xml"
+        report = Path(scratch) / "report.xml"
         words = [
             sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-c", str(SETTINGS),
-            f"--rootdir={ROOT / 'tests'}", f"--junitxml={told}", *(str(ROOT / "tests" / test) for test in tests),
+            f"--rootdir={ROOT / 'tests'}", f"--junitxml={report}", *(str(ROOT / "tests" / test) for test in tests),
         ]  # fmt: skip
         done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
-        if not told.is_file() or done.returncode not in (0, 1):
+        if not report.is_file() or done.returncode not in (0, 1):
             raise ValueError(f"pytest: {(done.stdout + done.stderr).strip()[-1000:]}")
-        return read_outcomes(told.read_text(encoding="utf-8"))
+        return read_outcomes(report.read_text(encoding="utf-8"))
 
 
 def read_outcomes(text: str) -> dict[str, list[bool]]:
-    """Of JUnit's XML, as pytest writes it."""
+    """Parses pytest's JUnit XML."""
     found: dict[str, list[bool]] = {}
     for case in ElementTree.fromstring(text).iter("testcase"):
         name = f"{case.get('classname', '').replace('.', '/')}.py::{case.get('name', '').split('[')[0]}"
@@ -132,7 +132,7 @@ def read_outcomes(text: str) -> dict[str, list[bool]]:
 def row_of(finding: Finding, found: dict[str, list[bool]]) -> Row:
     cases = [passed for test in finding.tests for passed in found.get(test, [False])]
     good = sum(cases)
-    return Row(finding.what, f"mended: {good} of {len(cases)} cases pass", "all", good == len(cases))
+    return Row(finding.what, f"fixed: {good} of {len(cases)} cases pass", "all", good == len(cases))
 
 
 def run(_: Amount) -> Result:
@@ -142,6 +142,6 @@ def run(_: Amount) -> Result:
     found = outcomes(sorted({test for finding in FINDINGS for test in finding.tests}))
     rows = [row_of(finding, found) for finding in FINDINGS]
     mended = sum(row.met is True for row in rows)
-    whole = Row("findings mended, each with its tests", f"{mended} of {len(rows)}", "all", mended == len(rows))
+    whole = Row("findings fixed, with tests", f"{mended} of {len(rows)}", "all", mended == len(rows))
     lines = [f"{finding.what}\n" + "\n".join(f"  tests/{test}" for test in finding.tests) for finding in FINDINGS]
     return Result([whole, *rows], "\n".join(lines))

@@ -1,7 +1,7 @@
-"""Proof that no call of the library does what C leaves undefined, by Frama-C's Eva, whatever bits it is given.
+"""Proof with Frama-C's Eva that no call of the library has undefined behavior, for any input bits.
 
-tests/proof/README.md says what is proved and what is taken for granted. tests/proof/alarms.csv has every alarm that is
-left, with its reason; a new one fails, and so does one that no longer comes.
+tests/proof/README.md lists the proved properties and the assumptions. tests/proof/alarms.csv has every remaining alarm
+with its reason; a new alarm fails, and so does one that no longer appears.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from .frama_c import DRIVERS, Analyser, Driver, Property, Run, library_functions, run_all
+from .frama_c import DRIVERS, Analyzer, Driver, Property, Run, library_functions, run_all
 from .parts import Amount
 from .record import Result, Row
 
 ALARMS = DRIVERS / "alarms.csv"
-MACHINES = ("gcc_x86_64", "gcc_x86_32")  # the second stands for 32 bit ARM: the same sizes of int, long and pointers
+MACHINES = ("gcc_x86_64", "gcc_x86_32")  # the second represents 32-bit ARM: the same sizes of int, long and pointers
 
-# Loops of up to nine turns, and all that end after a plain number of them, are unrolled. Floats are any.
+# Unrolls loops of up to nine turns, and all with a constant number of turns. Floats are arbitrary.
 PLAIN = (
     *("-eva-domains", "cvalue", "-eva-slevel", "20", "-eva-ilevel", "24", "-eva-plevel", "70"),
     *("-eva-widening-delay", "2", "-eva-subdivide-non-linear", "0"),
@@ -54,7 +54,7 @@ def alarms_of(runs: Iterable[Run]) -> set[Key]:
 
 
 def read_alarms(path: Path) -> dict[Key, str]:
-    """Of each: its reason."""
+    """The reason of each alarm."""
     with path.open(encoding="utf-8", newline="") as file:
         return {
             (driver, row["file"], row["function"], row["kind"], row["expression"]): row["reason"]
@@ -64,22 +64,22 @@ def read_alarms(path: Path) -> dict[Key, str]:
 
 
 def compare(found: set[Key], explained: dict[Key, str], ran: set[str]) -> tuple[list[Key], list[Key], list[Key]]:
-    """New alarms, entries that no longer come, alarms without a reason."""
+    """New alarms, entries that no longer appear, alarms without a reason."""
     new = sorted(found - set(explained))
     gone = sorted(key for key in explained if key[0] in ran and key not in found)
     return new, gone, sorted(key for key in found & set(explained) if not explained[key].strip())
 
 
 def preconditions(runs: Iterable[Run]) -> tuple[int, int]:
-    """Of the library's contracts, at all their calls: how many are proved, of how many."""
-    asked: dict[tuple[str, str, str], bool] = {}
+    """Preconditions of the library's contracts, over all calls: number proved, and total."""
+    proved: dict[tuple[str, str, str], bool] = {}
     for run in runs:
         for entry in run.properties:
             of_library = entry.kind.startswith("precondition") and entry.file.startswith("lib/")
-            if of_library and entry.status != "Dead":  # no run comes there
+            if of_library and entry.status != "Dead":  # unreachable
                 key = (entry.file, entry.function, entry.text)
-                asked[key] = asked.get(key, True) and entry.proved
-    return sum(asked.values()), len(asked)
+                proved[key] = proved.get(key, True) and entry.proved
+    return sum(proved.values()), len(proved)
 
 
 def describe(key: Key) -> str:
@@ -93,26 +93,26 @@ def run(amount: Amount) -> Result:
     runs: list[Run] = []
     with tempfile.TemporaryDirectory() as work:
         for machine in machines:
-            analyser = Analyser(Path(work), machine)
-            runs += run_all(analyser, drivers, amount.jobs)
+            analyzer = Analyzer(Path(work), machine)
+            runs += run_all(analyzer, drivers, amount.jobs)
     found = alarms_of(runs)
     explained = read_alarms(ALARMS)
     new, gone, silent = compare(found, explained, {entry.driver for entry in runs})
     library = library_functions()
     reached = library.intersection(*[set().union(*(entry.reached for entry in runs))])
-    met, asked = preconditions(runs)
+    met, total = preconditions(runs)
     finite = [entry for entry in runs if entry.driver.startswith("proof_finite_")]
     rows = [
         Row(
-            "functions of lib/ that Eva analysed",
+            "functions of lib/ that Eva analyzed",
             f"{len(reached)} of {len(library)}",
             "all" if amount.long else "",
             len(reached) == len(library) if amount.long else None,
         ),
         Row("alarms", f"{len({key[1:] for key in found})}", "each explained in tests/proof/alarms.csv", not silent),
-        Row("alarms that are not explained", str(len(new)), "0", not new),
-        Row("explained alarms that no longer come", str(len(gone)), "0", not gone),
-        Row("preconditions proved at every call", f"{met} of {asked}", "", None),
+        Row("unexplained alarms", str(len(new)), "0", not new),
+        Row("explained alarms that no longer appear", str(len(gone)), "0", not gone),
+        Row("preconditions proved at every call", f"{met} of {total}", "", None),
         Row("runs for finite results", f"{len(finite)}", "", None),
     ]
     return Result(rows, report_of(runs, library - reached, new, gone))
@@ -121,7 +121,7 @@ def run(amount: Amount) -> Result:
 def report_of(runs: list[Run], unreached: frozenset[str], new: list[Key], gone: list[Key]) -> str:
     lines = []
     for entry in runs:
-        left = [told for told in entry.properties if not told.proved]
+        left = [one for one in entry.properties if not one.proved]
         lines.append(
             f"{entry.driver} ({entry.machine}): {entry.seconds} s, {len(entry.reached)} functions,"
             f" {len(entry.properties)} properties, {len(left)} alarms"
@@ -132,7 +132,7 @@ def report_of(runs: list[Run], unreached: frozenset[str], new: list[Key], gone: 
 
 
 def merged(found: set[Key], explained: dict[Key, str]) -> list[dict[str, str]]:
-    """Rows of the table: an alarm once, with the drivers that meet it."""
+    """Rows of the table: an alarm once, with the drivers that raise it."""
     rows: dict[tuple[str, ...], dict[str, str]] = {}
     for key in sorted(found):
         driver, file, function, kind, text = key

@@ -15,14 +15,14 @@ from goe_tools.logs.whole_file import write_whole
 @dataclass(frozen=True)
 class Row:
     what: str  # "lines of lib/ that the unit tests run"
-    figure: str  # as it is printed: "99.9 % (3,201 of 3,204)"
+    figure: str  # as printed: "99.9 % (3,201 of 3,204)"
     goal: str  # "100 % or a written reason"
     met: bool | None  # None: a figure without a goal
 
 
 @dataclass(frozen=True)
 class Result:
-    """What a part found. ``report``: text for a reader who asks why, one file of its own."""
+    """A part's result. ``report``: text with details, in a separate file."""
 
     rows: list[Row]
     report: str = ""
@@ -30,16 +30,16 @@ class Result:
 
 @dataclass(frozen=True)
 class Kept:
-    """A part's rows with what made them."""
+    """A part's rows and the circumstances of the run."""
 
     part: str
     amount: str  # "quick" or "long"
     date: str
-    golden_hash: str  # of the library's bits then
+    golden_hash: str  # of the library's bits at the time
     seconds: float
     machine: str  # processor, compiler
     rows: list[Row] = field(default_factory=list)
-    commit: str = ""  # of the sources; with "+" at its end: changed since
+    commit: str = ""  # of the sources; a trailing "+": changed since
     cores: int = 0
 
 
@@ -54,14 +54,14 @@ class Release:
 
 
 def read(path: Path) -> dict[str, Kept]:
-    """By part, of a record or of a release's file. An absent file holds none."""
+    """Rows by part, from a record or a release's file. An absent file has none."""
     if not path.exists():
         return {}
     text = read_text(path, JSON_BYTES_MAX)
     try:
         content = json.loads(text)
-        told: list[dict[str, Any]] = content["parts"] if isinstance(content, dict) else content
-        kept = [Kept(**{**entry, "rows": [Row(**row) for row in entry["rows"]]}) for entry in told]
+        parts: list[dict[str, Any]] = content["parts"] if isinstance(content, dict) else content
+        kept = [Kept(**{**entry, "rows": [Row(**row) for row in entry["rows"]]}) for entry in parts]
     except (KeyError, TypeError, ValueError) as error:
         raise LogError(path, 0, "", f"not a record of evidence: {error}") from None
     return {entry.part: entry for entry in kept}
@@ -91,7 +91,7 @@ def run_of(entry: Kept) -> str:
 
 
 def cells(row: Row) -> str:
-    """What, figure, goal, verdict: the columns of Markdown that any table of rows has."""
+    """What, figure, goal, verdict: the common Markdown columns of all tables of rows."""
     return f"{row.what} | {row.figure} | {row.goal} | {WORDS[row.met]}"
 
 

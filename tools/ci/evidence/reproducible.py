@@ -1,7 +1,7 @@
-"""Whether two builds of the same sources give the same bits: of the archives of the library and the flight layer, by
-gcc and clang, with debug information; of the Python package's sdist; in long runs of its wheel, too.
+"""Whether two builds of the same sources give the same bits: the archives of the library and the flight layer, with
+gcc and clang, with debug information; the Python package's sdist; in long runs also its wheel.
 
-The two differ in folder and depth, in time, in jobs at a time, umask, locale, time zone and the build folder's name;
+The two builds differ in folder and depth, time, parallel jobs, umask, locale, time zone and the build folder's name;
 those of the wheel not in umask, which scikit-build-core keeps as the modes of the files inside."""
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from .record import Result, Row
 NEEDED = ("lib", "port", "CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md")  # of the tree
 ARCHIVES = ("lib/libgoe.a", "port/flight/libgoe_flight.a")
 COMPILERS = ("gcc", "clang-19")
-EPOCH = "1700000000"  # SOURCE_DATE_EPOCH of the packages, s: any
+EPOCH = "1700000000"  # SOURCE_DATE_EPOCH of the packages, s: arbitrary
 SDIST = "import sys; from scikit_build_core.build import build_sdist; print(build_sdist(sys.argv[1]))"
 WHEEL = "import sys; from scikit_build_core.build import build_wheel; print(build_wheel(sys.argv[1]))"
 
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What must not matter."""
+    """Properties that must not matter."""
 
     folder: str
     build: str
@@ -47,7 +47,7 @@ SECOND = Surroundings(
 
 
 def copied(around: Surroundings, scratch: Path) -> Path:
-    """The sources in a folder of their own, links followed, with new times."""
+    """Copies the sources to a new folder, with links followed and new times."""
     tree = scratch / around.folder
     tree.mkdir(parents=True)
     no_sources = shutil.ignore_patterns("build*", "target", "__pycache__", "*.egg-info", "dist")
@@ -76,7 +76,7 @@ def digest(path: Path) -> str:
 
 
 def archives(tree: Path, around: Surroundings, compiler: str) -> dict[str, str]:
-    """SHA-256 of each archive. -g: the debug information is where folders would show."""
+    """SHA-256 of each archive. -g: debug information may contain folder names."""
     build = tree.parent / f"{around.build}-{compiler}"
     _run(
         [
@@ -111,14 +111,14 @@ def run(amount: Amount) -> Result:
         trees = []
         for around in (FIRST, SECOND):
             trees.append((copied(around, Path(name)), around))
-            time.sleep(1.1)  # so that time stamps of whole seconds differ
+            time.sleep(1.1)  # makes time stamps of whole seconds differ
         for compiler in compilers:
             first, second = (archives(tree, around, compiler) for tree, around in trees)
             rows += [same(f"{compiler}: {Path(one).name}", first[one], second[one]) for one in ARCHIVES]
         rows.append(same("sdist of the Python package", *(package(*tree, SDIST, "sdist") for tree in trees)))
         if amount.long:
-            alike = [(tree, replace(around, umask=FIRST.umask)) for tree, around in trees]
-            wheels = (package(*tree, WHEEL, "wheel") for tree in alike)
+            same_umask = [(tree, replace(around, umask=FIRST.umask)) for tree, around in trees]
+            wheels = (package(*tree, WHEEL, "wheel") for tree in same_umask)
             rows.append(same("wheel of the Python package, umask 022", *wheels))
     report += [f"{row.what}: {row.figure}" for row in rows]
     return Result(rows, "\n".join(report))

@@ -1,8 +1,8 @@
-"""How far float32 takes the answers from exact arithmetic: a search for the worst scenes that lib/goe.h allows.
+"""Rounding error of float32: a search for the worst scenes that lib/goe.h allows.
 
-The library in float32 and compiled in double precision get the same numbers. Compared is what lies before the first
-image in which the two decide anything otherwise (a model, an outlier at the edge of the gate, which corner of a box is
-which): such a decision is one that noise makes either way, and what follows it is told beside."""
+The library in float32 and in double precision get the same numbers. They are compared up to the first image in which
+their decisions differ (a model, an outlier at the edge of the gate, the association of a box's corners): noise also
+makes such decisions either way. Differences after it are reported separately."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from goe_tools.library import ready
 from .parts import Amount, NotHereError
 from .record import Result, Row
 
-TRIED = {False: 250, True: 6000}  # scenes for each case and domain; of a long run
-RANDOM_SHARE = 0.3  # of them at random, before the climbing begins
-STEP, STEP_SHARE = 0.1, 0.35  # of a coordinate of the unit cube; of the coordinates that are moved
+TRIED = {False: 250, True: 6000}  # scenes for each case and domain; True: long run
+RANDOM_SHARE = 0.3  # of them at random, before the local search
+STEP, STEP_SHARE = 0.1, 0.35  # size of a step in the unit cube; share of the changed coordinates
 METHODS = ("refined", "window")
-GOALS = {(NEAR.name, "refined"): 0.5, (FAR.name, "refined"): 1.0}  # sigmas; what is reached: lib/goe.h, Arithmetic
+GOALS = {(NEAR.name, "refined"): 0.5, (FAR.name, "refined"): 1.0}  # sigmas; results in lib/goe.h, Arithmetic
 
 
 @dataclass
@@ -31,7 +31,7 @@ class Worst:
 
     sigmas: float = 0.0
     point: np.ndarray | None = None
-    ever: float = 0.0  # in any scene, also after something was decided otherwise that no output names
+    ever: float = 0.0  # in any scene, also after a different decision that no output contains
 
 
 @dataclass
@@ -43,20 +43,20 @@ class Found:
     tracks: int = 0  # with an answer
     answers: int = 0
     apart: int = 0
-    parted: int = 0  # tracks in which a decision fell otherwise
+    parted: int = 0  # tracks with a different decision
 
 
 def try_point(found: Found, point: np.ndarray) -> None:
     images, settings = scene_at(found.case, found.domain, point)
-    told = difference(images, settings)
-    found.tracks += told.answered > 0
-    found.answers += told.answered
-    found.apart += told.apart
-    found.parted += told.apart > 0
+    one = difference(images, settings)
+    found.tracks += one.answered > 0
+    found.answers += one.answered
+    found.apart += one.apart
+    found.parted += one.apart > 0
     for name, worst in found.worst.items():
-        sigmas = most(told.sigmas[name])
-        found.sigma = max(found.sigma, most(told.sigma[name]))
-        worst.ever = max(worst.ever, most(told.ever[name]))
+        sigmas = most(one.sigmas[name])
+        found.sigma = max(found.sigma, most(one.sigma[name]))
+        worst.ever = max(worst.ever, most(one.ever[name]))
         if sigmas > worst.sigmas:
             worst.sigmas, worst.point = sigmas, point
 
@@ -67,7 +67,7 @@ def moved(point: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 
 def search(case: Case, domain: Domain, tries: int, seed: int = 1) -> Found:
-    """At random first, then from the worst of each quantity in turn."""
+    """Random search first, then from the worst scene of each quantity in turn."""
     rng = np.random.default_rng([seed, CASES.index(case), DOMAINS.index(domain)])
     found = Found(case, domain)
     names = list(QUANTITIES)
@@ -107,14 +107,14 @@ def rows(found: Sequence[Found]) -> Iterator[Row]:
                 if worst.point is not None:
                     yield Row(
                         f"{name}, {method}, {domain.name} domain: float32 against float64, the worst scene found",
-                        f"{worst.sigmas:.2g} sigma ({best.case.name}); {ever:.2g} once a decision falls otherwise",
+                        f"{worst.sigmas:.2g} sigma ({best.case.name}); {ever:.2g} after a different decision",
                         f"at most {goal:g} sigma" if goal else "",
                         worst.sigmas <= goal if goal else None,
                     )
             tracks, parted = sum(f.tracks for f in own), sum(f.parted for f in own)
             yield Row(
-                f"{method}, {domain.name} domain: a sigma's own rounding; tracks with another decision",
-                f"{max(f.sigma for f in own):.2g} of it; {parted} of {tracks} tracks that were searched for the worst",
+                f"{method}, {domain.name} domain: rounding of a sigma; tracks with a different decision",
+                f"{max(f.sigma for f in own):.2g} of it; {parted} of {tracks} searched tracks",
                 "",
                 None,
             )

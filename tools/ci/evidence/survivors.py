@@ -1,8 +1,8 @@
-"""Mutants that no test kills, and the reason why none should: survivors.csv, flight.csv and companion.csv in
-tests/mutation, of lib/, port/flight and port/companion.
+"""Mutants that survive the tests, with reasons: survivors.csv, flight.csv and companion.csv in
+tests/mutation, for lib/, port/flight and port/companion.
 
-Columns: file, function, source, mutation, reason. ``source`` and ``mutation`` are the touched lines before and after,
-as the report of the part ``mutation`` writes them. An entry that fits no mutant of the present sources is wrong.
+Columns: file, function, source, mutation, reason. ``source`` and ``mutation`` are the changed lines before and after,
+as in the report of the part ``mutation``. An entry that fits no mutant of the current sources is wrong.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ COLUMNS = ["file", "function", "source", "mutation", "reason"]
 @dataclass(frozen=True)
 class Survivor:
     line: int
-    key: tuple[str, str, str, str]  # as a Mutant's
+    key: tuple[str, str, str, str]  # the key of a Mutant
     reason: str
 
 
@@ -36,7 +36,7 @@ def read(path: Path = LIST) -> list[Survivor]:
         found = []
         for row in rows:
             if len(row) != len(COLUMNS) or not all(row[i].strip() for i in (0, 2, 4)):
-                raise LogError(path, rows.line_num, "", "a file, a source and a reason are needed in five columns")
+                raise LogError(path, rows.line_num, "", "needs a file, a source and a reason in five columns")
             found.append(Survivor(rows.line_num, (row[0], row[1], row[2], row[3]), row[4]))
     return found
 

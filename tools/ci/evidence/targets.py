@@ -12,7 +12,7 @@ from .parts import Amount, NotHereError
 from .record import Result, Row
 
 FOLDER = ROOT / "build" / "tests" / "targets"
-QUICK = r"^(replay|flight_replay)$"  # on this machine alone
+QUICK = r"^(replay|flight_replay)$"  # on this machine only
 
 
 def run(amount: Amount) -> Result:

@@ -1,6 +1,6 @@
-"""The most that each public call can take on a Cortex-M4F (gcc -O2): measured, proved, stated.
+"""The worst case of each public call on a Cortex-M4F (gcc -O2): measured, proved, stated.
 
-Proved are instructions by the longest path through the machine code (tools/ci/cost/longest), stack by the
+Instructions are proved by the longest path through the machine code (tools/ci/cost/longest), stack by the
 deepest path through the calls (tools/ci/cost/stack.py)."""
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ def table_rows(trips: list[Trips], unused: list[str], changed: list[str]) -> Ite
         "0",
         not wrong,
     )
-    yield Row("lines of the table of bounds that speak of nothing", str(len(unused)), "0", not unused)
+    yield Row("unused lines of the table of bounds", str(len(unused)), "0", not unused)
     yield Row("modules whose code differs without debugging information", str(len(changed)), "0", not changed)
-    words = "indirect calls, recursion, frames that grow at run time: one of them stops the proof"
+    words = "indirect calls, recursion, frames that grow at run time: each of them stops the proof"
     yield Row(words, "0", "0", True)
 
 

@@ -1,4 +1,4 @@
-"""Stage packages, or check and write the manifests that lie in the tree.
+"""Stage packages, or check and write the manifests in the tree.
 
 python -m ci packages --out DIR [--target NAME]... [--maintainer "NAME <ADDRESS>"] [--url URL]
 python -m ci packages --check
@@ -22,19 +22,19 @@ from .targets import COMMITTED, TARGETS
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument("--out", type=Path, metavar="DIR", help="where to stage: DIR/<target>/goe; must not be there yet")
-    what.add_argument("--check", action="store_true", help="fail if a manifest in the tree says something else")
+    what.add_argument("--out", type=Path, metavar="DIR", help="stage to DIR/<target>/goe, which must not exist")
+    what.add_argument("--check", action="store_true", help="fail if a manifest in the tree differs")
     what.add_argument("--write", action="store_true", help="write the manifests in the tree")
     what.add_argument("--sbom", type=Path, metavar="FILE", help="write the bill of materials, CycloneDX as JSON")
     parser.add_argument("--target", action="append", choices=sorted(TARGETS), help="only this one; may be repeated")
-    parser.add_argument("--maintainer", help="who answers for the packages; default: the goe authors")
-    parser.add_argument("--url", help="home page; default: that of CMakeLists.txt")
+    parser.add_argument("--maintainer", help="maintainer of the packages (default: the goe authors)")
+    parser.add_argument("--url", help="home page (default: that in CMakeLists.txt)")
 
 
 def differences(facts: Facts) -> list[str]:
-    """What manifests in the tree say that the library does not."""
+    """Manifests in the tree that differ from the library."""
     return [
-        f"{name}: not what version {facts.version} gives; python -m ci packages --write"
+        f"{name}: differs from version {facts.version}; run python -m ci packages --write"
         for name, text in COMMITTED.items()
         if (facts.root / name).read_text(encoding="utf-8") != text(facts)
     ]
@@ -44,7 +44,7 @@ def stage(facts: Facts, words: Words, out: Path, names: list[str]) -> None:
     folders = {name: out / name for name in names}
     for folder in folders.values():
         if folder.exists():
-            raise ValueError(f"{folder} is there already")
+            raise ValueError(f"{folder} exists already")
     for name, folder in folders.items():
         for staged in TARGETS[name](facts, words, folder):
             print(staged)
@@ -53,7 +53,7 @@ def stage(facts: Facts, words: Words, out: Path, names: list[str]) -> None:
 def run(arguments: argparse.Namespace) -> int:
     facts = Facts()
     if not arguments.out and (arguments.target or arguments.maintainer or arguments.url):
-        raise ValueError("--target, --maintainer and --url go with --out")
+        raise ValueError("--target, --maintainer and --url require --out")
     if arguments.check:
         found = differences(facts)
         print("\n".join(found) or f"manifests are those of version {facts.version}")

@@ -1,4 +1,4 @@
-"""What every manifest says: read from the sources where they say it, told here where they do not."""
+"""The content of every manifest: read from the sources if they have it, otherwise given here."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pathlib import Path
 
 from goe_tools.places import ROOT
 
-NEEDS = {"movers": ("refined",)}  # parts that make no sense without others
+NEEDS = {"movers": ("refined",)}  # parts that require others
 
-# What a package may hold of a folder. Whatever else lies there was built, or is somebody's own.
+# Files that a package may contain from a folder; other files are build output or private.
 SUFFIXES = (".c", ".cmake", ".h", ".in", ".ino", ".py", ".pyi", ".rs", ".txt", ".typed", ".xml", ".yml")
-NO_SOURCES = ("build", "target", "__pycache__", "dist")  # folders that tools fill
+NO_SOURCES = ("build", "target", "__pycache__", "dist")  # folders written by tools
 
 
 def is_no_source(folder: str) -> bool:
@@ -25,7 +25,7 @@ class Part:
     """A part of the library that may be left out: GOE_WITH_..."""
 
     name: str  # movers
-    text: str  # one line, as goe.h has it
+    text: str  # one line, from goe.h
 
     @property
     def define(self) -> str:
@@ -38,7 +38,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Limit:
-    """A number that sets the memory, with its bounds and default."""
+    """A number that determines the memory, with its bounds and default."""
 
     define: str
     low: int
@@ -57,16 +57,16 @@ class Facts:
 
     name = "goe"
     owner = "the goe authors"
-    licence = "MIT"
-    sentence = "Position, size and orientation of a ground obstacle, from a detector's boxes and the own motion."
+    license = "MIT"
+    sentence = "Position, size and orientation of a ground obstacle, from a detector's boxes and the aircraft's motion."
     paragraph = (
-        "A small C99 library for flight controllers: one obstacle takes at most 2.9 KiB, there is no heap, every "
-        "output is finite and has its one sigma; a planned flight's miss distance and probability of a collision come "
-        "with it."
+        "A small C99 library for flight controllers: one obstacle takes at most 2.9 KiB, there is no heap, and every "
+        "output is finite and has a 1-sigma uncertainty. It also predicts the miss distance and the probability of a "
+        "collision of a planned flight."
     )
     flight_sentence = "The layer between a detector, an autopilot and the ground obstacle estimator goe."
     flight_paragraph = (
-        "Poses of late images, clocks, filter resets, a table of obstacles, hazards from now on, and what to do about "
+        "Poses of late images, clocks, filter resets, a table of obstacles, future hazards, and an action against "
         "the worst one: left, right, climb, go around, hold."
     )
     keywords = ("uav", "obstacle", "avoidance", "estimation", "autopilot")
@@ -79,12 +79,12 @@ class Facts:
     def version(self) -> str:
         numbers = dict(re.findall(r"^#define GOE_VERSION_(MAJOR|MINOR|PATCH) (\d+)$", self.header, re.MULTILINE))
         if len(numbers) != 3:
-            raise ValueError("lib/goe.h: GOE_VERSION_MAJOR, _MINOR and _PATCH are not there")
+            raise ValueError("lib/goe.h: no GOE_VERSION_MAJOR, _MINOR and _PATCH")
         return f"{numbers['MAJOR']}.{numbers['MINOR']}.{numbers['PATCH']}"
 
     @cached_property
     def url(self) -> str:
-        """The home page, as the top CMakeLists.txt has it."""
+        """The home page, from the top CMakeLists.txt."""
         text = (self.root / "CMakeLists.txt").read_text(encoding="utf-8")
         found = re.search(r'^ +HOMEPAGE_URL "(https://[^"]+)"', text, re.MULTILINE)
         if not found:
@@ -95,7 +95,7 @@ class Facts:
     def parts(self) -> tuple[Part, ...]:
         found = re.findall(r"^#ifndef GOE_WITH_(\w+)\n#define GOE_WITH_\1 1 /\* (.*) \*/$", self.header, re.MULTILINE)
         if not found:
-            raise ValueError("lib/goe.h: no part, GOE_WITH_..., is there")
+            raise ValueError("lib/goe.h: no part, GOE_WITH_...")
         return tuple(Part(name.lower(), text) for name, text in found)
 
     @cached_property
@@ -104,7 +104,7 @@ class Facts:
         texts = {
             "GOE_WINDOW_MAX": "Largest window, in image points",
             "GOE_CAMERAS_MAX": "Cameras of one aircraft",
-            "GOE_FLIGHT_SLOTS": "Flight layer: obstacles that are followed at a time",
+            "GOE_FLIGHT_SLOTS": "Flight layer: obstacles tracked at a time",
         }
         limits = []
         for define, text in texts.items():

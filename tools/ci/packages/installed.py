@@ -1,5 +1,5 @@
-"""What the tests and tools install, read from the files that install it: the set-up script, lists of requirements, the
-script that fetches Unity, and CMake's lists, which name what the programs link."""
+"""Packages installed by the tests and tools, from the files that install them: the set-up script, lists of
+requirements, the script that fetches Unity, and CMake's lists, which name the libraries of the programs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from goe_tools.places import ROOT
 
-from .licences import DEBIAN, OTHERS, PYTHON
+from .licenses import DEBIAN, OTHERS, PYTHON
 
 DEBIAN_PACKAGE, PYTHON_PACKAGE, NPM_PACKAGE, SOURCE = "deb", "pypi", "npm", "github"
 NEEDED, TESTS_ONLY = "needed", "extra"  # lists of tools/setup.sh
@@ -24,16 +24,16 @@ PINNED = re.compile(r"^==([^,*]+)$")
 
 @dataclass(frozen=True)
 class Installed:
-    """A package that is installed. ``version``: pinned, or empty where whatever is at hand is taken."""
+    """An installed package. ``version``: pinned, or empty if any available version is used."""
 
     kind: str
     name: str
     version: str
     by: str  # the file that installs it
     why: str
-    licence: str = ""  # an expression of SPDX; empty: not known
-    sha256: str = ""  # of what is fetched, where it is pinned
-    files: tuple[tuple[str, str], ...] = ()  # name and SHA-256 of each, where not a whole archive is pinned
+    license: str = ""  # an SPDX expression; empty: unknown
+    sha256: str = ""  # of the download, if pinned
+    files: tuple[tuple[str, str], ...] = ()  # name and SHA-256 of each, if files instead of an archive are pinned
 
     @property
     def ref(self) -> str:
@@ -46,18 +46,18 @@ class Installed:
 
 
 def canonical(name: str) -> str:
-    """A Python package's name as the index has it."""
+    """A Python package's name in the form of the index."""
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def requirement(line: str, by: str, why: str) -> Installed | None:
-    """None of a comment or a blank line."""
+    """None for a comment or a blank line."""
     text = line.split("#")[0].strip()
     if not text:
         return None
     found = REQUIREMENT.match(text)
     if found is None:
-        raise ValueError(f"{by}: '{text}' is no requirement")
+        raise ValueError(f"{by}: '{text}' is not a requirement")
     name, pinned = canonical(found["name"]), PINNED.match((found["version"] or "").strip())
     reason = f"{why}, where {found['marker'].strip()}" if found["marker"] else why
     return Installed(
@@ -66,7 +66,7 @@ def requirement(line: str, by: str, why: str) -> Installed | None:
 
 
 def array_of(toml: str, table: str, key: str) -> tuple[str, ...]:
-    """Strings of a list in a TOML file: the standard library reads none before Python 3.11."""
+    """Strings of a list in a TOML file: the standard library has no TOML parser before Python 3.11."""
     section = re.search(rf"^\[{re.escape(table)}\]\n(.*?)(?=^\[|\Z)", toml, re.MULTILINE | re.DOTALL)
     found = re.search(rf"^{key} = \[(.*?)\]", section[1], re.MULTILINE | re.DOTALL) if section else None
     return tuple(re.findall(r'"([^"]+)"', found[1])) if found else ()
@@ -74,7 +74,7 @@ def array_of(toml: str, table: str, key: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Sources:
-    """The files that install things."""
+    """The files that install packages."""
 
     root: Path = ROOT
 
@@ -91,16 +91,16 @@ class Sources:
         )
 
     def _requirements(self, by: str, why: str) -> Iterator[Installed]:
-        seen: set[Installed] = set()
+        known: set[Installed] = set()
         for line in self.text(by).splitlines():
             one = requirement(line, by, why)
-            if one is not None and one not in seen:
-                seen.add(one)
+            if one is not None and one not in known:
+                known.add(one)
                 yield one
 
     @cached_property
     def python(self) -> tuple[Installed, ...]:
-        """Pinned ones, and what builds the tools themselves, which pip chooses."""
+        """Pinned packages, and the build requirements of the tools, which pip chooses."""
         by = "tools/pyproject.toml"
         lines = array_of(self.text(by), "build-system", "requires")
         builders = [requirement(line, by, "builds goe-tools") for line in lines]
@@ -112,25 +112,25 @@ class Sources:
 
     @cached_property
     def unity(self) -> tuple[Installed, ...]:
-        """One of the two: from its repository, or else out of a Debian source package."""
+        """One of two: from its repository, or otherwise from a Debian source package."""
         by = "tools/fetch_unity.sh"
         text = self.text(by)
 
         def value(name: str) -> str:
             found = re.search(rf"^{name}='?([^'\s]+)", text, re.MULTILINE)
             if found is None:
-                raise ValueError(f"{by}: no {name} is there")
+                raise ValueError(f"{by}: no {name}")
             return found[1]
 
         files = re.search(r"^debian_sha256='([^']*)'", text, re.MULTILINE)
         other = re.search(r"Unity ([0-9.]+) in its", text)
         if files is None or other is None:
-            raise ValueError(f"{by}: the files of the Debian source package are not there")
+            raise ValueError(f"{by}: no files of the Debian source package")
         pairs = (line.split() for line in files[1].splitlines())
         version, archive = f"v{value('version')}", value("archive_sha256")
         mine = Installed(SOURCE, "unity", version, by, "unit tests", OTHERS["unity"], archive)
         spare = (
-            f"unit tests, out of the Debian source package {value('debian_source')} if the repository is out of reach"
+            f"unit tests, from the Debian source package {value('debian_source')} if the repository is unreachable"
         )
         return mine, replace(
             mine, version=f"v{other[1]}", why=spare, sha256="", files=tuple((name, digest) for digest, name in pairs)
@@ -138,15 +138,15 @@ class Sources:
 
     @cached_property
     def in_pages(self) -> tuple[Installed, ...]:
-        """plotly.js, as the pinned package ``plotly`` carries it; without version where that is not installed."""
+        """plotly.js, contained in the pinned package ``plotly``; without version if that is not installed."""
         found = importlib.util.find_spec("plotly")
         version, digest = "", ""
         if found is not None and found.origin is not None:
             folder = Path(found.origin).parent
-            told = re.search(r'"([0-9.]+)"', (folder / "offline" / "_plotlyjs_version.py").read_text(encoding="utf-8"))
-            version = told[1] if told else ""
+            found = re.search(r'"([0-9.]+)"', (folder / "offline" / "_plotlyjs_version.py").read_text(encoding="utf-8"))
+            version = found[1] if found else ""
             digest = sha256((folder / "package_data" / "plotly.min.js").read_bytes()).hexdigest()
-        why = "drawn pages hold it; it comes inside the Python package plotly"
+        why = "contained in pages with charts; part of the Python package plotly"
         by = "tools/requirements.txt"
         return (Installed(NPM_PACKAGE, "plotly.js", version, by, why, OTHERS["plotly.js"], digest),)
 
@@ -156,17 +156,17 @@ class Sources:
 
     @cached_property
     def linked(self) -> dict[str, tuple[str, ...]]:
-        """The Debian packages whose libraries each program for the host links."""
+        """The Debian packages with the libraries that each program for the host links."""
         host, companion = self.text("sim_host/CMakeLists.txt"), self.text("port/companion/CMakeLists.txt")
         own = tuple(re.findall(r"^goe_find\(\w+ \S+ \w+ ([a-z0-9.+-]+)\)", host, re.MULTILINE))
         programs = re.findall(r"^ *goe_program\((\w+)", host, re.MULTILINE)
         more = tuple(re.findall(r"needs (lib[a-z0-9-]+-dev)", companion))
         if not own or not programs or not more:
-            raise ValueError("sim_host, port/companion: CMakeLists.txt names no program or no library")
+            raise ValueError("sim_host, port/companion: CMakeLists.txt has no program or no library")
         return {**dict.fromkeys(programs, own), "goe_companion": (*own, *more)}
 
     def packaged(self, key: str) -> tuple[str, ...]:
-        """Python packages that a list of the Python package names: "requires" to build it, "dependencies" to run."""
+        """Python packages in a list of the Python package: "requires" to build it, "dependencies" to run it."""
         table = "build-system" if key == "requires" else "project"
         lines = array_of(self.text("port/python/pyproject.toml"), table, key)
         return tuple(one.name for line in lines if (one := requirement(line, "port/python/pyproject.toml", "")))

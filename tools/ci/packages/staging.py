@@ -1,4 +1,4 @@
-"""How a folder is filled that a package manager then packs."""
+"""Fills a folder for a package manager."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .facts import Facts
 
 LINK = re.compile(r"\[([^\[\]]*)\]\((?!https?:|#)([^)#]+)(#[^)]*)?\)")
 SECTION = re.compile(r"^## ", re.MULTILINE)
-OF_THE_TREE = ("From this tree", "Tests")  # sections of a page that say nothing to whoever has the package
+OF_THE_TREE = ("From this tree", "Tests")  # sections of a page that do not apply to a package
 
 
 @dataclass(frozen=True)
 class Words:
-    """What the publisher says, as the project does not know it."""
+    """Information from the publisher, which is not in the project."""
 
     maintainer: str = Facts.owner
     url: str = ""
@@ -27,16 +27,16 @@ class Words:
     def __post_init__(self) -> None:
         for word in (self.maintainer, self.url):
             if not word.isprintable():
-                raise ValueError(f"{word!r}: manifests have no room for such characters")
+                raise ValueError(f"{word!r}: manifests cannot contain such characters")
 
 
 def quoted(text: str) -> str:
-    """As JSON, Python, TOML and YAML read it alike. (Jinja's own tojson writes an address's < and > as numbers.)"""
+    """Quoted for JSON, Python, TOML and YAML. (Jinja's tojson writes an address's < and > as numbers.)"""
     return json.dumps(text, ensure_ascii=False)
 
 
 def render(facts: Facts, template: str, **more: object) -> str:
-    """A template of port/, with the facts in it."""
+    """Renders a template of port/ with the facts."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(facts.root / "port"), undefined=jinja2.StrictUndefined, trim_blocks=True,
         lstrip_blocks=True, keep_trailing_newline=True, autoescape=False,
@@ -47,7 +47,7 @@ def render(facts: Facts, template: str, **more: object) -> str:
 
 @dataclass(frozen=True)
 class Stage:
-    """One package's folder. It must not be there before."""
+    """One package's folder, which must not exist before."""
 
     facts: Facts
     words: Words
@@ -80,7 +80,7 @@ class Stage:
         self.copy_files(source, self.facts.files(source), folder)
 
     def copy_page(self, host: str) -> None:
-        """The host's README and the licence. Links into the project's tree would lead nowhere: their words stay."""
+        """The host's README and the license. Links into the project's tree would be broken: only their text stays."""
         page = (self.facts.root / "port" / host / "README.md").read_text(encoding="utf-8")
         first, *sections = SECTION.split(page)
         kept = [f"## {section}" for section in sections if section.partition("\n")[0] not in OF_THE_TREE]

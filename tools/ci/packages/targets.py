@@ -1,4 +1,4 @@
-"""What each package manager gets. A target fills one folder, or more, of the staging folder's own."""
+"""Content of each package. A target fills one or more subfolders of the staging folder."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .staging import Stage, Words, render
 
 CONFIG = '#ifndef GOE_CONFIG_HEADER\n#define GOE_CONFIG_HEADER "goe_config.h"\n#endif\n'
 CONFIG_PLACE = "#ifdef GOE_CONFIG_HEADER\n#include GOE_CONFIG_HEADER\n#endif\n"
-# What has 32 bits or more: on AVR int has 16, and the memory does not reach.
+# Boards with 32 bits or more: AVR has 16-bit int and too little memory.
 ARDUINO_CORES = (
     "esp32", "esp8266", "mbed", "mbed_giga", "mbed_nano", "mbed_nicla", "mbed_opta", "mbed_portenta", "mbed_rp2040",
     "nrf52", "renesas", "renesas_portenta", "renesas_uno", "rp2040", "sam", "samd", "stm32", "teensy", "zephyr",
@@ -23,7 +23,7 @@ PLATFORMIO_PLATFORMS = (
     "titiva",
 )  # fmt: skip
 CONAN_LIMITS = ("GOE_WINDOW_MAX", "GOE_CAMERAS_MAX")  # the project's build has no option for the flight layer's slots
-ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # the same bytes whenever it is made
+ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # gives the same bytes at any time
 
 
 def cargo_manifest(facts: Facts) -> str:
@@ -35,16 +35,16 @@ def python_manifest(facts: Facts) -> str:
 
 
 def tools_manifest(facts: Facts) -> str:
-    """The tools' own manifest, which is written by hand but for the version."""
+    """The tools' manifest, written by hand except for the version."""
     text = (facts.root / TOOLS).read_text(encoding="utf-8")
     text, count = re.subn(r'^version = ".*"$', f'version = "{facts.version}"', text, flags=re.MULTILINE)
     if count != 1:
-        raise ValueError(f"{TOOLS}: one line with the version is wanted")
+        raise ValueError(f"{TOOLS}: needs exactly one line with the version")
     return text
 
 
 TOOLS = "tools/pyproject.toml"
-# Manifests that lie in the tree, and what they must say.
+# Manifests in the tree, and their content.
 COMMITTED: dict[str, Callable[[Facts], str]] = {
     "port/python/pyproject.toml": python_manifest,
     "port/rust/Cargo.toml": cargo_manifest,
@@ -82,7 +82,7 @@ def python(facts: Facts, words: Words, folder: Path) -> list[Path]:
 
 
 def zip_folder(folder: Path, version: str) -> Path:
-    """What the Arduino IDE takes: one folder in an archive."""
+    """The format of the Arduino IDE: one folder in an archive."""
     place = folder.parent / f"{folder.name}-{version}.zip"
     with zipfile.ZipFile(place, "w", zipfile.ZIP_DEFLATED) as archive:
         for path in sorted(folder.rglob("*")):
@@ -95,12 +95,12 @@ def zip_folder(folder: Path, version: str) -> Path:
 
 
 def arduino(facts: Facts, words: Words, folder: Path) -> list[Path]:
-    """Two libraries: what a sketch does not include is not compiled. The parts are in a header, as Arduino gives a
-    library no flags of its own."""
+    """Two libraries, since Arduino compiles only included ones. A header selects the parts, since Arduino gives a
+    library no flags."""
     goe = Stage(facts, words, folder / "goe")
     goe.copy_library("src")
     if facts.header.count(CONFIG_PLACE) != 1:
-        raise ValueError("lib/goe.h: the place of GOE_CONFIG_HEADER is not there")
+        raise ValueError("lib/goe.h: no place for GOE_CONFIG_HEADER")
     goe.write("src/goe.h", facts.header.replace(CONFIG_PLACE, CONFIG + CONFIG_PLACE))
     goe.render("src/goe_config.h", "arduino/goe_config.h.j2")
     goe.copy_tree("port/arduino/examples", "examples")
@@ -116,7 +116,7 @@ def arduino(facts: Facts, words: Words, folder: Path) -> list[Path]:
 
 
 def platformio(facts: Facts, words: Words, folder: Path) -> list[Path]:
-    """Two libraries, as its dependency finder compiles all of what it finds."""
+    """Two libraries, since the dependency finder compiles everything it finds."""
     goe = Stage(facts, words, folder / "goe")
     goe.copy_library("src")
     goe.render("library.json", "platformio/library.json.j2", flight=False, platforms=PLATFORMIO_PLATFORMS)

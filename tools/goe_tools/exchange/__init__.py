@@ -1,12 +1,12 @@
-"""Logs of others: an autopilot's log and a detector's boxes in, MCAP for other people's viewers out.
+"""Exchange with other software: reads an autopilot's log and a detector's boxes, writes MCAP for viewers.
 
-recording     what an autopilot's log tells of the flight, and its pose at any time
-resets        jumps of the autopilot's filter, as the log tells them or as motion gives them away
+recording     the flight in an autopilot's log, and its pose at any time
+resets        detects jumps of the autopilot's filter from the motion
 ulog          PX4's log
 dataflash     ArduPilot's log
 tlog          a ground station's log of MAVLink messages
 detections    the detector's table
-clock         how far the camera's clock is off the autopilot's
+clock         offset between the camera's clock and the autopilot's
 convert       the command that makes an observation log of both
 messages      an observation log and its estimates as messages of Foxglove's schemas
 mcap_command  the command that writes them

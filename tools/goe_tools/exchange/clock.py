@@ -1,20 +1,20 @@
-"""How far the camera's clock is off the autopilot's: found by the agreement of turn and image.
+"""Offset between the camera's clock and the autopilot's, estimated from the agreement of turns and images.
 
-What stands still is, once the attitude is taken off, in the same place of the earth in every image. With a wrong time
-the attitude is that of another moment: the direction to the obstacle then moves with the turning rate, by rate times
-offset. For an offset s, the middle of a box at the time t, seen along r in the camera's axes, asks of a point P and a
-constant attitude error b
+Compensated for attitude, a static obstacle is at the same place on the earth in every image. With a wrong time the
+attitude belongs to another moment: the direction to the obstacle then moves with the turning rate, by rate times
+offset. For an offset s, the middle of a box at time t, in direction r in the camera's axes, constrains a point P and a
+constant attitude error b:
 
     e1, e2 . (P - c) / |P - c| = e1, e2 . (d + R [b x] M r)       R, c: attitude and place of the camera at t + s
-                                                                 d = R M r, e1, e2: two directions square to d
+                                                                 d = R M r, e1, e2: two directions perpendicular to d
 
-one P and b for each track, b with a prior. The rows of a track are whitened by the library's model of boxes: an error
-that is new in each image, and one that grows with the box and fades over a second or so. The offset is where the sum
-J(s) of all squares is least, found on a grid and then by parabolas; with the variance v of a row there
+Each track has one P and one b, b with a prior. The rows of a track are whitened with the library's error model of
+boxes: white noise, plus an error proportional to the box that is correlated over about a second. The offset minimizes
+J(s), the sum of all squares, found on a grid and refined by parabolas. With the variance v of a row
 
     sigma = sqrt(2 v / J''(s))
 
-The attitude is the autopilot's; where it was logged slowly, the gyro's rates carry it from sample to sample."""
+The attitude is the autopilot's; if it was logged slowly, the gyro's rates interpolate between its samples."""
 
 from __future__ import annotations
 
@@ -30,29 +30,29 @@ from ..models.model import undistort
 from .detections import by_id
 from .recording import Poses, Series, filled, slerp, within
 
-SLOW_HZ = 40.0  # of the attitude: below it the gyro, if it is faster, is used between
+SLOW_HZ = 40.0  # of the attitude: below this rate a faster gyro interpolates it
 LEAST_IMAGES = 8  # of a track
 GRID_S = 0.05
-FINE_S = np.array([0.03, 0.008, 0.008])  # of the parabola's points, one parabola after the other
+FINE_S = np.array([0.03, 0.008, 0.008])  # distance of the parabola's points, one parabola after the other
 PARABOLA = np.arange(-2, 3)
-BIAS_SD = math.radians(1.5)  # of the attitude's constant error
-WHITE_PX = 1.0  # errors of a box's middle: px, new in each image, the attitude's included ...
-SHARE, FADES_S = 0.035, 1.2  # ... and of the box's size, alike for so long; their scale comes from the fit
-ROUNDS = 5  # of the ranges by which the equations are weighed
-HUBER = 2.5  # sigmas: what is farther off counts less
-ALIKE_IMAGES = 12  # so far apart errors may still be alike
+BIAS_SD = math.radians(1.5)  # sigma of the constant attitude error
+WHITE_PX = 1.0  # white error of a box's middle in px, including that of the attitude ...
+SHARE, FADES_S = 0.035, 1.2  # ... correlated error as a share of the box's size, and its time; the fit scales them
+ROUNDS = 5  # iterations of the ranges that weight the equations
+HUBER = 2.5  # sigmas: rows farther off get a smaller weight
+CORRELATED_IMAGES = 12  # up to this distance errors may be correlated
 FAR_M = 1e5
 NEAREST_M = 1.0
 
 
 @dataclass(frozen=True)
 class Offset:
-    """Seconds to be added to the camera's times, one sigma, and how it was come by."""
+    """Seconds to add to the camera's times, their sigma, and the number of rows used."""
 
     offset_s: float
     sigma_s: float
     rows: int
-    at_the_end: bool  # the best one lies at an end of those that were tried
+    at_the_end: bool  # the best offset is at an end of the search interval
 
 
 @dataclass
@@ -60,14 +60,14 @@ class Marks:
     """The middles of an obstacle in K images of one track."""
 
     time_s: np.ndarray  # (K,) the camera's clock
-    ray: np.ndarray  # (K, 3) camera axes turned into the body's, length 1
+    ray: np.ndarray  # (K, 3) unit vectors in body axes
     offset_m: np.ndarray  # (K, 3) of the camera, body
-    whitening: np.ndarray  # (2, K, K) of the level and the upward errors, 1/rad
+    whitening: np.ndarray  # (2, K, K) of the horizontal and the vertical errors, 1/rad
     weight: np.ndarray  # (K, 2)
 
 
 def _middle(frame: Frame) -> tuple[float, float, float, float] | None:
-    """u, v, width and height of what is seen, px; of points left and right."""
+    """u, v, width and height of the visible obstacle, px; with points, of left and right."""
     if frame.box_px is not None and all(side is not None for side in frame.box_px):
         left, top, right, bottom = frame.box_px
         return 0.5 * (left + right), 0.5 * (top + bottom), right - left, bottom - top  # type: ignore[operator]
@@ -79,7 +79,7 @@ def _middle(frame: Frame) -> tuple[float, float, float, float] | None:
 
 
 def _at_border(frame: Frame, camera: Camera) -> bool:
-    """Such a box is cut: its middle is not the obstacle's."""
+    """Whether the border cuts the box; then its middle is not the obstacle's."""
     if frame.box_px is None:
         return False
     margin = 0.012 * camera.width
@@ -88,10 +88,10 @@ def _at_border(frame: Frame, camera: Camera) -> bool:
 
 
 def _whitening(time_s: np.ndarray, size_rad: np.ndarray, white_rad: np.ndarray) -> np.ndarray:
-    """(K, K): makes errors of that model independent, of variance 1."""
-    alike = np.exp(-np.abs(time_s[:, None] - time_s) / FADES_S)
+    """(K, K): makes errors of that model independent, with variance 1."""
+    correlation = np.exp(-np.abs(time_s[:, None] - time_s) / FADES_S)
     share = SHARE * size_rad
-    return np.linalg.inv(np.linalg.cholesky(np.diag(white_rad**2) + share[:, None] * share * alike))
+    return np.linalg.inv(np.linalg.cholesky(np.diag(white_rad**2) + share[:, None] * share * correlation))
 
 
 def marks_of(frames: Sequence[Frame], cameras: Sequence[Camera]) -> Marks | None:
@@ -117,21 +117,21 @@ def marks_of(frames: Sequence[Frame], cameras: Sequence[Camera]) -> Marks | None
 
 
 def _square_to(direction: np.ndarray) -> np.ndarray:
-    """(K, 2, 3): level and upward unit vectors square to directions (K, 3)."""
+    """(K, 2, 3): horizontal and upward unit vectors perpendicular to directions (K, 3)."""
     right = np.cross(np.array([0.0, 0.0, 1.0]), direction)
     right /= np.maximum(np.linalg.norm(right, axis=1, keepdims=True), 1e-9)
     return np.stack([right, np.cross(direction, right)], 1)
 
 
 def _crosses(vector: np.ndarray) -> np.ndarray:
-    """(K, 3, 3): matrices of minus the cross product, so that m b = b x vector."""
+    """(K, 3, 3): matrices m of minus the cross product: m b = b x vector."""
     x, y, z = vector.T
     zero = np.zeros(len(vector))
     return np.stack([np.stack(row, -1) for row in ([zero, z, -y], [-z, zero, x], [y, -x, zero])], 1)
 
 
 def _whitened(marks: Marks, values: np.ndarray) -> np.ndarray:
-    """(K, 2, n) of rows (K, 2, n)."""
+    """Whitened rows (K, 2, n)."""
     return np.einsum("akj,jan->kan", marks.whitening, values) * marks.weight[..., None]
 
 
@@ -142,7 +142,7 @@ class Search:
         self.tracks, self.poses, self.attitude = tracks, poses, attitude
 
     def _solve(self, marks: Marks, offset_s: float) -> np.ndarray:
-        """(K, 2): residuals of the best point and attitude error, whitened and weighed."""
+        """(K, 2): residuals of the best point and attitude error, whitened and weighted."""
         time_s = marks.time_s + offset_s
         turn = matrices(slerp(self.attitude, time_s))
         eye = self.poses.smooth_m(time_s) + np.einsum("kij,kj->ki", turn, marks.offset_m)
@@ -165,25 +165,25 @@ class Search:
         return (white - rows @ best).reshape(-1, 2)
 
     def residuals(self, offset_s: float) -> list[np.ndarray]:
-        """(K, 2) of each track, whitened and weighed."""
+        """(K, 2) of each track, whitened and weighted."""
         return [self._solve(marks, offset_s) for marks in self.tracks]
 
     def cost(self, offset_s: float) -> float:
         return float(sum((left**2).sum() for left in self.residuals(offset_s)))
 
     def spread(self, offset_s: float) -> float:
-        """Variance of half the slope of the sum of squares, whatever neighbouring errors have in common."""
+        """Variance of half the slope of the sum of squares, with any correlation between neighboring errors."""
         step = float(FINE_S[-1])
         result = 0.0
         for left, after, before in zip(*(self.residuals(offset_s + k * step) for k in (0, 1, -1))):
             score = (left * (after - before) / (2.0 * step)).sum(1)
-            for lag in range(min(ALIKE_IMAGES, len(score) - 1)):
+            for lag in range(min(CORRELATED_IMAGES, len(score) - 1)):
                 common = float(score[lag:] @ score[: len(score) - lag])
-                result += common * (1.0 if lag == 0 else 2.0) * (1.0 - lag / ALIKE_IMAGES)
+                result += common * (1.0 if lag == 0 else 2.0) * (1.0 - lag / CORRELATED_IMAGES)
         return max(result, 0.0)
 
     def weigh(self, offset_s: float) -> None:
-        """Rows that are far off at an offset count less from now on."""
+        """Reduces the weight of rows that are far off at an offset."""
         left = self.residuals(offset_s)
         scale = 1.4826 * float(np.median(np.abs(np.concatenate([x.reshape(-1) for x in left]))))
         for marks, rows in zip(self.tracks, left):
@@ -192,8 +192,8 @@ class Search:
 
 def _tracks(frames: Sequence[Frame], cameras: Sequence[Camera], poses: Poses, times: tuple[float, float],
             gap_s: float) -> list[Marks]:  # fmt: skip
-    """Of every obstacle, cut where the filter jumped by what is not known; only images whose pose the log tells at each
-    offset between the two."""
+    """The marks of every obstacle, split at filter jumps of unknown size; only images whose pose the log contains at
+    each offset between the two."""
     result = []
     for rows in by_id(frames).values():
         at = np.array([frame.t_s for frame in rows])
@@ -212,7 +212,7 @@ def _tracks(frames: Sequence[Frame], cameras: Sequence[Camera], poses: Poses, ti
 
 
 def attitude_for(poses: Poses, start_s: float, end_s: float) -> Series:
-    """The recorded attitude between two times, with the gyro in between if that is worth it."""
+    """The recorded attitude between two times, interpolated with the gyro if that improves it."""
     attitude, gyro = poses.recording.attitude, poses.recording.gyro
     if gyro is None or attitude.rate_hz >= SLOW_HZ or gyro.rate_hz < 2.0 * attitude.rate_hz:
         return attitude

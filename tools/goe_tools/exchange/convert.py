@@ -1,9 +1,9 @@
-"""An autopilot's log and a detector's table as an observation log.
+"""Converts an autopilot's log and a detector's table to an observation log.
 
     python -m goe_tools convert --ulog FILE --detections FILE --camera FILE --out LOG
 
-Each row of the detector gets the pose that the autopilot had at the time of exposure: attitudes on the great circle,
-positions in a straight line between two samples. The result has the autopilot's time."""
+Each row of the detector gets the pose at the time of exposure: attitudes by spherical, positions by linear
+interpolation between two samples. The result uses the autopilot's time."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ HEIGHTS = ("origin", "sensor")
 GAP_S = 0.5
 REACH_S = 0.5
 WORST_SIGMA_S = 0.02  # of an estimated offset: 0.5 degrees at 24 degrees a second
-TOLD_JUMPS, TOLD_IMAGES = 20, 5  # that are named one by one
+REPORTED_JUMPS, REPORTED_IMAGES = 20, 5  # printed one by one
 
 
 @dataclass(frozen=True)
 class Wish:
-    """How poses are to be made. ``ground_d_m``: of the obstacle's ground, by ``height`` "origin"."""
+    """Options for the poses. ``ground_d_m``: of the obstacle's ground, with ``height`` "origin"."""
 
     height: str = HEIGHTS[0]
     ground_d_m: float = 0.0
@@ -44,11 +44,11 @@ class Wish:
 @dataclass
 class Converted:
     frames: list[Frame]
-    left_out: list[tuple[float, str]]  # time of the autopilot, reason
+    left_out: list[tuple[float, str]]  # autopilot's time, reason
 
 
 def _jump_since(poses: Poses, before: int, now: int) -> tuple[float, float, float] | None:
-    """Sum of the jumps after the first ``before`` ones up to the first ``now``; None if one of them is not known."""
+    """Sum of the jumps from number ``before`` to number ``now``; None if one of them is unknown."""
     deltas = [jump.delta_m for jump in poses.recording.jumps[before:now]]
     if any(delta is None for delta in deltas):
         return None
@@ -63,13 +63,13 @@ def _why_not(poses: Poses, time_s: float) -> str:
     for cut in poses.cuts_s:
         if abs(cut - time_s) < GAP_S:
             return f"the filter jumped between the samples around it, at {cut:.3f} s"
-    return "the pose was not logged for too long around it"
+    return "the gap between its logged poses is too long"
 
 
 def add_poses(
     frames: Sequence[Frame], cameras: Sequence[Camera], poses: Poses, offset_s: float, wish: Wish
 ) -> Converted:
-    """The rows with their poses; what the autopilot's log does not tell is left out."""
+    """The rows with their poses; leaves out rows without a pose in the autopilot's log."""
     time_s = np.array([frame.t_s for frame in frames]) + offset_s
     position, attitude, count = poses.position_m(time_s), poses.attitude(time_s), poses.count(time_s)
     good, turn = poses.good(time_s, wish.gap_s), matrices(attitude)
@@ -77,7 +77,7 @@ def add_poses(
     if wish.height == "sensor":
         measured = poses.ground_d_m(time_s)
         if measured is None:
-            raise LogError(poses.recording.path, 0, "", "no sensor of the height above the ground was logged")
+            raise LogError(poses.recording.path, 0, "", "no sensor of the height above ground was logged")
         ground = measured
     result, counted = Converted([], []), {}
     for k, frame in enumerate(frames):
@@ -129,15 +129,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     source.add_argument("--dataflash", type=Path, metavar="FILE", help="ArduPilot's log (.bin)")
     source.add_argument("--tlog", type=Path, metavar="FILE", help="a ground station's log of MAVLink messages")
     add("--detections", type=Path, required=True, metavar="CSV", help="t_s, id and the columns of frames.csv for boxes")
-    add("--camera", type=Path, required=True, metavar="INI", help="camera.ini of the log to be written")
+    add("--camera", type=Path, required=True, metavar="INI", help="camera.ini of the new log")
     add("--out", type=Path, required=True, metavar="LOG", help="folder to write")
-    add("--offset", type=_number, metavar="S", help="the autopilot's time minus t_s; by default it is estimated")
-    add("--about", type=_number, default=0.0, metavar="S", help="where to look for it (default 0)")
-    add("--within", type=_positive, default=REACH_S, metavar="S", help=f"... and how far around (default {REACH_S:g})")
-    add("--height", choices=HEIGHTS, default=HEIGHTS[0], help="above the ground: by --ground (default), or as measured")
+    add("--offset", type=_number, metavar="S", help="the autopilot's time minus t_s (default: estimated)")
+    add("--about", type=_number, default=0.0, metavar="S", help="center of the offset search (default 0)")
+    add("--within", type=_positive, default=REACH_S, metavar="S", help=f"half its length (default {REACH_S:g})")
+    add("--height", choices=HEIGHTS, default=HEIGHTS[0], help="above ground: from --ground (default), or measured")
     add("--ground", type=_number, default=0.0, metavar="D", help="down coordinate of the obstacle's ground (default 0)")
     add("--gap", type=_positive, default=GAP_S, metavar="S", help=f"longest time between poses (default {GAP_S:g})")
-    add("--system", type=int, metavar="N", help="of a tlog: number of the autopilot (default: the first)")
+    add("--system", type=int, metavar="N", help="system number of the autopilot in a tlog (default: the first)")
 
 
 def _read(arguments: argparse.Namespace) -> Recording:
@@ -149,18 +149,18 @@ def _read(arguments: argparse.Namespace) -> Recording:
     return read_tlog(arguments.tlog, arguments.system)
 
 
-def _tell_recording(recording: Recording) -> None:
+def _report_recording(recording: Recording) -> None:
     series = [recording.position, recording.attitude, recording.gyro, recording.clearance]
     for one in series:
         if one is not None:
             print(f"{one.name}: {one.time_s[0]:.3f} to {one.time_s[-1]:.3f} s, {one.rate_hz:.1f} Hz")
     for note in recording.notes:
         print(note)
-    for jump in recording.jumps[:TOLD_JUMPS]:
-        size = "the track is cut" if jump.delta_m is None else ", ".join(f"{x:+.2f}" for x in jump.delta_m) + " m"
+    for jump in recording.jumps[:REPORTED_JUMPS]:
+        size = "the track is split" if jump.delta_m is None else ", ".join(f"{x:+.2f}" for x in jump.delta_m) + " m"
         print(f"reset at {jump.time_s:.3f} s, {jump.cause}: {size}")
-    if len(recording.jumps) > TOLD_JUMPS:
-        print(f"... and {len(recording.jumps) - TOLD_JUMPS} more resets")
+    if len(recording.jumps) > REPORTED_JUMPS:
+        print(f"... and {len(recording.jumps) - REPORTED_JUMPS} more resets")
 
 
 def _offset(arguments: argparse.Namespace, frames: list[Frame], cameras: list[Camera], poses: Poses) -> float:
@@ -168,38 +168,39 @@ def _offset(arguments: argparse.Namespace, frames: list[Frame], cameras: list[Ca
         return float(arguments.offset)
     found = find_offset(frames, cameras, poses, arguments.about, arguments.within, arguments.gap)
     span = f"within {arguments.about - arguments.within:g} to {arguments.about + arguments.within:g} s"
-    way_out = "name it with --offset, or where to look with --about and --within"
+    way_out = "use --offset, or give the search interval with --about and --within"
     if found is None:
-        raise LogError(arguments.detections, 0, "t_s", f"no track whose poses are known {span} of offset; {way_out}")
+        raise LogError(arguments.detections, 0, "t_s", f"no track has known poses {span} of offset; {way_out}")
     if found.at_the_end or not found.sigma_s <= WORST_SIGMA_S:
-        told = f"{found.offset_s:+.4f} +- {found.sigma_s:.4f} s" if math.isfinite(found.sigma_s) else "nothing"
-        raise LogError(arguments.detections, 0, "t_s", f"turns and boxes tell no time offset {span}: {told}; {way_out}")
-    print(f"time offset, by {found.rows} rows: {found.offset_s:+.4f} +- {found.sigma_s:.4f} s to be added to t_s")
+        estimate = f"{found.offset_s:+.4f} +- {found.sigma_s:.4f} s" if math.isfinite(found.sigma_s) else "none"
+        reason = f"turns and boxes determine no offset {span}: {estimate}; {way_out}"
+        raise LogError(arguments.detections, 0, "t_s", reason)
+    print(f"time offset, from {found.rows} rows: {found.offset_s:+.4f} +- {found.sigma_s:.4f} s to be added to t_s")
     return found.offset_s
 
 
-def _tell(result: Converted) -> None:
-    for time_s, reason in result.left_out[:TOLD_IMAGES]:
+def _report(result: Converted) -> None:
+    for time_s, reason in result.left_out[:REPORTED_IMAGES]:
         print(f"left out: row at {time_s:.3f} s: {reason}")
-    if len(result.left_out) > TOLD_IMAGES:
-        print(f"... and {len(result.left_out) - TOLD_IMAGES} more rows are left out")
+    if len(result.left_out) > REPORTED_IMAGES:
+        print(f"... and {len(result.left_out) - REPORTED_IMAGES} more rows are left out")
     for key in sorted({frame.id for frame in result.frames}):
         rows = [frame for frame in result.frames if frame.id == key]
         resets = rows[-1].reset_count - rows[0].reset_count
-        print(f"id {key}: {len(rows)} rows, {sum(map(sees, rows))} with a sight, {resets} resets")
+        print(f"id {key}: {len(rows)} rows, {sum(map(sees, rows))} with a detection, {resets} resets")
 
 
 def run(arguments: argparse.Namespace) -> int:
     cameras = read_cameras(arguments.camera)
     frames = read_detections(arguments.detections, len(cameras))
     recording = _read(arguments)
-    _tell_recording(recording)
+    _report_recording(recording)
     poses = Poses(recording)
     offset_s = _offset(arguments, frames, cameras, poses)
     result = add_poses(frames, cameras, poses, offset_s, Wish(arguments.height, arguments.ground, arguments.gap))
-    _tell(result)
+    _report(result)
     if not result.frames:
-        raise LogError(arguments.detections, 0, "t_s", "no row has a pose: are the clocks the same but for the offset?")
+        raise LogError(arguments.detections, 0, "t_s", "no row has a pose: do the clocks differ by the offset only?")
     log = ObservationLog(cameras[0], result.frames, camera2=cameras[1] if len(cameras) > 1 else None)
     comment = f"{recording.path.name} and {arguments.detections.name}, t_s {offset_s:+.6f} s"
     write_log(arguments.out, log, comment, [arguments.camera, arguments.detections, recording.path])

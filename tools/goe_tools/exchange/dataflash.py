@@ -1,8 +1,8 @@
-"""ArduPilot's log, by pymavlink's reader.
+"""Reads ArduPilot's log with pymavlink.
 
-XKF1, XKQ, XKF4 of EKF3, otherwise NKF1, NKQ, NKF4 of EKF2: position, velocity, attitude of each core, the primary core,
-and the latest horizontal jump. IMU: rates. RFND, otherwise TERR: height above the ground. EV: told yaw
-resets. What else jumps is found by the velocity and the rates."""
+XKF1, XKQ, XKF4 of EKF3, otherwise NKF1, NKQ, NKF4 of EKF2: position, velocity and attitude of each core, the primary
+core, and the latest horizontal jump. IMU: rates. RFND, otherwise TERR: height above the ground. EV: reported yaw
+resets. Other jumps are detected from the velocity and the rates."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ FILTERS = ("XK", "NK")
 EVENT_YAW_RESET = 62
 DOWNWARD, RANGE_GOOD = 25, 4  # RFND: orientation and status
 US = 1e-6
-JUMP_LEAST_M = 0.01  # of the told horizontal jump; less is the same number again
-JUMP_SEARCH_S = 1.0  # before the message that tells it
+JUMP_LEAST_M = 0.01  # of a reported horizontal jump; a smaller change is the same number again
+JUMP_SEARCH_S = 1.0  # before the message that reports it
 JUMP_AGREES_M, JUMP_AGREES_SHARE = 0.5, 0.3
 
 Table = dict[str, np.ndarray]  # columns of a message
 
 
 def _messages(path: Path, names: list[str]) -> dict[str, Table]:
-    """Columns of the messages of these names, those there are."""
-    from pymavlink import DFReader  # here: the other formats do without
+    """Columns of the messages with these names, if present."""
+    from pymavlink import DFReader  # imported here: the other formats do not need it
 
     try:
         with path.open("rb") as file:
             if file.read(2) != b"\xa3\x95":
-                raise LogError(path, 0, "", "not a DataFlash file: it does not begin with a message's header")
+                raise LogError(path, 0, "", "not a DataFlash file: it does not start with a message header")
         reader = DFReader.DFReader_binary(str(path), zero_time_base=True)
     except OSError as error:
         raise LogError(path, 0, "", error.strerror or str(error)) from None
     except LogError:
         raise
-    except Exception as error:  # of a damaged file the reader lets all kinds out
+    except Exception as error:  # a damaged file makes the reader raise any kind
         raise LogError(path, 0, "", f"not a DataFlash file: {error}") from None
     rows: dict[str, list[list[object]]] = {}
     columns: dict[str, list[str]] = {}
@@ -58,7 +58,7 @@ def _messages(path: Path, names: list[str]) -> dict[str, Table]:
 
 
 def _columns(path: Path, name: str, table: Table, *fields: str) -> np.ndarray:
-    """(N, n)"""
+    """Columns as an array, (N, n)."""
     for field in fields:
         if field not in table:
             raise LogError(path, 0, f"{name}.{field}", "the message has no such field")
@@ -74,7 +74,7 @@ def _time_s(path: Path, name: str, table: Table) -> np.ndarray:
 
 
 def _primary(path: Path, name: str, status: Table | None, time_s: np.ndarray) -> tuple[np.ndarray, list[Jump]]:
-    """(K,) number of the primary core at each time, and the changes."""
+    """(K,) number of the primary core at each time, and its changes."""
     if status is None or "PI" not in status:
         return np.zeros(len(time_s), int), []
     when, which = _time_s(path, name, status), np.asarray(status["PI"], int)
@@ -92,26 +92,26 @@ def _of_core(path: Path, name: str, table: Table, core: np.ndarray) -> Table:
         return table
     rows = np.asarray(table["C"], int) == core
     if not rows.any():
-        raise LogError(path, 0, f"{name}.C", f"no row is of the primary core, {sorted(set(core.tolist()))}")
+        raise LogError(path, 0, f"{name}.C", f"no row belongs to the primary core, {sorted(set(core.tolist()))}")
     return _only(table, rows)
 
 
-def _told_jumps(path: Path, name: str, status: Table | None, position: Series, velocity: Series) -> list[Jump]:
-    """Of the fields OFN and OFE, which hold the latest horizontal jump: it is placed where the positions step by it
-    within the time before the message; if they do not, its size is not believed."""
+def _reported_jumps(path: Path, name: str, status: Table | None, position: Series, velocity: Series) -> list[Jump]:
+    """Jumps in the fields OFN and OFE, which contain the latest horizontal jump. Its time is that of a matching step of
+    the positions before the message; without such a step, its size is unknown."""
     if status is None or "OFN" not in status or "OFE" not in status:
         return []
-    when, told = _time_s(path, name, status), _columns(path, name, status, "OFN", "OFE")
+    when, reported = _time_s(path, name, status), _columns(path, name, status, "OFN", "OFE")
     off, result = unexplained_m(position, velocity), []
-    changed = np.concatenate([[False], np.linalg.norm(np.diff(told, axis=0), axis=1) > JUMP_LEAST_M])
+    changed = np.concatenate([[False], np.linalg.norm(np.diff(reported, axis=0), axis=1) > JUMP_LEAST_M])
     for k in np.flatnonzero(changed):
         near = np.flatnonzero((position.time_s[1:] > when[k] - JUMP_SEARCH_S) & (position.time_s[1:] <= when[k] + 1e-9))
-        miss = np.linalg.norm(off[near, :2] - told[k], axis=1)
+        miss = np.linalg.norm(off[near, :2] - reported[k], axis=1)
         best = int(np.argmin(miss)) if len(near) else 0
-        if len(near) and miss[best] <= JUMP_AGREES_M + JUMP_AGREES_SHARE * np.linalg.norm(told[k]):
+        if len(near) and miss[best] <= JUMP_AGREES_M + JUMP_AGREES_SHARE * np.linalg.norm(reported[k]):
             at = float(position.time_s[1:][near[best]])
             down = float(off[near[best], 2])
-            delta = (*(float(x) for x in told[k]), down if abs(down) > JUMP_AGREES_M else 0.0)
+            delta = (*(float(x) for x in reported[k]), down if abs(down) > JUMP_AGREES_M else 0.0)
             result.append(Jump(at, delta, f"{name}.OFN, OFE"))  # type: ignore[arg-type]
         else:
             result.append(Jump(float(when[k]), None, f"{name}.OFN, OFE: no such step in the positions"))
@@ -126,7 +126,7 @@ def _events(path: Path, table: Table | None) -> list[Jump]:
 
 
 def _gyro(path: Path, table: Table | None) -> Series | None:
-    """Of the first IMU."""
+    """The rates of the first IMU."""
     if table is None:
         return None
     if "I" in table:
@@ -152,9 +152,9 @@ def _clearance(path: Path, messages: dict[str, Table], attitude: Series) -> Seri
     return None
 
 
-def _without_told(found: list[Jump], told: list[Jump]) -> list[Jump]:
-    """What is found by motion and not told within the time in which it is looked for."""
-    return [one for one in found if all(abs(one.time_s - other.time_s) > JUMP_SEARCH_S for other in told)]
+def _unreported(found: list[Jump], reported: list[Jump]) -> list[Jump]:
+    """Jumps detected from motion that no reported jump explains within the search time."""
+    return [one for one in found if all(abs(one.time_s - other.time_s) > JUMP_SEARCH_S for other in reported)]
 
 
 def read_dataflash(path: Path) -> Recording:
@@ -181,10 +181,10 @@ def read_dataflash(path: Path) -> Recording:
     q = _columns(path, name_q, turn, "Q1", "Q2", "Q3", "Q4")
     attitude = make_attitude(path, f"{name_q}.Q1 to Q4", _time_s(path, name_q, turn), q)
     gyro = _gyro(path, messages.get("IMU"))
-    told = _told_jumps(path, name_4, status, position, velocity) + changes + _events(path, messages.get("EV"))
-    found = _without_told(position_jumps(position, velocity, f"{name_1}: a step"), told)
+    reported = _reported_jumps(path, name_4, status, position, velocity) + changes + _events(path, messages.get("EV"))
+    found = _unreported(position_jumps(position, velocity, f"{name_1}: a step"), reported)
     turned = attitude_jumps(attitude, gyro, f"{name_q}: a turn by") if gyro is not None else []
-    found += _without_told(turned, [jump for jump in told if jump.delta_m is None])
+    found += _unreported(turned, [jump for jump in reported if jump.delta_m is None])
     return Recording(
-        path, position, attitude, gyro, velocity, _clearance(path, messages, attitude), merged(told + found)
+        path, position, attitude, gyro, velocity, _clearance(path, messages, attitude), merged(reported + found)
     )

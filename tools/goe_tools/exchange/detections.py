@@ -1,4 +1,4 @@
-"""What a detector saw, as a table: frames.csv without the pose.
+"""A detector's output as a table: frames.csv without the pose.
 
 t_s (time of exposure, s, the camera's clock), id, and the columns of frames.csv for points, boxes and the camera's
 number, with the same meaning; other columns are ignored."""
@@ -18,8 +18,8 @@ NO_ATTITUDE = (math.nan,) * 4
 
 
 def read_detections(path: Path, cameras: int) -> list[Frame]:
-    """Rows by time, the poses NaN. LogError: no column of a detector, a time that is not finite, or one that does not
-    come after the same id's row before."""
+    """Rows in the order of time, with NaN poses. LogError: no detector column, a time that is not finite, or a time not
+    after that of the same id's previous row."""
     path, result = Path(path), []
     latest: dict[int, float] = {}
     known = (*POINT_COLUMNS, *BOX_COLUMNS)
@@ -44,7 +44,7 @@ def read_detections(path: Path, cameras: int) -> list[Frame]:
 
 
 def sees(frame: Frame) -> bool:
-    """Whether anything is seen in that row."""
+    """Whether the row has a detection."""
     box = frame.box_px is not None
     return box or any(getattr(frame, name) is not None for name in FEATURES)
 

@@ -42,10 +42,10 @@ Message = tuple[str, str, int, Json]  # topic, schema, time in ns, content
 
 
 class Topics:
-    """An MCAP file that learns its schemas and channels as messages come."""
+    """An MCAP file that adds schemas and channels with their first message."""
 
     def __init__(self, stream: IO[bytes]) -> None:
-        from mcap.writer import Writer  # here: the other commands do without
+        from mcap.writer import Writer  # imported here: the other commands do not need it
 
         self._writer = Writer(stream)
         self._writer.start(profile="", library="goe_tools")
@@ -71,10 +71,10 @@ class Topics:
 
 
 def run_replay(folder: Path, out: Path) -> None:
-    """goe_replay's estimates of a log: the program that $GOE_REPLAY names, or that of this checkout's build."""
+    """goe_replay's estimates of a log, from $GOE_REPLAY or the program in this checkout's build."""
     program = Path(os.environ.get("GOE_REPLAY") or ROOT / "build" / "sim_host" / "goe_replay")
     if not program.is_file():
-        raise FileNotFoundError(f"{program}: not there; build it, name it with $GOE_REPLAY, or give --estimates")
+        raise FileNotFoundError(f"{program}: not found; build it, set $GOE_REPLAY, or use --estimates")
     words = [str(program), "--out", str(out), str(folder)]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):  # 1: no row gave an estimate
@@ -92,7 +92,7 @@ def _estimates(folder: Path, file: Path | None) -> Estimates:
 
 
 def _heading_deg(log: ObservationLog, first: Frame) -> float:
-    """Of the trajectory frame's Z of a track."""
+    """Heading of the Z axis of a track's trajectory frame."""
     if log.camera.heading_deg is not None:
         return log.camera.heading_deg
     forward = matrices(np.array(first.attitude))[:, 0]
@@ -100,12 +100,12 @@ def _heading_deg(log: ObservationLog, first: Frame) -> float:
 
 
 def _usable(frame: Frame) -> bool:
-    """A bad measurement has no place on a time line, and no pose to draw."""
+    """Whether the row has a time and a pose; others cannot be placed or drawn."""
     return bool(np.isfinite([*frame.position_m, *frame.attitude]).all())
 
 
 def messages(log: ObservationLog, estimates: Estimates) -> Iterator[Message]:
-    """By time; the truth with the first row. Rows without a time are left out."""
+    """In the order of time; the truth comes with the first row. Rows without a time are left out."""
     frames = sorted((f for f in log.frames if f.time_us is not None and f.time_us >= 0), key=lambda f: f.t_s)
     first: dict[int, tuple[float, int]] = {}
     posed = -1
@@ -138,7 +138,7 @@ def messages(log: ObservationLog, estimates: Estimates) -> Iterator[Message]:
 
 
 def write_mcap(path: Path, log: ObservationLog, estimates: Estimates) -> dict[str, int]:
-    """Messages written, by topic."""
+    """Writes the file and returns the number of messages by topic."""
     columns: dict[str, list[str]] = {"goe.Estimate": ["n_used", *NUMBERS, "suspect"]}
     if log.frames:
         columns["goe.Observation"] = list(observation_numbers(log.frames[0]))
@@ -155,7 +155,7 @@ def write_mcap(path: Path, log: ObservationLog, estimates: Estimates) -> dict[st
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add: Any = parser.add_argument
     add("log", type=Path, metavar="LOG", help="log folder")
-    add("--estimates", type=Path, metavar="CSV", help="goe_replay's output; by default goe_replay is run")
+    add("--estimates", type=Path, metavar="CSV", help="goe_replay's output (default: runs goe_replay)")
     add("--out", type=Path, required=True, metavar="FILE", help="file to write (.mcap)")
 
 
@@ -164,7 +164,7 @@ def run(arguments: argparse.Namespace) -> int:
     log = read_log(arguments.log)
     count = write_mcap(arguments.out, log, _estimates(arguments.log, arguments.estimates))
     if not count:
-        raise LogError(arguments.log / "frames.csv", 0, "t_s", "no row has a time from 0 on")
+        raise LogError(arguments.log / "frames.csv", 0, "t_s", "no row has a time of 0 or more")
     for topic, number in sorted(count.items()):
         print(f"{topic}: {number}")
     return 0

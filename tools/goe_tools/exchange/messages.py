@@ -1,13 +1,13 @@
-"""An observation log and its estimates as messages: Foxglove's schemas for what viewers draw, plain numbers for plots.
+"""An observation log and its estimates as messages: Foxglove's schemas for drawings, plain numbers for plots.
 
 Topics, all JSON; lengths in m, angles in degrees, quaternions (x, y, z, w). Foxglove draws with z up: its frame "map"
 is east, north, up, and "body" is forward, left, up.
 
     /pose               foxglove.PoseInFrame     the vehicle in "map"
     /tf                 foxglove.FrameTransform  "map" -> "body"
-    /obstacles          foxglove.SceneUpdate     of each id a cylinder or a box at the estimated place, and two sigmas
-    /truth              foxglove.SceneUpdate     what truth.csv tells, once
-    /estimate/ID        goe.Estimate             a row of goe_replay, numbers as numbers; what is not known is left out
+    /obstacles          foxglove.SceneUpdate     for each id a cylinder or a box at the estimated place, and two sigmas
+    /truth              foxglove.SceneUpdate     the content of truth.csv, once
+    /estimate/ID        goe.Estimate             a row of goe_replay as numbers, without unknown quantities
     /observation/ID     goe.Observation          the row of frames.csv, likewise"""
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Json = dict[str, Any]
 NS = 1_000_000_000
 TWO_SIGMA = 2.0
 UNKNOWN_HEIGHT_M = 1.0
-FRESH = ("ok", "partial")  # status of an estimate that is solved from its own image
+FRESH = ("ok", "partial")  # status of an estimate solved from its own image
 FOUND, STALE, TRUE = (0.10, 0.45, 0.85, 0.8), (0.85, 0.45, 0.10, 0.8), (0.25, 0.65, 0.30, 0.5)
 REGION_ALPHA = 0.2
 REGION_HEIGHT_M = 0.1
@@ -45,9 +45,9 @@ def _list(items: Json) -> Json:
 VECTOR = _object(x=NUMBER, y=NUMBER, z=NUMBER)
 QUATERNION = _object(x=NUMBER, y=NUMBER, z=NUMBER, w=NUMBER)
 POSE = _object(position=VECTOR, orientation=QUATERNION)
-COLOUR = _object(r=NUMBER, g=NUMBER, b=NUMBER, a=NUMBER)
-CUBE = _object(pose=POSE, size=VECTOR, color=COLOUR)
-CYLINDER = _object(pose=POSE, size=VECTOR, bottom_scale=NUMBER, top_scale=NUMBER, color=COLOUR)
+COLOR = _object(r=NUMBER, g=NUMBER, b=NUMBER, a=NUMBER)
+CUBE = _object(pose=POSE, size=VECTOR, color=COLOR)
+CYLINDER = _object(pose=POSE, size=VECTOR, bottom_scale=NUMBER, top_scale=NUMBER, color=COLOR)
 PAIR = _object(key=TEXT, value=TEXT)
 ENTITY = _object(
     timestamp=TIME, frame_id=TEXT, id=TEXT, lifetime=TIME, frame_locked={"type": "boolean"}, metadata=_list(PAIR),
@@ -65,7 +65,7 @@ SCHEMAS = {
 
 
 def plain_schema(names: list[str]) -> Json:
-    """Of a message with these numbers, a time stamp and words."""
+    """Schema of a message with these numbers, a time stamp and words."""
     words = {name: TEXT for name in ("status", "model", "reason")}
     return _object(timestamp=TIME, **words, **{name: NUMBER for name in names if name not in words})
 
@@ -83,7 +83,7 @@ def _vector(x: float, y: float, z: float) -> Json:
     return {"x": float(x), "y": float(y), "z": float(z)}
 
 
-def _colour(rgba: tuple[float, float, float, float], alpha: float | None = None) -> Json:
+def _color(rgba: tuple[float, float, float, float], alpha: float | None = None) -> Json:
     r, g, b, a = rgba
     return {"r": r, "g": g, "b": b, "a": a if alpha is None else alpha}
 
@@ -109,7 +109,7 @@ def _quaternion(wxyz: tuple[float, float, float, float]) -> Json:
 
 
 def heading_turn(heading_deg: float) -> tuple[float, float, float, float]:
-    """(w, x, y, z): turns x into that heading, clockwise from north, in east, north, up."""
+    """(w, x, y, z): turns x to that heading, clockwise from north, in east, north, up."""
     angle = math.radians(90.0 - heading_deg)
     return math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2)
 
@@ -138,14 +138,14 @@ def _update(entities: list[Json]) -> Json:
     return {"deletions": [], "entities": entities}
 
 
-def _shape(place: Json, heading_deg: float, size: Json, colour: Json, scale: bool) -> Json:
+def _shape(place: Json, heading_deg: float, size: Json, color: Json, scale: bool) -> Json:
     pose = {"position": place, "orientation": _quaternion(heading_turn(heading_deg))}
-    return {"pose": pose, "size": size, "color": colour, **({"bottom_scale": 1.0, "top_scale": 1.0} if scale else {})}
+    return {"pose": pose, "size": size, "color": color, **({"bottom_scale": 1.0, "top_scale": 1.0} if scale else {})}
 
 
 def obstacle_message(frame: Frame, estimate: Estimate, heading_deg: float, ground_d_m: float) -> Json | None:
-    """SceneUpdate of an estimate; None if it tells no centre. ``heading_deg``: of the trajectory frame's Z. The region
-    is that of two sigmas north and east, without their correlation."""
+    """SceneUpdate of an estimate; None without an estimated center. ``heading_deg``: of the trajectory frame's Z axis.
+    The region covers two sigmas north and east, without their correlation."""
     values = estimate.values
     if "center_n_m" not in values or "center_e_m" not in values:
         return None
@@ -153,30 +153,30 @@ def obstacle_message(frame: Frame, estimate: Estimate, heading_deg: float, groun
     height = values.get("height_m", UNKNOWN_HEIGHT_M)
     width = values.get("width_m", UNKNOWN_HEIGHT_M)
     middle, ground = _up(n, e, ground_d_m - 0.5 * height), _up(n, e, ground_d_m)
-    colour = FOUND if estimate.status in FRESH else STALE
+    color = FOUND if estimate.status in FRESH else STALE
     cubes, cylinders = [], []
     if "length_m" in values and "orientation_deg" in values:
         size = _vector(values["length_m"], width, height)
-        cubes.append(_shape(middle, heading_deg + values["orientation_deg"], size, _colour(colour), False))
+        cubes.append(_shape(middle, heading_deg + values["orientation_deg"], size, _color(color), False))
     else:
-        cylinders.append(_shape(middle, 90.0, _vector(width, width, height), _colour(colour), True))
+        cylinders.append(_shape(middle, 90.0, _vector(width, width, height), _color(color), True))
     spread = [2.0 * TWO_SIGMA * values[f"center_{axis}_sd_m"] for axis in "en"]
     region = _vector(*spread, REGION_HEIGHT_M)
-    cylinders.append(_shape(ground, 90.0, region, _colour(colour, REGION_ALPHA), True))
-    told = {"model": estimate.model, "status": estimate.status}
+    cylinders.append(_shape(ground, 90.0, region, _color(color, REGION_ALPHA), True))
+    metadata = {"model": estimate.model, "status": estimate.status}
     if estimate.suspect:
-        told["suspect"] = estimate.reason
-    return _update([_entity(frame.t_s, f"obstacle {frame.id}", cubes, cylinders, told)])
+        metadata["suspect"] = estimate.reason
+    return _update([_entity(frame.t_s, f"obstacle {frame.id}", cubes, cylinders, metadata)])
 
 
 def truth_message(t_s: float, truth: Truth) -> Json:
     middle = _up(truth.center_n_m, truth.center_e_m, truth.ground_d_m - 0.5 * truth.height_m)
     if truth.length_m is None or truth.heading_deg is None:
         size = _vector(truth.width_m, truth.width_m, truth.height_m)
-        shapes = [], [_shape(middle, 90.0, size, _colour(TRUE), True)]
+        shapes = [], [_shape(middle, 90.0, size, _color(TRUE), True)]
     else:
         size = _vector(truth.length_m, truth.width_m, truth.height_m)
-        shapes = [_shape(middle, truth.heading_deg, size, _colour(TRUE), False)], []
+        shapes = [_shape(middle, truth.heading_deg, size, _color(TRUE), False)], []
     return _update([_entity(t_s, f"truth {truth.id}", *shapes, {"static": str(int(truth.static))})])
 
 
@@ -185,12 +185,12 @@ def truth_message(t_s: float, truth: Truth) -> Json:
 
 def estimate_message(t_s: float, estimate: Estimate) -> Json:
     words = {"timestamp": _time(t_s), "status": estimate.status, "model": estimate.model, "n_used": estimate.n_used}
-    doubt = {"suspect": int(estimate.suspect), "reason": estimate.reason}  # a plot takes numbers
+    doubt = {"suspect": int(estimate.suspect), "reason": estimate.reason}  # plots need numbers
     return {**words, **estimate.values, **doubt}
 
 
 def observation_numbers(frame: Frame) -> dict[str, float | None]:
-    """Every column of frames.csv that this row may fill."""
+    """Every column of frames.csv, with the values of this row."""
     names = ("n_m", "e_m", "d_m", "qw", "qx", "qy", "qz")
     result: dict[str, float | None] = dict(zip(names, (*frame.position_m, *frame.attitude)))
     result["agl_m"] = frame.agl_m

@@ -1,6 +1,6 @@
-"""What an autopilot's log tells of a flight, whatever its format: pose, rates, height, and the jumps of its filter.
+"""The flight in an autopilot's log of any format: pose, rates, height, and the jumps of its filter.
 
-Frames and units as in ``logs.obslog``; times in s of the autopilot's own clock."""
+Frames and units as in ``logs.obslog``; times in s of the autopilot's clock."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ import numpy as np
 from ..flights.rotations import matrices, multiply
 from ..logs.fields import LogError
 
-LOG_BYTES_MAX = 2**31  # of a file of messages: what is read of it is held in memory
+LOG_BYTES_MAX = 2**31  # of a file of messages, whose content is kept in memory
 LEAST_SAMPLES = 2
 NORM_TOLERANCE = 0.01
 
 
 def check_size(path: Path) -> None:
-    """LogError of a log that is too large to be held, and of a device or pipe, which may have no end. What is not there
-    or is a folder is its reader's to tell."""
+    """LogError for a log too large for memory, and for a device or pipe, which may have no end. The reader reports a
+    missing file or a folder."""
     if path.is_file():
         if path.stat().st_size > LOG_BYTES_MAX:
             raise LogError(path, 0, "", f"longer than {LOG_BYTES_MAX} bytes")
     elif path.exists() and not path.is_dir():
-        raise LogError(path, 0, "", "is no file")
+        raise LogError(path, 0, "", "is not a file")
 
 
 @dataclass
@@ -42,16 +42,16 @@ class Series:
 
 @dataclass(frozen=True)
 class Jump:
-    """A reset of the autopilot's filter. The first sample after it has its time."""
+    """A reset of the autopilot's filter; its time is that of the first sample after it."""
 
     time_s: float
-    delta_m: tuple[float, float, float] | None  # new minus old position, NED; None: not known, or the attitude jumped
+    delta_m: tuple[float, float, float] | None  # new minus old position, NED; None: unknown, or the attitude jumped
     cause: str
 
 
 @dataclass
 class Recording:
-    """``clearance``: (N, 1) of the vehicle above the ground below it, m; None: the log has no such sensor."""
+    """``clearance``: (N, 1) height of the vehicle above the ground below it, m; None: the log has no such sensor."""
 
     path: Path
     position: Series  # (N, 3) NED, m
@@ -64,11 +64,11 @@ class Recording:
 
 
 def make_series(path: Path, name: str, time_s: np.ndarray, value: np.ndarray) -> Series:
-    """Checks a signal: LogError names it and the time. Repeated samples are taken once."""
+    """Checks a signal; a LogError contains its name and the time. Drops repeated samples."""
     time_s, value = np.asarray(time_s, float), np.asarray(value, float)
     value = value.reshape(len(time_s), -1)
     if len(time_s) < LEAST_SAMPLES:
-        raise LogError(path, 0, name, f"{len(time_s)} samples, at least {LEAST_SAMPLES} are needed")
+        raise LogError(path, 0, name, f"{len(time_s)} samples, needs at least {LEAST_SAMPLES}")
     step = np.diff(time_s)
     back = np.flatnonzero(step < 0.0)
     if len(back):
@@ -80,18 +80,18 @@ def make_series(path: Path, name: str, time_s: np.ndarray, value: np.ndarray) ->
     if len(bad):
         raise LogError(path, 0, name, f"not finite at {time_s[bad[0]]:.6f} s")
     if len(time_s) < LEAST_SAMPLES:
-        raise LogError(path, 0, name, "all samples are of one time")
+        raise LogError(path, 0, name, "all samples have the same time")
     return Series(name, time_s, value)
 
 
 def make_attitude(path: Path, name: str, time_s: np.ndarray, quaternion: np.ndarray) -> Series:
-    """Checks quaternions, normalises them and makes their signs alike."""
+    """Checks quaternions, normalizes them and gives them continuous signs."""
     series = make_series(path, name, time_s, quaternion)
     norm = np.linalg.norm(series.value, axis=1)
     bad = np.flatnonzero(np.abs(norm - 1.0) > NORM_TOLERANCE)
     if len(bad):
         at = series.time_s[bad[0]]
-        raise LogError(path, 0, name, f"is no unit quaternion at {at:.6f} s: its norm is {norm[bad[0]]:.3f}")
+        raise LogError(path, 0, name, f"is not a unit quaternion at {at:.6f} s: its norm is {norm[bad[0]]:.3f}")
     q = series.value / norm[:, None]
     turned = np.concatenate([[1.0], np.cumprod(np.where((q[1:] * q[:-1]).sum(1) < 0.0, -1.0, 1.0))])
     return Series(series.name, series.time_s, q * turned[:, None])
@@ -101,20 +101,20 @@ def make_attitude(path: Path, name: str, time_s: np.ndarray, quaternion: np.ndar
 
 
 def _bracket(series: Series, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Index of the sample before each time, and the share of the way to the next."""
+    """Index of the sample before each time, and the fraction of the interval to the next."""
     i = np.clip(np.searchsorted(series.time_s, time_s, side="right") - 1, 0, len(series.time_s) - 2)
     span = series.time_s[i + 1] - series.time_s[i]
     return i, np.clip((time_s - series.time_s[i]) / span, 0.0, 1.0)
 
 
 def linear(series: Series, time_s: np.ndarray) -> np.ndarray:
-    """(K, n) at times (K,); beyond the ends as at the ends."""
+    """(K, n) at times (K,); constant beyond the ends."""
     i, share = _bracket(series, time_s)
     return series.value[i] + share[:, None] * (series.value[i + 1] - series.value[i])
 
 
 def slerp(series: Series, time_s: np.ndarray) -> np.ndarray:
-    """(K, 4): at a constant rate from one attitude to the next."""
+    """(K, 4): spherical interpolation at a constant rate."""
     i, share = _bracket(series, time_s)
     p, q = series.value[i], series.value[i + 1]
     cosine = np.clip((p * q).sum(1), -1.0, 1.0)
@@ -128,7 +128,7 @@ def slerp(series: Series, time_s: np.ndarray) -> np.ndarray:
 
 
 def within(series: Series, time_s: np.ndarray, gap_s: float) -> np.ndarray:
-    """(K,) whether there are samples around a time, no farther apart than the gap."""
+    """(K,) whether the samples around a time are no farther apart than the gap."""
     i, _ = _bracket(series, time_s)
     inside = (time_s >= series.time_s[0]) & (time_s <= series.time_s[-1])
     return inside & (series.time_s[i + 1] - series.time_s[i] <= gap_s)
@@ -141,8 +141,8 @@ def made_upright(distance: Series, attitude: Series) -> Series:
 
 
 class Poses:
-    """Where the vehicle was at any time. A known jump of the filter is taken off before positions are interpolated, and
-    put back after; nothing is interpolated across an unknown one."""
+    """The vehicle's pose at any time. Positions are interpolated without the known jumps of the filter, which are then
+    added again; there is no interpolation across an unknown jump."""
 
     def __init__(self, recording: Recording) -> None:
         self.recording = recording
@@ -159,12 +159,12 @@ class Poses:
         return self._sums[np.searchsorted(self._known_s, time_s, side="right")]
 
     def count(self, time_s: np.ndarray) -> np.ndarray:
-        """(K,): jumps of all kinds up to a time."""
+        """(K,): number of jumps of all kinds up to a time."""
         times = np.array([jump.time_s for jump in self.recording.jumps])
         return np.searchsorted(times, time_s, side="right")
 
     def position_m(self, time_s: np.ndarray) -> np.ndarray:
-        """(K, 3) as the filter had it then."""
+        """(K, 3) as the filter reported it at that time."""
         return linear(self._smooth, time_s) + self.jumped_m(time_s)
 
     def smooth_m(self, time_s: np.ndarray) -> np.ndarray:
@@ -175,7 +175,7 @@ class Poses:
         return slerp(self.recording.attitude, time_s)
 
     def good(self, time_s: np.ndarray, gap_s: float) -> np.ndarray:
-        """(K,) whether the log tells the pose: not outside, in no gap, not between the samples of an unknown jump."""
+        """(K,) whether the log gives the pose: not outside, in no gap, not between the samples of an unknown jump."""
         result = np.ones(len(time_s), bool)
         for series in (self.recording.position, self.recording.attitude):
             result &= within(series, time_s, gap_s)
@@ -185,7 +185,7 @@ class Poses:
         return result
 
     def ground_d_m(self, time_s: np.ndarray) -> np.ndarray | None:
-        """(K,) down coordinate of the ground below the vehicle, as the latest reading has it; None without any."""
+        """(K,) down coordinate of the ground below the vehicle, from the latest reading; None without any."""
         clearance = self.recording.clearance
         if clearance is None:
             return None
@@ -197,7 +197,7 @@ class Poses:
 
 
 def turned_by(gyro: Series, start_s: float, end_s: float) -> np.ndarray:
-    """(4,): rotation body -> body at the start, by the rates between two times: the trapezoidal rule."""
+    """(4,): rotation between two times, body -> body at the start, from the rates with the trapezoidal rule."""
     inner = gyro.time_s[(gyro.time_s > start_s) & (gyro.time_s < end_s)]
     times = np.concatenate([[start_s], inner, [end_s]])
     rates = linear(gyro, times)
@@ -213,8 +213,8 @@ def conjugate(q: np.ndarray) -> np.ndarray:
 
 
 def filled(attitude: Series, gyro: Series) -> Series:
-    """The attitude with the gyro's motion between its samples: the rates are integrated from each sample, and what is
-    then left at the next one is spread over the time between them."""
+    """The attitude, interpolated with the gyro: integrates the rates from each sample and distributes the difference at
+    the next one over the time between them."""
     times, values = [attitude.time_s[0]], [attitude.value[0]]
     for k in range(len(attitude.time_s) - 1):
         start, end = attitude.time_s[k], attitude.time_s[k + 1]

@@ -1,4 +1,5 @@
-"""Jumps of the autopilot's filter that its log does not tell of: what motion between two samples does not explain."""
+"""Detects jumps of the autopilot's filter that its log does not report: motion between two samples that is
+unexplained."""
 
 from __future__ import annotations
 
@@ -9,15 +10,15 @@ import numpy as np
 from ..flights.rotations import multiply
 from .recording import Jump, Series, conjugate, linear, turned_by
 
-STEP_M = 0.5  # a position that is farther off than that ...
-STEP_SHARE = 0.1  # ... and that share of the way flown since the last sample has jumped
-TURN_RAD = math.radians(3.0)  # an attitude that is farther off than that ...
-TURN_SHARE = 0.2  # ... and that share of the turn has jumped
-LONGEST_S = 0.5  # between the samples; what happened in a longer gap cannot be told
+STEP_M = 0.5  # a position error above this ...
+STEP_SHARE = 0.1  # ... and above this share of the distance since the last sample is a jump
+TURN_RAD = math.radians(3.0)  # an attitude error above this ...
+TURN_SHARE = 0.2  # ... and above this share of the turn is a jump
+LONGEST_S = 0.5  # between samples; jumps in a longer gap are undetectable
 
 
 def unexplained_m(position: Series, velocity: Series) -> np.ndarray:
-    """(N - 1, 3): by how much each position differs from the one before and the way flown, trapezoidal rule."""
+    """(N - 1, 3): difference of each position to the previous one plus the integrated velocity, trapezoidal rule."""
     speed = linear(velocity, position.time_s)
     way = 0.5 * (speed[1:] + speed[:-1]) * np.diff(position.time_s)[:, None]
     return np.diff(position.value, axis=0) - way
@@ -52,7 +53,7 @@ def attitude_jumps(attitude: Series, gyro: Series, cause: str) -> list[Jump]:
 
 
 def merged(jumps: list[Jump]) -> list[Jump]:
-    """By time; of those at one time the sum, unknown if one of them is."""
+    """Sorts by time and adds jumps at the same time; the sum is unknown if one of them is."""
     result: list[Jump] = []
     for jump in sorted(jumps, key=lambda one: one.time_s):
         if result and result[-1].time_s == jump.time_s:

@@ -1,8 +1,9 @@
-"""A ground station's log of MAVLink messages, by pymavlink.
+"""Reads a ground station's log of MAVLink messages with pymavlink.
 
-LOCAL_POSITION_NED, otherwise GLOBAL_POSITION_INT, otherwise ODOMETRY; ATTITUDE_QUATERNION or ATTITUDE, whichever comes
-more often, otherwise ODOMETRY; DISTANCE_SENSOR that looks down. Times are time_boot_ms (of ODOMETRY time_usec), those
-of the autopilot. Of resets only ODOMETRY tells; what else jumps is found by the velocity and the rates."""
+Position: LOCAL_POSITION_NED, otherwise GLOBAL_POSITION_INT, otherwise ODOMETRY. Attitude: the more frequent of
+ATTITUDE_QUATERNION and ATTITUDE, otherwise ODOMETRY. Height: a DISTANCE_SENSOR that looks down. Times are the
+autopilot's time_boot_ms (ODOMETRY: time_usec). Only ODOMETRY reports resets; other jumps are detected from the velocity
+and the rates."""
 
 from __future__ import annotations
 
@@ -25,14 +26,14 @@ DOWNWARD = 25  # DISTANCE_SENSOR.orientation
 LOCAL_NED, BODY_FRD = 1, 12  # ODOMETRY.frame_id, child_frame_id
 MS, US, CM, MM = 1e-3, 1e-6, 1e-2, 1e-3
 DEG_E7 = 1e-7
-EARTH_M = 6371000.8  # mean radius: a degree's length is off by at most 0.6 %, as is a short way
+EARTH_M = 6371000.8  # mean radius: errors of short distances are at most 0.6 %
 System = tuple[int, int]
 Messages = dict[str, list]
 
 
 def _read(path: Path, system: int | None) -> tuple[Messages, System]:
     """Messages of one autopilot, by name, and its number and component."""
-    from pymavlink import mavutil  # here: the other formats do without
+    from pymavlink import mavutil  # imported here: the other formats do not need it
 
     try:
         if path.is_dir():
@@ -45,7 +46,7 @@ def _read(path: Path, system: int | None) -> tuple[Messages, System]:
     while True:
         try:
             message = log.recv_match(type=list(WANTED))
-        except Exception as error:  # of a damaged file
+        except Exception as error:  # in a damaged file
             raise LogError(path, 0, "", f"damaged: {error}") from None
         if message is None:
             break
@@ -59,7 +60,7 @@ def _read(path: Path, system: int | None) -> tuple[Messages, System]:
         autopilots = [source for source in autopilots if source[0] == system]
     if not autopilots:
         of = "" if system is None else f" of system {system}"
-        raise LogError(path, 0, "HEARTBEAT", f"the log has none{of} of an autopilot; is it a tlog?")
+        raise LogError(path, 0, "HEARTBEAT", f"the log has none{of} from an autopilot; is it a tlog?")
     return by_system[autopilots[0]], autopilots[0]
 
 
@@ -74,7 +75,7 @@ def _of(path: Path, messages: Messages, name: str, unit: float, stamp: str, fiel
 
 
 def _local(path: Path, messages: Messages) -> Series:
-    """GLOBAL_POSITION_INT about its first fix."""
+    """GLOBAL_POSITION_INT relative to its first fix."""
     name = "GLOBAL_POSITION_INT"
     series = _of(path, messages, name, 1.0, "time_boot_ms", "lat lon relative_alt")
     lat, lon = np.radians(series.value[:, :2] * DEG_E7).T
@@ -84,7 +85,7 @@ def _local(path: Path, messages: Messages) -> Series:
 
 
 def _position(path: Path, messages: Messages) -> tuple[Series, Series | None, list[Jump]]:
-    """Position and velocity, NED, and told jumps."""
+    """Position and velocity, NED, and reported jumps."""
     if "LOCAL_POSITION_NED" in messages:
         name = "LOCAL_POSITION_NED"
         return (
@@ -97,7 +98,7 @@ def _position(path: Path, messages: Messages) -> tuple[Series, Series | None, li
     if "ODOMETRY" in messages:
         position = _of(path, messages, "ODOMETRY", 1.0, "time_usec", "x y z")
         return position, None, _odometry_jumps(messages)
-    raise LogError(path, 0, "LOCAL_POSITION_NED", "the log has none, nor GLOBAL_POSITION_INT or ODOMETRY")
+    raise LogError(path, 0, "LOCAL_POSITION_NED", "the log has none, and no GLOBAL_POSITION_INT or ODOMETRY")
 
 
 def _odometry_jumps(messages: Messages) -> list[Jump]:
@@ -132,7 +133,7 @@ def _attitude(path: Path, messages: Messages) -> tuple[Series, Series]:
             _of(path, messages, name, 1.0, stamp, rates),
         )
     else:
-        raise LogError(path, 0, "ATTITUDE", "the log has none, nor ATTITUDE_QUATERNION or ODOMETRY")
+        raise LogError(path, 0, "ATTITUDE", "the log has none, and no ATTITUDE_QUATERNION or ODOMETRY")
     return make_attitude(path, series.name, series.time_s, q), _of(path, messages, name, 1.0, "time_boot_ms", rates)
 
 
@@ -146,14 +147,14 @@ def _clearance(path: Path, messages: Messages, attitude: Series) -> Series | Non
 
 
 def _check_frames(path: Path, messages: Messages) -> None:
-    """Of ODOMETRY, where it is used."""
+    """Checks the frames of ODOMETRY if it is used."""
     alone = not {"LOCAL_POSITION_NED", "GLOBAL_POSITION_INT"} & messages.keys()
     alone |= not {"ATTITUDE", "ATTITUDE_QUATERNION"} & messages.keys()
     for row in messages.get("ODOMETRY", ()) if alone else ():
         if (row.frame_id, row.child_frame_id) != (LOCAL_NED, BODY_FRD):
             at, frames = row.time_usec * US, f"{row.frame_id}, {row.child_frame_id}"
             raise LogError(
-                path, 0, "ODOMETRY.frame_id", f"frames {frames} at {at:.6f} s; {LOCAL_NED}, {BODY_FRD} are read"
+                path, 0, "ODOMETRY.frame_id", f"frames {frames} at {at:.6f} s; supported: {LOCAL_NED}, {BODY_FRD}"
             )
 
 

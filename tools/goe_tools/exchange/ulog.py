@@ -1,8 +1,8 @@
-"""PX4's log, by pyulog.
+"""Reads PX4's log with pyulog.
 
 vehicle_local_position: x, y, z, vx, vy, vz, dist_bottom; xy_reset_counter with delta_xy, z_reset_counter with delta_z
 vehicle_attitude: q; quat_reset_counter
-vehicle_angular_velocity: xyz; of older logs sensor_combined: gyro_rad"""
+vehicle_angular_velocity: xyz; in older logs sensor_combined: gyro_rad"""
 
 from __future__ import annotations
 
@@ -17,33 +17,33 @@ from .resets import merged, unexplained_m
 POSITION, ATTITUDE = "vehicle_local_position", "vehicle_attitude"
 GYROS = (("vehicle_angular_velocity", "xyz"), ("sensor_combined", "gyro_rad"))
 US = 1e-6
-AGREES_M, AGREES_SHARE = 0.5, 0.2  # of a told jump with the positions around it
+AGREES_M, AGREES_SHARE = 0.5, 0.2  # agreement of a reported jump with the positions around it
 
 Columns = dict[str, np.ndarray]
 
 
 def _topics(path: Path) -> tuple[dict[str, Columns], list[str]]:
-    """Columns of the first instance of each topic that is read, and what there is to tell of the file."""
-    import pyulog  # here: it takes its time to start, and the other formats do without
+    """Columns of the first instance of each topic, and notes about the file."""
+    import pyulog  # imported here: it loads slowly, and the other formats do not need it
 
     names = [POSITION, ATTITUDE, *(name for name, _ in GYROS)]
     try:
         log = pyulog.ULog(str(path), names)
     except OSError as error:
         raise LogError(path, 0, "", error.strerror or str(error)) from None
-    except Exception as error:  # pyulog lets struct, index and key errors out of files that it does not understand
+    except Exception as error:  # on unknown content pyulog raises struct, index and key errors
         raise LogError(path, 0, "", f"not a ULog file: {error}") from None
     result: dict[str, Columns] = {}
     for data in sorted(log.data_list, key=lambda one: one.multi_id):
         result.setdefault(data.name, data.data)
-    notes = ["the file is damaged: what could not be read is left out"] if log.file_corruption else []
+    notes = ["the file is damaged: unreadable parts are left out"] if log.file_corruption else []
     if log.dropouts:
         notes.append(f"the logger lost {sum(one.duration for one in log.dropouts)} ms in {len(log.dropouts)} dropouts")
     return result, notes
 
 
 def _columns(path: Path, topic: str, columns: Columns, *names: str) -> np.ndarray:
-    """(N, n)"""
+    """Columns as an array, (N, n)."""
     for name in names:
         if name not in columns:
             raise LogError(path, 0, f"{topic}.{name}", "the topic has no such field")
@@ -51,14 +51,14 @@ def _columns(path: Path, topic: str, columns: Columns, *names: str) -> np.ndarra
 
 
 def _time_s(columns: Columns) -> np.ndarray:
-    """Of the samples behind the estimate, where the log tells it, otherwise of its publication."""
+    """Time of the sample behind the estimate if it is logged, otherwise of its publication."""
     sampled = columns.get("timestamp_sample")
     stamps = sampled if sampled is not None and (sampled > 0).all() else columns["timestamp"]
     return stamps.astype(float) * US
 
 
 def _steps(columns: Columns, counter: str) -> np.ndarray:
-    """(N,) by how much a counter of 8 bits rose since the sample before; 0 without it."""
+    """(N,) increments of an 8-bit counter since the previous sample; 0 without it."""
     if counter not in columns:
         return np.zeros(len(columns["timestamp"]), int)
     count = columns[counter].astype(int)
@@ -66,14 +66,14 @@ def _steps(columns: Columns, counter: str) -> np.ndarray:
 
 
 def _position_jumps(columns: Columns, time_s: np.ndarray) -> list[Jump]:
-    """Of both counters; a count that rose by more than one at a time leaves the size of the others untold."""
+    """Jumps of both counters; if a counter increases by more than one, the size is unknown."""
     result = []
     kinds = (("xy_reset_counter", ("delta_xy[0]", "delta_xy[1]")), ("z_reset_counter", ("delta_z",)))
     for counter, deltas in kinds:
         steps = _steps(columns, counter)
         for k in np.flatnonzero(steps):
-            told = all(name in columns for name in deltas) and steps[k] == 1
-            size = [float(columns[name][k]) for name in deltas] if told else [np.nan]
+            known = all(name in columns for name in deltas) and steps[k] == 1
+            size = [float(columns[name][k]) for name in deltas] if known else [np.nan]
             delta = ((*size, 0.0) if len(deltas) == 2 else (0.0, 0.0, *size)) if np.isfinite(size).all() else None
             result.append(Jump(float(time_s[k]), delta, f"{POSITION}.{counter}"))  # type: ignore[arg-type]
     return result
@@ -85,7 +85,7 @@ def _attitude_jumps(columns: Columns, time_s: np.ndarray) -> list[Jump]:
 
 
 def _doubts(jumps: list[Jump], position: Series, velocity: Series | None) -> list[str]:
-    """Jumps that the positions around them do not show as told."""
+    """Notes on jumps that differ from the positions around them."""
     if velocity is None:
         return []
     off, result = unexplained_m(position, velocity), []
@@ -93,10 +93,10 @@ def _doubts(jumps: list[Jump], position: Series, velocity: Series | None) -> lis
         k = int(np.searchsorted(position.time_s, jump.time_s))
         if jump.delta_m is None or not 0 < k < len(position.time_s):
             continue
-        told = np.array(jump.delta_m)
-        if np.linalg.norm(off[k - 1] - told) > AGREES_M + AGREES_SHARE * np.linalg.norm(told):
+        reported = np.array(jump.delta_m)
+        if np.linalg.norm(off[k - 1] - reported) > AGREES_M + AGREES_SHARE * np.linalg.norm(reported):
             words = ", ".join(f"{x:.2f}" for x in off[k - 1])
-            result.append(f"the jump at {jump.time_s:.3f} s is told as another one than the positions show: {words} m")
+            result.append(f"the reported jump at {jump.time_s:.3f} s differs from that of the positions: {words} m")
     return result
 
 
@@ -128,7 +128,7 @@ def read_ulog(path: Path) -> Recording:
     for name in ("xy_valid", "z_valid"):
         valid &= place[name].astype(bool) if name in place else True
     if not valid.all():
-        notes.append(f"{POSITION}: {int((~valid).sum())} samples are told as not valid and left out")
+        notes.append(f"{POSITION}: {int((~valid).sum())} samples are marked invalid and left out")
     xyz = _columns(path, POSITION, place, "x", "y", "z")
     position = make_series(path, f"{POSITION}.x, y, z", time_s[valid], xyz[valid])
     velocity = None

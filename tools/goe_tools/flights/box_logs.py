@@ -1,12 +1,12 @@
-"""Recorded upright boxes with truth: cars of KITTI as several detectors and trackers frame them, and ODMD.
+"""Recorded upright boxes with truth: KITTI's cars as framed by several detectors and trackers, and ODMD.
 
-They lie in the folder that the environment variable GOE_BOXES_DIR names, or else beside this checkout:
+The data are in the folder that the environment variable GOE_BOXES_DIR names, by default next to this checkout:
 
     kitti_boxes/FEED/SEQUENCE/    camera.ini, frames.csv, truth.csv: cars, with the middle of the base
-    odmd/SET/                     the same files, but truth.csv tells one depth for each track
+    odmd/SET/                     the same files, but truth.csv has one depth for each track
 
 frames.csv has one row for each obstacle and image: t_s, id, pose, and box_left_px, box_top_px, box_right_px,
-box_bottom_px, empty where a side was not measured. ODMD's depth is that along the camera's axis at the track's last
+box_bottom_px, empty if a side was not measured. ODMD's depth is along the camera's axis at the track's last
 image (B. A. Griffin and J. J. Corso, "Depth from Camera Motion and Object Detection", CVPR 2021)."""
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ ODMD_SETS = ("val_robot", "val_perturb_motion", "val_perturb_detection")
 
 
 def boxes_folder() -> Path:
-    """Where the recorded boxes lie, if they are there."""
+    """The folder of the recorded boxes, if it exists."""
     return Path(os.environ.get(FOLDER_VARIABLE) or ROOT.parent / "shared" / "data")
 
 
@@ -72,8 +72,8 @@ def _table(path: Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
 
 
 def _tracks(folder: Path) -> Iterator[tuple[int, Flight]]:
-    """Each id and its flight, without the truth; images with a bad pose are left out, and those before the first box,
-    with which the track begins."""
+    """Each id and its flight, without the truth; leaves out images with a bad pose and those before the first box,
+    where the track starts."""
     camera = read_camera(folder / "camera.ini")
     table = _table(folder / "frames.csv", FRAME_COLUMNS)
     pose_known = np.isfinite([table[name] for name in ("t_s", "agl_m", *POSE_COLUMNS)]).all(0)
@@ -102,20 +102,20 @@ def _flight_of(camera: Camera, rows: dict[str, np.ndarray], name: str) -> Flight
 
 
 def _eye_ned(flight: Flight) -> np.ndarray:
-    """(K, 3): the camera."""
+    """(K, 3): position of the camera."""
     camera = flight.camera
     offset = np.array([camera.offset_x_m, camera.offset_y_m, camera.offset_z_m])
     return flight.position_ned_m + matrices(flight.attitude) @ offset
 
 
 def _ahead_m(flight: Flight) -> float:
-    """How far ahead, along Z, the camera came from the first image to the last, m."""
+    """Distance of the camera along Z between the first and the last image, m."""
     eye = _eye_ned(flight)
     return float(level_axes(flight.heading_rad)[2] @ (eye[-1] - eye[0]))
 
 
 def kitti_box_flights(feed: Path) -> Iterator[Flight]:
-    """Every car of a feed, moving ones too; the truth has the middle of the base as its reference point."""
+    """Every car of a feed, also moving ones; the reference position of the truth is the middle of the base."""
     for folder in sorted(path.parent for path in feed.glob("*/frames.csv")):
         truth = _table(folder / "truth.csv", CAR_COLUMNS)
         row_of = {int(key): row for row, key in enumerate(truth["id"])}
@@ -133,7 +133,7 @@ def kitti_box_flights(feed: Path) -> Iterator[Flight]:
 
 
 def odmd_flights(folder: Path) -> Iterator[Flight]:
-    """Every track of a set; of the truth only Z0 is known. ``final_depth`` gives back the depth."""
+    """Every track of a set; of the truth only Z0 is known. ``final_depth`` returns the depth."""
     truth = _table(folder / "truth.csv", DEPTH_COLUMNS)
     depth = dict(zip(truth["id"].astype(int), truth["depth_m"]))
     for key, flight in _tracks(folder):
@@ -143,5 +143,5 @@ def odmd_flights(folder: Path) -> Iterator[Flight]:
 
 
 def final_depth(flight: Flight) -> float:
-    """How far ahead of the camera the obstacle is in the last image, m."""
+    """Distance of the obstacle ahead of the camera in the last image, m."""
     return flight.truth.z0_m - _ahead_m(flight)

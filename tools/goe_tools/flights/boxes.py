@@ -1,7 +1,7 @@
-"""Simulated flights past an obstacle of which a detector gives an upright bounding box in each image.
+"""Simulated flights past an obstacle, with a detector's upright bounding box in each image.
 
-The box is the smallest upright one around the exact outline, with a detector's error, clipped at the image's border.
-The obstacle's truth has the middle of its base as the reference point, which is what boxes tell."""
+The box is the smallest upright one around the exact outline, plus a detector's error, clipped at the image border.
+The reference position of the truth is the middle of the base, which boxes determine."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from .rotations import euler, mounting, multiply, quaternions, small_rotations
 from .scene import project
 from .simulated import pinhole
 
-RIM_POINTS = 256  # that stand for a circle: 0.02 px at most, at the nearest
-MIN_WIDTH_PX = 2.0  # of an obstacle that a detector finds
-MIN_INSIDE_PX = 20.0  # so much of its width must be in the image
+RIM_POINTS = 256  # in place of a circle: error of at most 0.02 px at the nearest
+MIN_WIDTH_PX = 2.0  # least width of an obstacle that a detector finds
+MIN_INSIDE_PX = 20.0  # least part of its width inside the image
 MIN_IMAGES = 12  # with a box, for a flight
-ANY_HEIGHT_M = 200.0  # without an altimeter the height told is anything up to this
+ANY_HEIGHT_M = 200.0  # without an altimeter the reported height is random up to this
 PITCH_RAD = math.radians(2.0)  # mean; pitch and yaw sway about their means
 SWAY_RAD = math.radians(0.7)
 PITCH_PERIOD_S, YAW_PERIOD_S = 3.1, 2.3
@@ -36,10 +36,10 @@ class Solid:
     width_m: float
     length_m: float
     height_m: float
-    turned_deg: float = 0.0  # the most by which the side edge is turned from the direction of flight
+    turned_deg: float = 0.0  # largest angle of the side edge from the direction of flight
 
     def outline(self, x_m: float, z_m: float, orientation_rad: float) -> np.ndarray:
-        """Points (N, 2) of the base as (X, Z) about its middle: the corners, or the rim."""
+        """Base points (N, 2) as (X, Z) about the middle: the corners, or the rim."""
         if self.kind == "disc":
             angle = np.arange(RIM_POINTS) * (2 * math.pi / RIM_POINTS)
             return np.array([x_m, z_m]) + 0.5 * self.width_m * np.stack([np.sin(angle), np.cos(angle)], 1)
@@ -55,18 +55,18 @@ WALL = Solid("wall end-on", "box", 6.0, 40.0, 12.0, 5.0)
 
 @dataclass(frozen=True)
 class BoxOptions:
-    """How it is flown, and what is wrong with the measurements: one sigma each unless it says otherwise."""
+    """The flight, and the errors of the measurements: one sigma each unless noted otherwise."""
 
     roll_deg: float = 0.0  # amplitude
     roll_hz: float = 0.4
     speed_mps: float = 17.0
     altitude_m: float = 20.0  # of the camera above the obstacle's ground
     image_rate_hz: float = 8.0
-    stop_m: float = 12.0  # the last image is taken so far before the obstacle's middle is abeam
+    stop_m: float = 12.0  # distance of the last image before the obstacle's middle is abeam
     ahead_m: tuple[float, float] = (200.0, 260.0)  # Z of the middle at the first image, from and to
     aside_m: tuple[float, float] = (-30.0, -8.0)  # X of it
-    box_px: float = 0.5  # of a side, new in each image
-    box_share: float = 0.04  # of a side, of the box's width or height, correlated in time
+    box_px: float = 0.5  # of a side, white
+    box_share: float = 0.04  # of a side, share of the box's width or height, correlated in time
     correlation_s: float = 1.0
     attitude_bias_deg: float = 0.5  # each body axis
     attitude_white_deg: float = 0.1
@@ -74,8 +74,8 @@ class BoxOptions:
     position_walk_m: float = 0.05  # per sqrt(s), each axis
     height_bias_m: float = 0.5
     height_white_m: float = 0.0  # of the altimeter
-    altimeter: bool = True  # without, the height told is any
-    ground_off_m: float = 0.0  # the obstacle's ground lies so far above or below that which the height is measured over
+    altimeter: bool = True  # without one, the reported height is random
+    ground_off_m: float = 0.0  # height of the obstacle's ground relative to the ground of the altimeter
 
 
 EXACT = BoxOptions(
@@ -85,7 +85,7 @@ EXACT = BoxOptions(
 
 
 def correlated(time_s: np.ndarray, constant_s: float, columns: int, rng: np.random.Generator) -> np.ndarray:
-    """(K, columns) of a normal process of one sigma 1 that forgets with a time constant."""
+    """(K, columns) of a normal process with one sigma of 1 and an exponential correlation."""
     result = rng.standard_normal((len(time_s), columns))
     kept = np.exp(-np.diff(time_s) / constant_s)
     for k, share in enumerate(kept, start=1):
@@ -101,12 +101,12 @@ def _exact_boxes(pixel: np.ndarray) -> np.ndarray:
 def _detected(exact: np.ndarray, time_s: np.ndarray, options: BoxOptions, rng: np.random.Generator) -> np.ndarray:
     """Boxes (K, 4) with a detector's error."""
     size = np.tile(exact[:, 2:] - exact[:, :2], 2)
-    alike = correlated(time_s, options.correlation_s, 4, rng)
-    return exact + options.box_share * size * alike + options.box_px * rng.standard_normal(exact.shape)
+    common = correlated(time_s, options.correlation_s, 4, rng)
+    return exact + options.box_share * size * common + options.box_px * rng.standard_normal(exact.shape)
 
 
 def clipped(box: np.ndarray, image_size_px: tuple[float, float]) -> np.ndarray:
-    """Boxes (K, 4) cut at the image's border; NaN where too little of one is left in the image."""
+    """Boxes (K, 4) clipped at the image border; NaN if too little of one remains inside."""
     width, height = image_size_px
     left, top, right, bottom = box.T
     with np.errstate(invalid="ignore"):
@@ -114,20 +114,20 @@ def clipped(box: np.ndarray, image_size_px: tuple[float, float]) -> np.ndarray:
     return np.where(inside[:, None], np.clip(box, 0.0, np.tile([width - 1.0, height - 1.0], 2)), np.nan)
 
 
-def _told_pose(
+def _estimated_pose(
     position: np.ndarray, attitude: np.ndarray, time_s: np.ndarray, options: BoxOptions, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Position, attitude and height as the autopilot believes them."""
+    """Position, attitude and height as estimated by the autopilot."""
     bias = math.radians(options.attitude_bias_deg) * rng.standard_normal(3)
     white = math.radians(options.attitude_white_deg) * rng.standard_normal((len(time_s), 3))
     step = options.position_walk_m * np.sqrt(np.diff(time_s, prepend=time_s[0]))[:, None]
-    told = position + np.cumsum(step * rng.standard_normal(position.shape), 0)
-    told[:, :2] += options.velocity_bias_m_s * rng.standard_normal(2) * time_s[:, None]
+    estimated = position + np.cumsum(step * rng.standard_normal(position.shape), 0)
+    estimated[:, :2] += options.velocity_bias_m_s * rng.standard_normal(2) * time_s[:, None]
     off = options.ground_off_m * rng.choice([-1.0, 1.0]) + options.height_bias_m * rng.standard_normal()
     height = -position[:, 2] + off + options.height_white_m * rng.standard_normal(len(time_s))
     if not options.altimeter:
         height = np.full(len(time_s), rng.uniform(0.0, ANY_HEIGHT_M))
-    return told, multiply(attitude, small_rotations(bias + white)), height
+    return estimated, multiply(attitude, small_rotations(bias + white)), height
 
 
 def _one_flight(solid: Solid, options: BoxOptions, name: str, rng: np.random.Generator) -> Flight | None:
@@ -146,13 +146,13 @@ def _one_flight(solid: Solid, options: BoxOptions, name: str, rng: np.random.Gen
     base = solid.outline(x0, z0, orientation)[:, ::-1]  # T looks north: (Z, X) is (north, east)
     levels = np.repeat([0.0, -solid.height_m], len(base))
     points = np.column_stack([np.tile(base, (2, 1)), levels])
-    seen_from = euler(*angles) @ mounting(camera)
-    pixel = project(camera, seen_from, position, np.broadcast_to(points, (images, *points.shape)))
+    ned_from_camera = euler(*angles) @ mounting(camera)
+    pixel = project(camera, ned_from_camera, position, np.broadcast_to(points, (images, *points.shape)))
     exact, size = _exact_boxes(pixel), (camera.width, camera.height)
     box = clipped(_detected(exact, t, options, rng), size)
     with np.errstate(invalid="ignore"):
         box[~(exact[:, 2] - exact[:, 0] > MIN_WIDTH_PX)] = np.nan
-    told, attitude, height = _told_pose(position, quaternions(*angles), t, options, rng)
+    estimated, attitude, height = _estimated_pose(position, quaternions(*angles), t, options, rng)
 
     there = np.flatnonzero(np.isfinite(box[:, 0]))
     if len(there) < MIN_IMAGES:
@@ -162,7 +162,8 @@ def _one_flight(solid: Solid, options: BoxOptions, name: str, rng: np.random.Gen
     truth = Obstacle(solid.kind, x0, z0, orientation, solid.width_m, solid.length_m, solid.height_m)
     kept = there[-1] + 1 - there[0]
     return Flight(
-        name, solid.name, camera, t[part] - t[there[0]], np.zeros((kept, 6, 2)), np.zeros((kept, 6), bool), told[part],
+        name, solid.name, camera, t[part] - t[there[0]], np.zeros((kept, 6, 2)), np.zeros((kept, 6), bool),
+        estimated[part],
         attitude[part], height[part], truth, Noise(), box_px=box[part], image_size_px=size,
     )  # fmt: skip
 

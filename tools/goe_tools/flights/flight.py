@@ -1,4 +1,4 @@
-"""What an estimator is told about an obstacle, image by image, and the truth."""
+"""The input of an estimator for one obstacle, image by image, and the truth."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ QUANTITIES = ("x0_m", "z0_m", "orientation_rad", "width_m", "length_m", "height_
 
 @dataclass(frozen=True)
 class Obstacle:
-    """Truth, in T of the first image. Disc: (x0, z0) is the centre, the width the diameter, the length ditto;
-    box: (x0, z0) is the middle of the front edge and the orientation that of the side edge from Z, clockwise."""
+    """Truth, in T of the first image. Disc: (x0, z0) is the center, width and length are the diameter.
+    Box: (x0, z0) is the middle of the front edge, and the orientation is that of the side edge from Z, clockwise."""
 
     kind: str  # box or disc
     x0_m: float
@@ -43,7 +43,7 @@ class Obstacle:
 
 @dataclass
 class Flight:
-    """What an estimator is told about one obstacle, image by image, and the truth. K images.
+    """The input of an estimator for one obstacle, K images, and the truth.
 
     ``camera.heading_deg`` is always set: T is the same for everyone."""
 
@@ -51,24 +51,24 @@ class Flight:
     group: str
     camera: Camera
     time_s: np.ndarray  # (K,)
-    pixel_px: np.ndarray  # (K, 6, 2), 0 where not seen
+    pixel_px: np.ndarray  # (K, 6, 2), 0 if not visible
     seen: np.ndarray  # (K, 6)
     position_ned_m: np.ndarray  # (K, 3) vehicle, estimated
     attitude: np.ndarray  # (K, 4) estimated
     height_m: np.ndarray  # (K,) camera above the ground, measured
     truth: Obstacle
     noise: Noise
-    reach_s: float = math.nan  # from the first image until the obstacle's reference point is abeam
+    reach_s: float = math.nan  # from the first image until the obstacle's reference position is abeam
     top_is_highest: bool = False  # top: the roof's highest point in the image; otherwise the one nearest to the camera
-    box_px: np.ndarray | None = None  # (K, 4) left, top, right, bottom; NaN where a side is not seen
-    image_size_px: tuple[float, float] = (0.0, 0.0)  # width, height; 0: not known
+    box_px: np.ndarray | None = None  # (K, 4) left, top, right, bottom; NaN if a side is not visible
+    image_size_px: tuple[float, float] = (0.0, 0.0)  # width, height; 0: unknown
 
     @property
     def heading_rad(self) -> float:
         return math.radians(self.camera.heading_deg or 0.0)
 
     def first(self, images: int) -> Flight:
-        """The flight's beginning."""
+        """The first images of the flight."""
         names = ["time_s", "pixel_px", "seen", "position_ned_m", "attitude", "height_m"]
         names += [] if self.box_px is None else ["box_px"]
         return replace(self, **{name: getattr(self, name)[:images] for name in names})

@@ -1,4 +1,4 @@
-"""Flights of logs with truth, KITTI's among them."""
+"""Flights from logs with truth, including KITTI's."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _value(number: float | None) -> float:
 
 
 def _heading_of(log: ObservationLog, frames: Sequence[Frame], truth: Truth) -> float:
-    """Heading of T's Z axis, rad: the setting, the simulator's word, or the yaw at the first image."""
+    """Heading of T's Z axis, rad: from camera.ini, from the simulator, or the yaw at the first image."""
     if log.camera.heading_deg is not None:
         return math.radians(log.camera.heading_deg)
     if truth.extra.get("track_heading_deg"):
@@ -44,9 +44,9 @@ def _obstacle_of(truth: Truth, origin_ne: np.ndarray, heading: float, kind: str 
     angle = float(fold(np.radians(_value(truth.heading_deg)) - heading)) if box else 0.0
     if box:
         x, z = x - 0.5 * length * math.sin(angle), z - 0.5 * length * math.cos(angle)
-    told = [truth.extra.get(name, "") for name in ("x0_m", "z0_m", "track_heading_deg")]
-    if all(told) and abs(math.radians(float(told[2])) - heading) < 1e-9 and kind is None:
-        x, z = float(told[0]), float(told[1])  # of the true first pose, which the log does not know
+    logged = [truth.extra.get(name, "") for name in ("x0_m", "z0_m", "track_heading_deg")]
+    if all(logged) and abs(math.radians(float(logged[2])) - heading) < 1e-9 and kind is None:
+        x, z = float(logged[0]), float(logged[1])  # relative to the true first pose, which is not in the log
     return Obstacle("box" if box else "disc", x, z, angle, truth.width_m, length, truth.height_m, truth.static)
 
 
@@ -72,16 +72,16 @@ def _flight_of(log: ObservationLog, frames: Sequence[Frame], truth: Truth, name:
 
 
 def _shows(frame: Frame) -> bool:
-    """A feature: the track begins with the first image that does."""
+    """Whether the frame has a feature; the track starts with the first one that has."""
     box = frame.box_px or ()
     return any(side is not None for side in box) or any(getattr(frame, name) is not None for name in FEATURES)
 
 
 def from_log(folder: Path, kind: str | None = None) -> list[Flight]:
-    """A flight for each track with truth of a log folder; images with a bad pose are left out, and those before the
-    first one that shows a feature; a reset is an error, and so is a second camera.
+    """A flight for each track with truth of a log folder. Leaves out images with a bad pose and those before the first
+    feature; a reset or a second camera is an error.
 
-    kind: None: box if the truth has a length, otherwise disc; or one of the two (disc: (x0, z0) is the centre)."""
+    kind: None: box if the truth has a length, otherwise disc; or one of the two (disc: (x0, z0) is the center)."""
     folder = Path(folder)
     log = read_log(folder)
     if not log.truth:

@@ -1,4 +1,4 @@
-"""What an estimator is told of a scene: the truth with the errors of a noise."""
+"""Makes the input of an estimator from a scene: the truth plus errors of a noise."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .scene import Scene
 
 
 def _believed(scene: Scene, noise: Noise, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Estimated position, attitude and height of the true ones."""
+    """Estimated position, attitude and height."""
     if scene.believed is not None:
         return scene.believed
     t = scene.time_s
@@ -29,12 +29,12 @@ def _believed(scene: Scene, noise: Noise, rng: np.random.Generator) -> tuple[np.
 
 
 def measure(scene: Scene, noise: Noise, seed: int | Sequence[int] = 1) -> Flight:
-    """What an estimator is told of a scene under a noise."""
+    """The flight of a scene with a noise."""
     rng = np.random.default_rng(seed)
     position, attitude, height = _believed(scene, noise, rng)
     pixels = scene.pixel_px + noise.pixel_px * rng.standard_normal(scene.pixel_px.shape)
     camera = scene.camera
-    if noise.rounding:  # the pixels' grid lies anew with every seed: otherwise there would be one rounding only
+    if noise.rounding:  # every seed shifts the pixel grid; otherwise all would round the same way
         shift = rng.uniform(-0.5, 0.5, 2)
         camera = replace(camera, cx=camera.cx + shift[0], cy=camera.cy + shift[1])
         pixels = np.rint(pixels + shift)

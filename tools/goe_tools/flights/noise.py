@@ -11,13 +11,13 @@ MIN_PIXEL_PX = 0.05
 
 @dataclass(frozen=True)
 class Noise:
-    """Errors of a run, which are also what a user would tell the estimator."""
+    """Errors of a run, which are also the estimator's configuration."""
 
     pixel_px: float = 0.5
     rounding: bool = False  # to whole pixels
     size_share: float = 0.0  # of the obstacle's width in the image
     correlation: float = 0.0  # from image to image
-    shape_share: float = 0.0  # of the width: a silhouette that is no disc's
+    shape_share: float = 0.0  # shape error of the disc model, share of the width
     attitude_bias_deg: float = 0.0  # each body axis
     attitude_white_deg: float = 0.0
     attitude_drift_deg: float = 0.0  # per sqrt(s)
@@ -30,7 +30,7 @@ class Noise:
 
     @property
     def sigma_px(self) -> float:
-        """One sigma of a coordinate of an image point, rounding included, px."""
+        """Sigma of a coordinate of an image point, including rounding, px."""
         return max(math.hypot(self.pixel_px, ROUNDING_PX if self.rounding else 0.0), MIN_PIXEL_PX)
 
 

@@ -1,4 +1,4 @@
-"""Scenes of recorded flights: an autopilot's true and estimated states, past obstacles put there."""
+"""Scenes of recorded flights: true and estimated states of an autopilot, with added obstacles."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .scene import Scene, look
 from .simulated import IMAGE_RATE_HZ, MIN_IMAGES, pinhole
 
 RECORDED_FOLDER = ROOT.parent / "shared" / "data" / "flights"
-RECORDED_NOISE = {  # what a user of these autopilots would state
+RECORDED_NOISE = {  # a user's configuration for these autopilots
     "px4": Noise(
         attitude_bias_deg=1.2, attitude_white_deg=0.15, attitude_drift_deg=0.3, height_m=0.7, velocity_bias_m_s=0.05,
         position_walk_m=0.05,
@@ -57,8 +57,8 @@ def read_recording(path: Path) -> Recording:
     )
 
 
-def _beside(recording: Recording, rng: np.random.Generator) -> Scene | None:
-    """A random obstacle beside a random part of a recording; None if the part will not do."""
+def _scene_near(recording: Recording, rng: np.random.Generator) -> Scene | None:
+    """A random obstacle near a random part of a recording; None if the part is unsuitable."""
     t, true = recording.time_s, recording.true_position
     start = int(rng.integers(0, len(t) - 60))
     run = rng.uniform(8.0, 18.0)
@@ -99,7 +99,7 @@ def _beside(recording: Recording, rng: np.random.Generator) -> Scene | None:
 
 
 def recorded_scenes(count: int, folder: Path = RECORDED_FOLDER, seed: int = 1, tries: int = 5000) -> list[Scene]:
-    """Up to ``count`` passes of each recorded flight in a folder, past obstacles put there; none without the folder."""
+    """Up to ``count`` passes of each recorded flight in a folder, with added obstacles; none without the folder."""
     result: list[Scene] = []
     for path in sorted(Path(folder).glob("*.csv")):
         recording, rng = read_recording(path), np.random.default_rng(seed)
@@ -107,7 +107,7 @@ def recorded_scenes(count: int, folder: Path = RECORDED_FOLDER, seed: int = 1, t
         for _ in range(tries):
             if len(found) >= count:
                 break
-            scene = _beside(recording, rng)
+            scene = _scene_near(recording, rng)
             if scene is not None:
                 found.append(scene)
         result += found

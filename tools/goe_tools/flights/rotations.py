@@ -11,11 +11,11 @@ import numpy as np
 
 from ..logs.obslog import Camera
 
-AXES = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # camera -> body, un-mounted
+AXES = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # camera -> body, without mounting angles
 
 
 def euler(yaw: np.ndarray, pitch: np.ndarray, roll: np.ndarray) -> np.ndarray:
-    """Z-Y'-X'' rotations body -> NED of angles in rad, broadcast; (..., 3, 3)."""
+    """Z-Y'-X'' rotations body -> NED from angles in rad, broadcast; (..., 3, 3)."""
     yaw, pitch, roll = np.broadcast_arrays(yaw, pitch, roll)
     cy, sy, cp, sp, cr, sr = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch), np.cos(roll), np.sin(roll)
     rows = [
@@ -51,7 +51,7 @@ def small_rotations(vector: np.ndarray) -> np.ndarray:
 
 
 def matrices(q: np.ndarray) -> np.ndarray:
-    """Rotation matrices (..., 3, 3) of quaternions (..., 4), which are normalised."""
+    """Rotation matrices (..., 3, 3) of quaternions (..., 4), which it normalizes."""
     w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

@@ -1,4 +1,4 @@
-"""What is true: poses and an obstacle, and what a camera sees of it from there."""
+"""The truth: poses and an obstacle, and its image in a camera."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from .flight import BASE_LEFT, BASE_NEAR, BASE_RIGHT, LEFT, RIGHT, TOP, Obstacle
 from .noise import Noise
 from .rotations import level_axes, matrices, mounting
 
-MIN_DEPTH_SHARE = 0.05  # of a ray's length; what is nearer to the image plane has no image
+MIN_DEPTH_SHARE = 0.05  # of a ray's length; points nearer to the image plane have no image
 
 
 @dataclass
 class Scene:
-    """What is true, and the pose that the aircraft believes in if it is given (recorded flights)."""
+    """The truth, and for recorded flights the pose estimated by the autopilot."""
 
     name: str
     group: str
@@ -31,10 +31,10 @@ class Scene:
     truth: Obstacle
     reach_s: float
     believed: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None  # position, attitude, height
-    noise: Noise = field(default_factory=Noise)  # told to the estimator, if the pose is believed
+    noise: Noise = field(default_factory=Noise)  # configured in the estimator, if the pose is a recorded estimate
 
     def trimmed(self, start: int) -> Scene:
-        """The scene from an image on, where the track then starts."""
+        """The scene from an image on; the track then starts there."""
         names = ("time_s", "pixel_px", "seen", "position_ned_m", "attitude", "height_m")
         t0 = self.time_s[start]
         moved = level_axes(math.radians(self.camera.heading_deg or 0.0)) @ (
@@ -73,7 +73,7 @@ def _box_pixels(scene: Scene, see: object, corners_ne: np.ndarray, ground_d: flo
     ray = eye - corners_ne
     visible = edge[:, 0] * ray[..., 1] - edge[:, 1] * ray[..., 0] < 0  # clockwise: outside is left of the edge
     faces = visible.sum(1)
-    first = np.argmax(visible & ~np.roll(visible, 1, 1), 1)  # corners come from left to right as clockwise from above
+    first = np.argmax(visible & ~np.roll(visible, 1, 1), 1)  # clockwise from above is from left to right in the image
     k = np.arange(images)
     pixels = np.full((images, 6, 2), np.nan)
     with np.errstate(invalid="ignore"):
@@ -113,7 +113,7 @@ def _cylinder_pixels(scene: Scene, see: object, center_ne: np.ndarray, ground_d:
 
 
 def look(scene: Scene, ground_d: float) -> None:
-    """Fills the scene's exact pixels from its true poses. No lever arm: the camera is at the vehicle's position."""
+    """Computes the scene's exact pixels from its true poses. No lever arm: the camera is at the vehicle's position."""
     heading = math.radians(scene.camera.heading_deg or 0.0)
     t_from_ned = level_axes(heading)
     origin = scene.position_ned_m[0, :2]

@@ -31,7 +31,7 @@ def pinhole(yaw_deg: float = 0.0) -> Camera:
 
 @dataclass
 class Course:
-    """A flight to simulate. ``argument``: of an arc the radius in m, positive to the right; of a weave the amplitude
+    """A flight to simulate. ``argument``: for an arc the radius in m, positive to the right; for a weave the amplitude
     in m and the period in s."""
 
     run_s: float
@@ -45,7 +45,7 @@ class Course:
 
 
 def simulate(name: str, group: str, camera: Camera, truth: Obstacle, course: Course, phases: np.ndarray) -> Scene:
-    """Flies a course; ``phases``: (3,) rad, of the attitude's sway of 1 and 2 degrees."""
+    """Flies a course; ``phases``: (3,) rad, of the attitude's oscillations of 1 and 2 degrees."""
     t = np.arange(math.floor(course.run_s * IMAGE_RATE_HZ + 1e-9) + 1) / IMAGE_RATE_HZ
     s = course.speed_mps * t + 0.5 * course.acceleration_mps2 * t * t
     direction, north, east = np.zeros_like(t), s, np.zeros_like(t)
@@ -115,7 +115,7 @@ def _random_scene(rng: np.random.Generator, number: int) -> Scene:
 
 
 def random_scenes(count: int, scenario: int = 7) -> list[Scene]:
-    """Boxes and cylinders of random size, side, orientation, speed and path that stay in view for long enough; the
+    """Boxes and cylinders of random size, side, orientation, speed and path that stay in view long enough; the
     track starts when the obstacle comes into view."""
     rng = np.random.default_rng(scenario)
     result: list[Scene] = []

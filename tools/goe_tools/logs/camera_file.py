@@ -39,23 +39,23 @@ CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.name != "h
 REQUIRED_CAMERA_FIELDS = tuple(f.name for f in dataclasses.fields(Camera) if f.default is dataclasses.MISSING)
 HEADING_KEY = "trajectory.heading_deg"
 SIZE_RANGE, PIXEL_RANGE, LENS_RANGE, ANGLE_RANGE = (1.0, 1e5), (-1e5, 1e5), (-100.0, 100.0), (-360.0, 360.0)
-CAMERA_RANGES = {  # as the library has them; an image has at least a pixel
+CAMERA_RANGES = {  # those of the library; an image has at least one pixel
     **dict.fromkeys(("width", "height", "fx", "fy"), SIZE_RANGE),
     **dict.fromkeys(("cx", "cy"), PIXEL_RANGE),
     **dict.fromkeys(("k1", "k2", "p1", "p2", "k3"), LENS_RANGE),
     **dict.fromkeys(("mount_roll_deg", "mount_pitch_deg", "mount_yaw_deg", "heading_deg"), ANGLE_RANGE),
     **dict.fromkeys(("offset_x_m", "offset_y_m", "offset_z_m"), (-1e4, 1e4)),
 }
-CAMERA_NAMES = ("camera", "camera2")  # their keys begin so
+CAMERA_NAMES = ("camera", "camera2")  # prefixes of their keys
 
 
 def shortest(value: float | None) -> str:
-    """The shortest text that reads back as the same double, so that a file adds no noise; empty for None."""
+    """The shortest text that reads back as the same double, so a file adds no noise; empty for None."""
     return "" if value is None else repr(float(value))
 
 
 def _key_of(key: str) -> tuple[str, str]:
-    """The camera's name and the field of a key; empty if there is none."""
+    """Camera name and field of a key; both empty if it is none."""
     if key == HEADING_KEY:
         return CAMERA_NAMES[0], "heading_deg"
     owner, _, name = key.partition(".")
@@ -63,7 +63,7 @@ def _key_of(key: str) -> tuple[str, str]:
 
 
 def read_cameras(path: Path) -> list[Camera]:
-    """Reads camera.ini, one camera or two; an unknown, doubled, missing or non-numeric key is a LogError."""
+    """Reads camera.ini with one or two cameras; an unknown, repeated, missing or non-numeric key is a LogError."""
     path = Path(path)
     found: dict[str, dict[str, float | None]] = {CAMERA_NAMES[0]: {}}
     for line, raw in enumerate(read_text(path).split("\n"), start=1):
@@ -100,10 +100,10 @@ def read_cameras(path: Path) -> list[Camera]:
 
 
 def read_camera(path: Path) -> Camera:
-    """Reads the camera.ini of one camera; a second one is a LogError, too."""
+    """Reads the camera.ini of one camera; a second camera is a LogError."""
     cameras = read_cameras(path)
     if len(cameras) > 1:
-        raise LogError(path, 0, CAMERA_NAMES[1], "a second camera, of a log that must have one alone")
+        raise LogError(path, 0, CAMERA_NAMES[1], "a second camera; this command reads logs of one camera only")
     return cameras[0]
 
 

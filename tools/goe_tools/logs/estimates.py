@@ -1,4 +1,4 @@
-"""What an estimator says of one image, and the file that goe_replay writes of it.
+"""An estimator's answer for one image, and goe_replay's output file.
 
 Column names and order are those of goe_replay's output.
 """
@@ -37,14 +37,14 @@ NUMBERS = tuple(name for quantity in QUANTITIES for name in (quantity, sigma_nam
 
 @dataclass
 class Estimate:
-    """One row of output. ``values`` holds the observable quantities and their sigmas only, by column name."""
+    """One row of output. ``values`` contains only the observable quantities and their sigmas, by column name."""
 
     status: str
     model: str = "none"
     n_used: int = 0
     values: dict[str, float] = field(default_factory=dict)
     suspect: bool = False
-    reason: str = "none"  # why it is suspect; "late" also of one that is not
+    reason: str = "none"  # why it is suspect; "late" also without suspicion
 
 
 def _estimate(row: Row, path: Path, line: int) -> tuple[float, int, Estimate]:
@@ -54,7 +54,7 @@ def _estimate(row: Row, path: Path, line: int) -> tuple[float, int, Estimate]:
         row["model"],
         read_integer(row["n_used"], path, line, "n_used"),
         values,
-        suspect=row.get("suspect") == "1",  # logs of before 0.3 have neither column
+        suspect=row.get("suspect") == "1",  # output before 0.3 has neither column
         reason=row.get("reason") or "none",
     )
     return read_number(row["t_s"], path, line, "t_s"), read_integer(row["id"], path, line, "id"), estimate

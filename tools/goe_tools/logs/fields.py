@@ -1,4 +1,4 @@
-"""Text that people and programs write by hand: numbers, tables with a header line, and errors that say where."""
+"""Text written by people and programs: numbers, tables with a header line, and errors with file, line and column."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from typing import IO
 
 from .progress import Progress
 
-INTEGER_MIN, INTEGER_MAX = -(2**63), 2**63 - 1  # what the programs' reader takes
+INTEGER_MIN, INTEGER_MAX = -(2**63), 2**63 - 1  # range of the programs' reader
 
-# What bounds the memory whatever a file holds, an endless one too; those of rows as the programs' reader has them.
+# These limits bound the memory for any file, even an endless one; those of rows equal the limits of the programs.
 ROW_BYTES_MAX, COLUMNS_MAX = 2**20, 4096
 ROWS_MAX, TABLE_BYTES_MAX = 1_000_000, 2**29
-TEXT_BYTES_MAX, JSON_BYTES_MAX = 2**20, 2**26  # a file of settings; one that a tool wrote
+TEXT_BYTES_MAX, JSON_BYTES_MAX = 2**20, 2**26  # a settings file; a file written by a tool
 
 BLANKS = " \t\r\n"
-csv.field_size_limit(ROW_BYTES_MAX)  # the row's bytes are counted here
+csv.field_size_limit(ROW_BYTES_MAX)  # this file counts the row's bytes
 Row = dict[str, str]
 
 
 class LogError(ValueError):
-    """Bad input; its text is ``file:line: column: reason`` (without the parts that do not apply)."""
+    """Bad input. Its text is ``file:line: column: reason`` (without the parts that do not apply)."""
 
     def __init__(self, path: Path, line: int, column: str, reason: str) -> None:
         self.path, self.line, self.column, self.reason = Path(path), line, column, reason
@@ -35,14 +35,14 @@ class LogError(ValueError):
 
 
 def warn(path: Path, text: str, line: int = 0) -> None:
-    """What looks wrong in a file, but is no reason to refuse it."""
+    """Reports a probable mistake in a readable file."""
     print(f"warning: {path}:{f'{line}:' if line else ''} {text}", file=sys.stderr)
 
 
 def read_number(text: str, path: Path, line: int, column: str) -> float:
-    """A decimal number; also nan and inf, which are bad measurements, no bad input."""
+    """A decimal number; nan and inf are bad measurements, not bad input."""
     try:
-        if "_" in text or not text.isascii() or text != text.strip():  # Python's own, unknown to every other reader
+        if "_" in text or not text.isascii() or text != text.strip():  # Python's extensions, which other readers refuse
             raise ValueError
         return float(text)
     except ValueError:
@@ -50,7 +50,7 @@ def read_number(text: str, path: Path, line: int, column: str) -> float:
 
 
 def read_integer(text: str, path: Path, line: int, column: str) -> int:
-    """A whole number of 64 bits."""
+    """A 64-bit integer."""
     try:
         if "_" in text or not text.isascii() or text != text.strip():
             raise ValueError
@@ -63,13 +63,13 @@ def read_integer(text: str, path: Path, line: int, column: str) -> int:
 
 
 def read_optional(row: Row, path: Path, line: int, column: str) -> float | None:
-    """A number, or None of an empty field or an absent column."""
+    """A number, or None for an empty field or an absent column."""
     text = row.get(column, "")
     return read_number(text, path, line, column) if text else None
 
 
 def read_text(path: Path, most_bytes: int = TEXT_BYTES_MAX) -> str:
-    """A whole file of UTF-8 text, without a byte order mark; not one that is longer, or that has no end."""
+    """Reads a whole file of UTF-8 text, without a byte order mark; refuses a longer or endless one."""
     try:
         with open(path, "rb") as file:
             content = file.read(most_bytes + 1)
@@ -83,16 +83,16 @@ def read_text(path: Path, most_bytes: int = TEXT_BYTES_MAX) -> str:
 
 
 DELIMITERS = {";": "semicolons", "\t": "tabs", "|": "bars"}
-ALIKE = 0.75  # of difflib
+SIMILARITY_MIN = 0.75  # of difflib
 
 
 def _nearest(name: str, names: Sequence[str]) -> str:
-    """The one of some names that another was probably meant to be; empty: none."""
-    return next(iter(difflib.get_close_matches(name, names, 1, ALIKE)), "")
+    """The most similar of some names; empty if none is similar."""
+    return next(iter(difflib.get_close_matches(name, names, 1, SIMILARITY_MIN)), "")
 
 
 def _missing(header: list[str], name: str, known: Sequence[str]) -> str:
-    """What is to be said of a column that is not there."""
+    """The message for a missing column."""
     for delimiter, plural in DELIMITERS.items():
         if len(header) == 1 and delimiter in header[0]:
             return f"column is missing: {plural} separate the columns; there must be commas, and points in the numbers"
@@ -110,13 +110,13 @@ def _check_header(header: list[str], path: Path, line: int, required: Sequence[s
 
 
 class _Lines:
-    """Lines of a table, which end in LF alone, one at a time; ``begin`` is called before each row."""
+    """Lines of a table, one at a time; only LF ends a line. Call ``begin`` before each row."""
 
     def __init__(self, path: Path, file: IO[bytes]) -> None:
         self.path, self.file = path, file
-        self.number = self.first = 0  # of the latest line, and of that on which its row begins
+        self.number = self.first = 0  # of the latest line, and of the line where its row begins
         self.row_bytes = self.bytes = 0
-        self.ended = True  # the latest line, by a line break
+        self.ended = True  # whether a line break ends the latest line
 
     def begin(self) -> None:
         self.first, self.row_bytes = self.number + 1, 0
@@ -144,10 +144,10 @@ class _Lines:
             raise LogError(self.path, self.number, "", f"not UTF-8 text: {error.reason}") from None
         if "\0" in text:
             raise LogError(self.path, self.number, "", "the row holds a NUL byte")
-        return text.replace("\r", " ")  # a blank, as the programs have it
+        return text.replace("\r", " ")  # a blank, as in the programs
 
 
-PROGRESS_ROWS = 4096  # from one look at the clock to the next
+PROGRESS_ROWS = 4096  # between two readings of the clock
 
 
 def _records_of(path: Path, file: IO[bytes]) -> Iterator[tuple[int, list[str]]]:
@@ -186,8 +186,8 @@ def _rows_of(path: Path, file: IO[bytes], progress: Progress) -> Iterator[tuple[
 
 
 def read_records(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """(line on which it begins, fields without the blanks around them) of each row of a table that is not blank, in
-    memory that the constants above bound. Whether a row is whole is known when the next one is asked for."""
+    """(line on which it begins, stripped fields) of each non-blank row of a table, in memory bounded by the constants
+    above. Whether a row is complete is known only when the next one is requested."""
     try:
         with open(path, "rb") as file:
             yield from _records_of(path, file)
@@ -202,7 +202,7 @@ def read_fields(
     check: Callable[[list[str], Path, int], None] | None = None,
 ) -> Iterator[tuple[int, list[str], list[str]]]:
     """Yields (line number, header, fields) of each row of a CSV file with a header line. ``known``: columns that may
-    not appear twice; ``check``: raises a LogError if the header line is none."""
+    not appear twice; ``check``: raises a LogError for a line that is no header."""
     header: list[str] | None = None
     for line, fields in read_records(path):
         if header is None:
@@ -231,7 +231,7 @@ def read_rows(
 
 
 def warn_of_misspelt(header: list[str], path: Path, line: int, known: Sequence[str]) -> None:
-    """A column that is ignored, but named nearly as one that is not there."""
+    """Warns about an ignored column whose name resembles a known column that is absent."""
     absent = [name for name in known if name not in header]
     for name in header:
         meant = _nearest(name, absent) if name not in known else ""

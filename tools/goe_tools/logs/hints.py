@@ -1,6 +1,6 @@
-"""What looks wrong in a log although it can be read: other units, other signs, another order of the quaternion.
+"""Hints at probable mistakes in a readable log: other units, other signs, another order of the quaternion.
 
-Nothing is refused for it: a hint says what was seen and what to do. goe_replay has the same rules
+A hint refuses nothing: it describes the observation and a remedy. goe_replay has the same rules
 (sim_host/log/log_hints.c).
 """
 
@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 IMAGES_MIN = 10
-STEP_MAX_S, SPEED_MIN_M_S, WAY_MIN_M = 5.0, 0.5, 5.0  # slower images of an aircraft that hardly moves: milliseconds
+STEP_MAX_S, SPEED_MIN_M_S, WAY_MIN_M = 5.0, 0.5, 5.0  # fewer images of a hardly moving aircraft: milliseconds
 SPEED_MAX_M_S = 150.0
 MOVE_M = 1.0
 TILT_MAX, AGAINST, MOST = 0.5, -0.5, 0.8  # cosines of a tilt, of the nose to the motion; share of the moves
@@ -20,7 +20,8 @@ HEIGHT_VARIANCE_M2, CORRELATED = 4.0 * FOOT_M, 0.99
 
 
 def _moves(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Images at which the aircraft is a metre from where it was at the one before, and the directions to there."""
+    """Images at which the aircraft has moved by a meter or more since the last such image, and the directions of
+    motion."""
     rows, ways, anchor = [], [], place[0]
     for i in range(1, len(place)):
         way = (place[i, 0] - anchor[0], place[i, 1] - anchor[1])
@@ -33,7 +34,7 @@ def _moves(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _odd(attitude: np.ndarray, motion: np.ndarray) -> float:
-    """Share of the attitudes that lie on their side or look against the motion."""
+    """Share of the attitudes that are tilted by more than 60 degrees or point against the motion."""
     w, x, y, z = attitude.T
     down = w * w - x * x - y * y + z * z
     nose = (w * w + x * x - y * y - z * z) * motion[:, 0] + 2.0 * (x * y + w * z) * motion[:, 1]
@@ -45,10 +46,10 @@ def _of_times(time_s: np.ndarray, place: np.ndarray) -> str:
     way_m = float(np.hypot(*np.diff(place, axis=0).T).sum())
     step_s, speed = span_s / (len(time_s) - 1), way_m / span_s
     if way_m > WAY_MIN_M and step_s > STEP_MAX_S and speed < SPEED_MIN_M_S:
-        seen = f"an image every {step_s:.3g} s of an aircraft that flies {speed:.2g} m/s"
-        return f"t_s: {seen}: milliseconds? t_s is in seconds"
+        observed = f"an image every {step_s:.3g} s of an aircraft that flies {speed:.2g} m/s"
+        return f"t_s: {observed}: milliseconds? t_s is in seconds"
     if speed > SPEED_MAX_M_S:
-        return f"n_m, e_m: the aircraft flies {speed:.3g} m/s: feet? positions are in metres, t_s in seconds"
+        return f"n_m, e_m: the aircraft flies {speed:.3g} m/s: feet? positions are in meters, t_s in seconds"
     return ""
 
 
@@ -65,7 +66,7 @@ def _of_attitude(attitude: np.ndarray, place: np.ndarray) -> str:
 
 
 def _strange_ratio(up: np.ndarray, agl: np.ndarray) -> float:
-    """3.28, 0.305 or -1, by which the height changes with -d_m, or of which it is a multiple; 0: none of them."""
+    """3.28, 0.305 or -1 if this is the ratio of the heights, or of their changes (agl_m over -d_m); 0: none of them."""
     u, a = up - up.mean(), agl - agl.mean()
     both, of_up = float(np.mean(u * a)), float(np.mean(u * u))
     varied = of_up > HEIGHT_VARIANCE_M2 and both * both > CORRELATED * of_up * float(np.mean(a * a))
@@ -80,7 +81,7 @@ def _strange_ratio(up: np.ndarray, agl: np.ndarray) -> float:
 
 
 def _of_heights(up: np.ndarray, agl: np.ndarray, given: np.ndarray) -> str:
-    """``agl``: NaN where it is no number; ``given``: whether the field has one."""
+    """``agl``: NaN where it is not a number; ``given``: whether the field has one."""
     known = np.isfinite(agl)
     ratio = _strange_ratio(up[known], agl[known]) if known.sum() >= IMAGES_MIN else 0.0
     end = "is it up? d_m is down, negative above the origin"
@@ -90,13 +91,13 @@ def _of_heights(up: np.ndarray, agl: np.ndarray, given: np.ndarray) -> str:
         return f"d_m: the camera is below the ground, and agl_m is empty: {end}"
     if ratio:
         name, other = ("agl_m", "-d_m") if ratio > 1.0 else ("d_m", "-agl_m")
-        return f"{name}: {1.0 / FOOT_M:.3g} times {other}: feet? both are in metres"
+        return f"{name}: {1.0 / FOOT_M:.3g} times {other}: feet? both are in meters"
     return ""
 
 
 def hints_of(pose: np.ndarray, agl: np.ndarray, given: np.ndarray) -> list[str]:
-    """Of rows of frames.csv: (N, 8) time, position and attitude, (N,) height above ground, NaN where it is no number,
-    and whether its field has one."""
+    """Hints for rows of frames.csv: (N, 8) time, position and attitude, (N,) height above ground, NaN where it is not
+    a number, and whether its field has one."""
     taken = np.flatnonzero(np.isfinite(pose).all(1))
     latest = np.maximum.accumulate(pose[taken, 0]) if len(taken) else pose[:0, 0]
     taken = taken[np.flatnonzero(np.diff(latest, prepend=-np.inf) > 0.0)]  # an image has a row of each obstacle

@@ -1,14 +1,14 @@
 """Flies a scenario with JSBSim and writes it as an observation log: a cross-check against another flight model.
 
 JSBSim's stock model glider (minisgs) gets ballast, a motor and an airbrake, and a small autopilot flies it straight
-along the course, down the slope, at the given speed. Its true pose, recorded at 50 Hz, is then handed to
-`goe_sim --flight`, which looks at the obstacle from it: geometry, camera and pixel noise are the simulator's, the
-motion is JSBSim's.
+along the course, down the slope, at the given speed. Its true pose, recorded at 50 Hz, is the input of
+`goe_sim --flight`, which observes the obstacle from it: geometry, camera and pixel noise come from the simulator, the
+motion from JSBSim.
 
     python -m goe_tools jsbsim_flight --goe-sim build/sim_host/goe_sim --out log -- \
         --obstacle building --alpha -20 --noise rounding
 
-What follows `--` goes to goe_sim. Needs the Python package jsbsim.
+Options after `--` go to goe_sim. Needs the Python package jsbsim.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ RECORD_EVERY = 4  # steps
 RUN_IN_S = 20.0  # settles trim and turbulence before the recording starts
 BALLAST_LBS = 40.0  # brings the glider's wing loading to that of a small UAV at 17 m/s
 MOTOR_N, BRAKE_N = 80.0, -40.0  # limits of the force along body x: the glider is too clean for a steep slope
-SURFACE_RAD = 0.3  # surface angle of a full command, roughly
+SURFACE_RAD = 0.3  # approximate surface angle of a full command
 WIND_AT_20FT_KNOTS = {"none": 0.0, "dryden:light": 15.0, "dryden:moderate": 30.0}
 TURBULENCE_MILSPEC = 3
 
@@ -49,7 +49,7 @@ MOTOR = """
 
 
 class Plan(NamedTuple):
-    """What is to be flown: metres, seconds, radians; altitude is over ground at reach time."""
+    """The flight to fly: meters, seconds, radians; altitude is above ground at reach time."""
 
     speed: float
     course: float
@@ -62,7 +62,7 @@ class Plan(NamedTuple):
 
 
 class State(NamedTuple):
-    """Metres, m/s, radians; north and east since the start, height over ground."""
+    """Meters, m/s, radians; north and east since the start, height above ground."""
 
     north: float
     east: float
@@ -84,7 +84,7 @@ def clamp(value: float, limit: float) -> float:
 
 
 def start_model(root: Path, plan: Plan, height: float):
-    """The aircraft in flight, JSBSim's own files copied to root and given a motor."""
+    """The aircraft in flight; JSBSim's files are copied to root and extended by a motor."""
     import jsbsim
 
     stock = Path(jsbsim.get_default_root_dir()) / "aircraft" / "minisgs" / "minisgs.xml"
@@ -138,7 +138,7 @@ def read_state(fdm) -> State:
 
 
 class Autopilot:
-    """Course line, slope and airspeed by aileron, elevator and motor."""
+    """Holds course line, slope and airspeed with aileron, elevator and motor."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
@@ -150,7 +150,7 @@ class Autopilot:
         return plan.altitude + (plan.speed * plan.reach - along) * math.tan(plan.glide)
 
     def along(self, state: State) -> float:
-        """Way along the course, 0 where the run is to start."""
+        """Distance along the course, 0 at the start of the run."""
         return (
             state.north * math.cos(self.plan.course)
             + state.east * math.sin(self.plan.course)
@@ -219,11 +219,11 @@ def fly(plan: Plan) -> list[list[float]]:
                     return rows
             autopilot.steer(fdm, state)
             fdm.run()
-    raise RuntimeError("the aircraft did not come to the end of the run")
+    raise RuntimeError("the aircraft did not reach the end of the run")
 
 
 def write_recording(path: Path, rows: list[list[float]]) -> None:
-    """The estimate of a recording is what its autopilot believes; here it believes the truth."""
+    """The estimate in a recording is the autopilot's belief; here it equals the truth."""
     names = ("n_m", "e_m", "d_m", "qw", "qx", "qy", "qz")
     with replacing(path) as place, place.open("w", newline="") as file:
         writer = csv.writer(file)
@@ -240,7 +240,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--speed", type=float, default=17.0, help="m/s over ground in still air (default: 17)")
     parser.add_argument("--course", type=float, default=0.0, help="degrees from north (default: 0)")
     parser.add_argument("--glide", type=float, default=0.0, help="slope in degrees, positive down (default: 0)")
-    parser.add_argument("--altitude", type=float, default=15.0, help="m over ground at reach time (default: 15)")
+    parser.add_argument("--altitude", type=float, default=15.0, help="m above ground at reach time (default: 15)")
     parser.add_argument("--reach", type=float, default=20.0, help="s to the obstacle (default: 20)")
     parser.add_argument("--run", type=float, default=18.0, help="s of the run (default: 18)")
     parser.add_argument("--wind", choices=sorted(WIND_AT_20FT_KNOTS), default="none", help="JSBSim's own turbulence")

@@ -22,7 +22,7 @@ class MarkedBlock:
         return f"<!-- {self.name}: end -->"
 
     def _parts(self, page: Path) -> tuple[str, str, str]:
-        """What stands before, between and behind the marks."""
+        """The text before, between and after the marks."""
         text = page.read_text(encoding="utf-8")
         if text.count(self.begin) != 1 or text.count(self.end) != 1 or text.index(self.begin) > text.index(self.end):
             raise LogError(page, 0, "", f"needs the lines {self.begin} and {self.end} once")
@@ -31,11 +31,11 @@ class MarkedBlock:
         return before, between.strip(), behind
 
     def of(self, page: Path) -> str:
-        """What the page shows."""
+        """The text of the block."""
         return self._parts(page)[1]
 
     def around(self, page: Path) -> str:
-        """What people wrote."""
+        """The text outside the block, written by people."""
         before, _, behind = self._parts(page)
         return before + behind
 

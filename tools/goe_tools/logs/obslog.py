@@ -1,7 +1,7 @@
-"""Observation logs: a folder with camera.ini, frames.csv and, where the truth is known, truth.csv.
+"""Observation logs: a folder with camera.ini, frames.csv and, if the truth is known, truth.csv.
 
 Frames: NED earth (north, east, down), FRD body, camera with x right, y down and z along the optical axis. Lengths
-are in metres, image points in pixels from the top left corner, attitudes Hamilton quaternions (w, x, y, z) body -> NED.
+are in meters, image points in pixels from the top left corner, attitudes Hamilton quaternions (w, x, y, z) body -> NED.
 An empty field means "not measured": None here. Errors carry file, line and column: LogError.
 """
 
@@ -37,8 +37,8 @@ from .fields import (
 from .whole_file import replacing_all
 
 Pixel = tuple[float, float]
-Side = Optional[float]  # as Python 3.9 has it outside annotations
-Box = tuple[Side, Side, Side, Side]  # left, top, right, bottom; None: not seen
+Side = Optional[float]  # Python 3.9 syntax outside annotations
+Box = tuple[Side, Side, Side, Side]  # left, top, right, bottom; None: not visible
 
 TIME_LIMIT_US = 9.2e18  # just inside 64 bits
 FEATURES = ("left", "right", "top", "base_left", "base_near", "base_right")
@@ -63,9 +63,9 @@ TRUTH_COLUMNS = (
 )
 
 
-HINT_ROWS_MAX = 20_000  # of a longer log its beginning says enough
+HINT_ROWS_MAX = 20_000  # the beginning of a longer log suffices
 LOG_NAMES = ("camera.ini", "frames.csv", "truth.csv", "truth_frames.csv")
-SLOTS = {"slots": True} if sys.version_info >= (3, 10) else {}  # a long log has a million of them
+SLOTS = {"slots": True} if sys.version_info >= (3, 10) else {}  # a long log has a million objects
 
 
 @dataclass(**SLOTS)
@@ -83,10 +83,10 @@ class Frame:
     base_left: Pixel | None = None
     base_near: Pixel | None = None
     base_right: Pixel | None = None
-    box_px: Box | None = None  # upright bounding box in the raw image; None: no side is seen
-    camera: int = 0  # number of the one that took the image
+    box_px: Box | None = None  # upright bounding box in the raw image; None: no side is visible
+    camera: int = 0  # number of the camera that took the image
     reset_count: int = 0  # of the autopilot's filter
-    reset_delta_m: tuple[float, float, float] | None = None  # by how much the position jumped, NED; None: not known
+    reset_delta_m: tuple[float, float, float] | None = None  # jump of the position, NED; None: unknown
 
     @property
     def height_m(self) -> float:
@@ -95,14 +95,14 @@ class Frame:
 
     @property
     def time_us(self) -> int | None:
-        """Time stamp as the replay program hands it on: microseconds, ties to even; None if not finite or too large."""
+        """Time stamp as in the replay program: microseconds, ties to even; None if not finite or too large."""
         time_us = self.t_s * 1e6
         return round(time_us) if abs(time_us) < TIME_LIMIT_US else None
 
 
 @dataclass
 class Truth:
-    """One row of truth.csv. ``extra`` holds the columns beyond the contract's, as text."""
+    """One row of truth.csv. ``extra`` contains further columns as text."""
 
     id: int
     static: bool
@@ -121,10 +121,10 @@ class ObservationLog:
     camera: Camera
     frames: list[Frame]
     truth: dict[int, Truth] = field(default_factory=dict)  # by id
-    camera2: Camera | None = None  # number 1
+    camera2: Camera | None = None  # camera number 1
 
     def resets(self) -> set[int]:
-        """Ids of the tracks in which the autopilot's filter was reset."""
+        """Ids of the tracks with a reset of the autopilot's filter."""
         return {key for key, frames in self.tracks().items() if len({frame.reset_count for frame in frames}) > 1}
 
     def tracks(self) -> dict[int, list[Frame]]:
@@ -139,14 +139,14 @@ class ObservationLog:
 
 
 def check_pairs(header: list[str], path: Path, line: int) -> None:
-    """An image point needs both its columns, and the jump of a reset the count."""
+    """An image point needs both its columns, and the jump of a reset needs the count."""
     for name in FEATURES:
         if (f"{name}_u" in header) != (f"{name}_v" in header):
             absent = f"{name}_v" if f"{name}_u" in header else f"{name}_u"
             raise LogError(path, line, absent, "column is missing")
     jumps = [name for name in JUMP_COLUMNS if name in header]
     if jumps and RESET_COLUMN not in header:
-        raise LogError(path, line, RESET_COLUMN, f"column is missing, {jumps[0]} is there")
+        raise LogError(path, line, RESET_COLUMN, f"column is missing, but {jumps[0]} is present")
 
 
 def _pixel(row: Row, path: Path, line: int, feature: str) -> Pixel | None:
@@ -175,7 +175,7 @@ def _camera_number(row: Row, path: Path, line: int, cameras: int) -> int:
 
 
 def read_features(row: Row, path: Path, line: int, cameras: int) -> dict[str, object]:
-    """What a detector tells in one row, as the fields of ``Frame`` of that name: points, box, number of the camera."""
+    """A detector's fields in one row, as the fields of ``Frame`` with that name: points, box, camera number."""
     return {
         **{feature: _pixel(row, path, line, feature) for feature in FEATURES},
         "box_px": _box(row, path, line),
@@ -185,14 +185,14 @@ def read_features(row: Row, path: Path, line: int, cameras: int) -> dict[str, ob
 
 NUMBER_COLUMNS = ("t_s", *POSE_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, *JUMP_COLUMNS)
 INTEGER_COLUMNS = ("id", RESET_COLUMN, CAMERA_COLUMN)
-UNUSUAL = re.compile(r"[^-+.0-9eE,]").search  # words like nan, and whatever Python takes for a number and others do not
-PAIRS = range(9, 9 + len(POINT_COLUMNS), 2)  # in a row's numbers
+UNUSUAL = re.compile(r"[^-+.0-9eE,]").search  # words like nan, and numbers that only Python accepts
+PAIRS = range(9, 9 + len(POINT_COLUMNS), 2)  # indices in a row's numbers
 BOX, JUMP = slice(PAIRS.stop, PAIRS.stop + 4), slice(PAIRS.stop + 4, PAIRS.stop + 7)
-ID_DIGITS_MAX = 18  # of 64 bits in any case
+ID_DIGITS_MAX = 18  # always fits 64 bits
 
 
 def _plain_frame(texts: Sequence[str], integers: Sequence[str], cameras: int) -> Frame | None:
-    """A row's numbers in the order of the columns above. None: there is something in it that takes a closer look."""
+    """Parses a row's numbers in the order of the columns above. None: the row needs the thorough parser."""
     if UNUSUAL(",".join(texts)) or "" in texts[:8]:
         return None
     try:
@@ -216,7 +216,7 @@ NO_BOX = (None,) * len(BOX_COLUMNS)
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
-    """Rows refer to nothing that refers to them: looking for such circles among millions takes a third of the time."""
+    """Rows form no reference cycles; searching for cycles among millions of them takes a third of the time."""
     enabled = gc.isenabled()
     gc.disable()
     try:
@@ -242,7 +242,7 @@ def _frame(row: Row, path: Path, line: int, cameras: int) -> Frame:
 
 
 def _is_broken(frame: Frame) -> bool:
-    """Without a finite pose, or with a number that is not finite."""
+    """Whether the pose or another number is not finite."""
     numbers = [frame.t_s, *frame.position_m, *frame.attitude, 0.0 if frame.agl_m is None else frame.agl_m]
     for feature in FEATURES:
         numbers += getattr(frame, feature) or ()
@@ -252,8 +252,8 @@ def _is_broken(frame: Frame) -> bool:
 
 @_no_collection()
 def read_frames(path: Path, cameras: int = len(CAMERA_NAMES)) -> list[Frame]:
-    """Reads frames.csv of so many cameras. An empty pose field becomes NaN: a bad measurement, no bad input; a warning
-    says how many rows have one."""
+    """Reads frames.csv for this number of cameras. An empty pose field becomes NaN: a bad measurement, not bad input; a
+    warning reports how many rows have one."""
     path = Path(path)
     frames: list[Frame] = []
     broken, first = 0, 0
@@ -269,7 +269,7 @@ def read_frames(path: Path, cameras: int = len(CAMERA_NAMES)) -> list[Frame]:
                 itemgetter(*(place.get(name, len(header)) for name in names))
                 for names in (NUMBER_COLUMNS, INTEGER_COLUMNS)
             )
-        fields.append("")  # of the columns that are not there
+        fields.append("")  # for absent columns
         frame = _plain_frame(numbers(fields), integers(fields), cameras)
         if frame is None:
             frame = _frame(dict(zip(header, fields)), path, line, cameras)
@@ -312,7 +312,7 @@ def read_truth(path: Path) -> dict[int, Truth]:
 
 
 def log_folder(path: Path) -> Path:
-    """The folder of a log; of a file of it, too, which a shell's completion easily names."""
+    """The folder of a log, also if ``path`` is a file in it, as a shell's completion may produce."""
     path = Path(path)
     if path.is_file():
         reason = "is a file; name its folder"
@@ -323,7 +323,7 @@ def log_folder(path: Path) -> Path:
 
 
 def _hint(path: Path, frames: Sequence[Frame]) -> None:
-    import numpy as np  # here: the command line starts without it
+    import numpy as np  # imported here: the command line starts faster without it
 
     from .hints import hints_of
 
@@ -335,7 +335,7 @@ def _hint(path: Path, frames: Sequence[Frame]) -> None:
 
 
 def read_log(folder: Path) -> ObservationLog:
-    """Reads a whole log; truth.csv may be absent. Warnings say what looks wrong in it."""
+    """Reads a whole log; truth.csv may be absent. Warnings report probable mistakes in it."""
     folder = log_folder(folder)
     truth = folder / "truth.csv"
     cameras = read_cameras(folder / "camera.ini")
@@ -353,7 +353,7 @@ def read_log(folder: Path) -> ObservationLog:
 
 
 def write_frames(path: Path, frames: Sequence[Frame]) -> None:
-    """Columns of boxes, of resets and of the camera's number stand there if a frame has any, other than 0."""
+    """Writes the columns of boxes, resets and the camera number only if a frame has a value other than 0."""
     boxes = any(frame.box_px is not None for frame in frames)
     resets = any(frame.reset_count != 0 or frame.reset_delta_m is not None for frame in frames)
     header = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz", *POINT_COLUMNS]
@@ -386,8 +386,8 @@ def write_truth(path: Path, truth: dict[int, Truth]) -> None:
 
 
 def write_log(folder: Path, log: ObservationLog, comment: str = "", inputs: Sequence[Path] = ()) -> None:
-    """Writes camera.ini, frames.csv and, if there is any truth, truth.csv, all of them or none; makes the folder.
-    ``inputs``: files that it may not replace."""
+    """Writes camera.ini, frames.csv and, if there is any truth, truth.csv: all of them or none. Makes the folder.
+    ``inputs``: files that it must not replace."""
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""How far a long piece of work is: one line of a terminal's standard error, once two seconds have passed."""
+"""Progress of a long task: one line on a terminal's standard error, from two seconds on."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ AFTER_S, EVERY_S = 2.0, 0.2
 
 
 class Progress:
-    """``total`` 0: not known. Nothing is written where standard error is no terminal."""
+    """``total`` 0: unknown. Writes nothing if standard error is not a terminal."""
 
     def __init__(self, what: str, total: float) -> None:
         self.what, self.total = what, total

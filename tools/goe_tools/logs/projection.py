@@ -1,4 +1,4 @@
-"""Where a point lies in the image of a flying camera, lens and all.
+"""Projects a point into the image of a flying camera, with lens distortion.
 
 Frames as in ``obslog``: NED earth, FRD body, camera x right, y down, z forward.
 """
@@ -12,10 +12,10 @@ import numpy as np
 
 from .obslog import Camera, Pixel
 
-MIN_DEPTH_FRACTION = 0.05  # of the ray's length: below this a point counts as out of view
+MIN_DEPTH_FRACTION = 0.05  # of the ray's length; a point with less is out of view
 LENS_SAMPLES = 33
-LENS_SLOPE_MIN = 0.2  # of d(distorted radius)/d(radius); a lens model that flat has left its valid field
-CAMERA_AXES_IN_BODY = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # un-mounted: z forward, x right
+LENS_SLOPE_MIN = 0.2  # of d(distorted radius)/d(radius); below this the lens model is outside its valid field
+CAMERA_AXES_IN_BODY = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # unmounted: z forward
 
 
 def rotation(axis: int, angle_rad: float) -> np.ndarray:
@@ -64,7 +64,7 @@ def quaternion_of(matrix: np.ndarray) -> tuple[float, float, float, float]:
 
 
 def distort(camera: Camera, x: float, y: float) -> tuple[float, float]:
-    """Brown-Conrady distortion of a normalised image point, OpenCV's order of the coefficients."""
+    """Brown-Conrady distortion of a normalized image point, coefficients in OpenCV's order."""
     r2 = x * x + y * y
     radial = 1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3))
     return (
@@ -74,7 +74,7 @@ def distort(camera: Camera, x: float, y: float) -> tuple[float, float]:
 
 
 def lens_bends_back(camera: Camera, x: float, y: float) -> bool:
-    """Whether the lens model has turned around before this point, so that a farther ray would meet the same pixel."""
+    """Whether the lens model has turned around before this point; then a farther ray would meet the same pixel."""
     r2 = np.linspace(0.0, x * x + y * y, LENS_SAMPLES)
     return bool(np.any(1.0 + r2 * (3.0 * camera.k1 + r2 * (5.0 * camera.k2 + 7.0 * r2 * camera.k3)) <= LENS_SLOPE_MIN))
 
@@ -90,8 +90,8 @@ class Pose:
 
 
 def project(camera: Camera, pose: Pose, point_ned_m: np.ndarray, clip: bool = False) -> Pixel | None:
-    """The pixel of a point in NED; None if it lies behind the image plane, where the lens
-    model holds no more, or, with clip, outside the image."""
+    """The pixel of a point in NED; None if it lies behind the image plane, outside the lens model's valid field
+    or, with clip, outside the image."""
     ray = pose.ned_from_camera.T @ (np.asarray(point_ned_m) - pose.camera_ned_m)
     if ray[2] <= MIN_DEPTH_FRACTION * np.linalg.norm(ray):
         return None

@@ -1,12 +1,12 @@
-"""Synthetic observation logs of one upright box or cylinder on flat ground, seen from a flying camera.
+"""Synthetic observation logs of one upright box or cylinder on flat ground, recorded by a flying camera.
 
-The obstacle is placed in the trajectory frame T of the first image (X right, Z forward, level): a box with the middle
-of its front edge (length W, on the side of the start) at (X0, Z0) and its length axis turned from Z by alpha, clockwise
-seen from above; a cylinder with its centre at (X0, Z0). X0 < 0 stands left of the flight path.
+The obstacle is placed in the trajectory frame T of the first image (X right, Z forward, level). A box has the middle
+of its front edge (length W, on the side of the start) at (X0, Z0), and alpha turns its length axis from Z, clockwise
+from above; a cylinder has its center at (X0, Z0). X0 < 0 is left of the flight path.
 
-Features are exact points of the obstacle: the silhouette's left and right are taken at half the obstacle's height (on a
-cylinder on its exact tangents), the top is the highest point in the image, and of the base only the corners of visible
-faces are given.
+Features are exact points of the obstacle: the silhouette's left and right are taken at half the obstacle's height (for
+a cylinder on its exact tangents), the top is the highest point in the image, and of the base only the corners of
+visible faces are given.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ GRAVITY_MPS2 = 9.80665
 
 @dataclass
 class Scene:
-    """All that a synthetic log depends on."""
+    """All inputs of a synthetic log."""
 
     shape: str = "box"  # box or cylinder
     width_m: float = 2.5  # front edge of the box, diameter of the cylinder
@@ -32,7 +32,7 @@ class Scene:
     height_m: float = 2.5
     x0_m: float = -12.0
     z0_m: float = 200.0
-    alpha_deg: float = 0.0  # length axis from Z
+    alpha_deg: float = 0.0  # of the length axis, from Z
     run_s: float = 8.0
     fps_hz: float = 8.0
     speed_mps: float = 17.0
@@ -41,10 +41,10 @@ class Scene:
     arc_radius_m: float = 400.0  # positive: turns right
     weave_amplitude_m: float = 5.0
     weave_period_s: float = 6.0
-    course_deg: float = 0.0  # direction of flight at the start, clockwise from north (weave: of its middle line)
+    course_deg: float = 0.0  # direction of flight at the start, clockwise from north (weave: of its center line)
     altitude_m: float = 20.0  # vehicle above the ground at the first image
     glide_deg: float = 0.0  # positive: descending
-    pitch_deg: float = 0.0  # constant, on top of the glide path's
+    pitch_deg: float = 0.0  # constant, added to the glide path's
     wobble_deg: float = 0.0  # amplitude of a three-axis attitude oscillation
     start_ne_m: tuple[float, float] = (0.0, 0.0)
     ground_d_m: float = 0.0
@@ -106,7 +106,7 @@ class Placed:
 
 
 def place(scene: Scene, first: Pose) -> Placed:
-    """Puts the obstacle where (X0, Z0) says, T being that of the first pose."""
+    """Puts the obstacle at (X0, Z0) of the trajectory frame of the first pose."""
     if scene.camera.heading_deg is None:
         forward = first.ned_from_body[:, 0]
         heading = math.atan2(forward[1], forward[0])
@@ -134,7 +134,7 @@ def _bearing_order(camera_ne_m: np.ndarray, toward_ne_m: np.ndarray, points_ne_m
 
 
 def _highest(scene: Scene, pose: Pose, placed: Placed) -> np.ndarray:
-    """The point of the obstacle's top that lies highest in the (undistorted) image, NED."""
+    """The obstacle's top point that is highest in the (undistorted) image, NED."""
     top_d = scene.ground_d_m - scene.height_m
     to_camera = pose.ned_from_camera.T
     if placed.corners_ne_m is not None:
@@ -144,7 +144,7 @@ def _highest(scene: Scene, pose: Pose, placed: Placed) -> np.ndarray:
         slope = np.where(ahead, rays[:, 1] / np.where(ahead, rays[:, 2], 1.0), np.inf)
         return points[int(np.argmin(slope))]
     # On the rim C + r (cos t, sin t) the image's y is a ratio of two sinusoids, (a0 + a.e(t)) / (b0 + b.e(t)); its
-    # least value y is the one for which a0 - y b0 = |a - y b|, and is met in the direction of -(a - y b).
+    # least value y solves a0 - y b0 = |a - y b|, in the direction -(a - y b).
     center = np.array([*placed.center_ne_m, top_d])
     radius = 0.5 * scene.width_m
     ray = to_camera @ (center - pose.camera_ned_m)
@@ -157,7 +157,7 @@ def _highest(scene: Scene, pose: Pose, placed: Placed) -> np.ndarray:
 
 
 def feature_points(scene: Scene, pose: Pose, placed: Placed) -> dict[str, np.ndarray]:
-    """The features that are not hidden by the obstacle itself, as points in NED."""
+    """The features that the obstacle itself does not hide, as points in NED."""
     camera_ne = pose.camera_ned_m[:2]
     middle_d = scene.ground_d_m - 0.5 * scene.height_m
 
@@ -200,7 +200,7 @@ def feature_points(scene: Scene, pose: Pose, placed: Placed) -> dict[str, np.nda
 
 
 def _in_track(scene: Scene, placed: Placed, frames: list[Frame]) -> tuple[float, float, float]:
-    """X0, Z0 and the heading of T's Z axis, deg: T begins with the first image that shows a feature."""
+    """X0, Z0 and the heading of T's Z axis, deg: T starts at the first image with a visible feature."""
     heading_deg = math.degrees(placed.heading_rad)
     shown = [any(getattr(frame, name) is not None for name in FEATURES) for frame in frames]
     if shown[0] or not any(shown):
@@ -229,12 +229,12 @@ def make_log(scene: Scene) -> ObservationLog:
         pose = pose_at(scene, t)
         agl = scene.ground_d_m - float(pose.camera_ned_m[2])
         if agl <= 0.0:
-            raise ValueError(f"the camera meets the ground after {t:g} s: start higher or run shorter")
+            raise ValueError(f"the camera hits the ground after {t:g} s: start higher or use a shorter run")
         pixels: dict[str, Pixel | None] = {}
         for name, point in feature_points(scene, pose, placed).items():
             pixel = project(scene.camera, pose, point, scene.clip)
             if scene.pixel_sigma_px > 0.0:
-                noise = generator.normal(0.0, scene.pixel_sigma_px, 2)  # drawn also if clipped: one stream per frame
+                noise = generator.normal(0.0, scene.pixel_sigma_px, 2)  # also if clipped: one stream per frame
                 pixel = None if pixel is None else (pixel[0] + float(noise[0]), pixel[1] + float(noise[1]))
             if pixel is not None and scene.rounding == "pixel":
                 pixel = (float(np.rint(pixel[0])), float(np.rint(pixel[1])))

@@ -1,4 +1,4 @@
-"""The command ``scene``: what its words mean, and the log that it writes."""
+"""The command ``scene``: parses its options and writes the log."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from .obslog import Camera, write_log
 from .scene import Scene, make_log
 
-# name: shape, W, L, H in metres (of the cylinder: diameter, diameter, height)
+# name: shape, W, L, H in meters (of the cylinder: diameter, diameter, height)
 PRESETS = {
     "cylinder": ("cylinder", 6.0, 6.0, 30.0),
     "building": ("box", 15.0, 40.0, 89.0),
@@ -21,7 +21,7 @@ PRESETS = {
 def _numbers(text: str, count: int) -> tuple[float, ...]:
     parts = text.split(",")
     if len(parts) != count:
-        raise argparse.ArgumentTypeError(f"'{text}': {count} numbers with commas between them are needed")
+        raise argparse.ArgumentTypeError(f"'{text}': needs {count} numbers with commas between them")
     try:
         values = tuple(float(part) for part in parts)
     except ValueError:
@@ -41,7 +41,7 @@ def _obstacle(text: str) -> tuple[str, float, float, float]:
         diameter, height = _numbers(sizes, 2)
         shape = ("cylinder", diameter, diameter, height)
     else:
-        raise argparse.ArgumentTypeError(f"'{text}': one of {', '.join(PRESETS)}, box:W,L,H or disc:D,H")
+        raise argparse.ArgumentTypeError(f"'{text}': must be {', '.join(PRESETS)}, box:W,L,H or disc:D,H")
     if min(shape[1:]) <= 0.0:  # type: ignore[type-var]
         raise argparse.ArgumentTypeError(f"'{text}': sizes must be positive")
     return shape  # type: ignore[return-value]
@@ -113,7 +113,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="straight, arc:R (m, positive: right) or weave:A,T (m, s)",
     )
     add("--speed-profile", type=_speed_profile, default=0.0, metavar="P", help="constant or ramp:A (m/s^2)")
-    add("--pitch", type=float, default=0.0, metavar="DEG", help="constant pitch on top of the glide path's")
+    add("--pitch", type=float, default=0.0, metavar="DEG", help="constant pitch, added to the glide path's")
     add("--wobble", type=float, default=0.0, metavar="DEG", help="amplitude of an attitude oscillation (default 0)")
     add("--noise", type=_noise, default={}, metavar="N", help="none, rounding (whole pixels) or pixel:SIGMA (px)")
     add("--seed", type=int, default=1, metavar="N", help="of the pixel noise (default 1)")
@@ -123,14 +123,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=lambda text: _numbers(text, 3),
         default=(0.0, 0.0, 0.0),
         metavar="N,E,D",
-        help="NED of the ground point under the start (m)",
+        help="NED of the ground point below the start (m)",
     )
     add("--t0", type=float, default=0.0, metavar="S", help="time stamp of the first image (default 0)")
     add("--id", type=int, default=1, metavar="N", help="track id (default 1)")
     add("--image", type=lambda text: _numbers(text, 2), default=(1280.0, 1280.0), metavar="W,H", help="px")
     add("--focal", type=float, default=914.0, metavar="PX", help="focal length (default 914)")
-    add("--yaw-camera", type=float, default=0.0, metavar="DEG", help="mounting, negative looks left (default 0)")
-    add("--pitch-camera", type=float, default=0.0, metavar="DEG", help="mounting, positive looks up (default 0)")
+    add("--yaw-camera", type=float, default=0.0, metavar="DEG", help="mounting, negative points left (default 0)")
+    add("--pitch-camera", type=float, default=0.0, metavar="DEG", help="mounting, positive points up (default 0)")
     add("--roll-camera", type=float, default=0.0, metavar="DEG", help="mounting (default 0)")
     add("--lens", type=lambda text: _numbers(text, 5), default=(0.0,) * 5, metavar="K1,K2,P1,P2,K3", help="distortion")
     add(
@@ -145,7 +145,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def scene_of(arguments: argparse.Namespace) -> Scene:
-    """The scene that a command line asks for."""
+    """The scene that the options describe."""
     shape, width, length, height = arguments.obstacle
     camera = Camera(
         arguments.image[0],

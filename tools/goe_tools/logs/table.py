@@ -20,15 +20,15 @@ WIDTH_WORDS = {"disc": "diameter", "prism": "width across the line of sight"}
 REASON_WORDS = {"late": "poses late"}
 HINT = (
     "Ahead and aside: from the aircraft to the obstacle's reference point, along and across the direction of flight "
-    "(disc: its centre; front edge, box: the middle of the front edge). Turned: the side edge against the direction of "
+    "(disc: its center; front edge and box: the middle of the front edge). Turned: the side edge from the direction of "
     "flight, clockwise. "
-    "± is one sigma. A row marked * repeats an older solution. Suspect: the track does not fit what it is taken for, "
+    "± is one sigma. A row marked * repeats an older solution. Suspect: the track does not fit its model, "
     "so its sigmas may be too small; widen the margins."
 )
 
 
 def measured(estimate: Estimate, quantity: str, unit: str = "", side: bool = False) -> str:
-    """A value with its sigma: "123.4 ±1.2 m"; with side, the sign as left or right."""
+    """A value with its sigma: "123.4 ±1.2 m"; with ``side``, left or right replaces the sign."""
     if quantity not in estimate.values:
         return NOTHING
     value, sigma = estimate.values[quantity], estimate.values[sigma_name(quantity)]
@@ -41,25 +41,25 @@ def measured(estimate: Estimate, quantity: str, unit: str = "", side: bool = Fal
 
 
 def decimals(sigma: float, value: float) -> int:
-    """Decimals that show two figures of the sigma, at most 2 and at least as many as a value of that size deserves."""
+    """Decimals that show two figures of the sigma: at most 2, and at least as many as a value of that size needs."""
     if not sigma > 0.0:
         return 1 if abs(value) >= 100.0 else 2
     return min(2, max(0, 1 - math.floor(math.log10(sigma))))
 
 
 def remark(estimate: Estimate) -> str:
-    """What a reader must know of an estimate beside its numbers."""
-    told = [] if estimate.status in ("ok", "partial") else [f"* {estimate.status.replace('_', ' ')}"]
+    """Status and suspicion, for a reader of the estimate's numbers."""
+    parts = [] if estimate.status in ("ok", "partial") else [f"* {estimate.status.replace('_', ' ')}"]
     reason = REASON_WORDS.get(estimate.reason, estimate.reason)
     if estimate.suspect:
-        told.append(f"suspect: {reason}")
+        parts.append(f"suspect: {reason}")
     elif estimate.reason != "none":
-        told.append(reason)
-    return ", ".join(told)
+        parts.append(reason)
+    return ", ".join(parts)
 
 
 def true_values(truth: Truth) -> dict[str, float | None]:
-    """What is known of a track's truth, by quantity. Positions relative to the start only if the log tells them."""
+    """The known truth of a track, by quantity. Positions relative to the start only if the log contains them."""
 
     def extra(name: str) -> float | None:
         try:
@@ -80,7 +80,7 @@ def true_values(truth: Truth) -> dict[str, float | None]:
 
 
 def chosen(rows: Sequence[tuple[float, int, Estimate]], count: int) -> list[tuple[float, int, Estimate]]:
-    """Up to `count` rows spread evenly over those that hold an estimate, the first and the last among them."""
+    """Up to `count` rows, spread evenly over those with an estimate; includes the first and the last."""
     solved = [row for row in rows if row[2].model != "none"]
     if len(solved) <= count:
         return solved
@@ -109,10 +109,10 @@ def flight_table(track: int, rows: Sequence[tuple[float, int, Estimate]], count:
 
 
 def summary_table(last: Estimate, truth: Truth | None) -> Table:
-    """The last estimate, quantity by quantity, beside the truth."""
+    """The last estimate, quantity by quantity, next to the truth."""
     known = true_values(truth) if truth else {}
     if truth and last.model == "prism" and truth.width_m != truth.length_m:
-        known["width_m"] = None  # across the line of sight: neither side's
+        known["width_m"] = None  # across the line of sight: the width of neither side
     table = Table(box=None, pad_edge=False)
     table.add_column("last estimate")
     for heading in ("estimate ± sigma", "truth", "error"):
@@ -124,8 +124,8 @@ def summary_table(last: Estimate, truth: Truth | None) -> Table:
         ("length of the side", "length_m", " m"),
         ("height", "height_m", " m"),
         ("side edge from the flight direction", "orientation_deg", "°"),
-        ("centre, north", "center_n_m", " m"),
-        ("centre, east", "center_e_m", " m"),
+        ("center, north", "center_n_m", " m"),
+        ("center, east", "center_e_m", " m"),
     )
     for words, quantity, unit in lines:
         value, true = last.values.get(quantity), known.get(quantity)
@@ -159,7 +159,7 @@ def print_tables(
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("estimates", type=Path, metavar="ESTIMATES.csv", help="goe_replay's output")
-    parser.add_argument("--truth", type=Path, metavar="FILE", help="the log's truth.csv, to print beside the estimates")
+    parser.add_argument("--truth", type=Path, metavar="FILE", help="the log's truth.csv, to print with the estimates")
     parser.add_argument("--id", type=int, metavar="N", help="this track only")
     parser.add_argument(
         "--rows",

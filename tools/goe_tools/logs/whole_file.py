@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and never in the place of an input."""
+"""Writes files completely or not at all, and never in place of an input."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .fields import LogError
 
 
 def refuse_inputs(out: Path, inputs: Iterable[Path | None]) -> None:
-    """LogError if an output would replace an input, whatever links lead to it."""
+    """Raises LogError if an output would replace an input, also through links."""
     for path in inputs:
         if path is not None and out.is_file() and path.exists() and os.path.samefile(out, path):
-            raise LogError(out, 0, "", f"the output would replace {path}, which is read")
+            raise LogError(out, 0, "", f"the output would replace the input {path}")
 
 
 def log_files(folder: Path) -> list[Path]:
@@ -24,7 +24,7 @@ def log_files(folder: Path) -> list[Path]:
 
 
 def _mode(target: Path) -> int:
-    """Of the file that is there, or of a new one."""
+    """Mode of the existing file, or of a new one."""
     if target.exists():
         return target.stat().st_mode & 0o777
     mask = os.umask(0)
@@ -38,7 +38,7 @@ def _placed(path: Path) -> Iterator[Path]:
         raise LogError(path, 0, "", "is a folder")
     if path.is_symlink() and not path.exists():
         raise LogError(path, 0, "", "is a symbolic link that leads nowhere")
-    if path.exists() and not path.is_file():  # a device, a pipe: nothing to be replaced
+    if path.exists() and not path.is_file():  # a device or a pipe: write to it directly
         yield path
         return
     target = path.resolve()
@@ -56,9 +56,9 @@ def _placed(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def replacing(path: Path, inputs: Iterable[Path | None] = ()) -> Iterator[Path]:
-    """Where to write what is to stand in ``path`` once all is written; what is there stays until then, and if writing
-    fails or is interrupted. A symbolic link stays one; one that leads nowhere is refused, and so is an input. Folders
-    on the way are made."""
+    """Yields the path to write to; its content moves to ``path`` once all is written. The old file stays until then,
+    and also if writing fails or is interrupted. A symbolic link stays one; a dangling link or an input is refused.
+    Missing folders are made."""
     path = Path(path)
     refuse_inputs(path, inputs)
     try:
@@ -71,6 +71,7 @@ def replacing(path: Path, inputs: Iterable[Path | None] = ()) -> Iterator[Path]:
 @contextmanager
 def replacing_all(paths: Iterable[Path], inputs: Iterable[Path | None] = ()) -> Iterator[list[Path]]:
     """The same for files that belong together."""
+
     inputs = list(inputs)
     with ExitStack() as stack:
         yield [stack.enter_context(replacing(path, inputs)) for path in paths]

@@ -1,8 +1,8 @@
-"""The Cramer-Rao bound: no unbiased estimator of the obstacle can have a smaller one-sigma than this.
+"""The Cramer-Rao bound: the smallest one-sigma of any unbiased estimator of the obstacle.
 
-All images are used, with the noise that the user would state: pixels, attitude (constant and white), height, velocity.
-What the position wanders by beyond a constant velocity error (``position_walk_m``) and the drift of the attitude are
-left out: with them no estimator can do better than without, so the figure stays a bound.
+The bound uses all images and the configured noise: pixels, attitude (constant and white), height, velocity. It leaves
+out the random walk of the position (``position_walk_m``) and the drift of the attitude: they can only make an estimator
+worse, so the figure stays a lower bound.
 
     python -m goe_tools bound DIR
 """
@@ -36,9 +36,9 @@ from .model import (
 HEADINGS = ("X0 m", "Z0 m", "orientation deg", "W m", "L m", "H m")
 NOISE_OPTIONS = {
     "pixel": ("pixel_px", "PX", "one sigma of an image point"),
-    "size-share": ("size_share", "X", "... and of the obstacle's width in the image, which is added"),
-    "correlation": ("correlation", "R", "of the image points' errors, from image to image"),
-    "shape-share": ("shape_share", "X", "of the width, by which a disc stands badly for the obstacle"),
+    "size-share": ("size_share", "X", "... plus this share of the obstacle's width in the image"),
+    "correlation": ("correlation", "R", "correlation of the image points' errors from image to image"),
+    "shape-share": ("shape_share", "X", "shape error of the disc model, share of the width"),
     "attitude-bias": ("attitude_bias_deg", "DEG", "constant error of the attitude, each axis"),
     "attitude-white": ("attitude_white_deg", "DEG", "error of the attitude in each image"),
     "height": ("height_m", "M", "constant error of the height"),
@@ -48,8 +48,8 @@ NOISE_OPTIONS = {
 
 @dataclass
 class Bound:
-    """One sigma (6,) and covariance (6, 6) of x0, z0, orientation (rad), width, length and height; huge if nothing is
-    known of a quantity. For a disc the orientation's means nothing, and the length is the width."""
+    """Sigma (6,) and covariance (6, 6) of x0, z0, orientation (rad), width, length and height; huge for a quantity that
+    the images do not determine. For a disc, ignore the orientation; the length equals the width."""
 
     sigma: np.ndarray
     covariance: np.ndarray
@@ -57,7 +57,7 @@ class Bound:
 
 
 def information(flight: Flight, noise: Noise | None = None) -> np.ndarray:
-    """(12, 12): Fisher information of the states of ``model`` at the truth, priors included."""
+    """(12, 12): Fisher information of the states of ``model`` at the truth, including priors."""
     noise = flight.noise if noise is None else noise
     view, state = view_of(flight), true_state(flight)
     corners = correspond(view, state)
@@ -67,13 +67,13 @@ def information(flight: Flight, noise: Noise | None = None) -> np.ndarray:
 
 
 def inverse(matrix: np.ndarray) -> np.ndarray:
-    """Inverse of a symmetric positive matrix whose states differ much in size."""
+    """Inverse of a symmetric positive matrix with states of very different size."""
     scale = 1 / np.sqrt(np.diag(matrix))
     return scale[:, None] * np.linalg.inv(matrix * scale[:, None] * scale) * scale
 
 
 def bound(flight: Flight, noise: Noise | None = None) -> Bound:
-    """The bound with all images of a flight; ``noise``: by default the flight's own."""
+    """The bound from all images of a flight; ``noise``: by default that of the flight."""
     covariance = inverse(information(flight, noise))
     slopes = quantity_slopes(true_state(flight), flight.truth.kind == "box")
     result = slopes @ covariance @ slopes.T
@@ -92,7 +92,7 @@ def add_noise_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def noise_of(arguments: argparse.Namespace) -> Noise:
-    """The noise that a command line states."""
+    """The noise that the options configure."""
     values = {name: getattr(arguments, name) for name, _, _ in NOISE_OPTIONS.values()}
     for name, value in values.items():
         if not (math.isfinite(value) and value >= 0.0) or (name == "correlation" and value >= 1.0):
@@ -101,7 +101,7 @@ def noise_of(arguments: argparse.Namespace) -> Noise:
 
 
 def printable(values: np.ndarray) -> np.ndarray:
-    """In the units of ``HEADINGS``."""
+    """Converts to the units of ``HEADINGS``."""
     return np.where(np.arange(len(QUANTITIES)) == 2, np.degrees(values), values)
 
 
@@ -110,19 +110,19 @@ def print_row(label: str, values: np.ndarray, show: np.ndarray) -> None:
 
 
 def shown(flight: Flight) -> np.ndarray:
-    """(6,): quantities that the obstacle has."""
+    """(6,): whether the obstacle has the quantity."""
     box = flight.truth.kind == "box"
     return np.array([True, True, box, True, box, True])
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("log", type=Path, metavar="DIR", help="log folder with truth.csv")
-    parser.add_argument("--disc", action="store_true", help="take every obstacle for a disc")
+    parser.add_argument("--disc", action="store_true", help="model every obstacle as a disc")
     add_noise_arguments(parser)
 
 
 def print_flights(arguments: argparse.Namespace) -> Iterator[Flight]:
-    """The flights of the log, each once its name, the headings and the truth are printed."""
+    """Yields the flights of the log, after printing name, headings and truth of each."""
     for flight in logged_flights(arguments.log, "disc" if arguments.disc else None):
         print(f"{flight.name}: {flight.truth.kind}, {len(flight.time_s)} images")
         print(" " * 22 + "".join(f"{heading:>17s}" for heading in HEADINGS))
@@ -133,5 +133,5 @@ def print_flights(arguments: argparse.Namespace) -> Iterator[Flight]:
 def run(arguments: argparse.Namespace) -> int:
     noise = noise_of(arguments)
     for flight in print_flights(arguments):
-        print_row("one sigma, at best", printable(bound(flight, noise).sigma), shown(flight))
+        print_row("smallest one sigma", printable(bound(flight, noise).sigma), shown(flight))
     return 0

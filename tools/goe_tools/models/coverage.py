@@ -1,4 +1,4 @@
-"""How often the truth lies within two sigma of answers."""
+"""Share of answers within two sigma of the truth."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ COVERED_SIGMA = 2.0
 
 
 class Judged(Protocol):
-    """Errors and sigmas (K, 6) of a track's answers, NaN where there is none; suspect (K,)."""
+    """Errors and sigmas (K, 6) of a track's answers, NaN without one; suspect (K,)."""
 
     @property
     def error(self) -> np.ndarray: ...
@@ -35,8 +35,8 @@ class BoxOutcome:
 
 
 def coverage(outcomes: Sequence[Judged]) -> np.ndarray:
-    """(6,) percent of a track's answers within two sigma, mean over the tracks with an answer: a long track counts no
-    more than a short one."""
+    """(6,) percent of a track's answers within two sigma, averaged over the tracks with an answer, whatever their
+    length."""
     shares = np.full((len(outcomes), 6), np.nan)
     for i, outcome in enumerate(outcomes):
         count = np.isfinite(outcome.error).sum(0)

@@ -1,7 +1,8 @@
-"""How far an estimate is from the truth.
+"""The error of an estimate against the truth.
 
-Of a box that is seen nearly along a diagonal, front and side may change names: the estimate is held against the naming
-that is nearer in angle. A disc that stands for a box has the box's middle as its place, and no other answer."""
+If a box is observed nearly along a diagonal, front and side may swap: the estimate is compared with the naming that is
+nearer in angle. If a disc represents a box, its place is compared with the middle of the box, and nothing else is
+judged."""
 
 from __future__ import annotations
 
@@ -21,8 +22,8 @@ EXCHANGE_ANGLE = math.pi / 4
 
 
 def renamed(values: np.ndarray, side: int) -> np.ndarray:
-    """x0, z0, orientation, width, length, height (..., 6) of a box when the face on one side (1: right, -1: left) is
-    called the front; complex values too."""
+    """x0, z0, orientation, width, length, height (..., 6) of a box after renaming the face on one side (1: right, -1:
+    left) to front; works for complex values."""
     x, z, angle, width, length, height = np.moveaxis(values, -1, 0)
     c, s = np.cos(angle), np.sin(angle)
     x = x + side * width / 2 * c + length / 2 * s
@@ -31,21 +32,21 @@ def renamed(values: np.ndarray, side: int) -> np.ndarray:
 
 
 def renamed_sigma(truth: Obstacle, covariance: np.ndarray) -> np.ndarray:
-    """(6,): one sigma under the other naming, of a covariance (6, 6) under the truth's own."""
+    """(6,): sigmas under the other naming, from a covariance (6, 6) under the naming of the truth."""
     steps = truth.values + 1j * COMPLEX_STEP * np.eye(6)
-    slopes = renamed(steps, _seen_side(truth)).imag.T / COMPLEX_STEP
+    slopes = renamed(steps, _visible_side(truth)).imag.T / COMPLEX_STEP
     return np.sqrt(np.maximum(np.diag(slopes @ covariance @ slopes.T), 0.0))
 
 
-def _seen_side(truth: Obstacle) -> int:
-    """Which side face the camera sees at the track's first image: 1 right, -1 left."""
+def _visible_side(truth: Obstacle) -> int:
+    """The side face visible at the track's first image: 1 right, -1 left."""
     c, s = math.cos(truth.orientation_rad), math.sin(truth.orientation_rad)
     return 1 if -(c * truth.x0_m - s * truth.z0_m) > 0 else -1
 
 
 @dataclass
 class Judgement:
-    """Errors and sigmas (K, 6), NaN where there is no answer or none that could be judged; renamed (K,)."""
+    """Errors and sigmas (K, 6), NaN without an answer that can be judged; renamed (K,)."""
 
     error: np.ndarray
     sigma: np.ndarray
@@ -53,7 +54,7 @@ class Judgement:
 
 
 def _known_angles(angles: np.ndarray) -> np.ndarray:
-    """(K,): each gap filled from the answer after it, or else before it; all NaN if there is none."""
+    """(K,): fills each gap from the next answer, otherwise from the previous one; all NaN without an answer."""
     known = np.flatnonzero(np.isfinite(angles))
     if not len(known):
         return angles
@@ -62,7 +63,7 @@ def _known_angles(angles: np.ndarray) -> np.ndarray:
 
 
 def judge(track: Track, flight: Flight) -> Judgement:
-    """Holds an estimator's answers against a flight's truth."""
+    """Compares an estimator's answers with a flight's truth."""
     truth, values, sigma = flight.truth, track.values, track.sigma.copy()
     error = values - truth.values
     other = np.zeros(len(values), bool)
@@ -73,7 +74,7 @@ def judge(track: Track, flight: Flight) -> Judgement:
         angles = _known_angles(np.where(as_box, values[:, ORIENTATION], np.nan))
         with np.errstate(invalid="ignore"):
             other = as_box & (np.abs(fold(angles - truth.orientation_rad)) > EXCHANGE_ANGLE)
-        error[other] = values[other] - renamed(truth.values, _seen_side(truth))
+        error[other] = values[other] - renamed(truth.values, _visible_side(truth))
         disc = track.model == MODEL_DISC
         middle = truth.corners().mean(0)
         error[disc, :2] = values[disc, :2] - middle

@@ -1,21 +1,21 @@
-"""Where the points of a box or a disc lie in the images: float64, as a function of twelve states.
+"""Image points of a box or a disc, in float64, as a function of twelve states.
 
-It shares nothing with the library but the meaning of the features. The library differentiates by formulas; here the
-derivatives come from complex steps, so that an error on either side shows.
+The model shares only the definition of the features with the library. The library uses analytic derivatives, this model
+complex steps; a comparison detects errors of either one.
 
-States (``STATES``), with T's origin at the camera of the track's first image and everything of the obstacle scaled by
-its range Z0, because early images are almost linear in these:
+States (``STATES``), with T's origin at the camera of the track's first image and all obstacle lengths divided by
+the range Z0, because early images are almost linear in these states:
 
     bx by bz  attitude: true = estimated, turned by the rotation vector b in body axes, rad
     dh        true minus measured height of the camera, m
-    a q       X0/Z0 and 1/Z0 (1/m) of the reference point
+    a q       X0/Z0 and 1/Z0 (1/m) of the reference position
     sx sz     lateral and depth extent of the box's side edge over Z0; a disc has none
-    fx        lateral extent of its front edge over Z0; disc: diameter over Z0
-    e         top above the altimeter's own zero over Z0: (H - dh)/Z0
+    fx        lateral extent of its front edge over Z0; for a disc, diameter over Z0
+    e         top above the altimeter's zero over Z0: (H - dh)/Z0
     vx vz     estimated minus true velocity over ground in T, m/s
 
-Rows of one image (``ROW_FEATURE``): left and right say how far the measured point lies beside the image of an upright
-edge, top how far it lies under a level one, each base corner both coordinates; all in units of the focal length.
+Rows of one image (``ROW_FEATURE``): left and right give the distance of the measured point from the image of a vertical
+edge, top that from a level edge, each base corner both coordinates; all in units of the focal length.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ ROW_FEATURE = np.array([LEFT, RIGHT, TOP, BASE_LEFT, BASE_LEFT, BASE_NEAR, BASE_
 BASES = (BASE_LEFT, BASE_NEAR, BASE_RIGHT)
 ROWS = len(ROW_FEATURE)
 COMPLEX_STEP = 1e-30
-WEAK_SIGMA = 1e3  # of what has no prior
-KNOWN_SIGMA = 1e-7  # of what is exact: far below what any image could tell, rad, m or m/s
+WEAK_SIGMA = 1e3  # of a state without a prior
+KNOWN_SIGMA = 1e-7  # of an exact quantity: far below the information of any image, rad, m or m/s
 LENS_ROUNDS = 20
 CORNER_ALPHA = np.array([-0.5, -0.5, 0.5, 0.5])  # front left, back left, back right, front right:
 CORNER_GAMMA = np.array([0.0, 1.0, 1.0, 0.0])  # place = reference + alpha * front edge + gamma * side edge
-MAX_SINE = 0.98  # of a disc's half angle
+MAX_SINE = 0.98  # sine of a disc's half angle
 
 
 # ------------------------------------------------------------------------------------------------------------ the view
@@ -60,7 +60,7 @@ def distorted(camera: Camera, point: np.ndarray) -> np.ndarray:
 
 
 def lens_slope(camera: Camera, point: np.ndarray) -> np.ndarray:
-    """(..., 2, 2): derivative of the distorted by the undistorted point."""
+    """(..., 2, 2): derivative of the distorted point by the undistorted one."""
     columns = []
     for axis in range(2):
         step = np.zeros(2, complex)
@@ -70,12 +70,12 @@ def lens_slope(camera: Camera, point: np.ndarray) -> np.ndarray:
 
 
 def undistort(camera: Camera, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Undistorted normalised points (..., 2) of pixels, and their derivative (..., 2, 2) by the pixel, 1/px."""
+    """Undistorted, normalized points (..., 2) of pixels, and their derivative (..., 2, 2) by the pixel, 1/px."""
     focal = np.array([camera.fx, camera.fy])
     wanted = (pixel - [camera.cx, camera.cy]) / focal
     point = wanted.copy()
     if any((camera.k1, camera.k2, camera.p1, camera.p2, camera.k3)):
-        for _ in range(LENS_ROUNDS):  # Newton
+        for _ in range(LENS_ROUNDS):  # Newton's method
             error = distorted(camera, point) - wanted
             point = point - np.linalg.solve(lens_slope(camera, point), error[..., None])[..., 0]
     return point, np.linalg.inv(lens_slope(camera, point)) / focal
@@ -83,7 +83,7 @@ def undistort(camera: Camera, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 @dataclass
 class View:
-    """A flight's images as rays, with the estimated motion. K images."""
+    """A flight's K images as rays, with the estimated motion."""
 
     box: bool
     time_s: np.ndarray  # (K,) since the first image
@@ -127,13 +127,13 @@ def view_of(flight: Flight) -> View:
 
 
 def true_state(flight: Flight) -> np.ndarray:
-    """(12,): the truth of the obstacle, without nuisances."""
+    """(12,): the true obstacle, with zero nuisance states."""
     truth = flight.truth
     return state_of(truth.values, truth.kind == "box")
 
 
 def state_of(values: np.ndarray, box: bool) -> np.ndarray:
-    """(12,) of x0, z0, orientation (rad), width, length, height."""
+    """(12,) state of x0, z0, orientation (rad), width, length, height."""
     x0, z0, angle, width, length, height = values
     state = np.zeros(len(STATES))
     state[[A, Q, FX, E]] = x0 / z0, 1 / z0, width / z0, height / z0
@@ -144,7 +144,7 @@ def state_of(values: np.ndarray, box: bool) -> np.ndarray:
 
 
 def quantities(state: np.ndarray, box: bool) -> np.ndarray:
-    """x0, z0, orientation (rad), width, length, height of states (..., 12); complex states too."""
+    """x0, z0, orientation (rad), width, length, height of states (..., 12); works for complex states."""
     a, q, sx, fx, sz, e, dh = (state[..., i] for i in (A, Q, SX, FX, SZ, E, DH))
     if not box:
         return np.stack([a / q, 1 / q, 0 * q, fx / q, fx / q, e / q + dh], -1)
@@ -162,15 +162,15 @@ def quantity_slopes(state: np.ndarray, box: bool) -> np.ndarray:
 
 @dataclass
 class Corners:
-    """Which point of the obstacle each feature shows."""
+    """The point of the obstacle behind each feature."""
 
-    index: np.ndarray  # (K, 6) corner of the box, of ``CORNER_ALPHA``
+    index: np.ndarray  # (K, 6) corner of the box, index of ``CORNER_ALPHA``
     usable: np.ndarray  # (K, 6)
-    top_near: np.ndarray  # (K,) the top of a disc is its rim's nearest point, not its farthest
+    top_near: np.ndarray  # (K,) whether a disc's top is its rim's nearest point, not its farthest
 
 
 def _camera_in_box(view: View, state: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Camera relative to the reference point along width and length axis (K,), and width and length, all over Z0."""
+    """Camera relative to the reference position along width and length axis (K,), and width and length, all over Z0."""
     sx, fx, sz = state[[SX, FX, SZ]]
     length = np.hypot(sx, sz)
     px, pz = state[A] - view.dx_m * state[Q], 1 - view.dz_m * state[Q]
@@ -185,7 +185,8 @@ FACE_CORNERS = np.array(  # left, near, right in the image; -1: none. Faces fron
 
 
 def _rays(view: View, state: np.ndarray, corner: np.ndarray, height: np.ndarray) -> np.ndarray:
-    """Camera axes (K, 3), estimated attitude: a corner of the box, ``height`` (K,) under the camera over Z0."""
+    """Rays in camera axes (K, 3), with the estimated attitude, to a corner of the box ``height`` (K,) below the
+    camera."""
     alpha, gamma = CORNER_ALPHA[corner], CORNER_GAMMA[corner]
     x = state[A] - view.dx_m * state[Q] + alpha * state[FX] + gamma * state[SX]
     z = 1 - view.dz_m * state[Q] - alpha * state[FX] * state[SX] / state[SZ] + gamma * state[SZ]
@@ -193,7 +194,7 @@ def _rays(view: View, state: np.ndarray, corner: np.ndarray, height: np.ndarray)
 
 
 def _face_codes(view: View, state: np.ndarray) -> np.ndarray:
-    """(K,): row of ``FACE_CORNERS``, from the geometry, and from whether a near corner is seen."""
+    """(K,): row of ``FACE_CORNERS``, from the geometry and from the visibility of a near corner."""
     across, along, width, length = _camera_in_box(view, state)
     front, right = -along > along - length, across > 0
     depth, side = np.where(front, -along, along - length), np.abs(across) - 0.5 * width
@@ -207,23 +208,23 @@ def _face_codes(view: View, state: np.ndarray) -> np.ndarray:
         image = ray[:, :2] / ray[:, 2:]
     inside = ((image > view.image[0]) & (image < view.image[1])).all(1) & (ray[:, 2] > 0)
     shown = both & inside & ~view.seen[:, BASE_NEAR] & view.seen[:, BASE_LEFT] & view.seen[:, BASE_RIGHT]
-    return np.where(shown, one, codes)  # its absence says that one face alone is seen
+    return np.where(shown, one, codes)  # without a near corner only one face is visible
 
 
 def _highest_corners(view: View, state: np.ndarray) -> np.ndarray:
-    """(K,): corner of the roof that lies highest in the image."""
+    """(K,): corner of the roof that is highest in the image."""
     rays = [_rays(view, state, np.full(len(view.time_s), i), view.height_m * state[Q] - state[E]) for i in range(4)]
     slopes = [np.where(ray[:, 2] > 0, ray[:, 1] / ray[:, 2], np.inf) for ray in rays]
     return np.argmin(slopes, 0)
 
 
 def _below_roof(view: View, state: np.ndarray) -> np.ndarray:
-    """(K,): whether the camera is lower than the top, so that what is near is high in the image."""
+    """(K,): whether the camera is lower than the top; then near points are high in the image."""
     return view.height_m * state[Q].real < state[E].real
 
 
 def correspond(view: View, state: np.ndarray) -> Corners:
-    """The corners that the features show as the state has it."""
+    """The corners behind the features, for a state."""
     index = np.zeros(view.seen.shape, int)
     usable = view.seen.copy()
     top_near = _below_roof(view, state) if view.top_is_highest else np.full(len(usable), True)
@@ -245,8 +246,8 @@ def correspond(view: View, state: np.ndarray) -> Corners:
 
 
 def turn(b: np.ndarray) -> np.ndarray:
-    """Rotation matrices (..., 3, 3) of small rotation vectors (..., 3), complex ones too: exact rotations, of an angle
-    that is off by its third power / 12."""
+    """Rotation matrices (..., 3, 3) of small rotation vectors (..., 3), also complex: exact rotations, with an angle
+    error of the third power / 12."""
     w, (x, y, z) = 1.0, np.moveaxis(b / 2, -1, 0)
     n = w + x * x + y * y + z * z
     rows = [
@@ -257,9 +258,9 @@ def turn(b: np.ndarray) -> np.ndarray:
     return np.stack([np.stack(row, -1) for row in rows], -2) / n[..., None, None]
 
 
-def _beside(point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+def _distance_from_line(point: np.ndarray, normal: np.ndarray) -> np.ndarray:
     """Signed distance (..., K) of image points (K, 2) from the images of lines; ``normal``: (..., K, 3), of the plane
-    through the line and the eye, camera axes."""
+    through the line and the camera, in camera axes."""
     dot = point[..., 0] * normal[..., 0] + point[..., 1] * normal[..., 1] + normal[..., 2]
     return dot / np.sqrt(normal[..., 0] ** 2 + normal[..., 1] ** 2)
 
@@ -276,7 +277,8 @@ def _disc_places(px: np.ndarray, pz: np.ndarray, fx: np.ndarray, near: np.ndarra
 
 
 def residuals(view: View, corners: Corners, state: np.ndarray) -> np.ndarray:
-    """Measured minus predicted (..., K, ROWS) for states (..., 12), real or complex; meaningless where not usable."""
+    """Measured minus predicted (..., K, ROWS) for states (..., 12), real or complex; meaningless for unusable
+    features."""
     s = [state[..., i, None] for i in range(len(STATES))]
     px = s[A] - (view.dx_m - s[VX] * view.time_s) * s[Q]
     pz = 1 - (view.dz_m - s[VZ] * view.time_s) * s[Q]
@@ -285,7 +287,7 @@ def residuals(view: View, corners: Corners, state: np.ndarray) -> np.ndarray:
     camera_from_t = np.swapaxes(view.t_from_body @ true_from_camera[..., None, :, :], -1, -2)
     zero = np.zeros_like(px)
 
-    def seen_from_camera(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    def in_camera_axes(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         return np.einsum("...ij,...j->...i", camera_from_t, np.stack(np.broadcast_arrays(x, y, z), -1))
 
     def corner(feature: int) -> tuple[np.ndarray, np.ndarray]:
@@ -297,14 +299,14 @@ def residuals(view: View, corners: Corners, state: np.ndarray) -> np.ndarray:
         (lx, lz), (rx, rz), (_, tz) = corner(LEFT), corner(RIGHT), corner(TOP)
     else:
         lx, lz, rx, rz, tz = _disc_places(px, pz, s[FX], corners.top_near)
-    result[..., 0] = _beside(view.point[:, LEFT], seen_from_camera(lz, zero, -lx))
-    result[..., 1] = _beside(view.point[:, RIGHT], seen_from_camera(rz, zero, -rx))
-    result[..., 2] = _beside(view.point[:, TOP], seen_from_camera(zero, tz, -top))
+    result[..., 0] = _distance_from_line(view.point[:, LEFT], in_camera_axes(lz, zero, -lx))
+    result[..., 1] = _distance_from_line(view.point[:, RIGHT], in_camera_axes(rz, zero, -rx))
+    result[..., 2] = _distance_from_line(view.point[:, TOP], in_camera_axes(zero, tz, -top))
     result[..., 3:] = 0
     if view.box:
         for number, feature in enumerate(BASES):
             x, z = corner(feature)
-            ray = seen_from_camera(x, ground, z)
+            ray = in_camera_axes(x, ground, z)
             result[..., 3 + 2 * number : 5 + 2 * number] = view.point[:, feature] - ray[..., :2] / ray[..., 2:]
     return result
 
@@ -316,8 +318,8 @@ def jacobian(view: View, corners: Corners, state: np.ndarray) -> np.ndarray:
 
 
 def _line_directions(view: View, state: np.ndarray) -> np.ndarray:
-    """(K, 3, 2): unit vectors across the images of left, right and top edge, camera axes; the edge's place matters only
-    in the second order, so the measured point stands for it."""
+    """(K, 3, 2): unit vectors perpendicular to the images of left, right and top edge, camera axes. The edge's place is
+    only a second-order effect, so the measured point replaces it."""
     camera_from_t = np.swapaxes(view.t_from_body @ turn(state[:3]) @ view.body_from_camera, -1, -2)
     rays = np.concatenate([view.point[:, :3], np.ones((len(view.time_s), 3, 1))], -1)
     in_t = np.einsum("kji,knj->kni", camera_from_t, rays)
@@ -329,8 +331,8 @@ def _line_directions(view: View, state: np.ndarray) -> np.ndarray:
 
 
 def covariances(view: View, slopes: np.ndarray, state: np.ndarray, noise: Noise) -> np.ndarray:
-    """(K, ROWS, ROWS): of one image's rows, with pixel noise, noise that grows with the obstacle's image, and the
-    attitude's white noise, which moves all points of an image together. ``slopes``: of ``jacobian``."""
+    """(K, ROWS, ROWS): covariance of one image's rows from pixel noise, noise proportional to the obstacle's image, and
+    the attitude's white noise, which moves all points of an image together. ``slopes``: from ``jacobian``."""
     images = len(view.time_s)
     spread = noise.sigma_px**2 * view.spread
     result = np.zeros((images, ROWS, ROWS))
@@ -348,7 +350,7 @@ def covariances(view: View, slopes: np.ndarray, state: np.ndarray, noise: Noise)
 
 
 def prior_sigmas(noise: Noise, box: bool) -> np.ndarray:
-    """(12,): one sigma of each state before the first image."""
+    """(12,): sigma of each state before the first image."""
     sigma = np.full(len(STATES), WEAK_SIGMA)
     sigma[:3] = max(np.radians(noise.attitude_bias_deg), KNOWN_SIGMA)
     sigma[DH] = max(noise.height_m, KNOWN_SIGMA)
@@ -359,18 +361,18 @@ def prior_sigmas(noise: Noise, box: bool) -> np.ndarray:
 
 
 def row_mask(use: np.ndarray) -> np.ndarray:
-    """(K, ROWS) of features that are used (K, 6)."""
+    """(K, ROWS): rows of the used features (K, 6)."""
     return use[:, ROW_FEATURE]
 
 
 def masked(matrix: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Covariances (K, ROWS, ROWS) with the rows that are not used replaced by unit rows."""
+    """Covariances (K, ROWS, ROWS) with unused rows replaced by unit rows."""
     both = rows[:, :, None] & rows[:, None, :]
     return np.where(both, matrix, np.eye(ROWS))
 
 
 def whitened(matrix: np.ndarray, rows: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Rows (K, ROWS) or (K, ROWS, n) times the inverse Cholesky factor of the covariances, flattened; 0 if not used."""
+    """Rows (K, ROWS) or (K, ROWS, n) times the inverse Cholesky factor of the covariances, flattened; 0 if unused."""
     columns = values[..., None] if values.ndim == 2 else values
     columns = np.where(rows[..., None], columns, 0.0)
     white = np.linalg.solve(np.linalg.cholesky(masked(matrix, rows)), columns)
@@ -378,7 +380,7 @@ def whitened(matrix: np.ndarray, rows: np.ndarray, values: np.ndarray) -> np.nda
 
 
 def logged_flights(folder: Path, kind: str | None = None) -> list[Flight]:
-    """``from_log``, with what the log's ``top`` is found out: whatever agrees better with the truth."""
+    """``from_log``, after deciding the meaning of the log's ``top``: the one that agrees better with the truth."""
     result = []
     for flight in from_log(folder, kind):
         errors = {}

@@ -1,8 +1,8 @@
-"""Maximum likelihood fit of all images of a flight at once, in float64: the reference optimum that no recursive
-estimator of fixed memory can be expected to beat.
+"""Maximum likelihood fit of all images of a flight at once, in float64: a reference optimum for recursive estimators
+of fixed memory.
 
-The same model and noise as the bound's, so it estimates the constant errors of attitude, height and velocity beside the
-obstacle. A point that does not agree with the other points of its image, or with the fit, is left out.
+It uses the model and noise of the bound, so it estimates the constant errors of attitude, height and velocity together
+with the obstacle. It leaves out points that disagree with the other points of their image or with the fit.
 
     python -m goe_tools offline DIR
 """
@@ -18,7 +18,7 @@ import numpy as np
 from ..flights.flight import Flight
 from ..flights.noise import Noise
 from ..flights.rotations import fold
-from .bound import add_arguments as add_arguments  # of both commands
+from .bound import add_arguments as add_arguments  # shared by both commands
 from .bound import inverse, noise_of, print_flights, print_row, printable, shown
 from .model import (
     DH,
@@ -46,16 +46,16 @@ from .model import (
 )
 
 OUTLIER_SIGMA = 4.5
-ROUNDS = 2  # of finding outliers and fitting
+ROUNDS = 2  # rounds of outlier detection and fit
 OUTLIERS_PER_IMAGE = 3
 MAX_STEPS = 40
-WEAK_SIZE = 5.0  # of the obstacle's size, one sigma about the start: lest the length runs off where one face is seen
-LOST_COST = 1e6  # of a step that leaves the box without depth
+WEAK_SIZE = 5.0  # prior sigma of the size about the start: bounds the length if one face is visible
+LOST_COST = 1e6  # cost of a step to a box without depth
 
 
 @dataclass
 class Fit:
-    """x0, z0, orientation (rad), width, length, height with one sigma and covariance, and what they rest on."""
+    """x0, z0, orientation (rad), width, length, height with sigmas and covariance, the state and the used features."""
 
     values: np.ndarray
     sigma: np.ndarray
@@ -74,8 +74,8 @@ def available() -> bool:
 
 
 def without_outliers(view: View, corners: Corners, state: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    """(K, 6): usable features that agree with the others of their image. Each row is judged given all other rows, so
-    that an attitude error, which moves all points, is no one's fault."""
+    """(K, 6): usable features that agree with the others of their image. Each row is compared with its prediction from
+    all other rows; an attitude error, which moves all points, then rejects none."""
     use = corners.usable.copy()
     measured = residuals(view, corners, state)
     for _ in range(OUTLIERS_PER_IMAGE):
@@ -92,8 +92,8 @@ def without_outliers(view: View, corners: Corners, state: np.ndarray, matrix: np
 
 
 def _solve(view: View, corners: Corners, start: np.ndarray, noise: Noise, use: np.ndarray) -> np.ndarray:
-    """The fit from a start with fixed correspondences, weights and features."""
-    from scipy.optimize import least_squares  # here: nothing else in the package needs scipy
+    """The fit from a start, with fixed correspondences, weights and features."""
+    from scipy.optimize import least_squares  # imported here: nothing else in the package needs scipy
 
     rows, sigma = row_mask(use), prior_sigmas(noise, view.box)
     slopes = jacobian(view, corners, start)
@@ -120,8 +120,8 @@ def _solve(view: View, corners: Corners, start: np.ndarray, noise: Noise, use: n
 
 
 def fit(flight: Flight, noise: Noise | None = None, start: np.ndarray | None = None) -> Fit:
-    """Fits a flight; ``start``: states of ``model``, by default the truth, so that the optimum at the truth is found
-    and no other one."""
+    """Fits a flight. ``start``: states of ``model``, by default the truth, so that the fit finds the optimum next to
+    the truth and no other."""
     noise = flight.noise if noise is None else noise
     view = view_of(flight)
     state = true_state(flight) if start is None else np.array(start, float)
@@ -137,10 +137,10 @@ def fit(flight: Flight, noise: Noise | None = None, start: np.ndarray | None = N
             judged = matrix + blurred @ np.swapaxes(blurred, -1, -2)
         use = without_outliers(view, corners, state, judged)
         state = _solve(view, corners, state, noise, use)
-    return _told(view, state, noise, use)
+    return _fit_result(view, state, noise, use)
 
 
-def _told(view: View, state: np.ndarray, noise: Noise, use: np.ndarray) -> Fit:
+def _fit_result(view: View, state: np.ndarray, noise: Noise, use: np.ndarray) -> Fit:
     corners = correspond(view, state)
     use = use & corners.usable
     rows = row_mask(use)

@@ -1,32 +1,33 @@
-"""How the sides of an upright bounding box depend on an upright obstacle: float64, independent of the library.
+"""Model of the sides of an upright bounding box around an upright obstacle, in float64, independent of the library.
 
-The obstacle is a prism over an ellipse, whose half widths are w across the axes' Z and w e^(s + c) along it. A side of
+The obstacle is a prism over an ellipse with the half widths w across the axes' Z and w e^(s + c) along Z. A side of
 the box is an image line; the plane through it and the camera touches the prism at its foot or its roof. With the
 plane's outward normal n, in level axes (X, Y down, Z) at the camera, u = (nX, nZ)/|(nX, nZ)|, and the middle M of the
 footprint, the touching point is
 
-    (X, Z) = M + h(u) u + (what lies along the line)        h(u) = sqrt((w uX)^2 + (w e^(s + c) uZ)^2)
+    (X, Z) = M + h(u) u + (a part along the line)           h(u) = sqrt((w uX)^2 + (w e^(s + c) uZ)^2)
     Y      = ground if nY > 0, otherwise roof
 
-h is the support function of the ellipse; to the first order the point moves with it along u. All lengths are in units
-of Z0, the range of the middle at the filter's start, whose camera is the origin:
+h is the support function of the ellipse; to first order the point moves with it along u. All lengths are in units
+of Z0, the range of the middle at the filter's start; the camera at that time is the origin:
 
     M = (a - dX q, 1 - dZ q)        ground = height q + g        roof = height q - e
 
-dX, dZ: camera since then, m; height: of the camera by the first image's and the changes of down since, m.
+dX, dZ: motion of the camera since then, m; height: of the camera, from the first image's height and the changes of
+down, m.
 
 States (``STATES``):
 
-    bx by bz  attitude: true = estimated, turned by the rotation vector b in body axes, rad; to the first order
+    bx by bz  attitude: true = estimated, turned by the rotation vector b in body axes, rad; to first order
     g         true minus given height of the camera, over Z0
     a q       X0/Z0 and 1/Z0 (1/m) of the middle
     s         log of the depth along Z over the width
     w         half width over Z0
-    e         top above the altimeter's own zero, over Z0
-    c         as s, but not estimated
+    e         top above the altimeter's zero, over Z0
+    c         like s, but not estimated
 
-The position of the camera (``PX``, ``PY``, ``PZ``: what it lies off by, m, the same axes) is no state; derivatives are
-given by it, too. All derivatives come from complex steps, so that an error in the library's formulas shows."""
+The position error of the camera (``PX``, ``PY``, ``PZ``: m, same axes) is not a state, but derivatives by it are
+given, too. All derivatives use complex steps, to detect errors in the library's formulas."""
 
 from __future__ import annotations
 
@@ -44,13 +45,13 @@ STATES = ("bx", "by", "bz", "g", "a", "q", "s", "w", "e", "c")
 BX, BY, BZ, G, A, Q, S, W, E, C, PX, PY, PZ = range(13)
 UNKNOWNS = 13  # states and position
 BOX_LEFT, BOX_TOP, BOX_RIGHT, BOX_BOTTOM = range(4)
-AXIS = np.array([0, 1, 0, 1])  # of a side's coordinate in the image
+AXIS = np.array([0, 1, 0, 1])  # of each side's image coordinate
 OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 AHEAD_MIN = 0.02  # of a touching point, units of Z0
 LEVEL_MIN = 1e-6  # horizontal part of a normal
 EXACT_ROUNDS = 60
 EXACT = 1e-15  # focal lengths
-SECTION_OF = {  # of the settings; the others are the navigation's
+SECTION_OF = {  # section of each setting; default: navigation
     **dict.fromkeys(("box_px", "box_share", "correlation_s", "cut_noise"), "detector"),
     **dict.fromkeys(("border_share", "cut_share"), "camera"),
     **dict.fromkeys(("typical_size_m", "gate_sigma", "huber_sigma"), "refined"),
@@ -58,34 +59,34 @@ SECTION_OF = {  # of the settings; the others are the navigation's
 
 
 @dataclass(frozen=True)
-class Told:
-    """What a user tells the library of boxes and of the navigation; by default the library's own defaults."""
+class ErrorModel:
+    """The configured errors of boxes and navigation; the defaults are the library's."""
 
-    box_px: float = 1.0  # of a side, new in each image
-    box_share: float = 0.07  # of a side, of the box's width or height, stays alike ...
-    correlation_s: float = 1.2  # ... for so long
-    cut_noise: float = 1.0  # of every side of a box that the border cuts, of the same
-    border_share: float = 0.012  # no side nearer to the border, of the image's width
-    cut_share: float = 0.04  # nearer to it left or right make the box a cut one
+    box_px: float = 1.0  # of a side, white
+    box_share: float = 0.07  # of a side, share of the box's width or height, correlated ...
+    correlation_s: float = 1.2  # ... over this time
+    cut_noise: float = 1.0  # of every side of a box cut by the border, same share
+    border_share: float = 0.012  # sides nearer to the border are not used, share of the image's width
+    cut_share: float = 0.04  # a left or right side nearer to it marks the box as cut
     attitude_bias_deg: float = 0.5
     attitude_white_deg: float = 0.1
     attitude_drift_deg: float = 0.0  # per sqrt(s)
     height_bias_m: float = 0.5
-    ground_m: float = 2.0  # by which the obstacle's ground may lie off
+    ground_m: float = 2.0  # of the obstacle's terrain height
     velocity_bias_m_s: float = 0.05
     position_walk_m: float = 0.05  # per sqrt(s)
     position_white_m: float = 0.0
     typical_size_m: float = 6.0
     gate_sigma: float = 5.0
     huber_sigma: float = 2.5
-    disc: bool = False  # as deep as it is wide
+    disc: bool = False  # depth equals width
 
     @property
     def height_sd_m(self) -> float:
         return float(np.hypot(self.height_bias_m, self.ground_m))
 
     def settings(self) -> dict[str, float]:
-        """The library's settings by name."""
+        """The library's settings, by name."""
         result = {f"{SECTION_OF.get(f.name, 'navigation')}.{f.name}": getattr(self, f.name) for f in fields(self)}
         del result["navigation.disc"]
         return {**result, "model": float(MODEL_DISC if self.disc else MODEL_AUTO)}
@@ -96,7 +97,7 @@ class Told:
 
 @dataclass(frozen=True)
 class Sight:
-    """An image, in level axes: T's, or a filter's own. Sides in the order left, top, right, bottom."""
+    """An image, in level axes: those of T or of a filter. Sides in the order left, top, right, bottom."""
 
     time_s: float
     camera: Camera
@@ -105,11 +106,11 @@ class Sight:
     axes_from_camera: np.ndarray  # (3, 3) estimated
     axes_from_body: np.ndarray
     moved_m: np.ndarray  # (3,) camera since the axes' origin
-    height_m: float  # of the camera above ground, by the changes of down
+    height_m: float  # of the camera above ground, from the changes of down
     given_height_m: float
 
     def turned(self, turn: np.ndarray, origin_m: np.ndarray) -> Sight:
-        """The image in axes of another direction and origin."""
+        """The image in axes with another direction and origin."""
         return Sight(
             self.time_s, self.camera, self.side, self.cut, turn @ self.axes_from_camera, turn @ self.axes_from_body,
             turn @ (self.moved_m - origin_m), self.height_m, self.given_height_m,
@@ -121,8 +122,10 @@ def focal_px(camera: Camera) -> np.ndarray:
     return np.array([camera.fx, camera.fy, camera.fx, camera.fy])
 
 
-def measured_sides(box_px: np.ndarray, image_size_px: tuple[float, float], told: Told) -> tuple[np.ndarray, np.ndarray]:
-    """Sides (K, 4), NaN where they are out of order or at the border, and whether the border cuts the box (K,)."""
+def measured_sides(
+    box_px: np.ndarray, image_size_px: tuple[float, float], errors: ErrorModel
+) -> tuple[np.ndarray, np.ndarray]:
+    """Sides (K, 4), NaN if out of order or at the border, and whether the border cuts the box (K,)."""
     sides = np.array(box_px, float)
     with np.errstate(invalid="ignore"):
         swapped = (sides[:, BOX_LEFT] >= sides[:, BOX_RIGHT]) | (sides[:, BOX_TOP] >= sides[:, BOX_BOTTOM])
@@ -133,12 +136,12 @@ def measured_sides(box_px: np.ndarray, image_size_px: tuple[float, float], told:
             distance = share * image_size_px[0]
             return (size > 0) & ((sides < distance) | (sides > size - 1 - distance))
 
-        cut = near(told.cut_share)[:, [BOX_LEFT, BOX_RIGHT]].any(1)
-        sides[near(told.border_share)] = np.nan
+        cut = near(errors.cut_share)[:, [BOX_LEFT, BOX_RIGHT]].any(1)
+        sides[near(errors.border_share)] = np.nan
     return sides, cut | ~np.isfinite(sides[:, [BOX_LEFT, BOX_RIGHT]]).all(1)
 
 
-def sights(flight: Flight, told: Told) -> list[Sight]:
+def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
     """The images of a flight with boxes, in T: axes at the camera of the first image."""
     if flight.box_px is None:
         raise ValueError(f"{flight.name}: has no boxes")
@@ -148,7 +151,7 @@ def sights(flight: Flight, told: Told) -> list[Sight]:
     moved = (eye - eye[0]) @ t_from_ned.T
     t_from_body = t_from_ned @ ned_from_body
     t_from_camera = t_from_body @ mounting(camera)
-    px, cut = measured_sides(flight.box_px, flight.image_size_px, told)
+    px, cut = measured_sides(flight.box_px, flight.image_size_px, errors)
     side = (px - np.array([camera.cx, camera.cy])[AXIS]) / focal_px(camera)
     return [
         Sight(
@@ -164,7 +167,7 @@ def sights(flight: Flight, told: Told) -> list[Sight]:
 
 @dataclass(frozen=True)
 class Touch:
-    """Where a plane touches. ``along``: what of the touching point does not move with the support function."""
+    """The point where a plane touches. ``along``: the part of it that does not move with the support function."""
 
     u: np.ndarray  # (2,) outward, (X, Z)
     foot: bool
@@ -172,21 +175,21 @@ class Touch:
 
 
 def support(unknowns: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """h(u) of the footprint; ``unknowns``: (..., 13), complex ones too."""
+    """h(u) of the footprint; ``unknowns``: (..., 13), also complex."""
     half = unknowns[..., W]
     deep = half * np.exp(unknowns[..., S] + unknowns[..., C])
     return np.sqrt((half * u[0]) ** 2 + (deep * u[1]) ** 2)
 
 
 def _rim_point(state: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """(2,) of the ellipse, from its middle, farthest out along u: the gradient of the support function."""
+    """(2,): the ellipse's farthest point along u, from its middle: the gradient of the support function."""
     half = state[W]
     deep = half * np.exp(state[S] + state[C])
     return np.array([half**2 * u[0], deep**2 * u[1]]) / np.hypot(half * u[0], deep * u[1])
 
 
-def seen_from(sight: Sight, unknowns: np.ndarray, touch: Touch) -> np.ndarray:
-    """(..., 3) of the touching point in the camera's axes as the estimated attitude has it; complex unknowns too."""
+def in_camera(sight: Sight, unknowns: np.ndarray, touch: Touch) -> np.ndarray:
+    """(..., 3): the touching point in the camera's axes at the estimated attitude; also for complex unknowns."""
     a, q, g, e = (unknowns[..., i] for i in (A, Q, G, E))
     dx, dy, dz = (sight.moved_m[i] + unknowns[..., PX + i] for i in range(3))
     reach = support(unknowns, touch.u)
@@ -199,7 +202,7 @@ def seen_from(sight: Sight, unknowns: np.ndarray, touch: Touch) -> np.ndarray:
 
 
 def _touch(sight: Sight, state: np.ndarray, normal: np.ndarray, foot: bool | None) -> Touch:
-    """By the plane with that outward normal in the estimated camera's axes. ``foot``: None lets the plane decide."""
+    """Touching point of the plane with this outward normal, in the estimated camera's axes. ``foot`` None: either."""
     n = sight.axes_from_camera @ normal
     n = n - np.cross(sight.axes_from_body @ state[:3], n)
     level = np.hypot(n[0], n[2])
@@ -212,33 +215,34 @@ def has_lens(camera: Camera) -> bool:
 
 
 def _normal(side: int, at: float) -> np.ndarray:
-    """Of the plane through the upright or level line at a coordinate, without a lens."""
+    """Normal of the plane through the vertical or level line at a coordinate, without a lens."""
     normal = np.zeros(3)
     normal[AXIS[side]], normal[2] = 1.0, -at
     return OUTWARD[side] * normal
 
 
 def _bent_touch(sight: Sight, state: np.ndarray, side: int, at: float, foot: bool) -> tuple[Touch, float]:
-    """With a lens: by the line as it lies where the straight one touches; and how far outward the point appears."""
+    """With a lens: uses the direction of the line at the straight line's touching point. Also returns the outward
+    offset."""
     touch = _touch(sight, state, _normal(side, at), foot)
-    seen = seen_from(sight, state, touch)
-    point = seen[:2] / seen[2]
+    point_m = in_camera(sight, state, touch)
+    point = point_m[:2] / point_m[2]
     slope = lens_slope(sight.camera, point)[AXIS[side]]
     touch = _touch(sight, state, OUTWARD[side] * np.array([*slope, -slope @ point]), foot)
     return touch, OUTWARD[side] * float(coordinate(sight, state, side, touch))
 
 
 def touching(sight: Sight, state: np.ndarray, side: int, at: float) -> Touch:
-    """Where the side at the raw coordinate ``at`` touches the obstacle of the state (13,)."""
+    """The point where the side at the raw coordinate ``at`` touches the obstacle of the state (13,)."""
     if not has_lens(sight.camera):
         return _touch(sight, state, _normal(side, at), None)
     return max((_bent_touch(sight, state, side, at, foot) for foot in (True, False)), key=lambda pair: pair[1])[0]
 
 
 def coordinate(sight: Sight, unknowns: np.ndarray, side: int, touch: Touch) -> np.ndarray:
-    """Raw coordinate (...) of the touching point across the side, focal lengths; complex unknowns too."""
-    seen = seen_from(sight, unknowns, touch)
-    return distorted(sight.camera, seen[..., :2] / seen[..., 2:])[..., AXIS[side]]
+    """Raw coordinate (...) of the touching point across the side, focal lengths; also for complex unknowns."""
+    point_m = in_camera(sight, unknowns, touch)
+    return distorted(sight.camera, point_m[..., :2] / point_m[..., 2:])[..., AXIS[side]]
 
 
 @dataclass(frozen=True)
@@ -249,10 +253,10 @@ class Row:
 
 
 def row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
-    """What the measured side tells of the state (10,); None if it touches behind the camera."""
+    """Prediction and derivative of a measured side at the state (10,); None if it touches behind the camera."""
     unknowns = np.concatenate([state, np.zeros(UNKNOWNS - len(state))])
     touch = touching(sight, unknowns, side, at)
-    if not seen_from(sight, unknowns, touch)[2] >= AHEAD_MIN:
+    if not in_camera(sight, unknowns, touch)[2] >= AHEAD_MIN:
         return None
     steps = unknowns + 1j * COMPLEX_STEP * np.eye(UNKNOWNS)
     slope = coordinate(sight, steps, side, touch).imag / COMPLEX_STEP
@@ -260,7 +264,7 @@ def row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
 
 
 def exact_side(sight: Sight, unknowns: np.ndarray, side: int, guess: float) -> float:
-    """Where the side of the box around the obstacle lies, raw coordinate: the line that touches at itself."""
+    """Raw coordinate of the side of the box around the obstacle: a line through its own touching point."""
     at = guess
     for _ in range(EXACT_ROUNDS):
         before, at = at, float(coordinate(sight, unknowns, side, touching(sight, unknowns, side, at)))
@@ -270,7 +274,7 @@ def exact_side(sight: Sight, unknowns: np.ndarray, side: int, guess: float) -> f
 
 
 def box_size(sight: Sight, state: np.ndarray, axis: int) -> float:
-    """Width (axis 0) or height (1) of the box, focal lengths: as measured, otherwise as predicted."""
+    """Width (axis 0) or height (1) of the box, focal lengths: measured if possible, otherwise predicted."""
     measured = sight.side[axis + 2] - sight.side[axis]
     if np.isfinite(measured):
         return float(measured)

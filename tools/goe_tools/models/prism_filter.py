@@ -1,27 +1,27 @@
-"""A recursive estimator of a prism by upright bounding boxes, image by image: covariance form, float64.
+"""A recursive estimator of a prism from upright bounding boxes, image by image: covariance form, float64.
 
-It follows the library's definitions, and shares no code with it; the library keeps a triangular root of the
-information, and has no covariance. One linearised update per image, at the predicted state x:
+It follows the library's definitions, but shares no code with it; the library uses a triangular square root of the
+information instead of a covariance. One linearized update per image, at the predicted state x:
 
     r = measured - predicted(x)          J = d predicted / d state              (``prism.row_of``)
 
-A side's error has a white part and one that stays alike, a first-order process of the sigma s = box_share * size of the
-box, which fades by f = exp(-t/tau) from image to image. Given the state, the residuals so far tell it: m - F (x' - x)
-if the state becomes x', of the variance V beyond that.
+A side's error has a white part and a correlated part: a first-order Gauss-Markov process with the sigma s = box_share *
+size of the box, which decays by f = exp(-t/tau) from image to image. Given the state, the past residuals determine it:
+m - F (x' - x) if the state becomes x', with the remaining variance V.
 
-    fading      m <- f m    F <- f F    V <- min(f^2 V + (1 - f^2) s^2, s^2)    in the first image V = s^2
-    recalled    r <- r - m  J <- J - F  N = V + white
-    learnt      k = V/(N + variance that the image's rows share)    m <- m + k r    F <- F + k J    V <- V - k V
+    predict     m <- f m    F <- f F    V <- min(f^2 V + (1 - f^2) s^2, s^2)    in the first image V = s^2
+    whiten      r <- r - m  J <- J - F  N = V + white
+    update      k = V/(N + common variance of the image's rows)    m <- m + k r    F <- F + k J    V <- V - k V
 
-The state c has a prior and is never estimated (Schmidt): P is the covariance of the others if c were 0, and the
-estimate moves by z c if it is not. K is the gain by P alone.
+The state c has a prior and is never estimated (a consider parameter, Schmidt): P is the covariance of the others for
+c = 0, and z c is the effect of another c on the estimate. The gain K uses P alone.
 
     P <- (I - K J) P (I - K J)' + K N K'        z <- z - K (J z + J_c)          all others' covariance: P + z z' var(c)
 
-A track that scatters more than it was told, or whose residuals are alike from image to image, widens its sigmas: the
-variance is multiplied by ``Scatter.factor``.
+If the residuals of a track are larger than configured, or correlated from image to image, the filter widens its sigmas:
+it multiplies the variance by ``Scatter.factor``.
 
-Left out is what the library does once sides do not fit image after image: it frees the top, or starts anew."""
+Not modeled: the library's reaction to sides that repeatedly do not fit, which is to free the top or to restart."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ from .prism import (
     A,
     C,
     E,
+    ErrorModel,
     G,
     Q,
     S,
     Sight,
-    Told,
     W,
     box_size,
     focal_px,
@@ -54,48 +54,48 @@ from .prism import (
 
 COUNT = len(STATES)
 SCATTER_SHARE = 0.01  # white part of a side's error, of the box's size
-EARLY_SHARE = 0.08  # of tau: an image sooner after the last one is not used
-GAP_MAX_S = 1000.0  # a longer one counts as this
+EARLY_SHARE = 0.08  # of tau: images at a shorter distance from the last one are not used
+GAP_MAX_S = 1000.0  # longer gaps count as this
 DEPTH_LIMIT = 2.0  # of |s|
 AHEAD_MIN = 0.02  # of the middle, units of Z0
 RAY_AHEAD_MIN = 0.02
-GROUND_SIGMAS = 3.0  # by which the foot must lie below the horizon to tell the range
-FOOT_SHARE = 0.6  # of box_share of the width, in that sigma
+GROUND_SIGMAS = 3.0  # least distance of the foot below the horizon for a range from flat ground
+FOOT_SHARE = 0.6  # of box_share of the width, part of that sigma
 NEAR_SIDE = 0.5  # of the width: the foot is nearer than the middle
 RANGE_MIN_M, RANGE_MAX_M = 1.0, 1e6
-NO_ALTIMETER_M = 50.0  # sigma of the height from which on the first box tells it
+NO_ALTIMETER_M = 50.0  # from this sigma of the height on the first box determines it
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
 PATH_MIN_M = 0.1
 DEPTH_SD = 0.3  # of s
-UNSEEN_SD = 3.0  # of c
-DISC_SD = 1e-3  # of both where a disc is asked for
-# Of the width, by which it changes while the line of sight turns by a radian, up to an angle; and of the depth beyond
-# the width, where the point of the roof may lie that the top is over.
+CONSIDER_SD = 3.0  # of c
+DISC_SD = 1e-3  # of both if the model is a disc
+# Change of the width per radian that the line of sight turns, up to an angle; and depth beyond the width, in which
+# the roof point of the top may be.
 TURNED_SHARE, TURNED_MAX, ROOF_SHARE = (float(np.float32(share)) for share in (1.3, 0.15, 0.15))
 
-SCATTER_KEPT, ALIKE_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as the library holds them
+SCATTER_KEPT, CORRELATION_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as in the library
 SCATTER_CLIP, SCATTER_SEED = 10.0, 10.0
 MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
-CHANCE = float(np.float32(0.07))  # one sigma of both means: only what is beyond widens
+CHANCE = float(np.float32(0.07))  # one sigma of both means: only an excess widens the sigmas
 
 
-def depth_sds(told: Told) -> tuple[float, float]:
-    """One sigma of s and of c before the first image."""
-    return (DISC_SD, DISC_SD) if told.disc else (DEPTH_SD, UNSEEN_SD)
+def depth_sds(errors: ErrorModel) -> tuple[float, float]:
+    """Sigmas of s and of c before the first image."""
+    return (DISC_SD, DISC_SD) if errors.disc else (DEPTH_SD, CONSIDER_SD)
 
 
 @dataclass
 class Memory:
-    """Of a side's error that stays alike, given the state: value - by (x - state), focal lengths."""
+    """A side's correlated error, given the state: value - by (x - state), focal lengths."""
 
     value: float
     by: np.ndarray  # (10,)
     variance: float
-    learnt: bool = False  # the side was measured
+    measured: bool = False  # in an earlier image
 
-    def fade(self, share: float, variance: float) -> None:
-        if not self.learnt:
+    def predict(self, share: float, variance: float) -> None:
+        if not self.measured:
             self.variance = variance
             return
         self.value *= share
@@ -109,13 +109,14 @@ def _beyond_chance(excess: float) -> float:
 
 @dataclass
 class Scatter:
-    """Of normalised residuals: how large they are against what was told, and how alike to those of the image before."""
+    """Size of the normalized residuals compared with the configured noise, and their correlation with the image
+    before."""
 
     before: np.ndarray  # (4,) by side, sigmas; 0: none
     products: float = 0.0
     squares: float = 0.0
-    recent: float = 0.0  # mean of nis over rows, of the latest images
-    whole: float = 0.0  # of what it is above 1, over the whole track
+    recent: float = 0.0  # mean of nis over rows, over the latest images
+    whole: float = 0.0  # mean of its excess over 1, over the whole track
     images: int = 0
 
     def take(self, side: np.ndarray, residual: np.ndarray) -> None:
@@ -133,15 +134,16 @@ class Scatter:
         self.whole += (min(ratio - 1, RATIO_MOST) - self.whole) / heard
 
     def factor(self) -> float:
-        alike = min(_beyond_chance(self.products / (self.squares + SCATTER_SEED)), ALIKE_MOST)
+        correlation = min(_beyond_chance(self.products / (self.squares + SCATTER_SEED)), CORRELATION_MOST)
         excess = max(self.recent - 1, self.whole)
         scale = 1 + (_beyond_chance(excess) if excess > 0 else excess)
-        return max(scale * (1 + alike) / (1 - alike), 1.0)
+        return max(scale * (1 + correlation) / (1 - correlation), 1.0)
 
 
 @dataclass
 class Rows:
-    """Of one image; n rows. Own variances, and what they share: the covariance of the image's attitude and position."""
+    """The n rows of an image. Variances per row; ``about`` and ``shift`` give the common errors of attitude and
+    position."""
 
     side: np.ndarray  # (n,)
     residual: np.ndarray
@@ -157,18 +159,18 @@ class PrismTrack:
 
     values: np.ndarray
     sigma: np.ndarray
-    fresh: np.ndarray  # (K,) the image told something
-    doubted: np.ndarray  # (K,) rows that counted less
-    refused: np.ndarray  # (K,) rows that did not count
+    fresh: np.ndarray  # (K,) the image was used
+    doubted: np.ndarray  # (K,) rows with a reduced weight
+    refused: np.ndarray  # (K,) rejected rows
 
 
 class PrismFilter:
-    """Fed with the images of one obstacle in T."""
+    """Takes the images of one obstacle in T."""
 
-    def __init__(self, told: Told) -> None:
-        self.told = told
+    def __init__(self, errors: ErrorModel) -> None:
+        self.errors = errors
         self.state: np.ndarray | None = None  # (10,)
-        self.doubted = self.refused = 0  # of the latest image
+        self.doubted = self.refused = 0  # in the latest image
         self.scatter = Scatter(np.zeros(4))
         self.first_s: float | None = None  # the track's first image
 
@@ -182,18 +184,18 @@ class PrismFilter:
         return ray[:2] / ray[2] if ray[2] > RAY_AHEAD_MIN else None
 
     def _first_range_m(self, sight: Sight, size: float, foot: np.ndarray | None) -> float:
-        """By flat ground, if the foot lies clearly below the horizon, otherwise by the typical size."""
-        told = self.told
-        attitude = np.radians([told.attitude_bias_deg, told.attitude_white_deg])
-        own = [told.box_px / sight.camera.fy, FOOT_SHARE * told.box_share * size]
+        """From flat ground, if the foot is clearly below the horizon, otherwise from the prior width."""
+        errors = self.errors
+        attitude = np.radians([errors.attitude_bias_deg, errors.attitude_white_deg])
+        own = [errors.box_px / sight.camera.fy, FOOT_SHARE * errors.box_share * size]
         clear = GROUND_SIGMAS * float(np.linalg.norm([*attitude, *own]))
-        high = sight.height_m > GROUND_SIGMAS * told.height_sd_m
+        high = sight.height_m > GROUND_SIGMAS * errors.height_sd_m
         if foot is not None and foot[1] > clear and high:
             return sight.height_m / foot[1] * (1 + NEAR_SIDE * size)
-        return told.typical_size_m / size
+        return errors.typical_size_m / size
 
     def start(self, in_t: Sight) -> bool:
-        """By the first image that measures left and right: Z then points at the middle between them."""
+        """Starts with the first image that measures left and right; Z then points at the middle between them."""
         left, top, right, bottom = in_t.side
         if not np.isfinite(left + right):
             return False
@@ -214,7 +216,7 @@ class PrismFilter:
         state = np.zeros(COUNT)
         state[[Q, W]] = 1 / range_m, 0.5 * size
         state[E] = sight.height_m / range_m - (0.0 if head is None else head[1])
-        if self.told.height_sd_m > NO_ALTIMETER_M and foot is not None:
+        if self.errors.height_sd_m > NO_ALTIMETER_M and foot is not None:
             state[G] = foot[1] - sight.height_m / range_m
         self.state = state
         sd = self._prior_sd(size)
@@ -226,29 +228,29 @@ class PrismFilter:
         return True
 
     def _prior_sd(self, width: float) -> np.ndarray:
-        """(10,) one sigma of the first guess."""
-        told, q = self.told, self.state[Q]
+        """(10,) sigmas of the first guess."""
+        errors, q = self.errors, self.state[Q]
         sd = np.empty(COUNT)
-        sd[:3] = np.radians(told.attitude_bias_deg)
-        sd[2] = np.hypot(sd[2], HEADING_ARM * told.velocity_bias_m_s)
-        sd[G] = max(told.height_sd_m * q, GROUND_MIN)
+        sd[:3] = np.radians(errors.attitude_bias_deg)
+        sd[2] = np.hypot(sd[2], HEADING_ARM * errors.velocity_bias_m_s)
+        sd[G] = max(errors.height_sd_m * q, GROUND_MIN)
         sd[[A, Q, W]] = 1.0, 2.0 * q, 2.5 * width
         sd[E] = 10 * max(abs(self.state[E]), width)
-        sd[[S, C]] = depth_sds(told)
+        sd[[S, C]] = depth_sds(errors)
         return sd
 
     # ------------------------------------------------------------------------------------------------------- an image
 
     def full_covariance(self) -> np.ndarray:
-        """(10, 10), c included."""
+        """(10, 10), including c."""
         by_c = np.append(self.by_c, 1.0)
         result = self.c_sd**2 * np.outer(by_c, by_c)
         result[:C, :C] += self.covariance
         return result
 
     def _pass_time(self, span_s: float) -> None:
-        """The position walks along X and Z in turn: a step along Z rescales the lengths in units of Z0."""
-        drift, walk = np.radians(self.told.attitude_drift_deg), self.told.position_walk_m * self.state[Q]
+        """The position walks along X and Z in turn: a step along Z rescales the lengths, which are in units of Z0."""
+        drift, walk = np.radians(self.errors.attitude_drift_deg), self.errors.position_walk_m * self.state[Q]
         noise = np.zeros(C)
         noise[BX : BX + 3] = drift**2
         self.gained[BX : BX + 3] += drift**2 * span_s
@@ -266,8 +268,8 @@ class PrismFilter:
         )
 
     def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
-        """Residuals and derivatives as measured, and the white variances with what the linearisation misses."""
-        told = self.told
+        """Residuals and derivatives as measured, and white variances that include the linearization error."""
+        errors = self.errors
         found = [row_of(sight, self.state, i, sight.side[i]) for i in range(4) if np.isfinite(sight.side[i])]
         rows = [row for row in found if row is not None]
         if not rows:
@@ -275,20 +277,20 @@ class PrismFilter:
         side = np.array([row.side for row in rows])
         slope = np.array([row.slope for row in rows])
         size = np.array([box_size(sight, self.state, row.side % 2) for row in rows])
-        own = (told.box_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
-        own += (told.cut_noise * size) ** 2 if sight.cut else 0.0
+        own = (errors.box_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
+        own += (errors.cut_noise * size) ** 2 if sight.cut else 0.0
         ahead = max(1 - sight.moved_m[2] * self.state[Q], AHEAD_MIN)
         own += (slope[:, Q] * sight.moved_m[2] * q_variance / ahead) ** 2
-        position_sd = told.position_white_m * np.sqrt(1 + q_variance / self.state[Q] ** 2)
+        position_sd = errors.position_white_m * np.sqrt(1 + q_variance / self.state[Q] ** 2)
         residual = np.array([sight.side[row.side] - row.predicted for row in rows])
         about = slope[:, :3] @ sight.axes_from_body.T
         return Rows(side, residual, slope[:, :COUNT], own, about, position_sd * slope[:, PX:])
 
-    def _recall(self, sight: Sight, span_s: float, rows: Rows | None) -> None:
-        told = self.told
-        share = np.exp(-span_s / told.correlation_s) if told.correlation_s > 0 else 0.0
+    def _whiten(self, sight: Sight, span_s: float, rows: Rows | None) -> None:
+        errors = self.errors
+        share = np.exp(-span_s / errors.correlation_s) if errors.correlation_s > 0 else 0.0
         for side, memory in enumerate(self.memory):
-            memory.fade(share, (told.box_share * box_size(sight, self.state, side % 2)) ** 2)
+            memory.predict(share, (errors.box_share * box_size(sight, self.state, side % 2)) ** 2)
         for i, side in enumerate(() if rows is None else rows.side):
             memory = self.memory[side]
             rows.residual[i] -= memory.value
@@ -296,16 +298,16 @@ class PrismFilter:
             rows.own[i] += memory.variance
 
     def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
-        """Normalised square of a weighted sum of residuals, without what a walk along Z adds."""
+        """Normalized square of a weighted sum of residuals, without the contribution of a walk along Z."""
         slope = weight @ rows.slope
-        white = np.radians(self.told.attitude_white_deg)
+        white = np.radians(self.errors.attitude_white_deg)
         variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
         variance += white**2 * np.sum((weight @ rows.about) ** 2) + np.sum((weight @ rows.shift) ** 2)
         return float((weight @ rows.residual) ** 2 / variance)
 
     def _judge(self, rows: Rows) -> np.ndarray:
-        """(n,) normalised squares: of the middle residual of each image axis alone, of the others by their distance
-        from it, as the attitude moves both; alone, too, if the middle one is off itself."""
+        """(n,) normalized squares: of the middle residual of each image axis alone, of the others by their difference
+        from it, since the attitude moves both; also alone if the middle one is itself an outlier."""
         result = np.zeros(len(rows.side))
         along_x = np.abs(rows.about[:, 1]) > np.abs(rows.about[:, 0])
         unit = np.eye(len(rows.side))
@@ -318,7 +320,7 @@ class PrismFilter:
             if len(order) % 2 == 0 and abs(rows.residual[other]) < abs(rows.residual[middle]):
                 middle = other
             result[middle] = self._innovation2(rows, unit[middle])
-            common = result[middle] <= self.told.gate_sigma**2
+            common = result[middle] <= self.errors.gate_sigma**2
             for row in group[group != middle]:
                 result[row] = self._innovation2(rows, unit[row] - unit[middle] if common else unit[row])
         return result
@@ -330,7 +332,7 @@ class PrismFilter:
             memory.value += gain * rows.residual[i]
             memory.by = memory.by + gain * rows.slope[i]
             memory.variance -= gain * memory.variance
-            memory.learnt = True
+            memory.measured = True
 
     def _nis(self, rows: Rows, shared: np.ndarray) -> float:
         slope = rows.slope[:, :C]
@@ -352,13 +354,13 @@ class PrismFilter:
             memory.value -= memory.by[:C] @ change
 
     def take(self, in_t: Sight) -> bool:
-        """An image; whether it told something."""
+        """Takes an image; returns whether it was used."""
         self.doubted = self.refused = 0
         self.first_s = in_t.time_s if self.first_s is None else self.first_s
         if self.state is None:
             if not self.start(in_t):
                 return False
-        elif in_t.time_s - self.time_s < EARLY_SHARE * self.told.correlation_s:
+        elif in_t.time_s - self.time_s < EARLY_SHARE * self.errors.correlation_s:
             return False
         self.flown_m += float(np.linalg.norm((in_t.moved_m - self.last_m)[[0, 2]]))
         self.last_m = in_t.moved_m
@@ -368,14 +370,14 @@ class PrismFilter:
         q_variance = self.full_covariance()[Q, Q]
         self._pass_time(span_s)
         rows = self._rows(sight, q_variance)
-        self._recall(sight, span_s, rows)
+        self._whiten(sight, span_s, rows)
         if rows is None:
             return False
         ratio = self._judge(rows)
-        kept = ratio <= self.told.gate_sigma**2
+        kept = ratio <= self.errors.gate_sigma**2
         self.refused = int((~kept).sum())
-        self.doubted = int((kept & (ratio > self.told.huber_sigma**2)).sum())
-        factor = np.minimum(self.told.huber_sigma / np.sqrt(np.maximum(ratio, 1e-30)), 1.0)
+        self.doubted = int((kept & (ratio > self.errors.huber_sigma**2)).sum())
+        factor = np.minimum(self.errors.huber_sigma / np.sqrt(np.maximum(ratio, 1e-30)), 1.0)
         names = ("side", "residual", "slope", "own", "about", "shift")
         rows.own = rows.own / factor
         poor = 2 * self.refused >= len(kept)
@@ -384,7 +386,7 @@ class PrismFilter:
         if not kept.any():
             self.scatter.take_fit(RATIO_MOST)
             return False
-        white = np.radians(self.told.attitude_white_deg)
+        white = np.radians(self.errors.attitude_white_deg)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
         self._learn(rows, shared)
         nis = self._nis(rows, shared)
@@ -396,30 +398,30 @@ class PrismFilter:
     # ----------------------------------------------------------------------------------------------------- quantities
 
     def report(self, in_t: Sight) -> tuple[np.ndarray, np.ndarray]:
-        """(4,) X0, Z0, W, H and their sigmas, m. What the velocity errors told do to the path flown is added: they
-        scale and turn it, and the obstacle with it."""
-        told = self.told
+        """(4,) X0, Z0, W, H and their sigmas, m. Includes the effect of the configured velocity errors on the flown
+        path: they scale and turn it, and the obstacle with it."""
+        errors = self.errors
         values = quantities(self.state, self.turn)
         slopes = quantity_slopes(self.state, self.turn)
         variance = np.einsum("ij,jk,ik->i", slopes, self.full_covariance(), slopes) * self.scatter.factor()
         span_s = in_t.time_s - self.start_s
         path_m = max(float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]])), PATH_MIN_M)
-        share = told.velocity_bias_m_s * span_s / path_m
+        share = errors.velocity_bias_m_s * span_s / path_m
         above_m = max(abs(values[3]), abs(values[3] - in_t.given_height_m))
         variance += (share * np.array([values[1], values[1], values[2], above_m])) ** 2
         before_s = self.start_s - self.first_s  # X0 and Z0 count from the track's first image
         way_m = float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]]))
-        straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # a path that leads back is not scaled
-        variance[:2] += (told.velocity_bias_m_s * span_s) ** 2 * (1 - straight**2)
-        variance[:2] += told.position_walk_m**2 * (span_s + before_s) + (told.velocity_bias_m_s * before_s) ** 2
+        straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # no scaling for a path that leads back
+        variance[:2] += (errors.velocity_bias_m_s * span_s) ** 2 * (1 - straight**2)
+        variance[:2] += errors.position_walk_m**2 * (span_s + before_s) + (errors.velocity_bias_m_s * before_s) ** 2
         variance += self._no_ellipse(values, in_t)
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)
 
     def _no_ellipse(self, values: np.ndarray, in_t: Sight) -> np.ndarray:
-        """(4,) variances, m^2: what an ellipse across the first line of sight misses of anything else than a disc."""
+        """(4,) variances, m^2: error of an ellipse across the first line of sight for obstacles other than a disc."""
         variance = np.zeros(4)
-        if not self.told.disc:
+        if not self.errors.disc:
             first, now = values[:2], values[:2] - (in_t.moved_m - self.origin_m)[[0, 2]]
             range_m = float(np.linalg.norm(now))
             turned = abs(first[0] * now[1] - first[1] * now[0]) / (float(np.linalg.norm(first)) * range_m)
@@ -430,13 +432,13 @@ class PrismFilter:
         return variance
 
 
-def follow(flight: Flight, told: Told) -> PrismTrack:
+def follow(flight: Flight, errors: ErrorModel) -> PrismTrack:
     """The filter over all images of a flight with boxes."""
-    prism = PrismFilter(told)
+    prism = PrismFilter(errors)
     images = len(flight.time_s)
     values, sigma = np.full((images, 6), np.nan), np.full((images, 6), np.nan)
     fresh, doubted, refused = np.zeros(images, bool), np.zeros(images, int), np.zeros(images, int)
-    for k, sight in enumerate(sights(flight, told)):
+    for k, sight in enumerate(sights(flight, errors)):
         fresh[k] = prism.take(sight)
         doubted[k], refused[k] = prism.doubted, prism.refused
         if prism.state is not None:

@@ -1,24 +1,24 @@
-"""Maximum likelihood fit of a prism to the upright bounding boxes of all images of a track at once, in float64: the
-reference optimum that no recursive estimator can be expected to beat.
+"""Maximum likelihood fit of a prism to the upright bounding boxes of all images of a track at once, in float64: a
+reference optimum for recursive estimators.
 
-The states of ``prism`` and a constant error of the velocity over ground are estimated, by Levenberg-Marquardt steps.
-With r the residuals of all measured sides, N their covariance and p the sigmas of what is known beforehand,
+Levenberg-Marquardt steps estimate the states of ``prism`` and a constant error of the velocity over ground.
+With r the residuals of all measured sides, N their covariance and p the prior sigmas,
 
     cost = r' N^-1 r + sum (state/p)^2
 
-Every side is linearised where it touches the prism of the latest state; N, which depends on the derivatives, is formed
-anew until the fit stays. It is that of ``prism_bound`` and, as they are in the data,
+Every side is linearized at its touching point for the latest state; N, which depends on the derivatives, is recomputed
+until the fit converges. It is the covariance of ``prism_bound`` plus the random walks in the data,
 
     + position_walk^2 min(t_i, t_j) J_p J_p' + attitude_drift^2 min(t_i, t_j) J_b J_b'      t: since the first image
 
-So each side's errors are whitened over its whole series. Beforehand known are the errors of attitude, height and
-velocity, and the depth s, as the library has it; next to nothing of the place and the sizes, of which the library has a
-weak first guess. The depth c is held at 0 and considered: with z = d state / d c of the fit,
+so each side's errors are whitened over its whole series. Errors of attitude, height and velocity and the depth s have
+the library's priors; place and sizes have almost none, while the library has a weak first guess. The depth c is a
+consider parameter fixed at 0: with z = d state / d c of the fit,
 
     covariance of the states = (J' N^-1 J + diag(p^-2))^-1 + z z' var(c)
 
-Left out is what the library reckons with for its own sake: a white share of each side, a yaw error that stands for that
-of the velocity, and that a side which does not fit counts less."""
+Three margins of the library are left out: a white share of each side, a yaw error that represents the velocity error,
+and the reduced weight of sides that do not fit."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ from .prism import (
     A,
     C,
     E,
+    ErrorModel,
     G,
     Q,
     Row,
     S,
     Sight,
-    Told,
     W,
     quantities,
     quantity_slopes,
@@ -53,47 +53,47 @@ from .prism import (
 from .prism_bound import COUNT, ORDER, VX, VZ, noise_of_rows, prior_sigmas
 from .prism_filter import PrismFilter, depth_sds
 
-ROUNDS = 4  # of forming the covariance anew and fitting, at most
-MAX_STEPS = 60  # of a round
-FARTHER, FARTHER_ROUNDS = 0.8, 20  # of a first guess that has been passed: factor on 1/Z0
-AHEAD_MIN = 1e-3  # of a touching point, units of Z0
+ROUNDS = 4  # most rounds of computing the covariance and fitting
+MAX_STEPS = 60  # in a round
+FARTHER, FARTHER_ROUNDS = 0.8, 20  # for a first guess that the camera passes: factor on 1/Z0
+AHEAD_MIN = 1e-3  # range of a touching point, units of Z0
 TOUCHING_ROUNDS = 30
-TOUCHING = 1e-10  # rad: the touching points stay
-NEAREST = np.array([0.0, -1.0])  # direction of the rim's point that is nearest to the camera
-SETTLED = 1e-4  # of a step, in sigmas of the states: it ends a round ...
-STAYED = 1e-2  # ... and of a round: it ends the fit
-DAMPING, DAMPING_MIN, DAMPING_MAX = 1e-3, 1e-12, 1e12  # of the steps, over the information's diagonal
-EASED, HARDENED = 0.1, 10.0  # its factors after a step that lowers the cost, and after one that does not
+TOUCHING = 1e-10  # rad: convergence of the touching points
+NEAREST = np.array([0.0, -1.0])  # direction of the rim point nearest to the camera
+SETTLED = 1e-4  # size of a step, in sigmas of the states, that ends a round ...
+STAYED = 1e-2  # ... and size of a round that ends the fit
+DAMPING, DAMPING_MIN, DAMPING_MAX = 1e-3, 1e-12, 1e12  # of the steps, relative to the information's diagonal
+EASED, HARDENED = 0.1, 10.0  # its factors after a step that lowers the cost, and after another one
 
 
 @dataclass
 class PrismFit:
-    """Six quantities with one sigma, NaN but for X0, Z0, W, H, and what they rest on."""
+    """Six quantities with sigmas, NaN except for X0, Z0, W, H, and details of the fit."""
 
     values: np.ndarray  # (6,)
     sigma: np.ndarray  # (6,)
     state: np.ndarray  # (12,) in the track's axes
-    cost: float  # of the state, by the last covariance
+    cost: float  # of the state, with the last covariance
     rows: int
     steps: int
 
 
 class Track:
-    """All measured sides of a flight as arrays of n rows, in axes that look at the obstacle from the first image that
+    """All measured sides of a flight as arrays of n rows, in axes that point at the obstacle from the first image that
     measures left and right. States: (12,) as in ``prism_bound``."""
 
-    def __init__(self, flight: Flight, told: Told) -> None:
-        self.told, prism = told, PrismFilter(told)
-        images = sights(flight, told)
-        if not any(prism.start(sight) for sight in images):  # ends at the first that starts
+    def __init__(self, flight: Flight, errors: ErrorModel) -> None:
+        self.errors, prism = errors, PrismFilter(errors)
+        images = sights(flight, errors)
+        if not any(prism.start(sight) for sight in images):  # stops at the first that starts
             raise ValueError(f"{flight.name}: no image measures left and right of a box ahead")
         self.turn, self.origin_m, self.start_s = prism.turn, prism.origin_m, prism.start_s
         self.first_guess = np.append(prism.state, [0.0, 0.0])
         self.camera = flight.camera
-        seen = [sight.turned(self.turn, self.origin_m) for sight in images if sight.time_s >= self.start_s]
-        self.sight: list[Sight] = [s for s in seen for _ in range(int(np.isfinite(s.side).sum()))]
-        self.side = np.concatenate([np.flatnonzero(np.isfinite(s.side)) for s in seen])
-        self.measured = np.concatenate([s.side[np.isfinite(s.side)] for s in seen])
+        used = [sight.turned(self.turn, self.origin_m) for sight in images if sight.time_s >= self.start_s]
+        self.sight: list[Sight] = [s for s in used for _ in range(int(np.isfinite(s.side).sum()))]
+        self.side = np.concatenate([np.flatnonzero(np.isfinite(s.side)) for s in used])
+        self.measured = np.concatenate([s.side[np.isfinite(s.side)] for s in used])
         self.since_s = np.array([s.time_s for s in self.sight]) - self.start_s
         self.moved_m = np.array([s.moved_m for s in self.sight])
         self.height_m = np.array([s.height_m for s in self.sight])
@@ -104,7 +104,7 @@ class Track:
         self.at_measured = np.where(np.arange(2) == self.axis[:, None], self.measured[:, None], 0.0)
 
     def start(self) -> np.ndarray:
-        """The first guess, farther away if it does not lie ahead of all images."""
+        """The first guess, moved farther away if it is not ahead of all images."""
         state = self.first_guess.copy()
         for _ in range(FARTHER_ROUNDS):
             if self.predicted(state) is not None:
@@ -112,17 +112,18 @@ class Track:
             state[Q] *= FARTHER
         return state
 
-    # ------------------------------------------------------------------------------------------------ what is measured
+    # --------------------------------------------------------------------------------------------------- measurements
 
     def unknowns(self, state: np.ndarray) -> np.ndarray:
-        """(n, 13) of ``prism``: the path told is too long by velocity times time."""
+        """(n, 13) of ``prism``: the reported path is too long by velocity times time."""
         result = np.zeros((len(self.side), UNKNOWNS))
         result[:, : len(STATES)] = state[: len(STATES)]
         result[:, [PX, PX + 2]] = -self.since_s[:, None] * state[[VX, VZ]]
         return result
 
-    def _seen(self, unknowns: np.ndarray, u: np.ndarray, foot: np.ndarray) -> np.ndarray:
-        """(..., n, 3): the rim's farthest point along u (..., n, 2), in the camera's axes; complex unknowns too."""
+    def _rim_point(self, unknowns: np.ndarray, u: np.ndarray, foot: np.ndarray) -> np.ndarray:
+        """(..., n, 3): the rim's farthest point along u (..., n, 2), in the camera's axes; also for complex
+        unknowns."""
         a, q, g, e, half = (unknowns[..., i] for i in (A, Q, G, E, W))
         deep = half * np.exp(unknowns[..., S] + unknowns[..., C])
         reach = np.sqrt((half * u[..., 0]) ** 2 + (deep * u[..., 1]) ** 2)
@@ -135,7 +136,8 @@ class Track:
         return np.einsum("...ni,nij->...nj", point + np.cross(turn, point), self.axes_from_camera)
 
     def _level_normal(self, unknowns: np.ndarray, point: np.ndarray) -> np.ndarray:
-        """(..., n, 2): outward, of the plane through the side's line at an image point (..., n, 2) without a lens."""
+        """(..., n, 2): outward normal of the plane through the side's line at an image point (..., n, 2), without a
+        lens."""
         slope = lens_slope(self.camera, point)[..., self.row, self.axis, :]
         normal = np.concatenate([slope, -(slope * point).sum(-1, keepdims=True)], -1) * self.sign[:, None]
         normal = np.einsum("nij,...nj->...ni", self.axes_from_camera, normal)
@@ -143,28 +145,29 @@ class Track:
         level = np.hypot(normal[..., 0], normal[..., 2])[..., None]
         return np.where(level > LEVEL_MIN, normal[..., [0, 2]] / np.maximum(level, LEVEL_MIN), NEAREST)
 
-    def _coordinate(self, seen: np.ndarray) -> np.ndarray:
-        """(..., n) across each row's side, focal lengths."""
-        return distorted(self.camera, seen[..., :2] / seen[..., 2:])[..., self.row, self.axis]
+    def _coordinate(self, point: np.ndarray) -> np.ndarray:
+        """(..., n) coordinate across each row's side, focal lengths."""
+        return distorted(self.camera, point[..., :2] / point[..., 2:])[..., self.row, self.axis]
 
     def _touching(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """u (n, 2) where each side touches, whether at the foot (n,), and its coordinate (n,): of the rims of foot and
-        roof, touched one by one, the outer one counts. None if one of them is not ahead of the camera."""
+        """Direction u (n, 2) of each side's touching point, whether it is at the foot (n,), and its coordinate (n,):
+        the outer one of the touching points with the rims of foot and roof. None if one of them is not ahead of the
+        camera."""
         foot = np.repeat([[True], [False]], len(self.side), 1)
         u = np.broadcast_to(self._level_normal(unknowns, self.at_measured), (*foot.shape, 2))
         for _ in range(TOUCHING_ROUNDS):
-            seen = self._seen(unknowns, u, foot)
-            if not (seen[..., 2] > AHEAD_MIN).all():
+            point = self._rim_point(unknowns, u, foot)
+            if not (point[..., 2] > AHEAD_MIN).all():
                 return None
-            before, u = u, self._level_normal(unknowns, seen[..., :2] / seen[..., 2:])
+            before, u = u, self._level_normal(unknowns, point[..., :2] / point[..., 2:])
             if np.abs(u - before).max() < TOUCHING:
                 break
-        at = self._coordinate(seen)
+        at = self._coordinate(point)
         outer = np.argmax(self.sign * at, 0)
         return u[outer, self.row], foot[outer, self.row], at[outer, self.row]
 
     def predicted(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """All sides (n,), focal lengths, and their derivatives (n, 13) by the unknowns; None if the state is no
+        """All sides (n,), focal lengths, and their derivatives (n, 13) by the unknowns; None if the state is not an
         obstacle ahead of the camera."""
         if not (state[[Q, W]] > 0).all():
             return None
@@ -174,31 +177,31 @@ class Track:
             return None
         u, foot, at = found
         steps = unknowns + 1j * COMPLEX_STEP * np.eye(UNKNOWNS)[:, None]
-        return at, self._coordinate(self._seen(steps, u, foot)).imag.T / COMPLEX_STEP
+        return at, self._coordinate(self._rim_point(steps, u, foot)).imag.T / COMPLEX_STEP
 
     # ------------------------------------------------------------------------------------------------------- the noise
 
     def covariance(self, state: np.ndarray, predicted: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        """(n, n) of all rows."""
+        """(n, n) covariance of all rows."""
         rows = [(s, Row(int(i), float(p), d)) for s, i, p, d in zip(self.sight, self.side, predicted, slope)]
-        result = noise_of_rows(rows, state[: len(STATES)], self.told)
+        result = noise_of_rows(rows, state[: len(STATES)], self.errors)
         passed = np.minimum(self.since_s[:, None], self.since_s)
-        result += self.told.position_walk_m**2 * passed * (slope[:, PX:] @ slope[:, PX:].T)
-        drift = np.radians(self.told.attitude_drift_deg)
+        result += self.errors.position_walk_m**2 * passed * (slope[:, PX:] @ slope[:, PX:].T)
+        drift = np.radians(self.errors.attitude_drift_deg)
         return result + drift**2 * passed * (slope[:, :3] @ slope[:, :3].T)
 
     def priors(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals (12,) of what is known beforehand, and their derivatives (12, 12). The height's sigma is told in
-        metres, g is in units of Z0."""
-        sigma = prior_sigmas(state[: len(STATES)], self.told)
-        sigma[S] = depth_sds(self.told)[0]
+        """Residuals (12,) of the priors, and their derivatives (12, 12). The height's sigma is configured in meters, g
+        is in units of Z0."""
+        sigma = prior_sigmas(state[: len(STATES)], self.errors)
+        sigma[S] = depth_sds(self.errors)[0]
         slope = np.diag(1 / sigma)
         if sigma[G] > KNOWN_SIGMA:
             slope[G, Q] = -state[G] / (sigma[G] * state[Q])
         return state / sigma, slope
 
     def by_states(self, slope: np.ndarray) -> np.ndarray:
-        """(n, 12) of derivatives (n, 13) by the unknowns; c is no state."""
+        """(n, 12) from derivatives (n, 13) by the unknowns; c is not a state."""
         result = np.zeros((len(slope), COUNT))
         result[:, : len(STATES)] = slope[:, : len(STATES)]
         result[:, C] = 0.0
@@ -206,14 +209,14 @@ class Track:
         return result
 
     def whitening(self, state: np.ndarray) -> np.ndarray:
-        """(n, n): makes the rows' errors independent of each other and of variance 1, by the covariance at a state."""
+        """(n, n): makes the rows' errors independent with variance 1, for the covariance at a state."""
         found = self.predicted(state)
         if found is None:
-            raise ValueError("the state is no obstacle ahead of the camera")
+            raise ValueError("the state is not an obstacle ahead of the camera")
         return np.linalg.inv(np.linalg.cholesky(self.covariance(state, *found)))
 
     def residuals(self, state: np.ndarray, whitening: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """Of all rows and of what is known beforehand (n + 12,), and their derivatives (n + 12, 12) by the states."""
+        """Residuals of all rows and priors (n + 12,), and their derivatives (n + 12, 12) by the states."""
         found = self.predicted(state)
         if found is None:
             return None
@@ -223,7 +226,7 @@ class Track:
         return np.append(white, prior), np.concatenate([white_slope, prior_slope])
 
     def cost(self, state: np.ndarray, whitening: np.ndarray) -> float:
-        """Infinite where the state is no obstacle ahead of the camera."""
+        """Infinite if the state is not an obstacle ahead of the camera."""
         found = self.residuals(state, whitening)
         return np.inf if found is None else float(found[0] @ found[0])
 
@@ -232,10 +235,10 @@ class Track:
 
 
 def _settle(track: Track, state: np.ndarray, whitening: np.ndarray) -> tuple[np.ndarray, int]:
-    """Levenberg-Marquardt steps with that covariance, and how many."""
+    """Levenberg-Marquardt steps with this covariance; also returns their number."""
     found = track.residuals(state, whitening)
     if found is None:
-        raise ValueError("the start is no obstacle ahead of the camera")
+        raise ValueError("the start is not an obstacle ahead of the camera")
     damping = DAMPING
     for number in range(1, MAX_STEPS + 1):
         left, slope = found
@@ -258,9 +261,9 @@ def _settle(track: Track, state: np.ndarray, whitening: np.ndarray) -> tuple[np.
     return state, MAX_STEPS
 
 
-def fit(flight: Flight, told: Told, start: np.ndarray | None = None) -> PrismFit:
+def fit(flight: Flight, errors: ErrorModel, start: np.ndarray | None = None) -> PrismFit:
     """Fits a flight with boxes. ``start``: a state in the axes of ``Track``, by default the library's first guess."""
-    track = Track(flight, told)
+    track = Track(flight, errors)
     state = track.start() if start is None else np.array(start, float)
     steps = 0
     for _ in range(ROUNDS):
@@ -270,17 +273,17 @@ def fit(flight: Flight, told: Told, start: np.ndarray | None = None) -> PrismFit
         moved = track.residuals(state, whitening)[1] @ (state - before)
         if moved @ moved < STAYED**2:
             break
-    return _told(track, state, steps)
+    return _fit_result(track, state, steps)
 
 
-def _told(track: Track, state: np.ndarray, steps: int) -> PrismFit:
+def _fit_result(track: Track, state: np.ndarray, steps: int) -> PrismFit:
     whitening = track.whitening(state)
     left, slope = track.residuals(state, whitening)
     inner = inverse(slope.T @ slope)
     by_c = whitening @ track.predicted(state)[1][:, C]
     change = -inner @ (slope[: len(by_c)].T @ by_c)
     change[C] = 1.0
-    covariance = inner + depth_sds(track.told)[1] ** 2 * np.outer(change, change)
+    covariance = inner + depth_sds(track.errors)[1] ** 2 * np.outer(change, change)
     outer = np.zeros((len(ORDER), COUNT))
     outer[:, : len(STATES)] = quantity_slopes(state[: len(STATES)], track.turn)
     values, sigma = np.full(6, np.nan), np.full(6, np.nan)

@@ -1,6 +1,6 @@
-"""Many simulated flights of one scenario: how large the errors are in sigmas, and what the warnings are worth.
+"""Many simulated flights of one scenario: errors in sigmas, coverage, and the quality of the warnings.
 
-``flown.py`` flies one seed and compares the answers with the truth; ``course.py`` finds out whether the flown path
-violates the margin; ``summary.py`` counts; ``files.py``, ``figure.py`` and ``page.py`` write; ``command.py`` is the
-command.
+``flown.py`` flies one seed and compares the answers with the truth; ``course.py`` checks whether the flown path
+violates the margin; ``summary.py`` computes the statistics; ``files.py``, ``figure.py`` and ``page.py`` write the
+output; ``command.py`` is the command.
 """

@@ -2,8 +2,8 @@
 
     python -m goe_tools montecarlo SCENARIO [--runs N] [--seed N] [--out DIR] [--jobs N | --scheduler ADDRESS]
 
-The seeds are those from --seed on, one for each run; a ``seed`` in the scenario is not used. The results depend neither
-on the number of processes nor on the machine that flew a run.
+The runs use consecutive seeds from --seed on; a ``seed`` in the scenario is ignored. The results depend neither on the
+number of processes nor on the machine that flew a run.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ from .flown import PROGRAM, Pass, Scenario, fly
 from .summary import Summary, summaries
 
 DEFAULT_OUT = Path("montecarlo")
-LAST_SEED = 2**62  # what goe_sim takes, with room for the runs
+LAST_SEED = 2**62  # goe_sim's limit, minus a reserve for the runs
 TABLE_WIDTH = 118
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("scenario", type=Path, metavar="SCENARIO", help="file that goe_sim --scenario takes")
+    add("scenario", type=Path, metavar="SCENARIO", help="scenario file of goe_sim --scenario")
     add("--runs", type=int, default=100, metavar="N", help="flights (default 100)")
-    add("--seed", type=int, default=1, metavar="N", help="of the first flight, the others count on (default 1)")
-    add("--out", type=Path, default=DEFAULT_OUT, metavar="DIR", help=f"folder that is made (default {DEFAULT_OUT})")
+    add("--seed", type=int, default=1, metavar="N", help="of the first flight; the next ones add 1 each (default 1)")
+    add("--out", type=Path, default=DEFAULT_OUT, metavar="DIR", help=f"output folder (default {DEFAULT_OUT})")
     add("--program", type=Path, default=PROGRAM, help=argparse.SUPPRESS)
     add_options(parser)
     add_workers(parser)
@@ -67,8 +67,8 @@ def make_folder(path: Path) -> None:
 
 
 def flights(scenario: Scenario, seeds: Sequence[int], workers: Workers, folder: Path) -> Iterator[list[Pass]]:
-    """In the order of the seeds. The first one is flown here: a mistake in the scenario appears before anything is made
-    or started."""
+    """In the order of the seeds. The first run is flown in this process, so a mistake in the scenario is reported
+    before the output folder or other processes exist."""
     first = fly(scenario, seeds[0])
     make_folder(folder)
     yield first
@@ -98,7 +98,7 @@ def print_summary(found: Sequence[Summary], scenario: Scenario) -> None:
 
 
 def report(scenario: Scenario, flown: Sequence[Sequence[Pass]], arguments: argparse.Namespace) -> None:
-    from .files import write  # here: what draws takes its time to start
+    from .files import write  # imported here: the drawing modules load slowly
 
     passes = [one for run in flown for one in run]
     if not passes:
@@ -119,11 +119,11 @@ def run(arguments: argparse.Namespace) -> int:
             for passes in flights(scenario, seeds, workers, arguments.out):
                 flown.append(passes)
                 bar.update()
-    except BaseException:  # Ctrl-C, a lost process or cluster: what is flown is kept
+    except BaseException:  # Ctrl-C, a lost process or cluster: keeps the finished runs
         if flown:
             with suppress(ValueError):
                 report(scenario, flown, arguments)
-                print(f"{len(flown)} of {arguments.runs} runs: it was stopped before its end")
+                print(f"{len(flown)} of {arguments.runs} runs: stopped early")
         raise
     report(scenario, flown, arguments)
     return 0

@@ -1,6 +1,6 @@
-"""Whether a flown path violates the margin of an obstacle, and when it first does.
+"""Whether and when a flown path first violates the margin of an obstacle.
 
-After the last image the aircraft flies on in a straight line at its last velocity. North, east, down in metres.
+After the last image the path continues straight at the last velocity. North, east, down in meters.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ FLOWN_ON_S = 60.0
 
 @dataclass(frozen=True)
 class Course:
-    closest_m: float  # to the walls, seen from above; 0: over the obstacle
-    violated_s: float  # when the margin and the clearance are first both violated; NaN: never
+    closest_m: float  # horizontal distance to the walls; 0: over the obstacle
+    violated_s: float  # first violation of both margin and clearance; NaN: never
 
 
 def distance_to_walls(truth: Truth, north_m: np.ndarray, east_m: np.ndarray) -> np.ndarray:
-    """(K,) seen from above; 0 inside."""
+    """(K,) horizontal distance; 0 inside."""
     n, e = north_m - truth.center_n_m, east_m - truth.center_e_m
     if truth.length_m is None or truth.heading_deg is None:
         return np.maximum(np.hypot(n, e) - 0.5 * truth.width_m, 0.0)
@@ -34,7 +34,7 @@ def distance_to_walls(truth: Truth, north_m: np.ndarray, east_m: np.ndarray) -> 
 
 
 def flown_on(time_s: np.ndarray, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The path (K,), (K, 3) in steps of ``STEP_S``, and what would follow it."""
+    """The path (K,), (K, 3) in steps of ``STEP_S``, and its straight continuation."""
     dense_s = np.arange(time_s[0], time_s[-1] + 0.5 * STEP_S, STEP_S)
     dense_m = np.stack([np.interp(dense_s, time_s, column) for column in position_m.T], -1)
     if len(time_s) < 2:

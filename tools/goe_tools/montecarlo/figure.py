@@ -1,4 +1,4 @@
-"""Error over sigma over time: a panel for each quantity that has answers."""
+"""Plots error over sigma over time, a panel for each quantity with answers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .summary import OverTime, Summary
 WIDE, NARROW = 4, 2  # panels side by side
 PANEL_IN = (2.4, 1.75)
 DPI = 130
-LEAST = 3.0  # sigmas that an axis shows at least
+LEAST = 3.0  # smallest range of an axis, sigmas
 
 
 def _panel(axes: Axes, times: OverTime, quantity: int, theme: dict[str, str]) -> None:

@@ -24,7 +24,7 @@ DIGITS = 6  # significant
 
 
 def _known(value: float) -> float | None:
-    """As JSON and CSV have it: nothing in place of NaN."""
+    """None in place of NaN, for JSON and CSV."""
     return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
 
 
@@ -94,7 +94,7 @@ def write(
     folder: Path, scenario: Scenario, passes: Sequence[Pass], found: Sequence[Summary], seeds: Sequence[int],
     asked: int, version: str,
 ) -> list[Path]:  # fmt: skip
-    """Each file whole or not at all; what another run left there is replaced, the scenario never."""
+    """Writes each file completely or not at all; replaces the files of an earlier run, but never the scenario."""
     content: dict[str, str | bytes] = {
         RUNS: runs_table(passes), SUMMARY: summary_text(scenario, found, seeds, asked, version)
     }  # fmt: skip

@@ -25,7 +25,7 @@ from ..view.truth import true_columns
 from .course import course_of
 
 PROGRAM = ROOT / "build" / "sim_host" / "goe_sim"
-ENDED_EARLY, FLOWN = 1, 0  # exit statuses of goe_sim that leave a log
+ENDED_EARLY, FLOWN = 1, 0  # exit statuses of goe_sim with a log
 WARNED, MISSED, FALSE, QUIET = "warned", "missed", "false", "quiet"
 
 
@@ -53,11 +53,11 @@ KEYS = tuple(quantity.key for quantity in QUANTITIES)
 
 @dataclass(frozen=True)
 class Scenario:
-    """What a worker needs; its machine need not have the file."""
+    """The input of a worker; its machine need not have the file."""
 
     path: str  # for messages
     text: str
-    folder: str  # that the paths in it are relative to
+    folder: str  # base of the relative paths in it
     program: str
     options: Options
 
@@ -74,8 +74,8 @@ class Pass:
     sigma: np.ndarray  # (K, quantities)
     suspect: np.ndarray  # (K,)
     closest_m: float
-    violated_s: float  # when the flown path first violates margin and clearance
-    warned_s: float  # the first image after which goe_decide says: act
+    violated_s: float  # first time at which the flown path violates margin and clearance
+    warned_s: float  # time of the first image with goe_decide's answer act
 
     @property
     def verdict(self) -> str:
@@ -108,7 +108,7 @@ def _drift(motion: Motion, true_motion: Motion, answers: Answers) -> np.ndarray:
 
 
 def _starts(motion: Motion, answers: Answers) -> np.ndarray:
-    """(K,) the row at which each answer's track began: the answer and its place now say how far that is away."""
+    """(K,) the row at which each answer's track started; the answer and the place of that row are relative to it."""
     c, s = np.cos(answers.heading_rad), np.sin(answers.heading_rad)
     z = answers.column["z0_m"] - answers.column["z_m"]
     x = answers.column["x0_m"] - answers.column["x_m"]

@@ -1,4 +1,4 @@
-"""The page: one file without scripts, in the style of the page of ``view``."""
+"""The page: one file without scripts, styled like the page of ``view``."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ TEMPLATE = """<!DOCTYPE html>
 <section>
 <h2>How to read this</h2>
 <p>{{ how_to_read }}</p>
-<p>Where the sigmas are right, the dark band fills the dotted lines and the pale band the dashed ones.</p>
+<p>If the sigmas are right, the dark band reaches the dotted lines and the pale band the dashed ones.</p>
 <h2>The scenario</h2>
 <pre>{{ scenario }}</pre>
 </section>

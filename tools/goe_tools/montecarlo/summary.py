@@ -1,7 +1,7 @@
 """Coverage, errors over time and warnings of many runs, for each obstacle.
 
-A run counts once, however many images it has: shares are means over the runs of each run's share. Images of one run
-have the same constant errors, so the standard error of a share comes from the runs, too.
+A run counts once, however many images it has: shares are means over the runs of each run's share. The images of a run
+have the same constant errors, so the standard error of a share is computed from the runs, too.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .flown import FALSE, KEYS, MISSED, QUIET, WARNED, Pass
 INSIDE = (1, 2)  # sigmas
 EXPECTED = {1: 0.683, 2: 0.954}  # of a Gaussian error whose sigma is right
 LEVELS = (2.5, 16.0, 50.0, 84.0, 97.5)  # percentiles over the runs
-BAND_RUNS = 10  # fewer have no percentiles worth a band
+BAND_RUNS = 10  # fewer runs give no useful band
 STEP_S = 0.5
 
 
@@ -34,7 +34,7 @@ class Row:
     """One quantity of one obstacle."""
 
     key: str
-    runs: int  # with an answer that can be compared with the truth
+    runs: int  # with an answer and a truth to compare it with
     inside: dict[int, Share]  # by sigmas: share of the answers within
     last_error: float  # median over runs of the absolute error of the last answer
     last_sigma: float  # ... and of its sigma
@@ -55,7 +55,7 @@ class Warnings:
 
 @dataclass(frozen=True)
 class OverTime:
-    """Percentiles over the runs of error over sigma, of the last answer of each step. T steps."""
+    """Percentiles over the runs of error over sigma of the last answer in each of T steps."""
 
     time_s: np.ndarray  # (T,) middle of the step
     level: np.ndarray  # (T, quantities, LEVELS); NaN where fewer than ``BAND_RUNS`` runs have an answer
@@ -86,7 +86,7 @@ def share_of(values: Sequence[float]) -> Share:
 
 
 def inside_of(one: Pass, quantity: int, sigmas: int) -> float:
-    """Share of a run's answers within so many sigmas; NaN without an answer."""
+    """Share of a run's answers within this many sigmas; NaN without an answer."""
     ratio = ratios(one)[:, quantity]
     known = ratio[np.isfinite(ratio)]
     return float(np.mean(np.abs(known) < sigmas)) if len(known) else math.nan

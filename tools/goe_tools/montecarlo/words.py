@@ -1,4 +1,4 @@
-"""What table and page say."""
+"""The text of the table and the page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SIMULATION = "All of this is simulation: goe_sim flew every run."
 HEADS = ("quantity", "runs", "last error", "last sigma", "within 1 sigma", "within 2 sigma", "rms of error / sigma")
 HOW_TO_READ = (
     f"If the sigmas are right, {EXPECTED[1]:.0%} of the answers lie within 1 sigma of the truth and {EXPECTED[2]:.0%} "
-    "within 2 sigma. More: the sigmas are wider than they need to be. Less: they are too small for the sensors of this "
+    "within 2 sigma. More: the sigmas are wider than necessary. Less: they are too small for the sensors of this "
     "scenario; configure the errors of the sensors with --set. A number after +- is one standard "
     "error, from the number of runs."
 )
@@ -46,12 +46,12 @@ def lead_times(warnings: Warnings) -> str:
     if not warnings.leads_s:
         return ""
     least, low, middle = (float(np.percentile(warnings.leads_s, share)) for share in (0.0, 5.0, 50.0))
-    return f"first warning {middle:.1f} s ahead in the median, {low:.1f} s in the worst 5 %, {least:.1f} s at least"
+    return f"first warning {middle:.1f} s ahead in the median, {low:.1f} s in the worst 5 %, {least:.1f} s at the least"
 
 
 def warning_sentences(warnings: Warnings, margin_m: float, clearance_m: float) -> list[str]:
     what = f"{margin_m:g} m to the walls with less than {clearance_m:g} m over the top"
-    said = [f"The flown path, continued straight on, violates {what} in {warnings.violated} of {warnings.runs} runs."]
+    said = [f"The flown path, continued straight, violates {what} in {warnings.violated} of {warnings.runs} runs."]
     if warnings.violated:
         lead = lead_times(warnings)
         said.append(f"Warned in time: {warnings.warned}{f'; {lead}' if lead else ''}. Missed: {warnings.missed}.")
@@ -64,6 +64,6 @@ def warning_sentences(warnings: Warnings, margin_m: float, clearance_m: float) -
 
 
 def unanswered(summary: Summary) -> str:
-    """The quantities of which no run has an answer; empty: none."""
+    """The quantities without an answer in any run; empty: none."""
     absent = [q.symbol for q in QUANTITIES if not summary.row(q.key).runs]
-    return f"No answer that the truth could be compared with: {', '.join(absent)}." if absent else ""
+    return f"No answer to compare with the truth: {', '.join(absent)}." if absent else ""

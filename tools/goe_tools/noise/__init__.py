@@ -1,10 +1,10 @@
-"""The noise settings that logs ask for.
+"""Noise settings from logs.
 
-rows        one track, linearised: what is measured, what is unknown, and how each setting's errors enter
+rows        one track, linearized: measurements, unknowns, and the effect of each setting's errors
 boxes       the rows of upright bounding boxes
 points      the rows of silhouette points and base corners
-likelihood  the settings that make the rows most likely, and how well they are known
+likelihood  the most likely settings for the rows, and their uncertainty
 tracks      the tracks of logs
-judged      how often the truth lies within what the library then answers
+judged      share of the library's answers that are within two sigmas of the truth
 command     the command that fits logs and prints the settings
 """

@@ -1,32 +1,32 @@
 """The rows of upright bounding boxes: four sides in each image, about the prism that fits them all.
 
-Everything of the prism that no setting tells is unknown: place, width, height, depth. With the truth, place and height
-are not: what is left then also shows what is the same in every image. Images whose box the border cuts are left out."""
+The unknowns of the prism are place, width, height and depth. With the truth, place and height are known; the residuals
+then also contain errors that are constant over all images. Images with a box cut by the image border are left out."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..flights.flight import Flight
-from ..models.prism import PX, STATES, A, E, G, Q, S, Told, W, box_size, focal_px
+from ..models.prism import PX, STATES, A, E, ErrorModel, G, Q, S, W, box_size, focal_px
 from ..models.prism_offline import Track
 from .rows import Effect, Fading, Rows
 
 LEAST_IMAGES = 8
-UNKNOWN, UNKNOWN_BESIDE_TRUTH = [A, Q, W, E, S], [W, S]
+UNKNOWN, UNKNOWN_WITH_TRUTH = [A, Q, W, E, S], [W, S]
 MOST_STEPS = 60
 SETTLED = 1e-3  # sigmas
-WHITE, SHARE = 1e-3, 0.05  # by which the sides are weighed: focal lengths, and of the box
-DEEPEST = 2.0  # of S, either way
+WHITE, SHARE = 1e-3, 0.05  # weights of the sides: focal lengths, and share of the box
+DEEPEST = 2.0  # largest absolute value of S
 DEG = np.pi / 180.0
 
 
 def _settled(track: Track, state: np.ndarray, free: list[int], size: np.ndarray) -> np.ndarray:
-    """The state with the free ones such that the sides fit best, each weighed by its box: Levenberg and Marquardt."""
+    """Fits the free components of the state to the sides, each weighted by its box: Levenberg-Marquardt."""
     weight = 1.0 / np.hypot(WHITE, SHARE * size)
     found, damping = track.predicted(state), 1e-2
     if found is None:
-        raise ValueError("the start is no obstacle ahead of the camera")
+        raise ValueError("the start is not an obstacle ahead of the camera")
     for _ in range(MOST_STEPS):
         left, slope = weight * (track.measured - found[0]), weight[:, None] * found[1][:, free]
         scale = np.maximum(np.linalg.norm(slope, axis=0), 1e-12)
@@ -47,7 +47,7 @@ def _settled(track: Track, state: np.ndarray, free: list[int], size: np.ndarray)
 
 
 def _true_state(track: Track, flight: Flight) -> np.ndarray:
-    """(12,) in the track's axes: place and height of the truth, about as wide as it is told."""
+    """(12,) in the track's axes: place, height and approximate width of the truth."""
     truth = flight.truth
     x, _, z = track.turn @ (np.array([truth.x0_m, 0.0, truth.z0_m]) - track.origin_m)
     if not z > 1.0:
@@ -57,11 +57,11 @@ def _true_state(track: Track, flight: Flight) -> np.ndarray:
     return state
 
 
-def box_rows(flight: Flight, told: Told, with_truth: bool) -> Rows | None:
+def box_rows(flight: Flight, errors: ErrorModel, with_truth: bool) -> Rows | None:
     """None: too few images, or no prism fits them."""
     try:
-        track = Track(flight, told)
-        unknown = UNKNOWN_BESIDE_TRUTH if with_truth else UNKNOWN
+        track = Track(flight, errors)
+        unknown = UNKNOWN_WITH_TRUTH if with_truth else UNKNOWN
         start = _true_state(track, flight) if with_truth else track.start()
         ahead = np.maximum(1.0 - track.moved_m[:, 2] * start[Q], 0.05)
         state = _settled(track, start, unknown, 2.0 * start[W] / ahead)

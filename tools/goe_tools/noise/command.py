@@ -1,4 +1,4 @@
-"""Finds the settings of the noise that logs ask for.
+"""Finds the noise settings that fit logs.
 
 python -m goe_tools noise LOG..."""
 
@@ -15,7 +15,7 @@ from rich.table import Table
 from tqdm import tqdm
 
 from ..flights.flight import Flight
-from ..models.prism import Told
+from ..models.prism import ErrorModel
 from .boxes import box_rows
 from .judged import covered
 from .likelihood import Fitted, fit
@@ -37,15 +37,15 @@ RANGES = {  # of the library
 }  # fmt: skip
 WHITE = "navigation.attitude_white_deg"
 FIRST = {"boxes": ("detector.box_px", "detector.box_share", WHITE), "points": ("detector.point_px", WHITE)}
-BESIDE_TRUTH = ("navigation.attitude_bias_deg", "navigation.height_bias_m", "navigation.velocity_bias_m_s")
-LEAST_JUDGED = 4  # tracks of a half
+WITH_TRUTH = ("navigation.attitude_bias_deg", "navigation.height_bias_m", "navigation.velocity_bias_m_s")
+LEAST_JUDGED = 4  # tracks in each half
 COVER_LOW, COVER_HIGH, COVER_ROUNDS = -4.0, 1.0, 8  # logarithms of the factor, and halvings
 HEIGHT, GROUND = "navigation.height_bias_m", "navigation.ground_m"
 
 
 @dataclass
 class Material:
-    """The tracks of all logs: rows to be fitted, and flights with truth to be judged."""
+    """The tracks of all logs: rows for the fit, and flights with truth for judging."""
 
     kind: str  # boxes or points
     rows: list[Rows] = field(default_factory=list)
@@ -55,9 +55,9 @@ class Material:
     left_out: int = 0
 
 
-def _told(given: dict[str, float]) -> Told:
-    """What the rows of boxes depend on."""
-    return Told(height_bias_m=given[HEIGHT], ground_m=given[GROUND])
+def _error_model(given: dict[str, float]) -> ErrorModel:
+    """The configured errors on which the rows of boxes depend."""
+    return ErrorModel(height_bias_m=given[HEIGHT], ground_m=given[GROUND])
 
 
 def _boxes(logs: Sequence[Path], given: dict[str, float], truth: bool, whole: bool) -> Material:
@@ -68,7 +68,7 @@ def _boxes(logs: Sequence[Path], given: dict[str, float], truth: bool, whole: bo
     halves = result.truth and not whole and len(flights) >= 2 * LEAST_JUDGED
     result.settling, result.judging = (flights[0::2], flights[1::2]) if halves else (flights, [])
     for flight in tqdm(result.settling, desc="tracks", disable=None, leave=False):
-        rows = box_rows(flight, _told(given), result.truth)
+        rows = box_rows(flight, _error_model(given), result.truth)
         if rows is None:
             result.left_out += 1
         else:
@@ -94,18 +94,18 @@ def gather(logs: Sequence[Path], given: dict[str, float], truth: bool, whole: bo
     if material.rows or material.left_out:
         return material
     if not truth:
-        raise ValueError(f"{logs[0]}: there are no boxes, and points need the truth")
+        raise ValueError(f"{logs[0]}: no boxes, and points need the truth")
     return _points(logs)
 
 
 def fitted(material: Material, given: dict[str, float]) -> Fitted:
-    """``navigation.height_bias_m`` stands for both heights: images do not tell them apart."""
+    """``navigation.height_bias_m`` includes the terrain height, which images cannot separate from it."""
     if not material.rows:
         raise ValueError(f"no track has enough images ({material.left_out} are too short or fit no obstacle)")
     start = dict(given)
     if material.kind == "boxes":
         start[HEIGHT] = math.hypot(given[HEIGHT], given[GROUND])
-    more = BESIDE_TRUTH if material.truth else ()
+    more = WITH_TRUTH if material.truth else ()
     with tqdm(desc="steps", disable=None, leave=False) as bar:
         result = fit(material.rows, start, FIRST[material.kind], more, lambda: bar.update() and None)
     for name in result.names:
@@ -115,7 +115,7 @@ def fitted(material: Material, given: dict[str, float]) -> Fitted:
 
 
 def settings_of(result: Fitted, given: dict[str, float], kind: str) -> dict[str, float]:
-    """What is to be set: the fitted ones, and what was given other than by default."""
+    """The settings to use: the fitted ones, and the given ones that differ from the defaults."""
     chosen = {name: value for name, value in given.items() if value != GIVEN[name]}
     chosen |= {name: result.values[name] for name in result.names}
     if kind == "boxes" and HEIGHT in result.names:
@@ -124,8 +124,8 @@ def settings_of(result: Fitted, given: dict[str, float], kind: str) -> dict[str,
 
 
 def scaled_to(material: Material, chosen: dict[str, float], names: Sequence[str], percent: float) -> dict[str, float]:
-    """The fitted settings but for the height times one factor, so that such a share of the settling tracks' X0 and Z0
-    lies within two sigmas."""
+    """Multiplies the fitted settings, except the height, by one factor, until this percentage of X0 and Z0 of the
+    fitted tracks lies within two sigmas."""
     turned = [name for name in names if name != HEIGHT]
 
     def with_factor(logarithm: float) -> dict[str, float]:
@@ -147,11 +147,11 @@ def _print_table(console: Console, result: Fitted, given: dict[str, float], kind
     table = Table(box=None, pad_edge=False)
     for heading in ("setting", "given", "fitted", "one sigma"):
         table.add_column(heading, justify="left" if heading == "setting" else "right")
-    for name in (*FIRST[kind], *(BESIDE_TRUTH if truth else ())):
-        told = name in result.names
+    for name in (*FIRST[kind], *(WITH_TRUTH if truth else ())):
+        determined = name in result.names
         before = math.hypot(given[HEIGHT], given[GROUND]) if kind == "boxes" and name == HEIGHT else given[name]
-        value = f"{result.values[name]:.4g}" if told else "not told"
-        table.add_row(name, f"{before:.4g}", value, f"{100 * result.share[name]:.0f} %" if told else "")
+        value = f"{result.values[name]:.4g}" if determined else "undetermined"
+        table.add_row(name, f"{before:.4g}", value, f"{100 * result.share[name]:.0f} %" if determined else "")
     console.print(table)
 
 
@@ -162,7 +162,7 @@ def _print_coverage(console: Console, flights: Sequence[Flight], which: str, cho
 
 
 def line_of(chosen: dict[str, float]) -> str:
-    """For goe_replay."""
+    """Options for goe_replay."""
     return " ".join(f"--set {name}={value:.4g}" for name, value in sorted(chosen.items()))
 
 
@@ -185,17 +185,17 @@ def _percent(text: str) -> float:
     except ValueError:
         value = math.nan
     if not 50.0 <= value <= 99.0:
-        raise argparse.ArgumentTypeError(f"'{text}' is no percentage from 50 to 99")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a percentage from 50 to 99")
     return value
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("logs", nargs="+", type=Path, metavar="LOG", help="log folder, or several of one camera, detector and aircraft")
-    add("--set", type=_setting, action="append", default=[], metavar="NAME=VALUE", help="what a fit starts from")
-    add("--without-truth", action="store_true", help="by the innovations alone, also if truth.csv is there")
-    add("--all", action="store_true", help="fit all tracks; by default every second one is kept for judging")
-    add("--cover", type=_percent, metavar="PERCENT", help="then scale, until so much of X0 and Z0 lies within 2 sigma")
+    add("logs", nargs="+", type=Path, metavar="LOG", help="log folders of one camera, detector and aircraft")
+    add("--set", type=_setting, action="append", default=[], metavar="NAME=VALUE", help="starting point of the fit")
+    add("--without-truth", action="store_true", help="use the innovations alone and ignore truth.csv")
+    add("--all", action="store_true", help="fit all tracks; by default, every second one is only judged")
+    add("--cover", type=_percent, metavar="PERCENT", help="then scale until this share of X0 and Z0 is within 2 sigma")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -204,21 +204,21 @@ def run(arguments: argparse.Namespace) -> int:
     result = fitted(material, given)
     chosen = settings_of(result, given, material.kind)
     console = Console(highlight=False, width=120)
-    by = "the errors, as the truth is known" if material.truth else "the innovations"
+    source = "the errors, as the truth is known" if material.truth else "the innovations"
     pieces = f"{result.rows} rows, {result.left_out} of them left out" if result.left_out else f"{result.rows} rows"
-    console.print(f"{len(material.settling)} tracks with {material.kind}, {pieces}; by {by}")
+    console.print(f"{len(material.settling)} tracks with {material.kind}, {pieces}; from {source}")
     if material.left_out:
-        console.print(f"{material.left_out} tracks are too short, or fit no obstacle")
+        console.print(f"{material.left_out} tracks are too short or fit no obstacle")
     _print_table(console, result, given, material.kind, material.truth)
     if arguments.cover is not None:
         if not material.truth or material.kind != "boxes":
             raise ValueError("--cover needs boxes and their truth")
         chosen = scaled_to(material, chosen, result.names, arguments.cover)
-        console.print(f"scaled so that {arguments.cover:g} % of X0 and Z0 lie within 2 sigma where it was fitted")
+        console.print(f"scaled until {arguments.cover:g} % of X0 and Z0 lie within 2 sigma on the fitted tracks")
     if material.truth and material.kind == "boxes":
         fitted_on = "fitted on the 1st, 3rd, ...:" if material.judging else "the"
         _print_coverage(console, material.settling, fitted_on, chosen)
         if material.judging:
             _print_coverage(console, material.judging, "judged on the 2nd, 4th, ...:", chosen)
-    console.print(line_of(chosen) if chosen else "nothing is told beyond what was given", soft_wrap=True)
+    console.print(line_of(chosen) if chosen else "the logs determine no further setting", soft_wrap=True)
     return 0

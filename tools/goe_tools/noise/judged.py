@@ -1,4 +1,4 @@
-"""How often the truth lies within two sigmas of what the library answers with given settings."""
+"""Share of the library's answers, with given settings, that are within two sigmas of the truth."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ..library import METHODS, camera_settings, estimate
 from ..models.coverage import BoxOutcome, coverage
 from ..models.judge import HEIGHT, X0, Z0
 
-TOLD = {"X0": X0, "Z0": Z0, "H": HEIGHT}
+JUDGED = {"X0": X0, "Z0": Z0, "H": HEIGHT}
 
 
 def outcome_of(flight: Flight, settings: dict[str, float]) -> BoxOutcome:
-    """Errors and sigmas of X0, Z0 and H in all images that answer them."""
+    """Errors and sigmas of X0, Z0 and H in all images with an answer."""
     track = estimate(flight, {**camera_settings(flight), **settings})
     judged = track.valid & (track.method == METHODS["refined"])[:, None]
-    judged[:, [i for i in range(6) if i not in TOLD.values()]] = False
+    judged[:, [i for i in range(6) if i not in JUDGED.values()]] = False
     error, sigma = (np.where(judged, a, np.nan) for a in (track.values - flight.truth.values, track.sigma))
     return BoxOutcome(flight, error, sigma, track.suspect)
 
@@ -27,6 +27,6 @@ def outcome_of(flight: Flight, settings: dict[str, float]) -> BoxOutcome:
 def covered(flights: Sequence[Flight], settings: dict[str, float]) -> dict[str, float]:
     """Percent of the answers within two sigmas, by quantity: of each track, then averaged; NaN without an answer."""
     if not flights:
-        return dict.fromkeys(TOLD, math.nan)
+        return dict.fromkeys(JUDGED, math.nan)
     shares = coverage([outcome_of(flight, settings) for flight in flights])
-    return {name: float(shares[i]) for name, i in TOLD.items()}
+    return {name: float(shares[i]) for name, i in JUDGED.items()}

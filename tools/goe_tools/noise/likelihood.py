@@ -1,16 +1,18 @@
-"""The settings that make the rows of many tracks most likely, and how well they are known.
+"""The most likely settings for the rows of many tracks, and their uncertainty.
 
-With C the covariance of a track's rows and X what is unknown there, the likelihood of what X leaves (that of the
-innovations of a filter which begins without knowing anything of X) is, but for a constant,
+With C the covariance of a track's rows and X the derivatives by its unknowns, the likelihood of the rows with the
+unknowns projected out (that is, of the innovations of a filter that starts without knowledge of them) is, up to a
+constant,
 
     -2 log L = log|C| + log|X' C^-1 X| + r' P r        P = C^-1 - C^-1 X (X' C^-1 X)^-1 X' C^-1
 
-By the logarithms x of the settings, with C_i the derivative of C,
+With the logarithms x of the settings as parameters, and C_i the derivative of C,
 
     slope_i = (r' P C_i P r - tr(P C_i)) / 2        information_ij = tr(P C_i P C_j) / 2
 
-Steps are information^-1 slope (Fisher's scoring), with a weak prior about the start, which keeps what no row tells
-where it was. The information's inverse is the covariance of x: one sigma of a setting is that share of it."""
+A step is information^-1 slope (Fisher scoring), with a weak prior about the start, which fixes the settings that no row
+determines. The inverse of the information is the covariance of x, so a sigma of x is a relative sigma of the
+setting."""
 
 from __future__ import annotations
 
@@ -22,19 +24,19 @@ import numpy as np
 from .rows import Rows
 
 PRIOR_SD = 1.0  # of a logarithm: a factor of 2.7
-SMALL_START = 0.01  # of a setting that is given as 0
+SMALL_START = 0.01  # start of a setting with the value 0
 STEPS = 12
-SETTLED = 1e-2  # of a step, logarithm
+SETTLED = 1e-2  # step of a logarithm
 LARGEST_STEP = 0.4
-SMALLEST, LARGEST = -4.0, 4.0  # of a logarithm, from the start: what goes to zero ends there
-GATE = 5.0  # sigmas: a row that is farther off given all others is left out
-KNOWN_SHARE = 0.3  # one sigma over the setting, above which the rows do not tell it
+SMALLEST, LARGEST = -4.0, 4.0  # limits of a logarithm, from the start
+GATE = 5.0  # sigmas: a row farther off, given all others, is left out
+KNOWN_SHARE = 0.3  # largest relative sigma of a setting that the rows determine
 NUGGET = 1e-12  # of the mean variance, for the solver
 
 
 @dataclass
 class Fitted:
-    """The settings that the rows tell, all values, and one sigma as a share of the value."""
+    """Names of the settings that the rows determine, all values, and the relative sigmas."""
 
     names: tuple[str, ...]
     values: dict[str, float]
@@ -57,7 +59,8 @@ def projected(rows: Rows, values: dict[str, float]) -> np.ndarray:
 
 
 def score(rows: Rows, values: dict[str, float], names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Slope (m,) and information (m, m) of one track's log likelihood by the logarithms of the settings."""
+    """Slope (m,) and information (m, m) of one track's log likelihood, with respect to the logarithms of the
+    settings."""
     p = projected(rows, values)
     left = p @ rows.residual
     present = [i for i, name in enumerate(names) if name in rows.settings()]
@@ -71,7 +74,7 @@ def score(rows: Rows, values: dict[str, float], names: Sequence[str]) -> tuple[n
 
 
 def without_outliers(rows: Rows, values: dict[str, float]) -> Rows:
-    """Without the rows that all others do not expect."""
+    """Drops the rows that disagree with all others."""
     p = projected(rows, values)
     off = (p @ rows.residual) ** 2 / np.maximum(np.diag(p), 1e-300)
     return rows.only(off <= GATE**2)
@@ -89,47 +92,48 @@ def _climb(
     given: dict[str, float],
     start: dict[str, float],
     names: Sequence[str],
-    tell: Callable[[], None],
+    report: Callable[[], None],
 ) -> tuple[dict[str, float], np.ndarray]:
-    """Values, and covariance (m, m) of their logarithms. The prior is about ``given``."""
-    centre = np.log([given[name] for name in names])
+    """Values, and covariance (m, m) of their logarithms. ``given`` is the center of the prior."""
+    center = np.log([given[name] for name in names])
     x, values = np.log([start[name] for name in names]), dict(start)
     prior = np.eye(len(names)) / PRIOR_SD**2
-    told = np.zeros_like(prior)
+    information = np.zeros_like(prior)
     for _ in range(STEPS):
-        gradient, told = _summed(tracks, values, names)
-        step = np.linalg.solve(told + prior, gradient - prior @ (x - centre))
+        gradient, information = _summed(tracks, values, names)
+        step = np.linalg.solve(information + prior, gradient - prior @ (x - center))
         step = np.clip(step, -LARGEST_STEP, LARGEST_STEP)
-        x = np.clip(x + step, centre + SMALLEST, centre + LARGEST)
+        x = np.clip(x + step, center + SMALLEST, center + LARGEST)
         values = {**start, **{name: float(value) for name, value in zip(names, np.exp(x))}}
-        tell()
+        report()
         if np.abs(step).max(initial=0.0) < SETTLED:
             break
-    return values, np.linalg.inv(told + prior)
+    return values, np.linalg.inv(information + prior)
 
 
 def fit(
     tracks: Sequence[Rows], given: dict[str, float], names: Sequence[str], more: Sequence[str] = (),
-    tell: Callable[[], None] = lambda: None,
+    report: Callable[[], None] = lambda: None,
 ) -> Fitted:  # fmt: skip
-    """``given``: all settings of the rows; ``names``: those that are fitted first, ``more``: those that are fitted with
-    them then. What the rows do not tell to ``KNOWN_SHARE`` gets its given value back, and is not in the result."""
+    """``given``: all settings of the rows. ``names``: those fitted first; ``more``: those fitted together with them
+    afterwards. A setting that the rows do not determine to ``KNOWN_SHARE`` keeps its given value and is not in the
+    result."""
     start = {name: value if value > 0.0 else SMALL_START for name, value in given.items()}
-    values, covariance = _climb(tracks, start, {**given, **_of(start, names)}, tuple(names), tell)
+    values, covariance = _climb(tracks, start, {**given, **_of(start, names)}, tuple(names), report)
     kept = [without_outliers(rows, values) for rows in tracks]
-    asked = (*names, *more)
+    wanted = (*names, *more)
     values = {**values, **_of(start, more)}
-    while asked:
-        values, covariance = _climb(kept, start, values, asked, tell)
+    while wanted:
+        values, covariance = _climb(kept, start, values, wanted, report)
         sd = np.sqrt(np.diag(covariance))
-        told = tuple(name for name, one in zip(asked, sd) if one <= KNOWN_SHARE)
-        if told == asked:
+        determined = tuple(name for name, one in zip(wanted, sd) if one <= KNOWN_SHARE)
+        if determined == wanted:
             break
-        values = {**values, **{name: given[name] for name in asked if name not in told}}
-        asked = told
-    share = dict(zip(asked, np.sqrt(np.diag(covariance)).tolist())) if asked else {}
+        values = {**values, **{name: given[name] for name in wanted if name not in determined}}
+        wanted = determined
+    share = dict(zip(wanted, np.sqrt(np.diag(covariance)).tolist())) if wanted else {}
     count, rows = sum(len(r.residual) for r in tracks), sum(len(r.residual) for r in kept)
-    return Fitted(asked, values, share, rows, count - rows)
+    return Fitted(wanted, values, share, rows, count - rows)
 
 
 def _of(values: dict[str, float], names: Sequence[str]) -> dict[str, float]:

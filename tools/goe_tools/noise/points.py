@@ -1,4 +1,4 @@
-"""The rows of silhouette points and base corners, about the truth: without it points tell no shape."""
+"""The rows of silhouette points and base corners about the truth; without it, points do not determine the shape."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ DEG = np.pi / 180.0
 
 
 def _top_of(flight: Flight) -> Flight:
-    """With what the log's ``top`` is found out: whatever agrees better with the truth."""
+    """Decides the meaning of the log's ``top``: the one that agrees better with the truth."""
     errors = {}
     for highest in (False, True):
         view, state = view_of(replace(flight, top_is_highest=highest)), true_state(flight)
@@ -53,7 +53,7 @@ def point_rows(flight: Flight) -> Rows | None:
     time_s, slope = view.time_s[image], slopes[used]
     same = (image[:, None] == image).astype(float)
     passed = np.minimum(time_s[:, None], time_s)
-    since = np.where(time_s > 0.0, time_s, 1.0)[:, None]  # at the start nothing has walked yet
+    since = np.where(time_s > 0.0, time_s, 1.0)[:, None]  # no random walk yet at the start
     turn = DEG * slope[:, :3]
     effects = {
         "detector.point_px": Effect(own[used][:, None], np.eye(len(image))),

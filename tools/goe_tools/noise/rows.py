@@ -1,12 +1,12 @@
-"""One track, linearised: what is measured, what is unknown, and how the errors of each setting enter.
+"""One track, linearized: measurements, unknowns, and the effect of each setting's errors.
 
-With n rows r (measured minus predicted, focal lengths), X their derivatives by what is unknown (n, p), and s_i the
-one-sigmas that the settings tell,
+With n rows r (measured minus predicted, focal lengths), X their derivatives by the unknowns (n, p), and s_i the sigmas
+given by the settings,
 
     r = X b + errors        covariance of the errors = sum over i of s_i^2 B_i
 
-b is anything. B of errors that stay alike for a while has exp(-|t - t'|/tau), with a time constant that is a setting,
-too."""
+b is arbitrary. B of errors that are correlated over time contains exp(-|t - t'|/tau), with a time constant that is also
+a setting."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MOST_IMAGES = 40  # of a track in one piece: a longer one is cut, its pieces have unknowns of their own
+MOST_IMAGES = 40  # of a piece; a longer track is split into pieces with separate unknowns
 
 
 @dataclass(frozen=True)
 class Effect:
-    """Errors of a setting, for a sigma of 1. ``by``: (n, m) how m independent ones enter; ``weight``: (n, n) how alike
-    they are between each two rows, None: the same ones in all rows."""
+    """Errors of a setting, for a sigma of 1. ``by``: (n, m) effect of m independent errors; ``weight``: (n, n)
+    correlation between each two rows, None: the same errors in all rows."""
 
     by: np.ndarray
     weight: np.ndarray | None = None
@@ -36,15 +36,15 @@ class Effect:
 
 @dataclass(frozen=True)
 class Fading:
-    """Errors of the sigma ``size`` (n,) for a setting of 1, of rows of one ``series`` (n,), that stay alike for the
-    time that ``time_setting`` tells."""
+    """Errors with the sigma ``size`` (n,) for a setting of 1, in rows of one ``series`` (n,), correlated over the time
+    in ``time_setting``."""
 
     time_setting: str
     size: np.ndarray
     series: np.ndarray
 
     def matrices(self, time_s: np.ndarray, value: float) -> tuple[np.ndarray, np.ndarray]:
-        """(n, n), and its derivative by the setting."""
+        """Covariance (n, n), and its derivative by the setting."""
         outer = np.where(self.series[:, None] == self.series, self.size[:, None] * self.size, 0.0)
         apart = np.abs(np.subtract.outer(time_s, time_s))
         if value <= 0.0:
@@ -58,7 +58,7 @@ class Fading:
 
 @dataclass
 class Rows:
-    """Of one track, or a piece of a long one."""
+    """The rows of one track, or of a piece of a long one."""
 
     name: str
     time_s: np.ndarray  # (n,)
@@ -69,7 +69,7 @@ class Rows:
     fading: dict[str, Fading]  # by setting
 
     def covariance(self, values: dict[str, float]) -> np.ndarray:
-        """(n, n)"""
+        """Covariance of the rows, (n, n)."""
         result = np.zeros((len(self.residual),) * 2)
         for name, effect in self.effects.items():
             if values[name] > 0.0:
@@ -94,7 +94,7 @@ class Rows:
         return result
 
     def slope_after(self, p: np.ndarray, values: dict[str, float], name: str) -> np.ndarray:
-        """(n, n): ``p`` times ``slope``; cheap where few errors enter all rows."""
+        """(n, n): ``p`` times ``slope``; cheap if few errors affect all rows."""
         effect = self.effects.get(name)
         if effect is None or effect.weight is not None:
             return p @ self.slope(values, name)
@@ -104,7 +104,7 @@ class Rows:
         return {*self.effects, *self.fading, *(fading.time_setting for fading in self.fading.values())}
 
     def only(self, kept: np.ndarray) -> Rows:
-        """A part of the rows: (n,) flags."""
+        """The rows with a flag in ``kept`` (n,)."""
         return Rows(
             self.name, self.time_s[kept], self.image[kept], self.residual[kept], self.unknown[kept],
             {name: effect.only(kept) for name, effect in self.effects.items()},
@@ -112,7 +112,7 @@ class Rows:
         )  # fmt: skip
 
     def pieces(self) -> list[Rows]:
-        """No piece has more than ``MOST_IMAGES`` images."""
+        """Pieces of at most ``MOST_IMAGES`` images."""
         images = np.unique(self.image)
         parts = np.array_split(images, -(-len(images) // MOST_IMAGES)) if len(images) else []
         return [self.only(np.isin(self.image, part)) for part in parts]

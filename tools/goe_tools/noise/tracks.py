@@ -1,4 +1,4 @@
-"""The tracks of logs, as flights: with the truth or without."""
+"""The tracks of logs as flights, with or without the truth."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..logs.obslog import Camera, Frame, LogError, Truth, read_log
 
 
 def _flight_of(camera: Camera, frames: Sequence[Frame], truth: Truth | None, name: str) -> Flight:
-    """With boxes: the truth has the middle of the base as the reference point."""
+    """A flight with boxes; the reference point of the truth is the middle of the base."""
     attitude = np.array([frame.attitude for frame in frames])
     position = np.array([frame.position_m for frame in frames])
     forward = matrices(attitude[0])[:, 0]
@@ -45,11 +45,11 @@ def _whole(frame: Frame) -> bool:
 
 
 def box_tracks(folder: Path) -> Iterator[tuple[Flight, bool]]:
-    """A flight for each track with boxes, cut where the autopilot's filter was reset; whether its truth is known.
-    Tracks that the truth tells to move are left out, and images with a bad pose."""
+    """A flight for each track with boxes, split at resets of the autopilot's filter, and whether its truth is known.
+    Leaves out tracks with a moving truth, and images with a bad pose."""
     log = read_log(folder)
     if log.camera2 is not None:
-        raise LogError(folder / "camera.ini", 0, "camera2", "a second camera; the noise is fitted to one")
+        raise LogError(folder / "camera.ini", 0, "camera2", "a second camera; noise is fitted to one camera")
     for key, frames in log.tracks().items():
         truth = log.truth.get(key)
         if truth is not None and not truth.static:
@@ -63,7 +63,7 @@ def box_tracks(folder: Path) -> Iterator[tuple[Flight, bool]]:
 
 
 def point_tracks(folder: Path) -> Iterator[Flight]:
-    """A flight for each track with points whose truth is known, and that stands still."""
+    """A flight for each track with points, a known truth and a static obstacle."""
     for flight in from_log(folder):
         if flight.truth.static and flight.seen.any():
             yield flight

@@ -1,4 +1,4 @@
-"""What is drawn over time, for the page and the picture alike."""
+"""Charts over time, shared by the page and the picture."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .answers import MISFIT_MAX, Answers, Options
 from .outline import SIGMAS
 from .words import NOTHING, measured
 
-RARE, WIDE = 0.02, 0.12  # shares of values and of bands that may lie outside an axis, at each end
+RARE, WIDE = 0.02, 0.12  # shares of values and of bands that may be outside an axis, at each end
 PADDING, SMALLEST = 0.06, 0.5
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A quantity over time. ``key``: its column in ``Answers``, and in the truth if that knows it; ``sigma``: the
-    column of its one-sigma, empty if it has none. ``scale``: from the column's unit to the one shown."""
+    """A quantity over time. ``key``: its column in ``Answers``, and in the truth if known; ``sigma``: the column of its
+    one-sigma, empty if it has none. ``scale``: from the column's unit to the displayed one."""
 
     key: str
     title: str
@@ -29,36 +29,36 @@ class Chart:
     scale: float = 1.0
     least: float | None = None  # a physical limit of the value, for the band
     limit: float | None = None  # drawn as a line
-    floor: float | None = None  # the axis shows at least from here ...
+    floor: float | None = None  # the axis extends at least from here ...
     ceiling: float | None = None  # ... to here
 
 
 CHARTS = (
-    Chart("z_m", "Distance ahead", "m", "along the direction of flight, to the reference point", "z_sd_m"),
+    Chart("z_m", "Distance ahead", "m", "along the direction of flight, to the reference position", "z_sd_m"),
     Chart("x_m", "Distance aside", "m", "right of the direction of flight; negative: left", "x_sd_m"),
     Chart("width_m", "Width", "m", "of the front; a disc's diameter", "width_sd_m", least=0.0),
     Chart("height_m", "Height", "m", "top above ground", "height_sd_m", least=0.0),
     Chart("length_m", "Length", "m", "of the side", "length_sd_m", least=0.0),
-    Chart("orientation_deg", "Orientation", "°", "side against the direction of flight, clockwise",
+    Chart("orientation_deg", "Orientation", "°", "side from the direction of flight, clockwise",
           "orientation_sd_deg"),
-    Chart("time_s", "Closest approach in", "s", "flying on as now", "time_sd_s", least=0.0),
-    Chart("miss_m", "Beside it then", "m", "distance to the outline; 0: over it", "miss_sd_m", least=0.0),
-    Chart("clearance_m", "Above its top then", "m", "negative: below the top", "clearance_sd_m"),
-    Chart("violation", "Too close, probability", "%", "that both margins are violated", "", 100.0, floor=0.0,
+    Chart("time_s", "Closest approach in", "s", "at the present velocity", "time_sd_s", least=0.0),
+    Chart("miss_m", "Distance then", "m", "horizontal, to the outline; 0: over it", "miss_sd_m", least=0.0),
+    Chart("clearance_m", "Height over top then", "m", "negative: below the top", "clearance_sd_m"),
+    Chart("violation", "Too close, probability", "%", "of violating both margins", "", 100.0, floor=0.0,
           ceiling=100.0),
-    Chart("misfit", "Misfit", "", "of the residuals; 1: as the settings predict; the line: suspect above",
+    Chart("misfit", "Misfit", "", "of the residuals; 1: as configured; line: suspect above it",
           limit=MISFIT_MAX, floor=0.0),
 )  # fmt: skip
 
 
 def charts_of(options: Options) -> tuple[Chart, ...]:
-    """The charts of a replay: the misfit's limit is that of its settings."""
+    """The charts of a replay; the misfit's limit comes from its settings."""
     limit = options.settings.get("refined.misfit_max", MISFIT_MAX)
     return tuple(dataclasses.replace(c, limit=limit) if c.key == "misfit" else c for c in CHARTS)
 
 
 def text(chart: Chart, answers: Answers, k: int) -> str:
-    """The value of one image: "473 ± 12 m"."""
+    """The value for one image: "473 ± 12 m"."""
     value = chart.scale * float(answers.column[chart.key][k])
     if not math.isfinite(value):
         return NOTHING
@@ -73,8 +73,8 @@ def text(chart: Chart, answers: Answers, k: int) -> str:
 
 
 def axis_range(chart: Chart, answers: Answers, truth: dict[str, np.ndarray]) -> tuple[float, float] | None:
-    """Of the values, the truth and most of the band, so that the first guesses do not flatten the rest; None: there are
-    no values."""
+    """Range that covers values, truth and most of the band, so that the first guesses do not flatten the rest; None
+    without values."""
     value = chart.scale * answers.column[chart.key]
     known = value[np.isfinite(value)]
     if not len(known):
@@ -91,5 +91,5 @@ def axis_range(chart: Chart, answers: Answers, truth: dict[str, np.ndarray]) -> 
     low, high = min(edges), max(edges)
     if chart.least is not None:
         low = max(low, chart.least)
-    room = PADDING * (high - low) or max(PADDING * abs(high), SMALLEST)
-    return float(low - room), float(high + room)
+    padding = PADDING * (high - low) or max(PADDING * abs(high), SMALLEST)
+    return float(low - padding), float(high + padding)

@@ -40,21 +40,21 @@ def _setting(text: str) -> tuple[str, float]:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """How a log is replayed and judged: what ``options_of`` reads."""
+    """Options of replay and decision rule, which ``options_of`` reads."""
     add = parser.add_argument
     add("--method", choices=("refined", "window"), default="refined", help="as goe_replay's")
     add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
-    add("--window", type=int, metavar="N", help="as goe_replay's: image points in the window")
+    add("--window", type=int, metavar="N", help="image points in the window, as in goe_replay")
     add(
         "--set",
         type=_setting,
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="as goe_replay's; may be repeated",
+        help="as in goe_replay; may be repeated",
     )
-    add("--margin", type=_number(0.0, 1e4), default=15.0, metavar="M", help="too close: aside (default 15 m)")
-    add("--clearance", type=_number(0.0, 1e4), default=10.0, metavar="M", help="... and over the top (default 10 m)")
+    add("--margin", type=_number(0.0, 1e4), default=15.0, metavar="M", help="least horizontal distance (default 15)")
+    add("--clearance", type=_number(0.0, 1e4), default=10.0, metavar="M", help="least height over the top (default 10)")
 
 
 def options_of(arguments: argparse.Namespace) -> Options:
@@ -65,28 +65,28 @@ def options_of(arguments: argparse.Namespace) -> Options:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("log", type=Path, metavar="LOG", help="folder with camera.ini, frames.csv and, where it is known, truth.csv")
+    add("log", type=Path, metavar="LOG", help="folder with camera.ini, frames.csv and, if known, truth.csv")
     add("--truth", type=Path, metavar="FILE", help="in place of LOG/truth.csv")
     add(
         "--out",
         type=Path,
         metavar="PAGE",
-        help=f"page to write (default {DEFAULT_PAGE}, unless a picture is asked for)",
+        help=f"page to write (default {DEFAULT_PAGE}, unless --png or --svg is given)",
     )
     add("--png", type=Path, metavar="FILE", help="picture of one moment: map, and distance ahead over time")
-    add("--svg", type=Path, metavar="FILE", help="the same, light or dark as its reader is")
+    add("--svg", type=Path, metavar="FILE", help="the same; follows the reader's light or dark theme")
     add("--theme", choices=("light", "dark"), default="light", help="of the PNG (default light)")
     add("--at", type=_number(-1e12, 1e12), metavar="S", help="time shown first, and in the picture (default: midway)")
-    add("--id", type=int, metavar="N", help="obstacle shown first, and in the picture (default: the one answered most)")
+    add("--id", type=int, metavar="N", help="obstacle shown first, and in the picture (default: most answers)")
     add_options(parser)
     add(
         "--rows", type=_number(2, 1e5), default=MOST_ROWS, metavar="N",
-        help=f"images that the page holds at most; more are thinned (default {MOST_ROWS})",
+        help=f"most images in the page; more are thinned (default {MOST_ROWS})",
     )  # fmt: skip
 
 
 def read(arguments: argparse.Namespace) -> ObservationLog:
-    """The log with the truth that was asked for."""
+    """The log with the truth that the options select."""
     log = read_log(arguments.log)
     if not log.frames:
         raise LogError(arguments.log / "frames.csv", 0, "", "there are no rows")
@@ -94,18 +94,18 @@ def read(arguments: argparse.Namespace) -> ObservationLog:
         log.truth = read_truth(arguments.truth)
         strange = sorted(log.truth.keys() - {frame.id for frame in log.frames})
         if len(strange) == len(log.truth):
-            raise LogError(arguments.truth, 0, "id", "of no obstacle of the log")
+            raise LogError(arguments.truth, 0, "id", "no id of an obstacle in the log")
     return log
 
 
 def write(path: Path, content: bytes, arguments: argparse.Namespace) -> None:
-    """Whole or not at all."""
+    """Writes the file completely or not at all."""
     write_whole(path, content, [*log_files(arguments.log), arguments.truth])
     print(f"{path}: {len(content) / 1e3:,.0f} kB")
 
 
 def moment_of(story: Story, time_s: float) -> int:
-    """The moment at or last before a time that the log has."""
+    """The latest moment of the log that is not after a time."""
     first_s, last_s = float(story.time_s[0]), float(story.time_s[-1])
     if not first_s <= time_s <= last_s:
         raise ValueError(f"--at: {time_s:g} s is not in the log, which goes from {first_s:g} to {last_s:g} s")
@@ -121,7 +121,7 @@ def write_outputs(story: Story, arguments: argparse.Namespace) -> None:
 
         write(page, render(story, chosen, first).encode("utf-8"), arguments)
     if arguments.png or arguments.svg:
-        from .picture import png, svg  # here: what draws takes its time to start
+        from .picture import png, svg  # imported here: the drawing modules load slowly
 
         if arguments.png:
             write(arguments.png, png(story, chosen, first, arguments.theme), arguments)

@@ -1,4 +1,4 @@
-/* The page of goe_tools view: unpacks what is in it, draws map and charts with plotly.js, moves through time. */
+/* The page of goe_tools view: unpacks its data, draws map and charts with plotly.js, moves through time. */
 "use strict";
 (() => {
   const $ = (id) => document.getElementById(id);
@@ -7,8 +7,8 @@
   const CIRCLE_POINTS = 60;
   const MAP_MARGIN = { l: 46, r: 8, t: 8, b: 30 };
   const CLOSE_STEPS_M = [8, 15, 25, 40, 65, 100, 160, 250, 400, 650, 1000];
-  const GONE_S = 1; // an obstacle without an image for so long is not in view
-  const PAGE_SHARE = 20; // PageUp and PageDown go so many times through the whole
+  const GONE_S = 1; // an obstacle without an image for this long is out of view
+  const PAGE_SHARE = 20; // steps of PageUp and PageDown through the whole log
   const state = { moment: 0, track: 0, view: "whole", playing: false };
   let story, plots = [];
 
@@ -38,25 +38,25 @@
     for (const track of story.tracks) track.columns = columns(track.columns);
   }
 
-  /* ---------------------------------------------------------------------------------------------------- colours -- */
+  /* ---------------------------------------------------------------------------------------------------- colors -- */
 
-  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  const color = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const axisLook = () => ({
-    gridcolor: colour("grid"), zerolinecolor: colour("faint"), linecolor: colour("faint"), color: colour("soft"),
-    tickfont: { size: 11, color: colour("soft") }, fixedrange: true, zeroline: false,
+    gridcolor: color("grid"), zerolinecolor: color("faint"), linecolor: color("faint"), color: color("soft"),
+    tickfont: { size: 11, color: color("soft") }, fixedrange: true, zeroline: false,
   });
   const layoutLook = () => ({
-    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { family: FONT, size: 12, color: colour("ink") },
-    showlegend: false, dragmode: false, hoverlabel: { bgcolor: colour("panel"), bordercolor: colour("faint"), font: { color: colour("ink") } },
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { family: FONT, size: 12, color: color("ink") },
+    showlegend: false, dragmode: false, hoverlabel: { bgcolor: color("panel"), bordercolor: color("faint"), font: { color: color("ink") } },
   });
 
   /* ----------------------------------------------------------------------------------------------------- charts -- */
 
-  /* Runs [first, last] of indices for which told() is true. */
-  function runs(count, told) {
+  /* Runs [first, last] of indices for which matches() is true. */
+  function runs(count, matches) {
     const found = [];
     for (let k = 0; k < count; k++) {
-      if (!told(k)) continue;
+      if (!matches(k)) continue;
       if (found.length && found[found.length - 1][1] === k - 1) found[found.length - 1][1] = k;
       else found.push([k, k]);
     }
@@ -90,19 +90,19 @@
     const quiet = { mode: "lines", hoverinfo: "skip" };
     const value = c[chart.key];
     if (chart.key === "misfit") {
-      traces.push({ ...quiet, ...doubtful(track, own.range), fill: "toself", fillcolor: colour("suspect-pale"), line: { width: 0 } });
+      traces.push({ ...quiet, ...doubtful(track, own.range), fill: "toself", fillcolor: color("suspect-pale"), line: { width: 0 } });
     }
     if (chart.sigma) {
-      traces.push({ ...quiet, ...band(t, value, c[chart.sigma], chart.least), fill: "toself", fillcolor: colour("region"), line: { width: 0 } });
+      traces.push({ ...quiet, ...band(t, value, c[chart.sigma], chart.least), fill: "toself", fillcolor: color("region"), line: { width: 0 } });
     }
     if (chart.limit !== null) {
-      traces.push({ ...quiet, x: [t[0], t[t.length - 1]], y: [chart.limit, chart.limit], line: { color: colour("suspect"), width: 1.5, dash: "dot" } });
+      traces.push({ ...quiet, x: [t[0], t[t.length - 1]], y: [chart.limit, chart.limit], line: { color: color("suspect"), width: 1.5, dash: "dot" } });
     }
     const truth = c["true_" + chart.key];
-    if (truth) traces.push({ ...quiet, name: "truth", x: t, y: Array.from(truth), line: { color: colour("true"), width: 2, dash: "dash" } });
+    if (truth) traces.push({ ...quiet, name: "truth", x: t, y: Array.from(truth), line: { color: color("true"), width: 2, dash: "dash" } });
     traces.push({
-      name: "estimate", mode: t.length > 1 ? "lines" : "markers", x: t, y: Array.from(value), text: own.text, line: { color: colour("estimate"), width: 2 },
-      marker: { color: colour("estimate"), size: 7 }, hovertemplate: "%{x:.2f} s: %{text}<extra></extra>",
+      name: "estimate", mode: t.length > 1 ? "lines" : "markers", x: t, y: Array.from(value), text: own.text, line: { color: color("estimate"), width: 2 },
+      marker: { color: color("estimate"), size: 7 }, hovertemplate: "%{x:.2f} s: %{text}<extra></extra>",
     });
     return traces;
   }
@@ -145,12 +145,12 @@
     const column = story.tracks[state.track].columns;
     for (const { chart, own, plot, output } of plots) {
       output.textContent = row < 0 ? "–" : own.text[row];
-      const shapes = [{ type: "line", x0: now, x1: now, yref: "paper", y0: 0, y1: 1, line: { color: colour("ink"), width: 1.25 } }];
+      const shapes = [{ type: "line", x0: now, x1: now, yref: "paper", y0: 0, y1: 1, line: { color: color("ink"), width: 1.25 } }];
       const value = row < 0 ? NaN : column[chart.key][row];
       if (Number.isFinite(value)) {
         shapes.push({
           type: "circle", xsizemode: "pixel", ysizemode: "pixel", xanchor: column.time[row], yanchor: value, x0: -5, x1: 5, y0: -5, y1: 5,
-          fillcolor: colour("estimate"), line: { color: colour("panel"), width: 2 },
+          fillcolor: color("estimate"), line: { color: color("panel"), width: 2 },
         });
       }
       Plotly.relayout(plot, { shapes });
@@ -179,10 +179,10 @@
   const region = (track, k) => polygon(track.columns.region, k, track.columns.region.length / (2 * track.columns.time.length));
   const rowAt = (track, moment) => track.columns.rowAt[moment];
 
-  /* Of a closed polygon, whose first point is its last, too. */
+  /* Middle of a closed polygon, whose first and last points are equal. */
   const middleOf = (points) => [0, 1].map((i) => points.slice(1).reduce((sum, p) => sum + p[i], 0) / (points.length - 1));
 
-  /* The way of an outline that moves until then, and where it is then. */
+  /* The path of a moving outline until then, and its place then. */
   function passing(there, moved) {
     const [x, y] = middleOf(there);
     return [[[x, y], moved], there.map((p) => [p[0] + moved[0] - x, p[1] + moved[1] - y])];
@@ -226,18 +226,18 @@
   function mapParts(moment) {
     const track = story.tracks[state.track], row = rowAt(track, moment), at = pair(story.moments.path, moment);
     const others = story.tracks.filter((other) => other !== track && rowAt(other, moment) >= 0);
-    const there = row >= 0 ? outline(track, row) : [], told = known(there);
-    const closest = told ? pair(track.columns.closest, row) : [NaN, NaN], nearest = told ? pair(track.columns.nearest, row) : [NaN, NaN];
+    const there = row >= 0 ? outline(track, row) : [], exists = known(there);
+    const closest = exists ? pair(track.columns.closest, row) : [NaN, NaN], nearest = exists ? pair(track.columns.nearest, row) : [NaN, NaN];
     const ahead = known([closest]);
     const [vx, vy] = pair(story.moments.velocity, moment);
     return {
       wedge: lines([wedge(moment, reachOf(moment))]),
       otherRegions: lines(others.map((o) => region(o, rowAt(o, moment)))),
       others: lines(others.map((o) => outline(o, rowAt(o, moment)))),
-      region: lines(told ? [region(track, row)] : []),
+      region: lines(exists ? [region(track, row)] : []),
       later: path(moment, story.moments.time.length - 1),
       flown: path(0, moment),
-      outline: lines(told ? [there] : []),
+      outline: lines(exists ? [there] : []),
       truths: lines(story.tracks.map((t) => (t.truth.length ? t.truth.concat([t.truth[0]]) : []))),
       course: lines(ahead ? [[at, closest], ...passing(there, pair(track.columns.moved, row))] : []),
       miss: lines(ahead ? [[closest, nearest]] : []),
@@ -254,16 +254,16 @@
   }
 
   function mapLooks() {
-    const line = (name, width, dash = "solid") => ({ mode: "lines", line: { color: colour(name), width, dash } });
-    const area = (fill, edge, width = 1) => ({ mode: "lines", fill: "toself", fillcolor: colour(fill), line: { color: colour(edge), width } });
+    const line = (name, width, dash = "solid") => ({ mode: "lines", line: { color: color(name), width, dash } });
+    const area = (fill, edge, width = 1) => ({ mode: "lines", fill: "toself", fillcolor: color(fill), line: { color: color(edge), width } });
     const estimate = area("region", "estimate", 2.5);
     return {
-      wedge: { mode: "lines", fill: "toself", fillcolor: colour("look"), line: { width: 0 } },
+      wedge: { mode: "lines", fill: "toself", fillcolor: color("look"), line: { width: 0 } },
       otherRegions: area("other-pale", "other-pale"), others: line("other", 2), region: area("region", "region-line"),
       truths: line("true", 2, "dash"), later: line("own", 1.2, "dot"), flown: line("own", 2.5), outline: estimate,
-      course: line("course", 2, "dash"), miss: line("course", 2), closest: { mode: "markers", marker: { color: colour("course"), size: 9, symbol: "diamond" } },
-      aircraft: { mode: "markers", marker: { color: colour("own"), size: 19, symbol: "arrow", line: { color: colour("panel"), width: 1.5 } } },
-      names: { mode: "text", textposition: "top center", textfont: { color: colour("ink"), size: 12 } },
+      course: line("course", 2, "dash"), miss: line("course", 2), closest: { mode: "markers", marker: { color: color("course"), size: 9, symbol: "diamond" } },
+      aircraft: { mode: "markers", marker: { color: color("own"), size: 19, symbol: "arrow", line: { color: color("panel"), width: 1.5 } } },
+      names: { mode: "text", textposition: "top center", textfont: { color: color("ink"), size: 12 } },
     };
   }
 
@@ -281,14 +281,14 @@
     return extent(there.concat(region(track, row), [pair(story.moments.path, moment)], known([closest]) ? [closest] : [], track.truth));
   }
 
-  /* ... of the close view: about where the obstacle stands at last, in steps, so that it is seen how the region shrinks. */
+  /* ... of the close view: about the obstacle's last place, in steps, to show how the region shrinks. */
   function closeBounds(moment) {
     const track = story.tracks[state.track], row = rowAt(track, moment);
-    const there = row >= 0 ? outline(track, row) : [], told = known(there);
-    const [x0, x1, y0, y1] = told ? extent(there) : [0, 0, 0, 0];
+    const there = row >= 0 ? outline(track, row) : [], exists = known(there);
+    const [x0, x1, y0, y1] = exists ? extent(there) : [0, 0, 0, 0];
     const [x, y] = track.anchor ?? [0.5 * (x0 + x1), 0.5 * (y0 + y1)];
     const reach = (points) => Math.max(0, ...points.map((p) => Math.max(Math.abs(p[0] - x), Math.abs(p[1] - y))));
-    const needed = reach(told ? there.concat(region(track, row), track.truth) : track.truth);
+    const needed = reach(exists ? there.concat(region(track, row), track.truth) : track.truth);
     const half = CLOSE_STEPS_M.find((step) => step >= needed) ?? needed;
     return [x - half, x + half, y - half, y + half];
   }
@@ -297,14 +297,14 @@
   function ranges(map, moment) {
     const [x0, x1, y0, y1] = map.bounds(moment), box = $(map.id).getBoundingClientRect();
     const wide = Math.max(box.width - MAP_MARGIN.l - MAP_MARGIN.r, 50), high = Math.max(box.height - MAP_MARGIN.t - MAP_MARGIN.b, 50);
-    const scale = map.room * Math.max((x1 - x0) / wide, (y1 - y0) / high, 1e-3);
+    const scale = map.margin * Math.max((x1 - x0) / wide, (y1 - y0) / high, 1e-3);
     const x = 0.5 * (x0 + x1), y = 0.5 * (y0 + y1);
     return { "xaxis.range": [x - 0.5 * scale * wide, x + 0.5 * scale * wide], "yaxis.range": [y - 0.5 * scale * high, y + 0.5 * scale * high] };
   }
 
   const MAPS = [
-    { id: "map", bounds: wideBounds, room: 1.17, ticks: [6, 9], wedge: true },
-    { id: "close", bounds: closeBounds, room: 1.04, ticks: [5, 5], wedge: false },
+    { id: "map", bounds: wideBounds, margin: 1.17, ticks: [6, 9], wedge: true },
+    { id: "close", bounds: closeBounds, margin: 1.04, ticks: [5, 5], wedge: false },
   ];
 
   function makeMaps() {
@@ -351,7 +351,7 @@
 
   function say(row, now) {
     const track = story.tracks[state.track];
-    const place = row < 0 ? "Not seen yet" : track.place[row], age = row < 0 ? 0 : now - track.columns.time[row];
+    const place = row < 0 ? "No detection yet" : track.place[row], age = row < 0 ? 0 : now - track.columns.time[row];
     $("place").textContent = place;
     $("approach").textContent = row < 0 ? "" : track.approach[row];
     const odds = row < 0 ? NaN : (track.columns.violation ?? [])[row];
@@ -409,7 +409,7 @@
 
   const restartClock = () => { clock = { at: performance.now(), from: story.moments.time[state.moment] }; };
 
-  /* What is known when, over the slider. */
+  /* The answers over time, above the slider. */
   function drawStrip() {
     const track = story.tracks[state.track], count = story.moments.time.length, strip = $("strip"), rects = [];
     const kind = (moment) => {
@@ -455,7 +455,7 @@
     for (const drawn of document.querySelectorAll(".js-plotly-plot svg, #js-plotly-tester")) drawn.setAttribute("aria-hidden", "true");
   }
 
-  /* Another obstacle: at the present time, or, if it is not seen then, when it is. */
+  /* Another obstacle: at the present time, or, if it is out of view then, at its first answers. */
   function choose(index) {
     const track = story.tracks[index], row = rowAt(track, state.moment);
     if (row < 0 || story.moments.time[state.moment] - track.columns.time[row] > GONE_S) state.moment = track.first;

@@ -1,8 +1,8 @@
-"""The page: one file, with plotly.js and the numbers inside, both compressed; nothing is fetched.
+"""The page: one file that contains plotly.js and the numbers, both compressed; it loads nothing else.
 
-plotly.js (MIT) comes out of the pinned Python package ``plotly``, whole: 4.8 MB, which deflate and base64 make 2.0 MB.
-The browser inflates it by DecompressionStream (Chromium 80, Firefox 113, Safari 16.4). Numbers are float32 as the
-library gave them, at most ``story.MOST_ROWS`` images, under 1 MB.
+The whole plotly.js (MIT) comes from the pinned Python package ``plotly``: 4.8 MB, or 2.0 MB after deflate and base64.
+The browser inflates it with DecompressionStream (Chromium 80, Firefox 113, Safari 16.4). Numbers are the library's
+float32 values, of at most ``story.MOST_ROWS`` images, under 1 MB.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ LEVEL = 9  # of deflate
 
 
 class Numbers:
-    """Arrays one behind the other as float32, and where each begins."""
+    """Concatenates arrays as float32 and returns their places."""
 
     def __init__(self) -> None:
         self.parts: list[np.ndarray] = []
@@ -113,30 +113,30 @@ def _plotly() -> Markup:
 
 
 def _facts(story: Story) -> list[str]:
-    """What stands at the foot of the page."""
+    """The sentences at the foot of the page."""
     options = story.options
     shown = sum(len(track.answers) for track in story.tracks)
     facts = [f"{story.rows:,} rows of {len(story.tracks):,} obstacle{'s' if len(story.tracks) != 1 else ''}."]
     if shown < story.rows:
         facts.append(
-            f"{shown:,} of them are shown, evenly over time, and where an answer, a model, a doubt or a reset begins."
+            f"{shown:,} of them are shown, evenly over time, plus changes of answer, model, suspicion or reset."
         )
     changed = ", ".join(f"{name}={value:g}" for name, value in options.settings.items())
     facts.append(
-        f"Replayed by the method {options.method}, model {options.model}{', with ' + changed if changed else ''}."
+        f"Replayed with the method {options.method}, model {options.model}{', with ' + changed if changed else ''}."
     )
     rule = package().DecisionRule()
     facts.append(
-        f"Too close: within {options.margin_m:g} m aside and {options.clearance_m:g} m over the top, both times "
-        f"{rule.doubt:g} while the answer is suspect and grown by {rule.drift_m_s:g} m for each second of its age. "
-        f"Act now: the library's decision rule, from {100.0 * rule.violation_max:g} % on, if it may be reached within "
-        f"{rule.act_s:g} s."
+        f"Too close: within {options.margin_m:g} m horizontally and {options.clearance_m:g} m over the top. "
+        f"Both are multiplied by {rule.doubt:g} while the answer is suspect and grow by {rule.drift_m_s:g} m "
+        f"for each second of its age. Act now: the library's decision rule, from {100.0 * rule.violation_max:g} % on, "
+        f"if the aircraft may reach the obstacle within {rule.act_s:g} s."
     )
     return facts
 
 
 def render(story: Story, chosen: Track, first: int) -> str:
-    """The page's text. ``first``: the moment that is shown first."""
+    """The page's text. ``first``: the moment shown first."""
     numbers = Numbers()
     data = json.dumps(
         _story_data(story, chosen, first, numbers), ensure_ascii=False, separators=(",", ":"), allow_nan=False

@@ -1,6 +1,6 @@
-"""One moment of a log as a picture: the map, the same close to the obstacle, the distance ahead and the size over time.
+"""One moment of a log as a picture: the map, a close view of the obstacle, distance ahead and size over time.
 
-PNG, light or dark; SVG, which is light or dark as its reader is (prefers-color-scheme) and reads without that as light.
+PNG, light or dark; SVG, which follows the reader's theme (prefers-color-scheme), by default light.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ DARK = {
 }  # fmt: skip
 THEMES = {"light": LIGHT, "dark": DARK}
 SIZE_IN, DPI_SVG, DPI_PNG = (8.0, 5.2), 100, 200  # the SVG is 800 px wide
-EARLIER = (0.0, 0.25, 0.55)  # of the answered time before the moment: whose regions are shown, too
+EARLIER = (0.0, 0.25, 0.55)  # moments whose regions are also shown, as shares of the answered time before
 CIRCLE_POINTS = 60
 LEAST_M = 12.0  # half the width of the close view
 LOOK_STEPS = 24
-LINE_PT = 900.0  # size times letters of the bold line that fills the width
+LINE_PT = 900.0  # font size times number of letters of a bold line across the width
 
 
 def style(theme: dict[str, str]) -> dict[str, object]:
@@ -59,7 +59,7 @@ def style(theme: dict[str, str]) -> dict[str, object]:
 
 
 def outline_points(track: Track, k: int) -> np.ndarray:
-    """(P, 2) of the estimate's outline; NaN if there is none."""
+    """(P, 2) of the estimate's outline; NaN without one."""
     x, y, radius = track.circle[k]
     if not math.isfinite(x):
         return track.corner[k]
@@ -76,7 +76,7 @@ def _area(ax: Axes, points: np.ndarray, fill: str, alpha: float, edge: str, edge
 
 
 def _earlier_rows(track: Track, row: int) -> list[int]:
-    """Rows of the answers before it, whose regions show how it went."""
+    """Rows of earlier answers, whose regions show the development."""
     answered = np.flatnonzero(track.answers.answered[: row + 1])
     if len(answered) < 2:
         return []
@@ -142,18 +142,18 @@ def _draw_flight(ax: Axes, story: Story, track: Track, moment: int, theme: dict[
     ax.plot(x, y, marker=arrow, markersize=10, color=theme["own"], markeredgecolor=theme["panel"], zorder=7)
 
 
-def _same_scale(ax: Axes, bounds: tuple[float, ...] | list[float], room: float = 1.12) -> None:
-    """Axis limits that hold left, right, bottom, top with one scale, in the axes as they lie in the figure."""
+def _same_scale(ax: Axes, bounds: tuple[float, ...] | list[float], padding: float = 1.12) -> None:
+    """Axis limits that include left, right, bottom and top, with the same scale on both axes."""
     box = ax.get_window_extent()
     x0, x1, y0, y1 = bounds
-    scale = room * max((x1 - x0) / box.width, (y1 - y0) / box.height, 1e-3)
+    scale = padding * max((x1 - x0) / box.width, (y1 - y0) / box.height, 1e-3)
     x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
     ax.set_xlim(x - 0.5 * scale * box.width, x + 0.5 * scale * box.width)
     ax.set_ylim(y - 0.5 * scale * box.height, y + 0.5 * scale * box.height)
 
 
 def _close_bounds(track: Track, row: int) -> tuple[float, float, float, float] | None:
-    """About where the obstacle stands, with outline, truth and region."""
+    """Bounds about the obstacle, including outline, truth and region."""
     if row < 0 or not track.answers.answered[row]:
         return None
     points = np.vstack([outline_points(track, row), track.region[row], track.truth_outline])
@@ -162,7 +162,7 @@ def _close_bounds(track: Track, row: int) -> tuple[float, float, float, float] |
     return middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half
 
 
-def _metres(ax: Axes) -> None:
+def _meters(ax: Axes) -> None:
     ax.xaxis.set_major_formatter("{x:g}")
     ax.yaxis.set_major_formatter("{x:g}")
     ax.locator_params(axis="x", nbins=3)
@@ -176,9 +176,9 @@ def _draw_chart(ax: Axes, chart: Chart, story: Story, track: Track, moment: int,
     answers, row = track.answers, int(track.row_at[moment])
     value = chart.scale * answers.column[chart.key]
     limits = axis_range(chart, answers, track.truth)
-    told = chart_text(chart, answers, row) if row >= 0 else words.NOTHING
+    text = chart_text(chart, answers, row) if row >= 0 else words.NOTHING
     ax.set_title(chart.title, loc="left", fontsize=8.5, fontweight="bold", pad=4)
-    ax.set_title(told, loc="right", fontsize=8.5, fontweight="bold", color=theme["estimate"], pad=4)
+    ax.set_title(text, loc="right", fontsize=8.5, fontweight="bold", color=theme["estimate"], pad=4)
     first, last = track.time_s[0], track.time_s[-1]
     ax.set_xlim(first - (0.0 if last > first else 0.5), last + 1e-6)
     ax.set_yticks([]) if limits is None else ax.set_ylim(*limits)
@@ -205,10 +205,10 @@ def _draw_chart(ax: Axes, chart: Chart, story: Story, track: Track, moment: int,
 def _legend(figure: Figure, theme: dict[str, str], truth: bool) -> None:
     entries = [("flown", "own", "solid"), ("estimate, two sigma", "estimate", "solid")]
     entries += [("truth", "true", "dashed")] if truth else []
-    entries.append(("flying on: closest approach", "course", "dashed"))
+    entries.append(("closest approach", "course", "dashed"))
     handles = [
-        matplotlib.lines.Line2D([], [], color=theme[colour], linestyle=style, linewidth=1.8)
-        for _, colour, style in entries
+        matplotlib.lines.Line2D([], [], color=theme[color], linestyle=style, linewidth=1.8)
+        for _, color, style in entries
     ]
     figure.legend(
         handles, [name for name, _, _ in entries], loc="lower left", bbox_to_anchor=(0.028, 0.004), ncols=4,
@@ -218,7 +218,7 @@ def _legend(figure: Figure, theme: dict[str, str], truth: bool) -> None:
 
 def _sentence(figure: Figure, track: Track, row: int, now: float, theme: dict[str, str]) -> None:
     answers = track.answers
-    place = words.place(answers, row) if row >= 0 else "Not seen yet"
+    place = words.place(answers, row) if row >= 0 else "No detection yet"
     figure.text(0.037, 0.955, place, fontsize=min(13.5, LINE_PT / len(place)), fontweight="bold", va="center")
     if row >= 0:
         figure.text(0.037, 0.905, words.approach(answers, row), fontsize=9.5, color=theme["course"], va="center")
@@ -239,7 +239,7 @@ def draw(story: Story, track: Track, moment: int, theme: dict[str, str]) -> Figu
         _draw_obstacle(ax, story, track, moment, theme)
         _draw_approach(ax, story, track, moment, theme)
         _draw_flight(ax, story, track, moment, theme, look=ax is whole)
-        _metres(ax)
+        _meters(ax)
     _same_scale(whole, map_bounds(story, track if story.brief(track) else None))
     near = _close_bounds(track, row)
     _same_scale(close, near or map_bounds(story), 1.06)
@@ -274,10 +274,10 @@ def png(story: Story, track: Track, moment: int, theme: str = "light") -> bytes:
 
 
 def _adapting(text: str, description: str) -> str:
-    """An SVG whose colours are variables, which follow the reader's light or dark; and words for a screen reader."""
-    for name, colour in LIGHT.items():
-        text = re.sub(rf"\b(fill|stroke): {colour}\b", rf"\1: {colour}; \1: var(--{name})", text)
-    rules = (" ".join(f"--{name}: {colour};" for name, colour in theme.items()) for theme in (LIGHT, DARK))
+    """An SVG with variables as colors, which follow the reader's theme, and a description for screen readers."""
+    for name, color in LIGHT.items():
+        text = re.sub(rf"\b(fill|stroke): {color}\b", rf"\1: {color}; \1: var(--{name})", text)
+    rules = (" ".join(f"--{name}: {color};" for name, color in theme.items()) for theme in (LIGHT, DARK))
     style = "<style>:root {{ {} }} @media (prefers-color-scheme: dark) {{ :root {{ {} }} }}</style>".format(*rules)
     text = text.replace("<svg ", '<svg role="img" aria-labelledby="said" ', 1)
     return re.sub(r"(<svg [^>]*>)", rf'\1<title id="said">{description}</title>{style}', text, count=1)
@@ -286,5 +286,7 @@ def _adapting(text: str, description: str) -> str:
 def svg(story: Story, track: Track, moment: int) -> bytes:
     """800 x 520 px."""
     row = int(track.row_at[moment])
-    said = f"{words.place(track.answers, row)}. {words.approach(track.answers, row)}" if row >= 0 else "Not seen yet"
+    said = "No detection yet"
+    if row >= 0:
+        said = f"{words.place(track.answers, row)}. {words.approach(track.answers, row)}"
     return _adapting(_saved(story, track, moment, LIGHT, "svg", DPI_SVG).decode("utf-8"), said).encode("utf-8")

@@ -1,8 +1,7 @@
-"""A log, replayed, in the axes of the map: what page and picture draw.
+"""A replayed log in the axes of the map, for page and picture.
 
-Map: seen from above, metres from where the camera was first, the course of the first path upwards. What a page cannot
-hold is thinned evenly over time; images in which an answer, a model, a doubt or a reset begins or ends stay as long as
-there is room.
+Map: from above, meters from the first camera position, the course of the first path up. A log too long for a page is
+thinned evenly over time; images with a change of answer, model, suspicion or reset are kept as far as possible.
 """
 
 from __future__ import annotations
@@ -20,28 +19,28 @@ from .outline import nearest_on_outline, outlines
 from .truth import footprint, true_columns
 
 MOST_ROWS = 3000  # of all obstacles, on one page
-EARLY_REGIONS = 0.1  # share of the two-sigma regions that may reach beyond the map, at each side
+EARLY_REGIONS = 0.1  # share of the two-sigma regions that may extend beyond the map, at each side
 BRIEF = 0.4  # share of the flight
 COURSE_MIN_M = 1.0  # a shorter path has no course
-FIRST_LOOK, SIZED_FOR = 0.4, 0.05  # of the answered time: the moment shown first; and so long after the first width
+FIRST_LOOK, SIZED_FOR = 0.4, 0.05  # of the answered time: the moment shown first, and its delay after the first width
 
 
 @dataclass
 class Track:
-    """One obstacle, in K images. Places on the map; NaN: none."""
+    """One obstacle in K images. Places on the map; NaN: none."""
 
     answers: Answers
     time_s: np.ndarray  # (K,)
     row_at: np.ndarray  # (M,) its latest image at each moment, -1 before the first
-    truth: dict[str, np.ndarray]  # by the names of ``Answers.column``; empty: not known
+    truth: dict[str, np.ndarray]  # by the names of ``Answers.column``; empty: unknown
     truth_outline: np.ndarray  # (P, 2)
     circle: np.ndarray  # (K, 3) middle and radius
     corner: np.ndarray  # (K, 4, 2)
     region: np.ndarray  # (K, points, 2)
     closest: np.ndarray  # (K, 2) the aircraft at the predicted closest approach ...
     nearest: np.ndarray  # (K, 2) ... and the outline's nearest point to it then
-    moved: np.ndarray  # (K, 2) the outline's middle then, if the obstacle moves and is followed
-    anchor: np.ndarray | None  # (2,) where it stands at last, or in truth; None: it moves, or there is no answer
+    moved: np.ndarray  # (K, 2) the outline's middle then, if the target motion is estimated
+    anchor: np.ndarray | None  # (2,) its last estimated or true place; None: it moves, or there is no answer
 
     @property
     def id(self) -> int:
@@ -66,11 +65,11 @@ class Story:
     options: Options
 
     def at(self, time_s: float) -> int:
-        """The moment at or last before a time; the first if there is none."""
+        """The latest moment not after a time; the first if there is none."""
         return max(int(np.searchsorted(self.time_s, time_s + 1e-9, side="right")) - 1, 0)
 
     def first_look(self, track: Track) -> int:
-        """The moment to show first: midway through what is answered, once there is a width; or the last one."""
+        """The moment to show first: midway through the answers, once there is a width; or the last one."""
         answered, sized = (
             np.flatnonzero(f) for f in (track.answers.answered, np.isfinite(track.answers.column["width_m"]))
         )
@@ -81,7 +80,7 @@ class Story:
         return self.at(max(first + FIRST_LOOK * (last - first), from_s + SIZED_FOR * (last - first)))
 
     def chosen(self, key: int | None) -> Track:
-        """The obstacle asked for, or the one that was answered most often."""
+        """The requested obstacle, or the one with most answers."""
         if key is not None:
             for track in self.tracks:
                 if track.id == key:
@@ -90,19 +89,19 @@ class Story:
         return max(self.tracks, key=lambda track: int(track.answers.answered.sum()))
 
     def brief(self, track: Track) -> bool:
-        """Whether the obstacle was seen in a small part of the flight only."""
+        """Whether the obstacle was detected during a small part of the flight only."""
         return bool(track.time_s[-1] - track.time_s[0] < BRIEF * (self.time_s[-1] - self.time_s[0]))
 
 
 def turned(points: np.ndarray, angle_rad: np.ndarray | float) -> np.ndarray:
-    """Points (..., 2) (right, ahead) of axes that are turned clockwise by an angle against those asked for."""
+    """Converts points (..., 2) (right, ahead) from axes turned clockwise by an angle."""
     c, s = np.cos(angle_rad), np.sin(angle_rad)
     x, y = points[..., 0], points[..., 1]
     return np.stack([x * c + y * s, y * c - x * s], -1)
 
 
 def _course(motion: Motion, answers: list[Answers]) -> float:
-    """Heading that the map shows upwards, rad: from the path's start to its end, or T's, or the velocity's."""
+    """Heading that is up on the map, rad: from the path's start to its end, or that of T, or of the velocity."""
     way = motion.camera_ne_m[-1] - motion.camera_ne_m[0]
     if np.hypot(*way) > COURSE_MIN_M:
         return math.atan2(way[1], way[0])
@@ -110,37 +109,37 @@ def _course(motion: Motion, answers: list[Answers]) -> float:
 
 
 def _changes(answers: Answers) -> np.ndarray:
-    """(K,): where an answer, a model, a doubt or its reason begins or ends."""
+    """(K,): changes of answer, model, suspicion or reason."""
     labels = list(zip(answers.answered, answers.model, answers.suspect, answers.reason))
     return np.array([k > 0 and labels[k] != labels[k - 1] for k in range(len(labels))], bool)
 
 
 def _spread(candidates: np.ndarray, count: int) -> np.ndarray:
-    """Up to so many of them, evenly, the first and the last among them."""
+    """At most ``count`` of them, evenly spaced, including the first and the last."""
     if len(candidates) <= count:
         return candidates
     return candidates[np.unique(np.linspace(0, len(candidates) - 1, max(count, 2)).round().astype(int))]
 
 
 def kept_moments(motion: Motion, answers: list[Answers], most_rows: int) -> np.ndarray:
-    """Indices of the moments that are shown: all, or so many that at most so many rows remain, one more of an obstacle
-    that would have none."""
+    """Indices of the displayed moments: all, or so many that at most ``most_rows`` rows remain, plus one for an
+    obstacle that would have none."""
     count, rows = len(motion.time_s), len(motion.of_frame)
     if rows <= most_rows:
         return np.arange(count)
-    room = max(int(most_rows * count / rows), 2)
-    telling = motion.reset | motion.broken
+    limit = max(int(most_rows * count / rows), 2)
+    notable = motion.reset | motion.broken
     for own in answers:
-        telling[own.moment[_changes(own)]] = True
-    events = _spread(np.flatnonzero(telling), room // 2)
-    kept = np.union1d(_spread(np.arange(count), room - len(events)), events)
+        notable[own.moment[_changes(own)]] = True
+    events = _spread(np.flatnonzero(notable), limit // 2)
+    kept = np.union1d(_spread(np.arange(count), limit - len(events)), events)
     left_out = [own.moment[-1] for own in answers if not np.isin(own.moment, kept).any()]
     return np.union1d(kept, left_out).astype(int)
 
 
-def _untold_radius(own: Answers, closest: np.ndarray, on_map: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """(K,): of the circle that goe_hazard takes while width or length is not told, from the distance that it tells; 0:
-    not known."""
+def _implied_radius(own: Answers, closest: np.ndarray, on_map: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """(K,): radius of the circle that goe_hazard uses without a width or length, computed from the distance that it
+    reports; 0: unknown."""
     reference = on_map(np.stack([own.column["x_m"], own.column["z_m"]], -1))
     radius = np.linalg.norm(closest - reference, axis=1) - own.column["miss_m"]
     return np.where(own.column["miss_m"] > 0.0, np.maximum(radius, 0.0), 0.0)
@@ -169,9 +168,9 @@ def _track(
         extra = (1,) * (points.ndim - 2)
         return turned(points, turn.reshape(-1, *extra)) + eye.reshape(-1, *extra, 2)
 
-    seen = outlines(own.column, own.model, own.covariance, _untold_radius(own, closest - by, on_map))
-    circle = np.column_stack([on_map(seen.circle[:, :2]), seen.circle[:, 2]])
-    corner, region = on_map(seen.corner), on_map(seen.region)
+    drawn = outlines(own.column, own.model, own.covariance, _implied_radius(own, closest - by, on_map))
+    circle = np.column_stack([on_map(drawn.circle[:, :2]), drawn.circle[:, 2]])
+    corner, region = on_map(drawn.corner), on_map(drawn.region)
     middle = np.where(np.isfinite(circle[:, :1]), circle[:, :2], corner.mean(1))
     outline = footprint(truth) if truth else np.empty((0, 2))
     outline_on_map = turned((outline - origin)[:, ::-1], -course)
@@ -200,7 +199,7 @@ def story_of(name: str, log: ObservationLog, options: Options, most_rows: int = 
 
 def map_bounds(story: Story, alone: Track | None = None) -> list[float]:
     """left, right, bottom, top of the whole flight on the map: path, truth, outlines, and most of the regions.
-    ``alone``: of one obstacle, and the path while it was seen."""
+    ``alone``: of one obstacle, and the path while it was detected."""
     points = [story.path]
     if alone is not None:
         points = [story.path[(story.time_s >= alone.time_s[0]) & (story.time_s <= alone.time_s[-1])]]

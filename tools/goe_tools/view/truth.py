@@ -1,9 +1,9 @@
-"""What each answer would be if it were right: the truth about the point and under the names that the answer uses.
+"""The correct value of each answer: the truth for the point and the quantities that the answer's model uses.
 
-Disc and upright box: the obstacle's middle; width: of an upright box the extent across the line of sight of the first
-image, of a disc that stands for a box none. Front edge and box: the middle of the front edge; of the two namings of
-front and side that which is nearer to the answer's orientation. NaN: not known; also where the obstacle is and how far
-away, if it moves.
+Disc and upright box: the obstacle's middle. Their width: for an upright box the extent across the line of sight of the
+first image; unknown for a disc that represents a box. Front edge and box: the middle of the front edge, with the naming
+of front and side that is nearer to the answer's orientation. NaN: unknown, which includes the position of a moving
+obstacle.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from ..flights.rotations import fold
 from ..logs.obslog import Truth
 from .answers import Answers
 
-MODELS_OF_EDGE = ("line", "box")  # whose point is the middle of the front edge
+MODELS_OF_EDGE = ("line", "box")  # models with the middle of the front edge as their point
 EXCHANGE_ANGLE = math.pi / 4.0
 RIM = 48
 
 
 def _filled(values: np.ndarray) -> np.ndarray:
-    """(K,): a gap gets the value after it, or else the last before it."""
+    """(K,): fills a gap with the value after it, otherwise with the last one before it."""
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
         return values
@@ -30,7 +30,7 @@ def _filled(values: np.ndarray) -> np.ndarray:
 
 
 def footprint(truth: Truth) -> np.ndarray:
-    """(P, 2) north, east of the outline on the ground; empty if it is not known or moves."""
+    """(P, 2) north, east of the outline on the ground; empty if it is unknown or moves."""
     middle = np.array([truth.center_n_m, truth.center_e_m])
     if truth.length_m is None or truth.heading_deg is None:
         turn = 2.0 * np.pi * np.arange(RIM) / RIM
@@ -50,7 +50,7 @@ def _axes(truth: Truth) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _extent_across(truth: Truth, sight_ne: np.ndarray) -> float:
-    """Of the footprint, across a line of sight, m."""
+    """Extent of the footprint across a line of sight, m."""
     if truth.length_m is None or truth.heading_deg is None:
         return truth.width_m
     across = np.array([-sight_ne[1], sight_ne[0]]) / max(float(np.hypot(*sight_ne)), 1e-9)

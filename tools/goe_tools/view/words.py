@@ -1,6 +1,6 @@
-"""One image's answer as text: what a pilot reads first, the same in the page, in the picture and for a screen reader.
+"""One image's answer as text for a pilot, shared by the page, the picture and screen readers.
 
-Every "±" is one sigma. Lengths in metres.
+Every "±" is one sigma. Lengths in meters.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ import math
 from .answers import Answers
 
 NOTHING = "–"
-OLD_S = 0.05  # an answer of less age is of now
-HARD = "\u00a0"  # a space at which no line ends
+OLD_S = 0.05  # a younger answer is current
+HARD = "\u00a0"  # a non-breaking space
 MODELS = {"disc": "a disc", "line": "a front edge", "box": "a box", "prism": "an upright box, of unknown depth"}
 STATUS = {
     "collecting": "collecting images",
-    "held": "nothing new in this image",
-    "nothing_seen": "nothing is seen",
+    "held": "no new information in this image",
+    "nothing_seen": "no detection",
     "behind_camera": "it is not ahead of the camera",
-    "lens_failed": "the lens model fails there",
-    "swapped": "left and right are exchanged",
-    "edge_on": "the front is seen from its end",
+    "lens_failed": "the lens model fails at this point",
+    "swapped": "left and right are swapped",
+    "edge_on": "the front is viewed edge-on",
     "no_edge": "no edge is long enough",
     "bad_height": "the height above ground is not positive",
     "no_baseline": "the camera moved too little",
@@ -30,21 +30,21 @@ STATUS = {
     "out_of_range": "the image was refused: a number out of range",
     "bad_time": "the image was refused: its time",
     "bad_attitude": "the image was refused: its attitude",
-    "box_incomplete": "fewer than two sides of the box can be used",
+    "box_incomplete": "fewer than two sides of the box are usable",
     "no_height": "the height above ground is not set",
 }
 REASONS = {
-    "convention": "what is given does not belong together: axes, signs, mounting, or a pose half a second late",
+    "convention": "inconsistent inputs: axes, signs, mounting, or a pose half a second late",
     "moves": "it moves",
-    "base": "what was given as base corners are none, and is left out",
+    "base": "the given base corners are not base corners, and are ignored",
     "shape": "it is not round",
-    "late": "poses and images are apart in time",
-    "noise": "the errors are larger than given, or it is of another shape",
+    "late": "poses and images differ in time",
+    "noise": "the errors are larger than configured, or it has another shape",
 }
 
 
 def decimals(two_sigma: float, figures: int = 1) -> int:
-    """Decimals that show so many figures of the band, 0 to 2."""
+    """Decimals that show this many figures of the band, 0 to 2."""
     if not (two_sigma > 0.0 and math.isfinite(two_sigma)):
         return 1
     return min(2, max(0, figures - 1 - math.floor(math.log10(two_sigma))))
@@ -81,18 +81,18 @@ def place(answers: Answers, k: int) -> str:
 
 
 def approach(answers: Answers, k: int) -> str:
-    """The closest approach, if the aircraft flies on as now; empty if it is not known."""
+    """The closest approach at the present velocity; empty if unknown."""
     time_s, miss = _value(answers, k, "time_s"), _value(answers, k, "miss_m")
     if not math.isfinite(time_s[0]):
         return ""
     clear_m, clear_sd_m = _value(answers, k, "clearance_m")
     if time_s[0] == 0.0:
-        when, past = "Flying on as now: it falls behind", f", {measured(*miss, figures=1)} beside the path"
+        when, past = "At this velocity: it falls behind", f", {measured(*miss, figures=1)} from the path"
     elif miss[0] == 0.0:
-        when, past = f"Flying on as now: over it in {measured(*time_s, 's', 1)}", ""
+        when, past = f"At this velocity: over it in {measured(*time_s, 's', 1)}", ""
     else:
-        when = f"Flying on as now: closest in {measured(*time_s, 's', 1)}"
-        past = f", {measured(*miss, figures=1)} beside it"
+        when = f"At this velocity: closest in {measured(*time_s, 's', 1)}"
+        past = f", {measured(*miss, figures=1)} away"
     if math.isfinite(clear_m):
         over = "above its top" if clear_m >= 0.0 else "below its top"
         past += f", {measured(abs(clear_m), clear_sd_m, figures=1)} {over}"
@@ -100,7 +100,7 @@ def approach(answers: Answers, k: int) -> str:
 
 
 def state(answers: Answers, k: int) -> str:
-    """What stands behind the answer: model, age, status."""
+    """Details of the answer: model, age, status."""
     if answers.model[k] == "none":
         return ""
     said = f"Model: {MODELS.get(answers.model[k], answers.model[k])}"
@@ -109,19 +109,19 @@ def state(answers: Answers, k: int) -> str:
         said += f". {why[0].upper()}{why[1:]}"
         said += f"; the answer is {answers.age_s[k]:.1f} s old" if answers.age_s[k] >= OLD_S else ""
     elif answers.status[k] == "partial":
-        said += ". A part of the image was not used"
+        said += ". Part of the image was not used"
     return said
 
 
 def doubt(answers: Answers, k: int) -> str:
-    """Why it is suspect; of one that is not, what was noticed; empty if nothing."""
+    """The cause of suspicion, or a notice about an answer that is not suspect; empty without either."""
     reason = answers.reason[k]
     words = REASONS.get(reason, reason)
     if reason == "late":
         words += f", by {float(answers.column['latency_s'][k]):.2f} s".replace("-", "−")
     speed_m_s = math.hypot(*(float(answers.column[f"velocity_{axis}_m_s"][k]) for axis in ("north", "east")))
     if reason == "moves" and speed_m_s > 0.0:
-        words += f", {speed_m_s:.1f}{HARD}m/s, and is followed"
+        words += f", {speed_m_s:.1f}{HARD}m/s, and its velocity is estimated"
     if answers.suspect[k]:
         return f"Suspect: {words}" if reason != "none" else "Suspect"
     return "" if reason == "none" else words[0].upper() + words[1:]

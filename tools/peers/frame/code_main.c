@@ -1,4 +1,4 @@
-/* Nothing but the solving, so that the linker keeps nothing else: how large its code is. SPDX-License-Identifier: MIT */
+/* Only the solver, so the image contains nothing else: measures the size of its code. SPDX-License-Identifier: MIT */
 #include "peer.h"
 
 int main(void) {

@@ -1,4 +1,4 @@
-/* What a frame prints. SPDX-License-Identifier: MIT */
+/* Output of a frame. SPDX-License-Identifier: MIT */
 #include "console.h"
 
 #include <stdint.h>

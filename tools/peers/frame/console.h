@@ -1,4 +1,4 @@
-/* What a frame prints, on the host and on a target without printf. SPDX-License-Identifier: MIT */
+/* Output of a frame, on the host and on a target without printf. SPDX-License-Identifier: MIT */
 #ifndef GOE_PEER_CONSOLE_H
 #define GOE_PEER_CONSOLE_H
 

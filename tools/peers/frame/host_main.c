@@ -1,4 +1,4 @@
-/* Times one solver on the host. Prints the answer to each case, then of each group:
+/* Times one solver on the host. Prints the answer to each case, then for each group:
  *   picoseconds <per solve>
  * SPDX-License-Identifier: MIT */
 #define _POSIX_C_SOURCE 199309L
@@ -6,7 +6,7 @@
 
 #include "console.h"
 
-#define ROUNDS_LEAST 20 /* if the processor is taken away for long */
+#define ROUNDS_LEAST 20 /* in case the process is suspended for long */
 
 static double seconds(void) {
     struct timespec now;
@@ -14,7 +14,7 @@ static double seconds(void) {
     return (double)now.tv_sec + 1.0e-9 * (double)now.tv_nsec;
 }
 
-/* Seconds for solving a group once; at no case: what asking the clock costs. */
+/* Seconds for solving a group once; without cases: the cost of reading the clock. */
 static double time_round(int first, int count) {
     for (int i = 0; i < count; i++) {
         peer_prepare(i, &peer_cases[first + i]);
@@ -28,7 +28,7 @@ static double time_round(int first, int count) {
     return (seconds() - start) / PEER_REPEATS;
 }
 
-/* Of all rounds within PEER_SECONDS, and of ROUNDS_LEAST, the best counts: everything else on the machine only adds. */
+/* The best of all rounds within PEER_SECONDS, at least ROUNDS_LEAST: other load on the machine only adds time. */
 static double best_round(int first, int count) {
     const double end = seconds() + PEER_SECONDS;
     double best = time_round(first, count);

@@ -1,4 +1,4 @@
-/* Runs one solver on a target, for counting its instructions. Prints the answer to each case, and of each group:
+/* Runs one solver on a target, for counting its instructions. Prints the answer to each case, and for each group:
  *   stack <bytes, the most of any case>
  * SPDX-License-Identifier: MIT */
 #include "console.h"

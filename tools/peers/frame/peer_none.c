@@ -1,4 +1,4 @@
-/* Solves nothing: what is left of an image without a solver. SPDX-License-Identifier: MIT */
+/* Solves nothing: the size of an image without a solver. SPDX-License-Identifier: MIT */
 #include "peer.h"
 
 void peer_prepare(int slot, const peer_case_t *given) {

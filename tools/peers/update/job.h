@@ -3,15 +3,15 @@
 #define GOE_PEER_JOB_H
 
 #define PEER_STATES 10
-#define PEER_NUISANCES 3 /* white noise of the image's own, in all its rows */
+#define PEER_NUISANCES 3 /* white noise of the image, common to all its rows */
 #define PEER_COLUMNS (PEER_NUISANCES + PEER_STATES + 1)
 #define PEER_RESIDUAL (PEER_COLUMNS - 1)
 #define PEER_ROWS 9
 #define PEER_TRIANGLE (PEER_STATES * (PEER_STATES + 1) / 2)
-#define PEER_REPEATS 1 /* of a prepared case, while it is timed: solving uses it up */
+#define PEER_REPEATS 1 /* of a prepared case while timed: solving overwrites it */
 
 typedef struct {
-    /* the prior, in each form in which a solver may hold it */
+    /* the prior, in the form of each solver */
     float root[PEER_TRIANGLE];                   /* R, row by row: R'R is the information */
     float factors[PEER_TRIANGLE];                /* U D U' is the covariance: column by column, D where U has ones */
     float covariance[PEER_STATES * PEER_STATES]; /* row by row */
@@ -22,8 +22,8 @@ typedef struct {
 
 typedef struct {
     float change[PEER_STATES];
-    float nis;                             /* normalised innovation squared; 0 if the solver does not tell it */
-    float held[PEER_STATES * PEER_STATES]; /* what the solver holds afterwards, in its form; the rest is 0 */
+    float nis;                             /* normalized innovation squared; 0 if the solver does not report it */
+    float held[PEER_STATES * PEER_STATES]; /* the posterior in the solver's form; the rest is 0 */
 } peer_answer_t;
 
 #endif

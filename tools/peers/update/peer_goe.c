@@ -1,4 +1,4 @@
-/* The library's own: Householder reflections of the triangle. WITH_INVERSE: 1 and the triangle's inverse, whose rows' squared
+/* The library: Householder reflections of the triangle. WITH_INVERSE: 1 and the triangle's inverse, whose rows' squared
  * norms are the variances. SPDX-License-Identifier: MIT */
 #include <string.h>
 
@@ -6,7 +6,7 @@
 #include "refined/goe_srif.h"
 
 _Static_assert(GOE_STATES == PEER_STATES && GOE_NUISANCES == PEER_NUISANCES && GOE_ROWS_MAX == PEER_ROWS,
-               "job.h is of another filter");
+               "job.h describes another filter");
 
 typedef struct {
     goe_triangle_t root;

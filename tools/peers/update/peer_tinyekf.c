@@ -1,4 +1,4 @@
-/* TinyEKF with 10 states and 9 measurements. The attitude noise that the rows of an image share goes into the matrix of the
+/* TinyEKF with 10 states and 9 measurements. The attitude noise common to the rows of an image is in the matrix of the
  * measurement noise. SPDX-License-Identifier: MIT */
 #define EKF_N 10
 #define EKF_M 9
@@ -6,7 +6,7 @@
 
 #include "peer.h"
 
-_Static_assert(EKF_N == PEER_STATES && EKF_M == PEER_ROWS, "job.h is of another filter");
+_Static_assert(EKF_N == PEER_STATES && EKF_M == PEER_ROWS, "job.h describes another filter");
 
 typedef struct {
     ekf_t ekf;
@@ -35,7 +35,7 @@ void peer_prepare(int slot, const peer_case_t *given) {
 }
 
 void peer_solve(int slot) {
-    static const float predicted[EKF_M] = {0.0f}; /* what is measured is the residual */
+    static const float predicted[EKF_M] = {0.0f}; /* the residual is the measurement */
     state_t *state = &states[slot];
     float noise[EKF_M * EKF_M];
     const float variance = 1.0f / (state->nuisance_root * state->nuisance_root);

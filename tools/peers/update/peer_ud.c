@@ -1,5 +1,5 @@
-/* Bierman's sequential update of U D U' = covariance, row by row. The rows of an image share its attitude noise; they are made
- * independent first, by the Cholesky factor of their joint noise: for nine rows that takes fewer operations than three more
+/* Bierman's sequential update of U D U' = covariance, row by row. The rows of an image have common attitude noise; the Cholesky
+ * factor of their joint noise decorrelates them first: for nine rows that takes fewer operations than three additional
  * states. G. J. Bierman, Factorization Methods for Discrete Sequential Estimation, 1977.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
@@ -11,9 +11,9 @@
 
 typedef struct {
     float factors[PEER_TRIANGLE];           /* column by column, D where U has ones */
-    float noise[PEER_ROWS][PEER_NUISANCES]; /* of each row, by the nuisances */
+    float noise[PEER_ROWS][PEER_NUISANCES]; /* of each row, from the nuisances */
     float row[PEER_ROWS][OWN];
-    int rows; /* that there are: a sequential update passes over the others */
+    int rows; /* used ones: a sequential update skips the others */
     float nuisance_root;
     float change[PEER_STATES];
     float nis;
@@ -48,7 +48,7 @@ void peer_prepare(int slot, const peer_case_t *given) {
     }
 }
 
-/* The joint noise of the rows is I + sigma^2 T T' = L L'; the rows become L^-1 times themselves. */
+/* The joint noise of the rows is I + sigma^2 T T' = L L'; the rows are multiplied by L^-1. */
 static void make_independent(state_t *state) {
     float l[PEER_ROWS][PEER_ROWS];
     float reciprocal[PEER_ROWS];
@@ -95,7 +95,7 @@ static void take_row(state_t *state, const float row[OWN]) {
         innovation -= row[j] * state->change[j];
         column += j + 1;
     }
-    float alpha = 1.0f; /* variance of the innovation, by the states so far */
+    float alpha = 1.0f; /* variance of the innovation, from the states so far */
     float reciprocal = 1.0f;
     column = state->factors;
     for (int j = 0; j < PEER_STATES; j++) {

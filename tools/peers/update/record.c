@@ -1,6 +1,6 @@
 /* Prints the measurement updates that the refined method makes over the embedded logs, one a line: triangle, 1/sigma of the
- * nuisances, rows. The linker's --wrap puts the functions called __wrap_... here in the place of the
- * library's; no other file knows their names.
+ * nuisances, rows. The linker's --wrap replaces the library's functions by those named
+ * __wrap_... here; no other file uses their names.
  * SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
@@ -9,7 +9,7 @@
 #include "replay.h"
 
 _Static_assert(GOE_STATES == PEER_STATES && GOE_NUISANCES == PEER_NUISANCES && GOE_ROWS_MAX == PEER_ROWS,
-               "job.h is of another filter");
+               "job.h describes another filter");
 
 float __real_goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float *change);
 float __wrap_goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float *change);

@@ -10,7 +10,7 @@
 
 #include "job.h"
 
-#define NOISE 2.0e-3f /* of a row, of its size: half a pixel in an image of 250 pixels */
+#define NOISE 2.0e-3f /* of a row, relative: half a pixel in an image of 250 pixels */
 
 static uint32_t state;
 

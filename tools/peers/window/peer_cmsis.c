@@ -40,7 +40,7 @@ void peer_solve(int slot) {
 #else
 #define WIDE_COLUMNS (DENSE_COLUMNS + 1)
 
-/* b as a fourth column: Q' b comes with R, and Q is not asked for. */
+/* b as a fourth column: gives Q' b together with R, without computing Q. */
 void peer_solve(int slot) {
     float32_t wide[DENSE_ROWS * WIDE_COLUMNS];
     float32_t triangle[DENSE_ROWS * WIDE_COLUMNS];

@@ -1,4 +1,4 @@
-/* The library's own: closed form, with all its checks and the sigmas of the answer. SPDX-License-Identifier: MIT */
+/* The library: closed form, with all its checks and the sigmas of the answer. SPDX-License-Identifier: MIT */
 #include <string.h>
 
 #include "peer.h"

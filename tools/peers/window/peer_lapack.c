@@ -11,7 +11,7 @@ static peer_answer_t answers[PEER_SLOTS];
 void peer_prepare(int slot, const peer_case_t *given) {
     float rows[DENSE_ROWS * DENSE_COLUMNS];
     dense_system(given, rows, given_b[slot]);
-    for (int i = 0; i < DENSE_ROWS; i++) { /* by column: what LAPACK computes with */
+    for (int i = 0; i < DENSE_ROWS; i++) { /* by column, as in LAPACK */
         for (int j = 0; j < DENSE_COLUMNS; j++) {
             given_a[slot][j * DENSE_ROWS + i] = rows[i * DENSE_COLUMNS + j];
         }

@@ -1,4 +1,4 @@
-/* TinyEKF: not a window, but what a filter's step costs: 3 states, 2 rows of one image, predicted and updated once.
+/* TinyEKF: not a window, but the cost of a filter's step: 3 states, 2 rows of one image, one prediction and update.
  * SPDX-License-Identifier: MIT */
 #define EKF_N 3
 #define EKF_M 2

@@ -1,8 +1,7 @@
 """The library over the hostile flights of ``attack``: a line of goals for each figure of a row.
 
-What the library tells besides (reasons of suspicion, the obstacle's velocity) is used where ``Track.more`` has the
-columns ``reason`` (named by ``reason_names``) and ``VELOCITY``; settings that it does not have are left out, with a
-word."""
+Reasons of suspicion and the obstacle's velocity are used if ``Track.more`` has the columns ``reason`` (named by
+``reason_names``) and ``VELOCITY``; settings that the library does not have are left out with a message."""
 
 from __future__ import annotations
 
@@ -32,7 +31,7 @@ from goe_tools.spread import each
 from ...attack import approach, judging, rows, scenario
 from ...attack.judging import Answers, Outcome
 from ...attack.rows import MOVES, Ask, Row
-from ...attack.scenario import Told
+from ...attack.scenario import Inputs
 from .goal import OPEN, Figures, Goal, Range, named
 from .work import Amount
 
@@ -41,25 +40,25 @@ PLANS = (
     Plan(approach.MARGIN_M, approach.CLEARANCE_M),
     Plan(approach.MARGIN_M, approach.CLEARANCE_M, grows=True),
 )
-TIME_LEAST_S = 2.0  # left, for a told time to go to be judged
-TIMED_S = 60.0  # of a mover's path, in which its closest approach is looked for
-RECORDED_MOST = {"px4": 3.0}  # percent told as moving, by the settings of that autopilot
+TIME_LEAST_S = 2.0  # smallest remaining time at which the reported time to go is judged
+TIMED_S = 60.0  # part of a moving obstacle's path that is searched for the closest approach
+RECORDED_MOST = {"px4": 3.0}  # percent flagged as moving, with the settings for that autopilot
 
 
-def images_of(told: Told, plans: tuple[Plan, ...] = ()) -> Images:
+def images_of(inputs: Inputs, plans: tuple[Plan, ...] = ()) -> Images:
     return Images(
-        told.time_s, told.position_ned_m, told.attitude, told.height_m, told.pixel_px, told.seen, told.box_px,
-        told.reset_count, told.reset_m, told.velocity_ned_m_s if plans else None, plans,
+        inputs.time_s, inputs.position_ned_m, inputs.attitude, inputs.height_m, inputs.pixel_px, inputs.seen,
+        inputs.box_px, inputs.reset_count, inputs.reset_m, inputs.velocity_ned_m_s if plans else None, plans,
     )  # fmt: skip
 
 
 def known(settings: dict[str, float]) -> dict[str, float]:
-    """Those that the library has."""
+    """The settings that the library has."""
     return {name: value for name, value in settings.items() if has_setting(name)}
 
 
 def reasons_of(track: Track) -> np.ndarray | None:
-    """(K,) why an obstacle is suspect, as text; None of a library that does not say."""
+    """(K,) reason of suspicion, as text; None if the library does not report reasons."""
     names = reason_names()
     if "reason" not in track.more or not names:
         return None
@@ -67,35 +66,37 @@ def reasons_of(track: Track) -> np.ndarray | None:
 
 
 def answers_of(track: Track, time_s: np.ndarray) -> Answers:
-    """The refined method's answers: the window's sigmas are not of the true error."""
+    """The refined method's answers: the window's sigmas do not describe the true error."""
     refined = track.method == METHODS["refined"]
     values, sigma = (np.where(refined[:, None], a, np.nan) for a in (track.values, track.sigma))
     points = track.points if track.points is not None else np.zeros(len(time_s), int)
-    restarted = np.append(False, np.diff(points) < 0)  # images behind the answer: they grow until all is forgotten
+    restarted = np.append(False, np.diff(points) < 0)  # images used: the number grows until a restart
     answers = Answers(time_s, values, sigma, track.model, track.status, track.suspect, restarted, reasons_of(track))
     if all(name in track.more for name in VELOCITY):
-        told = np.stack([track.more[name] for name in VELOCITY], 1)
-        there = (told[:, 2:] > 0.0).all(1)[:, None]
-        answers.velocity_m_s, answers.velocity_sigma_m_s = (np.where(there, told[:, i : i + 2], np.nan) for i in (0, 2))
+        velocity = np.stack([track.more[name] for name in VELOCITY], 1)
+        there = (velocity[:, 2:] > 0.0).all(1)[:, None]
+        parts = [np.where(there, velocity[:, i : i + 2], np.nan) for i in (0, 2)]
+        answers.velocity_m_s, answers.velocity_sigma_m_s = parts
     if track.hazard:
         answers.time_to_go_s = np.where(track.hazard["status"][:, 0] == 0, track.hazard["time_s"][:, 0], np.nan)
     return answers
 
 
 def perform(row: Row, number: int) -> tuple[Outcome, Figures]:
-    """A track of a row; of movers also the obstacle's velocity, and the true time to go as far as it is asked."""
-    told = scenario.fly(row.scenario, number)
+    """A track of a row; for moving obstacles also the velocity, and the true time to go up to the limit for judging."""
+    inputs = scenario.fly(row.scenario, number)
     timed = any(ask.line == attack_lines.TIME for ask in row.asked)
-    settings = {**told.settings, **row.settings, **known(row.if_known)}
-    track = run(images_of(told, PLANS[:1] if timed else ()), settings)
-    return judging.judge(answers_of(track, told.time_s), told.truth), _motion(told, timed)
+    settings = {**inputs.settings, **row.settings, **known(row.if_known)}
+    track = run(images_of(inputs, PLANS[:1] if timed else ()), settings)
+    return judging.judge(answers_of(track, inputs.time_s), inputs.truth), _motion(inputs, timed)
 
 
-def _motion(told: Told, timed: bool) -> Figures:
-    velocity = told.truth.velocity_ned_m_s
+def _motion(inputs: Inputs, timed: bool) -> Figures:
+    velocity = inputs.truth.velocity_ned_m_s
     result = {"north": float(velocity[0]), "east": float(velocity[1])}
     if timed:
-        first = approach.closest(told.truth, 0, told.truth.path_velocity_ned_m_s[0] - np.append(velocity, 0.0), TIMED_S)
+        path = inputs.truth.path_velocity_ned_m_s[0]
+        first = approach.closest(inputs.truth, 0, path - np.append(velocity, 0.0), TIMED_S)
         result["closest_s"] = first.time_s
     return result
 
@@ -105,8 +106,8 @@ def _lines(row: Row, results: Sequence[tuple[Outcome, Figures]]) -> dict[str, tu
     outcomes = [outcome for outcome, _ in results]
     suspected = judging.suspected(outcomes)
     lines: dict[str, tuple[str, Figures]] = {}
-    if row.section == "movers":
-        within = partial(judging.told_within, outcomes, MOVES)
+    if row.section == "moving obstacles":
+        within = partial(judging.flagged_within, outcomes, MOVES)
         lines[attack_lines.REASON] = (
             "%",
             {attack_lines.IN_4_S: within(4.0), attack_lines.IN_8_S: within(8.0), attack_lines.EVER: within(math.inf)},
@@ -129,18 +130,18 @@ def _lines(row: Row, results: Sequence[tuple[Outcome, Figures]]) -> dict[str, tu
         if any(ask.line == attack_lines.LATENESS for ask in row.asked):
             lines[attack_lines.LATENESS] = (
                 "%",
-                {attack_lines.FLAGGED: judging.told_within(outcomes, rows.LATE, attack_lines.FLAG_S)},
+                {attack_lines.FLAGGED: judging.flagged_within(outcomes, rows.LATE, attack_lines.FLAG_S)},
             )
         if any(ask.line == attack_lines.ODD for ask in row.asked):
             lines[attack_lines.ODD] = "%", {attack_lines.FLAGGED: judging.odd_within(outcomes, attack_lines.FLAG_S)}
         if any(ask.line == attack_lines.REASON for ask in row.asked):
-            lines[attack_lines.REASON] = "%", {attack_lines.EVER: judging.told_within(outcomes, MOVES, math.inf)}
+            lines[attack_lines.REASON] = "%", {attack_lines.EVER: judging.flagged_within(outcomes, MOVES, math.inf)}
     lines.setdefault(attack_lines.SUSPECT, ("%", suspected))
     return lines
 
 
-def _asked_names(ask: Ask, figures: Figures) -> tuple[str, ...]:
-    """Without names: all that are told, and the position in any case."""
+def _judged_names(ask: Ask, figures: Figures) -> tuple[str, ...]:
+    """Without names: all reported quantities, and always the position."""
     return ask.names or tuple(n for n, v in figures.items() if math.isfinite(v) or n in ("X0", "Z0"))
 
 
@@ -150,7 +151,7 @@ def goals_of(group: str, row: Row, results: Sequence[tuple[Outcome, Figures]]) -
         asks = [ask for ask in row.asked if ask.line == line]
         name = f"{row.title}: {line}"
         for i, ask in enumerate(asks):
-            names = _asked_names(ask, figures)
+            names = _judged_names(ask, figures)
             if i == 0:
                 goals.append(Goal(group, name, unit, figures, ask.wanted, names))
             else:  # another range, for other quantities
@@ -166,7 +167,7 @@ def tracks_of(row: Row, amount: Amount) -> range:
 
 
 def _recorded(group: str, amount: Amount) -> list[Goal]:
-    """Static obstacles beside recorded flights, by the settings of each autopilot: what of them is told as moving."""
+    """Static obstacles in recorded flights, with the settings for each autopilot: share flagged as moving."""
     by_autopilot: dict[str, list[Outcome]] = {}
     for part in range(1, amount.recorded_seeds + 1):
         for number, scene in enumerate(recorded_scenes(amount.recorded, seed=part)):
@@ -177,16 +178,17 @@ def _recorded(group: str, amount: Amount) -> list[Goal]:
     goals = []
     for autopilot, outcomes in by_autopilot.items():
         wanted: Range = (0.0, RECORDED_MOST[autopilot]) if autopilot in RECORDED_MOST else OPEN
-        told = {attack_lines.EVER: judging.told_within(outcomes, MOVES, math.inf)}
+        flagged = {attack_lines.EVER: judging.flagged_within(outcomes, MOVES, math.inf)}
         name = f"{autopilot}, {len(outcomes)} static obstacles: {attack_lines.REASON}"
-        goals.append(Goal(group, name, "%", told, wanted, (attack_lines.EVER,) if autopilot in RECORDED_MOST else ()))
+        judged = (attack_lines.EVER,) if autopilot in RECORDED_MOST else ()
+        goals.append(Goal(group, name, "%", flagged, wanted, judged))
     if not goals:
-        print("left out: recorded flights are not there")
+        print("left out: no recorded flights")
     return goals
 
 
 def attack_group(group: str, amount: Amount) -> list[Goal]:
-    """The whole table."""
+    """The goals of all rows."""
     goals, left_out = [], set()
     for row in rows.ROWS:
         results = each(partial(perform, row), tracks_of(row, amount), amount.workers, row.title)

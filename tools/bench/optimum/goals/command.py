@@ -1,8 +1,8 @@
-"""The command ``goals``: every figure that the project promises, beside the figure that is reached.
+"""The command ``goals``: every figure that the project promises, with its goal.
 
     python -m bench goals [--quick] [--only GROUP,...] [--json FILE] [--half HALF] [--jobs N | --scheduler ADDRESS]
 
-A new group of goals is a module beside this one and a line in ``GROUPS``.
+A new group of goals is a module in this folder and a line in ``GROUPS``.
 """
 
 from __future__ import annotations
@@ -54,22 +54,22 @@ ABSENT = {
     "float32": "the target goe_python_double is not built",
     "recorded": f"no flights in {RECORDED_FOLDER}",
     "kitti": f"no logs in {KITTI_FOLDER}",
-    "rivals": "the rivals are not there",
+    "rivals": "the rivals are not installed",
 }
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--quick", action="store_true", help="fewer flights: a minute instead of many, and no verdict")
+    parser.add_argument("--quick", action="store_true", help="fewer flights: takes a minute, gives no verdict")
     parser.add_argument("--only", metavar="GROUPS", help=f"some of {','.join(GROUPS)}")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="also write the figures to this file")
     parser.add_argument(
-        "--worst", type=int, default=0, metavar="N", help="name the N worst flights, errors in own sigmas"
+        "--worst", type=int, default=0, metavar="N", help="print the N worst flights, errors in sigmas"
     )
     parser.add_argument(
         "--half",
         choices=HALVES,
         default="judge",
-        help="tracks of the attacks; thresholds are settled by the other half",
+        help="tracks of the attacks; the other half is for tuning thresholds",
     )
     spread.add_arguments(parser)
 
@@ -79,15 +79,15 @@ def run(arguments: argparse.Namespace) -> int:
     for name in chosen:
         if name not in GROUPS:
             raise ValueError(f"--only {name}: not one of {', '.join(GROUPS)}")
-    ready()  # its absence is told before the work begins
-    told = {"workers": spread.workers_of(arguments), "worst": arguments.worst, "half": arguments.half}
-    amount = Amount(**{**vars(QUICK if arguments.quick else FULL), **told})
+    ready()  # reports a missing library before the work starts
+    options = {"workers": spread.workers_of(arguments), "worst": arguments.worst, "half": arguments.half}
+    amount = Amount(**{**vars(QUICK if arguments.quick else FULL), **options})
     goals: list[Goal] = []
     for name in chosen:
         found = GROUPS[name](name, amount)
         if arguments.quick:
             found = [replace(goal, asked=()) for goal in found]  # too few flights for a verdict
-        print_group(name, found, ABSENT.get(name, "nothing to tell"))
+        print_group(name, found, ABSENT.get(name, "no goals"))
         goals += found
     asked = [goal for goal in goals if goal.met is not None]
     print(

@@ -1,4 +1,4 @@
-"""How soon the range is known."""
+"""Time at which the range is known."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from .measures import by_obstacle
 from .outcome import Outcome, Task
 from .work import Amount, perform_all
 
-KNOWN_SHARE = 0.1  # the range counts as known when two sigma are less than this share of it
+KNOWN_SHARE = 0.1  # the range is known if two sigma are less than this share of it
 
 
 def _known_since(outcome: Outcome, good: np.ndarray) -> float:
-    """Seconds before the obstacle is reached from which on ``good`` (K,) holds until the end; 0: never."""
+    """Seconds before the obstacle is reached from which ``good`` (K,) is true until the end; 0: never."""
     bad = np.flatnonzero(~good)
     start = bad[-1] + 1 if len(bad) else 0
     return outcome.reach_s - float(outcome.time_s[start]) if start < len(good) else 0.0
 
 
 def early_group(group: str, amount: Amount) -> list[Goal]:
-    """How soon the range is known: the time that is left to fly around."""
+    """Time at which the range is known, that is, the time left to fly around."""
     result = []
     for noise in ("rounding", "field"):
         tasks = [Task(scene, NOISES[noise], (1, number)) for number, scene in enumerate(paper_scenes())]

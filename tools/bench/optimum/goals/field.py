@@ -1,4 +1,4 @@
-"""The errors of real sensors: against the window method, the offline fit and the own sigmas."""
+"""The errors of real sensors: comparison with the window method, the offline fit and the reported sigmas."""
 
 from __future__ import annotations
 

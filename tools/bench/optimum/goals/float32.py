@@ -1,4 +1,4 @@
-"""What the rounding of float32 does to the answers."""
+"""Effect of float32 rounding on the answers."""
 
 from __future__ import annotations
 

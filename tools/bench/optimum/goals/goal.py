@@ -11,15 +11,16 @@ from goe_tools.models.judge import ORIENTATION
 
 NAMES = ("X0", "Z0", "orientation", "W", "L", "H")
 ALL = tuple(range(6))
-UNITS = np.where(np.arange(6) == ORIENTATION, 180.0 / math.pi, 1.0)  # angles are told in degrees
+UNITS = np.where(np.arange(6) == ORIENTATION, 180.0 / math.pi, 1.0)  # angles are shown in degrees
 Figures = dict[str, float]
-Range = tuple[float, float]  # what is wanted, ends included
+Range = tuple[float, float]  # wanted range, including its ends
 OPEN = (-math.inf, math.inf)
 
 
 @dataclass
 class Goal:
-    """A line of the table. ``wanted`` holds for the values named in ``asked``; without, it is told for information."""
+    """A line of the table. ``wanted`` applies to the values named in ``asked``; without names the line is
+    information."""
 
     group: str
     name: str

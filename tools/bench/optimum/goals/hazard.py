@@ -1,4 +1,4 @@
-"""Warnings by the library's decision rule, over thousands of straight passes, near misses and collision courses."""
+"""Warnings from the library's decision rule, over thousands of straight passes, near misses and collision courses."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ from .work import Amount
 
 COVERED = (90.0, 100.0)
 FALSE_MOST = (0.0, 15.0)
-LEVELS = tuple(f"{low:g} to {high:g}" for low, high in zip(approach.BINS, approach.BINS[1:]))  # that are judged
+LEVELS = tuple(f"{low:g} to {high:g}" for low, high in zip(approach.BINS, approach.BINS[1:]))  # bins that are judged
 
 
 def perform(row: HazardRow, number: int) -> Run:
-    told = scenario.fly(row.scenario, number)
-    track = run(images_of(told, PLANS), {**told.settings, **known(row.if_known)})
+    inputs = scenario.fly(row.scenario, number)
+    track = run(images_of(inputs, PLANS), {**inputs.settings, **known(row.if_known)})
     there = track.hazard["status"] == 0
     plain = {name: np.where(there[:, 0], values[:, 0], np.nan) for name, values in track.hazard.items()}
     height = plain["has_clearance"] == 1.0
     warnings = Warnings(
-        told.time_s, track.method == METHODS["refined"], plain["time_s"], plain["time_sd_s"], plain["miss_m"],
+        inputs.time_s, track.method == METHODS["refined"], plain["time_s"], plain["time_sd_s"], plain["miss_m"],
         plain["miss_sd_m"], np.where(height, plain["clearance_m"], np.nan), plain["clearance_sd_m"], plain["violation"],
         track.hazard["act"][:, 1],
     )  # fmt: skip
-    return Run(warnings, approach.closest(told.truth))
+    return Run(warnings, approach.closest(inputs.truth))
 
 
 def goals_of(group: str, row: HazardRow, runs: Sequence[Run]) -> list[Goal]:
-    told = approach.probabilities(runs)
-    off = {level: abs(told[level][0] - told[level][1]) if level in told else math.nan for level in LEVELS}
-    judged = tuple(level for level in LEVELS if level in told and told[level][2] >= approach.BIN_LEAST)
+    found = approach.probabilities(runs)
+    off = {level: abs(found[level][0] - found[level][1]) if level in found else math.nan for level in LEVELS}
+    judged = tuple(level for level in LEVELS if level in found and found[level][2] >= approach.BIN_LEAST)
     coverage = approach.coverage(runs)
     unwarned, false = {"violators": approach.unwarned(runs)}, {"passes": approach.false_warnings(runs)}
     return [
-        Goal(group, f"{row.name}: {attack_lines.TRUE_SHARE}", "1", {level: t[1] for level, t in told.items()}),
-        Goal(group, f"{row.name}: {attack_lines.OFF}", "1", off, (0.0, row.told_within), judged or LEVELS),
+        Goal(group, f"{row.name}: {attack_lines.TRUE_SHARE}", "1", {level: t[1] for level, t in found.items()}),
+        Goal(group, f"{row.name}: {attack_lines.OFF}", "1", off, (0.0, row.error_max), judged or LEVELS),
         Goal(group, f"{row.name}: {attack_lines.COVERED}", "%", coverage, COVERED, tuple(coverage)),
         Goal(group, f"{row.name}: {attack_lines.UNWARNED}", "%", unwarned, (0.0, row.unwarned_most),
              ("violators",)),

@@ -1,4 +1,4 @@
-"""KITTI's cars: how far the parked ones are off, and whether the moving ones are told."""
+"""KITTI's cars: errors of the parked ones, and detection of the moving ones."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ FALSE_ALLOWED = 0.05
 
 
 def caught(static: np.ndarray, moving: np.ndarray, false_share: float) -> float:
-    """Percent of the moving ones above a threshold that so many of the static ones exceed at most."""
+    """Percent of the moving ones above the threshold that at most this share of the static ones exceeds."""
     allowed = math.floor(false_share * len(static) + 1e-9)
     threshold = np.sort(static)[::-1][allowed]
     return 100.0 * float(np.mean(moving > threshold))
 
 
 def flag_goals(group: str, static: Sequence[Outcome], moving: Sequence[Outcome]) -> list[Goal]:
-    """How much of what moves the misfit catches at a share of false flags: its largest value, and its last."""
+    """Share of moving obstacles that the misfit detects at a share of false flags: its largest value, and its last."""
     result = []
-    told = (
+    kinds = (
         ("misfit_most", f"{len(moving)} moving cars caught, at a share of false flags", "misfit as a flag", True),
         ("misfit", "caught by the last misfit instead of the largest", "last misfit as a flag", False),
     )
-    for field_name, caught_name, area_name, asked in told:
+    for field_name, caught_name, area_name, asked in kinds:
         scores = [np.array([getattr(o, field_name) for o in cars]) for cars in (static, moving)]
         curve = {f"{100 * share:g} %": caught(*scores, share) for share in FALSE_FLAGS}
         wanted = (f"{100 * FALSE_ALLOWED:g} %",) if asked else ()
@@ -45,7 +45,7 @@ def flag_goals(group: str, static: Sequence[Outcome], moving: Sequence[Outcome])
 
 
 def kitti_group(group: str, amount: Amount) -> list[Goal]:
-    """KITTI's cars, detector boxes and all."""
+    """KITTI's cars with detector boxes."""
     flights = [f for f in kitti_flights() if f.path_m() > KITTI_PATH_M]
     if not flights:
         return []
@@ -55,7 +55,7 @@ def kitti_group(group: str, amount: Amount) -> list[Goal]:
     result = []
     for label, method, asked in (("refined", "refined", True), ("window", "window", False)):
         error = np.abs(ends(static, method))
-        error[np.isnan(error)] = math.inf  # no answer is worse than any
+        error[np.isnan(error)] = math.inf  # no answer counts as the worst
         z = 100.0 * error[:, Z0] / np.array([o.truth.z0_m for o in static])
         values = {"median": float(np.median(z)), "90th": float(np.sort(z)[math.ceil(0.9 * len(z)) - 1])}
         wanted = ("median",) if asked else ()
@@ -75,5 +75,5 @@ def kitti_group(group: str, amount: Amount) -> list[Goal]:
     flags = {
         name: 100.0 * float(np.mean([o.suspect for o in c])) for name, c in (("parked", static), ("moving", moving))
     }
-    result.append(Goal(group, "told as suspect with the default threshold", "%", flags))
+    result.append(Goal(group, "flagged as suspect with the default threshold", "%", flags))
     return result

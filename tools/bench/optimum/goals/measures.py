@@ -1,4 +1,4 @@
-"""Goals that several groups make of their outcomes: efficiency, coverage, consistency, the window method beside."""
+"""Goals shared by several groups: efficiency, coverage, consistency, comparison with the window method."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def by_obstacle(outcomes: Sequence[Outcome]) -> dict[str, list[Outcome]]:
 
 
 def efficiency(outcomes: Sequence[Outcome]) -> np.ndarray:
-    """(cases, 6): RMSE over the seeds at the end of the run over the bound, of each case."""
+    """(cases, 6): RMSE over the seeds at the end of the run, divided by the bound, for each case."""
     by_case: dict[str, list[np.ndarray]] = {}
     for o in outcomes:
         if o.bound is not None:
@@ -67,7 +67,7 @@ def _share(hits: np.ndarray, there: np.ndarray) -> np.ndarray:
 
 
 def coverage_goals(group: str, outcomes: Sequence[Outcome], wanted: Range = COVERAGE, asked: bool = True) -> list[Goal]:
-    """How often the truth lies within two sigma: over all images with an answer, in the first of them, at the end."""
+    """Share of the truth within two sigma: over all images with an answer, in the first of them, at the end."""
     result = []
     for label, box in (("boxes", True), ("cylinders", False)):
         chosen = [o for o in outcomes if o.box == box]
@@ -100,7 +100,7 @@ def coverage_goals(group: str, outcomes: Sequence[Outcome], wanted: Range = COVE
 
 
 def nees(outcome: Outcome) -> float:
-    """Normalised error squared over the number of quantities at the end; NaN unless all are answered."""
+    """Normalized error squared over the number of quantities at the end; NaN unless all have an answer."""
     numbers = np.arange(6) if outcome.box else np.flatnonzero(DISC_QUANTITIES)
     error = outcome.refined.error[-1, numbers]
     covariance = outcome.covariance[np.ix_(numbers, numbers)]
@@ -138,7 +138,7 @@ def consistency_goals(group: str, outcomes: Sequence[Outcome], asked: bool) -> l
 def window_goals(
     group: str, outcomes: Sequence[Outcome], ratio: float, asked: Sequence[int], worse_asked: bool = True
 ) -> list[Goal]:
-    """Median errors at the end against the window method's on the same flights."""
+    """Median errors at the end compared with the window method's on the same flights."""
     ours, theirs = np.abs(ends(outcomes)), np.abs(ends(outcomes, "window"))
     sigma = np.array([o.refined.sigma[-1] for o in outcomes])
     both = np.isfinite(ours) & np.isfinite(theirs)
@@ -179,11 +179,11 @@ def start_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
 
 
 def suspect_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
-    """How often obstacles that do stand still are told as suspect, in whatever image, and how near the others come."""
+    """Share of static obstacles flagged as suspect in any image, and the misfit of the others."""
     flagged = {"in any image": 100.0 * float(np.mean([o.suspect for o in outcomes]))}
     most = np.array([o.misfit_most for o in outcomes])
     values = {"median": float(np.median(most)), "99th": float(np.quantile(most, 0.99)), "most": float(most.max())}
     return [
-        Goal(group, f"static, yet told as suspect, {len(outcomes)} flights", "%", flagged),
+        Goal(group, f"static, but flagged as suspect, {len(outcomes)} flights", "%", flagged),
         Goal(group, "largest misfit of a flight", "1", values),
     ]

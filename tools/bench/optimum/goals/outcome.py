@@ -1,4 +1,4 @@
-"""A flight to be judged, and what the methods make of it."""
+"""A flight and the results of the methods."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from goe_tools.models import offline
 from goe_tools.models.bound import bound
 from goe_tools.models.judge import DISC_QUANTITIES, ORIENTATION, X0, Z0, Judgement, judge, renamed, renamed_sigma
 
-SUSPECT_IMAGES = 8  # before which the library suspects nothing
+SUSPECT_IMAGES = 8  # earliest image that the library may flag
 
 
 @dataclass
@@ -31,7 +31,7 @@ class Task:
 
 @dataclass
 class Outcome:
-    """One flight: what the refined method and the window method answer, image by image."""
+    """One flight: answers of the refined method and the window method, image by image."""
 
     name: str
     group: str
@@ -59,13 +59,13 @@ class Outcome:
 
 
 def _refined_only(track: Track) -> Track:
-    """Without the answers that the window method gave before the refined one had started: their sigmas mean less."""
+    """Without the window method's answers before the start of the refined method, whose sigmas mean less."""
     track.values[track.method != METHODS["refined"]] = np.nan
     return track
 
 
 def _misfit_most(track: Track) -> float:
-    """The largest misfit from the image on from which it counts."""
+    """The largest misfit from the first image at which it counts."""
     return float(track.misfit[np.cumsum(track.nis_rows > 0) >= SUSPECT_IMAGES].max(initial=0.0))
 
 
@@ -104,7 +104,7 @@ def _offline_error(flight: Flight) -> np.ndarray:
 
 
 def _rival_errors(flight: Flight) -> dict[str, np.ndarray]:
-    """Errors (6,) of the rivals at the end of a flight; nothing where they are not installed."""
+    """Errors (6,) of the rivals at the end of a flight; empty if they are not installed."""
     try:
         from .. import rivals
     except ImportError:
@@ -117,13 +117,13 @@ def _rival_errors(flight: Flight) -> dict[str, np.ndarray]:
     return result
 
 
-def _rival_error(flight: Flight, told: dict[str, float]) -> np.ndarray:
-    values = np.array([told.get(name, math.nan) for name in QUANTITIES])
+def _rival_error(flight: Flight, answers: dict[str, float]) -> np.ndarray:
+    values = np.array([answers.get(name, math.nan) for name in QUANTITIES])
     truth, box = flight.truth, flight.truth.kind == "box"
     error = values - truth.values
     if not box:
         error[~DISC_QUANTITIES] = np.nan
-    elif told.get("box", 0.0) > 0.5:
+    elif answers.get("box", 0.0) > 0.5:
         if abs(fold(error[ORIENTATION])) > math.pi / 4:
             others = [values - renamed(truth.values, side) for side in (-1, 1)]
             error = min(others, key=lambda e: abs(e[X0]) + abs(e[Z0]))

@@ -39,7 +39,7 @@ def print_goal(goal: Goal) -> None:
 
 
 def print_worst(title: str, outcomes: Sequence[Outcome], count: int) -> None:
-    """Names the flights whose answers at the end are farthest from the truth by their own measure."""
+    """Prints the flights with the largest normalized errors at the end."""
     ratios = np.nan_to_num(np.array([nees(o) for o in outcomes]))
     for i in np.argsort(-ratios)[:count]:
         o = outcomes[i]
@@ -50,7 +50,7 @@ def print_worst(title: str, outcomes: Sequence[Outcome], count: int) -> None:
 
 
 def print_group(name: str, goals: Sequence[Goal], absent: str) -> None:
-    """``absent``: why there are none."""
+    """``absent``: the reason if there are none."""
     for title in dict.fromkeys(goal.group for goal in goals):
         heads = "".join(f"{head:>9.9}" for head in ("X0", "Z0", "orient.", "W", "L", "H"))
         print(f"\n{title:60.60}{'wanted':>14}{heads}")

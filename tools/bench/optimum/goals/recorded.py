@@ -1,4 +1,4 @@
-"""Recorded flights of autopilots, whose own filters' errors the estimator gets."""
+"""Recorded flights of autopilots, with the errors of their filters."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .work import Amount, perform_all
 
 
 def recorded_group(group: str, amount: Amount) -> list[Goal]:
-    """Recorded flights of real autopilots past obstacles put there."""
+    """Recorded flights of real autopilots past added obstacles."""
     result: list[Goal] = []
     scenes = [s for seed in range(amount.recorded_seeds) for s in recorded_scenes(amount.recorded, seed=seed + 1)]
     for autopilot in sorted({scene.group for scene in scenes}):

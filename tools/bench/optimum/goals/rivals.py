@@ -1,4 +1,4 @@
-"""Other people's methods on the same flights."""
+"""Other published methods on the same flights."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .work import Amount, drawn, perform_all, simulated_tasks
 
 
 def rivals_group(group: str, amount: Amount) -> list[Goal]:
-    """Other people's methods on the same flights."""
+    """Other published methods on the same flights."""
     result = []
     for noise in ("gauss1", "field"):
         tasks = drawn(simulated_tasks(noise, 1, amount, rivals=True), amount.rivals)

@@ -1,4 +1,4 @@
-"""The paper's Table 3: how many times better, and what no estimator can better."""
+"""The paper's Table 3: the factor of improvement, and the lower bound of any estimator."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TABLE3_NUMBERS = dict(zip(TABLE3_QUANTITIES, (Z0, X0, WIDTH, LENGTH, HEIGHT)))
 
 
 def _extent(outcome: Outcome, quantity: int) -> float:
-    """|mean| + 2 sigma of the last answers' errors in Table 3's unit: percent, or metres for the height."""
+    """|mean| + 2 sigma of the last answers' errors in Table 3's unit: percent, or meters for the height."""
     errors = outcome.refined.error[:, quantity]
     known = errors[np.isfinite(errors)]
     if not len(known):
@@ -38,7 +38,7 @@ def _extent(outcome: Outcome, quantity: int) -> float:
 
 
 def _bound_when_judged(task: Task) -> np.ndarray:
-    """(6,) two sigma of the Cramer-Rao bound at the time from which Table 3 judges, in its units."""
+    """(6,) two sigma of the Cramer-Rao bound at the start of Table 3's statistics, in its units."""
     flight = measure(task.scene, task.noise, task.seed)
     seen = flight.seen.copy()
     seen[int((1 - FRACTION) * len(seen)) :] = False
@@ -51,7 +51,7 @@ def _bound_when_judged(task: Task) -> np.ndarray:
 
 
 def table3_bounds(group: str, tasks: Sequence[Task], outcomes: Sequence[Outcome], amount: Amount) -> list[Goal]:
-    """What no unbiased estimator can better: the bound with the images up to the first one that Table 3 judges."""
+    """Lower bound of any unbiased estimator, from the images up to the first one in Table 3's statistics."""
     bounds = dict(zip([id(o) for o in outcomes], each(_bound_when_judged, tasks, amount.workers, f"{group} bounds")))
     result = []
     for obstacle, chosen in by_obstacle(outcomes).items():
@@ -63,7 +63,7 @@ def table3_bounds(group: str, tasks: Sequence[Task], outcomes: Sequence[Outcome]
 
 
 def table3_group(group: str, amount: Amount) -> list[Goal]:
-    """Table 3 of the paper on its own 156 cases: whole pixels, no other error."""
+    """Table 3 of the paper on its 156 cases: whole pixels, no other error."""
     tasks = [Task(scene, NOISES["rounding"], (1, number)) for number, scene in enumerate(paper_scenes())]
     outcomes = perform_all(tasks, amount, group)
     result = []

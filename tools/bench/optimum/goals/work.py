@@ -1,4 +1,4 @@
-"""How many flights are flown, and in how many processes."""
+"""Number of flights and processes."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from .output import print_worst
 
 @dataclass
 class Amount:
-    """How much is computed."""
+    """Amount of computation."""
 
     seeds: int
     field_seeds: int
     random: int
-    offline: int  # of the first seed's flights with field noise, drawn at random
+    offline: int  # flights of the first seed with field noise, drawn at random
     rivals: int  # likewise
     recorded: int  # passes of each recorded flight and seed
     recorded_seeds: int
@@ -31,9 +31,9 @@ class Amount:
     boxes: int  # flights of each case of upright boxes
     attack: int  # tracks of each attack
     hazard: int  # runs of each row of warnings
-    half: str = "judge"  # of the attacks' tracks: what settles a threshold must not judge it
+    half: str = "judge"  # of the attacks' tracks: one half tunes thresholds, the other judges
     workers: Workers = ALONE
-    worst: int = 0  # flights to be named, those of the largest NEES
+    worst: int = 0  # flights to print, those with the largest NEES
 
 
 QUICK = Amount(
@@ -62,6 +62,6 @@ def simulated_tasks(noise: str, seeds: int, amount: Amount, **options: object) -
 
 
 def drawn(tasks: list[Task], count: int) -> list[Task]:
-    """Some of the tasks, the same ones every time."""
+    """A random choice of the tasks, the same in every run."""
     order = np.random.default_rng(3).permutation(len(tasks))[:count]
     return [tasks[i] for i in sorted(order)]

@@ -1,10 +1,10 @@
-"""Other people's ways to the same quantities, written from their mathematics, for comparison on the same flights.
+"""Other published methods, written from their mathematics, for comparison on the same flights.
 
-Each rival takes a ``Track`` and gives quantities and, with ``_sd`` before the unit, its own one-sigma; what it does not
-estimate is absent, and nothing is told (an empty dict) from too few images or without parallax. ``box`` is 1 where
-x0, z0 are the middle of the front edge and 0 where they are the axis of a disc (for a box: of the disc in its place).
+Each rival takes a ``Track`` and returns quantities and, with ``_sd`` before the unit, their one-sigmas. Quantities that
+it does not estimate are absent; without enough images or parallax the result is an empty dict. ``box`` is 1 if x0, z0
+are the middle of the front edge and 0 if they are the axis of a disc (for a box: of the disc that replaces it).
 
-All take the own pose as exact, so that their sigmas know nothing of its errors. They are given the association of the
+All take the pose as exact, so their sigmas do not include its errors. They get the association of the
 corners, the noise of points and attitude, and Huber's weights against outliers.
 """
 
@@ -37,5 +37,6 @@ def missing() -> dict[str, str]:
 
 
 def history(name: str, track: Track, every: int = 1) -> list[Values]:
-    """The rival's answer after every ``every``-th image (empty dicts before it has one); cost grows with K squared."""
+    """The rival's answer after every ``every``-th image (empty dicts before the first one); cost grows with K
+    squared."""
     return [RIVALS[name](track.until(count)) for count in range(every, len(track) + 1, every)]

@@ -2,8 +2,8 @@
 
 With the measured unit vector g to the axis, n across it, and c the camera, a disc of width W at p obeys
   n'(p - c) = 0,   g'(p - c) - W / (2 sin(angle / 2)) = 0,
-linear in (p, W) as the measured directions stand in for the true ones. That is the method's known flaw: the
-coefficients carry the measurement's own noise, and the answer gets a bias of second order in it.
+linear in (p, W) because the measured directions replace the true ones. That is the method's known flaw: the
+coefficients contain the measurement noise, which biases the answer to second order.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ KNOWN = 0.3  # relative sigma from which the width counts as known
 
 
 def bearing_angle(track: Track) -> Values:
-    """Place of the axis and width; for a box, of the disc that stands in for it."""
+    """Place of the axis and width; for a box, those of the disc that replaces it."""
     outline = Silhouette.of(track)
     if len(outline.rows) < MIN_IMAGES:
         return {}

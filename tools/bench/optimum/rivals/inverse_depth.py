@@ -1,7 +1,7 @@
 """Extended Kalman filter with an inverse-depth point: anchor, azimuth, elevation, inverse distance from the anchor.
 
-The parametrisation of Civera, Davison and Montiel (IEEE Transactions on Robotics 24, 2008). Poses are given, so that
-the points share nothing and every point is a filter of three states; the anchor is the camera of the first image.
+The parametrization of Civera, Davison and Montiel (IEEE Transactions on Robotics 24, 2008). Poses are given, so points
+are independent and each is a filter of three states; the anchor is the camera of the first image.
   v = inverse (anchor - camera) + m(azimuth, elevation),  measured: atan2(vx, vz), atan2(vy, |vx, vz|)
 """
 
@@ -13,12 +13,12 @@ from .kalman import update
 from .points import Located, Values, estimate
 from .track import MIN_IMAGES, Track
 
-NEAREST = 30.0  # m, the prior's two-sigma interval reaches from here to infinity: for obstacles seen from the air
-WORST = 0.25  # relative sigma of the inverse distance beyond which nothing is told
+NEAREST = 30.0  # m, the prior's two-sigma interval is from here to infinity, for obstacles viewed from the air
+WORST = 0.25  # relative sigma of the inverse distance above which there is no answer
 
 
 def inverse_depth(track: Track) -> Values:
-    """Every corner (or the cylinder's axis) filtered alone, image by image."""
+    """Filters every corner (or the cylinder's axis) separately, image by image."""
     return estimate(track, locate) if len(track) >= MIN_IMAGES else {}
 
 
@@ -34,7 +34,7 @@ def direction(azimuth: float, elevation: float) -> tuple[np.ndarray, np.ndarray]
 
 
 def predict(state: np.ndarray, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Angles seen from a camera at anchor - offset, and their derivatives (2,3) by the state."""
+    """Angles from a camera at anchor - offset, and their derivatives (2,3) by the state."""
     unit, turned = direction(state[0], state[1])
     x, y, z = state[2] * offset + unit
     level2 = x * x + z * z
@@ -44,18 +44,18 @@ def predict(state: np.ndarray, offset: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def locate(rays: np.ndarray, cameras: np.ndarray, sigma: float) -> Located:
-    """Runs the filter over the images; None while the distance is not known."""
+    """Runs the filter over the images; None while the distance is unknown."""
     measured = angles(rays)
     inverse = 0.5 / NEAREST
     state = np.array([*measured[0], inverse])
     covariance = np.diag([(sigma / np.cos(state[1])) ** 2, sigma**2, (0.5 * inverse) ** 2])
-    for seen, camera in zip(measured[1:], cameras[1:]):
-        passed = direction(*seen)[0] @ (state[2] * (cameras[0] - camera) + direction(*state[:2])[0]) <= 0
-        if passed:  # by the camera, if the filter is right: no angle of a place behind can be compared
+    for angle, camera in zip(measured[1:], cameras[1:]):
+        passed = direction(*angle)[0] @ (state[2] * (cameras[0] - camera) + direction(*state[:2])[0]) <= 0
+        if passed:  # the camera has passed the point, according to the filter: an angle behind cannot be compared
             continue
         expected, gradient = predict(state, cameras[0] - camera)
-        noise = np.diag([(sigma / np.cos(seen[1])) ** 2, sigma**2])
-        state, covariance = update(state, covariance, gradient, seen - expected, noise)
+        noise = np.diag([(sigma / np.cos(angle[1])) ** 2, sigma**2])
+        state, covariance = update(state, covariance, gradient, angle - expected, noise)
     if state[2] <= 0 or covariance[2, 2] > (WORST * state[2]) ** 2:
         return None
     unit, turned = direction(state[0], state[1])

@@ -1,7 +1,7 @@
 """Straight-line fit of the inverse apparent size against the distance travelled (Atherton et al., BMVC 1991).
 
-For a disc the depth over the width is cos(bearing) / (2 sin(angle / 2)) = Z0/W - dZ/W: a straight line in the distance
-travelled forwards, on any path. Its slope is 1/W, its zero is Z0; X0 is the mean of what the bearings then give.
+For a disc the depth over the width is cos(bearing) / (2 sin(angle / 2)) = Z0/W - dZ/W: a straight line in the forward
+distance, on any path. Its slope is 1/W, its zero is Z0; X0 is the mean over the bearings.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from .points import Values
 from .track import HUBER, MIN_IMAGES, Silhouette, Track
 
 ROUNDS = 5  # of the weights
-WORST = 0.5  # relative sigma of the slope beyond which nothing is told
+WORST = 0.5  # relative sigma of the slope above which there is no answer
 WORST_CONDITION = 1e15
 
 
 def inverse_size(track: Track) -> Values:
-    """Place of the axis and width; for a box, of the disc that stands in for it."""
+    """Place of the axis and width; for a box, those of the disc that replaces it."""
     outline = Silhouette.of(track)
     if len(outline.rows) < MIN_IMAGES:
         return {}
@@ -52,8 +52,8 @@ def inverse_size(track: Track) -> Values:
 def fit_line(travelled: np.ndarray, depth: np.ndarray, sigma: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     """depth = start - slope travelled: (start, slope) and covariance (2,2); sigma (n,) of an inverse depth.
 
-    An inverse size is noisier by its square. That is taken first from the measured size, then from the line: weights
-    that follow the noise of the values they weigh pull the line down.
+    The noise of an inverse size grows with its square. It is computed first from the measured size, then from the line:
+    weights that depend on the noisy values themselves would bias the line downwards.
     """
     if np.ptp(travelled) <= 0:
         return None

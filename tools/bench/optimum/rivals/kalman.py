@@ -1,4 +1,4 @@
-"""The update that both Kalman filters share."""
+"""The update shared by both Kalman filters."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .track import HUBER
 def update(
     state: np.ndarray, covariance: np.ndarray, rows: np.ndarray, innovation: np.ndarray, noise: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """One update, Joseph form; an unlikely image is given more noise (Huber's weight) and so keeps some say."""
+    """One update, Joseph form; adds noise to an unlikely image (Huber's weight) instead of rejecting it."""
     spread = rows @ covariance @ rows.T + noise
     excess = np.sqrt(innovation @ np.linalg.solve(spread, innovation)) / HUBER
     if excess > 1:

@@ -1,9 +1,9 @@
-"""From single located points to the obstacle: what every point-wise method needs around it.
+"""From single located points to the obstacle: the common part of all point-wise methods.
 
-A method that locates points knows no box and no cylinder. Which image points are one and the same corner is settled
-here, for all such methods alike: while the near corner is in view the three base corners stay the same ones, and
-likewise while it is not; the longest such stretch of images is used. A cylinder has no corners; but the bisector of
-its tangents passes through its axis in every image, so that the axis is located as a point.
+A method that locates points does not model boxes or cylinders. This file associates image points with corners, for all
+such methods: while the near corner stays visible, the three base corners keep their identity, and likewise while it
+stays invisible; the longest such sequence of images is used. A cylinder has no corners, but the bisector of
+its tangents passes through its axis in every image, so the axis is located as a point.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Located = Optional[tuple[np.ndarray, np.ndarray]]  # point (3,) m and its covari
 Locate = Callable[[np.ndarray, np.ndarray, float], Located]  # aligned points (n,2), cameras (n,3) m, sigma
 Values = dict[str, float]
 
-TWO_FACES_SHARE = 0.25  # a stretch with two faces gives all sides: it is taken from this share of the images on
+TWO_FACES_SHARE = 0.25  # a sequence with two faces gives all sides: it is preferred from this share of the images on
 OUTLIER = 5.0  # robust sigmas
 STEP = 1e-4  # m, for numerical derivatives
 RIM_WANDER = 0.125  # of the width
@@ -27,13 +27,13 @@ FLAT = [0, 2]  # X and Z of a point
 
 
 def estimate(track: Track, locate: Locate) -> Values:
-    """Box if its base corners are seen, cylinder otherwise; empty if neither can be located."""
+    """Box if its base corners are visible, otherwise cylinder; empty if neither can be located."""
     stretch = corner_stretch(track)
     return cylinder(track, locate) if stretch is None else box(track, locate, *stretch)
 
 
 def corner_stretch(track: Track) -> tuple[np.ndarray, list[int]] | None:
-    """Image numbers (n,) in which the base corners keep their identity, and which corners those are."""
+    """Image numbers (n,) in which the base corners keep their identity, and which corners they are."""
     left, near, right = track.seen[:, [BASE_LEFT, BASE_NEAR, BASE_RIGHT]].T
     faces = np.where(near & (left | right), 2, np.where(left & right & ~near, 1, 0))
     rows = np.flatnonzero(faces)
@@ -46,7 +46,7 @@ def corner_stretch(track: Track) -> tuple[np.ndarray, list[int]] | None:
 
 
 def located(track: Track, locate: Locate, rows: np.ndarray, feature: int) -> Located:
-    """One feature's point from the images ``rows`` in which it is seen."""
+    """Locates one feature from the images ``rows`` in which it is visible."""
     rows = rows[track.seen[rows, feature]]
     if len(rows) < MIN_IMAGES:
         return None
@@ -54,7 +54,7 @@ def located(track: Track, locate: Locate, rows: np.ndarray, feature: int) -> Loc
 
 
 def box(track: Track, locate: Locate, rows: np.ndarray, corners: list[int]) -> Values:
-    """Two or three base corners and the top, each located alone -> the box."""
+    """Two or three base corners and the top, each located separately -> the box."""
     found = [located(track, locate, rows, feature) for feature in corners]
     if any(f is None for f in found):
         return {}
@@ -88,7 +88,7 @@ def edge_weights(corners: np.ndarray, covariances: list[np.ndarray]) -> np.ndarr
 def box_quantities(points: np.ndarray, corners: int, weights: np.ndarray) -> np.ndarray:
     """x0, z0, orientation, width[, length][, height] from base corners, left to right, and then the top.
 
-    One edge alone is called the front; of two, the one more square to Z. Orientation: of the length axis, from Z
+    A single edge is called the front; of two, the one more perpendicular to Z. Orientation: of the length axis, from Z
     towards X, rad.
     """
     base, top = points[:corners], points[corners:]
@@ -99,7 +99,7 @@ def box_quantities(points: np.ndarray, corners: int, weights: np.ndarray) -> np.
         half_turn = np.pi * np.round(angles[0] / np.pi)
         middle = base[:, FLAT].mean(0)
         return np.array([*middle, angles[0] - half_turn, np.linalg.norm(edges[0]), *height])
-    angle = np.angle(np.sum(weights * np.exp(4j * angles))) / 4  # box sides are alike modulo a quarter turn
+    angle = np.angle(np.sum(weights * np.exp(4j * angles))) / 4  # box sides are equal modulo a quarter turn
     width_axis = np.array([np.cos(angle), -np.sin(angle)])
     length_axis = np.array([np.sin(angle), np.cos(angle)])
     share = np.abs(edges @ width_axis) / np.linalg.norm(edges, axis=1)
@@ -131,15 +131,16 @@ def cylinder(track: Track, locate: Locate) -> Values:
 
     values = with_sigmas(names, quantities, place, covariance)
     distance = np.linalg.norm(place - cameras, axis=1)
-    noise = outline.angle_sigma / np.sqrt(np.sum(distance**-2))  # of the angles themselves
+    noise = outline.angle_sigma / np.sqrt(np.sum(distance**-2))  # contribution of the angle noise
     return {**values, "width_sd_m": float(np.hypot(values["width_sd_m"], noise)), "box": 0.0}
 
 
 def cylinder_axis(track: Track, outline: Silhouette, locate: Locate) -> Located:
-    """The better known of two: the point on all bisectors, exact, and the middle of the two outlines taken as points.
+    """The more certain of two: the point on all bisectors, which is exact, and the middle of the outlines taken as
+    points.
 
-    Straight ahead the bisector has no parallax and only the outlines tell the distance; but the tangent points wander
-    on the rim, for which an eighth of the width is allowed.
+    Straight ahead the bisector has no parallax and only the outlines give the distance; but the tangent points move
+    along the rim, which adds an error of an eighth of the width.
     """
     cameras = track.cameras()[outline.rows] * [1.0, 0.0, 1.0]
 
@@ -156,8 +157,8 @@ def cylinder_axis(track: Track, outline: Silhouette, locate: Locate) -> Located:
 
 
 def robust_mean(values: np.ndarray, weights: np.ndarray) -> float:
-    """Weighted mean without what lies far from the median; the median's own spread is the yardstick."""
-    # The residuals are made comparable first: a weight is an inverse variance.
+    """Weighted mean without outliers from the median, measured by the spread about the median."""
+    # Normalizes the residuals first: a weight is an inverse variance.
     residuals = (values - np.median(values)) * np.sqrt(weights)
     spread = 1.4826 * np.median(np.abs(residuals))
     keep = np.abs(residuals) <= OUTLIER * spread + 1e-12
@@ -171,8 +172,8 @@ def with_sigmas(
     values = quantities(at)
     gradient = np.stack([(quantities(at + d) - quantities(at - d)) / (2 * STEP) for d in STEP * np.eye(len(at))], 1)
     sigmas = np.sqrt(np.einsum("ij,jk,ik->i", gradient, covariance, gradient))
-    told = dict(zip(names, values.tolist()))
-    return {**told, **{sigma_name(name): float(s) for name, s in zip(names, sigmas)}}
+    named = dict(zip(names, values.tolist()))
+    return {**named, **{sigma_name(name): float(s) for name, s in zip(names, sigmas)}}
 
 
 def sigma_name(name: str) -> str:

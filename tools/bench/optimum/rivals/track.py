@@ -1,4 +1,4 @@
-"""What a rival is given: aligned image points of one obstacle and where the camera was.
+"""Input of a rival: aligned image points of one obstacle, and camera positions.
 
 Axes T: X right, Y down, Z forward, level; origin at the camera of the track's first image, but Y = 0 on the ground.
 """
@@ -13,22 +13,22 @@ from goe_tools.flights.flight import BASE_LEFT, BASE_NEAR, BASE_RIGHT, LEFT, RIG
 from goe_tools.flights.noise import Noise
 from goe_tools.models.model import view_of
 
-MIN_IMAGES = 5  # fewer give no answer: two would do without noise, but then there is nothing to judge outliers by
+MIN_IMAGES = 5  # least number for an answer: two suffice without noise, but do not reveal outliers
 LEAST_ANGLE = 1e-5  # rad, a narrower obstacle has no size
-HUBER = 2.5  # sigmas beyond which residuals count linearly, in every rival: a gate locks a biased filter out for good
+HUBER = 2.5  # sigmas beyond which residuals count linearly, for every rival: a gate would lock a biased filter out
 
 
 @dataclass
 class Track:
-    """K images of one obstacle, own pose already applied (the rivals take it as exact, as their authors do).
+    """K images of one obstacle, with the pose already applied (the rivals take it as exact, as their authors do).
 
     time (K,)      s
     points (K,6,2) aligned points x/z, y/z in T's axes, in focal lengths
-    seen (K,6)     whether the point counts
+    seen (K,6)     whether the point is used
     dx, dz (K,)    m, camera displacement since the first image, T
     h (K,)         m, camera height over the ground
     sigma          focal lengths, noise of an image point
-    attitude       rad, white noise of the attitude: all points of an image share it, so that no size feels it
+    attitude       rad, white noise of the attitude: common to all points of an image, so it does not affect sizes
     """
 
     time: np.ndarray
@@ -42,7 +42,7 @@ class Track:
 
     @classmethod
     def of_flight(cls, flight: Flight, noise: Noise | None = None) -> Track:
-        """A flight as the rivals want it; the noise that they are told is the flight's own unless another is given."""
+        """Converts a flight for the rivals; their configured noise is the flight's unless another is given."""
         noise, view = noise or flight.noise, view_of(flight)
         rays = np.concatenate([view.point, np.ones((*view.point.shape[:2], 1))], -1)
         rays = np.einsum("kij,knj->kni", view.t_from_body @ view.body_from_camera, rays)
@@ -61,7 +61,7 @@ class Track:
         return replace(self, **arrays)
 
     def mirrored(self) -> Track:
-        """The same flight with right and left exchanged."""
+        """The same flight with right and left swapped."""
         order = [RIGHT, LEFT, TOP, BASE_RIGHT, BASE_NEAR, BASE_LEFT]
         return replace(self, points=self.points[:, order] * [-1.0, 1.0], seen=self.seen[:, order], dx=-self.dx)
 
@@ -77,7 +77,7 @@ class Track:
 
 @dataclass
 class Silhouette:
-    """Bearing and subtended angle of the obstacle's left and right outline, where both are seen.
+    """Bearing and subtended angle of the obstacle's left and right outline, in images with both.
 
     For an upright cylinder both are exact: the bisector of the tangents passes through the axis, and
     distance = width / (2 sin(half the angle)).

@@ -1,7 +1,7 @@
 """Triangulation of every point from all images at once, with GTSAM.
 
-GTSAM is not among the pinned packages: its wheel asks for a newer pytest than the tests' own, though it needs none to
-run. ``tools/setup.sh --rivals`` puts it into .cache/rivals (tools/requirements-rivals.txt), beside the environment.
+GTSAM is not among the pinned packages: its wheel requires a newer pytest than the tests use, although it runs without
+it. ``tools/setup.sh --rivals`` installs it to .cache/rivals (tools/requirements-rivals.txt), outside the environment.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from .points import Located, Values, estimate
 from .track import HUBER, MIN_IMAGES, Track
 
 PLACE = ROOT / ".cache" / "rivals"
-WORST = 0.25  # a point whose distance is less sure than this, relative, has not been located
+WORST = 0.25  # relative sigma of the distance above which a point is not located
 
 
 @cache
 def gtsam() -> ModuleType | None:
-    """The module, None if it is not there."""
+    """The module, None if it is not installed."""
     if PLACE.is_dir() and str(PLACE) not in sys.path:
-        sys.path.append(str(PLACE))  # last: the pinned numpy goes first
+        sys.path.append(str(PLACE))  # last: the pinned numpy takes precedence
     try:
         return importlib.import_module("gtsam")
     except ImportError:
@@ -33,12 +33,12 @@ def gtsam() -> ModuleType | None:
 
 
 def absent() -> str:
-    """Why this rival cannot run; empty if it can."""
+    """The reason why this rival cannot run; empty if it can."""
     return "" if gtsam() else "GTSAM is not installed (tools/setup.sh --rivals; Python 3.11 or newer)"
 
 
 def triangulation(track: Track) -> Values:
-    """Every corner (or the cylinder's axis) triangulated alone, from all images."""
+    """Triangulates every corner (or the cylinder's axis) separately, from all images."""
     if gtsam() is None:
         raise RuntimeError(absent())
     return estimate(track, locate) if len(track) >= MIN_IMAGES else {}
@@ -47,8 +47,8 @@ def triangulation(track: Track) -> Values:
 def looking_along(rays: np.ndarray) -> np.ndarray:
     """(n,3,3) rotations camera -> T of cameras that look along the rays (n,2), x axis level.
 
-    Seen like this every point lies in the image's middle, where noise in pixels is noise of the angle: far off the
-    axis the aligned points' noise grows with the square of the distance from it.
+    Each point is then in the middle of the image, where pixel noise equals angular noise; away from the
+    axis the noise of aligned points grows with the square of the distance from it.
     """
     ahead = np.concatenate([rays, np.ones((len(rays), 1))], 1)
     ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
@@ -62,17 +62,17 @@ def locate(rays: np.ndarray, cameras: np.ndarray, sigma: float) -> Located:
     g = gtsam()
     calibration = g.Cal3_S2(1.0, 1.0, 0.0, 0.0, 0.0)
     poses = [g.Pose3(g.Rot3(r), g.Point3(*c)) for r, c in zip(looking_along(rays), cameras)]
-    centre = np.zeros(2)
+    center = np.zeros(2)
     noise = g.noiseModel.Robust.Create(
         g.noiseModel.mEstimator.Huber.Create(HUBER), g.noiseModel.Isotropic.Sigma(2, sigma)
     )
     key = g.symbol("p", 0)
     graph, start = g.NonlinearFactorGraph(), g.Values()
     try:
-        start.insert(key, g.triangulatePoint3(poses, calibration, [centre] * len(poses), 1e-9, False))
+        start.insert(key, g.triangulatePoint3(poses, calibration, [center] * len(poses), 1e-9, False))
         for pose in poses:
             camera = g.PinholeCameraCal3_S2(pose, calibration)
-            graph.add(g.TriangulationFactorCal3_S2(camera, centre, noise, key))
+            graph.add(g.TriangulationFactorCal3_S2(camera, center, noise, key))
         fit = g.LevenbergMarquardtOptimizer(graph, start).optimize()
         covariance = g.Marginals(graph, fit).marginalCovariance(key)
     except RuntimeError:  # behind a camera, or no parallax

@@ -27,12 +27,12 @@ from .precision import DType, Real, Rounding, numbers
 from .view import Edge, Report, View
 
 POSITION_LIMIT_M, HEIGHT_LIMIT_M, PIXEL_LIMIT_PX, ATTITUDE_LIMIT = 1e6, 1e5, 1e5, 2.0
-BEFORE = "before:"  # the decisions of a view that is thrown away when the track begins again
+BEFORE = "before:"  # prefix for decisions of a view that is discarded when the track restarts
 SIGMA_NAMES = {quantity: sigma_name(quantity) for quantity in QUANTITIES}
 
 
 class WindowMethod:
-    """One obstacle's estimator, in float64 or float32. Feed it one frame after the other."""
+    """One obstacle's estimator, in float64 or float32. Call it with one frame after the other."""
 
     def __init__(self, camera: Camera, settings: Settings | None = None, dtype: DType = np.float64) -> None:
         self.n = n = numbers(dtype)
@@ -46,10 +46,10 @@ class WindowMethod:
     def _begin(self) -> None:
         n, window = self.n, self.settings.window
         self.sighted = False
-        self.heading = (n.zero, n.one)  # sine and cosine of that of T's Z axis
-        self.origin_m = [n.zero] * 3  # like the heading that of the latest image, until one has shown a feature
+        self.heading = (n.zero, n.one)  # sine and cosine of the heading of T's Z axis
+        self.origin_m = [n.zero] * 3  # like the heading, from the latest image until one has a feature
         self.dx_m = self.dz_m = n.zero
-        self.roundoff_m = 0.0  # of dX, dZ in float32: that of the NED positions they are differences of
+        self.roundoff_m = 0.0  # of dX, dZ in float32, from the NED positions
         self.time_us: int | None = None
         self.rows = {"disc": Ring(window), "line": Ring(window)}
         self.means = {"length_m": Mean(Ring(window)), "height_m": Mean(Ring(window))}
@@ -65,7 +65,7 @@ class WindowMethod:
         limits = [(frame.height_m, HEIGHT_LIMIT_M)]
         limits += [(value, POSITION_LIMIT_M) for value in frame.position_m]
         limits += [(value, PIXEL_LIMIT_PX) for name in FEATURES for value in getattr(frame, name) or ()]
-        # beyond float32's range is an infinity to the library
+        # beyond float32's range: infinite in the library
         if not all(math.isfinite(np.float32(value)) for value in [*frame.attitude, *(value for value, _ in limits)]):
             return "not_finite"
         if any(abs(real(value)) > limit for value, limit in limits):
@@ -102,7 +102,7 @@ class WindowMethod:
         return [*aside, *m[6:], *ahead]
 
     def _track_heading(self, ned_from_body: Matrix, gates: Gates) -> tuple[Real, Real]:
-        """That set, or where the nose points: sine and cosine."""
+        """Sine and cosine of the configured heading, or of the direction of the nose."""
         n, north, east = self.n, ned_from_body[0], ned_from_body[3]
         if self.heading_deg is not None:
             return n.sincos_deg(self.heading_deg)
@@ -114,7 +114,7 @@ class WindowMethod:
     # -- aligned points
 
     def _align(self, t_from_camera: Matrix, frame: Frame, gates: Gates, when: str = "") -> View:
-        """``when``: before the names of its decisions."""
+        """``when``: prefix for the names of its decisions."""
         n, lens, view = self.n, self.lens, View(gates)
         for feature in FEATURES:
             pixel = getattr(frame, feature)
@@ -136,14 +136,14 @@ class WindowMethod:
         return view
 
     def _may_begin_again(self, t_from_camera: Matrix, gates: Gates) -> bool:
-        """Z is where the nose pointed, nothing is known, and the nose has turned by more than 45 degrees."""
+        """Whether Z is from the nose, nothing is known, and the nose has turned by more than 45 degrees."""
         if self.heading_deg is not None or self.fit is not None:
             return False
         x, _, z = apply(t_from_camera, self.mount[:3])
         return gates.decide("turned", abs(x) > z, abs(x) - z, 2.0)
 
     def _lies_aside(self, view: View) -> bool:
-        """All that can be used."""
+        """Whether all usable features are too far from the axis."""
         least = self.n.aside_min
         return all(
             [
@@ -154,12 +154,12 @@ class WindowMethod:
 
     def _open_view(self, frame: Frame, gates: Gates) -> View:
         t_from_camera = self._follow(frame, gates)
-        seen = any(getattr(frame, feature) is not None for feature in FEATURES)
-        turned = self._may_begin_again(t_from_camera, gates) and seen
+        visible = any(getattr(frame, feature) is not None for feature in FEATURES)
+        turned = self._may_begin_again(t_from_camera, gates) and visible
         if turned and self._lies_aside(self._align(t_from_camera, frame, gates, BEFORE)):
             self._begin()
             t_from_camera = self._follow(frame, gates)
-        self.sighted = self.sighted or seen
+        self.sighted = self.sighted or visible
         return self._align(t_from_camera, frame, gates)
 
     # -- rows
@@ -169,7 +169,7 @@ class WindowMethod:
         view.added.add(model)
 
     def _add_disc_row(self, view: View) -> None:
-        """(2)"""
+        """Equation (2)."""
         if self.settings.model == "line" or "left" not in view.points or "right" not in view.points:
             return
         left, right = view.points["left"].x, view.points["right"].x
@@ -182,7 +182,7 @@ class WindowMethod:
         self._add_row(view, "disc", row, POINT_ROUNDOFF * (1.0 + ends) / float(raw) * (forward + aside))
 
     def _turned(self, view: View, name: str, point: Point) -> Real | None:
-        """(4): x of the point, seen by a camera turned by b. None: not ahead of it."""
+        """(4): x of the point for a camera turned by b. None: not ahead of it."""
         n, x, s, c = self.n, point.x, view.sin_b, view.cos_b
         forward, norm = c + x * s, np.sqrt(n.one + x * x)
         least = n.forward_min * norm
@@ -203,7 +203,7 @@ class WindowMethod:
             return None
         forward = n.one / size
         aside = n.half * (left + right) * forward
-        # an error of b turns the edge and is turned back with the row, which leaves x (1 + x) of it
+        # an error of b turns the edge and is turned back with the row; x (1 + x) of it remains
         x, angle = abs(float(left) + float(right)) / 2.0, math.radians(self.orientation.roundoff_deg)
         roundoff = (POINT_ROUNDOFF * (1.0 + sum(ends)) / float(size) + angle * x) / float(size) * (1.0 + x)
         return (c * aside + s * forward, c * forward - s * aside), roundoff
@@ -236,7 +236,7 @@ class WindowMethod:
     # -- length and height
 
     def _measure_length(self, view: View, side: Edge) -> bool:
-        """(6), (7). False: the side is seen edge-on."""
+        """(6), (7). False: the side is viewed edge-on."""
         n, fit, values, s, c = self.n, self.fit, self.values, view.sin_b, view.cos_b
         assert fit is not None
         near, far = (side.left, side.right) if view.side_is_right else (side.right, side.left)
@@ -285,18 +285,18 @@ class WindowMethod:
     def _take_extent(
         self, gates: Gates, name: str, value: Real, variance: Real, roundoff: Rounding, size: Rounding
     ) -> None:
-        """Into the sliding mean. A mean that is not positive is no answer."""
+        """Adds a value to the sliding mean. A mean that is not positive is no answer."""
         assert self.fit is not None
         mean = self.means[name]
         average, spread = mean.add(self.n, value, self.fit.ratio)
         if gates.decide(f"positive:{name}", average > self.n.zero, average, size):
-            self._tell(name, average, np.sqrt(spread + variance), roundoff / math.sqrt(len(mean.ring.items)))
+            self._report(name, average, np.sqrt(spread + variance), roundoff / math.sqrt(len(mean.ring.items)))
         else:
             self._forget(name)
 
     # -- estimate
 
-    def _tell(self, quantity: str, value: Real, sigma: Real, roundoff: Rounding) -> None:
+    def _report(self, quantity: str, value: Real, sigma: Real, roundoff: Rounding) -> None:
         self.values[quantity], self.values[SIGMA_NAMES[quantity]] = value, sigma
         self.roundoff[quantity] = roundoff
 
@@ -304,24 +304,24 @@ class WindowMethod:
         for store, name in ((self.values, quantity), (self.values, SIGMA_NAMES[quantity]), (self.roundoff, quantity)):
             store.pop(name, None)
 
-    def _tell_solution(self) -> None:
-        """Position and width: the former changes with the camera's path."""
+    def _report_solution(self) -> None:
+        """Position and width; the position changes with the camera's path."""
         fit = self.fit
         if fit is None:
             return
         sigma, roundoff = fit.sigma, fit.roundoff
         for axis, zero_m, moved_m in (("x", fit.x0_m, self.dx_m), ("z", fit.z0_m, self.dz_m)):
-            self._tell(f"{axis}0_m", zero_m, sigma[f"{axis}0_m"], roundoff[f"{axis}0_m"])
-            self._tell(f"{axis}_m", zero_m - moved_m, sigma[f"{axis}0_m"], roundoff[f"{axis}0_m"])
-        self._tell("width_m", fit.width_m, sigma["width_m"], roundoff["width_m"])
+            self._report(f"{axis}0_m", zero_m, sigma[f"{axis}0_m"], roundoff[f"{axis}0_m"])
+            self._report(f"{axis}_m", zero_m - moved_m, sigma[f"{axis}0_m"], roundoff[f"{axis}0_m"])
+        self._report("width_m", fit.width_m, sigma["width_m"], roundoff["width_m"])
 
-    def _tell_orientation(self) -> None:
+    def _report_orientation(self) -> None:
         turned = self.orientation
         if turned.count > 0:
             sigma = np.sqrt(turned.variance_deg2 / self.n.real(turned.count))
-            self._tell("orientation_deg", turned.deg, sigma, turned.roundoff_deg / math.sqrt(turned.count))
+            self._report("orientation_deg", turned.deg, sigma, turned.roundoff_deg / math.sqrt(turned.count))
 
-    def _tell_center(self, view: View) -> None:
+    def _report_center(self, view: View) -> None:
         """Middle of the base: a disc's reference point; half a length behind a box's front edge."""
         fit, values, (s, c) = self.fit, self.values, self.heading
         if fit is None or (self.model == "line" and "length_m" not in values):
@@ -345,20 +345,20 @@ class WindowMethod:
         sigma_e = np.sqrt(s * s * variance_z + c * c * variance_x)
         rounding_n = math.sqrt(c2 * rounding_z + s2 * rounding_x) + UNIT_ROUNDOFF * abs(float(north))
         rounding_e = math.sqrt(s2 * rounding_z + c2 * rounding_x) + UNIT_ROUNDOFF * abs(float(east))
-        self._tell("center_n_m", north, sigma_n, rounding_n)
-        self._tell("center_e_m", east, sigma_e, rounding_e)
+        self._report("center_n_m", north, sigma_n, rounding_n)
+        self._report("center_e_m", east, sigma_e, rounding_e)
 
     # -- the chain
 
-    def _judge(self, view: View, solving: str, seen: bool) -> str:
-        """What to say of an image that was taken."""
+    def _judge(self, view: View, solving: str, visible: bool) -> str:
+        """Status of an accepted image."""
         if solving == "ok":
             return "partial" if view.faults else "ok"
         if solving not in ("collecting", "held"):
             return solving
         if view.faults:
             return view.faults[0]
-        if not seen:
+        if not visible:
             return "nothing_seen"
         if self.settings.model == "line" and view.edges and "line" not in view.added:
             return "no_edge"
@@ -373,17 +373,17 @@ class WindowMethod:
             view.sin_b, view.cos_b = self.orientation.turn()
             self._add_line_row(view)
         solving = self._solve(view)
-        self._tell_solution()
-        self._tell_orientation()
+        self._report_solution()
+        self._report_orientation()
         if solving == "ok":
             two_sides = self.model == "line" and view.front is not None and view.side is not None
             if two_sides and not self._measure_length(view, view.side):
                 view.faults.append("edge_on")
             if "top" in view.points and not self._measure_height(view, frame):
                 view.faults.append("bad_height")
-        self._tell_center(view)
-        seen = any(getattr(frame, feature) is not None for feature in FEATURES)
-        return self._judge(view, solving, seen), solving == "ok"
+        self._report_center(view)
+        visible = any(getattr(frame, feature) is not None for feature in FEATURES)
+        return self._judge(view, solving, visible), solving == "ok"
 
     def _conditioning(self) -> dict[str, Rounding]:
         ratio = self.fit.ratio if self.fit else 0.0
@@ -394,7 +394,8 @@ class WindowMethod:
         return result
 
     def update(self, frame: Frame, guide: dict[str, bool] | None = None) -> Report:
-        """Takes one image. guide: decisions to follow where the own ones lie within float32 rounding of a threshold."""
+        """Takes one image. guide: decisions to follow if the method's own are within float32 rounding of a
+        threshold."""
         gates, fresh = Gates(guide), False
         with np.errstate(all="ignore"):
             status = self._refusal(frame, gates)

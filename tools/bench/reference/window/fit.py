@@ -13,7 +13,7 @@ from .precision import Numbers, Real, Rounding
 
 @dataclass
 class Row:
-    """The two rows of (5) of one image, turned back by the orientation into T, where they are
+    """The two rows of (5) for one image, turned back by the orientation into T, where they are
 
     xi = X0/W - dX/W and zeta = Z0/W - dZ/W.
     """
@@ -22,7 +22,7 @@ class Row:
     zeta: Real
     dx_m: Real
     dz_m: Real
-    roundoff: Rounding = 0.0  # what float32 arithmetic would do to xi and zeta
+    roundoff: Rounding = 0.0  # effect of float32 arithmetic on xi and zeta
     roundoff_m: Rounding = 0.0  # ... and to dX and dZ
 
 
@@ -34,7 +34,7 @@ class Fit:
     z0_m: Real
     width_m: Real
     sigma: dict[str, Real]
-    roundoff: dict[str, Rounding]  # the sigmas that rounding of the rows alone would show
+    roundoff: dict[str, Rounding]  # sigmas from rounding of the rows alone
     residual: Real
     baseline_m: Real
 
@@ -46,12 +46,13 @@ class Fit:
 
 @dataclass
 class Ring:
-    """The newest items. A new one takes the oldest one's place, and sums go by place: the last bits depend on it."""
+    """The newest items. A new item replaces the oldest one in its place; sums go by place, which affects the last
+    bits."""
 
     length: int
     items: list = field(default_factory=list)
     next: int = 0
-    count: int = 0  # of all that were added
+    count: int = 0  # of all added items
 
     def add(self, item: object) -> None:
         if len(self.items) < self.length:
@@ -63,7 +64,7 @@ class Ring:
 
 
 def solve(n: Numbers, rows: list[Row], min_baseline_m: Real, gates: Gates) -> tuple[str, Fit | None]:
-    """(5) over a window, two straight lines with one shared slope -1/W: ("ok", fit) or (why not, None)."""
+    """(5) over a window, two straight lines with one shared slope -1/W: ("ok", fit) or (reason, None)."""
     length = len(rows)
     mean_dx = mean_dz = mean_xi = mean_zeta = n.zero
     for row in rows:
@@ -133,7 +134,7 @@ def solve(n: Numbers, rows: list[Row], min_baseline_m: Real, gates: Gates) -> tu
 
 @dataclass
 class Mean:
-    """Sliding mean. Beside each value: baseline / W of the solution that it was made of."""
+    """Sliding mean, with baseline / W of the solution behind each value."""
 
     ring: Ring
 
@@ -142,7 +143,7 @@ class Mean:
         return min((ratio for _, ratio in self.ring.items), default=0.0)
 
     def add(self, n: Numbers, value: Real, ratio: Rounding) -> tuple[Real, Real]:
-        """Mean of the newest values, and its variance from their spread (0 of a single one)."""
+        """Mean of the newest values, and its variance from their spread (0 for a single one)."""
         self.ring.add((value, ratio))
         values = [value for value, _ in self.ring.items]
         count, total, squares = len(values), n.zero, n.zero

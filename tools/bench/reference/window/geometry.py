@@ -1,4 +1,4 @@
-"""From a pixel to an aligned point: attitude, mounting, lens; and what (1), (2), (4) make of aligned points."""
+"""From a pixel to an aligned point: attitude, mounting, lens; and (1), (2), (4) for aligned points."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ UNDISTORT_ROUNDS = 20
 
 @dataclass
 class Point:
-    """An aligned point and the pixel that it came from."""
+    """An aligned point and its pixel."""
 
     x: Real
     y: Real
@@ -38,7 +38,7 @@ def apply(r: Matrix, v: Sequence[Real]) -> list[Real]:
 
 
 def quaternion_rotation(n: Numbers, q: Sequence[Real]) -> Matrix:
-    """Body -> NED, of a quaternion of any length."""
+    """Body -> NED, from a quaternion of any length."""
     w, x, y, z = q
     one, s = n.one, n.two / (w * w + x * x + y * y + z * z)
     return [
@@ -49,7 +49,8 @@ def quaternion_rotation(n: Numbers, q: Sequence[Real]) -> Matrix:
 
 
 def mounting_rotation(n: Numbers, camera: Camera) -> Matrix:
-    """Camera -> body: the un-mounted camera's axes (body y, z, x) turned by yaw, pitch and roll, Z-Y'-X''."""
+    """Camera -> body: the camera's axes without mounting angles (body y, z, x) turned by yaw, pitch and roll,
+    Z-Y'-X''."""
     sy, cy = n.sincos_deg(n.real(camera.mount_yaw_deg))
     sp, cp = n.sincos_deg(n.real(camera.mount_pitch_deg))
     sr, cr = n.sincos_deg(n.real(camera.mount_roll_deg))
@@ -83,7 +84,7 @@ class Lens:
 
 
 def undistort(n: Numbers, lens: Lens, distorted_x: Real, distorted_y: Real) -> tuple[Real, Real, bool, Rounding]:
-    """Inverts the lens by fixed-point iteration: x, y, whether it converged, and how near that was to a limit."""
+    """Inverts the lens by fixed-point iteration: x, y, whether it converged, and its distance from a limit."""
     x, y, step, near = distorted_x, distorted_y, n.zero, math.inf
     if not lens.distorts:
         return x, y, True, near
@@ -111,7 +112,7 @@ def undistort(n: Numbers, lens: Lens, distorted_x: Real, distorted_y: Real) -> t
 
 
 def disc_row(n: Numbers, x_left: Real, x_right: Real) -> tuple[Real, Real]:
-    """(2), the multiplier 2 in it: m x/S and m/S."""
+    """(2), with its multiplier 2: m x/S and m/S."""
     cos_left = n.one / np.sqrt(n.one + x_left * x_left)
     cos_right = n.one / np.sqrt(n.one + x_right * x_right)
     size = (x_right - x_left) * (cos_left + cos_right)
@@ -121,7 +122,7 @@ def disc_row(n: Numbers, x_left: Real, x_right: Real) -> tuple[Real, Real]:
 
 
 def heading_deg(n: Numbers, a: Point, b: Point) -> Real:
-    """(1): of the edge through a and b; the angle of a vector, so that no edge needs a division."""
+    """(1): heading of the edge through a and b; the angle of a vector, which needs no division."""
     x = a.x * b.y - a.y * b.x
     z = b.y - a.y
     rad = n.arctan_rad(-x, -z) if z < n.zero else n.arctan_rad(x, z)

@@ -1,4 +1,4 @@
-"""The edges of the base: (1) and the gates of the paper's Section 4; which is the side edge; the low-pass."""
+"""The edges of the base: (1) and the gates of the paper's Section 4; choice of the side edge; the low-pass."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Orientation:
         return self.n.fold_deg(front.heading_deg - self.n.right_angle_deg)
 
     def update(self, view: View) -> None:
-        """Tells the side edge from the front edge and takes the orientation, if an edge has one."""
+        """Distinguishes the side edge from the front edge and updates the orientation, if an edge has one."""
         n, gates, fold = self.n, view.gates, self.n.fold_deg
         if all(edge.heading_deg is None for edge in view.edges):
             return
@@ -104,7 +104,7 @@ class Orientation:
         self.roundoff_deg += (roundoff - self.roundoff_deg) / self.count
 
     def _choose_end(self, gates: Gates, name: str, deg: Real, size: Rounding) -> Real:
-        """An angle in (-90, 90]. Which end it takes near 90 is a decision. size: of the angle's operands."""
+        """An angle in (-90, 90]. The choice of the end near 90 is a decision. size: of the angle's operands."""
         if abs(deg) > 45.0:
             positive = gates.decide(name, deg > self.n.zero, 90.0 - abs(float(deg)), size)
             if positive != (deg > self.n.zero):

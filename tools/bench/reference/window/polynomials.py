@@ -1,4 +1,4 @@
-"""The library's arctangent, sine and cosine in float32: what its bits depend on and no equation says."""
+"""The library's arctangent, sine and cosine in float32, on which its bits depend."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The numbers of one precision: its constants, and what it knows of angles.
+"""The numbers of one precision: its constants, and functions of angles.
 
 NumPy's scalars keep their precision only among themselves (before NumPy 2 a Python float makes a float64 of them), so
-that every constant of the method stands here and is converted once.
+every constant of the method is in this file and is converted once.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from . import polynomials
 
 Real = Union[np.float32, np.float64]
 DType = type[Real]
-Rounding = float  # estimates of rounding and margins of decisions, which nothing else depends on, are Python's floats
+Rounding = float  # Python floats, for rounding estimates and margins of decisions, which do not affect results
 
 
 @dataclass
 class Numbers:
-    """All constants; ``numbers`` makes them of one precision."""
+    """All constants; ``numbers`` converts them to one precision."""
 
     zero: Real = 0.0
     quarter: Real = 0.25
@@ -46,7 +46,7 @@ class Numbers:
     radial_min: Real = 0.05
     radial_max: Real = 1e6
     undistort_failed: Real = 1e-4
-    undistort_done: Real = 0.0  # float64 iterates on, to its own last digits
+    undistort_done: Real = 0.0  # float64 iterates to its last digits
     real: DType = field(default=np.float64, repr=False)
     arctan_rad: Callable[[Real, Real], Real] = np.arctan2  # of y/x, x >= 0
     sincos_deg: Callable[[Real], tuple[Real, Real]] = field(
@@ -54,7 +54,7 @@ class Numbers:
     )
 
     def fold_deg(self, deg: Real) -> Real:
-        """The angle of the same undirected line in (-90, 90], of one in (-270, 270)."""
+        """The angle of the same undirected line in (-90, 90], from one in (-270, 270)."""
         if deg > self.right_angle_deg:
             return deg - self.half_turn_deg
         return deg + self.half_turn_deg if deg <= -self.right_angle_deg else deg

@@ -1,4 +1,4 @@
-"""What one image shows and adds, and the report of it."""
+"""Content of one image, and its report."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Edge:
 
 @dataclass
 class View:
-    """What one image shows and what it adds."""
+    """Content of one image: its features, and the rows it added."""
 
     gates: Gates
     points: dict[str, Point] = field(default_factory=dict)  # aligned, of the usable features
@@ -39,12 +39,12 @@ class View:
 
 @dataclass
 class Report:
-    """One image's answer with what comparisons need beside it."""
+    """One image's answer, with details for comparisons."""
 
     estimate: Estimate
     gates: Gates
-    roundoff: dict[str, Rounding]  # by quantity: the sigma that float32 rounding alone would show
-    conditioning: dict[str, Rounding]  # by quantity: smallest baseline / W of the solutions it was made of; 0: none
+    roundoff: dict[str, Rounding]  # by quantity: the sigma from float32 rounding alone
+    conditioning: dict[str, Rounding]  # by quantity: smallest baseline / W of its solutions; 0: none
     residual: Real
     baseline_m: Real
     fresh: bool  # solved with this image

@@ -1,4 +1,4 @@
-"""Whether the code is the same without the debugging information that the loops are told apart by."""
+"""Checks that the code is the same without the debugging information that identifies the loops."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from ..modules import plain_command
 
 
 def code_of(built: Build, file: Path) -> str:
-    """The instructions of an object with what the linker is to put into them."""
+    """The instructions of an object, with their relocations."""
     return built.tool("objdump", "-dr", file).split("\n", 3)[3]
 
 
 def changed(built: Build, folder: Path, sources: Iterable[Path] | None = None, jobs: int = 2) -> list[str]:
-    """Modules whose code differs when they are compiled without what is written beside it."""
+    """Modules whose code differs when compiled without the extra outputs."""
     chosen = sorted((ROOT / "lib").rglob("*.c")) if sources is None else list(sources)
     objects = {path.name: path for path in built.library_files("obj")}
 

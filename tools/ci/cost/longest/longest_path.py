@@ -1,9 +1,9 @@
-"""The most instructions of a call: the heaviest flow through the graphs of a function and of all that it calls.
+"""The most instructions of a call: the heaviest flow through the graphs of a function and its callees.
 
-Each function is a linear program: as much flows into a block as out of it, loops turn as often as the table of bounds
-lets them, and a call costs what the called function does. A function that a statement of the table speaks of becomes
-a part of its caller's program, so that the statement can join what lies in different functions; any other is solved
-once by itself, for each set of lines by which the table tells its callers apart.
+Each function is a linear program: the flow into a block equals the flow out of it, loops turn as often as the table of
+bounds allows, and a call costs what the called function does. A function named in a statement of the table becomes
+a part of its caller's program, so the statement can relate different functions; any other is solved once separately,
+for each set of lines by which the table distinguishes its callers.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ SIZE_REGISTER = "r2"
 
 @dataclass(frozen=True)
 class Context:
-    """What the table tells callers apart by: the texts of its that have been passed, and the size that is handed
-    over."""
+    """The properties by which the table distinguishes callers: the texts of passed lines of the table, and the size
+    argument."""
 
     passed: frozenset[str] = frozenset()
     size: int | None = None
-    exact: bool = True  # ... or at most that
+    exact: bool = True  # ... or only bounded by it
 
 
 @dataclass
@@ -45,7 +45,7 @@ class Code:
     places: Mapping[int, Places]
     table: Sequence[Row]
     constants: Mapping[str, int]
-    used: set[int] = field(default_factory=set)  # numbers of the table's lines that counted
+    used: set[int] = field(default_factory=set)  # numbers of the table's lines that were used
 
     def __post_init__(self) -> None:
         self.texts = sorted({text for row in self.table for text in row.passes})
@@ -56,7 +56,7 @@ class Code:
         return self.places.get(instruction.address, ())
 
     def bound(self, row: Row, context: Context | None = None) -> int:
-        """``size``, and what is left of it by whole times 4, 16 and 64: of a size that is only bounded, any."""
+        """``size``, and its remainders by multiples of 4, 16 and 64; any remainder if the size is only bounded."""
         self.used.add(row.number)
         names = dict(self.constants)
         if context and context.size is not None:
@@ -69,12 +69,12 @@ class Code:
 
 
 def bare(name: str) -> str:
-    """The name of the source's function: compilers add to that of a changed copy."""
+    """The name of the source's function: compilers add suffixes to modified copies."""
     return name.split(".")[0]
 
 
 def lines_in(code: Code, function: Function, loop: Loop) -> set[tuple[str, str]]:
-    """(function, line) of the lines of loops that a loop's own blocks come from, not those of loops within it."""
+    """(function, line) of the loop lines behind a loop's own blocks, without those of loops inside it."""
     inner = [other for other in code.loops[function.start] if other.outer is loop]
     own = loop.blocks.difference(*(other.blocks for other in inner))
     places = (p for at in own for i in function.blocks[at].instructions for p in code.at(i))
@@ -82,8 +82,8 @@ def lines_in(code: Code, function: Function, loop: Loop) -> set[tuple[str, str]]
 
 
 def lines_of_loops(code: Code, function: Function) -> dict[int, set[tuple[str, str]]]:
-    """The line of each loop, by its header. The test of an inner loop before its first turn lies in the outer one:
-    where a loop has one line alone, those around it and within it have another."""
+    """The line of each loop, by its header. The test of an inner loop before its first turn is in the outer one:
+    if a loop has only one line, those around it and inside it have another."""
     loops = code.loops[function.start]
     found = {loop.header: lines_in(code, function, loop) for loop in loops}
     changed = True
@@ -105,7 +105,7 @@ def names_of(code: Code, function: Function, loop: Loop) -> set[tuple[str, str]]
 
 
 def table_rows_of(code: Code, function: Function, loop: Loop) -> list[Row]:
-    """Those of the table that speak of a loop, by its number rather than its line; otherwise what its line says."""
+    """The table's rows for a loop, by its number rather than its line; otherwise the bound in its line."""
     names = names_of(code, function, loop)
     found = [row for row in code.table if row.kind == "loop" and (row.function, row.line) in names]
     numbered = [row for row in found if row.line.startswith("#")]
@@ -114,12 +114,12 @@ def table_rows_of(code: Code, function: Function, loop: Loop) -> list[Row]:
     lines = sorted(names - {(bare(function.name), line) for _, line in names if line.startswith("#")})
     most = counted(lines[0][1], code.constants) if len(lines) == 1 else None
     if most is not None:
-        found.append(Row(0, "loop", *lines[0], "", str(most), "entry", "as its line says"))
+        found.append(Row(0, "loop", *lines[0], "", str(most), "entry", "from its line"))
     return found
 
 
 def rows_of(code: Code, function: Function, loop: Loop, context: Context) -> list[Row]:
-    """Those that bound a loop; where one tells callers apart, it alone counts."""
+    """The rows that bound a loop; a row for the specific caller takes precedence."""
     passed = context.passed | inlined_by(code, function, loop)
     found = [row for row in table_rows_of(code, function, loop) if set(row.passes) <= passed]
     most = max((len(row.passes) for row in found), default=0)
@@ -127,7 +127,7 @@ def rows_of(code: Code, function: Function, loop: Loop, context: Context) -> lis
 
 
 def inlined_by(code: Code, function: Function, loop: Loop) -> set[str]:
-    """Texts of lines by which the function that the loop belongs to was put into this one, if it was."""
+    """Texts of lines by which the loop's function was inlined into this one, if it was."""
     owners = {name for name, line in code.lines[function.start][loop.header] if not line.startswith("#")}
     ways: Counter[Places] = Counter()
     for address in loop.blocks:
@@ -140,8 +140,8 @@ def inlined_by(code: Code, function: Function, loop: Loop) -> set[str]:
 
 
 def is_tested_at_its_end(code: Code, function: Function, loop: Loop, row: Row) -> bool:
-    """Whether each time that the header runs is a turn: nothing of the loop's line leaves it before the turn is
-    done."""
+    """Whether each run of the header is a turn: nothing of the loop's line leaves it before the turn is
+    complete."""
     if not loop.has_one_way_in:
         return False
     last = {at for at, _ in loop.backs}
@@ -163,14 +163,14 @@ class Instance:
     context: Context
     edges: dict[tuple[int, int], int]  # of flows, by the two blocks
     enters: int
-    calls: dict[Pair, list[dict[int, int]]] = field(default_factory=dict)  # runs of the calls that statements speak of
+    calls: dict[Pair, list[dict[int, int]]] = field(default_factory=dict)  # runs of the calls named in statements
     parts: dict[Pair, list[dict[int, int]]] = field(
         default_factory=dict
-    )  # ... of the blocks that were put in place of one
+    )  # ... of the blocks inlined in place of a call
 
 
 def runs_of(instance: Instance, address: int) -> dict[int, int]:
-    """How often a block runs: the sum of what flows into it."""
+    """Number of runs of a block: the sum of the flows into it."""
     row = {variable: 1 for (_, to), variable in instance.edges.items() if to == address}
     if address == instance.function.start:
         row[instance.enters] = row.get(instance.enters, 0) + 1
@@ -196,12 +196,12 @@ def entries_of(instance: Instance, loop: Loop) -> dict[int, int]:
     return row
 
 
-Pair = tuple[str, str]  # of a caller and what it calls: any one, one that it is put into, too, or "=" itself alone
+Pair = tuple[str, str]  # caller and callee: any caller, one including inlined copies, or "=" the function alone
 ANY = "any"
 
 
 def terms_of(statement: Row) -> list[tuple[int, Pair]]:
-    """What a statement adds up: how many times the runs of a call."""
+    """The terms of a statement: multiples of the runs of a call."""
     terms = []
     for part in statement.line.split("|"):
         found = re.fullmatch(r"\s*(?:(-?\d+) )?(=?\w+) > (\w+)\s*", part)
@@ -211,37 +211,37 @@ def terms_of(statement: Row) -> list[tuple[int, Pair]]:
     return terms
 
 
-def speaks_of(statement: Row, public: str) -> bool:
+def applies_to(statement: Row, public: str) -> bool:
     return statement.function == "all" or public in statement.function.split("; ")
 
 
 @dataclass
 class Finder:
-    """Finds longest paths. ``public``: the call that is asked about, by which statements of the table are chosen."""
+    """Finds longest paths. ``public``: the public call, which selects statements of the table."""
 
     code: Code
     public: str
 
     def __post_init__(self) -> None:
-        own = [row for row in self.code.table if row.kind in ("most", "case") and speaks_of(row, self.public)]
+        own = [row for row in self.code.table if row.kind in ("most", "case") and applies_to(row, self.public)]
         self.statements = [row for row in own if row.kind == "most"]
         self.cases = [row for row in own if row.kind == "case"]
         self.pairs = {pair for row in own for _, pair in terms_of(row)}
         self.pairs |= {(ANY, row.per[2:]) for row in self.code.table if row.per.startswith("> ")}
         self.known: dict[tuple[int, Context], tuple[int, Counter[str]]] = {}
-        self.spoken_of = lru_cache(maxsize=None)(self._spoken_of)
+        self.in_statement = lru_cache(maxsize=None)(self._in_statement)
         self.relevant = lru_cache(maxsize=None)(self._relevant)
 
     # ------------------------------------------------------------------------------------------------------- calls
 
     def pair_of(self, function: Function, instruction: Instruction, callee: int) -> set[tuple[str, str]]:
-        """The pairs that name a call: any of the functions that the instruction stands in, and the one called."""
+        """The pairs that name a call: any function whose code contains the instruction, and the callee."""
         frames = [bare(place.function) for place in self.code.at(instruction)] or [bare(function.name)]
         names = {*frames, bare(function.name), ANY, f"={frames[0]}"}
         return {(name, bare(self.code.functions[callee].name)) for name in names} & self.pairs
 
-    def put_in(self, block: Block) -> set[Pair]:
-        """The pairs of which a block holds a part: what is called was put into the place of the call."""
+    def inlined_in(self, block: Block) -> set[Pair]:
+        """The pairs with code inlined in a block."""
         found: set[Pair] = set()
         for instruction in block.instructions:
             names = [bare(place.function) for place in self.code.at(instruction)]
@@ -249,21 +249,22 @@ class Finder:
         return found & self.pairs
 
     def turns_within(self, function: Function, block: Block, pair: Pair) -> bool:
-        """Whether a block lies in a loop of what was put in place: it runs more often than that was called."""
+        """Whether a block is in a loop of an inlined function: it then runs more often than the function was called."""
         around = (loop for loop in self.code.loops[function.start] if block.start in loop.blocks)
-        return any(pair in self.put_in(function.blocks[loop.header]) for loop in around)
+        return any(pair in self.inlined_in(function.blocks[loop.header]) for loop in around)
 
-    def _spoken_of(self, start: int) -> bool:
-        """Whether a statement speaks of a call in this function or below, or a bound of a public call as a whole."""
+    def _in_statement(self, start: int) -> bool:
+        """Whether a statement names a call in this function or below, or a bound of a public call as a whole."""
         function = self.code.functions[start]
         rows = (row for loop in self.code.loops[start] for row in table_rows_of(self.code, function, loop))
         return any(row.per == "all" or row.per.startswith("> ") for row in rows) or any(
-            self.put_in(block) or any(self.pair_of(function, i, to) or self.spoken_of(to) for i, to in block.calls)
+            self.inlined_in(block)
+            or any(self.pair_of(function, i, to) or self.in_statement(to) for i, to in block.calls)
             for block in function.blocks.values()
         )
 
     def _relevant(self, start: int) -> frozenset[str]:
-        """Texts of the table that matter for the loops of this function or below."""
+        """Texts of the table that affect the loops of this function or below."""
         function = self.code.functions[start]
         names = set().union(*(names_of(self.code, function, loop) for loop in self.code.loops[start]), set())
         rows = (row for row in self.code.table if row.kind == "loop" and (row.function, row.line) in names)
@@ -282,7 +283,7 @@ class Finder:
     def size_at(
         self, function: Function, block: Block, call: Instruction, to: int, lines: set[str]
     ) -> tuple[int, bool]:
-        """What is handed over as a size, exactly: a constant of the code; or at most: what the table says."""
+        """The size argument, exactly: a constant of the code; or its bound in the table."""
         name = self.code.functions[to].name
         found = constant_before(function, block, call)
         if found is not None:
@@ -297,7 +298,7 @@ class Finder:
     # ------------------------------------------------------------------------------------------------------ programs
 
     def most(self, start: int, context: Context) -> tuple[int, Counter[str]]:
-        """Instructions of a function and all below; and of these by function on one longest path."""
+        """Instructions of a function and its callees; and by function on one longest path."""
         key = (start, context)
         if key not in self.known:
             program = Program()
@@ -318,8 +319,8 @@ class Finder:
         return self.known[key]
 
     def worst_case_of(self, program: Program, instances: Sequence[Instance]) -> Solution:
-        """The most over all cases that the table distinguishes: of each of its lines one of the calls runs, once, or
-        none."""
+        """The most over all cases of the table: for each case line, one of its calls runs once, or none
+        does."""
         choices = [self.choices_of(row, instances) for row in self.cases]
         best: Solution | None = None
         for case in product(*choices):
@@ -332,7 +333,7 @@ class Finder:
         return best
 
     def choices_of(self, row: Row, instances: Sequence[Instance]) -> list[list[dict[int, int]]]:
-        """Equations of each case."""
+        """The equations of each case."""
         self.code.used.add(row.number)
         totals = []
         for _, pair in terms_of(row):
@@ -352,7 +353,7 @@ class Finder:
         parts: list[tuple[Instance, Block, Counter[str]]],
         instances: list[Instance],
     ) -> None:
-        """A function into a program; `enters` says how often it is called."""
+        """Adds a function to a program; `enters` is the number of its calls."""
         function = self.code.functions[start]
         instance = Instance(function, context, {}, program.variable())
         instances.append(instance)
@@ -360,7 +361,7 @@ class Finder:
         costs = {b: Counter({function.name: len(block.instructions)}) for b, block in function.blocks.items()}
         for address, block in function.blocks.items():
             for call, to in block.calls:
-                if not self.spoken_of(to):
+                if not self.in_statement(to):
                     below = self.context_of(function, context, block, call, to)
                     costs[address].update(self.most(to, below)[1] | Counter())
                     surplus = self.most(to, below)[0] - sum(self.most(to, below)[1].values())
@@ -378,18 +379,18 @@ class Finder:
             for variable in out:
                 program.cost[variable] += sum(costs[address].values())
             parts.append((instance, block, costs[address]))
-            for pair in self.put_in(block):
+            for pair in self.inlined_in(block):
                 if not self.turns_within(function, block, pair):
                     instance.parts.setdefault(pair, []).append(into)
             for call, to in block.calls:
                 for pair in self.pair_of(function, call, to):
                     instance.calls.setdefault(pair, []).append(into)
-                if self.spoken_of(to):
+                if self.in_statement(to):
                     below = self.context_of(function, context, block, call, to)
                     self.add(program, to, below, into, parts, instances)
 
     def add_loops(self, program: Program, instance: Instance, instances: Sequence[Instance]) -> None:
-        """A bound of all turns together holds for all loops that the compiler made of the source's one."""
+        """A bound of all turns together applies to all loops that the compiler made from the source's loop."""
         function, context = instance.function, instance.context
         totals: dict[tuple[Row, tuple[tuple[int, int], ...]], list[tuple[int, dict[int, int]]]] = {}
         for loop in self.code.loops[function.start]:
@@ -426,7 +427,7 @@ class Finder:
         return entries_of(instance, outer)
 
     def add_statements(self, program: Program, instances: Sequence[Instance]) -> None:
-        """Of what was put in place of a call each block is held against the rest, as if it ran alone."""
+        """Each block inlined in place of a call is compared with the rest, as if it ran alone."""
         for row in self.statements:
             calls: list[tuple[int, dict[int, int]]] = []
             placed: list[list[tuple[int, dict[int, int]]]] = []
@@ -435,7 +436,7 @@ class Finder:
                 blocks = [(times, runs) for instance in instances for runs in instance.parts.get(pair, [])]
                 placed += [blocks] if blocks else []
                 if blocks and (len(placed) > 1 or times < 0):
-                    raise LedgerError(f"line {row.number} of the table: {pair[1]} was put into the place of its call")
+                    raise LedgerError(f"line {row.number} of the table: {pair[1]} was inlined in place of its call")
             if calls or placed:
                 most = self.code.bound(row)
                 for part in placed[0] if placed else [(0, {})]:
@@ -458,8 +459,8 @@ def sets_size(instruction: Instruction) -> bool:
 
 
 def constant_before(function: Function, block: Block, call: Instruction) -> int | None:
-    """What the size register holds at a call, if the instructions before say it."""
-    seen: set[int] = set()
+    """Value of the size register at a call, if the instructions before determine it."""
+    visited: set[int] = set()
     at = block.instructions.index(call)
     while True:
         for instruction in reversed(block.instructions[:at]):
@@ -470,8 +471,8 @@ def constant_before(function: Function, block: Block, call: Instruction) -> int 
                 known = instruction.name in SETS_CONSTANT and constant.isdigit()
                 return int(constant) if known else None
         before = function.before(block.start)
-        seen.add(block.start)
-        if len(before) != 1 or before[0].start in seen or block.start == function.start:
+        visited.add(block.start)
+        if len(before) != 1 or before[0].start in visited or block.start == function.start:
             return None
         block = before[0]
         at = len(block.instructions)

@@ -1,27 +1,27 @@
-"""The table of what the machine code does not tell: how often loops run, and what excludes what, each with its reason.
+"""The table of facts that are not in the machine code: bounds of loops and exclusions, each with its reason.
 
 tests/targets/loop_bounds.csv, columns:
 
 kind      loop, size, most or case
-function  loop: of the source that holds the line; size: that is called; most, case: the public calls,
+function  loop: the source function with the line; size: the called function; most, case: the public calls,
           separated by "; ", or all
-line      loop: text of the line that the loop stands in (of the second that reads alike in its file with " #2"), or
-          #1, #2 ... of a function without lines, in the order of their addresses; size: text of the line that calls;
-          most, case: calls "caller > callee", or "3 caller > callee" of which each counts three times, separated by
-          |; the caller may be "any", and "=caller" leaves out calls by functions that were put into its place
-when      loop: texts of lines by which the function, or one that called it, was called, all of them, separated by " &
-          "; of several lines of the table those with the most texts count, and they alone; empty: any
-most      an expression of whole numbers, of the library's constants and, for what a size bounds, of ``size`` and
-          ``over4``, ``over16``, ``over64``: what is left of it by whole times 4 ...
-per       loop: turns per "entry" of the loop; "outer", "outer2": in all per entry of the loop around it, or around
-          that one; "call": in all per call of the function; "all": in all per public call; "> f": in all per call of
-          f, whoever calls it
+line      loop: text of the loop's line (of the second with the same text in its file with " #2"), or
+          #1, #2 ... for a function without lines, in the order of their addresses; size: text of the calling line;
+          most, case: calls "caller > callee", or "3 caller > callee" with each counted three times, separated by
+          |; the caller may be "any", and "=caller" leaves out calls by functions inlined in it
+when      loop: texts of lines by which the function, or one of its callers, was called, all of them, separated by " &
+          "; among several lines of the table only those with the most texts apply; empty: any
+most      an expression of integers, of the library's constants and, for a size, of ``size`` and
+          ``over4``, ``over16``, ``over64``: its remainders by multiples of 4 ...
+per       loop: turns per "entry" of the loop; "outer", "outer2": in total per entry of the loop around it, or around
+          that one; "call": in total per call of the function; "all": in total per public call; "> f": in total per
+          call of f by any caller
 why       the reason
 
-A case changes nothing that the statements say: it lets the proof look at what excludes each other one after the
-other, each of its calls alone and once, and none of them.
+A case adds nothing to the statements: it lets the proof examine mutually exclusive calls one after the
+other, each alone and once, and none of them.
 
-A loop whose line counts from one constant to another needs no line of the table: counted().
+A loop whose line counts from one constant to another needs no line in the table: counted().
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Row:
 
 
 def value_of(expression: str, names: Mapping[str, int]) -> int:
-    """Whole numbers, names, + - * // and brackets."""
+    """Integers, names, + - * // and parentheses."""
 
     def of(node: ast.expr) -> int:
         if isinstance(node, ast.Constant) and type(node.value) is int:
@@ -79,7 +79,7 @@ def value_of(expression: str, names: Mapping[str, int]) -> int:
     try:
         return of(ast.parse(expression, mode="eval").body)
     except SyntaxError:
-        raise LedgerError(f"{TABLE.name}: {expression}: no expression") from None
+        raise LedgerError(f"{TABLE.name}: {expression}: not an expression") from None
 
 
 def without_comments(text: str) -> str:
@@ -97,15 +97,15 @@ def enumerated(text: str) -> Iterator[tuple[str, str]]:
 
 
 def defined(text: str) -> Iterator[tuple[str, str]]:
-    """Names and values of the macros that hold a number, and of the enumerations."""
+    """Names and values of the macros with a number, and of the enumerations."""
     for name, value in re.findall(r"^#define (\w+) (.+)$", without_comments(text), re.MULTILINE):
         yield name, re.sub(r"\b(\d+)[uU]\b", r"\1", value.strip()).replace("/", "//")
     yield from enumerated(text)
 
 
 def constants_of(headers: str, sources: Iterable[str]) -> dict[str, int]:
-    """Whole numbers that the headers define, as the compiler's preprocessor leaves them (-E -dD), and the sources
-    beside them. What two sources define differently is left out."""
+    """Integers that the headers, as preprocessed by the compiler (-E -dD), and the sources define. Constants with
+    different values in two sources are left out."""
     found = dict(defined(headers))
     other: dict[str, set[str]] = {}
     for text in sources:
@@ -113,7 +113,7 @@ def constants_of(headers: str, sources: Iterable[str]) -> dict[str, int]:
             other.setdefault(name, set()).add(value)
     found |= {name: min(values) for name, values in other.items() if len(values) == 1 and name not in found}
     known: dict[str, int] = {}
-    for _ in range(8):  # definitions by others, as deep
+    for _ in range(8):  # depth of definitions by other definitions
         for name, value in found.items():
             try:
                 known.setdefault(name, value_of(value, known))
@@ -127,7 +127,7 @@ COUNTS_DOWN = re.compile(r"for \([\w ]+? (\w+) = (.+?); \1-- > (.+?);\) \{?$")
 
 
 def counted(line: str, names: Mapping[str, int]) -> int | None:
-    """The turns of a loop whose line counts from one constant to another; None if it is no such line."""
+    """The turns of a loop whose line counts from one constant to another; None for another line."""
     line = re.sub(r" #\d+$", "", line).replace("/", "//")
     up, down = COUNTS_UP.match(line), COUNTS_DOWN.match(line)
     try:
@@ -153,6 +153,6 @@ def read(path: Path = TABLE) -> list[Row]:
             raise LedgerError(f"{path}: line {number}: {len(cells)} cells, not {len(HEAD)}")
         row = Row(number, *cells)
         if row.kind not in KINDS or (row.kind == "loop" and row.per not in PER and row.per[:2] != "> ") or not row.why:
-            raise LedgerError(f"{path}: line {number}: of no known kind, or without a reason")
+            raise LedgerError(f"{path}: line {number}: unknown kind, or no reason")
         rows.append(row)
     return rows

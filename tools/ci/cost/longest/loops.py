@@ -1,8 +1,8 @@
-"""Loops of a function, one within the other: strongly connected parts of its graph, and of these what is left without
-the ways back to their beginning.
+"""Loops of a function and their nesting: strongly connected parts of its graph, and recursively of these parts without
+the edges back to their headers.
 
-A loop mostly has one way in, at its header. Where a compiler has made a second one into its middle, that is an entry
-like any other: the runs are counted by the ways back to the header, of which every turn takes one.
+A loop mostly has one entry, its header. If a compiler made a second one into its middle, that is an entry
+like any other: runs are counted by the edges back to the header, and every turn takes one of them.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ Edge = tuple[int, int]
 
 @dataclass
 class Loop:
-    """Blocks that run again and again."""
+    """Blocks that run repeatedly."""
 
     header: int
     blocks: set[int]
-    backs: list[Edge]  # from within to the header
-    entries: list[Edge]  # from outside; the function's own beginning is no edge
-    outer: Loop | None  # the smallest that holds it
+    backs: list[Edge]  # from inside to the header
+    entries: list[Edge]  # from outside; the start of the function is not an edge
+    outer: Loop | None  # the smallest loop that contains it
 
     @property
     def has_one_way_in(self) -> bool:
         return all(to == self.header for _, to in self.entries)
 
     def exits(self, function: Function) -> list[int]:
-        """Blocks of the loop after which it may be over."""
+        """Blocks of the loop after which it may end."""
         blocks = function.blocks
         return sorted(b for b in self.blocks if blocks[b].leaves or set(blocks[b].followers) - self.blocks)
 
@@ -38,13 +38,13 @@ class Loop:
 def order_of(function: Function) -> list[int]:
     """Blocks in reverse postorder."""
     done: list[int] = []
-    seen = {function.start}
+    visited = {function.start}
     stack = [(function.start, iter(function.blocks[function.start].followers))]
     while stack:
         address, followers = stack[-1]
         for follower in followers:
-            if follower not in seen:
-                seen.add(follower)
+            if follower not in visited:
+                visited.add(follower)
                 stack.append((follower, iter(function.blocks[follower].followers)))
                 break
         else:
@@ -54,7 +54,7 @@ def order_of(function: Function) -> list[int]:
 
 
 def connected(nodes: set[int], followers: dict[int, list[int]]) -> Iterator[set[int]]:
-    """The strongly connected parts that have a cycle, of the graph that is left of these nodes."""
+    """The strongly connected parts with a cycle in the graph restricted to these nodes."""
     number: dict[int, int] = {}
     low: dict[int, int] = {}
     open_: list[int] = []

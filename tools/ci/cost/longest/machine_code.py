@@ -1,7 +1,7 @@
-"""Functions of an ARM image as graphs of basic blocks, from what objdump prints.
+"""Functions of an ARM image as graphs of basic blocks, from the output of objdump.
 
-Everything that may end a block is known here or refused: a branch through a register that is no return, a jump into the
-middle of another function, an instruction that writes the program counter in another way.
+Every instruction that may end a block is either known or refused: a branch through a register that is no return, a jump
+into the middle of another function, an instruction that writes the program counter in another way.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ class Instruction:
 
 @dataclass
 class Block:
-    """Instructions of which all run if the first does, but for those that a condition skips, which count as run."""
+    """Instructions that run together; those that a condition skips count as run."""
 
     instructions: list[Instruction]
     followers: list[int] = field(default_factory=list)  # addresses of blocks of the same function
-    leaves: bool = False  # may return from here, or by a jump to another function
-    calls: list[tuple[Instruction, int]] = field(default_factory=list)  # jumps to other functions among them
+    leaves: bool = False  # may return here, or jump to another function
+    calls: list[tuple[Instruction, int]] = field(default_factory=list)  # including jumps to other functions
 
     @property
     def start(self) -> int:
@@ -68,7 +68,7 @@ class Function:
 
 @dataclass
 class Listing:
-    """A function as objdump prints it: instructions, and data between them by address."""
+    """A function in objdump's output: instructions, and data between them by address."""
 
     name: str
     start: int
@@ -80,7 +80,7 @@ DATA_BYTES = {".byte": 1, ".short": 2, ".word": 4}
 
 
 def listings(text: str) -> list[Listing]:
-    """What ``objdump -d --no-show-raw-insn`` prints."""
+    """Parses the output of ``objdump -d --no-show-raw-insn``."""
     found: list[Listing] = []
     for line in text.splitlines():
         header = re.match(r"^([0-9a-f]+) <([^>]+)>:$", line)
@@ -101,7 +101,7 @@ def listings(text: str) -> list[Listing]:
 
 
 def table_targets(listing: Listing, instruction: Instruction) -> list[int]:
-    """Where a jump through a table of offsets leads to: every entry of the data that follows it."""
+    """Targets of a jump through a table of offsets: every entry of the data that follows it."""
     width = 1 if instruction.name == "tbb" else 2
     base = instruction.address + 4
     stored, at = b"", base
@@ -112,13 +112,13 @@ def table_targets(listing: Listing, instruction: Instruction) -> list[int]:
     known = {i.address for i in listing.instructions}
     targets = [base + 2 * entry for entry in entries if base + 2 * entry in known]
     if not targets:
-        raise LedgerError(f"{listing.name}: a table of jumps at {instruction.address:x} that cannot be read")
+        raise LedgerError(f"{listing.name}: an unreadable jump table at {instruction.address:x}")
     return targets
 
 
 @dataclass(frozen=True)
 class Flow:
-    """What an instruction does to the flow."""
+    """Effect of an instruction on the control flow."""
 
     targets: tuple[int, ...] = ()
     falls: bool = True  # the next instruction may follow
@@ -157,7 +157,7 @@ def flow_of(listing: Listing, instruction: Instruction) -> Flow:
 
 
 def function_of(listing: Listing, starts: set[int]) -> Function:
-    """The graph of one function. A jump to the start of another is a call after which this one leaves."""
+    """The graph of one function. A jump to the start of another function is a call followed by a return."""
     inside = {instruction.address for instruction in listing.instructions}
     flows = {i.address: flow_of(listing, i) for i in listing.instructions}
     leaders = {listing.start}
@@ -193,15 +193,15 @@ def function_of(listing: Listing, starts: set[int]) -> Function:
 
 
 def reachable(function: Function) -> Function:
-    """Without what no path leads to, as padding; a block that falls off the end is an error."""
-    seen: set[int] = set()
+    """Drops unreachable blocks, such as padding; a block that falls off the end is an error."""
+    visited: set[int] = set()
     rest = [function.start]
     while rest:
         address = rest.pop()
-        if address not in seen:
-            seen.add(address)
+        if address not in visited:
+            visited.add(address)
             rest += function.blocks[address].followers
-    blocks = {address: block for address, block in function.blocks.items() if address in seen}
+    blocks = {address: block for address, block in function.blocks.items() if address in visited}
     for block in blocks.values():
         block.followers = list(dict.fromkeys(block.followers))
         if not block.followers and not block.leaves:
@@ -210,7 +210,7 @@ def reachable(function: Function) -> Function:
 
 
 def functions_below(text: str, roots: Iterable[str]) -> dict[int, Function]:
-    """The functions of that name and all that they call, by address."""
+    """The functions with these names and all their callees, by address."""
     found = {listing.start: listing for listing in listings(text)}
     starts = set(found)
     names: dict[str, list[int]] = {}
@@ -227,7 +227,7 @@ def functions_below(text: str, roots: Iterable[str]) -> dict[int, Function]:
         if start in result:
             continue
         if start not in found:
-            raise LedgerError(f"a call of {start:x}, where no function begins")
+            raise LedgerError(f"a call of {start:x}, which is not the start of a function")
         result[start] = function_of(found[start], starts)
         rest += [to for block in result[start].blocks.values() for _, to in block.calls]
     return result

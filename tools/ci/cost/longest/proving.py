@@ -18,7 +18,7 @@ from .longest_path import Code, Context, Finder
 
 PROVED_PRESETS = ("m4f-gcc-o2",)
 
-# What is asked for: by the ledger's name, the function. The table's statements tell them apart.
+# Ledger name: function. The table's statements distinguish the entries of a function.
 CALLS = {
     **{name: name for name in PUBLIC},
     f"{UPDATES['refined']} {WITH_LENS}": "goe_update",
@@ -67,8 +67,8 @@ def proofs(code: Code) -> dict[str, Proof]:
 
 
 def unused(code: Code) -> list[str]:
-    """Lines of the table that bounded nothing: what they speak of is not there any more. One that is there for other
-    callers than those that the table tells apart counts with these."""
+    """Lines of the table that bounded nothing, since their subject no longer exists. A line that exists for other
+    callers than those distinguished by the table counts as used."""
     loops = {(row.function, row.line) for row in code.table if row.number in code.used and row.kind == "loop"}
     return [
         f"line {row.number}: {row.kind} {row.function}: {row.line}"

@@ -1,4 +1,4 @@
-"""The lines of the sources that the instructions of an image come from, by its debugging information."""
+"""Source lines of an image's instructions, from its debugging information."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from goe_tools.places import ROOT
 
 @dataclass(frozen=True)
 class Place:
-    """A line of a function that is compiled here; its own, or of a function that was put into its place."""
+    """A line of a compiled function: its own, or of a function inlined in it."""
 
     function: str
     file: str
@@ -27,23 +27,23 @@ class Place:
         return lines[self.line - 1] if self.line <= len(lines) else ""
 
 
-Places = tuple[Place, ...]  # of an instruction: the innermost function first
+Places = tuple[Place, ...]  # of an instruction, innermost function first
 
 
 @cache
 def lines_of(file: str) -> list[str]:
-    """The lines of a source without what leads them and without a comment behind them; of the second and further
-    loops that read alike the number is added: " #2"."""
+    """The lines of a source without indentation and trailing comments; the second and further loops with the same text
+    get a number: " #2"."""
     try:
-        source = ROOT / file.rsplit("/./", 1)[-1]  # builds name the library's by where it lies in the project
+        source = ROOT / file.rsplit("/./", 1)[-1]  # builds name the library's sources relative to the project
         plain = [re.sub(r"\s*/\*.*$", "", line).strip() for line in source.read_text("utf-8").splitlines()]
     except OSError:
         return []
-    seen: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for i, text in enumerate(plain):
         if is_loop(text):
-            seen[text] = seen.get(text, 0) + 1
-            plain[i] = text if seen[text] == 1 else f"{text} #{seen[text]}"
+            counts[text] = counts.get(text, 0) + 1
+            plain[i] = text if counts[text] == 1 else f"{text} #{counts[text]}"
     return plain
 
 
@@ -52,7 +52,7 @@ def is_loop(text: str) -> bool:
 
 
 def places_of(text: str) -> dict[int, Places]:
-    """What ``addr2line -a -f -i`` prints."""
+    """Parses the output of ``addr2line -a -f -i``."""
     found: dict[int, Places] = {}
     for block in re.split(r"^(?=0x[0-9a-f]+$)", text, flags=re.MULTILINE):
         lines = block.splitlines()
@@ -68,7 +68,7 @@ def places_of(text: str) -> dict[int, Places]:
 
 
 def read(tool: str, image: Path, addresses: Iterable[int]) -> dict[int, Places]:
-    """The places of the instructions; none of those that were compiled without debugging information."""
+    """The places of the instructions; empty for those compiled without debugging information."""
     given = "".join(f"{address:x}\n" for address in addresses)
     command = [tool, "-a", "-f", "-i", "-e", str(image)]
     done = subprocess.run(command, input=given, capture_output=True, text=True, check=False)

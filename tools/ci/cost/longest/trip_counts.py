@@ -1,4 +1,4 @@
-"""What the table says, held against what the embedded logs do: how often loops turn, what excludes what."""
+"""Compares the table with the embedded logs: actual turns of loops, and exclusions."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PLUGIN = "count_loops"
 
 @dataclass(frozen=True)
 class Trips:
-    """The most that a loop turned or that calls added up to, and may, by a line of the table."""
+    """The largest number of turns or sum of calls, and its limit by a line of the table."""
 
     function: str
     header: int
@@ -41,19 +41,19 @@ class Trips:
 
 @dataclass(frozen=True)
 class Check:
-    """What is counted, and may come to `most` at any time until it begins anew."""
+    """A count that may reach `most` between two resets."""
 
     function: str
     address: int
     row: Row
     most: int
-    counts: tuple[tuple[int, int], ...]  # addresses, and how much each adds
+    counts: tuple[tuple[int, int], ...]  # addresses and their increments
     resets: tuple[int, ...]
-    needs: frozenset[str] = frozenset()  # texts of lines by which it was called
-    bars: frozenset[str] = frozenset()  # ... by which it was not
+    needs: frozenset[str] = frozenset()  # texts of lines that must be in the call stack
+    bars: frozenset[str] = frozenset()  # ... that must not
 
 
-DEPTH = {"outer": 1, "outer2": 2}  # loops around that a bound speaks of
+DEPTH = {"outer": 1, "outer2": 2}  # number of enclosing loops in a bound
 
 
 def depth_of(loop: Loop) -> int:
@@ -61,7 +61,7 @@ def depth_of(loop: Loop) -> int:
 
 
 def resets_of(code: Code, function: Function, loop: Loop, row: Row) -> tuple[int, ...]:
-    """Addresses after which a bound counts anew."""
+    """Addresses that reset the count of a bound."""
     if row.per == "call":
         return (function.start,)
     if row.per == "all" or row.per.startswith("> "):
@@ -87,7 +87,7 @@ def calls_of(code: Code, finder: Finder, pair: Pair) -> Iterator[int]:
 
 
 def checks_of_loops(code: Code, finder: Finder) -> Iterator[Check]:
-    """One for each loop and each line of the table that bounds it; not where a size decides."""
+    """One for each loop and each line of the table that bounds it, except bounds by a size."""
     for function in code.functions.values():
         for loop in code.loops[function.start]:
             rows = table_rows_of(code, function, loop)
@@ -113,7 +113,7 @@ def checks_of_loops(code: Code, finder: Finder) -> Iterator[Check]:
 
 
 def checks_of_statements(code: Code, finder: Finder) -> Iterator[Check]:
-    """One for each statement and case of every public call; of what was put in place of a call, for each block."""
+    """One for each statement and case of every public call; for inlined calls, one for each block."""
     for row in (*finder.statements, *finder.cases):
         calls: list[tuple[int, int]] = []
         placed: list[tuple[int, int]] = []
@@ -121,7 +121,7 @@ def checks_of_statements(code: Code, finder: Finder) -> Iterator[Check]:
             calls += [(at, times) for at in calls_of(code, finder, pair)]
             for function in code.functions.values():
                 for block in function.blocks.values():
-                    if pair in finder.put_in(block) and not finder.turns_within(function, block, pair):
+                    if pair in finder.inlined_in(block) and not finder.turns_within(function, block, pair):
                         placed.append((block.start, times))
         for part in placed or [None]:
             counts = tuple(calls) if part is None else (part, *calls)
@@ -130,7 +130,7 @@ def checks_of_statements(code: Code, finder: Finder) -> Iterator[Check]:
 
 
 def switch_lines(code: Code, texts: list[str]) -> Iterator[str]:
-    """On at calls by a line with that text, off behind them; and one that is on while a public call runs."""
+    """Switches: on at calls from a line with that text, off after them; one more is on during a public call."""
     for function in code.functions.values():
         if function.name in PUBLIC:
             yield f"on {function.start:x} {len(texts)}"
@@ -162,7 +162,7 @@ def map_of(code: Code, checks: list[Check]) -> str:
 
 
 def measured(built: Build, code: Code, folder: Path) -> list[Trips]:
-    """Over the embedded logs, under QEMU."""
+    """Counts over the embedded logs, under QEMU."""
     finder = Finder(code, "all")
     checks = [*checks_of_loops(code, finder), *checks_of_statements(code, finder)]
     events, out = folder / "events", folder / "turns"
@@ -176,7 +176,7 @@ def measured(built: Build, code: Code, folder: Path) -> list[Trips]:
 
 def exceeded(trips: list[Trips]) -> list[str]:
     return [
-        f"{trip.function} at {trip.header:x}: counted {trip.measured}, line {trip.row.number} of the table says "
+        f"{trip.function} at {trip.header:x}: counted {trip.measured}, line {trip.row.number} of the table has "
         f"{trip.most}"
         for trip in trips
         if trip.measured > trip.most

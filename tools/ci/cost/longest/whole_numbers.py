@@ -1,11 +1,11 @@
-"""The largest value of a linear program, with a proof in whole numbers.
+"""The maximum of a linear program, with a proof in exact numbers.
 
-The solver computes with floating point numbers, and what it says is not believed: from its multipliers a bound is made
-that is checked in fractions. A weak bound would be seen; a wrong one cannot pass.
+The solver uses floating point, so its result is not trusted: its multipliers give a bound, which is checked in
+fractions. A weak bound would be noticed; a wrong one cannot pass.
 
     most c x  with  equal x = 0, at_most x <= 0, x >= 0, and x[0] = 1
 
-For any multipliers u, v >= 0 with  c <= u equal + v at_most + w e0  it is at most w.
+For any multipliers u, v >= 0 with  c <= u equal + v at_most + w e0  the maximum is at most w.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from scipy.optimize import linprog
 from scipy.sparse import csr_matrix
 
 Row = dict[int, int]  # coefficients by variable
-DENOMINATOR_MAX = 5040  # of a multiplier: those of flows are whole numbers or simple fractions
+DENOMINATOR_MAX = 5040  # of a multiplier: those of flows are integers or simple fractions
 
 
 @dataclass
@@ -50,7 +50,7 @@ def fraction_of(number: float) -> Fraction:
 
 
 def proved(program: Program, equal: list[Fraction], at_most: list[Fraction]) -> Fraction:
-    """The bound that the multipliers prove; raises if they prove none."""
+    """The bound proved by the multipliers; raises if they prove none."""
     rest = [Fraction(cost) for cost in program.cost]
     for rows, factors in ((program.equal, equal), (program.at_most, at_most)):
         for row, factor in zip(rows, factors):
@@ -62,11 +62,11 @@ def proved(program: Program, equal: list[Fraction], at_most: list[Fraction]) -> 
     return rest[0]
 
 
-INFEASIBLE = 2  # scipy's word for it
+INFEASIBLE = 2  # scipy's status
 
 
 def solve(program: Program) -> Solution | None:
-    """None if nothing fulfils it."""
+    """None if the constraints are infeasible."""
     count = len(program.cost)
     equal = [{0: 1}, *program.equal]
     given = np.zeros(len(equal))
@@ -83,7 +83,7 @@ def solve(program: Program) -> Solution | None:
     if answer.status == INFEASIBLE:
         return None
     if answer.status != 0:
-        raise LedgerError(f"the longest path has no end: {answer.message}")
+        raise LedgerError(f"the longest path is unbounded: {answer.message}")
     by_equal = [fraction_of(-value) for value in answer.eqlin.marginals[1:]]
     by_most = [max(fraction_of(-value), Fraction(0)) for value in answer.ineqlin.marginals]
     bound = proved(program, by_equal, by_most)

@@ -1,7 +1,7 @@
-"""Requirements: what the library promises, and the tests that would fail without it.
+"""Requirements: the library's promises, and the tests that would fail without them.
 
-marks.py   promises and tests, joined by marks and names; what has no other side
-breaks.py  the code broken by hand, and whether the test with the mark fails
+marks.py   joins promises and tests by marks and names; finds orphans
+breaks.py  breaks the code line by line, and checks that the marked test fails
 part.py    the part of the evidence
 """
 

@@ -1,4 +1,4 @@
-"""The code broken by hand, one line at a time, in a copy: does the test that has its mark then fail?"""
+"""Breaks the code one line at a time in a copy, and checks that the test with the mark fails."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from . import marks
 
 TABLE = ROOT / "tests" / "mutation" / "breaks.csv"
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off")
-NOT_TOLD = "not told"
-SECONDS = 300  # a test that takes longer hangs, which is noticed, too
+NOT_REPORTED = "not reported"
+SECONDS = 300  # a test that takes longer counts as failed
 
 
 @dataclass(frozen=True)
 class Break:
-    """One line of the code, broken by hand, and the test that then fails."""
+    """One line of the code, broken on purpose, and the test that then fails."""
 
-    mark: str  # of the promise that is broken, which the test has, too
+    mark: str  # of the broken promise and of the test
     file: str
     old: str
     new: str
@@ -42,7 +42,7 @@ def read(path: Path = TABLE) -> list[Break]:
 
 
 def stale(breaks: Iterable[Break], found: marks.Findings, root: Path = ROOT) -> Iterator[str]:
-    """Lines that are no longer there, or whose test no longer has the mark."""
+    """Entries whose line no longer exists, or whose test no longer has the mark."""
     for broken in breaks:
         place = f"tests/mutation/{TABLE.name}:{broken.line} ({broken.mark})"
         if broken.test not in (test.name for test in found.by_key.get(broken.mark, [])):
@@ -64,11 +64,11 @@ def unity() -> Path:
 class Outcome:
     broken: Break
     noticed: bool
-    told: str  # what the named test said
+    message: str  # of the named test
 
 
 class Bench:
-    """Objects of the library and of what the unit tests share; one program may have another file of the library."""
+    """Objects of the library and the shared files of the unit tests; a program may replace one file of the library."""
 
     def __init__(self, folder: Path, jobs: int) -> None:
         self.folder, self.jobs, self.unity = folder, jobs, unity()
@@ -88,16 +88,16 @@ class Bench:
     def compile(self, source: Path, to: Path | None = None) -> Path:
         to = to or self.folder / f"{source.stem}.o"
         folders = (ROOT / "lib", ROOT / "tests" / "c", self.unity)
-        beside = () if source.is_relative_to(ROOT) else (f"-I{ROOT / 'lib'}",)
-        self.run(self.compiler, *FLAGS, *(f"-I{folder}" for folder in folders), *beside, "-c", source, "-o", to)
+        include = () if source.is_relative_to(ROOT) else (f"-I{ROOT / 'lib'}",)
+        self.run(self.compiler, *FLAGS, *(f"-I{folder}" for folder in folders), *include, "-c", source, "-o", to)
         return to
 
     def link(self, objects: Sequence[Path], to: Path) -> Path:
         self.run(self.compiler, *objects, *self.shared, "-lm", "-o", to)
         return to
 
-    def told_by(self, program: Path, test: str) -> tuple[bool, str]:
-        """Whether the test failed, and what was said of it."""
+    def result_of(self, program: Path, test: str) -> tuple[bool, str]:
+        """Whether the test failed, and its message."""
         try:
             done = subprocess.run([program], cwd=ROOT, capture_output=True, text=True, check=False, timeout=SECONDS)
         except subprocess.TimeoutExpired:
@@ -105,11 +105,11 @@ class Bench:
         lines = [line for line in done.stdout.splitlines() if f":{test}:" in line]
         if done.returncode < 0 and not lines:
             return True, f"ended by signal {-done.returncode}"
-        told = lines[-1].partition(f"{test}:")[2] if lines else NOT_TOLD
-        return any(":FAIL" in line for line in lines), told
+        message = lines[-1].partition(f"{test}:")[2] if lines else NOT_REPORTED
+        return any(":FAIL" in line for line in lines), message
 
     def judge(self, broken: Break | None, file: str, test: str) -> tuple[bool, str]:
-        """One program, with the broken line or as it is."""
+        """One program, with the broken line or unchanged."""
         with tempfile.TemporaryDirectory(dir=self.folder) as name:
             folder = Path(name)
             objects = dict(self.library)
@@ -119,7 +119,7 @@ class Bench:
                 copy.write_text(original.read_text(encoding="utf-8").replace(broken.old, broken.new), encoding="utf-8")
                 objects[original] = self.compile(copy, folder / "broken.o")
             program = self.compile(ROOT / file, folder / "test.o")
-            return self.told_by(self.link([program, *objects.values()], folder / "test"), test)
+            return self.result_of(self.link([program, *objects.values()], folder / "test"), test)
 
     def outcome(self, broken: Break) -> Outcome:
         file, _, test = broken.test.partition(":")
@@ -130,7 +130,7 @@ class Bench:
 
 
 def try_all(breaks: Iterable[Break], jobs: int) -> tuple[list[Outcome], list[str]]:
-    """What the named tests say of each broken line; and tests that fail with nothing broken."""
+    """Outcomes of the named tests for each broken line; and tests that fail with nothing broken."""
     breaks = list(breaks)
     if not shutil.which(os.environ.get("CC", "cc")):
         raise NotHereError("a C compiler")
@@ -138,5 +138,5 @@ def try_all(breaks: Iterable[Break], jobs: int) -> tuple[list[Outcome], list[str
         bench = Bench(Path(name), jobs)
         tests = sorted({broken.test for broken in breaks})
         whole = pool.map(lambda test: bench.judge(None, *test.split(":", 1)), tests)
-        failing = [test for test, (failed, told) in zip(tests, whole) if failed or told == NOT_TOLD]
+        failing = [test for test, (failed, message) in zip(tests, whole) if failed or message == NOT_REPORTED]
         return list(pool.map(bench.outcome, breaks)), failing

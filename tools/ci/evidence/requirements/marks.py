@@ -1,8 +1,8 @@
-"""Promises and tests, joined by marks; tests/README.md ("Marks") says how to add one.
+"""Joins promises and tests by marks; tests/README.md ("Marks") describes how to add one.
 
-A promise of a header or page carries a mark behind its sentence, [A12]. What has a name is its own mark: a function, an
+A promise in a header or page has a mark after its sentence, [A12]. A named item is its own mark: a function, an
 enumerator, a constant, a field and a setting of a public header, an equation of a source, (R12), a source file. The
-test that would fail begins its comment with that mark, /* [A12, GOE_PASSED, (R7)] ... */, or names it in its code.
+test that would fail starts its comment with that mark, /* [A12, GOE_PASSED, (R7)] ... */, or names it in its code.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SPAN = re.compile(r"\((R?)([1-9]\d?)\) to \(R?([1-9]\d?)\)")
 class Promise:
     key: str  # A12, goe_update, goe_pose_t.height_m, camera.k1, (R12), goe_status.c
     place: str  # file:line
-    words: frozenset[str] = frozenset()  # in a test's code any of them names it
+    words: frozenset[str] = frozenset()  # any of them in a test's code refers to it
     text: str = ""
 
 
@@ -43,8 +43,8 @@ class Promise:
 class Test:
     name: str  # tests/c/x.c:function, tests/python/x.py::test_function; file:line in scripts
     place: str
-    marks: tuple[str, ...]  # of its comment, and the sources of the file's head, which it tests from inside
-    words: frozenset[str] = frozenset()  # of its code: words, a.b and .b
+    marks: tuple[str, ...]  # in its comment, and the sources in the file's head, which it tests from inside
+    words: frozenset[str] = frozenset()  # in its code: words, a.b and .b
 
 
 @dataclass
@@ -62,7 +62,7 @@ def read(path: Path) -> str:
 
 @cache
 def without_comments(path: Path) -> str:
-    """Every line stays where it is."""
+    """Every line keeps its number."""
     return re.sub(r"/\*.*?\*/", lambda match: " " + "\n" * match[0].count("\n"), read(path), flags=re.DOTALL)
 
 
@@ -88,7 +88,7 @@ def fields_of(body: str) -> Iterator[str]:
 
 
 def fields_in(name: str, text: str, public: str) -> Iterator[Promise]:
-    """Fields of public structures; by one that several structures have the code must say whose it is: pose.height_m."""
+    """Fields of public structures; if several structures have a field, the code must name its owner: pose.height_m."""
     structures = re.findall(r"typedef struct \{(.*?)\} (goe_\w+);", text, re.DOTALL)
     shared = Counter(each for body, _ in structures for each in fields_of(body))
     for match in re.finditer(r"typedef struct \{(.*?)\} (goe_\w+);", text, re.DOTALL):
@@ -123,7 +123,7 @@ def names_in(name: str, listed: str, root: Path) -> Iterator[Promise]:
 
 
 def equations_in(text: str) -> set[str]:
-    """(7), (R21); of (R35) to (R38) all four."""
+    """(7), (R21); for (R35) to (R38) all four."""
     spans = [f"({kind}{number})" for kind, low, high in SPAN.findall(text) for number in range(int(low), int(high) + 1)]
     return {*EQUATION.findall(text), *spans}
 
@@ -157,7 +157,7 @@ def marks_of(comment: str) -> tuple[str, ...]:
 
 
 def words_of(code: str) -> frozenset[str]:
-    """Its words, "words", and of a.b, a->b and a[i].b also "a.b" and ".b"."""
+    """The words of a test's code: "words", and from a.b, a->b and a[i].b also "a.b" and ".b"."""
     code = re.sub(r"/\*.*?\*/|//[^\n]*", " ", code, flags=re.DOTALL).replace("->", ".")
     pairs = re.findall(r"(\w+)(?:\[[^\]]*\])?\.(?=(\w+))", code)
     single = re.findall(r'\w+|"\w+"|\.\w+', code) + re.findall(r"\w+", code)
@@ -166,7 +166,7 @@ def words_of(code: str) -> frozenset[str]:
 
 @dataclass(frozen=True)
 class Chunk:
-    """A definition at the left edge of a C file, with the comment right above it."""
+    """A definition at the left edge of a C file, with the comment directly above it."""
 
     line: int
     comment: str
@@ -176,7 +176,7 @@ class Chunk:
 
 @cache
 def chunks(path: Path) -> dict[str, Chunk]:
-    """By name; a definition ends with the first line that closes it at the left edge."""
+    """Chunks by name; a definition ends with the first closing line at the left edge."""
     found: dict[str, Chunk] = {}
     lines, at, comment = read(path).splitlines(), 0, ""
     while at < len(lines):
@@ -201,23 +201,23 @@ def chunks(path: Path) -> dict[str, Chunk]:
     return found
 
 
-def code_of(test: str, beside: dict[str, Chunk]) -> str:
-    """Its own, and that of tables and macros that it or its helpers name."""
-    seen, todo, code = {test}, [test], beside[test].code
+def code_of(test: str, others: dict[str, Chunk]) -> str:
+    """The code of a test, and of the tables and macros that it or its helpers name."""
+    known, todo, code = {test}, [test], others[test].code
     while todo:
-        new = set(re.findall(r"\w+", beside[todo.pop()].code)) & set(beside) - seen
-        seen |= new
+        new = set(re.findall(r"\w+", others[todo.pop()].code)) & set(others) - known
+        known |= new
         todo += new
-        code += "\n".join(["", *(beside[name].code for name in sorted(new) if not beside[name].is_function)])
+        code += "\n".join(["", *(others[name].code for name in sorted(new) if not others[name].is_function)])
     return code
 
 
 def c_tests(path: Path, name: str, inside: tuple[str, ...]) -> Iterator[Test]:
-    beside = chunks(path)
+    others = chunks(path)
     for test in dict.fromkeys(re.findall(r"\bRUN_TEST\((\w+)\)", without_comments(path))):
-        if test in beside:
-            marks = (*marks_of(beside[test].comment), *inside)
-            yield Test(f"{name}:{test}", f"{name}:{beside[test].line}", marks, words_of(code_of(test, beside)))
+        if test in others:
+            marks = (*marks_of(others[test].comment), *inside)
+            yield Test(f"{name}:{test}", f"{name}:{others[test].line}", marks, words_of(code_of(test, others)))
 
 
 def python_tests(path: Path, name: str, inside: tuple[str, ...]) -> Iterator[Test]:
@@ -254,13 +254,13 @@ def tests(root: Path = ROOT) -> list[Test]:
 
 
 def joined(root: Path = ROOT) -> Findings:
-    """Of each promise its tests; what has no other side."""
+    """The tests of each promise, and orphans on both sides."""
     found = Findings(promises(root), tests(root), {}, [])
     known: dict[str, Promise] = {}
     keys_of: dict[str, list[str]] = {}  # of a word
     for promise in found.promises:
         if promise.key in known:
-            found.orphans.append(f"{promise.place}: [{promise.key}] is at {known[promise.key].place}, too")
+            found.orphans.append(f"{promise.place}: [{promise.key}] is also at {known[promise.key].place}")
         known[promise.key] = promise
         for word in promise.words:
             keys_of.setdefault(word, []).append(promise.key)
@@ -281,7 +281,7 @@ def joined(root: Path = ROOT) -> Findings:
 
 
 def write_table(found: Findings, path: Path) -> None:
-    """For reviewers: each promise, where it stands, and its tests."""
+    """For reviewers: each promise, its place, and its tests."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")

@@ -1,4 +1,4 @@
-"""The part ``requirements``: no promise without a test, no test without a promise; long: broken code is noticed."""
+"""The part ``requirements``: no promise without a test, no test without a promise; long: broken code is detected."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ def rows_of_breaks(amount: Amount) -> tuple[list[Row], list[str]]:
     noticed = sum(outcome.noticed for outcome in outcomes)
     lines = [
         f"{outcome.broken.mark} {outcome.broken.file}: {outcome.broken.old!r} -> {outcome.broken.new!r}: "
-        f"{outcome.broken.test} {'fails' if outcome.noticed else 'DOES NOT FAIL'}: {outcome.told}"
+        f"{outcome.broken.test} {'fails' if outcome.noticed else 'DOES NOT FAIL'}: {outcome.message}"
         for outcome in outcomes
     ]
     lines += [f"fails with nothing broken: {test}" for test in failing]
     met = noticed == len(outcomes) and not failing
-    what = "lines broken by hand: the test with the mark fails"
+    what = "lines broken on purpose: the test with the mark fails"
     return [Row(what, f"{noticed:,} of {len(outcomes):,}", "all", met)], lines
 
 

@@ -1,4 +1,5 @@
-"""Licences of what the tests and tools install, as their owners state them, by SPDX's names; others are not known."""
+"""Licenses of the installed packages, as their owners state them, by SPDX names; others are unknown."""
+
 
 from __future__ import annotations
 
@@ -39,7 +40,7 @@ DEBIAN = {
     "valgrind": "GPL-2.0-or-later",
 }
 
-_BY_LICENCE = {
+_BY_LICENSE = {
     "Apache-2.0": (
         "importlib-metadata", "importlib-resources", "msgpack", "scikit-build-core",
         "selenium", "sortedcontainers", "tornado", "websocket-client",
@@ -68,6 +69,6 @@ _BY_LICENCE = {
     "PSF-2.0": ("matplotlib", "typing-extensions"),
 }  # fmt: skip
 
-PYTHON = {name: licence for licence, names in _BY_LICENCE.items() for name in names}
+PYTHON = {name: license for license, names in _BY_LICENSE.items() for name in names}
 
 OTHERS = {"plotly.js": "MIT", "unity": "MIT"}
