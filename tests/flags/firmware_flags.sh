@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Compiles the library, the flight layer and its MAVLink messages as one firmware does, without a warning, and runs the safety tests
+# Compiles the library, the flight layer and its MAVLink messages with one firmware's flags, without a warning, and runs the safety tests
 # on the result.
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
 #
-# Every host compiler there is; C99, C11 and GNU C17; with and without NDEBUG. C99 at both of the firmware's levels makes code, which is
-# tested, and warnings that only come with code; the other dialects and NDEBUG change what is read alone, and are read alone. gcc warns of
-# what nothing uses only when it makes code: with NDEBUG it makes some, without optimization.
+# Runs every installed host compiler with C99, C11 and GNU C17, with and without NDEBUG. C99 at both of the firmware's levels generates
+# code, which is tested and gives warnings that need code. The other dialects and NDEBUG affect only parsing, so they are only parsed. gcc
+# warns of unused names only when it generates code: with NDEBUG it does, without optimization.
 #
 # The safety tests are those of safety_objects.sh, linked with the firmware's flags, which may change the floating-point unit's mode.
-# UNITY_INCLUDE and UNITY_LIBRARY say where the test framework is, SAFETY_OBJECTS where safety_objects.sh has put its objects.
+# UNITY_INCLUDE and UNITY_LIBRARY locate the test framework, SAFETY_OBJECTS the objects of safety_objects.sh.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/firmwares.sh"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Every combination of the parts (GOE_WITH_WINDOW, _REFINED, _HAZARD; _MOVERS, a part of the refined method): compiles without a
-# warning under the flags of the firmwares, passes the unit tests of what it holds, and answers with the same bits as every other
-# that holds it.
+# warning under the flags of the firmwares, passes the unit tests of its parts, and answers with the same bits as every other
+# combination with the same part.
 #
 #   parts.sh <folder for the builds> <folder of unity.c>
 set -euo pipefail
@@ -12,7 +12,7 @@ builds=$1
 unity=$2
 mkdir -p "$builds"
 
-# syntax <definition>...: warnings of both compilers under each firmware's flags, without code
+# syntax <definition>...: warnings of both compilers under each firmware's flags, without generating code
 syntax() {
     local compiler firmware accepted
     for compiler in $(compilers gcc clang-19); do
@@ -44,7 +44,7 @@ combination() {
     }
     "$tree/tests/parts/parts" >"$tree.parts" || fail "$name: a method that was left out is not refused"
     echo "$name: $(grep -oE '[0-9]+ tests? failed out of [0-9]+' "$tree.log"), $(grep bytes "$tree.parts")"
-    [ "$4" = 0 ] || grep -v bytes "$tree.parts" >>"$builds/answers" # without movers the refined method says other things
+    [ "$4" = 0 ] || grep -v bytes "$tree.parts" >>"$builds/answers" # without movers the refined method gives other answers
 }
 
 : >"$builds/answers"
@@ -59,6 +59,6 @@ done
 combination 1 1 1 0
 combination 0 1 0 0
 
-# Each part says one thing, in every combination that holds it.
+# Each part gives the same answers in every combination that contains it.
 sort -u "$builds/answers"
 [ "$(sort -u "$builds/answers" | wc -l)" = 4 ] || fail "a part's answers depend on what else is compiled in"

@@ -17,7 +17,7 @@ goe_check_flight_hash(flight_replay flight_replay)
 find_program(BASH bash)
 set(target_tests ${CMAKE_CURRENT_SOURCE_DIR})
 
-# goe_target_test(<name> <script> <argument>...): status 77 of a script means that something is not installed
+# goe_target_test(<name> <script> <argument>...): a script's status 77 means that something is not installed
 function(goe_target_test name script)
     add_test(NAME ${name} COMMAND ${BASH} ${target_tests}/${script} ${ARGN})
     set_tests_properties(${name} PROPERTIES LABELS targets SKIP_RETURN_CODE 77 TIMEOUT ${goe_build_hang_s})
@@ -31,7 +31,7 @@ goe_target_test(self_check_host host_self_check.sh ${golden})
 # ------------------------------------------------------------------------------------------------- one test each target
 
 # Every target runs the replay, its stack, the self-check's proofs and the safety tests of tests/c. One runs all of tests/c:
-# README.md says why this one. COST: what takes longest starts first.
+# README.md gives the reason. COST: the longest tests start first.
 set(target_with_all_tests m4f-gcc-o2)
 set(unity_dir "")
 if(TARGET goe_unity)

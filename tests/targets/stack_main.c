@@ -1,8 +1,8 @@
-/* Prints how deep each public function drives the stack over the embedded logs. SPDX-License-Identifier: MIT
+/* Prints the stack depth of each public function over the embedded logs. SPDX-License-Identifier: MIT
  *
  *   stack <function> <bytes>
  *
- * The stack is painted before each call. What the call itself needs (arguments on the stack) belongs to the caller. */
+ * The stack is painted before each call. The arguments on the stack belong to the caller. */
 #include "replay.h"
 #include "semihosting.h"
 #include "stack.h"
@@ -119,7 +119,7 @@ static void measure_track(const logged_track_t *track, int method) {
     keep_larger(&deepest.reset, depth_of_reset());
 }
 
-static void tell(const char *function, size_t bytes) {
+static void report(const char *function, size_t bytes) {
     port_write_text("stack ");
     port_write_text(function);
     port_write_text(" ");
@@ -131,18 +131,18 @@ int main(void) {
     for (int t = 0; t < logged_track_count * REPLAY_METHODS; t++) {
         measure_track(&logged_tracks[t / REPLAY_METHODS], t % REPLAY_METHODS);
     }
-    tell("goe_settings_default", deepest.defaults);
-    tell("goe_init", deepest.init);
-    tell("goe_update_window", deepest.update[0]);
-    tell("goe_update", deepest.update[1]);
-    tell("goe_covariance", deepest.covariance);
-    tell("goe_hazard", deepest.hazard);
-    tell("goe_rule_default", deepest.rule);
-    tell("goe_decide", deepest.decide);
-    tell("goe_soonest_s", deepest.soonest);
-    tell("goe_reset", deepest.reset);
-    tell("goe_status_text", depth_of_text());
-    tell("goe_reason_text", depth_of_reason());
-    tell("goe_self_check", depth_of_self_check());
+    report("goe_settings_default", deepest.defaults);
+    report("goe_init", deepest.init);
+    report("goe_update_window", deepest.update[0]);
+    report("goe_update", deepest.update[1]);
+    report("goe_covariance", deepest.covariance);
+    report("goe_hazard", deepest.hazard);
+    report("goe_rule_default", deepest.rule);
+    report("goe_decide", deepest.decide);
+    report("goe_soonest_s", deepest.soonest);
+    report("goe_reset", deepest.reset);
+    report("goe_status_text", depth_of_text());
+    report("goe_reason_text", depth_of_reason());
+    report("goe_self_check", depth_of_self_check());
     return 0;
 }
