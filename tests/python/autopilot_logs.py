@@ -156,7 +156,7 @@ def ulog_topics(flown: Flown) -> dict[str, list[tuple[str, str, np.ndarray]]]:
         return [("uint64_t", "timestamp", us + 3000), ("uint64_t", "timestamp_sample", us)]
 
     t, rates_t = flown.grid(flown.rate_hz), flown.grid(flown.gyro_hz)
-    place, speed = flown.told_position(t), flown.velocity(t)
+    place, speed = flown.logged_position(t), flown.velocity(t)
     count = flown.count(t, yaw=False)
     delta = np.zeros((len(t), 3))
     for fault in flown.faults:
@@ -176,7 +176,7 @@ def ulog_topics(flown: Flown) -> dict[str, list[tuple[str, str, np.ndarray]]]:
             ("bool", "xy_valid", yes), ("bool", "z_valid", yes), ("bool", "dist_bottom_valid", yes),
         ],
         "vehicle_attitude": [
-            *stamps(t), ("float", "q", flown.told_attitude(t)),
+            *stamps(t), ("float", "q", flown.logged_attitude(t)),
             ("uint8_t", "quat_reset_counter", flown.count(t, yaw=True)),
         ],
         "vehicle_angular_velocity": [*stamps(rates_t), ("float", "xyz", flown.rates(rates_t))],
@@ -209,7 +209,7 @@ def dataflash_messages(flown: Flown) -> dict[str, tuple[str, str, list[tuple[obj
     """The messages that ArduPilot logs in a flight with two cores. The second core is primary; the first is off by 7
     m."""
     t, rates_t, slow = flown.grid(flown.rate_hz), flown.grid(flown.gyro_hz), flown.grid(10.0)
-    place, speed, q = flown.told_position(t), flown.velocity(t), flown.told_attitude(t)
+    place, speed, q = flown.logged_position(t), flown.velocity(t), flown.logged_attitude(t)
 
     def us(time: np.ndarray) -> list[int]:
         return [int(x) for x in np.rint((time + START_S) * 1e6)]
@@ -229,7 +229,7 @@ def dataflash_messages(flown: Flown) -> dict[str, tuple[str, str, list[tuple[obj
         "IMU": ("QBfff", "TimeUS,I,GyrX,GyrY,GyrZ", [
             (us_k, 0, *row) for us_k, row in zip(us(rates_t), flown.rates(rates_t))]),
         "RFND": ("QBfBB", "TimeUS,Instance,Dist,Stat,Orient", [
-            (us_k, 0, (-flown.position(slow)[k, 2] + 2.0) / matrices(flown.told_attitude(slow))[k, 2, 2], 4, 25)
+            (us_k, 0, (-flown.position(slow)[k, 2] + 2.0) / matrices(flown.logged_attitude(slow))[k, 2, 2], 4, 25)
             for k, us_k in enumerate(us(slow))]),
     }  # fmt: skip
 
@@ -246,7 +246,7 @@ def write_tlog(path: Path, flown: Flown, odometry: bool = False) -> Path:
 
     own, camera, other = sender(1, 1), sender(1, 100), sender(7, 1)
     t = flown.grid(flown.rate_hz)
-    place, speed, rates, q = flown.told_position(t), flown.velocity(t), flown.rates(t), flown.told_attitude(t)
+    place, speed, rates, q = flown.logged_position(t), flown.velocity(t), flown.rates(t), flown.logged_attitude(t)
     yaw, pitch, roll = flown.angles(t)
     with path.open("wb") as file:
 
