@@ -23,9 +23,9 @@ static const AP_Param::GroupInfo &parameter(const char *name) {
 }
 
 AP_GOE *new_goe() {
-    static uint64_t room[(sizeof(AP_GOE) + 7) / 8]; // it is a singleton
-    memset(room, 0, sizeof room);
-    return new (room) AP_GOE();
+    static uint64_t memory[(sizeof(AP_GOE) + 7) / 8]; // it is a singleton
+    memset(memory, 0, sizeof memory);
+    return new (memory) AP_GOE();
 }
 
 void set_parameter(AP_GOE &goe, const char *name, float value) {
@@ -143,7 +143,7 @@ void FlownVehicle::step_layer() {
     goe_flight_position_t position;
     flown_samples(&flown, flown.sample - 1, &attitude, &position);
     attitude.time_us = position.time_us = scripted.sample_us;
-    attitude.reset = scripted.yaw_reset_ms + 1; // the first look at the filter is a change of it
+    attitude.reset = scripted.yaw_reset_ms + 1; // the first read of the filter's state counts as a change
     position.position_ned_m[0] += jump.x;
     position.position_ned_m[1] += jump.y;
     position.position_ned_m[2] += jump.z;
@@ -260,7 +260,7 @@ static void compare_obstacles(const goe_flight_obstacle_t &expected, const goe_f
     compare_hazards(expected.hazard, actual.hazard);
 }
 
-/* What the main thread knows is what the thread found at its latest assessment: compared once each. */
+/* The main thread's state is that of the thread's latest assessment: compared once for each. */
 void FlownVehicle::compare() {
     if (goe->_state->shown.assessed == compared) {
         return;

@@ -1,4 +1,4 @@
-/* Asks for the defaults, starts an estimator and shows it an image of nothing. */
+/* Gets the defaults, initializes an estimator and passes it an image without detections. */
 #include <stdio.h>
 
 #include "goe.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compiles the library, the flight layer and its MAVLink messages as one firmware does, without a warning, and runs the safety tests
+# Compiles the library, the flight layer and its MAVLink messages with one firmware's flags, without a warning, and runs the safety tests
 # on the result.
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
@@ -8,7 +8,7 @@
 # other dialects are read by dialects.sh.
 #
 # The safety tests are those of safety_objects.sh, linked with the firmware's flags, which may change the floating-point unit's mode.
-# UNITY_INCLUDE and UNITY_LIBRARY say where the test framework is, SAFETY_OBJECTS where safety_objects.sh has put its objects.
+# UNITY_INCLUDE and UNITY_LIBRARY locate the test framework, SAFETY_OBJECTS the objects of safety_objects.sh.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/firmwares.sh"

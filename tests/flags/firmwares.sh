@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# The compiler flags of four firmwares. Sourced; sets flags and levels for the firmware named.
-# shellcheck disable=SC2034 # of use to whoever sources this file
+# The compiler flags of four firmwares. Sourced; sets flags and levels for the named firmware.
+# shellcheck disable=SC2034 # used by files that source this one
 firmwares=(px4 ardupilot betaflight inav)
 
 firmware_flags() {

@@ -21,7 +21,7 @@ compile() {
     compiled=$((compiled + ${#all_sources[@]}))
 }
 
-# poor <compiler> <flag>...: no headers but the compiler's own and the poor library's
+# poor <compiler> <flag>...: only the compiler's own headers and the minimal library's
 poor() {
     local own
     own=$("$1" -print-file-name=include)
@@ -48,7 +48,7 @@ if command -v arm-none-eabi-gcc >/dev/null; then
 fi
 [ $compiled -gt 0 ] || exit 77
 
-# The test itself must bite: a file that uses such a name, or calls what the poor library lacks, does not compile.
+# The test itself must detect errors: a file that uses such a name, or calls a function that the minimal library lacks, must not compile.
 echo 'enum { NEAR }; int probe(void);' >macro.c
 ! gcc -include "$here/hostile.h" -fsyntax-only macro.c 2>/dev/null || fail "hostile.h does not notice NEAR"
 printf '#include <math.h>\nfloat probe(float x);\nfloat probe(float x) { return fabsf(x); }\n' >call.c

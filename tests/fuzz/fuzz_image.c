@@ -1,9 +1,9 @@
-/* Images of a flight, and what is done to some of them. SPDX-License-Identifier: MIT */
+/* Images of a flight, and faults in some of them. SPDX-License-Identifier: MIT */
 #include "fuzz_image.h"
 
 #define US_PER_S 1000000u
 #define PERIOD_US 125000u
-#define UNSEEN_MAX 6u /* images in a row before the flight begins anew */
+#define INVISIBLE_MAX 6u /* images in a row before the flight restarts */
 #define AHEAD_MAX_US (INT64_MAX / 2)
 
 /* ------------------------------------------------------------------------------------------------------------- images -- */
@@ -45,10 +45,10 @@ static const goe_camera_t *camera_of(const fuzz_view_t *view, uint8_t number) {
 #endif
 }
 
-/* The features; none where a part of the obstacle is not ahead. */
+/* The features; none if a part of the obstacle is not ahead. */
 static void show(fuzz_view_t *view, const goe_camera_t *camera, const goe_pose_t *truth, goe_image_t *image) {
     fuzz_sight_t sight;
-    view->unseen++;
+    view->invisible++;
     if (!fuzz_look(camera, truth, &view->solid, view->t_s, &sight)) {
         return;
     }
@@ -62,11 +62,11 @@ static void show(fuzz_view_t *view, const goe_camera_t *camera, const goe_pose_t
         fuzz_points(camera, &sight, (view->shows & FUZZ_SHOWS_BASE) != 0, image);
     }
     if (image->box.seen != 0 || image->left.seen || image->right.seen) {
-        view->unseen = 0;
+        view->invisible = 0;
     }
 }
 
-/* A camera that hangs shows the same features under new poses. */
+/* A camera that hangs repeats the same features with new poses. */
 static void repeat(fuzz_view_t *view, goe_image_t *image) {
     if (view->frozen > 0) {
         const goe_pose_t pose = image->pose;
@@ -80,10 +80,10 @@ static void repeat(fuzz_view_t *view, goe_image_t *image) {
 
 bool fuzz_view_image(fuzz_view_t *view, goe_image_t *image) {
     goe_pose_t truth;
-    const bool anew = view->unseen > UNSEEN_MAX;
+    const bool restarted = view->invisible > INVISIBLE_MAX;
     memset(image, 0, sizeof *image);
-    if (anew) {
-        view->unseen = 0;
+    if (restarted) {
+        view->invisible = 0;
         view->t_s = 0.0f;
         fuzz_path_pose(&view->path, 0.0f, &truth);
         const float distance_m = 3.0f * truth.height_m + 70.0f + 40.0f * fuzz_noise(&view->noise);
@@ -108,10 +108,10 @@ bool fuzz_view_image(fuzz_view_t *view, goe_image_t *image) {
     image->pose.height_m += view->height_off_m;
     image->noise = view->hint;
     repeat(view, image);
-    return anew;
+    return restarted;
 }
 
-/* ----------------------------------------------------------------------------------------------------- what is spoiled -- */
+/* -------------------------------------------------------------------------------------------------------------- faults -- */
 
 #define NUMBER(field) offsetof(goe_image_t, field)
 static const size_t numbers[] = {NUMBER(left.u_px),
@@ -177,7 +177,7 @@ static void hide_one(fuzz_input_t *in, goe_image_t *image) {
     image->box.seen = (uint8_t)(image->box.seen & ~(1u << (which >> 5) % 4u));
 }
 
-/* Truth values that are neither 0 nor 1: they count as 1. Nobody but the library may read them. */
+/* Bytes of bool that are neither 0 nor 1: they count as 1. Only the library may read them. */
 static void put_truths(fuzz_input_t *in, goe_image_t *image) {
     const uint8_t truth = fuzz_byte(in);
     const uint32_t which = fuzz_byte(in);
@@ -199,20 +199,20 @@ static void swap_points(fuzz_input_t *in, goe_image_t *image) {
 }
 
 static void all_bits(fuzz_input_t *in, goe_image_t *image) {
-    const uint32_t seen = fuzz_half(in);
+    const uint32_t visible = fuzz_half(in);
     const uint32_t how = fuzz_byte(in);
     fuzz_noise_t noise = {fuzz_word(in) | 1u};
     for (size_t i = 0; i < NUMBERS; i++) {
         const bool pose = i >= FEATURE_NUMBERS;
         const float bits = fuzz_float_of(fuzz_noise_bits(&noise));
-        if ((how & 1u) == 0 || !pose) { /* or the pose stays, and the numbers lie within their range */
+        if ((how & 1u) == 0 || !pose) { /* or the pose stays, and the numbers are within their range */
             put_number(image, i, (how & 2u) == 0 ? bits : 1.0e5f * fuzz_noise(&noise));
         }
     }
     for (uint32_t i = 0; i < 6u; i++) {
-        point_of(image, i)->seen = (seen >> i & 1u) != 0;
+        point_of(image, i)->seen = (visible >> i & 1u) != 0;
     }
-    image->box.seen = (uint8_t)(seen >> 8);
+    image->box.seen = (uint8_t)(visible >> 8);
 }
 
 static int64_t any_time(fuzz_input_t *in, int64_t now_us) {
@@ -223,7 +223,7 @@ static int64_t any_time(fuzz_input_t *in, int64_t now_us) {
     return times[fuzz_below(in, sizeof times / sizeof times[0])];
 }
 
-/* The filter of the autopilot jumps, by what is told or by something else. */
+/* The autopilot's filter jumps, with a reported size or with another one. */
 static void jump(fuzz_input_t *in, fuzz_view_t *view, goe_image_t *image) {
     const uint32_t how = fuzz_byte(in);
     const bool true_to_it = (how & 3u) != 0;
@@ -267,7 +267,7 @@ enum {
     SPOIL_BITS,
     SPOIL_SWAP,
     SPOIL_SIDES,
-    SPOIL_STAND,
+    SPOIL_HANG,
     SPOIL_LEAP,
     SPOIL_FROZEN,
     SPOIL_SOLID,
@@ -279,10 +279,10 @@ enum {
     SPOILS
 };
 
-/* What changes from this image on. */
+/* A lasting change from this image on. */
 static void change_flight(fuzz_input_t *in, uint32_t what, fuzz_view_t *view) {
     switch (what) {
-        case SPOIL_STAND:
+        case SPOIL_HANG:
             view->t_s -= (float)view->period_us / (float)US_PER_S;
             view->path.speed_m_s = fuzz_below(in, 2) != 0 ? 0.0f : view->path.speed_m_s;
             break;
@@ -394,7 +394,7 @@ void fuzz_view_spoil(fuzz_input_t *in, fuzz_view_t *view, goe_image_t *image) {
         case SPOIL_BITS:
             spoil_pose(in, what, view, image);
             break;
-        case SPOIL_STAND:
+        case SPOIL_HANG:
         case SPOIL_LEAP:
         case SPOIL_SOLID:
         case SPOIL_PATH:

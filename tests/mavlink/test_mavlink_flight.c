@@ -1,5 +1,5 @@
-/* The test scene by GOE_FEATURES: what the flight layer makes of the messages is what it makes of the detector's own boxes, to
- * the last bit if those are rounded as on the wire, and by less than a sigma if not. SPDX-License-Identifier: MIT */
+/* The test scene by GOE_FEATURES: the flight layer answers as for the detector's own boxes, to the last bit if those are
+ * rounded as on the wire, and otherwise within a sigma. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
 

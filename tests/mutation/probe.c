@@ -1,8 +1,8 @@
-/* What a change of the library could change, as one hash for each kind of input. SPDX-License-Identifier: MIT
+/* Computes one hash of the library's behavior for each kind of input. SPDX-License-Identifier: MIT
  *
  * `python -m ci evidence --only mutation` runs it with the library and with each mutant that no unit test notices: lines
- * that differ tell what the mutant changes, and a mutant that changes none counts as the same program. It asserts nothing, and its
- * hashes are of this machine: they are compared with those of the library as it is, never kept. */
+ * that differ show what the mutant changes, and a mutant that changes none counts as the same program. It asserts nothing. Its
+ * hashes depend on this machine: they are compared with those of the unchanged library, never stored. */
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,7 +42,7 @@ static void add_number(int number) { add_bytes(&number, sizeof number); }
 
 static void add_text(const char *text) { add_bytes(text ? text : "", text ? strlen(text) : 0u); }
 
-/* A struct's own padding is nobody's. */
+/* A struct's own padding is undefined. */
 static void add_estimate(const goe_estimate_t *e) {
     add_number((int)e->method);
     add_number((int)e->model);
@@ -61,7 +61,7 @@ static void begin(uint64_t seed) {
     }
 }
 
-static void tell(const char *what) { printf("%s %016llx\n", what, (unsigned long long)hash); }
+static void print_hash(const char *what) { printf("%s %016llx\n", what, (unsigned long long)hash); }
 
 static void add_answers(void) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -90,7 +90,7 @@ static void update(const goe_image_t *image) {
 
 /* ------------------------------------------------------------------------------------------------------------- flights -- */
 
-/* What is flown past, how, and what the pose and the detector do wrong. */
+/* Obstacle and path of a flight, and the errors of its pose and detector. */
 typedef struct {
     scene_t scene;
     bool moving, late, outline_only, gaps, resets, own_noise;
@@ -255,7 +255,7 @@ static void flights(void) {
         all = all * 31u + hash;
     }
     hash = all;
-    tell("flights");
+    print_hash("flights");
 }
 
 /* ---------------------------------------------------------------------------------------------------------- bad input -- */
@@ -265,7 +265,7 @@ static void spoil(void *memory, size_t size) {
     memcpy((unsigned char *)memory + 4u * below((uint32_t)(size / 4u)), &bits, sizeof bits);
 }
 
-/* An estimator that is being flown, and images of which words are overwritten; all of a bool's values are legal ones. */
+/* An estimator in flight, and images with overwritten words; only legal values for a bool. */
 static void hostile(void) {
     uint64_t all = 0;
     for (int i = 0; i < HOSTILE_TRACKS; i++) {
@@ -295,12 +295,12 @@ static void hostile(void) {
         all = all * 31u + hash;
     }
     hash = all;
-    tell("hostile");
+    print_hash("hostile");
 }
 
-/* ----------------------------------------------------------------------------------------------------- what is no flight -- */
+/* ------------------------------------------------------------------------------------------------ calls without a flight -- */
 
-/* Every number of the settings, alone, to each end of what a float is; told by name which is refused. */
+/* Each number of the settings alone, set to each end of the float range; the name of a refused one is reported. */
 static void settings_alone(void) {
     static const float values[] = {0.0f,   -1.0f,  1.0e-4f, 0.05f, 0.5f,   1.0f,     2.0f,    30.0f,
                                    100.0f, 360.0f, 1000.0f, 1e4f,  1.0e5f, 1.001e5f, -1.0e5f, 1.0e30f};
@@ -319,7 +319,7 @@ static void settings_alone(void) {
             add_text(bad);
         }
     }
-    tell("settings");
+    print_hash("settings");
 }
 
 static void calls(void) {
@@ -347,7 +347,7 @@ static void calls(void) {
     add_number((int)goe_hazard(&estimator, &plan, NULL));
     add_number((int)goe_init(NULL, sizeof estimator, NULL, NULL));
     add_number((int)goe_init(&estimator, 1, NULL, NULL));
-    tell("calls");
+    print_hash("calls");
 }
 
 int main(void) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Every combination of the parts (GOE_WITH_WINDOW, _REFINED, _HAZARD; _MOVERS, a part of the refined method): compiles without a
-# warning under the flags of the firmwares, passes the unit tests of what it holds, and answers with the same bits as every other
-# that holds it.
+# warning under the flags of the firmwares, passes the unit tests of its parts, and answers with the same bits as every other
+# combination with the same part.
 #
 # The whole library is in the build that runs this test, with its unit tests; here it only answers.
 #
@@ -72,6 +72,6 @@ done
 combination 1 1 1 0
 combination 0 1 0 0
 
-# Each part says one thing, in every combination that holds it.
+# Each part gives the same answers in every combination that contains it.
 sort -u "$builds/answers"
 [ "$(sort -u "$builds/answers" | wc -l)" = 4 ] || fail "a part's answers depend on what else is compiled in"

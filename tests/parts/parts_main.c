@@ -1,4 +1,4 @@
-/* What each part of the library answers, as hashes; and that what is left out is refused. SPDX-License-Identifier: MIT */
+/* Prints the answers of each part of the library as hashes, and checks that a missing part is refused. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ static void print(const char *name, const replay_t *replay, bool present) {
     }
 }
 
-/* A method that is not there is named by goe_init. */
+/* goe_init names a method that is not compiled in. */
 static bool refuses(goe_method_t method) {
     goe_estimator_t estimator;
     goe_settings_t settings;
@@ -20,14 +20,14 @@ static bool refuses(goe_method_t method) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     if (goe_init(&estimator, sizeof estimator, &settings, &bad) != GOE_OK) {
-        return false; /* the default method is one that is there */
+        return false; /* the default method is a compiled one */
     }
     settings.method = method;
     return goe_init(&estimator, sizeof estimator, &settings, &bad) == GOE_BAD_SETTINGS && bad &&
            strcmp(bad, "method") == 0;
 }
 
-/* Settings of a part that is not there are neither read nor checked; those of one that is are. */
+/* Settings of a missing part are neither read nor checked; those of an existing one are. */
 static bool ignores(bool present, void (*spoil)(goe_settings_t *settings)) {
     goe_estimator_t estimator;
     goe_settings_t settings;

@@ -1,4 +1,4 @@
-/* Memory of which nothing is known. SPDX-License-Identifier: MIT */
+/* Memory with unknown content. SPDX-License-Identifier: MIT */
 #include "any.h"
 
 #include "builtins.h"

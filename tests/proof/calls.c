@@ -14,7 +14,7 @@ static void update(int method) {
 void proof_update_window(void) { update(GOE_METHOD_WINDOW); }
 void proof_update_refined(void) { update(GOE_METHOD_REFINED); }
 
-/* Null pointers, memory that was never initialised, an image of a camera that there is none of. */
+/* Null pointers, memory that was never initialized, an image of a camera that does not exist. */
 static void update_refuses(void) {
     goe_estimator_t estimator;
     goe_image_t image;
@@ -100,7 +100,7 @@ static void texts(void) {
 
 static void self_check(void) { (void)goe_self_check(); }
 
-/* What is analysed in a moment. */
+/* The calls that are analyzed quickly. */
 void proof_short_calls(void) {
     update_refuses();
     init();

@@ -1,4 +1,4 @@
-/* Finite for what is finite and within its range: analysed with an alarm for every result that is not.
+/* Finite results for finite arguments within their ranges: analyzed with an alarm for every result that is not finite.
  * SPDX-License-Identifier: MIT */
 #include <float.h>
 

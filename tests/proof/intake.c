@@ -1,5 +1,5 @@
-/* What is beyond its range, or no number, is refused, whatever the rest holds: so what passes is within. One number at a time, as
- * the analyser keeps intervals: each is set to what lies above its range, below it, and to what is no number.
+/* Values beyond their ranges and NaN are refused whatever the other fields contain, so accepted values are within. One number at a time,
+ * because the analyzer keeps intervals: each is set to the values above its range, below it, and to NaN.
  * SPDX-License-Identifier: MIT */
 #include <float.h>
 
@@ -14,14 +14,14 @@
 
 #define SET_BITS(x, low, high) (*(uint32_t *)(void *)&(x) = Frama_C_unsigned_int_interval((low), (high)))
 
-/* Both infinities. Of a NaN that is given by value the analyser keeps no bits: that each is refused is left to the unit tests. */
+/* Both infinities. The analyzer keeps no bits of a NaN that is passed by value, so the unit tests check that each NaN is refused. */
 #define INFINITIES(x, is_refused)                                                                                      \
     SET_BITS(x, 0x7F800000u, 0x7F800000u);                                                                             \
     is_refused;                                                                                                        \
     SET_BITS(x, 0xFF800000u, 0xFF800000u);                                                                             \
     is_refused;
 
-/* ... and every NaN, for what reads the bits where they lie. */
+/* ... and every NaN, for code that reads the bits in place. */
 #define NO_NUMBERS(x, is_refused)                                                                                      \
     SET_BITS(x, 0x7F800000u, 0x7FFFFFFFu);                                                                             \
     is_refused;                                                                                                        \
@@ -38,7 +38,7 @@ static void image_is_refused(void) {
     //@ check GOE_BAD_ATTITUDE <= status <= GOE_NOT_FINITE;
 }
 
-/* The field of the image that is at this place, with all else as it is. */
+/* The field of the image at this place, with all others as they are. */
 static void refuses(float *field, float limit) {
     *field = Frama_C_float_interval(JUST_OVER(limit), FLT_MAX);
     image_is_refused();
@@ -149,7 +149,7 @@ static void refuses_COUNT(void *field, int low, int high) {
     ANY_BITS(*at);
 }
 
-/* The compiler may take an enumeration for an unsigned number. */
+/* The compiler may represent an enumeration as an unsigned number. */
 static void refuses_CHOICE(void *field, int low, int high) {
     int *at = field;
     *at = ANY(high + 1, INT32_MAX);
@@ -199,7 +199,7 @@ static void numbers_are_refused(void) {
     //@ check !finite;
 }
 
-/* What goe_update() asks of an answer before it leaves: one infinity or NaN among any other bits is found, wherever it is. */
+/* goe_update() checks each answer before it returns: one infinity or NaN among any other bits is found, at any place. */
 void proof_answer(void) {
     for (int i = 0; i < NUMBERS; i++) {
         ANY_BITS(numbers);

@@ -1,7 +1,7 @@
-/* A flight as PX4's topics tell it. SPDX-License-Identifier: MIT */
+/* A flight as PX4's topics. SPDX-License-Identifier: MIT */
 #include "px4_flight.hpp"
 
-static constexpr uint64_t LATE_US = 4000; /* from a sample to its publication */
+static constexpr uint64_t LATE_US = 4000; /* between a sample and its publication */
 static constexpr float CAMERA_PX = 1280.f;
 
 int goe_command(const char *word) {
@@ -23,7 +23,7 @@ void Px4Flight::begin(uint64_t clock_us, bool set_camera) {
         standin::set("GOE_CAM_H", CAMERA_PX);
         standin::set("GOE_CAM_FX", flown.scene.camera.fx_px);
     }
-    tells_pose = tells_images = in_step = true;
+    sends_pose = sends_images = in_step = true;
     follows = set_camera;
     position = vehicle_local_position_s{};
     quat_reset_counter = 0;
@@ -111,12 +111,12 @@ void Px4Flight::publish_image(int k, uint64_t capture_us) {
 void Px4Flight::step() {
     standin::advance(in_step ? time_of(flown.sample) + LATE_US - standin::now_us() : STEP_US);
     follow_status();
-    if (tells_pose) {
+    if (sends_pose) {
         publish_pose();
     }
     const int exposed = flown.sample - FLOWN_DELAY;
     flown.sample++;
-    if (tells_images && exposed >= 0 && exposed % FLOWN_IMAGE_EVERY == 0) {
+    if (sends_images && exposed >= 0 && exposed % FLOWN_IMAGE_EVERY == 0) {
         publish_image(exposed, time_of(exposed));
         if (follows) {
             const goe_flight_detection_t detection = flown_detection(&flown, exposed);

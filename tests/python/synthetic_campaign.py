@@ -1,4 +1,4 @@
-"""A folder as goe_campaign writes it, with invented errors: for tests of the report only. Deterministic."""
+"""Writes a folder like goe_campaign's with invented, deterministic errors, for the tests of the report only."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-OBSTACLES = {  # W, L, H, side distances, altitudes
+OBSTACLES = {  # W, L, H, lateral distances, altitudes
     "cylinder": (6.0, 6.0, 30.0, (0.0, 30.0, 60.0), (15.0,)),
     "building": (15.0, 40.0, 89.0, (0.0, 75.0, 150.0), (44.5,)),
     "truck": (2.5, 7.0, 2.5, (0.0, 12.5, 25.0), (2.5, 5.0)),
@@ -21,12 +21,12 @@ ANGLES = (-45.0, -20.0, 0.0, 20.0, 45.0)
 FRACTIONS = (0.2, 0.4, 0.6, 1.0)
 QUANTITIES = ("z0", "x0", "width", "length", "height", "orientation")
 BOX_ROLLS = (0.0, 5.0, 10.0, 25.0)
-REFINED_SHARE = 0.05  # of the window method's spread
-SPREAD = {  # of the error, in percent of the truth or (height, orientation) metres and degrees, by model
+REFINED_SHARE = 0.05  # relative to the scatter of the window method
+SPREAD = {  # error by model: percent of the truth; meters for the height, degrees for the orientation
     "disc": {"z0": 2.0, "x0": 12.0, "width": 30.0, "height": 0.8},
     "auto": {"z0": 3.0, "x0": 9.0, "width": 1.6, "length": 12.0, "height": 0.9, "orientation": 1.2},
 }
-STUDIES = {  # columns that differ from the paper's study, and how much larger errors are
+STUDIES = {  # columns that differ from the paper's study, and the factor on their errors
     "arc": ({"path": "arc:300"}, 0.8),
     "weave": ({"path": "weave:5,6"}, 0.6),
     "ramp": ({"speed_profile": "ramp:0.5"}, 1.0),
@@ -38,7 +38,7 @@ STUDIES = {  # columns that differ from the paper's study, and how much larger e
 
 
 def setups() -> list[dict[str, Any]]:
-    """Table 2: 156 cases."""
+    """The 156 cases of Table 2."""
     found = []
     for name, (_, _, _, sides, altitudes) in OBSTACLES.items():
         angles = (0.0,) if name == "cylinder" else ANGLES
@@ -124,7 +124,8 @@ def rows(seeds: int = 1, studies: bool = True) -> list[dict[str, Any]]:
 
 
 def refined_rows(seeds: int = 1, studies: bool = True) -> list[dict[str, Any]]:
-    """The refined method's: the paper's study, told nothing or that it is a box, and the field study."""
+    """Rows of the refined method: the paper's study without and with the box as configured shape, and the field
+    study."""
     rng = np.random.default_rng(20260102)
     found = []
     for seed, setup, fraction in product(range(1, seeds + 1), setups(), FRACTIONS):
@@ -140,7 +141,7 @@ def refined_rows(seeds: int = 1, studies: bool = True) -> list[dict[str, Any]]:
 
 
 def box_rows() -> list[dict[str, Any]]:
-    """Both methods by upright boxes: refined gains by roll, its sigmas hold; window is far off."""
+    """Rows of both methods for upright boxes. Roll improves refined, and its sigmas are right; window is far off."""
     rng = np.random.default_rng(20260103)
     found = []
     for roll, setup, fraction in product(BOX_ROLLS, setups()[:20], FRACTIONS):
@@ -172,7 +173,7 @@ def _six(*values: float | None) -> dict[str, float | None]:
 
 
 def goals() -> list[dict[str, Any]]:
-    """As the goals command writes them; two are missed, W of the coverage and the moving cars."""
+    """Rows as the goals command writes them. Two goals are missed: W of the coverage, and the moving cars."""
     early = {"cylinder": 15.31, "building": 37.2, "truck": 14.4, "long-truck": 15.1}
     found = [
         _goal("gauss1", "RMSE / bound, median of 12 cases", _six(1.011, 1.022, 1.033, 0.997, 1.055, 1.066), (0, 1.25)),
@@ -226,8 +227,8 @@ AVOID_KINDS = {"mast": (18.0, 7.7, "left"), "building": (19.0, 9.2, "right"), "t
 
 
 def avoid_rows(runs: int = 20) -> list[dict[str, Any]]:
-    """As goe_avoid writes them. The first collision course of a kind has no collision without orders, a truck's last
-    one has a collision with a late order; the second pass of a building gets a false order."""
+    """Rows as goe_avoid writes them. The first collision course of each kind has no collision without orders. The last
+    one of a truck has a collision with a late order. The second pass of a building gets a false order."""
     rng = np.random.default_rng(20260104)
     found = []
     for course, (kind, (away, ahead, action)), k in product(("collision", "pass"), AVOID_KINDS.items(), range(runs)):
@@ -249,14 +250,14 @@ def avoid_rows(runs: int = 20) -> list[dict[str, Any]]:
     return found
 
 
-def write_avoid(path: Path, rows_told: list[dict[str, Any]] | None = None) -> Path:
-    _write_csv(path, avoid_rows() if rows_told is None else rows_told)
+def write_avoid(path: Path, given_rows: list[dict[str, Any]] | None = None) -> Path:
+    _write_csv(path, avoid_rows() if given_rows is None else given_rows)
     return path
 
 
 def write_goals(path: Path, hostile: bool = False) -> Path:
-    told = {"quick": False, "date": "2026-11-01", "goals": goals() + (hostile_goals() if hostile else [])}
-    path.write_text(json.dumps(told), encoding="utf-8")
+    content = {"quick": False, "date": "2026-11-01", "goals": goals() + (hostile_goals() if hostile else [])}
+    path.write_text(json.dumps(content), encoding="utf-8")
     return path
 
 

@@ -1,4 +1,4 @@
-"""tools/bench/ALTERNATIVES.md: its tables are those of the recorded figures, its claims hold in them."""
+"""tools/bench/ALTERNATIVES.md: its tables repeat the recorded figures, and its claims follow from them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NOISES = {"gauss1": "1 px, exact pose", "field": "errors of real sensors"}
 
 
 def recorded() -> dict[tuple[str, str, str], dict[str, float]]:
-    """By noise, figure and method: values by quantity."""
+    """Recorded values by quantity, for each noise, figure and method."""
     found = {}
     for row in json.loads(RECORD.read_text(encoding="utf-8"))["goals"]:
         noise, figure, method = re.fullmatch(
@@ -73,8 +73,9 @@ def test_the_date_is_that_of_the_record() -> None:
     assert f"recorded on {date}" in " ".join(PAGE.read_text(encoding="utf-8").split())
 
 
-def test_what_the_page_says_of_the_tables() -> None:
-    """With sensors' errors the filter is nearest in each quantity; others answer orientation and length more often."""
+def test_claims_of_the_page_follow_from_its_tables() -> None:
+    """With sensor errors the filter has the smallest error in each quantity; other methods answer orientation and
+    length more often."""
     found = recorded()
     for q in QUANTITIES:
         errors = {method: found["field", "median error", method][q] for method in NAMES}

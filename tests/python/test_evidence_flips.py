@@ -1,4 +1,4 @@
-"""The part ``flips`` of the evidence: what the program's lines become."""
+"""The part ``flips`` of the evidence: evaluation of the program's lines."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def met(text: str) -> list[bool | None]:
     return [row.met for row in flips.rows(flips.counts(text))]
 
 
-def test_lines_are_counted_by_what_they_say() -> None:
+def test_lines_are_counted_by_their_outcome() -> None:
     found = flips.counts(GOOD)
     assert [count.flight for count in found] == ["window, disc", "window, disc", "refined, disc"]
     assert found[1].of(["corrupted", "suspect", "reported"]) == 4
@@ -59,7 +59,7 @@ def test_a_line_of_other_columns_is_refused() -> None:
         flips.counts(lines('flips,"a",3,motion.dx_m,2,1'))
 
 
-def test_the_report_names_what_is_wrong_most_often() -> None:
+def test_the_report_names_the_most_frequent_faults() -> None:
     text = flips.report(flips.counts(GOOD))
     assert "| motion.dx_m | 20 |" in text and "silently wrong" in text
     assert "| window, disc | 18 |" in text

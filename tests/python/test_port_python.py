@@ -1,4 +1,4 @@
-"""The Python package: what it refuses and how it says so, names of C, whole tracks, threads, pages, the example."""
+"""The Python package: errors and their messages, names of C, whole tracks, threads, pages, the example."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def settings() -> goe.Settings:
 
 
 def approach(images: int = 60, **change: object) -> goe.Images:
-    """Towards a plate of 6 m by 30 m, 30 m to the left: exact boxes."""
+    """An approach to a plate of 6 m by 30 m, 30 m to the left, with exact boxes."""
     k = np.arange(images)
     box = 640.0 + 914.0 * np.array([-33.0, -15.0, -27.0, 15.0]) / (200.0 - 2.0 * k)[:, None]
     columns = {
@@ -51,8 +51,8 @@ def image(k: int, images: goe.Images) -> goe.Image:
 # ------------------------------------------------------------------------------------------------------------- sources
 
 
-def test_what_is_installed_is_made_of_these_sources() -> None:
-    """Not skipped: a test of yesterday's library tells nothing of today's."""
+def test_the_installed_package_is_made_of_these_sources() -> None:
+    """A failure and not a skip, because tests of an outdated library prove nothing."""
     assert library.package() is goe
 
 
@@ -103,7 +103,7 @@ def leaves(group: object, prefix: str = "") -> dict[str, object]:
 
 
 def test_settings_are_those_of_c() -> None:
-    """None is missing, none is of Python's own making, and the defaults are C's."""
+    """The same settings exist in both, with the same defaults."""
     rows = {row.name: row for row in goe.setting_rows()}
     mine = leaves(goe.Settings())
     assert mine.pop("more_cameras") == ()
@@ -117,7 +117,7 @@ def test_settings_are_those_of_c() -> None:
 
 @pytest.mark.parametrize("name", [row.name for row in goe.setting_rows() if row.name != "heading_auto"])
 def test_every_setting_reaches_c_and_its_range_is_c_s(name: str) -> None:
-    """The ends of the range are taken; beyond them the error names field, value and range."""
+    """The ends of the range are accepted; beyond them the error names field, value and range."""
     row = next(row for row in goe.setting_rows() if row.name == name)
     base = {"camera.fx_px": 914.0, "camera.fy_px": 914.0, "heading_auto": 0.0}
     for value in (row.low, row.high):
@@ -181,7 +181,7 @@ def test_the_layer_s_settings() -> None:
         goe.Flight(goe.Settings.for_camera(914.0, 914.0, 640.0, 640.0))
 
 
-def test_what_is_sent_to_other_processes() -> None:
+def test_objects_can_be_sent_to_other_processes() -> None:
     given = settings()
     given.more_cameras = (goe.Camera(900.0, 900.0, 640.0, 640.0),)
     assert pickle.loads(pickle.dumps(given)) == given
@@ -266,7 +266,8 @@ def test_quantities_and_their_sigmas() -> None:
 
 
 def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
-    """Against a plan of the same margins; at last nothing is seen, so that the estimate grows old."""
+    """Against an intended velocity with the same margins. At the end no detection comes, and the estimate becomes
+    old."""
     images = approach()
     images.box_px[-20:] = NAN
     rules = [goe.Rule(15.0, 10.0, doubt=2.0, drift_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)]
@@ -291,7 +292,7 @@ def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
 
 
 def collision() -> goe.Images:
-    """Head-on, a plate of 6 m by 30 m."""
+    """Head-on towards a plate of 6 m by 30 m."""
     k = np.arange(60)
     box = 640.0 + 914.0 * np.array([-3.0, -15.0, 3.0, 15.0]) / (200.0 - 2.0 * k)[:, None]
     return approach(box_px=box)
@@ -394,16 +395,16 @@ def test_a_column_of_another_shape_is_named(change: dict[str, object], words: st
 
 
 def test_bad_measurements_are_a_status() -> None:
-    """They refuse one image, and leave the last good estimate."""
+    """Each is refused for its image, and the last good estimate remains."""
     images = approach()
     images.position_ned_m[20, 1] = NAN
-    images.height_m[21] = 1e39  # no float holds it
+    images.height_m[21] = 1e39  # too large for a float
     images.attitude[22] = 2.0
     images.time_us[23] = 0
     images.box_px[24] = NAN
     track = goe.run(settings(), images)
-    told = [goe.Status(number) for number in track.status[19:26]]
-    assert told == [goe.Status.OK, goe.Status.NOT_FINITE, goe.Status.NOT_FINITE, goe.Status.BAD_ATTITUDE,
+    reported = [goe.Status(number) for number in track.status[19:26]]
+    assert reported == [goe.Status.OK, goe.Status.NOT_FINITE, goe.Status.NOT_FINITE, goe.Status.BAD_ATTITUDE,
                     goe.Status.BAD_TIME, goe.Status.NOTHING_SEEN, goe.Status.OK]  # fmt: skip
     assert track[22].position is not None and not track[22].fresh and track[22].age_s > 0.0
     assert goe.Status.BAD_TIME.is_fault and not goe.Status.BAD_TIME.is_image_taken
@@ -434,7 +435,7 @@ def test_vectors_and_plans_that_c_would_misread() -> None:
         with pytest.raises(ValueError, match=words):
             goe.run(settings(), approach(), rules=[goe.Rule(1.0, 1.0, **change)])
     assert estimator.decide(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) == (goe.Decision.UNKNOWN, None)
-    assert estimator.hazard(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) is None  # nothing is known
+    assert estimator.hazard(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) is None  # no estimate is known
     assert estimator.covariance() is None
 
 
@@ -453,27 +454,27 @@ def test_reset_and_copy() -> None:
 
 
 def test_calls_release_python_s_lock() -> None:
-    """Python goes on while C runs. With the lock held this thread would stand still until the call is over."""
+    """Python runs while C runs. If C kept the lock, this thread would stop until the call is over."""
     c = approach(98).to_c()
     c = np.tile(c, 200)
     c["pose"]["time_us"] = 125_000 * np.arange(len(c))
-    estimator, told = goe.Estimator(settings()), []
+    estimator, reported = goe.Estimator(settings()), []
 
     def work() -> None:
-        told.append("begun")
+        reported.append("begun")
         estimator.run(c)
-        told.append("ended")
+        reported.append("ended")
 
     thread = threading.Thread(target=work)
     interval_s = sys.getswitchinterval()
     sys.setswitchinterval(1e3)  # no thread takes the lock from another one: it has to be released
     try:
         thread.start()
-        seen = list(told)
+        seen = list(reported)
     finally:
         sys.setswitchinterval(interval_s)
     thread.join()
-    assert (seen, told) == (["begun"], ["begun", "ended"])
+    assert (seen, reported) == (["begun"], ["begun", "ended"])
 
 
 def test_threads_do_not_mix_tracks_up() -> None:
@@ -491,7 +492,7 @@ def test_threads_do_not_mix_tracks_up() -> None:
 
 
 def test_one_estimator_given_to_threads_serves_them_in_turn() -> None:
-    """Every fault is counted: no call runs into another."""
+    """Every bad image is counted, so no call interrupts another."""
     estimator = goe.Estimator(settings())
     bad = np.tile(approach(50, attitude=np.zeros((50, 4))).to_c(), 10)
     threads = [threading.Thread(target=lambda: [estimator.run(bad) for _ in range(10)]) for _ in range(6)]
@@ -516,7 +517,7 @@ def test_parallel_errors_are_those_of_the_track() -> None:
 
 
 def test_the_flight_layer_from_samples_to_an_order() -> None:
-    """A mast dead ahead; images come 100 ms late; the clock's 32 bits wrap on the way."""
+    """A mast dead ahead. Images arrive 100 ms late, and the 32-bit clock wraps on the way."""
     layer = goe.Flight(settings(), goe.FlightSettings(margin_m=15.0))
     start = 2**32 - 3_000_000
     assert layer.assess(start) is None and layer.sectors(20000) is None and layer.obstacles() == {}
@@ -532,17 +533,19 @@ def test_the_flight_layer_from_samples_to_an_order() -> None:
         box = (640.0 + 914.0 * m / (200.0 - north + 1.6) for m in (-3.0, -15.0, 3.0, 15.0))
         frame = flight.Frame(t, t - 100_000, [flight.Detection(0.9, 7, goe.BoundingBox(*box))])
         assert layer.frame(frame) == (flight.FlightStatus.OK if k else flight.FlightStatus.NO_POSE) or k < 2
-        told = layer.assess(t)
-        orders.append(told.action)
-        if first is None and told.action:
-            first = told
+        reported = layer.assess(t)
+        orders.append(reported.action)
+        if first is None and reported.action:
+            first = reported
     ((slot, mast),) = layer.obstacles().items()
     assert mast.id == 7 and layer.obstacle(slot) == mast and layer.obstacle(slot + 1) is None
     assert mast.place.center_ned_m[0] == pytest.approx(200.0, abs=10.0) and mast.hazard is not None
     assert orders[0] == flight.Action.NONE and orders[-1] != flight.Action.NONE
-    assert told.worst == slot and told.pose_alive and told.detector_alive and told.target_ned_m is not None
+    assert (
+        reported.worst == slot and reported.pose_alive and reported.detector_alive and reported.target_ned_m is not None
+    )
     assert first.reason == flight.OrderReason.CLEAR and first.clear_m > 0.0 and str(first.reason)
-    assert told.reason == flight.OrderReason.LEAST_BAD and told.clear_m < 0.0  # nobody turned
+    assert reported.reason == flight.OrderReason.LEAST_BAD and reported.clear_m < 0.0  # the aircraft did not turn
     landed = layer.assess(t, flight.Phase.LANDED)
     assert (landed.action, landed.reason) == (flight.Action.NONE, flight.OrderReason.LANDING)
     sectors = layer.sectors(20000)
@@ -591,11 +594,11 @@ def test_the_readme_s_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
 def test_the_example_goes_around(capsys: pytest.CaptureFixture[str]) -> None:
     path = PACKAGE / "examples" / "approach.py"
     cells = re.findall(r"^# %%.*$", path.read_text(encoding="utf-8"), re.MULTILINE)
-    assert len(cells) >= 8  # an editor sees a notebook
-    told = runpy.run_path(str(path))
+    assert len(cells) >= 8  # an editor shows a notebook
+    reported = runpy.run_path(str(path))
     text = capsys.readouterr().out
-    assert re.search(r"go around at [\d.]+ s: [\d.]+ s to go", text) and told["share"] > 0.9
-    errors = [abs(told["track"][k].position.z.m - told["true_m"][k]) for k in (60, 80, 99)]
-    sigmas = [told["track"][k].position.z.sd_m for k in (60, 80, 99)]
+    assert re.search(r"go around at [\d.]+ s: [\d.]+ s to go", text) and reported["share"] > 0.9
+    errors = [abs(reported["track"][k].position.z.m - reported["true_m"][k]) for k in (60, 80, 99)]
+    sigmas = [reported["track"][k].position.z.sd_m for k in (60, 80, 99)]
     assert all(error < 3.0 * sd for error, sd in zip(errors, sigmas)) and sigmas[0] > sigmas[-1]
-    assert told["true_m"][told["order"]] > 100.0  # in time
+    assert reported["true_m"][reported["order"]] > 100.0  # in time

@@ -1,4 +1,4 @@
-"""The Python package over the embedded logs: the hashes that C has on every target, image by image through the typed
+"""The Python package over the embedded logs, against the hashes of C on every target: image by image through the typed
 classes, as whole tracks, and in threads."""
 
 from __future__ import annotations
@@ -55,12 +55,12 @@ def image_of(image: LoggedImage) -> goe.Image:
 def images_of(track: LoggedTrack) -> goe.Images:
     n = np.array([image.numbers for image in track.images])
     bits = np.array([[image.seen, image.box] for image in track.images])
-    seen = (bits[:, :1] >> np.arange(6) & 1).astype(bool)
+    visible = (bits[:, :1] >> np.arange(6) & 1).astype(bool)
     box = np.where(bits[:, 1:] >> np.arange(4) & 1, n[:, 11:15], np.nan)
     known = np.array([[image.reset_delta_known] for image in track.images])
     return goe.Images(
         [image.time_us for image in track.images], n[:, :3], n[:, 4:8], n[:, 3], box,
-        n[:, 11:].reshape(-1, 6, 2), seen, [image.reset_count for image in track.images],
+        n[:, 11:].reshape(-1, 6, 2), visible, [image.reset_count for image in track.images],
         np.where(known, n[:, 8:11], np.nan), velocity_ned_m_s=np.tile(PLAN.velocity_ned_m_s, (len(n), 1)),
     )  # fmt: skip
 
@@ -69,7 +69,7 @@ def images_of(track: LoggedTrack) -> goe.Images:
 
 
 def hash_estimate(h: Hash, e: goe.Estimate) -> None:
-    """What is not known is 0 in C."""
+    """An unknown value is 0 in C."""
     p = e.position or goe.Position(NONE, NONE, NONE, NONE, 0.0, 0.0)
     o = e.orientation or goe.Orientation(0.0, 0.0, 0.0, 0.0, (0, 0), (0, 0), (0, 0), (0, 0))
     c = e.center or goe.Center(NONE, NONE, 0.0)
@@ -98,10 +98,12 @@ def hash_after(h: Hash, covariance: np.ndarray | None, hazard: goe.Hazard | None
     hash_status(h, goe.Status.OK if covariance is not None else goe.Status.COLLECTING)
     h.numbers(*(np.zeros(36) if covariance is None else covariance.ravel()))
     hash_status(h, goe.Status.OK if hazard is not None else goe.Status.COLLECTING)
-    told = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
-    clearance = told.clearance or NONE
-    h.numbers(told.time_s, told.miss.m, clearance.m, told.violation, told.time_sd_s, told.miss.sd_m, clearance.sd_m)
-    h.word(told.clearance is not None)
+    shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
+    clearance = shown.clearance or NONE
+    h.numbers(
+        shown.time_s, shown.miss.m, clearance.m, shown.violation, shown.time_sd_s, shown.miss.sd_m, clearance.sd_m
+    )
+    h.word(shown.clearance is not None)
 
 
 def runs_of(tracks: list[LoggedTrack]) -> Iterator[tuple[LoggedTrack, goe.Settings]]:
@@ -136,7 +138,7 @@ def test_estimates_have_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int) -> None:
-    """[A11] All in one call; also in threads, of more than there are processors."""
+    """[A11] In one call for all logs, and in more threads than there are processors."""
     runs = list(runs_of(tracks))
     rules = [goe.Rule(PLAN.margin_m, PLAN.clearance_m, doubt=1.0, drift_m_s=0.0)]
     jobs = {"rules": rules, "covariance": True, "threads": threads}
@@ -159,10 +161,12 @@ def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int
 
 
 def hash_hazard(h: Hash, hazard: goe.Hazard | None) -> None:
-    told = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
-    clearance = told.clearance or NONE
-    h.numbers(told.time_s, told.miss.m, clearance.m, told.time_sd_s, told.miss.sd_m, clearance.sd_m, told.violation)
-    h.word(told.clearance is not None)
+    shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
+    clearance = shown.clearance or NONE
+    h.numbers(
+        shown.time_s, shown.miss.m, clearance.m, shown.time_sd_s, shown.miss.sd_m, clearance.sd_m, shown.violation
+    )
+    h.word(shown.clearance is not None)
 
 
 def hash_assessment(h: Hash, a: goe.flight.Assessment | None) -> None:
@@ -197,7 +201,7 @@ def hash_obstacle(h: Hash, o: goe.flight.Obstacle | None) -> None:
 
 
 def time_of(track: LoggedTrack, k: int) -> int:
-    """Of 32 bits, which wrap on the way: the package takes what is beyond."""
+    """The time in 32 bits, which wrap on the way; the package accepts larger numbers."""
     return 0xFFF00000 + track.images[k].time_us - track.images[0].time_us
 
 
@@ -213,7 +217,7 @@ def give_samples(h: Hash, flight: goe.Flight, time_us: int, image: LoggedImage) 
 
 
 def read_layer(h: Hash, flight: goe.Flight, now_us: int, approach: bool) -> None:
-    """Python has None for a status of the three calls: with a pose, that of an empty slot."""
+    """Python returns None for a status other than OK. With a pose, that is the status of an empty slot."""
     assessment, obstacle, sectors = flight.assess(now_us, approach), flight.obstacle(0), flight.sectors(MAX_CM)
     status = goe.flight.FlightStatus.OK if assessment is not None else goe.flight.FlightStatus.NO_POSE
     h.word(status)
@@ -235,8 +239,8 @@ def test_the_flight_layer_has_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
         for k, image in enumerate(track.images):
             give_samples(h, flight, time_of(track, k), image)
             if k >= LATE:
-                seen = track.images[k - LATE]
-                detection = goe.flight.Detection(1.0, 1, box_of(seen), **points_of(seen))
+                visible = track.images[k - LATE]
+                detection = goe.flight.Detection(1.0, 1, box_of(visible), **points_of(visible))
                 frame = goe.flight.Frame(time_of(track, k), time_of(track, k - LATE), [detection], time_sd_us=3000)
                 h.word(flight.frame(frame))
                 frames += 1

@@ -1,4 +1,5 @@
-"""Opens the report in headless Chromium: every figure is there, nothing is fetched, the console is silent, it fits."""
+"""Opens the report in headless Chromium: every figure is there, nothing is fetched, the console is silent, the layout
+fits."""
 
 from __future__ import annotations
 
@@ -25,13 +26,13 @@ pytestmark = pytest.mark.skipif(chromium.MISSING, reason=chromium.WHY_MISSING)
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page to look at: of the campaign that GOE_CAMPAIGN_DIR names, of the goals' file that
-    GOE_GOALS names, and of goe_avoid's runs that GOE_AVOID_RUNS names; what is not named is invented."""
+    """The report of the campaign in GOE_CAMPAIGN_DIR, the goals' file in GOE_GOALS and goe_avoid's runs in
+    GOE_AVOID_RUNS; without a variable the data are synthetic."""
     folder = tmp_path_factory.mktemp("report")
     given = os.environ.get("GOE_CAMPAIGN_DIR")
     campaign = Path(given) if given else write_campaign(folder / "campaign")
-    told = os.environ.get("GOE_GOALS")
-    goals = Path(told) if told else write_goals(folder / "goals.json")
+    path = os.environ.get("GOE_GOALS")
+    goals = Path(path) if path else write_goals(folder / "goals.json")
     flown = os.environ.get("GOE_AVOID_RUNS")
     avoid = Path(flown) if flown else write_avoid(folder / "avoid.csv")
     page.write_page(data.read_campaign(campaign, goals=goals, avoid=avoid), folder / "report.html")
@@ -40,7 +41,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def shots(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where screenshots go: GOE_SCREENSHOTS, or a folder that pytest removes."""
+    """Folder for screenshots: GOE_SCREENSHOTS, or one that pytest removes."""
     given = os.environ.get("GOE_SCREENSHOTS")
     folder = Path(given) if given else tmp_path_factory.mktemp("shots")
     folder.mkdir(parents=True, exist_ok=True)
@@ -82,7 +83,7 @@ def test_page_in_browser(browser: Any, report: Path, shots: Path, size: tuple[in
 
 
 def test_dark(browser: Any, report: Path, shots: Path) -> None:
-    """As its reader is: no white is left, and what is written keeps apart from what it stands on."""
+    """Follows the reader's color scheme: no white remains, and text contrasts with its background."""
     browser.execute_cdp_cmd(
         "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}
     )

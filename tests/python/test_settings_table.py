@@ -1,4 +1,4 @@
-"""The settings are said once: the manual, the header and the programs agree with the library's list."""
+"""The settings have one source: the manual, the header and the programs agree with the library's list."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_the_header_documents_every_setting(rows: list[Setting]) -> None:
     assert set(documented()) == {row.name for row in rows}
 
 
-def test_the_header_tells_range_and_default(rows: list[Setting]) -> None:
+def test_the_header_documents_range_and_default(rows: list[Setting]) -> None:
     """[A26]"""
     comments = documented()
     checked = 0

@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 TARGETS = ROOT / "tests" / "targets"
 
 
-def test_embedded_logs_are_what_the_generator_writes() -> None:
+def test_embedded_logs_are_those_of_the_generator() -> None:
     committed = (TARGETS / "embedded_logs.c").read_text(encoding="utf-8")
     assert embed_logs.agrees(committed, embed_logs.c_text(embed_logs.make_book()))
 

@@ -1,4 +1,5 @@
-"""The window method in float64: exact on exact data, right about its sigmas, wrong only by what the paper omits."""
+"""The window method in float64: exact on exact data, with correct sigmas, and wrong only by the terms that the paper
+omits."""
 
 from __future__ import annotations
 
@@ -44,7 +45,7 @@ def random_rows(generator: np.random.Generator, noise: float) -> list[Row]:
 
 
 def check_against_dense(rows: list[Row], fit: Fit, generator: np.random.Generator) -> None:
-    """The dense system sees each image turned by an orientation of its own, as the paper writes it."""
+    """In the dense system each image has its own orientation, as in the paper."""
     paper = []
     for item in rows:
         b = generator.uniform(-0.7, 0.7)
@@ -52,7 +53,7 @@ def check_against_dense(rows: list[Row], fit: Fit, generator: np.random.Generato
         forward, aside = c * item.zeta + s * item.xi, c * item.xi - s * item.zeta
         paper.append(dense.DenseRow(forward, aside, c, s, item.dx_m, item.dz_m))
     expected = dense.solve(paper)
-    noise = expected.residual * math.sqrt(2 * len(rows) / (2 * len(rows) - 3))  # of a row, as its residuals tell it
+    noise = expected.residual * math.sqrt(2 * len(rows) / (2 * len(rows) - 3))  # of a row, estimated from its residuals
     rounding = math.sqrt(np.mean([item.roundoff**2 + (item.roundoff_m / expected.width_m) ** 2 for item in rows]))
     for name in ("width_m", "x0_m", "z0_m"):
         assert getattr(fit, name) == pytest.approx(getattr(expected, name), rel=1e-9)
@@ -95,7 +96,7 @@ def test_sigmas_are_the_spread_of_the_solutions() -> None:
         assert math.sqrt(np.mean([fit.sigma[name] ** 2 for fit in fits])) == pytest.approx(spread, rel=0.1)
 
 
-def test_solution_refuses_what_has_no_solution() -> None:
+def test_a_system_without_a_solution_is_refused() -> None:
     assert solved([row(1.0, 20.0, 0.0, 0.0)] * 8)[0] == "no_baseline"
     assert solved([row(1.0, 20.0, 0.0, 2.0 * k) for k in range(8)])[0] == "no_parallax"
     assert solved([row(1.0, 20.0 + k, 0.0, 2.0 * k) for k in range(8)])[0] == "no_parallax"
@@ -226,7 +227,7 @@ def test_refused_images_change_nothing() -> None:
             assert refused.values == expected.values
 
 
-def test_disc_is_told_until_the_line_takes_over() -> None:
+def test_disc_is_reported_until_the_line_takes_over() -> None:
     log = make_log(Scene(width_m=12.0, length_m=20.0, alpha_deg=20.0, run_s=6.0))
     models = [report.estimate.model for report in fly(log)]
     assert models[:7] == ["none"] * 7

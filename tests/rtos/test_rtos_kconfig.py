@@ -22,7 +22,7 @@ def value(parsed: kconfiglib.Kconfig, name: str) -> str:
 
 
 @ports
-def test_nothing_is_built_unless_asked(port: Path, tmp_path: Path) -> None:
+def test_nothing_is_built_unless_enabled(port: Path, tmp_path: Path) -> None:
     parsed = parse(port, tmp_path)
     assert value(parsed, "GOE") == "n"
     assert all(value(parsed, part) == "n" for part in (*PARTS, "GOE_FLIGHT", "GOE_MAVLINK"))
@@ -60,7 +60,7 @@ def test_ranges_are_those_of_the_headers(port: Path, tmp_path: Path, name: str) 
 def test_every_choice_of_parts_compiles(port: Path, tmp_path: Path) -> None:
     """goe.h needs a method, the flight layer the hazard, late poses the refined method."""
     parsed = parse(port, tmp_path)
-    seen = set()
+    found = set()
     for chosen in product("yn", repeat=6):
         apply(parsed, ["CONFIG_GOE=y"])
         for name, wanted in zip((*PARTS, "GOE_FLIGHT", "GOE_MAVLINK"), chosen):
@@ -71,8 +71,8 @@ def test_every_choice_of_parts_compiles(port: Path, tmp_path: Path) -> None:
         assert refined or not movers
         assert hazard or not flight
         assert flight or not mavlink
-        seen.add((window, refined, hazard, movers, flight, mavlink))
-    assert len(seen) == 5 * 4, "a combination that would compile cannot be chosen"
+        found.add((window, refined, hazard, movers, flight, mavlink))
+    assert len(found) == 5 * 4, "a combination that would compile cannot be chosen"
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_own_square_root_where_the_tree_has_a_poor_one_or_none(port: Path, poor:
     apply(parsed, ["CONFIG_GOE_OWN_SQRTF=n"])
 
 
-def test_programs_of_nuttx_are_built_only_if_asked_for(tmp_path: Path) -> None:
+def test_programs_of_nuttx_are_built_only_if_enabled(tmp_path: Path) -> None:
     parsed = parse(NUTTX, tmp_path)
     apply(parsed, ["CONFIG_GOE=y"])
     assert value(parsed, "GOE_SENSOR_LOOP") == value(parsed, "GOE_GOLDEN_BITS") == "n"
@@ -100,7 +100,7 @@ def test_programs_of_nuttx_are_built_only_if_asked_for(tmp_path: Path) -> None:
      "GOE_CAMERAS_MAX=2", "GOE_FLIGHT_SLOTS=3"],
 )  # fmt: skip
 def test_golden_bits_are_those_of_the_whole_with_its_defaults(other: str, tmp_path: Path) -> None:
-    """Another build has other hashes: the program would cry wolf."""
+    """Another build has other hashes, and the program would report a false failure."""
     parsed = parse(NUTTX, tmp_path)
     apply(parsed, ["CONFIG_GOE=y", "CONFIG_GOE_GOLDEN_BITS=y"])
     apply(parsed, [f"CONFIG_{other}"])

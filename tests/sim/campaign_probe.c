@@ -1,6 +1,6 @@
 /*
- * campaign_probe CASE NOISE CYLINDER METHOD MODEL WINDOW - flies a case of the paper's with other sensors and runs the library over
- * it in-process, as goe_campaign does; writes what goe_replay would.
+ * campaign_probe CASE NOISE CYLINDER METHOD MODEL WINDOW - flies a case of the paper with other sensors, runs the library over
+ * it in-process, as goe_campaign does, and writes the output of goe_replay.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */

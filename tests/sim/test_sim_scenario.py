@@ -62,13 +62,13 @@ def test_others_change_nothing_of_the_first(goe_sim: Path, tmp_path: Path) -> No
     assert all(np.array_equal(numbers(three[i], POSE), numbers(three[1], POSE)) for i in (2, 3))
 
 
-def test_each_is_what_a_flight_past_it_alone_would_show(goe_sim: Path, tmp_path: Path) -> None:
-    """Exact boxes of the second one. The path is straight: the same past any obstacle."""
+def test_each_is_logged_as_in_a_flight_past_it_alone(goe_sim: Path, tmp_path: Path) -> None:
+    """Exact boxes of the second obstacle. The path is straight: the same past any obstacle."""
     run(goe_sim, "--scenario", write(tmp_path, FLIGHT + MAST + BUILDING), "--out", tmp_path / "two")
     alone = (*SAME, "--yaw-camera", 0, "--obstacle", "building", "--x0", -60, "--z0", 320, "--alpha", 20)
     run(goe_sim, *alone, "--out", tmp_path / "one")
-    seen, expected = rows(tmp_path / "two", "truth_frames.csv")[2], rows(tmp_path / "one", "truth_frames.csv")[1]
-    assert np.allclose(numbers(seen, SIDES), numbers(expected, SIDES), rtol=0, atol=1e-9, equal_nan=True)
+    logged, expected = rows(tmp_path / "two", "truth_frames.csv")[2], rows(tmp_path / "one", "truth_frames.csv")[1]
+    assert np.allclose(numbers(logged, SIDES), numbers(expected, SIDES), rtol=0, atol=1e-9, equal_nan=True)
     truth, single = rows(tmp_path / "two", "truth.csv")[2][0], rows(tmp_path / "one", "truth.csv")[1][0]
     assert {key: truth[key] for key in single if key != "id"} == {key: single[key] for key in single if key != "id"}
 

@@ -1,11 +1,11 @@
-/* Logs that are part of the image, as no target has files. SPDX-License-Identifier: MIT */
+/* Logs compiled into the image, because targets have no files. SPDX-License-Identifier: MIT */
 #ifndef GOE_EMBEDDED_LOGS_H
 #define GOE_EMBEDDED_LOGS_H
 
 #include "goe.h"
 
 /* Numbers are bits of floats, in the order of goe_pose_t and goe_image_t: position (3), height, attitude (4), reset
- * delta (3), u and v of left, right, top, base_left, base_near, base_right. Of an image with a box, its left, top, right and
+ * delta (3), u and v of left, right, top, base_left, base_near, base_right. For an image with a box, its left, top, right and
  * bottom instead of left and right. */
 typedef struct {
     int64_t time_us;
@@ -16,7 +16,7 @@ typedef struct {
     uint32_t bits[23];
 } logged_image_t;
 
-/* Numbers: goe_camera_t in its order as far as the lever arm, heading_deg, then width and height of the image. */
+/* Numbers: goe_camera_t in its order up to the lever arm, heading_deg, then width and height of the image. */
 typedef struct {
     const char *name;
     int16_t first, count; /* in logged_images */

@@ -1,9 +1,9 @@
-/* Prints one line: the hash of all that the flight layer makes of the embedded logs. SPDX-License-Identifier: MIT
+/* Prints one line: the hash over all outputs of the flight layer for the embedded logs. SPDX-License-Identifier: MIT
  *
  *   flight <hash> frames <n>
  *
- * Every logged image gives a sample of attitude and position, and a frame that comes two images late; an assessment follows each,
- * and all that the layer reports is hashed. The logs' times are moved so that the 32 bits wrap in flight. */
+ * Every logged image gives a sample of attitude and position, and a frame that comes two images late. An assessment follows each,
+ * and all reports of the layer are hashed. The logs' times are shifted so that the 32 bits wrap in flight. */
 #include <string.h>
 
 #include "goe_flight.h"

@@ -17,7 +17,7 @@ goe_check_flight_hash(flight_replay flight_replay)
 find_program(BASH bash)
 set(target_tests ${CMAKE_CURRENT_SOURCE_DIR})
 
-# goe_target_test(<name> <script> <argument>...): status 77 of a script means that something is not installed
+# goe_target_test(<name> <script> <argument>...): a script's status 77 means that something is not installed
 function(goe_target_test name script)
     add_test(NAME ${name} COMMAND ${BASH} ${target_tests}/${script} ${ARGN})
     set_tests_properties(${name} PROPERTIES LABELS targets SKIP_RETURN_CODE 77 TIMEOUT ${goe_build_hang_s})

@@ -196,7 +196,7 @@ static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
     hash_word(replay, hazard.has_clearance ? 1u : 0u);
 }
 
-/* For the cost ledger. What it decides hangs on bits that are in the hash. */
+/* For the cost ledger. Its decisions depend on bits that are in the hash. */
 static void decide(const goe_estimator_t *estimator) {
     static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.5f, 0.2f};
     goe_rule_t rule;
@@ -245,7 +245,7 @@ void replay_all(replay_t *replay) {
     }
 }
 
-/* What a method answers by itself, whatever other parts are compiled in: the window all along, the refined method where it
+/* The answers of a method alone, independent of other compiled parts: the window method always, the refined method where it
  * has solved an image. */
 static void replay_own(replay_parts_t *parts, goe_estimator_t *estimator, const logged_track_t *track,
                        goe_method_t method) {

@@ -1,8 +1,8 @@
-/* Prints how deep each public function drives the stack over the embedded logs. SPDX-License-Identifier: MIT
+/* Prints the stack depth of each public function over the embedded logs. SPDX-License-Identifier: MIT
  *
  *   stack <function> <bytes>
  *
- * The stack is painted before each call. What the call itself needs (arguments on the stack) belongs to the caller. */
+ * The stack is painted before each call. The arguments on the stack belong to the caller. */
 #include "replay.h"
 #include "semihosting.h"
 #include "stack.h"
