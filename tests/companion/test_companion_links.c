@@ -142,7 +142,7 @@ static void a_signed_message_of_an_unknown_kind_counts_once(void) {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons((uint16_t)own_port);
     wire.link = own;
-    wire.heard = 1;
+    wire.autopilot_system = 1;
     for (uint8_t number = 0; number < 3; number++) {
         frame[4] = number;
         (void)sendto(friend_socket, frame, sizeof frame, 0, (struct sockaddr *)&to, sizeof to);

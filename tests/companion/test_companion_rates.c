@@ -56,10 +56,10 @@ static void each_message_is_requested_once_if_it_is_accepted(void) {
 }
 
 static void what_is_refused_goes_down_to_5_hz_and_is_given_up(void) {
-    static const double requested_hz[] = {25.0, 20.0, 10.0, 5.0};
+    static const double expected_hz[] = {25.0, 20.0, 10.0, 5.0};
     for (size_t i = 0; i < 4; i++) {
         TEST_ASSERT_EQUAL_INT(1, go_on(1));
-        expect(31, requested_hz[i]);
+        expect(31, expected_hz[i]);
         message_rates_answer(&rates, MAV_RESULT_FAILED);
     }
     TEST_ASSERT_EQUAL_INT(1, go_on(1));

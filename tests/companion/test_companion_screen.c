@@ -73,10 +73,10 @@ static void nothing_is_sent_to_nobody_or_from_a_screen_that_is_off(void) {
     screen_show(&screen, SCREEN_ORDER, MAV_SEVERITY_WARNING, "off");
     TEST_ASSERT_EQUAL_INT(0, go_on(10));
     screen.on = true;
-    wire.heard = 0;
+    wire.autopilot_system = 0;
     screen_show(&screen, SCREEN_ORDER, MAV_SEVERITY_WARNING, "kept");
     TEST_ASSERT_EQUAL_INT(0, go_on(10));
-    wire.heard = 1;
+    wire.autopilot_system = 1;
     TEST_ASSERT_EQUAL_INT(1, go_on(10));
     TEST_ASSERT_EQUAL_STRING("kept", text);
 }

@@ -94,7 +94,9 @@ def test_a_velocity_error_moves_the_camera() -> None:
     assert track.predicted(state)[0] == pytest.approx(shifted.predicted(still)[0], abs=1e-12)
 
 
-@pytest.mark.parametrize("configured", [GAUSS, ErrorModel(attitude_drift_deg=0.1, position_white_m=0.5)], ids=["disc", "any"])
+@pytest.mark.parametrize(
+    "configured", [GAUSS, ErrorModel(attitude_drift_deg=0.1, position_white_m=0.5)], ids=["disc", "any"]
+)
 def test_derivatives_of_all_that_counts(configured: ErrorModel) -> None:
     """By central differences, for sides and prior rows."""
     track = Track(box_flight(MAST, BoxOptions(roll_deg=25.0), 2), configured)

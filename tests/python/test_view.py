@@ -264,7 +264,8 @@ def test_words() -> None:
     assert "away" in words.approach(track.answers, len(track.answers) - 1)
     moving = story(view_logs.moving()).tracks[0].answers
     shown = {words.doubt(moving, k) for k in range(len(moving))}
-    assert any(text.startswith("Suspect: it moves, ") and text.endswith("m/s, and its velocity is estimated") for text in shown)
+    end = "m/s, and its velocity is estimated"
+    assert any(text.startswith("Suspect: it moves, ") and text.endswith(end) for text in shown)
 
 
 @pytest.mark.parametrize(

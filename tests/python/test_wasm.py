@@ -85,7 +85,8 @@ def test_numbers_that_are_stated_twice_agree() -> None:
     (defaults,) = re.findall(r"by_default = \{(.*)f\};", source)
     violation_max, act_s, doubt, drift_m_s = map(float, defaults.split("f, "))
     words = (
-        f"{rule['MARGIN_M']:g} m to the side, {rule['CLEARANCE_M']:g} m over the top, from {100 * violation_max:g} % on, "
+        f"{rule['MARGIN_M']:g} m to the side, {rule['CLEARANCE_M']:g} m over the top, "
+        f"from {100 * violation_max:g} % on, "
         f"if it may be reached within {act_s:g} s; both distances count {doubt:g} times while the estimate is suspect, "
         f"and grow by {drift_m_s:g} m"
     )
