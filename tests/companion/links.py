@@ -26,7 +26,7 @@ _ports = itertools.count(random.randrange(20000, 30000))
 
 
 def free_port(kind: int = socket.SOCK_DGRAM) -> int:
-    """A port below the range of the system's automatic assignment, so that it stays free for the companion."""
+    """A port below the range of the system's automatic assignment, which therefore stays free for the companion."""
     while True:
         port = 20000 + next(_ports) % 12000
         with socket.socket(socket.AF_INET, kind) as probe:

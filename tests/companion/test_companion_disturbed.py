@@ -20,7 +20,7 @@ from links import HOST, Faults
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 
 FLIGHT_S = 12.8
-BEGIN_S = 1.5  # the autopilot is known by then, because it was heard first
+BEGIN_S = 1.5  # the autopilot is known by then, because its messages came first
 GROWTH_KIB = 512
 
 LOSSY, SHUFFLED, DOUBLED, BAD = "lossy", "shuffled", "doubled", "lossy, shuffled and doubled"

@@ -258,7 +258,7 @@ def test_the_camera_is_in_the_folder_of_the_configuration(folder: Path) -> None:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_with_a_summary(make: Make, number: int) -> None:
-    """Also if no autopilot was heard at all."""
+    """Also without a message from any autopilot."""
     companion = make(usual())
     companion.start()
     companion.loop.run(0.5)

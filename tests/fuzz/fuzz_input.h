@@ -56,7 +56,7 @@ static inline uint32_t fuzz_bits_of(float number) {
     return bits;
 }
 
-/* Uses the exponent's bits, so that it also works under -ffast-math. */
+/* Uses the exponent's bits and therefore also works under -ffast-math. */
 static inline bool fuzz_is_finite(float number) { return (fuzz_bits_of(number) & 0x7F800000u) != 0x7F800000u; }
 
 /* A number that is often a limit, or just beyond one, or special, and sometimes arbitrary bits. */

@@ -118,8 +118,8 @@ def broken(bom: Json, how: str) -> Json:
         "a scope": lambda: component.update(scope="never"),
         "a hash": lambda: component.update(hashes=[{"alg": "SHA-256", "content": "12"}]),
         "a package URL": lambda: component.update(purl="npm/plotly"),
-        "licences": lambda: component.update(licenses=[{"license": {"id": "MIT"}}, {"expression": "MIT OR ISC"}]),
-        "a licence": lambda: component.update(licenses=[{"license": {"id": "do what you like"}}]),
+        "licenses": lambda: component.update(licenses=[{"license": {"id": "MIT"}}, {"expression": "MIT OR ISC"}]),
+        "a license": lambda: component.update(licenses=[{"license": {"id": "do what you like"}}]),
         "twice": lambda: bad["components"].append(component),
         "nowhere": lambda: bad["dependencies"][0]["dependsOn"].append("pkg:deb/debian/none"),
         "a version": lambda: bad.update(version="1"),
@@ -132,7 +132,7 @@ def broken(bom: Json, how: str) -> Json:
 @pytest.mark.parametrize(
     "how",
     [
-        "a key", "a type", "no name", "a scope", "a hash", "a package URL", "licences", "a licence", "twice", "nowhere",
+        "a key", "a type", "no name", "a scope", "a hash", "a package URL", "licenses", "a license", "twice", "nowhere",
         "a version", "another form",
     ],
 )  # fmt: skip

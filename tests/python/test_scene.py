@@ -65,7 +65,7 @@ def pixel_of(camera: Camera, frame: Frame, point: np.ndarray) -> tuple[float, fl
 
 
 def box_corners(log: ObservationLog) -> dict[str, np.ndarray]:
-    """The base corners of the only obstacle by its truth, as seen along its length axis: near/far, left/right."""
+    """The base corners of the only obstacle by its truth, in the view along its length axis: near/far, left/right."""
     (truth,) = log.truth.values()
     heading = math.radians(truth.heading_deg)
     along, across = np.array([math.cos(heading), math.sin(heading)]), np.array([-math.sin(heading), math.cos(heading)])

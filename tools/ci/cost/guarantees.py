@@ -109,7 +109,7 @@ def listed(ledger: Ledger, chosen: list[str], guarantee: Guarantee) -> str:
 
 def rows(ledger: Ledger) -> list[str]:
     """README.md's table: each guarantee, and the targets that meet it or not."""
-    lines = ["| guarantee | holds for | does not hold for |", "|---|---|---|"]
+    lines = ["| guarantee | valid for | not valid for |", "|---|---|---|"]
     for guarantee in GUARANTEES:
         chosen = [preset for preset in guarantee.listed if preset in ledger]
         good = [preset for preset in chosen if value_of(ledger[preset], guarantee) <= guarantee.limit]
