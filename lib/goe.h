@@ -15,28 +15,28 @@
  *            refined one cannot start, until that first answers.
  * "(1)" to "(8)" below and in the .c files are the equations of that paper.
  *
- * THIS HEADER IS THE MANUAL. The .c files hold reasons and equation numbers only; lib/README.md shows the rooms.
+ * THIS HEADER IS THE MANUAL. The .c files give reasons and equation numbers only; lib/README.md shows the source layout.
  * "Given" is what the caller hands in, "reported" what the library answers.
  *
  * ---------------------------------------------------------------------------------------------------------------------
  * Frames
  *
- *   earth       north, east, down (NED), metres, local, origin anywhere
+ *   earth       north, east, down (NED), meters, local, origin anywhere
  *   body        forward, right, down (FRD); attitude = Hamilton quaternion (w, x, y, z) that turns body into NED
  *   camera      x right, y down, z along the optical axis; pixel (u, v) = (right, down) from the top left corner
  *   trajectory  "T": X right, Y down, Z forward along the intended flight direction, ALWAYS LEVEL, also on a glide slope;
  *               its origin moves with the camera. [A4] By default Z is where the nose points at the track's first image,
  *               which in a crosswind is not the course: set heading_deg to know T exactly
  *
- *   seen from above, north up; the aircraft flies along Z, an obstacle on its left has X < 0
+ *   view from above, north up; the aircraft flies along Z, an obstacle on its left has X < 0
  *
  *                              far corner
  *                      ______________                  orientation: angle of the SIDE edge (length L) from Z,
- *                     /             /                               clockwise seen from above, -90 < b <= 90 degrees
+ *                     /             /                               clockwise from above, -90 < b <= 90 degrees
  *                    /             / side              width W:     the FRONT edge
  *                   /  front      /  (length L)        length L:    the SIDE edge
  *                  /_____________/                     reference point:
- *                        ^   near corner                 disc       the centre of the disc
+ *                        ^   near corner                 disc       the center of the disc
  *                        |                               line, box  the middle of the front edge
  *            reference point (X0, Z0)
  *                        .
@@ -48,18 +48,18 @@
  *                                   camera
  *
  *   Worked example (tests/c/test_readme.c flies it): the aircraft is at north 0, east 0, heading north; a chimney of
- *   6 m diameter stands at north 200, east -30. Then Z0 = 200 m, X0 = -30 m, width = 6 m.
+ *   6 m diameter is at north 200, east -30. Then Z0 = 200 m, X0 = -30 m, width = 6 m.
  *   After 50 m of flight: Z = 150 m, X = -30 m, and X0, Z0 stay as they were.
  *
  *   The track begins with the first image that shows a feature: that image fixes T and its origin. Images without a feature fix
- *   nothing. [A5] What lies more than 87 degrees from Z cannot be used. [A6] With heading_auto the track begins again, by itself, while no
+ *   nothing. [A5] Features more than 87 degrees from Z cannot be used. [A6] With heading_auto the track begins again, by itself, while no
  *   position is known and the nose has turned by more than 45 degrees: if every feature then lies more than 60 degrees from Z.
  *   Once a position is known T stays: after a turn of more than 60 degrees call goe_reset when the obstacle is in view again. Until
  *   then the last answer, stale, follows the motion. [A7]
  *
  *   Jumps: x0, z0, x and z move by half the obstacle's size when a disc becomes a line or box. Refined: front and side keep
  *   their names until the side lies more than 52 degrees (tan b = 1.3) from Z; then width and length, their sigmas,
- *   orientation, both axes and the reference point change at once. [A8] The centre does neither.
+ *   orientation, both axes and the reference point change at once. [A8] The center does not jump.
  *
  * ---------------------------------------------------------------------------------------------------------------------
  * Memory      goe_estimator_t is owned by the caller, fixed in size (at most 2.9 KiB at the default window, 2.3 KiB without
@@ -68,11 +68,11 @@
  * Threads     Every function touches only what its arguments point at. Two threads may work on two estimators; one
  *             estimator needs the caller's lock. [A11]
  * Arithmetic  float only; of the C library sqrtf, memcpy and memset, no more. [A12] sqrtf must be correctly rounded, as IEEE 754
- *             asks: goe_self_check() tries it. Compiled with the library's own flags (-ffp-contract=off) the results are
+ *             requires: goe_self_check() tests it. Compiled with the library's own flags (-ffp-contract=off) the results are
  *             bit-identical on every IEEE 754 target; goe_self_check() verifies it at run time. [A13]
  *             Under -ffast-math and the like the library stays safe (below) and loses only bit identity. [A14]
  *             What float rounds, against double precision, stays below one and a half sigma of any quantity of the refined method
- *             with positions within 10 km of their origin, for lever arms of metres, 300 to 3000 px of focal length and sensors'
+ *             with positions within 10 km of their origin, for lever arms of meters, 300 to 3000 px of focal length and sensors'
  *             usual noise, until a decision falls otherwise: the worst that a search found is 1.1, of an obstacle that moves. [A15] The
  *             window's sigmas are of its residuals alone, and rounding may be several of them. At the ends of the ranges stated
  *             below, all at once, it is hundreds to thousands: choose an origin near the flight, and give no less noise than the
@@ -164,14 +164,14 @@ typedef enum {
     GOE_OK = 0,             /* solved from this image and those before it */
     GOE_PARTIAL = 1,        /* solved, but a part of the image was refused or could not be used: see the counters */
     GOE_COLLECTING = 2,     /* image taken; no solution yet: too few points, or the range is not known to 25 % (1 sigma) */
-    GOE_HELD = 3,           /* image taken; it adds no point to the reported model, whose older solution stands */
-    GOE_NOTHING_SEEN = 4,   /* image taken for its pose; no feature is marked as seen. Not a fault: nothing is in view */
+    GOE_HELD = 3,           /* image taken; it adds no point to the reported model, whose older solution remains */
+    GOE_NOTHING_SEEN = 4,   /* image taken for its pose; no feature is marked as visible. Not a fault: nothing is in view */
     /* a feature of an image that was taken; no new solution */
     GOE_BEHIND_CAMERA = -1, /* a ray points backwards or sideways: third component in T <= 0.05 of its norm */
     GOE_LENS_FAILED = -2,   /* the iteration that inverts the lens model does not settle at a pixel: too far off the axis */
     GOE_SWAPPED = -3,       /* after alignment left is not left of right by 1e-4 focal lengths, or base corners are not in
                                image order */
-    GOE_EDGE_ON = -4,       /* the front edge is seen from its end or from behind; as GOE_PARTIAL: no length from this
+    GOE_EDGE_ON = -4,       /* the camera views the front edge from its end or from behind; as GOE_PARTIAL: no length from this
                                image, the side edge points at the camera */
     GOE_NO_EDGE = -5,       /* line model forced and no line point: the front edge is too short or no edge has a
                                measurable orientation (10 px and 2 px gates), as when the obstacle is met head-on */
@@ -183,7 +183,7 @@ typedef enum {
                                ahead, or far too noisy */
     GOE_PASSED = -9,        /* the solution lies abeam or behind: Z <= 0 somewhere in the window */
     /* an image that was refused whole */
-    GOE_NOT_FINITE = -10,   /* a NaN or an infinity in the pose or in a seen feature */
+    GOE_NOT_FINITE = -10,   /* a NaN or an infinity in the pose or in a visible feature */
     GOE_OUT_OF_RANGE = -11, /* a number outside the range stated at its field */
     GOE_BAD_TIME = -12,     /* time unknown, repeated or running backwards; after a wild jump ahead: goe_reset */
     GOE_BAD_ATTITUDE = -13, /* the quaternion's norm is off 1 by more than 1 % (a zero quaternion among them) */
@@ -224,7 +224,7 @@ typedef enum {
                            and no disc before it */
     GOE_MODEL_BOX = 4,  /* estimate only: a box with an upright, level outline. Refined method */
     GOE_MODEL_PRISM = 5 /* estimate only: something upright by its bounding boxes, whose depth along the line of sight is not
-                           known: the sigmas hold for a mast as for a house. Width: across the line of sight of the image
+                           known: the sigmas cover a mast as well as a house. Width: across the line of sight of the image
                            that the filter started with; its sigma grows as that turns. Refined method */
 } goe_model_t;
 
@@ -278,8 +278,8 @@ typedef struct {
     float height_white_m;     /* error of height_m that is new in each image, m; 0 to 1e3; default 0: none, and points take each
                                  image's height as it is. Otherwise the height moves by the changes of down, and every image's
                                  height is a reading of where it began, whose mean the filter learns */
-    float slope;              /* slope of the ground that height_m is above, m per m flown; 0 to 1; default 0. It lets the height
-                                 go wrong on the way; what it is wrong by at first, slope times range, is height_bias_m's */
+    float slope;              /* slope of the ground that height_m is above, m per m flown; 0 to 1; default 0. It lets the height's
+                                 error grow on the way. Its initial error, slope times range, belongs to height_bias_m */
     float ground_m;           /* upright boxes, also with base corners: how far the obstacle's ground may lie off that which height_m
                                  is above, added to height_bias_m, m; 0 to 1e3; default 2. 1000: no altimeter */
 } goe_navigation_t;
@@ -293,9 +293,9 @@ typedef struct {
     float shape_share; /* model error of the disc: how far a real silhouette departs from a cylinder's, as a fraction of its
                           width; 0 to 1; default 0. Cars as discs: about 0.12. Points only */
     float box_px;        /* error of a box's side that is new in each image, px; 0.05 to 100; default 1 */
-    float box_share;     /* error of a side that stays alike from image to image, as a fraction of the box's width (left,
+    float box_share;     /* error of a side that is correlated from image to image, as a fraction of the box's width (left,
                             right) or height (top, bottom); 0 to 1; default 0.07, right for real detectors */
-    float correlation_s; /* how long it stays alike, time constant, s; 0 to 100; default 1.2 */
+    float correlation_s; /* time constant of that correlation, s; 0 to 100; default 1.2 */
     float cut_noise;     /* error of every side, new in each image, while the image's border cuts the box (camera.cut_share),
                             as a fraction of the same; 0 to 10; default 1 */
 } goe_detector_t;
@@ -319,10 +319,10 @@ typedef struct {
     float gate_sigma;     /* a point farther off than this is left out, sigmas; 1 to 100; default 5 */
     float huber_sigma;    /* a point farther off than this counts less, sigmas; 0.5 to 100; default 2.5 */
     float misfit_max;     /* goe_estimate_t.misfit above which the obstacle is suspect; 0.01 to 1e3; default 1.9. Less where
-                             shape_share or box_share describe what is the same in every image */
-    float range_share;    /* a position is reported once its sigma is below this share of the range, without what no image can
-                             show (GOE_MODEL_PRISM); 0.01 to 10; default 0.25 */
-    bool top_is_highest;  /* `top`, as a point, is the highest one in the image also when seen from above the roof: see
+                             shape_share or box_share describe errors that are the same in every image */
+    float range_share;    /* a position is reported once its sigma is below this share of the range, not counting depth that no
+                             image shows (GOE_MODEL_PRISM); 0.01 to 10; default 0.25 */
+    bool top_is_highest;  /* `top`, as a point, is the highest one in the image also from above the roof: see
                              goe_image_t.top; a box's top always is the highest, whatever is set here; default false */
 } goe_refined_settings_t;
 
@@ -367,14 +367,14 @@ typedef struct {
                                 (GOE_NO_HEIGHT); window: no obstacle height if it is <= 0. Boxes: that of the first image with a
                                 box counts, from then on the changes of down; with navigation.height_white_m the mean of all,
                                 boxes and points. A known jump of the filter is taken off it: see above */
-    float attitude[4];       /* w, x, y, z; body FRD to NED; normalised here, refused if its norm is off by over 1 % */
+    float attitude[4];       /* w, x, y, z; body FRD to NED; normalized here, refused if its norm is off by over 1 % */
     uint8_t reset_count;     /* the filter's reset counter, any start, wraps */
     bool reset_delta_known;  /* read only when reset_count changed */
     float reset_delta_ned_m[3]; /* each +-1e6; read only when reset_count changed and reset_delta_known. Down: give it as
                                    position_ned_m jumped, whether height_m jumped along or not */
 } goe_pose_t;
 
-/* An image point. u_px and v_px are read only if seen; each +-1e5. */
+/* An image point. u_px and v_px are read only if visible; each +-1e5. */
 typedef struct {
     float u_px, v_px;
     bool seen;
@@ -383,7 +383,7 @@ typedef struct {
 /* The upright bounding box of a detector in the raw image, each side a straight line of the raw pixels. Feed raw detections, not
  * a tracker's smoothed boxes: smoothing lags, and shrinks boxes that grow, which no sigma knows of. */
 typedef struct {
-    float left_px, top_px, right_px, bottom_px; /* read only if seen; each +-1e5; left < right, top < bottom */
+    float left_px, top_px, right_px, bottom_px; /* read only if marked; each +-1e5; left < right, top < bottom */
     uint8_t seen;                               /* mask of GOE_SEES_..., GOE_SEES_BOX for a whole box; 0: no box. Without the bit: cut,
                                                    hidden or not believed */
 } goe_box_t;
@@ -404,14 +404,14 @@ typedef struct {
     float pixel_px;     /* instead of detector.point_px, and of box_px; 0 to 100 */
 } goe_image_noise_t;
 
-/* One image of one obstacle: a box, or points, or both. Any subset of the features may be seen.
+/* One image of one obstacle: a box, or points, or both. Any subset of the features may be visible.
  * Box: what detectors give. It is exact at any attitude, as every side is a plane through the camera that touches the obstacle
  * at its roof or at its foot. A box replaces left, right and top, which are not read then; base corners are. With base
  * corners, too, left, right and top of the box touch roof or foot, wherever the solid ends in the raw image: the top is the
  * highest point of the roof in it, not the one over the nearest corner. The box's bottom is not used then. [A29]
  * Disc: left and right. Line and box: two or three base corners; refined also finds a box by left and right alone when one of
  * its faces turns away in flight: before that it is reported as a disc about its middle, whose width is the lateral extent of
- * what has been seen of it, which changes on the way. The sigmas of such a disc include that it may be something else, and are
+ * its visible part, which changes on the way. The sigmas of such a disc include that it may be something else, and are
  * wider for that, until the images show that it is none; those of goe_settings_t.model disc are a disc's alone. [A30] Height: top,
  * and a solution of any model.
  * Do not give the middles of a box's sides as points: when the camera rolls, the sides touch the top and the foot of a tall
@@ -420,13 +420,13 @@ typedef struct {
     goe_pose_t pose;
     goe_pixel_t left, right; /* leftmost and rightmost point of the silhouette */
     goe_pixel_t top;         /* point of the roof's edge over the nearest base corner, of a disc the nearest point of the
-                                upper rim. Seen from below the roof and not far from the axis it is the highest point in
+                                upper rim. From below the roof and not far from the axis it is the highest point in
                                 the image; from above, the highest one is another: refined.top_is_highest */
     goe_pixel_t base_left, base_near, base_right; /* visible corners of the base on the ground, in image order;
-                                base_near lies between two visible faces, and is not seen when one face alone is.
-                                Refined: for eight images after it was seen it counts as missed; left and right
-                                alone are a face only where one would be seen alone, and the sigmas hold that they
-                                may be the outer ends of two */
+                                base_near lies between two visible faces, and is not visible when only one face is.
+                                Refined: for eight images after it was visible it counts as missed; left and right
+                                alone are a face only where one face would be visible alone, and the sigmas cover
+                                that they may be the outer ends of two */
     goe_box_t box;
     goe_image_noise_t noise;
     uint8_t camera; /* number of the camera that took it; GOE_OUT_OF_RANGE if there is none of that number. A track passes from
@@ -437,22 +437,22 @@ typedef struct {
 
 /* Which quantities of an estimate hold an answer. A quantity without its bit is 0 and means nothing. */
 #define GOE_HAS_POSITION 0x01u    /* x0, z0, x, z, residual, baseline */
-#define GOE_HAS_LENGTH 0x02u      /* length: line or box, side edge seen from aside */
+#define GOE_HAS_LENGTH 0x02u      /* length: line or box, side edge visible from aside */
 #define GOE_HAS_HEIGHT 0x04u      /* height */
 #define GOE_HAS_ORIENTATION 0x08u /* orientation, other_side, both axes in T and in north and east */
-#define GOE_HAS_CENTER 0x10u      /* centre: disc; or line or box with length */
+#define GOE_HAS_CENTER 0x10u      /* center: disc; or line or box with length */
 #define GOE_HAS_WIDTH 0x20u       /* width */
 #define GOE_HAS_VELOCITY 0x40u    /* velocity: the obstacle moves, and is followed */
 
 /* One-sigma of each quantity; units as the quantity.
  * Refined: of the true error, as far as goe_navigation_t and goe_detector_t describe the sensors; and wider, never narrower, if
- * the track itself scatters more than they say, or its residuals are alike from image to image, as those of late poses are. A
+ * the track itself scatters more than they say, or its residuals are correlated from image to image, as those of late poses are. A
  * quantity is valid once its sigma, without that, was below refined.range_share (25 %; x0, z0: of the range at the filter's
- * start), 30 % (width, length, height) or 10 degrees in two images in a row; of a prism (GOE_MODEL_PRISM) without what no image
- * can show. [A31]
+ * start), 30 % (width, length, height) or 10 degrees in two images in a row; of a prism (GOE_MODEL_PRISM) not counting depth that no
+ * image shows. [A31]
  * Window: from the residuals of the fits, and only as good as the assumption that errors are independent from image to
  * image: constant errors of attitude or altitude are not in it. After one single measurement the spread is not known:
- * then the orientation's is 0, and those of length and height hold only what the solution gives them. [A32] */
+ * then the orientation's is 0, and those of length and height contain only what the solution contributes. [A32] */
 typedef struct {
     float x0_m, z0_m, x_m, z_m, width_m, length_m, height_m, orientation_deg, center_north_m, center_east_m;
     float velocity_north_m_s, velocity_east_m_s, latency_s;
@@ -461,14 +461,14 @@ typedef struct {
 /* Why an estimate is suspect, the most significant one. Refined method. */
 typedef enum {
     GOE_REASON_NONE,
-    GOE_REASON_CONVENTION, /* the filter had to start again twice within 24 images: what is given does not belong together (axes,
+    GOE_REASON_CONVENTION, /* the filter had to start again twice within 24 images: the inputs contradict each other (axes,
                               signs or order of the attitude, the mounting, a pose half a second late), or it is of quite
                               another shape */
     GOE_REASON_MOVES,      /* the obstacle moves. GOE_HAS_VELOCITY: it is followed, and so are position and hazard. Without it,
-                              where neither base corners nor the bottom of a box are seen, the position is that of an obstacle
+                              where neither base corners nor the bottom of a box are visible, the position is that of an obstacle
                               which stands still, and wrong */
-    GOE_REASON_BASE,       /* what was given as base corners proved to be none, and is left out */
-    GOE_REASON_SHAPE,      /* a disc was asked for, and the silhouette is not that of one */
+    GOE_REASON_BASE,       /* the points given as base corners proved not to be corners, and are left out */
+    GOE_REASON_SHAPE,      /* the settings require a disc, and the silhouette is not that of one */
     GOE_REASON_LATE,       /* poses are late (or early) against the images: latency_s. Also of an estimate that is not
                               suspect: the latency is taken off */
     GOE_REASON_NOISE       /* the errors are larger than given, or the obstacle is of another shape */
@@ -477,14 +477,14 @@ typedef enum {
 typedef struct {
     goe_method_t method;   /* behind this estimate; refined once the filter has started, even while no quantity is valid yet;
                               0 if none */
-    goe_model_t model;     /* none (nothing solved), disc, line or box: the model behind x0 to width and the centre */
+    goe_model_t model;     /* none (nothing solved), disc, line or box: the model behind x0 to width and the center */
     unsigned valid;        /* GOE_HAS_... */
     bool fresh;            /* x0 to width are solved from the latest image; false: stale, the last good answer. Window:
                               length, height and orientation are the latest measured, and have no age of their own */
     bool suspect;          /* refined: the residuals do not fit a static obstacle of this model (misfit > misfit_max): it
-                              moves, or it is of another shape, or the errors are larger than given; or a disc was asked for
-                              and its silhouette is not that of one; or what was given as base corners proved to be none and
-                              is left out. The sigmas may then be too small: widen the margins, never drop a warning. Motion
+                              moves, or it is of another shape, or the errors are larger than given; or the settings require a
+                              disc and the silhouette is not that of one; or points given as base corners proved not to be
+                              corners and are left out. The sigmas may then be too small: widen the margins, never drop a warning. Motion
                               along the line of sight looks like another size: oncoming at 15 m/s, 60 % of the tracks with
                               base corners are reported as moving within 4 s and 72 % ever, of outlines 19 % ever. All lengths in
                               another unit are never noticed */
@@ -499,7 +499,7 @@ typedef struct {
     float width_m;         /* disc: diameter; line, box: length of the front edge */
     float length_m;        /* of the side edge */
     float height_m;        /* top above ground */
-    float orientation_deg; /* side edge (length axis) from Z, clockwise seen from above, -90 < b <= 90 */
+    float orientation_deg; /* side edge (length axis) from Z, clockwise from above, -90 < b <= 90 */
     float orientation_raw_deg; /* window: the same from the latest image that measured it alone, not filtered; refined:
                                   orientation_deg again */
     float other_side_deg;  /* front edge (width axis), same convention */
@@ -516,7 +516,7 @@ typedef struct {
     float residual;        /* window: root mean square residual of (5), in the rows' own unit m/S; refined: 0 */
     float baseline_m;      /* window: root of the summed squared spread of the camera's path over the window; refined:
                               distance of the camera from where the track began */
-    float nis;             /* refined: normalised innovation squared of the latest image ... */
+    float nis;             /* refined: normalized innovation squared of the latest image ... */
     int nis_rows;          /* ... and how many rows made it, which is its expectation; 0 if the image gave none */
     float misfit;          /* refined: running mean of nis / nis_rows over the last 64 images, seeded with eight zeros; 1 is
                               what the settings predict */
@@ -525,7 +525,7 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------------------------- state -- */
 
-/* goe_estimator_t, transparent so that it can be placed and counted: its fields are private to the library, except causes,
+/* goe_estimator_t, transparent, to be placed and counted by the caller: its fields are private to the library, except causes,
  * which may be read. [A33] */
 #include "goe_state.h"
 
@@ -561,7 +561,7 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
 /* The quantities of goe_covariance, in this order. */
 enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_QUANTITIES };
 
-/* Covariance of x0_m, z0_m, orientation_deg, width_m, length_m, height_m of the latest estimate: metres and degrees. Rows
+/* Covariance of x0_m, z0_m, orientation_deg, width_m, length_m, height_m of the latest estimate: meters and degrees. Rows
  * and columns of a quantity that is not valid there are 0. The diagonal holds the sigmas squared, whatever the method and the
  * model. Of a stale answer x0 and z0 include what its age adds to x_m and z_m, and no variance is below its sigma squared. Of the
  * window's answer, and once the filter has started again or changed its model, there is nothing off the diagonal.
@@ -582,7 +582,7 @@ typedef struct {
 } goe_plan_t;
 
 /* What will become of it. Sigmas are to first order, from the covariance of the estimate and the error of the plan's velocity.
- * Refined: a constant error of goe_pose_t.height_m moves the camera and the top alike, and is not in the clearance. */
+ * Refined: a constant error of goe_pose_t.height_m moves camera and top by the same amount, and is not in the clearance. */
 typedef struct {
     float time_s;      /* until the horizontal distance to the obstacle's outline is smallest for the first time; if the
                           path crosses the outline: until it enters. 0: the distance grows already, or it is inside */
@@ -641,7 +641,7 @@ void goe_rule_default(goe_rule_t *rule);
  *   rule    null: the defaults
  *   hazard  the hazard with the widened distances, all zero without one; null if not wanted
  * Returns GOE_DECISION_KEEP for a bad argument, a plan or rule that is not finite or out of range, and an estimator that is not
- * initialised or corrupted.
+ * initialized or corrupted.
  * Cost: at most 21800 instructions, 1200 bytes of stack. */
 GOE_NODISCARD goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_plan_t *plan, const goe_rule_t *rule,
                                         goe_hazard_t *hazard);
