@@ -67,7 +67,7 @@ def test_a_warning_is_an_error(tmp_path: Path, doxygen: None) -> None:
 
 def test_plain_comments_become_descriptions() -> None:
     source = """/*
- * name - what it is
+ * name - a purpose
  *    a drawing <o>
  */
 #define A 1 /* of all [A7] */
@@ -85,7 +85,7 @@ typedef struct {
 } t;
 """
     converted = filter_module().converted(source, "name.h")
-    assert converted.startswith("/** @file name.h\n@verbatim\n name - what it is\n    a drawing <o>\n")
+    assert converted.startswith("/** @file name.h\n@verbatim\n name - a purpose\n    a drawing <o>\n")
     assert "#define A 1 /**< of all */" in converted
     assert "/* ------------------------------ a ruler -- */" in converted
     assert "/** What it does, if x \\< 3 or\nmore. */\nvoid f(float x);" in converted

@@ -110,7 +110,7 @@ def test_the_flight_ends_at_any_of_them(goe_sim: Path, tmp_path: Path) -> None:
         ("speed = 18", "speed", "3: a line is [section] or key = value"),
         ("speed = 18", "out = elsewhere", "3: out: belongs on the command line"),
         ("z0 = 320\n", "", "14: [obstacle 2]: z0 is missing"),
-        ("what = building\n", "", "14: [obstacle 2]: what it is, is missing"),
+        ("what = building\n", "", "14: [obstacle 2]: the kind of obstacle (what) is missing"),
         ("what = building", "what = castle", "14: what: 'castle' is not cylinder, building"),
         ("z0 = 320", "z0 = far", "16: z0: 'far' is not a number"),
         ("z0 = 320", "z0 = 1e9", "14: [obstacle 2]: x0 and z0: must lie within"),
@@ -124,7 +124,7 @@ def test_the_flight_ends_at_any_of_them(goe_sim: Path, tmp_path: Path) -> None:
         ("[obstacle 3]", "[obstacle 2]", "19: what: [obstacle 2] has it twice, first in line 14"),
         (MAST, "", "11: what: obstacle 2 comes before obstacle 1"),
         ("alpha = 20", f"alpha = {'1' * 300}", "17: the line is longer than"),
-        ("alpha = 20", "colour = 20", "17: colour: an obstacle has what, x0, z0 and alpha"),
+        ("alpha = 20", "paint = 20", "17: paint: an obstacle has what, x0, z0 and alpha"),
     ],
 )
 def test_a_bad_file(goe_sim: Path, tmp_path: Path, old: str, new: str, fault: str) -> None:
