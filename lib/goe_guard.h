@@ -8,7 +8,7 @@
 /* Seals mounting and settings. Call this when they are set: from then on they change no more. */
 void goe_guard_seal(goe_estimator_t *estimator);
 
-/* GOE_OK; GOE_NOT_INITIALISED; or GOE_CORRUPTED, if mounting, settings or the mark that they are set differ from the state after
+/* GOE_OK; GOE_NOT_INITIALIZED; or GOE_CORRUPTED, if mounting, settings or the mark that they are set differ from the state after
  * goe_guard_seal(). It finds every change of one word, and of two bits anywhere but the same bit of two words that are 32
  * words apart. */
 goe_status_t goe_guard_judge(const goe_estimator_t *estimator);

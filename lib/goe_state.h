@@ -25,7 +25,7 @@ typedef uint8_t goe_flag_t;
 
 /* Augmented states, which the filter takes as constant: the latency of the poses, s, and the obstacle's velocity, T
  * axes, m/s; 0 of them if that part is left out. */
-#if GOE_WITH_REFINED && GOE_WITH_MOVERS
+#if GOE_WITH_FILTER && GOE_WITH_TARGET_MOTION
 #define GOE_AUGMENTED 3
 #else
 #define GOE_AUGMENTED 0
@@ -88,7 +88,7 @@ typedef struct { /* window/goe_window.c */
     goe_fit_ring_t disc, line;
 } goe_window_t;
 
-/* --------------------------------------------------------------------------------------------------------- refined -- */
+/* --------------------------------------------------------------------------------------------------------- filter -- */
 
 #define GOE_STATES 10
 #define GOE_FEATURES 6
@@ -266,14 +266,14 @@ typedef struct {
 
 typedef struct {
     goe_motion_t motion;
-    uint32_t causes[GOE_CAUSES];
+    uint32_t fault_counts[GOE_FAULT_COUNTS];
     uint32_t ready; /* distinguishes an initialized estimator from any other memory */
     goe_seal_t seal;
     float camera_to_body[GOE_CAMERAS_MAX][9];
     goe_settings_t settings;
     goe_estimate_t estimate;  /* after the latest image, by whatever method */
     int64_t estimate_time_us; /* image behind the estimate */
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
     goe_filter_t filter;
 #endif
 #if GOE_WITH_WINDOW

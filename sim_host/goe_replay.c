@@ -91,8 +91,8 @@ static int choose(const char *option, const char *word, const char *const *names
 }
 
 static bool parse_method(const char *text, goe_method_t *method) {
-    static const char *const names[] = {"refined", "window"};
-    static const goe_method_t methods[] = {GOE_METHOD_REFINED, GOE_METHOD_WINDOW};
+    static const char *const names[] = {"filter", "window"};
+    static const goe_method_t methods[] = {GOE_METHOD_FILTER, GOE_METHOD_WINDOW};
     const int chosen = choose("--method", text, names, (int)(sizeof names / sizeof names[0]));
     *method = chosen >= 0 ? methods[chosen] : *method;
     return chosen >= 0;
@@ -197,7 +197,7 @@ static void print_help(poptContext context) {
         "one-sigma (..._sd_...). suspect is 1 where the track contradicts its assumptions, and reason says "
         "why:\n"
         "widen the margins then.\n"
-        "\nMETHOD: refined, the square-root information filter over the whole track, by default; window, the paper's\n"
+        "\nMETHOD: filter, the square-root information filter over the whole track, by default; window, the paper's\n"
         "sliding window. NAME=VALUE: a setting of goe.h, which describes its meaning and range; by default");
     (void)settings_print(stdout, &defaults);
     (void)puts("\nExit status: 0 done; 1 the log was read but no row gave an estimate; 2 bad usage or bad input, then\n"
@@ -207,7 +207,7 @@ static void print_help(poptContext context) {
 /* ---------------------------------------------------------------------------------------------------------- replay -- */
 
 #define STATUS_FIRST GOE_CORRUPTED
-#define STATUS_LAST GOE_NOTHING_SEEN
+#define STATUS_LAST GOE_NO_DETECTION
 #define STATUSES ((int)STATUS_LAST - (int)STATUS_FIRST + 1)
 
 typedef struct {
@@ -398,13 +398,13 @@ int main(int argc, char **argv) {
     goe_settings_default(&defaults);
     options_t options = {.window = defaults.window.points};
     const struct poptOption table[] = {
-        {"method", 0, POPT_ARG_STRING, &options.method, 0, "how to estimate; refined by default", "refined|window"},
+        {"method", 0, POPT_ARG_STRING, &options.method, 0, "how to estimate; filter by default", "filter|window"},
         {"model", 0, POPT_ARG_STRING, &options.model, 0, "shape model of the obstacle; auto by default",
          "auto|disc|line"},
         {"window", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &options.window, 0, "image points in the window", "N"},
         {"set", 0, POPT_ARG_ARGV, &options.set, 0, "change a setting; may be repeated", "NAME=VALUE"},
         {"residuals", 0, POPT_ARG_NONE, &options.residuals, 0,
-         "nine columns more: nis, nis_rows, misfit, velocity, latency (refined)", NULL},
+         "nine columns more: nis, nis_rows, nis_ratio, velocity, latency (filter)", NULL},
         {"out", 'o', POPT_ARG_STRING, &options.out, 0, "where to write the estimates; standard output by default",
          "FILE"},
         {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Shows the estimator at work: sets up, builds, replays a small recorded flight past the corner of a building, flies the
 # paper's campaign and more in simulation, flies the flight layer's orders towards obstacles, prints Table 3 (the paper's
-# numbers, the window method's, the refined method's), writes the report, and says in a few lines what was shown.
+# numbers, the window method's, the filter method's), writes the report, and says in a few lines what was shown.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"

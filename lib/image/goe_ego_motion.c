@@ -177,7 +177,7 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
     turn_into_trajectory(motion, body_to_ned, view);
 #if GOE_AUGMENTED
-    if (settings->method != GOE_METHOD_REFINED) {
+    if (settings->method != GOE_METHOD_FILTER) {
         return;
     }
     const float arm_n = position[0] - pose->position_ned_m[0];

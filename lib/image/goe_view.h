@@ -29,11 +29,11 @@ typedef enum { GOE_BOX_LEFT, GOE_BOX_TOP, GOE_BOX_RIGHT, GOE_BOX_BOTTOM, GOE_BOX
 
 typedef struct {
     float px[GOE_BOX_SIDES]; /* raw image */
-    uint8_t usable;          /* GOE_SEES_... */
+    uint8_t usable;          /* GOE_SIDE_... */
     bool cut;                /* left or right is missing, or near the image's border */
 } goe_sides_t;
 
-/* Whether all of these sides (GOE_SEES_...) are measured. */
+/* Whether all of these sides (GOE_SIDE_...) are measured. */
 static inline bool goe_sides_see(const goe_sides_t *sides, unsigned set) { return (sides->usable & set) == set; }
 
 typedef struct {

@@ -15,7 +15,7 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_touch.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define AHEAD_MIN 0.01f    /* range below which a corner's direction is not compared */
 #define AHEAD_TINY 1.0e-3f /* ... or ordered */
@@ -261,7 +261,7 @@ static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
 
 /* (R13). */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
-    if (obs->settings->refined.top_is_highest) {
+    if (obs->settings->filter.top_is_highest) {
         return highest_corner(obs, o);
     }
     return o->right ? (o->far_half ? BACK_RIGHT : FRONT_RIGHT) : (o->far_half ? BACK_LEFT : FRONT_LEFT);

@@ -7,7 +7,7 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_box.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define BEARING_GROWTH 4.0f    /* factor on the variance of the bearing: the disc's middle was another point */
 #define BEARING_FREEDOM 4.0f   /* ... and sigma added to it, in the larger side */
@@ -116,7 +116,7 @@ static float edge_sigma(const goe_observation_t *obs, const face_t *face, float 
     const float deep = face->range_m * face->range_m / face->height_m * pixel;
     const float wide = face->range_m * pixel;
     const float tilt =
-        face->range_m / face->height_m * (obs->settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) * x * x;
+        face->range_m / face->height_m * (obs->settings->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG) * x * x;
     const float noise = sqrtf(deep * x * (deep * x) + wide * z * (wide * z) + tilt * tilt);
     const float sure = z * z - SURE_SIGMAS2 * deep * deep;
     return noise / goe_larger(x * x + goe_larger(sure, 0.0f), EDGE_MIN_M2);

@@ -10,7 +10,7 @@
 #include "refined/goe_mover.h"
 #include "refined/goe_touch.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define RANGE_SHARE 0.1f    /* one sigma of 1/Z0 over it, for a disc to change */
 #define DISC_FREEDOM 0.05f  /* what the disc's tangents left behind in the chord, of its width */
@@ -83,7 +83,7 @@ static void add_top(const goe_observation_t *obs, goe_rows_t *rows) {
     const goe_point_t *right = &obs->point[GOE_POINT_RIGHT];
     const goe_xz_t middle = goe_observation_reference(obs);
     const float y = goe_observation_roof(obs);
-    const bool highest = obs->settings->refined.top_is_highest && y > 0.0f;
+    const bool highest = obs->settings->filter.top_is_highest && y > 0.0f;
     const bool right_is_near = middle.x * obs->state[GOE_FRONT_X] + middle.z * obs->state[GOE_SIDE_X] < 0.0f;
     const float side = right_is_near != highest ? 0.5f : -0.5f;
     float *by =

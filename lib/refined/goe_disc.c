@@ -9,13 +9,13 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_touch.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define AHEAD_MIN 1.0e-3f   /* center, units of Z0: nearer gives no rows */
 #define TANGENT_AHEAD 0.02f /* third component of a tangent's unit vector */
 #define SINE_MIN 1.0e-5f    /* of half the angle that the disc covers */
 #define SINE_MAX 0.98f
-#define STAND_IN_SHAPE 0.1f  /* shape_share that is added while a box is taken for a disc */
+#define STAND_IN_SHAPE 0.1f  /* shape_error_rel that is added while a box is taken for a disc */
 #define STAND_IN_PLACE 0.1f  /* of the width, by which the box's middle may lie off the disc's */
 #define WIDTH_MIN 1.0e-5f    /* between left and right, focal lengths */
 #define RANGE_MIN_M 1.0f     /* of a first guess */
@@ -95,7 +95,7 @@ static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_fea
 static void add_top(const goe_observation_t *obs, const circle_t *o, float more, goe_rows_t *rows) {
     goe_gradient_t g;
     const float y = goe_observation_roof(obs);
-    const float side = obs->settings->refined.top_is_highest && y > 0.0f ? -1.0f : 1.0f;
+    const float side = obs->settings->filter.top_is_highest && y > 0.0f ? -1.0f : 1.0f;
     const float share = 1.0f - side * o->sine;
     const goe_xz_t rim = {o->center.x * share, o->center.z * share};
     float *by = goe_rows_add_level(rows, obs, rim, y, GOE_POINT_TOP, more, &g);
@@ -200,8 +200,8 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     }
     const bool wide = outline_features(obs, &left, &right);
     const float width = wide ? obs->point[right].x - obs->point[left].x : obs->state[GOE_FRONT_X] / circle.center.z;
-    const float shape = obs->settings->detector.shape_share + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
-    if (goe_sides_see(obs->sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+    const float shape = obs->settings->detector.shape_error_rel + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
+    if (goe_sides_see(obs->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
         add_sides(obs, &circle, shape, rows);
     } else {
         add_points(obs, &circle, shape, left, right, width, rows);
@@ -219,25 +219,25 @@ static float first_range_m(const goe_observation_t *obs, float size) {
     const goe_navigation_t *navigation = &obs->settings->navigation;
     if (obs->base && obs->height_m > 0.0f) {
         const float y = 0.5f * (obs->point[GOE_POINT_BASE_LEFT].y + obs->point[GOE_POINT_BASE_RIGHT].y);
-        const float sigma = sqrtf(goe_square(navigation->attitude_bias_deg * GOE_RAD_PER_DEG) +
+        const float sigma = sqrtf(goe_square(navigation->attitude_bias_sd_deg * GOE_RAD_PER_DEG) +
                                   goe_square(obs->white_rad) + goe_square(goe_observation_pixel(obs)));
         if (y > GROUND_SIGMAS * sigma) {
             return obs->height_m / y;
         }
     }
-    return obs->settings->refined.typical_size_m / size;
+    return obs->settings->filter.prior_width_m / size;
 }
 
 static void set_first_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
-    const float bias = settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG;
+    const float bias = settings->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG;
     const float top =
         goe_absolute(state[GOE_TOP]) > state[GOE_FRONT_X] ? goe_absolute(state[GOE_TOP]) : state[GOE_FRONT_X];
     goe_srif_clear(root);
     *goe_srif_at(root, GOE_BIAS_X, GOE_BIAS_X) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Y, GOE_BIAS_Y) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Z, GOE_BIAS_Z) =
-        1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_m_s));
+        1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_sd_m_s));
     *goe_srif_at(root, GOE_GROUND, GOE_GROUND) =
         1.0f / (sqrtf(goe_observation_height_variance(obs, obs->sides->usable != 0)) * state[GOE_INVERSE_RANGE]);
     *goe_srif_at(root, GOE_BEARING, GOE_BEARING) = 1.0f / BEARING_FREEDOM;

@@ -7,7 +7,7 @@
 #include "maths/goe_time.h"
 #include "refined/goe_mover.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 GOE_STATIC_ASSERT(GOE_PHASE_BOX_OUTLINE <= UINT8_MAX, a_phase_fits_its_byte);
 GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_ORIENTATION | GOE_HAS_CENTER |

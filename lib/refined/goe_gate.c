@@ -9,7 +9,7 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 typedef struct {
     size_t row[GOE_ROWS_MAX]; /* by residual */
@@ -123,8 +123,8 @@ static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, f
 static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
                   belief_t *belief) {
     group_t group;
-    const float gate = settings->refined.gate_sigma;
-    const float huber = settings->refined.huber_sigma;
+    const float gate = settings->filter.gate_sigma;
+    const float huber = settings->filter.huber_sigma;
     gather(rows, along_x, &group);
     const float alone = group.count > 0 ? innovation(filter, rows, group.middle, group.middle) : 0.0f;
     const bool common = alone <= gate * gate; /* a wrong middle is no evidence about the others */

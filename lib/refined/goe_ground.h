@@ -11,12 +11,12 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
 
 /* Whether an image with a box comes without a height: nobody flies at exactly 0, and a field that was not set is 0. */
 static inline bool goe_ground_lacks_height(const goe_image_t *image) {
-    return image->box.seen != 0 && goe_magnitude(image->pose.height_m) == 0u;
+    return image->box.sides != 0 && goe_magnitude(image->pose.height_m) == 0u;
 }
 
 /* Whether the height moves by the changes of down. */
 static inline bool goe_ground_is_steady(const goe_filter_t *filter, const goe_navigation_t *navigation) {
-    return filter->phase == GOE_PHASE_PRISM || navigation->height_white_m > 0.0f;
+    return filter->phase == GOE_PHASE_PRISM || navigation->height_white_sd_m > 0.0f;
 }
 
 /* The autopilot's down jumped by this. */

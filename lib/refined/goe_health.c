@@ -4,7 +4,7 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_chord.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define RECENT_MEMORY 0.125f /* of one image in recent_nis */
 #define MEAN_IMAGES 64       /* that mean_nis remembers */

@@ -10,7 +10,7 @@
 #include "refined/goe_ground.h"
 #include "refined/goe_prism.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define NEAR_IMAGES 8u /* in which an invisible near corner is a missed one, not a nonexistent one */
 

@@ -101,8 +101,8 @@ float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along) {
 }
 
 float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s) {
-    return goe_square(navigation->velocity_bias_m_s) +
-           goe_square(navigation->position_walk_m) / goe_larger(elapsed_s, TIME_MIN_S);
+    return goe_square(navigation->velocity_bias_sd_m_s) +
+           goe_square(navigation->position_walk_sd_m) / goe_larger(elapsed_s, TIME_MIN_S);
 }
 
 float goe_mover_latency_sd(const goe_filter_t *filter) {
@@ -167,7 +167,7 @@ static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *o
 
 /* The image gives a scale that does not require a static obstacle: its foot, by the height. */
 static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
-    return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SEES_BOTTOM) : obs->base;
+    return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) : obs->base;
 }
 
 /* Of the covariance (x, both; both, z). One too close to singular for float is taken as wide as it may be. */
@@ -244,7 +244,7 @@ static void judge_followed(goe_filter_t *filter) {
 
 /* An outline that is of another shape drifts, too, but fits. */
 static bool is_misfit(const goe_filter_t *filter, const goe_observation_t *obs) {
-    return filter->health.mean_nis > obs->settings->refined.misfit_max;
+    return filter->health.mean_nis > obs->settings->filter.nis_ratio_max;
 }
 
 static bool is_sound(const goe_filter_t *filter) {

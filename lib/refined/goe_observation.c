@@ -8,7 +8,7 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define ABEAM 0.02f           /* third component of an aligned point's ray after the turn */
 #define WHITE_MIN_DEG 1.0e-4f /* errors of an image: as of the settings */
@@ -84,15 +84,16 @@ static float given_or(float given, float least, float setting) {
 static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const goe_image_noise_t *noise) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;
-    obs->white_rad = given_or(noise->attitude_deg, WHITE_MIN_DEG, navigation->attitude_white_deg) * GOE_RAD_PER_DEG;
-    obs->point_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.point_px);
-    obs->side_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.box_px);
-    obs->height_sd_m = given_or(obs->height_sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_m);
-    if (navigation->height_white_m > 0.0f) {
+    obs->white_rad =
+        given_or(noise->attitude_sd_deg, WHITE_MIN_DEG, navigation->attitude_white_sd_deg) * GOE_RAD_PER_DEG;
+    obs->point_px = given_or(noise->pixel_sd_px, PIXEL_MIN_PX, settings->detector.point_noise_px);
+    obs->side_px = given_or(noise->pixel_sd_px, PIXEL_MIN_PX, settings->detector.box_noise_px);
+    obs->height_sd_m = given_or(obs->height_sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_sd_m);
+    if (navigation->height_white_sd_m > 0.0f) {
         const float readings =
             filter->datum.readings > 0 ? (float)filter->datum.readings : 1.0f; /* none without a height */
         obs->height_m = filter->datum.height_m;
-        obs->height_sd_m = sqrtf(goe_square(obs->height_sd_m) + goe_square(navigation->height_white_m) / readings);
+        obs->height_sd_m = sqrtf(goe_square(obs->height_sd_m) + goe_square(navigation->height_white_sd_m) / readings);
     }
 }
 
@@ -140,7 +141,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->position_sd = 0.0f;
     obs->height_sd_m = filter->datum.sd_m;
     take_noise(obs, filter, &view->image->noise);
-    obs->outline_share = settings->detector.point_share;
+    obs->outline_share = settings->detector.point_noise_rel;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
     obs->stand_in = false;

@@ -84,7 +84,7 @@ void goe_observation_project_y(const goe_observation_t *obs, float x, float y, f
 
 /* Variance of the height above the obstacle's ground, m2; of upright boxes that ground may lie off. */
 static inline float goe_observation_height_variance(const goe_observation_t *obs, bool boxes) {
-    const float ground_m = boxes ? obs->settings->navigation.ground_m : 0.0f;
+    const float ground_m = boxes ? obs->settings->navigation.terrain_height_sd_m : 0.0f;
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
 

@@ -15,7 +15,7 @@
 #include "refined/goe_prism.h"
 #include "refined/goe_scatter.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
@@ -51,10 +51,10 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
     const float s = goe_filter_elapsed_s(filter, motion);
     drift.camera_m = goe_filter_camera(filter, motion);
     const float path_m = path_over_ground(filter, motion);
-    drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
-    drift.walk_m2 = goe_square(navigation->position_walk_m) * s;
+    drift.share = navigation->velocity_bias_sd_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
+    drift.walk_m2 = goe_square(navigation->position_walk_sd_m) * s;
     const float straight = filter->flown_m > path_m ? path_m / filter->flown_m : 1.0f;
-    drift.turned_m2 = goe_square(navigation->velocity_bias_m_s * s) * (1.0f - straight * straight);
+    drift.turned_m2 = goe_square(navigation->velocity_bias_sd_m_s * s) * (1.0f - straight * straight);
     return drift;
 }
 
@@ -62,7 +62,7 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
 static float early_variance(const goe_filter_t *filter, const goe_navigation_t *navigation,
                             const goe_motion_t *motion) {
     const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, GOE_TIME_MAX_US);
-    return goe_square(navigation->velocity_bias_m_s * s) + goe_square(navigation->position_walk_m) * s;
+    return goe_square(navigation->velocity_bias_sd_m_s * s) + goe_square(navigation->position_walk_sd_m) * s;
 }
 
 /* The roof's corner below the top is off the middle; from above or from below it appears lower or higher, by the
@@ -339,7 +339,7 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 /* (R42): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a disc
  * substitutes for the box. */
 static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *settings, goe_shape_t *shape) {
-    const bool highest = settings->refined.top_is_highest;
+    const bool highest = settings->filter.top_is_highest;
     const bool is_substitute = filter->phase == GOE_PHASE_DISC && filter->candidate.stand_in && highest;
     const bool is_face = filter->phase == GOE_PHASE_BOX_FACE && (filter->datum.boxes || highest);
     if (is_substitute || is_face) {
@@ -388,7 +388,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     set_quantities(filter, motion, &shape, drift, &wider, q);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
     const goe_xz_t from = {filter->axes.start_dx_m + gone.x, filter->axes.start_dz_m + gone.z};
-    q->now = known_now(filter, q, from, settings->refined.range_share);
+    q->now = known_now(filter, q, from, settings->filter.range_sd_rel_max);
     q->known = q->now & filter->known;
     q->value[GOE_X0] += from.x;
     q->value[GOE_Z0] += from.z;

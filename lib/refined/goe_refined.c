@@ -1,4 +1,4 @@
-/* One image through the refined method. SPDX-License-Identifier: MIT
+/* One image through the filter method. SPDX-License-Identifier: MIT
  *
  *   time -> start, change of model -> rows of the model -> gate -> square-root update -> health
  *
@@ -22,7 +22,7 @@
 #include "refined/goe_report.h"
 #include "refined/goe_scatter.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
@@ -77,7 +77,7 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s, int64_t time_us) {
-    const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
+    const float drift = navigation->attitude_walk_sd_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
     filter->time_us = time_us;
     filter->drift_rad2 += drift * drift;
     if (drift > 0.0f) {
@@ -85,7 +85,7 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
         goe_filter_inflate(filter, GOE_BIAS_Y, drift);
         goe_filter_inflate(filter, GOE_BIAS_Z, drift);
     }
-    walk(filter, navigation->position_walk_m, since_s);
+    walk(filter, navigation->position_walk_sd_m, since_s);
     goe_ground_climb(filter, navigation);
 }
 
@@ -136,7 +136,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
  * (1 + fade)/(1 - fade) times, which for a first-order process is that of a long mean. */
 static float outline_share(const goe_detector_t *detector, float fade) {
     const float kept = fade < FADE_MAX ? fade : FADE_MAX;
-    return detector->box_share * sqrtf((1.0f + kept) / (1.0f - kept));
+    return detector->box_noise_rel * sqrtf((1.0f + kept) / (1.0f - kept));
 }
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
@@ -147,11 +147,13 @@ static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *ob
     const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
         const bool same = filter->camera == obs->number; /* a correlation in one camera is no evidence about another */
-        obs->fade = same && detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
+        obs->fade = same && detector->box_correlation_time_s > 0.0f
+                        ? goe_exp(-since_s / detector->box_correlation_time_s)
+                        : 0.0f;
         obs->outline_share = outline_share(detector, obs->fade);
         filter->camera = obs->number;
     }
-    obs->position_sd = obs->settings->navigation.position_white_m * sqrtf(1.0f + relative2);
+    obs->position_sd = obs->settings->navigation.position_white_sd_m * sqrtf(1.0f + relative2);
 }
 
 /* False if the image does not start the filter. */

@@ -1,4 +1,4 @@
-/* The refined method: a square-root information filter over the whole track. SPDX-License-Identifier: MIT */
+/* The filter method: a square-root information filter over the whole track. SPDX-License-Identifier: MIT */
 #ifndef GOE_REFINED_H
 #define GOE_REFINED_H
 

@@ -3,7 +3,7 @@
 
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define KEPT 0.985f          /* of the sums from image to image: some 67 images count */
 #define RESIDUAL_MAX 10.0f   /* sigmas: one outlier must not decide */

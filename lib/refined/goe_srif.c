@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define PIVOT_MIN 1.0e-12f /* of the diagonal: a covariance this near to singular is taken as if it were this far */
 

@@ -6,7 +6,7 @@
 #include "image/goe_camera.h"
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define AHEAD_MIN 0.02f     /* of a touching point, and of the reference point, units of Z0 */
 #define LEVEL_MIN 1.0e-6f   /* horizontal part of a side's normal: without one the nearest point touches */
@@ -49,7 +49,7 @@ float goe_touch_size(const goe_observation_t *obs, size_t side, float extent) {
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size) {
     const float pixel = obs->side_px / focal_px(obs->camera, side);
     return goe_square(pixel) + goe_square(SCATTER_SHARE * size) +
-           (obs->sides->cut ? goe_square(obs->settings->detector.cut_noise * size) : 0.0f);
+           (obs->sides->cut ? goe_square(obs->settings->detector.truncation_noise_rel * size) : 0.0f);
 }
 
 float goe_touch_variance(const goe_observation_t *obs, size_t side, float size) {

@@ -108,7 +108,7 @@ goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_bas
         return GOE_NO_PARALLAX;
     }
     if (z0_m <= m.largest_dz_m) {
-        return GOE_PASSED;
+        return GOE_ABEAM;
     }
     fit->x0_m = x0_m;
     fit->z0_m = z0_m;

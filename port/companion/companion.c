@@ -267,7 +267,7 @@ static void show_advice(companion_t *c) {
     const goe_flight_assessment_t *a = &c->assessment;
     if (c->config.reaction_mode == REACTION_OFF && a->action != c->advised && a->action != GOE_FLIGHT_NONE) {
         screen_show(&c->screen, SCREEN_ORDER, MAV_SEVERITY_WARNING, "GOE advises %s: obstacle in %.0f s",
-                    goe_flight_action_text(a->action), (double)a->hazard.time_s);
+                    goe_flight_action_text(a->action), (double)a->hazard.tcpa_s);
     }
     c->advised = a->action;
 }

@@ -16,7 +16,7 @@ enum { UNIX_US, BOOT_US, STANDS, ACTION, MODE_BEFORE, COURSE_N, COURSE_E, OBSTAC
 
 static const char header[] =
     "unix_us,boot_us,stands,action,mode_before,course_n,course_e,obstacle_n_m,obstacle_e_m,radius_m,event,action_name,"
-    "mode,slot,id,time_s,miss_m,target_lat_e7,target_lon_e7,target_alt_m,why\n";
+    "mode,slot,id,tcpa_s,dcpa_m,target_lat_e7,target_lon_e7,target_alt_m,why\n";
 
 bool order_log_open(order_log_t *log, const char *folder) {
     char path[(2 * CONFIG_TEXT_MAX + 16)];
@@ -39,7 +39,7 @@ void order_log_put(order_log_t *log, const order_row_t *row) {
                   (double)left->radius_m);
     (void)fprintf(log->stream, ",%s,%s,%" PRIu32 ",%d,%u,%.2f,%.1f,%" PRId32 ",%" PRId32 ",%.1f,%s\n", row->event,
                   goe_flight_action_text((goe_flight_action_t)left->action), row->mode, row->slot, row->obstacle_id,
-                  (double)row->time_s, (double)row->miss_m, row->target_lat_e7, row->target_lon_e7,
+                  (double)row->tcpa_s, (double)row->dcpa_m, row->target_lat_e7, row->target_lon_e7,
                   (double)row->target_alt_m, row->why);
     (void)fflush(log->stream);
 }

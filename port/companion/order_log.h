@@ -31,7 +31,7 @@ typedef struct {
     uint32_t mode; /* of the autopilot now */
     unsigned obstacle_id;
     int slot;
-    float time_s, miss_m; /* of the hazard */
+    float tcpa_s, dcpa_m; /* of the hazard */
     int32_t target_lat_e7, target_lon_e7;
     float target_alt_m;
     const char *why; /* or an empty text */

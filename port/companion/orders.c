@@ -42,8 +42,8 @@ static void put_log(orders_t *orders, const char *what, const char *why) {
         .mode = orders->autopilot->custom_mode,
         .obstacle_id = obstacle.id,
         .slot = orders->slot,
-        .time_s = a->hazard.time_s,
-        .miss_m = a->hazard.miss_m,
+        .tcpa_s = a->hazard.tcpa_s,
+        .dcpa_m = a->hazard.dcpa_m,
         .target_lat_e7 = a->target_lat_e7,
         .target_lon_e7 = a->target_lon_e7,
         .target_alt_m = orders->autopilot->origin_alt_m - a->target_ned_m[2],
@@ -418,7 +418,7 @@ static void show_order(orders_t *orders, const goe_flight_assessment_t *assessme
     screen_show(orders->screen, SCREEN_ORDER, assessment->late ? MAV_SEVERITY_CRITICAL : MAV_SEVERITY_WARNING,
                 "GOE order, %s: obstacle in %.0f s%s",
                 is_traffic ? "as traffic" : goe_flight_action_text(assessment->action),
-                (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
+                (double)assessment->hazard.tcpa_s, assessment->late ? ", late" : "");
 }
 
 static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
@@ -429,7 +429,7 @@ static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
     orders->resumes_left = 0;
     orders->orders++;
     event("order: %s; on this course %.0f m past it in %.1f s%s", goe_flight_action_text(assessment->action),
-          (double)assessment->hazard.miss_m, (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
+          (double)assessment->hazard.dcpa_m, (double)assessment->hazard.tcpa_s, assessment->late ? ", late" : "");
     show_order(orders, assessment);
     orders->action = assessment->action;
     keep(orders);

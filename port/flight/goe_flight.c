@@ -142,7 +142,7 @@ goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t flight_size, co
         }
         return GOE_FLIGHT_BAD_SETTINGS;
     }
-    flight->attitude_white_deg = estimator->navigation.attitude_white_deg;
+    flight->attitude_white_sd_deg = estimator->navigation.attitude_white_sd_deg;
     forget(flight);
     goe_flight_seal(flight);
     flight->tag = TAG;
@@ -153,7 +153,7 @@ static goe_flight_status_t check_ready(const goe_flight_t *flight) {
     if (!flight) {
         return GOE_FLIGHT_BAD_ARGUMENT;
     }
-    return flight->tag == TAG ? GOE_FLIGHT_OK : GOE_FLIGHT_NOT_INITIALISED;
+    return flight->tag == TAG ? GOE_FLIGHT_OK : GOE_FLIGHT_NOT_INITIALIZED;
 }
 
 /* Fields of the decision that depend on the settings. */
@@ -371,7 +371,7 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
 
 static float attitude_sd_deg(const goe_flight_t *flight, const goe_flight_history_pose_t *pose, uint32_t time_sd_us) {
     const float late_deg = pose->rate_deg_s * (float)time_sd_us * GOE_FLIGHT_S_PER_US;
-    const float square = goe_flight_square(flight->attitude_white_deg) + goe_flight_square(pose->spread_deg) +
+    const float square = goe_flight_square(flight->attitude_white_sd_deg) + goe_flight_square(pose->spread_deg) +
                          goe_flight_square(late_deg);
     return goe_flight_smaller(sqrtf(square), ATTITUDE_SD_MAX_DEG);
 }
@@ -531,7 +531,7 @@ static bool pose_alive(const goe_flight_t *flight, uint32_t now_us) {
 
 static bool camera_alive(const goe_flight_t *flight, int number, uint32_t now_us) {
     return ((flight->had_frame >> number) & 1u) != 0u &&
-           goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.alive_s;
+           goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.detector_timeout_s;
 }
 
 static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
@@ -587,8 +587,8 @@ static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_f
 }
 
 static bool is_finite_hazard(const goe_hazard_t *hazard) {
-    const float number[] = {hazard->time_s,    hazard->miss_m,         hazard->clearance_m, hazard->time_sd_s,
-                            hazard->miss_sd_m, hazard->clearance_sd_m, hazard->violation};
+    const float number[] = {hazard->tcpa_s,    hazard->dcpa_m,         hazard->clearance_m,         hazard->tcpa_sd_s,
+                            hazard->dcpa_sd_m, hazard->clearance_sd_m, hazard->conflict_probability};
     return goe_flight_all_finite(number, (int)(sizeof number / sizeof number[0]));
 }
 
@@ -708,7 +708,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
     obstacle->in_view = one->in_view;
     obstacle->has_hazard = one->assessed;
     copy_hazard(one, &obstacle->hazard);
-    obstacle->passed = one->assessed && !(one->hazard.time_s > 0.0f);
+    obstacle->receding = one->assessed && !(one->hazard.tcpa_s > 0.0f);
     if (one->valid & GOE_HAS_POSITION) {
         obstacle->age_s = goe_flight_lookout_age_s(one, flight->assessed_us);
         report_place(flight, one, obstacle);
@@ -722,7 +722,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     const goe_hazard_t *hazard = &slot->hazard;
-    return slot->assessed && goe_flight_is_set(&hazard->has_clearance) && hazard->time_s > 0.0f &&
+    return slot->assessed && goe_flight_is_set(&hazard->has_clearance) && hazard->tcpa_s > 0.0f &&
            hazard->clearance_m - 2.0f * hazard->clearance_sd_m >
                goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
 }

@@ -75,7 +75,7 @@ typedef enum {
     GOE_FLIGHT_NOTHING = -7,      /* no such obstacle */
     GOE_FLIGHT_BAD_SETTINGS = -32,
     GOE_FLIGHT_BAD_ARGUMENT = -33, /* a null pointer, or a goe_flight_t of another size */
-    GOE_FLIGHT_NOT_INITIALISED = -34,
+    GOE_FLIGHT_NOT_INITIALIZED = -34,
     GOE_FLIGHT_CORRUPTED = -35 /* settings, here or of all estimators, are not what goe_flight_init() left: call it again. Until then
                                   nothing is known, which is not "clear" */
 } goe_flight_status_t;
@@ -96,8 +96,8 @@ typedef struct {
     /* detector */
     float score_min;      /* a detection of less is not looked at; 0 to 1; 0.3 */
     float confirm_images; /* images, at most 1 s apart, with a detection of a new obstacle before it gets a slot; 1 to 20; 3 */
-    float alive_s;        /* without a frame for this long the detector counts as dead; 0.05 to 60; 1 */
-    float forget_s;       /* an obstacle undetected for this long is given up, unless it is ahead on the course or an order
+    float detector_timeout_s; /* without a frame for this long the detector counts as dead; 0.05 to 60; 1 */
+    float track_timeout_s; /* an obstacle undetected for this long is given up, unless it is ahead on the course or an order
                              is about it; 1 to 600; 10 */
     /* time */
     float delay_s;     /* least time from sending to arrival, which no one-way clock can see; 0 to 0.5; 0.005 */
@@ -112,9 +112,9 @@ typedef struct {
     /* wanted distances */
     float margin_m;      /* to the outline, horizontally; 0 to 1000; 15 */
     float clearance_m;   /* over the top; 0 to 1000; 10 */
-    float violation_max; /* probability of violating both from which on there is a reaction; 0.001 to 1; 0.1 */
-    float doubt;         /* factor on margin and clearance while the estimate is suspect; 1 to 10; 1.5 */
-    float drift_m_s;     /* by which both grow while the estimate is not renewed; 0 to 100; 1 */
+    float conflict_probability_max; /* probability of violating both from which on there is a reaction; 0.001 to 1; 0.1 */
+    float suspect_factor; /* factor on margin and clearance while the estimate is suspect; 1 to 10; 1.5 */
+    float stale_growth_m_s; /* by which both grow while the estimate is not renewed; 0 to 100; 1 */
     /* what the aircraft can do */
     float bank_deg;    /* of an avoiding turn; 5 to 70; 30 */
     float roll_in_s;   /* from the order to that turn, link and mode change included; 0 to 20; 1.5 */
@@ -221,12 +221,12 @@ enum {
     GOE_FLIGHT_LANDED = 3    /* it has touched down: the same. Obstacles behind the runway are not on its course */
 };
 
-/* What goe_flight_assess() finds. The worst obstacle is that of the largest violation / (1 + 0.1 time_s). */
+/* What goe_flight_assess() finds. The worst obstacle is that of the largest conflict_probability / (1 + 0.1 tcpa_s). */
 typedef struct {
     goe_flight_action_t action;
     bool late;             /* the action needs longer than there is: it may not suffice */
     bool suspect;          /* the worst obstacle's estimate is: margins were widened */
-    bool detector_alive;   /* within alive_s, of every camera, a frame came that can be read: without detections, or with one of good
+    bool detector_alive;   /* within detector_timeout_s, of every camera, a frame came that can be read: without detections, or with one of good
                               numbers. Once false, false until the next such frame */
     bool pose_alive;       /* samples of attitude and position came within 0.5 s */
     int8_t worst;          /* slot, for goe_flight_obstacle(); -1: no hazard is known, which is "clear" only if both are alive */
@@ -247,7 +247,7 @@ typedef struct {
     uint32_t id;
     unsigned valid;          /* GOE_HAS_POSITION, _HEIGHT, _WIDTH, _LENGTH, _ORIENTATION */
     goe_model_t model;
-    bool suspect, passed;    /* passed: on the present course its distance grows */
+    bool suspect, receding;  /* receding: on the present course its distance grows */
     bool in_view;            /* detected in the latest image of the camera that detected it last */
     bool has_hazard;         /* hazard is known: assessed with a position */
     float age_s;             /* since it was last measured, from the latest assessment */
@@ -368,7 +368,7 @@ typedef struct {
     goe_seal_t seal; /* of the next three */
     goe_flight_settings_t settings;
     goe_flight_camera_t camera[GOE_CAMERAS_MAX];
-    float attitude_white_deg; /* setting of the estimator */
+    float attitude_white_sd_deg; /* setting of the estimator */
     goe_flight_history_t history;
     goe_flight_marks_t marks;
     goe_flight_clock_t clock;
@@ -396,7 +396,7 @@ void goe_flight_settings_default(goe_flight_settings_t *settings);
 /* Checks both settings, copies them, starts with nothing known.
  *   flight_size  sizeof(goe_flight_t) in the caller's compilation
  *   estimator    as for goe_init; width_px and height_px of every camera must be set too. With boxes the sigma of the height's source, a
- *                setting of the layer, replaces navigation.height_bias_m. Leave height_white_m at 0: a track's heights
+ *                setting of the layer, replaces navigation.height_bias_sd_m. Leave height_white_sd_m at 0: a track's heights
  *                are one reading and the changes of down
  *   settings     null: the defaults
  *   bad_field    where to put the name of the first bad setting; null if not wanted
@@ -408,13 +408,13 @@ GOE_NODISCARD goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t f
  * settings. The settings of the estimators at initialization stay too.
  *   settings   null: the defaults
  *   bad_field  as for goe_flight_init
- * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _BAD_SETTINGS, _NOT_INITIALISED, or _CORRUPTED: then call goe_flight_init(). On failure the
+ * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _BAD_SETTINGS, _NOT_INITIALIZED, or _CORRUPTED: then call goe_flight_init(). On failure the
  * settings stay as they were. */
 GOE_NODISCARD goe_flight_status_t goe_flight_change_settings(goe_flight_t *flight, const goe_flight_settings_t *settings,
                                                              const char **bad_field);
 
 /* Take a sample of the pose. Samples closer than 20 ms are thinned.
- * Return GOE_FLIGHT_OK, _BAD_TIME, _NOT_FINITE, _OUT_OF_RANGE, _BAD_ATTITUDE, _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * Return GOE_FLIGHT_OK, _BAD_TIME, _NOT_FINITE, _OUT_OF_RANGE, _BAD_ATTITUDE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_attitude_t *sample);
 goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_position_t *sample);
 
@@ -422,20 +422,20 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
  * through them and their neighbors, as far as these exist; the height by the best source known now. pose->time_us does not wrap and is in
  * the same clock.
  *   attitude_sd_deg  uncertainty of the attitude for a time whose one sigma is time_sd_us; null if not wanted
- * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED; all zero unless _OK. */
+ * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED; all zero unless _OK. */
 goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us, goe_pose_t *pose,
                                     float *attitude_sd_deg);
 
 /* The sender's clock from a two-way exchange: autopilot's minus sender's (modulo 2^32), and its one sigma. From then on it
  * replaces the one-way estimate, until sd_us is 0xFFFFFFFF: not known any more.
- * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us, uint32_t sd_us);
 
 /* Takes an image's detections. A detection that is not finite or out of range is left out and counted; a known id goes to its
  * slot; a new one takes over the track that is not in this image and whose predicted position is inside its box; any other waits until
  * it is confirmed. With the last detection of an image the other tracks of its camera are updated as undetected. An obstacle
  * visible to two cameras at once may have two slots until both know its position.
- * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALISED,
+ * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALIZED,
  * _CORRUPTED. */
 goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_frame_t *frame);
 
@@ -443,12 +443,12 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
  *   now_us    autopilot's clock; older than the newest sample: counts as that
  *   phase     GOE_FLIGHT_FLYING, _APPROACH, _FLARE or _LANDED
  *   result    written by every call unless null; all zero (worst, avoided -1) on failure: that is not "clear" then
- * Returns GOE_FLIGHT_OK, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED, _CORRUPTED. */
+ * Returns GOE_FLIGHT_OK, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED, _CORRUPTED. */
 goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uint8_t phase,
                                       goe_flight_assessment_t *result);
 
 /* One obstacle, slot 0 to GOE_FLIGHT_SLOTS - 1, as of the latest image, with the hazard of the latest assessment.
- * Returns GOE_FLIGHT_OK, _NOTHING, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED, _CORRUPTED (a flipped bit made a number of it infinite);
+ * Returns GOE_FLIGHT_OK, _NOTHING, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED, _CORRUPTED (a flipped bit made a number of it infinite);
  * all zero unless _OK. */
 goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, goe_flight_obstacle_t *obstacle);
 
@@ -456,11 +456,11 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
  * far as the camera's view; GOE_FLIGHT_SECTOR_UNKNOWN elsewhere. Obstacles that the latest assessment clears in height by more than the
  * clearance, at two sigma, are left out. For PX4's obstacle_distance: increment 5, GLOBAL frame.
  *   max_cm  1 to 65000
- * Returns GOE_FLIGHT_OK, _NO_POSE (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * Returns GOE_FLIGHT_OK, _NO_POSE (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]);
 
 /* Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. After a restart of the autopilot.
- * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _NOT_INITIALISED. */
+ * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_restart(goe_flight_t *flight);
 
 /* A short lower-case name for an action ("none", "left", ...), never null; "unknown" for any other number. */

@@ -7,7 +7,7 @@
 
 /* All floats, and nothing between them. */
 #define FROM offsetof(goe_flight_t, settings)
-#define TO (offsetof(goe_flight_t, attitude_white_deg) + sizeof(float))
+#define TO (offsetof(goe_flight_t, attitude_white_sd_deg) + sizeof(float))
 #define NUMBERS ((TO - FROM) / sizeof(float))
 
 GOE_STATIC_ASSERT(TO - FROM ==

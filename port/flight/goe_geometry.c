@@ -53,7 +53,7 @@ void goe_flight_geometry_camera(goe_flight_camera_t *camera, const goe_camera_t 
     camera->center_px[1] = settings->cy_px;
     camera->size_px[0] = settings->width_px;
     camera->size_px[1] = settings->height_px;
-    camera->border_px = settings->border_share * settings->width_px;
+    camera->border_px = settings->border_rel * settings->width_px;
 }
 
 bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_flight_history_pose_t *pose,

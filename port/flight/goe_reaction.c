@@ -48,7 +48,7 @@ typedef struct {
     float ahead_m, aside_m;   /* of the center from the aircraft */
     float keep_m;             /* required lateral distance of the center */
     float rise_m, top_down_m; /* to the height that clears the top, and where that is; has_top */
-    float soonest_s;
+    float earliest_tcpa_s;
     bool has_top;
 } encounter_t;
 
@@ -157,7 +157,7 @@ static void meet(const look_t *look, int i, encounter_t *e) {
     e->has_top = (slot->valid & GOE_HAS_HEIGHT) != 0u;
     e->top_down_m = slot->ground_down_m - slot->top_m - SURE_SIGMA * slot->top_sd_m - doubt * settings->clearance_m;
     e->rise_m = goe_flight_larger(look->own->ned_m[2] - e->top_down_m, 0.0f);
-    e->soonest_s = goe_soonest_s(&slot->hazard);
+    e->earliest_tcpa_s = goe_earliest_tcpa_s(&slot->hazard);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- options -- */
@@ -202,7 +202,7 @@ static void try_climb(const look_t *look, int about, const encounter_t *e, optio
     option_t option;
     const bool approach = look->own->approach;
     float rise_m = rise_of(look, e);
-    bool possible = (e->has_top || approach) && climb_time_s(look, rise_m) <= e->soonest_s;
+    bool possible = (e->has_top || approach) && climb_time_s(look, rise_m) <= e->earliest_tcpa_s;
     for (int i = 0; i < GOE_FLIGHT_SLOTS && possible; i++) {
         encounter_t other;
         if (i == about || !look->slot[i].counts) {
@@ -372,7 +372,7 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
     memcpy(r->along_ne, course, sizeof r->along_ne);
     r->ordered_us = r->action == (uint8_t)option->action ? r->ordered_us : look->own->time_us;
     r->action = (uint8_t)option->action;
-    r->late = option->needed_s > e->soonest_s;
+    r->late = option->needed_s > e->earliest_tcpa_s;
     r->slot = (int8_t)slot;
     r->edge = option->edge;
     r->gap = option->gap;
@@ -387,13 +387,13 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
 /* Whether the hazard has stood for long enough; one that leaves no time needs none. */
 static bool is_due(goe_flight_reaction_t *r, const goe_flight_settings_t *settings, const encounter_t *e,
                    float needed_s, bool is_hazard, uint32_t now_us) {
-    if (!is_hazard || e->soonest_s > needed_s + settings->reserve_s) {
+    if (!is_hazard || e->earliest_tcpa_s > needed_s + settings->reserve_s) {
         r->rising = false;
         return false;
     }
     r->rising_us = r->rising ? r->rising_us : now_us;
     r->rising = true;
-    return e->soonest_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
+    return e->earliest_tcpa_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
 }
 
 /* How far to the right of the line the target is to lie, by one obstacle: past its outline on the side of the order; in a gap, at the
@@ -682,7 +682,7 @@ static void break_off(goe_flight_t *flight, const look_t *look) {
     }
 }
 
-/* An order of unknown kind, or about a slot that does not exist, is none: the active hazard causes another. */
+/* An order of unknown kind, or about a slot that does not exist, is none: the active hazard fault_counts another. */
 static void mend(goe_flight_reaction_t *r) {
     const bool finite = goe_flight_all_finite(r->target_ned_m, 3) && goe_flight_all_finite(r->from_ne_m, 2) &&
                         goe_flight_all_finite(r->course_ne, 2) && goe_flight_all_finite(r->along_ne, 2) &&
@@ -719,7 +719,7 @@ static float simplest_s(const look_t *look, const encounter_t *e) {
 }
 
 /* Time that is left beyond what the simplest action against this obstacle takes. */
-static float slack_s(const look_t *look, const encounter_t *e) { return e->soonest_s - simplest_s(look, e); }
+static float slack_s(const look_t *look, const encounter_t *e) { return e->earliest_tcpa_s - simplest_s(look, e); }
 
 /* The worst obstacle; but another one, where that leaves less time. */
 static int most_pressing(const look_t *look, int worst) {
@@ -730,7 +730,7 @@ static int most_pressing(const look_t *look, int worst) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &look->flight->slot[i];
         if (i == worst || !slot->used || !slot->assessed ||
-            !(slot->hazard.violation >= look->flight->settings.violation_max)) {
+            !(slot->hazard.conflict_probability >= look->flight->settings.conflict_probability_max)) {
             continue;
         }
         meet(look, i, &e);
@@ -777,7 +777,7 @@ static bool is_too_low(const look_t *look, const encounter_t *e) {
     const float begins_s = goe_flight_larger(settings->climb_in_s - since_s, 0.0f);
     const float keeps_m = CLIMB_SLACK * settings->clearance_m; /* the rest of the clearance is enough to continue */
     const float rise_m = goe_flight_larger(rise_of(look, e) - keeps_m, 0.0f);
-    return begins_s + rise_m / settings->climb_m_s > e->soonest_s;
+    return begins_s + rise_m / settings->climb_m_s > e->earliest_tcpa_s;
 }
 
 /* What to do about one obstacle; an order, once it is due. */
@@ -785,22 +785,23 @@ static float answer(goe_flight_t *flight, look_t *look, int about) {
     goe_flight_reaction_t *r = &flight->reaction;
     const goe_flight_settings_t *settings = &flight->settings;
     encounter_t e;
-    const float violation = flight->slot[about].hazard.violation;
+    const float violation = flight->slot[about].hazard.conflict_probability;
     const bool reviewed = r->side != 0 && !is_up(r->action) && r->action != GOE_FLIGHT_NONE;
     meet(look, about, &e);
     if (reviewed) {
         const float needed_s = simplest_s(look, &e);
         const bool into = r->clear_m < 0.0f && violation >= LATE_VIOLATION && e.ahead_m > 0.0f;
-        r->late = r->late || (into && needed_s > e.soonest_s);
+        r->late = r->late || (into && needed_s > e.earliest_tcpa_s);
         return needed_s;
     }
-    if (!(violation >= settings->violation_max) || !(e.ahead_m > 0.0f)) {
+    if (!(violation >= settings->conflict_probability_max) || !(e.ahead_m > 0.0f)) {
         r->rising = false;
         return simplest_s(look, &e);
     }
     const option_t option = choose_steadily(look, about, &e);
-    const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, settings->violation_max)
-                                                     : settings->violation_max;
+    const float most = option.needed_s > e.earliest_tcpa_s
+                           ? goe_flight_larger(LATE_VIOLATION, settings->conflict_probability_max)
+                           : settings->conflict_probability_max;
     const bool is_hazard = violation >= most && !is_flying_back(look);
     const bool is_new =
         r->action == GOE_FLIGHT_NONE || (is_up(r->action) && (r->slot != about || is_too_low(look, &e)));

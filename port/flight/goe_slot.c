@@ -62,14 +62,14 @@ static void keep_inside(goe_image_t *image, const goe_flight_camera_t *camera) {
     for (int i = 0; i < 3; i++) {
         const float pixel[2] = {side[i]->u_px, side[i]->v_px};
         bool inside = true;
-        for (int axis = 0; axis < 2 && goe_flight_is_set(&side[i]->seen); axis++) {
+        for (int axis = 0; axis < 2 && goe_flight_is_set(&side[i]->visible); axis++) {
             const float half = 0.5f * camera->size_px[axis];
             inside = inside && goe_flight_within(pixel[axis] - half, goe_flight_larger(half - camera->border_px, 0.0f));
         }
-        side[i]->seen = goe_flight_is_set(&side[i]->seen) && inside;
+        side[i]->visible = goe_flight_is_set(&side[i]->visible) && inside;
         all = all && inside;
     }
-    image->top.seen = goe_flight_is_set(&image->top.seen) && all;
+    image->top.visible = goe_flight_is_set(&image->top.visible) && all;
 }
 
 static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, const goe_flight_detection_t *seen) {
@@ -80,7 +80,7 @@ static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, 
     image->base_left = seen->base_left;
     image->base_near = seen->base_near;
     image->base_right = seen->base_right;
-    image->noise.pixel_px = seen->pixel_px;
+    image->noise.pixel_sd_px = seen->pixel_px;
     keep_inside(image, camera);
 }
 
@@ -175,14 +175,14 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     memset(&image, 0, sizeof image);
     set_pose(slot, view, jumps_ned_m, camera_ned_m[2], &image.pose);
     image.camera = number;
-    image.noise.attitude_deg = view->attitude_sd_deg;
-    image.noise.height_m = slot->height_sd_m; /* counts once, in an image of the estimator's choice */
+    image.noise.attitude_sd_deg = view->attitude_sd_deg;
+    image.noise.height_sd_m = slot->height_sd_m; /* counts once, in an image of the estimator's choice */
     if (seen) {
         set_features(&image, camera, seen);
     }
     const goe_status_t status = goe_update(&slot->estimator, &image, &estimate);
     slot->in_view = seen != NULL;
-    if (status == GOE_CORRUPTED || status == GOE_NOT_INITIALISED) {
+    if (status == GOE_CORRUPTED || status == GOE_NOT_INITIALIZED) {
         goe_flight_slot_lose(slot);
     }
     const bool taken = GOE_IMAGE_TAKEN(status) != 0;
@@ -217,12 +217,12 @@ bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box
     const goe_box_t *box = &detection->box;
     float extent[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     bool any = false;
-    if (box->seen == GOE_SEES_BOX) {
+    if (box->sides == GOE_SIDES_ALL) {
         widen(extent, box->left_px, box->top_px, &any);
         widen(extent, box->right_px, box->bottom_px, &any);
     } else {
         for (int i = 0; i < 6; i++) {
-            if (goe_flight_is_set(&points[i]->seen)) {
+            if (goe_flight_is_set(&points[i]->visible)) {
                 widen(extent, points[i]->u_px, points[i]->v_px, &any);
             }
         }

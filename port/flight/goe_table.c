@@ -15,21 +15,21 @@
 /* ------------------------------------------------------------------------------------------------------- detections -- */
 
 static bool is_good_pixel(const goe_pixel_t *p) {
-    return !goe_flight_is_set(&p->seen) ||
+    return !goe_flight_is_set(&p->visible) ||
            (goe_flight_within(p->u_px, COORDINATE_MAX_PX) && goe_flight_within(p->v_px, COORDINATE_MAX_PX));
 }
 
 static bool is_good_box(const goe_box_t *b) {
     const float side[4] = {b->left_px, b->top_px, b->right_px, b->bottom_px};
-    const uint8_t mask[4] = {GOE_SEES_LEFT, GOE_SEES_TOP, GOE_SEES_RIGHT, GOE_SEES_BOTTOM};
+    const uint8_t mask[4] = {GOE_SIDE_LEFT, GOE_SIDE_TOP, GOE_SIDE_RIGHT, GOE_SIDE_BOTTOM};
     for (int i = 0; i < 4; i++) {
-        if ((b->seen & mask[i]) != 0u && !goe_flight_within(side[i], COORDINATE_MAX_PX)) {
+        if ((b->sides & mask[i]) != 0u && !goe_flight_within(side[i], COORDINATE_MAX_PX)) {
             return false;
         }
     }
-    const bool across = (b->seen & GOE_SEES_LEFT) != 0u && (b->seen & GOE_SEES_RIGHT) != 0u;
-    const bool down = (b->seen & GOE_SEES_TOP) != 0u && (b->seen & GOE_SEES_BOTTOM) != 0u;
-    return b->seen <= GOE_SEES_BOX && (!across || b->left_px < b->right_px) && (!down || b->top_px < b->bottom_px);
+    const bool across = (b->sides & GOE_SIDE_LEFT) != 0u && (b->sides & GOE_SIDE_RIGHT) != 0u;
+    const bool down = (b->sides & GOE_SIDE_TOP) != 0u && (b->sides & GOE_SIDE_BOTTOM) != 0u;
+    return b->sides <= GOE_SIDES_ALL && (!across || b->left_px < b->right_px) && (!down || b->top_px < b->bottom_px);
 }
 
 static bool is_good(const goe_flight_detection_t *d) {
@@ -100,10 +100,10 @@ static float worth(const goe_flight_t *flight, int i, uint32_t now_us) {
     if (undetected && !has_position) {
         return -2.0f;
     }
-    if (undetected && slot->assessed && !(slot->hazard.time_s > 0.0f)) {
+    if (undetected && slot->assessed && !(slot->hazard.tcpa_s > 0.0f)) {
         return -1.0f;
     }
-    return slot->assessed ? slot->hazard.violation + 1.0f / (1.0f + slot->hazard.time_s) : WORTH_KEPT;
+    return slot->assessed ? slot->hazard.conflict_probability + 1.0f / (1.0f + slot->hazard.tcpa_s) : WORTH_KEPT;
 }
 
 static int free_place(goe_flight_t *flight, uint32_t now_us) {
@@ -134,7 +134,7 @@ static void mend(goe_flight_t *flight, int i) {
             memcpy(lost, &flight->slot[k].estimator, sizeof *lost);
         }
         if (k != i && goe_reset(lost) == GOE_OK) {
-            memset(lost->causes, 0, sizeof lost->causes);
+            memset(lost->fault_counts, 0, sizeof lost->fault_counts);
             return;
         }
     }
@@ -226,7 +226,8 @@ bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *v
 
 /* An obstacle ahead on the course is not given up, however long it was undetected. */
 static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
-    return slot->assessed && slot->hazard.time_s > 0.0f && slot->hazard.violation >= flight->settings.violation_max;
+    return slot->assessed && slot->hazard.tcpa_s > 0.0f &&
+           slot->hazard.conflict_probability >= flight->settings.conflict_probability_max;
 }
 
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
@@ -235,7 +236,7 @@ void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
         const float undetected_s = goe_flight_between_s(now_us, slot->detected_us);
         const bool ordered = i == flight->reaction.slot || flight->reaction.action != GOE_FLIGHT_NONE;
         const float most_s =
-            ordered ? goe_flight_larger(ORDERED_S, flight->settings.forget_s) : flight->settings.forget_s;
+            ordered ? goe_flight_larger(ORDERED_S, flight->settings.track_timeout_s) : flight->settings.track_timeout_s;
         slot->used = slot->used && (undetected_s <= most_s || is_ahead(flight, slot));
         if (!slot->used && i == flight->reaction.slot) {
             flight->reaction.slot = NOBODY; /* whoever gets the slot next is not what the order is about */

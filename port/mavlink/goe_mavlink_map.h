@@ -99,11 +99,11 @@ bool goe_mavlink_to_obstacle_distance(const uint16_t sector_cm[GOE_FLIGHT_SECTOR
 bool goe_mavlink_to_obstacle_distance_3d(const goe_flight_obstacle_t *obstacle, float max_m, const goe_mavlink_own_t *own,
                                          goe_mavlink_obstacle_distance_3d_t *message);
 
-/* COLLISION: source 1, as none of the standard fits better; threat by `violation` against `violation_max`: 0 below, 1 from
+/* COLLISION: source 1, as none of the standard fits better; threat by `conflict_probability` against `conflict_probability_max`: 0 below, 1 from
  * there, 2 from 0.5 on or when late. Action: report (1), unless the action is about this obstacle: left, right 3; climb, go
  * around 2; hold 6. altitude_minimum_delta: 0 below the top, also if that is not known. False without a hazard. */
 bool goe_mavlink_to_collision(const goe_flight_obstacle_t *obstacle, int slot, const goe_flight_assessment_t *assessment,
-                              float violation_max, goe_mavlink_collision_t *message);
+                              float conflict_probability_max, goe_mavlink_collision_t *message);
 
 /* TARGET_ABSOLUTE: the middle of the base; capability: position alone. position_std: horizontal root of the summed variances;
  * vertical NaN, the ground's is not known here. False without a position, and while the origin or the UNIX time is not known. */

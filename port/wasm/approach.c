@@ -204,7 +204,7 @@ static void give_box(approach_t *a, const camera_t *camera, goe_image_t *image) 
     image->box.top_px = (float)side[1];
     image->box.right_px = (float)side[2];
     image->box.bottom_px = (float)side[3];
-    image->box.seen = side[2] - side[0] >= LEAST_BOX_PX && side[3] - side[1] >= LEAST_BOX_PX ? GOE_SEES_BOX : 0;
+    image->box.sides = side[2] - side[0] >= LEAST_BOX_PX && side[3] - side[1] >= LEAST_BOX_PX ? GOE_SIDES_ALL : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- corners -- */
@@ -213,9 +213,9 @@ static void give_point(approach_t *a, const camera_t *camera, point_t point, goe
     pixel_t p = project(camera, point);
     p.u += a->plan.pixel_px * random_normal(&a->random);
     p.v += a->plan.pixel_px * random_normal(&a->random);
-    to->seen = in_image(p);
-    to->u_px = to->seen ? (float)p.u : 0.0f;
-    to->v_px = to->seen ? (float)p.v : 0.0f;
+    to->visible = in_image(p);
+    to->u_px = to->visible ? (float)p.u : 0.0f;
+    to->v_px = to->visible ? (float)p.v : 0.0f;
 }
 
 /* Half way up, where vertical planes through the camera touch the mast; and the rim's point towards the camera. */
@@ -234,7 +234,7 @@ static void give_mast(approach_t *a, const camera_t *camera, goe_image_t *image)
     give_point(a, camera, place(o, r * (c * ux + s * uy), r * (c * uy - s * ux), half_m), &image->left);
     give_point(a, camera, place(o, r * (c * ux - s * uy), r * (c * uy + s * ux), half_m), &image->right);
     give_point(a, camera, place(o, r * ux, r * uy, o->height_m), &image->top);
-    if (image->left.u_px > image->right.u_px && image->left.seen && image->right.seen) {
+    if (image->left.u_px > image->right.u_px && image->left.visible && image->right.visible) {
         const goe_pixel_t left = image->left;
         image->left = image->right;
         image->right = left;
@@ -294,8 +294,8 @@ static void give_attitude(approach_t *a, double roll_deg, float attitude[4]) {
 static void give_pose(approach_t *a, const approach_truth_t *truth, goe_pose_t *pose) {
     give_attitude(a, truth->roll_deg, pose->attitude);
     pose->time_us = (int64_t)a->image * (int64_t)(1.0e6 / APPROACH_RATE_HZ);
-    pose->position_ned_m[0] = (float)(truth->north_m + a->velocity_bias_m_s[0] * truth->time_s);
-    pose->position_ned_m[1] = (float)(a->velocity_bias_m_s[1] * truth->time_s);
+    pose->position_ned_m[0] = (float)(truth->north_m + a->velocity_bias_m_s[0] * truth->tcpa_s);
+    pose->position_ned_m[1] = (float)(a->velocity_bias_m_s[1] * truth->tcpa_s);
     pose->position_ned_m[2] = (float)-truth->height_m;
     pose->height_m = (float)(truth->height_m + a->plan.height_offset_m);
 }
@@ -320,11 +320,11 @@ bool approach_next(approach_t *approach, goe_image_t *image, approach_truth_t *t
     if (approach->image >= APPROACH_IMAGES) {
         return false;
     }
-    truth->time_s = (double)approach->image / APPROACH_RATE_HZ;
-    truth->north_m = APPROACH_SPEED_M_S * truth->time_s;
+    truth->tcpa_s = (double)approach->image / APPROACH_RATE_HZ;
+    truth->north_m = APPROACH_SPEED_M_S * truth->tcpa_s;
     truth->height_m =
-        APPROACH_HEIGHT_M + APPROACH_DESCENT_M_S * (APPROACH_FIRST_RANGE_M / APPROACH_SPEED_M_S - truth->time_s);
-    truth->roll_deg = approach->plan.roll_deg * sine_deg(360.0 * truth->time_s / APPROACH_ROLL_S);
+        APPROACH_HEIGHT_M + APPROACH_DESCENT_M_S * (APPROACH_FIRST_RANGE_M / APPROACH_SPEED_M_S - truth->tcpa_s);
+    truth->roll_deg = approach->plan.roll_deg * sine_deg(360.0 * truth->tcpa_s / APPROACH_ROLL_S);
     const camera_t camera = camera_at(truth);
     memset(image, 0, sizeof *image);
     give_pose(approach, truth, &image->pose);

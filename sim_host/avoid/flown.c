@@ -139,7 +139,7 @@ static void detect(flown_frame_t *late, int number, const image_box_t *box) {
     goe_flight_detection_t *detection = &late->detection[late->frame.count++];
     detection->id = (uint32_t)number + 1u;
     detection->score = 0.9f;
-    detection->box.seen = GOE_SEES_BOX;
+    detection->box.sides = GOE_SIDES_ALL;
     detection->box.left_px = (float)box->side_px[SIDE_LEFT];
     detection->box.top_px = (float)box->side_px[SIDE_TOP];
     detection->box.right_px = (float)box->side_px[SIDE_RIGHT];

@@ -138,7 +138,7 @@ static void remove_staging(const char *folder, const campaign_file_t *files, siz
 
 /* <case>_<run>.csv */
 static bool is_series(const char *name) {
-    static const char *const endings[] = {"_auto.csv", "_disc.csv", "_refined.csv"};
+    static const char *const endings[] = {"_auto.csv", "_disc.csv", "_filter.csv"};
     const char *run = name;
     bool known = false;
     while (isdigit((unsigned char)*run)) {

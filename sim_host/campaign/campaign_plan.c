@@ -116,7 +116,7 @@ static void add_run(planned_flight_t *flight, goe_model_t model, int window) {
 
 /* After the window's runs. */
 static void add_refined_run(planned_flight_t *flight) {
-    const case_setting_t setting = {GOE_METHOD_REFINED, GOE_MODEL_AUTO, PLAN_WINDOW};
+    const case_setting_t setting = {GOE_METHOD_FILTER, GOE_MODEL_AUTO, PLAN_WINDOW};
     flight->run[flight->runs++] = setting;
 }
 
@@ -272,7 +272,7 @@ static bool boxes_are_flown(const variant_t *variant, const scenario_t *scenario
 static void add_boxes(campaign_plan_t *plan, int seed) {
     static const variant_t variant = {STUDY_BOXES, "straight", "constant", "none", "field"};
     static const case_setting_t settings[] = {{GOE_METHOD_WINDOW, GOE_MODEL_AUTO, PLAN_WINDOW},
-                                              {GOE_METHOD_REFINED, GOE_MODEL_AUTO, PLAN_WINDOW}};
+                                              {GOE_METHOD_FILTER, GOE_MODEL_AUTO, PLAN_WINDOW}};
     for (size_t i = 0; i < ROLLS_COUNT * (size_t)scenario_count(); i++) {
         const int number = (int)(i % (size_t)scenario_count());
         const scenario_t scenario = scenario_get(number);

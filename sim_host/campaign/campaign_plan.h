@@ -11,7 +11,7 @@
  *                 one at a time: window, side distance, orientation, image rate
  *   boxes         Table 2 level, lowest and at those orientations, with upright boxes instead of points and all sensors of
  *                 the field, from an aircraft that rolls by 0, 5, 10 and 25 degrees
- * The above are runs of the window method. Over every flight goes the refined method too, once, with its own choice of the
+ * The above are runs of the window method. Over every flight goes the filter method too, once, with its own choice of the
  * model and the flight's noise as its settings.
  *
  * A seed names the random numbers. Without random errors it still distinguishes runs: it sets how far into an interval

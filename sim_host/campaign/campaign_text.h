@@ -15,7 +15,7 @@
 /* "auto", "disc" or "line" as a setting; "none", "disc", "line", "box" or "prism" of an estimate. */
 const char *campaign_text_model(goe_model_t model);
 
-/* "window" or "refined". */
+/* "window" or "filter". */
 const char *campaign_text_method(goe_method_t method);
 
 void campaign_text_cases_header(FILE *stream);

@@ -3,7 +3,7 @@
  *
  * A log carries every number with enough digits to restore the same double, and goe_replay gives the library the float next to it.
  * Here the doubles go the same way, through the same frame_to_image(), and only their passage through text is left out.
- * The refined method uses case_noise(), which goe_replay takes by --set.
+ * The filter method uses case_noise(), which goe_replay takes by --set.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -27,7 +27,7 @@ typedef struct {
     double condition; /* window: of the matrix of (5) behind this frame's solution, see case_statistics.h; or NaN */
 } case_sample_t;
 
-/* Settings of the refined method for the sensors: their true errors, as a user knows them from data sheets. Outliers are
+/* Settings of the filter method for the sensors: their true errors, as a user knows them from data sheets. Outliers are
  * left to its gate. For boxes the defaults stay, which apply to real detectors and obstacles of any shape. */
 void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings);
 

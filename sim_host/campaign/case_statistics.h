@@ -52,7 +52,7 @@ typedef struct {
     bool swapped;                /* in the last frame used */
     error_statistics_t quantity[CASE_QUANTITIES];
     double covered[CASE_QUANTITIES]; /* share of the answers within 2 of their own sigmas; NaN without answers */
-    double baseline_m, condition;    /* medians over the frames used; condition: NaN in a refined run */
+    double baseline_m, condition;    /* medians over the frames used; condition: NaN in a filter run */
 } case_statistics_t;
 
 /* Statistics over the last fraction (0 to 1) of the frames that were solved with a model, rounded up; GOE_MODEL_AUTO: with

@@ -30,13 +30,13 @@ typedef struct {
 
 /* The tuned ones first: the others have places of their own in logs and options. */
 static const setting_t settings_by_name[] = {
-    GOE_SETTINGS_REFINED(SETTING) GOE_SETTINGS_VELOCITY(SETTING) /* all of one list */
+    GOE_SETTINGS_FILTER(SETTING) GOE_SETTINGS_VELOCITY(SETTING) /* all of one list */
     GOE_SETTINGS_WINDOW(SETTING) GOE_SETTINGS_GENERAL(SETTING) GOE_SETTINGS_CAMERA(SETTING)};
 #define SETTINGS (sizeof settings_by_name / sizeof settings_by_name[0])
 
 static size_t count_tuned(void) {
 #define ONE(field, kind, unit, low, high, value, text) 1,
-    static const char tuned[] = {GOE_SETTINGS_REFINED(ONE) GOE_SETTINGS_VELOCITY(ONE) GOE_SETTINGS_WINDOW(ONE)};
+    static const char tuned[] = {GOE_SETTINGS_FILTER(ONE) GOE_SETTINGS_VELOCITY(ONE) GOE_SETTINGS_WINDOW(ONE)};
     return sizeof tuned;
 #undef ONE
 }

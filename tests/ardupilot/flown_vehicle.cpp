@@ -81,7 +81,7 @@ static goe_mavlink_features_t features_of(const goe_flight_detection_t &detectio
     features.number = number;
     if (number > 0) {
         features.obstacle_id = detection.id;
-        features.seen = detection.box.seen;
+        features.visible = detection.box.sides;
         features.box[GOE_MAVLINK_LEFT] = tenths(detection.box.left_px);
         features.box[GOE_MAVLINK_TOP] = tenths(detection.box.top_px);
         features.box[GOE_MAVLINK_RIGHT] = tenths(detection.box.right_px);
@@ -101,7 +101,7 @@ void FlownVehicle::send_image() {
         return;
     }
     goe_flight_detection_t detection = flown_detection(&flown, exposed);
-    const bool sees = flown.detects && detection.box.seen == GOE_SEES_BOX;
+    const bool sees = flown.detects && detection.box.sides == GOE_SIDES_ALL;
     const uint8_t number = sees ? copies : 0;
     const uint64_t exposed_us = first_us + uint64_t(exposed) * STEP_US + uint64_t(int64_t(ahead_us));
     images++;
@@ -122,7 +122,7 @@ void FlownVehicle::restart_layer() {
     goe_flight_settings_t settings;
     goe_settings_default(&estimator);
     goe_flight_settings_default(&settings);
-    estimator.navigation.attitude_drift_deg = AP_GOE_ATTITUDE_DRIFT;
+    estimator.navigation.attitude_walk_sd_deg = AP_GOE_ATTITUDE_DRIFT;
     estimator.camera.fx_px = estimator.camera.fy_px = flown.scene.camera.fx_px;
     estimator.camera.cx_px = estimator.camera.cy_px = 0.5f * SIZE_PX;
     estimator.camera.width_px = estimator.camera.height_px = SIZE_PX;
@@ -234,12 +234,12 @@ void FlownVehicle::fly(double seconds) {
 // ---------------------------------------------------------------------------------------------------------------- compare
 
 static void compare_hazards(const goe_hazard_t &expected, const goe_hazard_t &actual) {
-    CHECK_SAME(expected.time_s, actual.time_s);
-    CHECK_SAME(expected.time_sd_s, actual.time_sd_s);
-    CHECK_SAME(expected.miss_m, actual.miss_m);
-    CHECK_SAME(expected.miss_sd_m, actual.miss_sd_m);
+    CHECK_SAME(expected.tcpa_s, actual.tcpa_s);
+    CHECK_SAME(expected.tcpa_sd_s, actual.tcpa_sd_s);
+    CHECK_SAME(expected.dcpa_m, actual.dcpa_m);
+    CHECK_SAME(expected.dcpa_sd_m, actual.dcpa_sd_m);
     CHECK_SAME(expected.clearance_m, actual.clearance_m);
-    CHECK_SAME(expected.violation, actual.violation);
+    CHECK_SAME(expected.conflict_probability, actual.conflict_probability);
 }
 
 static void compare_obstacles(const goe_flight_obstacle_t &expected, const goe_flight_obstacle_t &actual) {

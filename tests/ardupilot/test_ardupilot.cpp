@@ -486,8 +486,8 @@ static void test_defaults_are_those_of_the_library(void) {
     goe_settings_default(&library);
     library.camera = goe._state->good.estimator.camera;
     CHECK_CLOSE(1e-6, 0.3,
-                goe._state->good.estimator.navigation.attitude_drift_deg); // the library's 0 assumes a better filter
-    library.navigation.attitude_drift_deg = goe._state->good.estimator.navigation.attitude_drift_deg;
+                goe._state->good.estimator.navigation.attitude_walk_sd_deg); // the library's 0 assumes a better filter
+    library.navigation.attitude_walk_sd_deg = goe._state->good.estimator.navigation.attitude_walk_sd_deg;
     TEST_ASSERT_EQUAL_MEMORY(&library, &goe._state->good.estimator, sizeof library);
 }
 
@@ -769,7 +769,7 @@ static void test_the_log(void) {
     TEST_ASSERT_EQUAL(obstacle.id, place.at("Id"));
     TEST_ASSERT_EQUAL(obstacle.model, place.at("Mdl"));
     const auto &hazard = scripted.log["GOEH"].back().value;
-    CHECK_CLOSE(0.0, obstacle.hazard.miss_m, hazard.at("Miss"));
+    CHECK_CLOSE(0.0, obstacle.hazard.dcpa_m, hazard.at("DCPA"));
     TEST_ASSERT_EQUAL(0, hazard.at("I"));
     const auto &status = scripted.log["GOES"].back().value;
     TEST_ASSERT_INT_WITHIN(12, vehicle.flight().counters.taken, status.at("Tkn"));

@@ -107,17 +107,17 @@ void scene_make_cylinder(scene_t *scene) {
 }
 
 void scene_clear_noise(goe_settings_t *settings) {
-    settings->detector.point_px = 0.05f;
-    settings->navigation.attitude_bias_deg = 1.0e-3f;
-    settings->navigation.attitude_white_deg = 1.0e-3f;
-    settings->navigation.height_bias_m = 1.0e-2f;
-    settings->navigation.velocity_bias_m_s = 0.0f;
-    settings->navigation.position_walk_m = 0.0f;
+    settings->detector.point_noise_px = 0.05f;
+    settings->navigation.attitude_bias_sd_deg = 1.0e-3f;
+    settings->navigation.attitude_white_sd_deg = 1.0e-3f;
+    settings->navigation.height_bias_sd_m = 1.0e-2f;
+    settings->navigation.velocity_bias_sd_m_s = 0.0f;
+    settings->navigation.position_walk_sd_m = 0.0f;
 }
 
 void scene_hide_points(goe_image_t *image) {
-    image->left.seen = image->right.seen = image->top.seen = false;
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    image->left.visible = image->right.visible = image->top.visible = false;
+    image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
 }
 
 void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px) {
@@ -257,7 +257,7 @@ static goe_pixel_t project(const scene_t *scene, const flight_t *flight, vector_
     scene_distort(&scene->camera, ray.v[0] / ray.v[2], ray.v[1] / ray.v[2], &x, &y);
     pixel.u_px = (float)((double)scene->camera.cx_px + (double)scene->camera.fx_px * x);
     pixel.v_px = (float)((double)scene->camera.cy_px + (double)scene->camera.fy_px * y);
-    pixel.seen = true;
+    pixel.visible = true;
     return pixel;
 }
 
@@ -369,7 +369,7 @@ static bool frame_of(const scene_t *scene, const flight_t *flight, const scene_t
         vector_t point = footprint_point(scene, at->x_m, at->z_m, i / 2);
         point.v[1] = at->height_above_ground_m - (i % 2 == 0 ? 0.0 : scene->height_m);
         const goe_pixel_t p = project(scene, flight, point);
-        ahead = ahead && p.seen;
+        ahead = ahead && p.visible;
         frame->left = i == 0 || p.u_px < frame->left ? p.u_px : frame->left;
         frame->right = i == 0 || p.u_px > frame->right ? p.u_px : frame->right;
         frame->top = i == 0 || p.v_px < frame->top ? p.v_px : frame->top;
@@ -383,13 +383,13 @@ static void see_upright_box(const scene_t *scene, const flight_t *flight, const 
     const bool seen = frame_of(scene, flight, at, &f);
     if (scene->boxes) {
         scene_hide_points(image);
-        image->box = (goe_box_t){f.left, f.top, f.right, f.bottom, seen ? GOE_SEES_BOX : 0u};
+        image->box = (goe_box_t){f.left, f.top, f.right, f.bottom, seen ? GOE_SIDES_ALL : 0u};
         return;
     }
     image->left = (goe_pixel_t){f.left, 0.5f * (f.top + f.bottom), seen};
     image->right = (goe_pixel_t){f.right, 0.5f * (f.top + f.bottom), seen};
     image->top = (goe_pixel_t){0.5f * (f.left + f.right), f.top, seen};
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the image -- */

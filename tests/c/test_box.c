@@ -164,7 +164,7 @@ static void any_box(corner_t corner[4]) {
         sighting.state[GOE_FRONT_X] = (float)(w * cos(b));
         sighting.state[GOE_DEPTH_DIFFERENCE] = (float)(l * cos(b) - w * fabs(sin(b)));
         sighting.state[GOE_TOP] = (float)(check_random_between(&any, 2.0, 40.0) / z0_m);
-        sighting.settings.refined.top_is_highest = check_random_bits(&any) % 2u != 0u;
+        sighting.settings.filter.top_is_highest = check_random_bits(&any) % 2u != 0u;
         for (int i = 0; i < GOE_STATES; i++) {
             truth[i] = (double)sighting.state[i];
         }
@@ -230,7 +230,7 @@ static void rows_are_those_of_the_corners_that_are_visible(void) {
         int count;
         int top;
         any_box(corner);
-        const bool highest = sighting.settings.refined.top_is_highest;
+        const bool highest = sighting.settings.filter.top_is_highest;
         if (!find_visible(corner, visible, &count) || !find_top(corner, highest, &top)) {
             continue;
         }

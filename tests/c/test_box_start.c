@@ -72,7 +72,7 @@ static void a_front_alone_is_exact(void) {
         const place_t right = {middle.x + 0.5 * w * cos(b), middle.z - 0.5 * w * sin(b)};
         show_face(left, right);
         sighting.sight.point_px = 0.05f;
-        sighting.settings.navigation.attitude_bias_deg = 0.05f;
+        sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const place_t reference = reference_of(&box);
         CHECK_CLOSE(1.0e-4, b, box.orientation_rad);
@@ -101,7 +101,7 @@ static void a_side_alone_has_its_near_end_on_the_front(void) {
         }
         show_face(on_right ? near : far, on_right ? far : near);
         sighting.sight.point_px = 0.05f;
-        sighting.settings.navigation.attitude_bias_deg = 0.05f;
+        sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const place_t reference = reference_of(&box);
         const double half = (on_right ? -0.5 : 0.5) * width_of(&box); /* from the corner to the middle of the front */
@@ -145,7 +145,7 @@ static void a_roll_looks_like_a_depth(void) {
     for (int n = 0; n < 2; n++) {
         show_face(left, right);
         sighting.sight.point_px = 0.05f;
-        sighting.settings.navigation.attitude_bias_deg = n == 0 ? 0.001f : 1.0f;
+        sighting.settings.navigation.attitude_bias_sd_deg = n == 0 ? 0.001f : 1.0f;
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         sigma[n] = (double)box.sigma_rad;
     }
@@ -162,7 +162,7 @@ static int agreeing_after(goe_filter_t *filter, double back_m) {
     show_face((place_t){middle.x - 0.5 * across_m, middle.z - 0.5 * back_m},
               (place_t){middle.x + 0.5 * across_m, middle.z + 0.5 * back_m});
     sighting.sight.point_px = 0.05f;
-    sighting.settings.navigation.attitude_bias_deg = 0.05f;
+    sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
     TEST_ASSERT_FALSE(goe_box_start(filter, &sighting.sight));
     return filter->candidate.agreeing;
 }
@@ -179,7 +179,7 @@ static void ends_that_would_show_a_second_face_are_none_of_one(void) {
             const double back_m = n == 0 ? 4.0 : 0.0;
             show_face((place_t){-4.0, 70.0 - back_m}, (place_t){4.0, 70.0 + back_m});
             sighting.sight.point_px = 0.05f;
-            sighting.settings.navigation.attitude_bias_deg = 0.05f;
+            sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
             TEST_ASSERT_FALSE(goe_box_start(&filter, &sighting.sight));
             TEST_ASSERT_EQUAL_UINT8(0, filter.candidate.agreeing);
         }

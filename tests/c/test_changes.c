@@ -356,7 +356,7 @@ static void make_disc(bool both, goe_footprint_t *box) {
     }
     sighting.sight.base = true;
     sighting.sight.point_px = 0.1f;
-    sighting.settings.navigation.attitude_bias_deg = 0.01f;
+    sighting.settings.navigation.attitude_bias_sd_deg = 0.01f;
     memset(box, 0, sizeof *box);
     TEST_ASSERT_TRUE(both ? goe_footprint_two_faces(&sighting.sight, box)
                           : goe_footprint_one_face(&sighting.sight, box));

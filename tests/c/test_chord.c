@@ -65,9 +65,9 @@ static void update(void) {
 static bool was_reported(goe_reason_t reason) { return (reasons >> reason & 1u) != 0u; }
 
 static void leave_base_out(void) {
-    image.base_left.seen = false;
-    image.base_near.seen = false;
-    image.base_right.seen = false;
+    image.base_left.visible = false;
+    image.base_near.visible = false;
+    image.base_right.visible = false;
 }
 
 static void see_silhouette(int k, double sigma_px) {
@@ -91,7 +91,7 @@ static double see(const double state[GOE_STATES], size_t feature) {
     const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
     const double pz = 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE];
     const double y = (double)sighting.sight.height_m * state[GOE_INVERSE_RANGE] - state[GOE_TOP];
-    const bool highest = sighting.settings.refined.top_is_highest && y > 0.0;
+    const bool highest = sighting.settings.filter.top_is_highest && y > 0.0;
     const bool right_is_near = px * state[GOE_FRONT_X] + pz * state[GOE_SIDE_X] < 0.0;
     const double side = (feature == GOE_POINT_TOP ? right_is_near != highest : feature == GOE_POINT_RIGHT) ? 0.5 : -0.5;
     const double held = sighting_height(&sighting, state, feature) * end_z(truth, side);
@@ -126,7 +126,7 @@ static void measure(size_t feature) {
     kind[expected_rows++] = feature;
 }
 
-/* [refined.top_is_highest, (R8)]
+/* [filter.top_is_highest, (R8)]
  * GIVEN chords of any place, slope and length THEN the residuals are 0 at the truth and the derivatives those of its ends; base
  * corners give no rows. */
 static void rows_are_those_of_the_ends(void) {
@@ -207,8 +207,8 @@ static void a_box_comes_out_of_its_silhouette(void) {
 /* GIVEN errors as configured THEN the reported box is right within its sigmas. */
 static void noise_does_not_hide_the_box(void) {
     any = check_random_start("silhouettes");
-    settings.navigation.attitude_bias_deg = 1.0e-3f;
-    settings.navigation.attitude_white_deg = 1.0e-3f;
+    settings.navigation.attitude_bias_sd_deg = 1.0e-3f;
+    settings.navigation.attitude_white_sd_deg = 1.0e-3f;
     start();
     for (int k = 0; k < IMAGES; k++) {
         see_silhouette(k, 0.5);
@@ -415,7 +415,7 @@ static void a_disc_by_force_is_suspect(void) {
     any = check_random_start("force");
     scene.length_m = 18.0;
     settings.model = GOE_MODEL_DISC;
-    settings.navigation.position_walk_m = 0.0f; /* as it is flown */
+    settings.navigation.position_walk_sd_m = 0.0f; /* as it is flown */
     start();
     for (int k = 0; k < 120; k++) {
         see_silhouette(k, 0.3);
@@ -480,7 +480,7 @@ static void refused_corners_are_reported_with_every_answer(void) {
     }
 }
 
-/* [goe_estimate_t.suspect, refined.misfit_max]
+/* [goe_estimate_t.suspect, filter.nis_ratio_max]
  * GIVEN noise larger than configured by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
 static void noise_does_not_make_corners_false(void) {
     any = check_random_start("large noise");

@@ -26,7 +26,7 @@ void setUp(void) {
     estimator.motion.time_us = 5000000;
     estimator.estimate_time_us = 5000000;
     estimator.motion.height_m = 40.0f;
-    estimator.estimate.method = GOE_METHOD_REFINED;
+    estimator.estimate.method = GOE_METHOD_FILTER;
     estimator.estimate.valid = GOE_HAS_POSITION;
     for (int i = 0; i < GOE_STATES; i++) {
         estimator.filter.state[i] = 0.01f * (float)(i + 1);
@@ -213,7 +213,7 @@ static void see(flight_t flight, int k, check_random_t *any, goe_image_t *image)
     }
     scene_add_noise(image, any, flight == OUTLINE ? 0.0 : 1.5); /* more than the settings say: the track scatters */
     if (flight == OUTLINE) {
-        image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+        image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
     }
 }
 
@@ -255,10 +255,10 @@ static void sigmas_and_covariance_agree_in_flight(void) {
             see(flight, k, &any, &image);
             if (k % 7 == 6) {
                 scene_hide_points(&image);
-                image.box.seen = 0;
+                image.box.sides = 0;
             }
             (void)goe_update(&estimator, &image, &estimate);
-            if (estimate.method == GOE_METHOD_REFINED && (estimate.valid & GOE_HAS_POSITION)) {
+            if (estimate.method == GOE_METHOD_FILTER && (estimate.valid & GOE_HAS_POSITION)) {
                 valid += check_diagonal(&estimate);
                 models |= 1u << estimate.model;
                 phases |= 1u << estimator.filter.phase;

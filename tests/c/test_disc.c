@@ -42,7 +42,7 @@ static double see(const double state[GOE_STATES], size_t feature) {
     }
     if (feature == GOE_POINT_TOP) {
         const double y = h * state[GOE_INVERSE_RANGE] - state[GOE_TOP];
-        const bool farthest = sighting.settings.refined.top_is_highest && y > 0.0;
+        const bool farthest = sighting.settings.filter.top_is_highest && y > 0.0;
         const double share = (distance + (farthest ? radius : -radius)) / distance;
         const double rim[3] = {px * share, y, pz * share};
         sighting_project(&sighting, state, rim, seen);
@@ -97,7 +97,7 @@ static void check_rows(void) {
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
-/* [goe_image_t.top, refined.top_is_highest, (R1), (R2), (R5), (R6)]
+/* [goe_image_t.top, filter.top_is_highest, (R1), (R2), (R5), (R6)]
  * GIVEN discs of any size and place, with the roof below or above the camera THEN residuals are 0 at the truth and all
  * derivatives are those of tangents and rim; with base corners, of the ground below the center, too. */
 static void rows_are_those_of_tangents_and_rim(void) {
@@ -135,7 +135,7 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
     measure(GOE_POINT_RIGHT);
     measure(GOE_POINT_TOP);
     for (int i = 0; i < 2; i++) {
-        sighting.settings.detector.shape_share = i ? 0.12f : 0.0f;
+        sighting.settings.detector.shape_error_rel = i ? 0.12f : 0.0f;
         sighting.sight.outline_share = i ? 0.05f : 0.0f;
         goe_rows_clear(&sighting.rows, &sighting.matrix);
         goe_disc_rows(&sighting.sight, &sighting.rows);
@@ -161,7 +161,7 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
         memset(sighting.state, 0, 3 * sizeof sighting.state[0]);
         memset(truth, 0, 3 * sizeof truth[0]);
         sighting_look(&sighting);
-        sighting.settings.refined.typical_size_m = sighting.state[GOE_FRONT_X] / sighting.state[GOE_INVERSE_RANGE];
+        sighting.settings.filter.prior_width_m = sighting.state[GOE_FRONT_X] / sighting.state[GOE_INVERSE_RANGE];
         measure(GOE_POINT_LEFT);
         measure(GOE_POINT_RIGHT);
         measure(GOE_POINT_TOP);
@@ -194,8 +194,8 @@ static void flat_ground_gives_the_first_range(void) {
         goe_triangle_t root;
         float state[GOE_STATES];
         any_disc();
-        sighting.settings.navigation.attitude_bias_deg = 0.5f; /* three of them are 0.026 */
-        sighting.settings.refined.typical_size_m = 6.0f;
+        sighting.settings.navigation.attitude_bias_sd_deg = 0.5f; /* three of them are 0.026 */
+        sighting.settings.filter.prior_width_m = 6.0f;
         sighting.sight.white_rad = 0.0f;
         sighting.sight.height_m = cases[i].height_m;
         sighting.sight.camera_m.x = 0.0f;
@@ -223,7 +223,7 @@ static void see_base(double y) {
         sighting.sight.point[i == 0 ? GOE_POINT_BASE_LEFT : GOE_POINT_BASE_RIGHT] = (goe_point_t){x, (float)y, true};
     }
     sighting.sight.base = true;
-    sighting.settings.refined.typical_size_m = 4.0f;
+    sighting.settings.filter.prior_width_m = 4.0f;
 }
 
 /* GIVEN base corners THEN the first guess of the range is that of flat ground; but the typical size's where they lie so near to the
@@ -260,7 +260,7 @@ static void a_start_is_as_uncertain_as_one_image(void) {
     see_base(0.25);
     sighting.sight.point[GOE_POINT_TOP] = (goe_point_t){0.0f, -0.3f, true};
     sighting.sight.height_sd_m = 0.7f;
-    sighting.settings.navigation.velocity_bias_m_s = 0.1f;
+    sighting.settings.navigation.velocity_bias_sd_m_s = 0.1f;
     memset(x, 0xA5, sizeof x); /* whatever was there before */
     TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, x, &root));
     for (size_t i = 0; i < 4; i++) {
@@ -280,9 +280,10 @@ static void a_start_is_as_uncertain_as_one_image(void) {
             CHECK_SAME(0.0f, *goe_srif_at(&root, i, j));
         }
     }
-    sighting.settings.navigation.ground_m = 2.4f; /* with an upright box the obstacle's own ground may lie off, too */
+    sighting.settings.navigation.terrain_height_sd_m =
+        2.4f; /* with an upright box the obstacle's own ground may lie off, too */
     goe_sides_t box = *sighting.sight.sides;
-    box.usable = GOE_SEES_TOP;
+    box.usable = GOE_SIDE_TOP;
     sighting.sight.sides = &box;
     TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0e-4, 1.0, 2.5 * q * (double)*goe_srif_at(&root, GOE_GROUND, GOE_GROUND));

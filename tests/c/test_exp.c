@@ -23,7 +23,7 @@ static double worst_share(double limit) {
     return worst;
 }
 
-/* [detector.correlation_s] */
+/* [detector.box_correlation_time_s] */
 static void it_is_as_right_as_reported(void) {
     TEST_ASSERT_TRUE(worst_share(6.0) < 1.0e-5);
     TEST_ASSERT_TRUE(worst_share(LIMIT) < 1.0e-3);

@@ -107,7 +107,7 @@ static void an_obstacle_abeam_or_behind_is_passed(void) {
     for (int k = 0; k < LENGTH; k++) { /* Z runs from 5 to -9 */
         add(20.0f, 5.0f, 4.0f, 0.0f, 2.0f * (float)k);
     }
-    check_failure(GOE_PASSED);
+    check_failure(GOE_ABEAM);
     setUp();
     for (int k = 0; k < LENGTH; k++) { /* still 1 m ahead at the last image */
         add(20.0f, 15.0f, 4.0f, 0.0f, 2.0f * (float)k);

@@ -42,7 +42,7 @@ void setUp(void) {
         filter.inverse.element[goe_inverse_column(i) + i] = 1.0e-6f;
     }
     goe_rows_clear(&rows, &matrix);
-    rows.white_rad = settings.navigation.attitude_white_deg * GOE_RAD_PER_DEG;
+    rows.white_rad = settings.navigation.attitude_white_sd_deg * GOE_RAD_PER_DEG;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         if (i != GOE_POINT_TOP) {
             add_row(i, false);
@@ -132,7 +132,7 @@ static void a_shift_of_all_points_refuses_none(void) {
     for (int axis = 0; axis < 3; axis++) {
         for (int sigmas = -4; sigmas <= 4; sigmas += 2) {
             setUp();
-            const double angle = sigmas * (double)settings.navigation.attitude_white_deg * RAD_PER_DEG;
+            const double angle = sigmas * (double)settings.navigation.attitude_white_sd_deg * RAD_PER_DEG;
             turn(axis == 0 ? angle : 0.0, axis == 1 ? angle : 0.0, axis == 2 ? angle : 0.0);
             const goe_matrix_t before = matrix;
             apply();
@@ -157,7 +157,7 @@ static void an_outlier_is_found_in_a_shifted_image(void) {
     }
 }
 
-/* [refined.huber_sigma, (R16)]
+/* [filter.huber_sigma, (R16)]
  * GIVEN a point between Huber's limit and the gate THEN its weight is that of a residual on the limit, for both of its rows:
  * weight^2 = huber / residual. */
 static void a_suspicious_point_counts_less(void) {
@@ -179,14 +179,14 @@ static void a_suspicious_point_counts_less(void) {
 
 static void the_limits_are_settings(void) {
     rows.white_rad = 1.0e-4f * GOE_RAD_PER_DEG;
-    settings.refined.gate_sigma = 3.0f;
+    settings.filter.gate_sigma = 3.0f;
     *residual(0) = (float)(3.2 * sqrt(2.0) * SIGMA);
     apply();
     TEST_ASSERT_EQUAL_HEX32(1u << rows.feature[0], verdict.refused);
     setUp();
     rows.white_rad = 1.0e-4f * GOE_RAD_PER_DEG;
-    settings.refined.gate_sigma = 100.0f;
-    settings.refined.huber_sigma = 1.0f;
+    settings.filter.gate_sigma = 100.0f;
+    settings.filter.huber_sigma = 1.0f;
     *residual(0) = (float)(10.0 * sqrt(2.0) * SIGMA);
     const goe_matrix_t before = matrix;
     apply();
@@ -255,8 +255,8 @@ static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, d
         matrix.row[i][i == 0 || i == 1 ? 0 : 1] = 1.0f; /* two along x, two along y */
         rows.shift[i][axis] = (float)(SIGMA * (i == 0 ? own_sigmas : others_sigmas));
     }
-    settings.refined.gate_sigma = 100.0f;
-    settings.refined.huber_sigma = 0.5f;
+    settings.filter.gate_sigma = 100.0f;
+    settings.filter.huber_sigma = 0.5f;
     *residual(0) = (float)(6.0 * SIGMA);
     const goe_matrix_t before = matrix;
     apply();

@@ -31,7 +31,7 @@ static const float level[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1
 void setUp(void) {
     any = check_random_start("ground");
     goe_settings_default(&settings);
-    settings.navigation.height_bias_m = CONSTANT_M;
+    settings.navigation.height_bias_sd_m = CONSTANT_M;
     memset(&image, 0, sizeof image);
     memset(&motion, 0, sizeof motion);
     memset(&view, 0, sizeof view);
@@ -90,7 +90,7 @@ static void read_height(float height_m, float sunk_m) {
  * GIVEN heights with a constant and a white error, of a flight that sinks THEN the filter gets their offset as the mean of all, with the
  * constant error counted once, and follows a mean that moves. */
 static void readings_give_the_mean_and_no_more(void) {
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     for (int flight = 0; flight < FLIGHTS; flight++) {
         double sum = 0.0;
         double first_m = 0.0;
@@ -117,7 +117,7 @@ static void readings_give_the_mean_and_no_more(void) {
 /* GIVEN a filter that was given the mean of its heights WHEN it starts again, like a track that begins again at a place THEN it is
  * given the same mean once more, and nothing of the earlier information counts. */
 static void a_filter_that_starts_again_receives_the_same_mean(void) {
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     for (int flight = 0; flight < FLIGHTS; flight++) {
         goe_filter_clear(&filter);
         read_height(HEIGHT_M, 0.0f);
@@ -139,7 +139,7 @@ static void a_filter_that_starts_again_receives_the_same_mean(void) {
 
 /* GIVEN more readings than are counted THEN the mean continues as that of so many, and the count does not begin again. */
 static void the_count_of_readings_saturates(void) {
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     read_height(HEIGHT_M, 0.0f);
     start(RANGE_M, obs.height_sd_m);
     filter.datum.readings = UINT16_MAX - 1u;
@@ -153,7 +153,7 @@ static void the_count_of_readings_saturates(void) {
 
 /* GIVEN an image whose rows are all taken THEN the information of the heights waits, and none of it is lost. */
 static void an_overflow_is_reported_later(void) {
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     read_height(HEIGHT_M, 0.0f);
     start(RANGE_M, obs.height_sd_m);
     for (int k = 1; k < READINGS; k++) {
@@ -170,7 +170,7 @@ static void an_overflow_is_reported_later(void) {
 
 /* GIVEN a filter that knows no position yet THEN what the heights say waits, as its range may be off by a factor; none of it is lost. */
 static void without_a_position_the_heights_wait(void) {
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     read_height(HEIGHT_M, 0.0f);
     start(RANGE_M, obs.height_sd_m);
     for (int k = 1; k < READINGS; k++) {
@@ -183,7 +183,7 @@ static void without_a_position_the_heights_wait(void) {
     CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
 }
 
-/* [navigation.height_bias_m]
+/* [navigation.height_bias_sd_m]
  * GIVEN a first guess of the range that proves wrong THEN the uncertainty of the height is the configured one, in meters: no better when
  * the obstacle is nearer, and no worse when it is farther. */
 static void a_wrong_first_range_leaves_the_height_as_given(void) {
@@ -218,7 +218,7 @@ static double sum_sd(void) {
 /* GIVEN ground that rises or falls below the altimeter WHEN the aircraft has flown a distance THEN the height above the obstacle's ground
  * is off by slope times distance more, once for each meter however many images it took; the obstacle's own height is not affected. */
 static void the_slope_of_the_ground_adds_up_over_the_way(void) {
-    settings.navigation.slope = SLOPE;
+    settings.navigation.terrain_slope_sd = SLOPE;
     for (int steps = 1; steps <= 4; steps += 3) {
         start(RANGE_M, CONSTANT_M);
         const double height_sd = sum_sd();
@@ -236,11 +236,11 @@ static void the_slope_of_the_ground_adds_up_over_the_way(void) {
 /* GIVEN heights that are not taken as they come, but by those of all images or as of the first one THEN the way that was flown
  * is in none of them. */
 static void a_height_that_is_kept_has_no_slope(void) {
-    settings.navigation.slope = SLOPE;
+    settings.navigation.terrain_slope_sd = SLOPE;
     for (int kept = 0; kept < 2; kept++) {
         start(RANGE_M, CONSTANT_M);
         filter.phase = kept == 0 ? GOE_PHASE_PRISM : GOE_PHASE_DISC;
-        settings.navigation.height_white_m = kept == 0 ? 0.0f : WHITE_M;
+        settings.navigation.height_white_sd_m = kept == 0 ? 0.0f : WHITE_M;
         TEST_ASSERT_TRUE(goe_ground_is_steady(&filter, &settings.navigation));
         filter.flown_m = FLOWN_M;
         goe_ground_climb(&filter, &settings.navigation);
@@ -254,7 +254,7 @@ static void a_height_that_is_kept_has_no_slope(void) {
  * and nothing of that where the height is kept from the first image on. */
 static void sloping_ground_makes_the_height_uncertain(void) {
     static const size_t steps[] = {1, 5};
-    settings.navigation.slope = 0.05f;
+    settings.navigation.terrain_slope_sd = 0.05f;
     for (size_t n = 0; n < 2; n++) {
         goe_filter_clear(&filter);
         start(RANGE_M, CONSTANT_M);
@@ -269,7 +269,7 @@ static void sloping_ground_makes_the_height_uncertain(void) {
         const double before = 1.0 + 4.0 / (double)(RANGE_M * RANGE_M); /* of the top, and of the ground */
         CHECK_CLOSE(1.0e-4, before, goe_srif_variance(&filter.inverse, over_ground));
     }
-    settings.navigation.height_white_m = 1.0f;
+    settings.navigation.height_white_sd_m = 1.0f;
     start(RANGE_M, CONSTANT_M);
     filter.flown_m = 60.0f;
     goe_ground_climb(&filter, &settings.navigation);
@@ -279,11 +279,11 @@ static void sloping_ground_makes_the_height_uncertain(void) {
 
 /* GIVEN a first image that knows its own height's error THEN that is kept for the filter's start, of that image and no later one. */
 static void the_first_heights_own_error_is_kept(void) {
-    settings.navigation.height_white_m = WHITE_M;
-    image.noise.height_m = 0.7f;
+    settings.navigation.height_white_sd_m = WHITE_M;
+    image.noise.height_sd_m = 0.7f;
     read_height(HEIGHT_M, 0.0f);
     CHECK_SAME(0.7f, filter.datum.sd_m);
-    image.noise.height_m = 0.2f;
+    image.noise.height_sd_m = 0.2f;
     read_height(HEIGHT_M, 0.0f);
     CHECK_SAME(0.7f, filter.datum.sd_m);
 }
@@ -291,9 +291,9 @@ static void the_first_heights_own_error_is_kept(void) {
 /* GIVEN heights with a white error and a box in each image WHEN the height is not set THEN no reading counts and the ground's height is
  * unknown; the first height that is set is the first reading. */
 static void a_height_that_is_not_set_is_no_reading(void) {
-    settings.navigation.height_white_m = WHITE_M;
-    image.box.seen = GOE_SEES_BOX;
-    image.noise.height_m = 0.7f; /* of a height that is not there */
+    settings.navigation.height_white_sd_m = WHITE_M;
+    image.box.sides = GOE_SIDES_ALL;
+    image.noise.height_sd_m = 0.7f; /* of a height that is not there */
     read_height(0.0f, 0.0f);
     read_height(0.0f, 0.0f);
     TEST_ASSERT_EQUAL_UINT16(0u, filter.datum.readings);
@@ -309,7 +309,7 @@ static void a_height_that_is_not_set_is_no_reading(void) {
 static void the_arm_moves_the_camera_up_and_down(void) {
     const float turned[9] = {0.8f, 0.0f, 0.6f, -0.36f, 0.8f, 0.48f, -0.48f, -0.6f, 0.64f};
     const float mounted[9] = {0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}; /* looks ahead */
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     settings.camera.offset_m[0] = 3.0f;
     settings.camera.offset_m[1] = -1.0f;
     settings.camera.offset_m[2] = 0.5f;

@@ -41,7 +41,7 @@ static void flip(void *at, size_t bit) { ((unsigned char *)at)[bit / 8u] ^= (uns
 
 static void check_corrupted(void) {
     static const goe_estimate_t nothing;
-    static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
+    static const goe_intent_t intent = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
     const goe_estimator_t before = estimator;
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
@@ -49,8 +49,8 @@ static void check_corrupted(void) {
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
     CHECK_STATUS(GOE_CORRUPTED, goe_covariance(&estimator, covariance));
-    CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &plan, &hazard));
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.violation);
+    CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &intent, &hazard));
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.conflict_probability);
     CHECK_STATUS(GOE_CORRUPTED, goe_reset(&estimator));
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
 }
@@ -100,8 +100,8 @@ static void padding_between_settings_counts_for_nothing(void) {
     CHECK_STATUS(GOE_OK, goe_init(&first, sizeof first, &settings, NULL));
     memset((unsigned char *)&settings + offsetof(goe_settings_t, heading_auto) + 1, 0xFF,
            offsetof(goe_settings_t, heading_deg) - offsetof(goe_settings_t, heading_auto) - 1);
-    memset((unsigned char *)&settings + offsetof(goe_settings_t, refined.top_is_highest) + 1, 0xFF,
-           sizeof settings - offsetof(goe_settings_t, refined.top_is_highest) - 1);
+    memset((unsigned char *)&settings + offsetof(goe_settings_t, filter.top_is_highest) + 1, 0xFF,
+           sizeof settings - offsetof(goe_settings_t, filter.top_is_highest) - 1);
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&first, &estimator, sizeof first);
 }
@@ -153,9 +153,9 @@ static void an_undefined_value_is_found(void) {
     bad.valid |= 0x80u;
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
     bad = estimate;
-    bad.points = -1;
+    bad.images_used = -1;
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
-    bad.points = 32768; /* more than goe.h promises */
+    bad.images_used = 32768; /* more than goe.h promises */
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
     bad = estimate;
     memset(&bad.fresh, 2, 1);
@@ -205,15 +205,15 @@ static void a_track_that_is_nowhere_and_knows_nothing_begins_again(void) {
 
 /* [A20] GIVEN covariance and hazard of an answer that is no number THEN they are none, either. */
 static void no_call_returns_a_value_that_is_not_finite(void) {
-    static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
+    static const goe_intent_t intent = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
     start();
     estimator.filter.inverse.element[14] = check_from_bits(0x7FC00000u);
     CHECK_STATUS(GOE_CORRUPTED, goe_covariance(&estimator, covariance));
     TEST_ASSERT_EQUAL_FLOAT(0.0f, covariance[GOE_X0][GOE_X0]);
-    CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &plan, &hazard));
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.time_s);
+    CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &intent, &hazard));
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.tcpa_s);
 }
 
 /* [A19] GIVEN truth values of an image that are neither 0 nor 1 THEN they count as 1. */
@@ -229,8 +229,8 @@ static void any_truth_but_none_is_one(void) {
         goe_pixel_t *const points[] = {&odd.left,      &odd.right,     &odd.top,
                                        &odd.base_left, &odd.base_near, &odd.base_right};
         for (int i = 0; i < 6; i++) {
-            if (points[i]->seen) {
-                memset(&points[i]->seen, 0x40 + i, 1);
+            if (points[i]->visible) {
+                memset(&points[i]->visible, 0x40 + i, 1);
             }
         }
         (void)goe_update(&estimator, &odd, &estimate);

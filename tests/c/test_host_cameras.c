@@ -108,7 +108,7 @@ static passage_t fly(double noise_px) {
         passage.solved_after += image.camera == 1 && passage.by[1] == 0 ? 1 : 0;
         *(image.camera == 0 ? &passage.before_m : &passage.after_m) = center_sd_m();
     }
-    passage.points = estimate.points;
+    passage.points = estimate.images_used;
     return passage;
 }
 
@@ -179,7 +179,7 @@ static void a_camera_that_is_not_there_is_refused(void) {
         before = estimator;
         image.camera = (uint8_t)number;
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
-        before.causes[-GOE_OUT_OF_RANGE]++;
+        before.fault_counts[-GOE_OUT_OF_RANGE]++;
         TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof estimator);
     }
     image.camera = 0;
@@ -199,7 +199,7 @@ static void a_bad_second_camera_is_named(void) {
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, &bad));
     goe_settings_default(&settings);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, settings.more_cameras[0].fx_px);
-    TEST_ASSERT_EQUAL_FLOAT(settings.camera.border_share, settings.more_cameras[0].border_share);
+    TEST_ASSERT_EQUAL_FLOAT(settings.camera.border_rel, settings.more_cameras[0].border_rel);
 }
 
 int main(void) {

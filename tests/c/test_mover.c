@@ -341,8 +341,8 @@ static void a_newly_followed_target_starts_from_the_images(void) {
     double z[3];
     by_velocity(4.0, -3.0, z);
     give_rows(z);
-    judging.navigation.velocity_bias_m_s = 0.3f;
-    judging.navigation.position_walk_m = 0.2f;
+    judging.navigation.velocity_bias_sd_m_s = 0.3f;
+    judging.navigation.position_walk_sd_m = 0.2f;
     TEST_ASSERT_FALSE(judge_image());
     TEST_ASSERT_FALSE(judge_image());
     TEST_ASSERT_FALSE(judged.mover.followed);
@@ -376,20 +376,20 @@ static void a_newly_followed_target_starts_from_the_images(void) {
 static void a_target_without_scale_is_not_followed(void) {
     double z[3];
     by_velocity(4.0, -3.0, z);
-    for (int misfit = 0; misfit < 2; misfit++) {
+    for (int nis_ratio = 0; nis_ratio < 2; nis_ratio++) {
         give_rows(z);
         seen.base = false;
-        judged.health.mean_nis = misfit == 1 ? 3.0f : 1.0f;
+        judged.health.mean_nis = nis_ratio == 1 ? 3.0f : 1.0f;
         for (int i = 0; i < 5; i++) {
             TEST_ASSERT_FALSE(judge_image());
         }
         TEST_ASSERT_FALSE(judged.mover.followed);
-        TEST_ASSERT_EQUAL_INT(misfit, judged.mover.moves ? 1 : 0);
+        TEST_ASSERT_EQUAL_INT(nis_ratio, judged.mover.moves ? 1 : 0);
     }
     give_rows(z); /* of a box its bottom */
     judged.phase = GOE_PHASE_PRISM;
     seen.base = false;
-    seen_sides.usable = GOE_SEES_BOTTOM;
+    seen_sides.usable = GOE_SIDE_BOTTOM;
     judged.mover.nis -= 100.0f; /* more is required */
     (void)judge_image();
     (void)judge_image();
@@ -407,7 +407,7 @@ static void chance_motion_is_not_followed(void) {
         }
         give_rows(z);
         if (n == 2) {
-            judging.navigation.velocity_bias_m_s = 1.1f; /* five of these in both together are not it */
+            judging.navigation.velocity_bias_sd_m_s = 1.1f; /* five of these in both together are not it */
         } else if (n == 3) {
             judged.mover.observed_s = 0.0f;
         }
@@ -601,7 +601,7 @@ static void nothing_moves_that_does_not(void) {
     }
 }
 
-/* [GOE_WITH_MOVERS, goe_ego_motion.c, (R36)]
+/* [GOE_WITH_TARGET_MOTION, goe_ego_motion.c, (R36)]
  * GIVEN poses of a tenth of a second before, of an aircraft that sways THEN they are reported as late, by about as much, and nothing
  * moves. */
 static void late_poses_are_reported_and_taken_off(void) {
@@ -616,7 +616,7 @@ static void late_poses_are_reported_and_taken_off(void) {
     TEST_ASSERT_TRUE(worst < 0.03);
 }
 
-/* [GOE_WITH_MOVERS, (R36), (R37)] GIVEN an obstacle that moves THEN that is reported, and its velocity, within four sigma. */
+/* [GOE_WITH_TARGET_MOTION, (R36), (R37)] GIVEN an obstacle that moves THEN that is reported, and its velocity, within four sigma. */
 static void an_obstacle_that_moves_is_followed(void) {
     static const double velocity[][2] = {{0.0, 5.0}, {3.0, -4.0}, {-12.0, 0.0}, {0.0, -10.0}};
     for (size_t i = 0; i < sizeof velocity / sizeof velocity[0]; i++) {
@@ -656,7 +656,7 @@ static void an_old_place_moves_on(void) {
     image.pose.position_ned_m[0] += (float)(-12.0 * (20 + STEP * (IMAGES - 1)) / FINE_HZ);
     image.pose.time_us += 2000000; /* the camera is at rest, the obstacle comes */
     scene_hide_points(&image);
-    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &old));
+    CHECK_STATUS(GOE_NO_DETECTION, goe_update(&estimator, &image, &old));
     const double heading = (double)old.trajectory_heading_deg * 0.017453292519943295;
     const double north_m = 2.0 * (double)flight.estimate.velocity_north_m_s;
     const double east_m = 2.0 * (double)flight.estimate.velocity_east_m_s;
@@ -703,7 +703,7 @@ static void a_followed_target_continues_without_detections(void) {
     scene_hide_points(&image);
     const double dx = (double)estimator.motion.dx_m;
     const double dz = (double)estimator.motion.dz_m;
-    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &now));
+    CHECK_STATUS(GOE_NO_DETECTION, goe_update(&estimator, &image, &now));
     const double c = (double)estimator.motion.heading_cos;
     const double s = (double)estimator.motion.heading_sin;
     const double north = 2.0 * (double)before->velocity_north_m_s;
@@ -712,7 +712,8 @@ static void a_followed_target_continues_without_detections(void) {
     CHECK_CLOSE(2.0e-3, (double)before->z_m + c * north + s * east - ((double)estimator.motion.dz_m - dz), now.z_m);
     const double larger = fmax((double)before->sigma.velocity_north_m_s, (double)before->sigma.velocity_east_m_s);
     const goe_navigation_t *own = &estimator.settings.navigation;
-    const double own_m2 = 4.0 * pow((double)own->velocity_bias_m_s, 2.0) + 2.0 * pow((double)own->position_walk_m, 2.0);
+    const double own_m2 =
+        4.0 * pow((double)own->velocity_bias_sd_m_s, 2.0) + 2.0 * pow((double)own->position_walk_sd_m, 2.0);
     const double grown_m = sqrt(4.0 * larger * larger + own_m2);
     CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.x0_m, grown_m), now.sigma.x_m);
     CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.z0_m, grown_m), now.sigma.z_m);
@@ -728,15 +729,15 @@ static void a_newly_followed_target_causes_a_warning(void) {
     static const double north_m_s[] = {-12.0, 8.0};
     for (size_t i = 0; i < sizeof north_m_s / sizeof north_m_s[0]; i++) {
         goe_settings_t of_scene = scene_settings(&scene);
-        goe_plan_t plan;
+        goe_intent_t intent;
         goe_hazard_t hazard;
         double least = 1.0;
         bool warned = false;
         bool followed = false;
-        memset(&plan, 0, sizeof plan);
-        plan.velocity_ned_m_s[0] = (float)(scene.speed_mps + north_m_s[i]);
-        plan.margin_m = 25.0f;
-        plan.clearance_m = 1000.0f;
+        memset(&intent, 0, sizeof intent);
+        intent.velocity_ned_m_s[0] = (float)(scene.speed_mps + north_m_s[i]);
+        intent.margin_m = 25.0f;
+        intent.clearance_m = 1000.0f;
         scene.x0_m = 0.0;
         scene.z0_m = 200.0;
         CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &of_scene, NULL));
@@ -748,9 +749,10 @@ static void a_newly_followed_target_causes_a_warning(void) {
             scene_add_noise(&image, &any, NOISE_PX);
             (void)goe_update(&estimator, &image, &estimate);
             followed = followed || (estimate.valid & GOE_HAS_VELOCITY) != 0u;
-            if (goe_hazard(&estimator, &plan, &hazard) == GOE_OK) {
-                warned = warned || hazard.violation > 0.9f;
-                least = warned && (double)hazard.violation < least ? (double)hazard.violation : least;
+            if (goe_hazard(&estimator, &intent, &hazard) == GOE_OK) {
+                warned = warned || hazard.conflict_probability > 0.9f;
+                least =
+                    warned && (double)hazard.conflict_probability < least ? (double)hazard.conflict_probability : least;
             }
         }
         check_report("least violation after the first warning", least);
@@ -762,19 +764,19 @@ static void a_newly_followed_target_causes_a_warning(void) {
 /* [GOE_REASON_MOVES] GIVEN oncoming traffic WHEN it is followed THEN the time to it is that of both, not of the aircraft alone. */
 static void the_hazard_counts_with_both_velocities(void) {
     const flight_t flight = fly(0, -12.0, 0.0);
-    goe_plan_t plan;
+    goe_intent_t intent;
     goe_hazard_t hazard;
-    memset(&plan, 0, sizeof plan);
-    plan.velocity_ned_m_s[0] =
+    memset(&intent, 0, sizeof intent);
+    intent.velocity_ned_m_s[0] =
         (float)scene.speed_mps - 12.0f; /* as configured: the rest of the approach is the obstacle's part */
-    plan.margin_m = 20.0f;
-    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    intent.margin_m = 20.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &intent, &hazard));
     const double apart_m = (double)flight.estimate.z_m;
-    const double closing = (double)plan.velocity_ned_m_s[0] - (double)flight.estimate.velocity_north_m_s;
-    check_report("time to go, s", (double)hazard.time_s);
-    TEST_ASSERT_TRUE(hazard.time_s > 0.0f);
-    TEST_ASSERT_TRUE((double)hazard.time_s < 1.2 * apart_m / closing &&
-                     (double)hazard.time_s > 0.5 * apart_m / closing);
+    const double closing = (double)intent.velocity_ned_m_s[0] - (double)flight.estimate.velocity_north_m_s;
+    check_report("time to go, s", (double)hazard.tcpa_s);
+    TEST_ASSERT_TRUE(hazard.tcpa_s > 0.0f);
+    TEST_ASSERT_TRUE((double)hazard.tcpa_s < 1.2 * apart_m / closing &&
+                     (double)hazard.tcpa_s > 0.5 * apart_m / closing);
 }
 #endif
 

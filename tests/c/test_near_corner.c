@@ -68,18 +68,18 @@ static void check_estimate(void) {
 
 static void fly(shows_t shows, bool highest) {
     settings = scene_settings(&scene);
-    settings.refined.top_is_highest = highest;
+    settings.filter.top_is_highest = highest;
     scene.top_nearest = !highest;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < IMAGES; k++) {
         goe_image_t image;
         scene_image(&scene, k, &image, NULL);
         scene_add_noise(&image, &any, NOISE_PX);
-        image.base_near.seen = image.base_near.seen && shows(k);
+        image.base_near.visible = image.base_near.visible && shows(k);
         (void)goe_update(&estimator, &image, &estimate);
         faces += estimator.filter.phase == GOE_PHASE_BOX_FACE;
         boxes += estimator.filter.phase == GOE_PHASE_BOX;
-        if (estimate.method == GOE_METHOD_REFINED) {
+        if (estimate.method == GOE_METHOD_FILTER) {
             check_estimate();
         }
     }

@@ -33,7 +33,7 @@ static goe_estimate_t fly_after(double before_deg, bool blind, double course_deg
         scene_image(&scene, k, &image, NULL);
         if (k == 0 && blind) {
             scene_hide_points(&image);
-            image.box.seen = 0;
+            image.box.sides = 0;
         }
         scene.course_deg = course_deg;
         (void)goe_update(&estimator, &image, &estimate);
@@ -91,8 +91,8 @@ static void check_axes(const goe_estimate_t *e) {
  * GIVEN a box on any course, by either method THEN its axes in north and east are the heading and the orientation together. */
 static void the_axes_point_north_and_east(void) {
     for (double course = -180.0; course < 180.0; course += 40.0) {
-        const goe_estimate_t refined = fly(course);
-        check_axes(&refined);
+        const goe_estimate_t filter = fly(course);
+        check_axes(&filter);
     }
 #if GOE_WITH_WINDOW
     settings = scene_window_settings(&scene);
@@ -106,7 +106,7 @@ static void the_axes_point_north_and_east(void) {
 /* GIVEN a box by either method THEN the axes in T are unit vectors of the orientation, and the other side is square to it. */
 static void the_axes_agree_with_the_orientation(void) {
     int reported = 0;
-    for (int method = GOE_METHOD_WINDOW; method <= GOE_METHOD_REFINED; method++) {
+    for (int method = GOE_METHOD_WINDOW; method <= GOE_METHOD_FILTER; method++) {
 #if !GOE_WITH_WINDOW
         if (method == GOE_METHOD_WINDOW) {
             continue;
@@ -127,8 +127,8 @@ static void the_axes_agree_with_the_orientation(void) {
             CHECK_CLOSE(1.0e-5, cos(rad), e.length_axis[1]);
             CHECK_CLOSE(1.0e-5, cos(rad), e.width_axis[0]);
             CHECK_CLOSE(1.0e-5, -sin(rad), e.width_axis[1]);
-            CHECK_CLOSE(1.0e-4, 90.0, fabs((double)e.other_side_deg - (double)e.orientation_deg));
-            TEST_ASSERT_TRUE(e.other_side_deg > -90.0f && e.other_side_deg <= 90.0f);
+            CHECK_CLOSE(1.0e-4, 90.0, fabs((double)e.front_orientation_deg - (double)e.orientation_deg));
+            TEST_ASSERT_TRUE(e.front_orientation_deg > -90.0f && e.front_orientation_deg <= 90.0f);
         }
     }
     TEST_ASSERT_TRUE(reported >= (GOE_WITH_WINDOW ? 12 : 6));
@@ -234,7 +234,7 @@ static void a_center_that_is_nowhere_is_not_reported(void) {
     static const float errors_correlated[] = {1.0f, -1.0f};
     const float range_m = 4.0e5f;
     const float spread = 2.0f; /* of X and of Z, over the range */
-    settings.refined.range_share = 10.0f;
+    settings.filter.range_sd_rel_max = 10.0f;
     for (int i = 0; i < 3; i++) {
         goe_filter_t filter;
         goe_motion_t motion;

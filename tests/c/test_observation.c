@@ -86,7 +86,7 @@ static void a_point_is_freed_of_the_bias(void) {
     }
 }
 
-/* [navigation.attitude_bias_deg, (R3)] */
+/* [navigation.attitude_bias_sd_deg, (R3)] */
 static void the_bias_is_turned_from_body_axes(void) {
     any = check_random_start("bias");
     for (int n = 0; n < CASES; n++) {
@@ -145,7 +145,7 @@ static void differentiate(const sighting_t *s, double u_px, double v_px, double 
     by_v[1] = (up[1] - down[1]) / (2.0 * step);
 }
 
-/* [detector.point_px, (R4)]
+/* [detector.point_noise_px, (R4)]
  * GIVEN a pixel anywhere in the image of a turned camera THEN the spread of its aligned point is the pixel's variance through
  * the derivative of the alignment. */
 static void the_spread_is_that_of_the_alignment(void) {
@@ -172,7 +172,7 @@ static void the_spread_is_that_of_the_alignment(void) {
     }
 }
 
-/* [detector.point_share] */
+/* [detector.point_noise_rel] */
 static void size_noise_is_a_share_of_the_width(void) {
     any = check_random_start("size");
     sighting_start(&sighting, &any);
@@ -284,12 +284,12 @@ static void an_image_may_know_its_own_errors(void) {
     goe_observation_t sight;
     start();
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
-    CHECK_CLOSE(1.0e-9, (double)estimator.settings.navigation.attitude_white_deg * (double)GOE_RAD_PER_DEG,
+    CHECK_CLOSE(1.0e-9, (double)estimator.settings.navigation.attitude_white_sd_deg * (double)GOE_RAD_PER_DEG,
                 sight.white_rad);
-    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.point_px, sight.point_px);
-    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.box_px, sight.side_px);
-    image.noise.attitude_deg = 2.0f;
-    image.noise.pixel_px = 7.0f;
+    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.point_noise_px, sight.point_px);
+    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.box_noise_px, sight.side_px);
+    image.noise.attitude_sd_deg = 2.0f;
+    image.noise.pixel_sd_px = 7.0f;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     CHECK_CLOSE(1.0e-6, 2.0 * (double)GOE_RAD_PER_DEG, sight.white_rad);
     TEST_ASSERT_EQUAL_FLOAT(7.0f, sight.point_px);
@@ -300,8 +300,8 @@ static void an_image_may_know_its_own_errors(void) {
 static void less_than_the_least_counts_as_that(void) {
     goe_observation_t sight;
     start();
-    image.noise.attitude_deg = 1.0e-6f;
-    image.noise.pixel_px = 1.0e-6f;
+    image.noise.attitude_sd_deg = 1.0e-6f;
+    image.noise.pixel_sd_px = 1.0e-6f;
     estimator.filter.datum.sd_m = 1.0e-6f;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     CHECK_CLOSE(1.0e-10, 1.0e-4 * (double)GOE_RAD_PER_DEG, sight.white_rad);
@@ -315,14 +315,14 @@ static void less_than_the_least_counts_as_that(void) {
 static void a_noisy_height_is_that_of_all_readings(void) {
     goe_observation_t sight;
     start();
-    estimator.settings.navigation.height_bias_m = 3.0f;
+    estimator.settings.navigation.height_bias_sd_m = 3.0f;
     estimator.motion.height_m = 20.0f;
     estimator.filter.datum.height_m = 24.0f;
     estimator.filter.datum.readings = 4;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     TEST_ASSERT_EQUAL_FLOAT(20.0f, sight.height_m);
     TEST_ASSERT_EQUAL_FLOAT(3.0f, sight.height_sd_m);
-    estimator.settings.navigation.height_white_m = 8.0f;
+    estimator.settings.navigation.height_white_sd_m = 8.0f;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     TEST_ASSERT_EQUAL_FLOAT(24.0f, sight.height_m);
     CHECK_CLOSE(1.0e-5, sqrt(9.0 + 64.0 / 4.0), sight.height_sd_m);
@@ -333,7 +333,7 @@ static void a_noisy_height_is_that_of_all_readings(void) {
 static void a_height_without_a_reading_has_the_noise_of_one(void) {
     goe_observation_t sight;
     start();
-    estimator.settings.navigation.height_white_m = 8.0f;
+    estimator.settings.navigation.height_white_sd_m = 8.0f;
     estimator.filter.datum.sd_m = 6.0f;
     estimator.filter.datum.readings = 0;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));

@@ -69,7 +69,7 @@ static void update(const goe_image_t *image) {
 }
 
 static void hide_base(goe_image_t *image) {
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
 }
 
 /* A scene from image to image. SEE_LEAPS: from the middle on every third of the points lies elsewhere. */
@@ -140,7 +140,7 @@ static void a_width_starts_a_disc(void) {
     goe_image_t image;
     start();
     scene_image(&scene, 0, &image, NULL);
-    image.right.seen = false;
+    image.right.visible = false;
     hide_base(&image);
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_NONE, phase());
@@ -154,7 +154,7 @@ static void base_corners_alone_start_a_disc(void) {
     goe_image_t image;
     start();
     scene_image(&scene, 0, &image, NULL);
-    image.left.seen = image.right.seen = image.top.seen = false;
+    image.left.visible = image.right.visible = image.top.visible = false;
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
     CHECK_CLOSE(0.1 * scene.z0_m, scene.z0_m, 1.0 / (double)estimator.filter.state[GOE_INVERSE_RANGE]);
@@ -304,7 +304,7 @@ static goe_image_t stop(void) {
     goe_image_t image;
     make_box_next_to(55.0);
     fly(SEE_ALL, 60);
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_TRUE(estimate.fresh && estimate.nis_rows > 0);
     goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
     scene_image(&scene, 60, &image, NULL);
@@ -317,28 +317,28 @@ static void a_stopped_filters_answer_stays_while_nothing_else_is_known(void) {
     goe_image_t image = stop();
     const goe_estimate_t before = estimate;
     hide_base(&image);
-    image.left.seen = image.right.seen = image.top.seen = false;
+    image.left.visible = image.right.visible = image.top.visible = false;
     update(&image);
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_EQUAL_HEX32(before.valid, estimate.valid);
     TEST_ASSERT_FALSE(estimate.fresh);
     CHECK_SAME(before.z0_m, estimate.z0_m);
     CHECK_CLOSE(0.05, (double)before.z_m - scene.speed_mps / scene.image_rate_hz, estimate.z_m);
     TEST_ASSERT_EQUAL_INT(0, estimate.nis_rows);
     CHECK_SAME(0.0f, estimate.nis);
-    TEST_ASSERT_EQUAL_INT(before.points, estimate.points);
+    TEST_ASSERT_EQUAL_INT(before.images_used, estimate.images_used);
 }
 
 /* GIVEN a filter that has stopped WHEN it cannot start from an image, as its first guess of the range is invalid THEN its last answer
  * stays. */
 static void an_answer_stays_while_the_filter_cannot_start(void) {
-    settings.refined.typical_size_m = 0.1f;
+    settings.filter.prior_width_m = 0.1f;
     goe_image_t image = stop();
     const goe_estimate_t before = estimate;
     hide_base(&image);
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_NONE, phase());
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_FALSE(estimate.fresh);
     TEST_ASSERT_EQUAL_HEX32(before.valid, estimate.valid);
     CHECK_SAME(before.width_m, estimate.width_m);
@@ -349,7 +349,7 @@ static void a_filter_that_starts_again_keeps_its_older_answer(void) {
     goe_image_t image = stop();
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
 }
 

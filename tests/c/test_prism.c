@@ -135,7 +135,7 @@ static void a_missing_side_gives_no_row(void) {
     upright_measure(&ellipse, truth, &sides);
     make_rows();
     const float right = sighting.matrix.row[GOE_BOX_RIGHT][GOE_STATE_COLUMN + GOE_BEARING];
-    sides.usable = GOE_SEES_RIGHT;
+    sides.usable = GOE_SIDE_RIGHT;
     make_rows();
     TEST_ASSERT_EQUAL_size_t(1, sighting.rows.count);
     TEST_ASSERT_EQUAL_FLOAT(right, sighting.matrix.row[0][GOE_STATE_COLUMN + GOE_BEARING]);
@@ -285,10 +285,10 @@ static void a_sides_error_is_a_share_of_the_box(void) {
             const double seen = ((double)sides.px[first + 2u] - (double)sides.px[first]) / focal;
             for (int alone = 0; alone < 2; alone++) {
                 const double size = alone == 1 ? predicted[first] : seen;
-                sides.usable = (uint8_t)(alone == 1 ? 1u << side : GOE_SEES_BOX);
+                sides.usable = (uint8_t)(alone == 1 ? 1u << side : GOE_SIDES_ALL);
                 for (int cut = 0; cut < 2; cut++) {
                     sides.cut = cut == 1;
-                    sighting.settings.detector.cut_noise = 0.8f;
+                    sighting.settings.detector.truncation_noise_rel = 0.8f;
                     make_rows();
                     const double expected = pixel * pixel + (1.0e-4 + (cut == 1 ? 0.64 : 0.0)) * size * size;
                     CHECK_CLOSE(1.0e-4 * expected, expected, sighting.rows.variance[alone == 1 ? 0 : side]);
@@ -316,7 +316,7 @@ static void see_box(float left, float top, float right, float bottom) {
         sides.px[side] = at[side] * ((side & 1u) != 0u ? camera->fy_px : camera->fx_px) +
                          ((side & 1u) != 0u ? camera->cy_px : camera->cx_px);
     }
-    sides.usable = GOE_SEES_BOX;
+    sides.usable = GOE_SIDES_ALL;
     sides.cut = false;
 }
 
@@ -328,7 +328,7 @@ static void a_start_matches_one_box(void) {
     float x[GOE_STATES];
     any = check_random_start("start");
     see_box(-0.05f, -0.1f, 0.05f, 0.25f);
-    sighting.settings.navigation.velocity_bias_m_s = 0.1f;
+    sighting.settings.navigation.velocity_bias_sd_m_s = 0.1f;
     memset(x, 0xA5, sizeof x); /* whatever was there before */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
     for (size_t i = 0; i < 3; i++) {
@@ -361,7 +361,7 @@ static void a_start_matches_one_box(void) {
     CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_DEPTH, GOE_PRISM_DEPTH));
     CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_UNOBSERVED, GOE_PRISM_UNOBSERVED));
     see_box(-0.05f, -0.1f, 0.05f, 0.25f);
-    sides.usable = GOE_SEES_LEFT | GOE_SEES_RIGHT; /* no foot, no head */
+    sides.usable = GOE_SIDE_LEFT | GOE_SIDE_RIGHT; /* no foot, no head */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0e-6, 0.1 / 6.0, x[GOE_INVERSE_RANGE]); /* 6 m under 0.1 */
     CHECK_CLOSE(1.0e-6, 20.0 * 0.1 / 6.0, x[GOE_PRISM_TOP]);
@@ -388,9 +388,9 @@ static void the_axes_turn_towards_the_box(void) {
         view.camera = &sighting.settings.camera;
         memcpy(view.camera_to_trajectory, rolled, sizeof rolled);
         view.sides = sides;
-        view.sides.usable = n == 0   ? GOE_SEES_BOX
-                            : n == 1 ? GOE_SEES_LEFT | GOE_SEES_RIGHT
-                                     : GOE_SEES_LEFT | GOE_SEES_TOP;
+        view.sides.usable = n == 0   ? GOE_SIDES_ALL
+                            : n == 1 ? GOE_SIDE_LEFT | GOE_SIDE_RIGHT
+                                     : GOE_SIDE_LEFT | GOE_SIDE_TOP;
         TEST_ASSERT_EQUAL_INT(n < 2, goe_prism_face(&filter, &view));
         const double x = 0.8 * 0.4 - 0.6 * (n == 0 ? 0.1 : 0.0);
         if (n < 2) {
@@ -420,7 +420,7 @@ static double fly_with_corners(bool corners, double roll_deg, goe_model_t *model
         image.box = boxed.box;
         image.left.u_px = image.right.u_px = image.top.v_px = 0.0f; /* not read */
         if (!corners) {
-            image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+            image.base_left.visible = image.base_near.visible = image.base_right.visible = false;
         }
         (void)goe_update(&estimator, &image, &estimate);
     }
@@ -429,7 +429,7 @@ static double fly_with_corners(bool corners, double roll_deg, goe_model_t *model
     return fabs((double)estimate.z0_m - scene.z0_m) / (double)estimate.sigma.z0_m;
 }
 
-/* [A1, goe_box_t.seen, goe_image_t.box, goe_model.c]
+/* [A1, goe_box_t.sides, goe_image_t.box, goe_model.c]
  * GIVEN a box and base corners THEN the box replaces left, right and top, and the corners make a box of it; without corners
  * it is a prism. */
 static void a_box_goes_with_base_corners(void) {
@@ -452,8 +452,8 @@ static void sides_are_remembered_in_flight(void) {
     scene.boxes = true;
     scene.image_rate_hz = 5.0;
     goe_settings_t settings = scene_settings(&scene);
-    settings.detector.box_share = 0.07f;
-    settings.detector.correlation_s = 5.0f;
+    settings.detector.box_noise_rel = 0.07f;
+    settings.detector.box_correlation_time_s = 5.0f;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < 20; k++) {
         scene_image(&scene, k, &boxed, NULL);
@@ -536,7 +536,7 @@ static void show_tower(void) {
     goe_camera_t *camera = &sighting.settings.camera;
     memset(camera, 0, sizeof *camera);
     camera->fx_px = camera->fy_px = 1000.0f;
-    sighting.settings.navigation.ground_m = 0.1f;
+    sighting.settings.navigation.terrain_height_sd_m = 0.1f;
     memcpy(sighting.sight.camera_to_axes, level, sizeof level);
     sighting.sight.steady_height_m = 20.0f;
     sighting.sight.height_sd_m = 0.1f;
@@ -545,7 +545,7 @@ static void show_tower(void) {
     sides.px[GOE_BOX_RIGHT] = 30.0f;
     sides.px[GOE_BOX_TOP] = -100.0f;
     sides.px[GOE_BOX_BOTTOM] = 200.0f;
-    sides.usable = GOE_SEES_BOX;
+    sides.usable = GOE_SIDES_ALL;
 }
 
 static bool starts(void) { return goe_prism_start(&sighting.sight, first, &first_root); }
@@ -565,7 +565,7 @@ static void the_ground_gives_the_first_range(void) {
     CHECK_CLOSE(1.0e-3, 30.3, (double)first[GOE_PRISM_TOP] * first_range_m());
     CHECK_SAME(0.0f, first[GOE_GROUND]);
     CHECK_SAME(0.0f, first[GOE_BEARING]);
-    sides.usable &= (uint8_t)~GOE_SEES_TOP; /* then it is taken to reach as high as the camera */
+    sides.usable &= (uint8_t)~GOE_SIDE_TOP; /* then it is taken to reach as high as the camera */
     CHECK_CLOSE(0.1, 103.0, first_range_m());
     CHECK_CLOSE(1.0e-4, 20.0, (double)first[GOE_PRISM_TOP] / (double)first[GOE_INVERSE_RANGE]);
 }
@@ -574,23 +574,23 @@ static void the_ground_gives_the_first_range(void) {
  * width. */
 static void the_typical_size_gives_another_range(void) {
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
-    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
+    sighting.settings.filter.prior_width_m = 12.0f;
+    sides.usable &= (uint8_t)~GOE_SIDE_BOTTOM;
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     sides.px[GOE_BOX_BOTTOM] = 20.0f;
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     sighting.sight.steady_height_m = 0.4f;
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     sighting.settings.camera.k1 = -100.0f; /* a lens that no ray gives the foot in */
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     sighting.settings.camera.k1 = 1.0e-6f; /* ... and one that changes next to nothing */
     CHECK_CLOSE(0.1, 103.0, first_range_m());
 }
@@ -598,15 +598,15 @@ static void the_typical_size_gives_another_range(void) {
 /* GIVEN a first range beyond any obstacle's, or within the camera THEN the filter does not start. */
 static void no_range_is_no_start(void) {
     show_tower();
-    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
-    sighting.settings.refined.typical_size_m = 1000.0f;
+    sides.usable &= (uint8_t)~GOE_SIDE_BOTTOM;
+    sighting.settings.filter.prior_width_m = 1000.0f;
     sides.px[GOE_BOX_LEFT] = -0.6f;
     sides.px[GOE_BOX_RIGHT] = 0.6f;
     TEST_ASSERT_TRUE(starts());
     sides.px[GOE_BOX_LEFT] = -0.4f;
     sides.px[GOE_BOX_RIGHT] = 0.4f;
     TEST_ASSERT_FALSE(starts());
-    sighting.settings.refined.typical_size_m = 0.1f;
+    sighting.settings.filter.prior_width_m = 0.1f;
     sides.px[GOE_BOX_LEFT] = -100.0f;
     sides.px[GOE_BOX_RIGHT] = 100.0f;
     TEST_ASSERT_FALSE(starts());
@@ -616,10 +616,10 @@ static void no_range_is_no_start(void) {
 static void without_an_altimeter_the_foot_gives_the_height(void) {
     show_tower();
     sighting.sight.height_sd_m = 100.0f;
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     CHECK_CLOSE(1.0e-5, 0.2 - 20.0 / 200.0, first[GOE_GROUND]); /* 40 m above the ground, by that range */
-    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
+    sides.usable &= (uint8_t)~GOE_SIDE_BOTTOM;
     TEST_ASSERT_TRUE(starts());
     CHECK_SAME(0.0f, first[GOE_GROUND]);
 }
@@ -785,27 +785,27 @@ static void errors_of_an_image_are_checked(void) {
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     scene_image(&scene, 0, &image, NULL);
     for (int i = 0; i < 3; i++) {
-        image.noise.attitude_deg = bad[i];
+        image.noise.attitude_sd_deg = bad[i];
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
     }
-    image.noise.attitude_deg = 0.0f;
+    image.noise.attitude_sd_deg = 0.0f;
     static const float bad_m[] = {-1.0f, 1001.0f};
     static const float bad_px[] = {-1.0f, 101.0f};
     for (int i = 0; i < 2; i++) {
-        image.noise.height_m = bad_m[i];
+        image.noise.height_sd_m = bad_m[i];
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
-        image.noise.height_m = 0.0f;
-        image.noise.pixel_px = bad_px[i];
+        image.noise.height_sd_m = 0.0f;
+        image.noise.pixel_sd_px = bad_px[i];
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
-        image.noise.pixel_px = 0.0f;
+        image.noise.pixel_sd_px = 0.0f;
     }
-    image.noise.height_m = check_from_bits(0x7FC00000u);
+    image.noise.height_sd_m = check_from_bits(0x7FC00000u);
     CHECK_STATUS(GOE_NOT_FINITE, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimator.motion.started);
 #if GOE_WITH_WINDOW
     settings.method = GOE_METHOD_WINDOW;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&estimator, &image, &estimate));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&estimator, &image, &estimate));
 #endif
 }
 
@@ -832,7 +832,7 @@ static void every_side_that_is_visible_is_checked(void) {
         float *const px[] = {&image.box.left_px, &image.box.top_px, &image.box.right_px, &image.box.bottom_px};
         scene_image(&scene, 1 + side, &image, NULL);
         *px[side] = check_from_bits(0x7FC00000u);
-        image.box.seen = (uint8_t)(GOE_SEES_BOX & ~(1u << side));
+        image.box.sides = (uint8_t)(GOE_SIDES_ALL & ~(1u << side));
         TEST_ASSERT_TRUE(goe_update(&estimator, &image, &estimate) >= GOE_OK);
     }
 }
@@ -845,12 +845,12 @@ static float height_sigma_with(float first_m, float later_m, goe_model_t model, 
     scene_default(&scene);
     scene.boxes = true;
     goe_settings_t settings = scene_settings(&scene);
-    settings.navigation.ground_m = 0.0f;
+    settings.navigation.terrain_height_sd_m = 0.0f;
     settings.model = model;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < 45; k++) {
         scene_image(&scene, k, &image, NULL);
-        image.noise.height_m = k == 0 ? first_m : later_m;
+        image.noise.height_sd_m = k == 0 ? first_m : later_m;
         (void)goe_update(&estimator, &image, estimate);
     }
     TEST_ASSERT_TRUE(estimate->valid & GOE_HAS_HEIGHT);
@@ -914,7 +914,7 @@ static void the_width_of_slender_things_is_not_confidently_wrong(void) {
     TEST_ASSERT_EQUAL_INT(0, wrong);
 }
 
-/* [goe_image_noise_t.height_m]
+/* [goe_image_noise_t.height_sd_m]
  * GIVEN an image that knows the error of its height THEN it counts in the first image with a box, and in no other. */
 static void a_height_s_own_error_counts_in_the_first_image(void) {
     goe_estimate_t estimate;
@@ -951,13 +951,13 @@ static void unobserved_depth_keeps_no_answer_back(void) {
         scene_default(&scene);
         scene.boxes = true;
         goe_settings_t settings = scene_settings(&scene);
-        settings.refined.range_share = share[strict];
+        settings.filter.range_sd_rel_max = share[strict];
         CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
         for (int k = 0; k < 34; k++) {
             scene_image(&scene, k, &image, NULL);
             (void)goe_update(&estimator, &image, &estimate);
         }
-        const bool reported = estimate.fresh && estimate.method == GOE_METHOD_REFINED;
+        const bool reported = estimate.fresh && estimate.method == GOE_METHOD_FILTER;
         TEST_ASSERT_EQUAL_INT(strict == 0, reported);
         TEST_ASSERT_TRUE(!reported || estimate.sigma.z0_m > share[strict] * estimate.z0_m);
     }
@@ -979,16 +979,16 @@ static void boxes_that_come_too_soon_are_not_used(void) {
         (void)goe_update(&estimator, &image, &estimate);
     }
     TEST_ASSERT_TRUE(estimate.fresh);
-    const int points = estimate.points;
+    const int points = estimate.images_used;
     const int64_t last_us = image.pose.time_us;
-    const float early_s = 0.08f * settings.detector.correlation_s;
+    const float early_s = 0.08f * settings.detector.box_correlation_time_s;
     image.pose.time_us = last_us + (int64_t)((early_s - 0.002f) * 1.0e6f);
-    CHECK_STATUS(GOE_HELD, goe_update(&estimator, &image, &estimate));
+    CHECK_STATUS(GOE_STALE, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimate.fresh);
-    TEST_ASSERT_EQUAL_INT(points, estimate.points);
+    TEST_ASSERT_EQUAL_INT(points, estimate.images_used);
     image.pose.time_us = last_us + (int64_t)((early_s + 0.002f) * 1.0e6f);
     CHECK_STATUS(GOE_OK, goe_update(&estimator, &image, &estimate));
-    TEST_ASSERT_EQUAL_INT(points + 1, estimate.points);
+    TEST_ASSERT_EQUAL_INT(points + 1, estimate.images_used);
 }
 
 int main(void) {

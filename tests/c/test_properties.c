@@ -345,7 +345,7 @@ static void an_estimate_agrees_with_itself(void) {
             CHECK_CLOSE(1.0e-6, cos(radians), e->length_axis[1]);
             CHECK_CLOSE(1.0e-6, cos(radians), e->width_axis[0]);
             CHECK_CLOSE(1.0e-6, -sin(radians), e->width_axis[1]);
-            CHECK_CLOSE(1.0e-4, 90.0f, fabsf(e->other_side_deg - e->orientation_deg));
+            CHECK_CLOSE(1.0e-4, 90.0f, fabsf(e->front_orientation_deg - e->orientation_deg));
         }
         if (e->valid & GOE_HAS_POSITION) {
             CHECK_CLOSE(1.0e-4, e->x0_m - (float)flight[k].truth.dx_m, e->x_m);

@@ -47,8 +47,8 @@ static void make_any(goe_phase_t phase) {
     memset(&filter, 0, sizeof filter);
     memset(&motion, 0, sizeof motion);
     goe_settings_default(&settings);
-    settings.navigation.velocity_bias_m_s = 0.0f;
-    settings.navigation.position_walk_m = 0.0f;
+    settings.navigation.velocity_bias_sd_m_s = 0.0f;
+    settings.navigation.position_walk_sd_m = 0.0f;
     filter.phase = (uint8_t)phase;
     filter.phase_images = 100;
     filter.known = 0xFFu;
@@ -246,7 +246,7 @@ static double beyond_face(int value) {
         case GOE_WIDTH:
             return squared(0.06 * size);
         case GOE_HEIGHT:
-            return squared((settings.refined.top_is_highest ? 2.0 : 0.15) * size) * below2();
+            return squared((settings.filter.top_is_highest ? 2.0 : 0.15) * size) * below2();
         default:
             return squared(0.1 * size);
     }
@@ -434,8 +434,8 @@ static void errors_of_own_motion_are_in_the_sigmas(void) {
         make_any(phases[n % 5]);
         be_uncertain(CERTAIN);
         filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f; /* of a disc's condition */
-        settings.navigation.velocity_bias_m_s = 0.2f;
-        settings.navigation.position_walk_m = 0.1f;
+        settings.navigation.velocity_bias_sd_m_s = 0.2f;
+        settings.navigation.position_walk_sd_m = 0.1f;
         const double path = hypot((double)motion.dx_m - (double)filter.axes.start_dx_m,
                                   (double)motion.dz_m - (double)filter.axes.start_dz_m);
         const bool turned = n % 2 != 0;
@@ -476,8 +476,8 @@ static void errors_of_own_motion_are_on_the_diagonal(void) {
         make_any(phases[n % 5]);
         be_uncertain(CERTAIN);
         filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
-        settings.navigation.velocity_bias_m_s = 0.2f;
-        settings.navigation.position_walk_m = 0.1f;
+        settings.navigation.velocity_bias_sd_m_s = 0.2f;
+        settings.navigation.position_walk_sd_m = 0.1f;
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, now);
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
@@ -572,8 +572,8 @@ static void sigmas_are_the_roots_of_the_diagonal(void) {
         float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
         make_any(phases[n % 6]);
         settings.model = n % 4 == 0 ? GOE_MODEL_DISC : GOE_MODEL_AUTO;
-        settings.navigation.velocity_bias_m_s = 0.2f;
-        settings.navigation.position_walk_m = 0.1f;
+        settings.navigation.velocity_bias_sd_m_s = 0.2f;
+        settings.navigation.position_walk_sd_m = 0.1f;
         filter.naming.exchanged = n / 6 % 2 != 0;
         filter.state[GOE_SIDE_X] += (float)(between(0.0, 0.1) * (double)filter.state[GOE_FRONT_X]);
         be_uncertain(between(0.1, 2.0));
@@ -610,7 +610,7 @@ static void a_reported_value_was_known_twice(void) {
     TEST_ASSERT_EQUAL_HEX(0u, quantities.known);
     TEST_ASSERT_EQUAL_HEX(0u, quantities.now);
     filter.state[GOE_INVERSE_RANGE] = 0.01f;
-    settings.refined.range_share = 1.0e-5f;
+    settings.filter.range_sd_rel_max = 1.0e-5f;
     goe_quantities_find(&filter, &settings, &motion, &quantities);
     TEST_ASSERT_EQUAL_HEX(0u, quantities.known);
 }

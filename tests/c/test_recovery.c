@@ -44,8 +44,8 @@ static bool judge(unsigned refused) { return goe_health_judge(&filter, &settings
 
 /* ------------------------------------------------------------------------------------------------------------- means -- */
 
-/* [GOE_REASON_NOISE, goe_estimate_t.misfit]
- * GIVEN images whose NIS is that of their rows THEN the misfit is their mean with eight zeros before, of 64 images from then on. */
+/* [GOE_REASON_NOISE, goe_estimate_t.nis_ratio]
+ * GIVEN images whose NIS is that of their rows THEN the NIS ratio is their mean with eight zeros before, of 64 images from then on. */
 static void the_misfit_begins_with_eight_zeros_and_remembers_64_images(void) {
     double expected = 0.0;
     for (int n = 1; n <= 200; n++) {
@@ -88,7 +88,7 @@ static void one_image_does_not_decide(void) {
     TEST_ASSERT_EQUAL_INT(0, filter.health.images);
 }
 
-/* [goe_estimate_t.points] */
+/* [goe_estimate_t.images_used] */
 static void the_count_of_images_saturates(void) {
     filter.health.images = INT16_MAX - 1;
     take(1.0f);

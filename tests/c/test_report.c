@@ -25,7 +25,7 @@ void setUp(void) {
     filter.health.mean_nis = 1.0f;
     filter.health.nis = 7.5f;
     filter.health.nis_rows = 9;
-    estimate.method = GOE_METHOD_REFINED;
+    estimate.method = GOE_METHOD_FILTER;
 }
 void tearDown(void) {}
 
@@ -46,7 +46,7 @@ static void be_skewed(void) {
 }
 
 /* GIVEN more than one reason THEN the most informative one is reported: motion before a wrong corner, no disc, latency, and only then
- * a general misfit, which all of them cause. Late poses alone are corrected, and make nothing suspect. */
+ * a general nis_ratio, which all of them cause. Late poses alone are corrected, and make nothing suspect. */
 static void the_most_informative_reason_is_reported(void) {
     check_reason(GOE_REASON_NONE, false);
     filter.health.mean_nis = 2.0f;
@@ -69,14 +69,14 @@ static void the_most_informative_reason_is_reported(void) {
     check_reason(GOE_REASON_NONE, false);
 }
 
-/* GIVEN few images THEN a misfit says nothing yet. */
+/* GIVEN few images THEN a NIS ratio says nothing yet. */
 static void few_images_make_nothing_suspect(void) {
     filter.health.mean_nis = 5.0f;
     filter.health.images = 7;
     check_reason(GOE_REASON_NONE, false);
     filter.health.images = 8;
     check_reason(GOE_REASON_NOISE, true);
-    settings.refined.misfit_max = 5.0f; /* above which, not from which on */
+    settings.filter.nis_ratio_max = 5.0f; /* above which, not from which on */
     check_reason(GOE_REASON_NONE, false);
 }
 
@@ -121,22 +121,22 @@ static void the_windows_answer_is_doubted_too(void) {
     TEST_ASSERT_TRUE(estimate.suspect);
 }
 
-/* GIVEN an answer THEN the fit is reported with the refined method's alone; the latency, which both methods suffer from, always. */
+/* GIVEN an answer THEN the fit is reported with the filter method's alone; the latency, which both methods suffer from, always. */
 static void the_fit_is_reported_with_the_filters_answer(void) {
     filter.mover.augmented[0] = 0.12f;
     goe_report_fit(&filter, &settings, &estimate);
-    TEST_ASSERT_EQUAL_INT(40, estimate.points);
+    TEST_ASSERT_EQUAL_INT(40, estimate.images_used);
     TEST_ASSERT_EQUAL_INT(9, estimate.nis_rows);
     CHECK_SAME(7.5f, estimate.nis);
-    CHECK_SAME(1.0f, estimate.misfit);
+    CHECK_SAME(1.0f, estimate.nis_ratio);
     CHECK_SAME(0.12f, estimate.latency_s);
     CHECK_CLOSE(1.0e-6, 0.05, estimate.sigma.latency_s); /* as before anything was known */
     memset(&estimate, 0, sizeof estimate);
     estimate.method = GOE_METHOD_WINDOW;
     goe_report_fit(&filter, &settings, &estimate);
-    TEST_ASSERT_EQUAL_INT(0, estimate.points + estimate.nis_rows);
+    TEST_ASSERT_EQUAL_INT(0, estimate.images_used + estimate.nis_rows);
     CHECK_SAME(0.0f, estimate.nis);
-    CHECK_SAME(0.0f, estimate.misfit);
+    CHECK_SAME(0.0f, estimate.nis_ratio);
     CHECK_SAME(0.12f, estimate.latency_s);
 }
 
@@ -193,7 +193,7 @@ static void only_known_values_are_reported(void) {
         CHECK_SAME(height ? 6.0f : 0.0f, estimate.sigma.height_m);
         CHECK_CLOSE(1.0e-5, turned ? 28.6478898 : 0.0, estimate.orientation_deg);
         CHECK_CLOSE(1.0e-5, turned ? 28.6478898 : 0.0, estimate.orientation_raw_deg);
-        CHECK_CLOSE(1.0e-5, turned ? 28.6478898 - 90.0 : 0.0, estimate.other_side_deg);
+        CHECK_CLOSE(1.0e-5, turned ? 28.6478898 - 90.0 : 0.0, estimate.front_orientation_deg);
         CHECK_CLOSE(1.0e-4, turned ? 3.0 * 57.2957795 : 0.0, estimate.sigma.orientation_deg);
         CHECK_SAME(turned ? 0.6f : 0.0f, estimate.length_axis[0]);
         CHECK_SAME(turned ? 0.8f : 0.0f, estimate.length_axis[1]);
@@ -233,7 +233,7 @@ static void an_image_that_knows_nothing_takes_nothing_back(void) {
     memset(&estimate, 0xA5, sizeof estimate);
     estimate.valid = 0;
     TEST_ASSERT_FALSE(goe_report_quantities(&quantities, &motion, &estimate));
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
     CHECK_SAME(0.0f, estimate.z0_m);
     TEST_ASSERT_FALSE(estimate.fresh);

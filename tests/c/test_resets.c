@@ -4,7 +4,7 @@
 #include "check.h"
 #include "scene.h"
 
-#define RESETS 0 /* in causes */
+#define RESETS 0 /* in fault_counts */
 
 static scene_t scene;
 static goe_estimator_t plain, jumped;
@@ -73,7 +73,7 @@ static void a_known_jump_is_compensated(void) {
         check_same_but_for_the_origin(k >= 12 ? 1 : 0);
     }
     TEST_ASSERT_TRUE(estimate_jumped.valid & GOE_HAS_CENTER);
-    TEST_ASSERT_EQUAL_UINT32(0u, jumped.causes[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(0u, jumped.fault_counts[RESETS]);
 }
 
 /* [goe_pose_t.reset_delta_ned_m] The sum is given if the filter jumped more than once between two images, the counter then skips. */
@@ -106,10 +106,10 @@ static void the_counter_wraps(void) {
         (void)goe_update(&jumped, &image, &estimate_jumped);
         check_same_but_for_the_origin(times);
     }
-    TEST_ASSERT_EQUAL_UINT32(0u, jumped.causes[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(0u, jumped.fault_counts[RESETS]);
 }
 
-/* [A22, A27, GOE_CAUSES, goe_pose_t.reset_delta_known]
+/* [A22, A27, GOE_FAULT_COUNTS, goe_pose_t.reset_delta_known]
  * GIVEN a track with a solution WHEN the filter jumps by an unknown amount THEN the track starts again with this image:
  * as a new estimator's, and the jump is counted. */
 static void an_unknown_jump_starts_a_new_track(void) {
@@ -121,11 +121,11 @@ static void an_unknown_jump_starts_a_new_track(void) {
             continue;
         }
         CHECK_STATUS(goe_update(&plain, &image, &estimate_plain), status); /* gets only the input after the jump */
-        CHECK_STATUS(k < 19 ? GOE_COLLECTING : GOE_OK, status);
+        CHECK_STATUS(k < 19 ? GOE_CONVERGING : GOE_OK, status);
         TEST_ASSERT_EQUAL_MEMORY(&estimate_plain, &estimate_jumped, sizeof estimate_plain);
     }
-    TEST_ASSERT_EQUAL_UINT32(1u, jumped.causes[RESETS]);
-    TEST_ASSERT_EQUAL_UINT32(0u, plain.causes[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(1u, jumped.fault_counts[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(0u, plain.fault_counts[RESETS]);
 }
 
 /* [A22] */
@@ -144,9 +144,9 @@ static void an_unknown_jump_leaves_no_old_answer(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate_jumped.age_s);
 }
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 /* [goe_estimator.c]
- * GIVEN an answer of the refined method WHEN the filter jumps while nothing is detected THEN the old answer's center, reported in the
+ * GIVEN an answer of the filter method WHEN the filter jumps while nothing is detected THEN the old answer's center, reported in the
  * autopilot's north and east, moves along with them; values relative to the camera stay. */
 static void an_old_answers_center_moves_along(void) {
     goe_image_t image;
@@ -157,13 +157,13 @@ static void an_old_answers_center_moves_along(void) {
         (void)goe_update(&jumped, &image, &estimate_jumped);
     }
     const goe_estimate_t before = estimate_jumped;
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, before.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, before.method);
     TEST_ASSERT_TRUE(before.valid & GOE_HAS_CENTER);
     image_after(59, 1, &image);
     give_jump(&image, 1);
     image.pose.time_us += 100000;
     scene_hide_points(&image);
-    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_NO_DETECTION, goe_update(&jumped, &image, &estimate_jumped));
     CHECK_CLOSE(1.0e-4, (double)before.center_north_m + (double)jump[0], estimate_jumped.center_north_m);
     CHECK_CLOSE(1.0e-4, (double)before.center_east_m + (double)jump[1], estimate_jumped.center_east_m);
     CHECK_CLOSE(1.0e-4, (double)before.z_m, estimate_jumped.z_m);
@@ -257,17 +257,17 @@ static void a_delta_is_read_only_with_a_reset(void) {
 static void a_bad_delta_is_ignored_without_a_reset(void) {
     goe_image_t image;
     scene_image(&scene, 0, &image, NULL);
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&jumped, &image, &estimate_jumped));
     scene_image(&scene, 1, &image, NULL);
     image.pose.reset_delta_known = true;
     image.pose.reset_delta_ned_m[1] = check_from_bits(0x7FC00000u);
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&jumped, &image, &estimate_jumped));
 }
 
 static void a_bad_delta_of_a_reset_is_refused(void) {
     goe_image_t image;
     scene_image(&scene, 0, &image, NULL);
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&jumped, &image, &estimate_jumped));
     image_after(1, 1, &image);
     give_jump(&image, 1);
     image.pose.reset_delta_ned_m[1] = check_from_bits(0x7FC00000u);
@@ -275,7 +275,7 @@ static void a_bad_delta_of_a_reset_is_refused(void) {
     image.pose.reset_delta_ned_m[1] = 1.1e6f;
     CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&jumped, &image, &estimate_jumped));
     image.pose.reset_delta_known = false; /* then it is not read */
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&jumped, &image, &estimate_jumped));
 }
 
 int main(void) {
@@ -285,7 +285,7 @@ int main(void) {
     RUN_TEST(the_counter_wraps);
     RUN_TEST(an_unknown_jump_starts_a_new_track);
     RUN_TEST(an_unknown_jump_leaves_no_old_answer);
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
     RUN_TEST(an_old_answers_center_moves_along);
 #endif
     RUN_TEST(jumps_are_never_motion);

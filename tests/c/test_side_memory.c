@@ -123,7 +123,7 @@ static series_t any_series(void) {
     return s;
 }
 
-/* [detector.box_share, (R30), (R31), (R32)]
+/* [detector.box_noise_rel, (R30), (R31), (R32)]
  * GIVEN a side whose error is a first-order process WHEN its images come one by one THEN value and variance are those of all
  * images at once, with the error's whole covariance. */
 static void it_is_as_good_as_all_images_at_once(void) {

@@ -223,7 +223,7 @@ static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_
     CHECK_CLOSE(SHARE * (1.0 + expected.nis), expected.nis, nis);
 }
 
-/* [GOE_METHOD_REFINED, goe_estimate_t.nis, (R17)]
+/* [GOE_METHOD_FILTER, goe_estimate_t.nis, (R17)]
  * GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and the rest are those of the
  * normal equations with the temporaries' noise in the rows' covariance. */
 static void an_update_solves_the_normal_equations(void) {
@@ -382,7 +382,7 @@ static void check_spread(const float direction[GOE_STATES], size_t first, size_t
     check_equal(5.0 * SHARE, &expected, &actual);
 }
 
-/* [navigation.attitude_drift_deg, navigation.position_walk_m, (R14)]
+/* [navigation.attitude_walk_sd_deg, navigation.position_walk_sd_m, (R14)]
  * GIVEN a variance along one state, or along several at once THEN the covariance grows by sigma^2 d d', and nothing else
  * changes. */
 static void spreading_adds_to_the_covariance(void) {

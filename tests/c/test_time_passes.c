@@ -19,8 +19,8 @@ static goe_image_t last;
 void setUp(void) {
     scene_default(&scene);
     goe_settings_t settings = scene_settings(&scene);
-    settings.navigation.attitude_drift_deg = (float)DRIFT_DEG;
-    settings.navigation.position_walk_m = (float)WALK_M;
+    settings.navigation.attitude_walk_sd_deg = (float)DRIFT_DEG;
+    settings.navigation.position_walk_sd_m = (float)WALK_M;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < 40; k++) {
         scene_image(&scene, k, &last, NULL);

@@ -87,7 +87,7 @@ def bad_features(dialect: ModuleType) -> list[Any]:
         time_sd=65535,
         image_width=1280,
         image_height=720,
-        seen=0xFFFF,
+        visible=0xFFFF,
         camera_id=0,
         time_base=2,
         number=1,

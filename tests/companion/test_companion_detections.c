@@ -130,11 +130,11 @@ static void a_detection_is_read_whole(void) {
     CHECK_SAME(0.25f, d[0].score);
     CHECK_SAME(2.5f, d[0].pixel_px);
     for (int i = 0; i < 6; i++) {
-        TEST_ASSERT_TRUE(points[i]->seen);
+        TEST_ASSERT_TRUE(points[i]->visible);
         CHECK_SAME(10.0f + 2.0f * (float)i, points[i]->u_px);
         CHECK_SAME(11.0f + 2.0f * (float)i, points[i]->v_px);
     }
-    TEST_ASSERT_EQUAL_HEX8(GOE_SEES_BOX, d[0].box.seen);
+    TEST_ASSERT_EQUAL_HEX8(GOE_SIDES_ALL, d[0].box.sides);
     CHECK_SAME(1.0f, d[0].box.left_px);
     CHECK_SAME(2.0f, d[0].box.top_px);
     CHECK_SAME(3.5f, d[0].box.right_px);
@@ -143,10 +143,10 @@ static void a_detection_is_read_whole(void) {
     CHECK_SAME(0.5f, d[1].score);
     CHECK_SAME(7.0f, d[1].box.right_px);
     CHECK_SAME(8.0f, d[1].box.bottom_px);
-    TEST_ASSERT_FALSE(d[1].left.seen);
+    TEST_ASSERT_FALSE(d[1].left.visible);
     CHECK_SAME(1.0f, d[2].score); /* without a score it is certain */
     TEST_ASSERT_EQUAL_UINT32(0u, d[2].id);
-    TEST_ASSERT_EQUAL_HEX8(0, d[2].box.seen);
+    TEST_ASSERT_EQUAL_HEX8(0, d[2].box.sides);
 }
 
 static void what_is_no_detection_is_refused(void) {

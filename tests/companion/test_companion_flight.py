@@ -91,11 +91,11 @@ def test_the_mast_is_found(fleet: Fleet, name: str) -> None:
 def test_the_hazard_rises(fleet: Fleet, name: str) -> None:
     """On a course towards the mast the probability becomes high in time, and the time to it counts down."""
     worst = [hazard for hazard in fleet[name].of("GOE_HAZARD") if hazard.flags & 8]
-    ahead = [hazard for hazard in worst if hazard.time_to > 1.0]
+    ahead = [hazard for hazard in worst if hazard.tcpa > 1.0]
     assert len(ahead) >= 10
-    assert max(hazard.violation for hazard in ahead[-5:]) > 0.95
-    assert ahead[-1].violation >= ahead[0].violation
-    assert ahead[-1].time_to < 4.0 < ahead[0].time_to
+    assert max(hazard.conflict_probability for hazard in ahead[-5:]) > 0.95
+    assert ahead[-1].conflict_probability >= ahead[0].conflict_probability
+    assert ahead[-1].tcpa < 4.0 < ahead[0].tcpa
 
 
 @pytest.mark.parametrize("name", [*NAMES, *(plan.name for plan in OTHERS)])

@@ -110,7 +110,7 @@ def test_a_restart_of_the_autopilot_ends_its_faults(fleet: Fleet) -> None:
 
 @pytest.mark.parametrize("name", [LOST, SILENT, FILTER])
 def test_doubt_widens_the_margin(fleet: Fleet, name: str) -> None:
-    """By half of 15 m, the default of flight.doubt."""
+    """By half of 15 m, the default of flight.suspect_factor."""
     assert aside_m(fleet[name]) > aside_m(fleet[HEALTHY]) + 5.0
 
 

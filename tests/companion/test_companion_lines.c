@@ -58,10 +58,10 @@ static void a_line_has_the_fields_of_the_readme(void) {
     CHECK_SAME(400.0f, d->box.top_px);
     CHECK_SAME(660.0f, d->box.right_px);
     CHECK_SAME(512.5f, d->box.bottom_px);
-    TEST_ASSERT_EQUAL_UINT8(GOE_SEES_BOX, d->box.seen);
-    TEST_ASSERT_TRUE(d->base_near.seen);
+    TEST_ASSERT_EQUAL_UINT8(GOE_SIDES_ALL, d->box.sides);
+    TEST_ASSERT_TRUE(d->base_near.visible);
     CHECK_SAME(511.0f, d->base_near.v_px);
-    TEST_ASSERT_FALSE(d->left.seen);
+    TEST_ASSERT_FALSE(d->left.visible);
 }
 
 static void other_programs_keys_are_understood(void) {

@@ -138,8 +138,8 @@ def test_features_are_tenths_from_the_middle(dialect: ModuleType) -> None:
     message = features(dialect, CAMERA, image().boxes[0], 1, times)
     sent = dialect.MAVLink(None).parse_buffer(message.pack(dialect.MAVLink(None)))[0]
     assert list(sent.box) == [-395, -600, round(10 * 10.25), 1400]
-    assert (sent.seen, sent.number, sent.time_base, sent.age_usec) == (0xF, 1, 2, 250000)
-    assert features(dialect, CAMERA, None, 0, times).seen == 0
+    assert (sent.visible, sent.number, sent.time_base, sent.age_usec) == (0xF, 1, 2, 250000)
+    assert features(dialect, CAMERA, None, 0, times).visible == 0
 
 
 @pytest.fixture(name="autopilot")

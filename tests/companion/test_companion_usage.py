@@ -152,7 +152,7 @@ component=191
 [flight]
 margin_m = 22.5
 [estimator]
-navigation.attitude_bias_deg = 1.25
+navigation.attitude_bias_sd_deg = 1.25
 [reports]
 standard = collision obstacle_distance
 """
@@ -164,7 +164,7 @@ standard = collision obstacle_distance
         "flight.margin_m = 22.5",
     ):
         assert printed_value in out
-    assert re.search(r"navigation.attitude_bias_deg ?= ?1.25", out)
+    assert re.search(r"navigation.attitude_bias_sd_deg ?= ?1.25", out)
     assert re.search(r"reports.standard = .*obstacle_distance", out) and "collision" in out
 
 
@@ -189,8 +189,8 @@ BAD_KEYS = {
     "flight, range": ("[flight]\nmargin_m = -1\n", 2, "margin_m"),
     "flight, no number": ("[flight]\nmargin_m = wide\n", 2, "margin_m"),
     "estimator, unknown": ("[estimator]\nnavigation.luck = 1\n", 2, "navigation.luck"),
-    "estimator, range": ("[estimator]\ndetector.box_px = -1\n", 2, "detector.box_px"),
-    "estimator, no number": ("[estimator]\ndetector.box_px = x\n", 2, "detector.box_px"),
+    "estimator, range": ("[estimator]\ndetector.box_px = -1\n", 2, "detector.box_noise_px"),
+    "estimator, no number": ("[estimator]\ndetector.box_px = x\n", 2, "detector.box_noise_px"),
     "twice": ("[link]\nsystem = 1\nsystem = 2\n", 3, "system"),
     "no assignment": ("[link]\nautopilot\n", 2, ""),
     "no bracket": ("[link\nsystem = 1\n", 1, ""),

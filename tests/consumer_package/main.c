@@ -20,7 +20,7 @@ static goe_pixel_t horizon(float u_px) {
     goe_pixel_t pixel;
     pixel.u_px = u_px;
     pixel.v_px = CENTER_V_PX;
-    pixel.seen = true;
+    pixel.visible = true;
     return pixel;
 }
 
@@ -43,7 +43,7 @@ int main(void) {
         return 1;
     }
 
-    goe_status_t status = GOE_COLLECTING;
+    goe_status_t status = GOE_CONVERGING;
     goe_estimate_t estimate = {0};
     for (int i = 0; i <= 8; i++) {
         const float north_m = 5.0f * (float)i;

@@ -23,7 +23,7 @@ if compile program.c; then
     fail "the limits are those of the header without GOE_CONFIG_HEADER"
 fi
 for bad in -DGOE_WINDOW_MAX=2 -DGOE_WINDOW_MAX=65 -DGOE_CAMERAS_MAX=0 -DGOE_CAMERAS_MAX=9 \
-    "-DGOE_WITH_WINDOW=0 -DGOE_WITH_REFINED=0"; do
+    "-DGOE_WITH_WINDOW=0 -DGOE_WITH_FILTER=0"; do
     read -ra words <<<"$bad"
     if compile "${words[@]}" "$root/lib/goe_settings.c"; then
         fail "$bad compiles"

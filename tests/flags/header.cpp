@@ -36,7 +36,7 @@ static bool features_arrive() {
     uint8_t payload[GOE_MAVLINK_PAYLOAD_MAX];
     features.number = 1u;
     features.image_width = features.image_height = 640u;
-    features.seen = GOE_MAVLINK_SEES_BOX;
+    features.visible = GOE_MAVLINK_FEATURE_BOX;
     const size_t length = goe_mavlink_pack_features(&features, payload);
     goe_mavlink_read_features(payload, length, &features);
     return goe_mavlink_from_features(&features, 0u, &sighting) && sighting.frame.count == 1u;

@@ -41,4 +41,4 @@ refused GOE_NUISANCES 2 4
 refused GOE_KEPT 5 7
 refused GOE_CHANGED 6 8
 refused GOE_UNWEIGHTED 2 4
-refused GOE_CAUSES 13 15
+refused GOE_FAULT_COUNTS 13 15

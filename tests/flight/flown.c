@@ -93,7 +93,8 @@ bool flown_step(flown_t *flown) {
         return false;
     }
     const goe_flight_detection_t detection = flown_detection(flown, exposed);
-    const bool seen = flown->points ? detection.left.seen && detection.right.seen : detection.box.seen == GOE_SEES_BOX;
+    const bool seen =
+        flown->points ? detection.left.visible && detection.right.visible : detection.box.sides == GOE_SIDES_ALL;
     const bool detects = flown->detects && seen;
     const goe_flight_frame_t frame = flown_frame(flown, exposed, &detection, detects ? 1 : 0);
     const goe_flight_status_t status = goe_flight_frame(&flown->flight, &frame);

@@ -177,7 +177,7 @@ static void the_phase_decides_the_action(void) {
         TEST_ASSERT_EQUAL(k < 2 ? GOE_FLIGHT_REASON_CLEAR : GOE_FLIGHT_REASON_LANDING, now.reason);
         TEST_ASSERT_EQUAL(0, now.worst);
         TEST_ASSERT_EQUAL(1, now.obstacles);
-        TEST_ASSERT_TRUE(now.hazard.violation > 0.9f);
+        TEST_ASSERT_TRUE(now.hazard.conflict_probability > 0.9f);
         TEST_ASSERT_EQUAL(k < 2 ? 0 : -1, now.avoided);
         if (k < 2) {
             CHECK_CLOSE(0.01, -22.0, now.target_ned_m[2]);
@@ -196,7 +196,7 @@ static void a_dead_pose_is_not_moved_on(void) {
         setUp();
         put(0, 200.0f, 60.0f, 50.0f);
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(k == 0 ? 0u : k == 1 ? 500000u : 3000000u, GOE_FLIGHT_FLYING));
-        time_s[k] = now.hazard.time_s;
+        time_s[k] = now.hazard.tcpa_s;
         TEST_ASSERT_EQUAL(k < 2, now.pose_alive);
     }
     CHECK_CLOSE(1.0e-4, time_s[0] - 0.5f, time_s[1]);
@@ -212,7 +212,7 @@ static void check_nothing_is_known(goe_flight_status_t expected) {
     TEST_ASSERT_EQUAL_MEMORY(&nothing, &now, sizeof now);
 }
 
-/* [GOE_FLIGHT_NO_POSE, GOE_FLIGHT_CORRUPTED, GOE_FLIGHT_NOT_INITIALISED] */
+/* [GOE_FLIGHT_NO_POSE, GOE_FLIGHT_CORRUPTED, GOE_FLIGHT_NOT_INITIALIZED] */
 static void an_assessment_that_fails_knows_nothing(void) {
     put(0, 110.0f, 0.5f, 12.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(0u, GOE_FLIGHT_FLYING));
@@ -227,7 +227,7 @@ static void an_assessment_that_fails_knows_nothing(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(flight, &attitude));
     check_nothing_is_known(GOE_FLIGHT_NO_POSE);
     flight->tag++;
-    check_nothing_is_known(GOE_FLIGHT_NOT_INITIALISED);
+    check_nothing_is_known(GOE_FLIGHT_NOT_INITIALIZED);
 }
 
 /* Images older than delay_max_s do not come any more: to there an obstacle is moved on without one. */
@@ -297,7 +297,7 @@ static void an_obstacle_of_no_numbers_is_corrupted(void) {
                                  &slot->length_m,
                                  &slot->length_heading_deg,
                                  &slot->age_s,
-                                 &slot->hazard.miss_sd_m};
+                                 &slot->hazard.dcpa_sd_m};
         put(0, 110.0f, 5.0f, 12.0f);
         const float before = *number[k];
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(flight, 0, &obstacle));

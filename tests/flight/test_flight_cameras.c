@@ -141,7 +141,7 @@ static goe_flight_detection_t something(uint32_t number) {
     detection.box.right_px = 240.0f;
     detection.box.top_px = 600.0f;
     detection.box.bottom_px = 700.0f;
-    detection.box.seen = GOE_SEES_BOX;
+    detection.box.sides = GOE_SIDES_ALL;
     return detection;
 }
 

@@ -102,7 +102,7 @@ static void doubt_about_the_time_is_doubt_about_the_attitude(void) {
     float sd_deg;
     turn_steadily(&flown.flight);
     const uint32_t at_us = flown.start_us + 30u * (1000000u / FLOWN_POSE_HZ);
-    const double white_deg = (double)flown.flight.attitude_white_deg;
+    const double white_deg = (double)flown.flight.attitude_white_sd_deg;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flown.flight, at_us, 0u, &pose, &sd_deg));
     CHECK_CLOSE(0.01, white_deg, sd_deg);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flown.flight, at_us, SD_US, &pose, &sd_deg));
@@ -297,15 +297,15 @@ static void an_obstacle_turns_with_the_course(void) {
 static void a_new_track_begins_with_nothing(void) {
     (void)flown_fly(&flown, 4.0);
     goe_flight_slot_t *slot = &flown.flight.slot[0];
-    TEST_ASSERT_TRUE(slot->assessed && slot->in_view && slot->valid != 0u && slot->hazard.time_s > 0.0f);
+    TEST_ASSERT_TRUE(slot->assessed && slot->in_view && slot->valid != 0u && slot->hazard.tcpa_s > 0.0f);
     slot->remembered = slot->suspect = true;
     goe_flight_slot_begin(slot, 9u, 5000000u);
     TEST_ASSERT_EQUAL_UINT32(9u, slot->id);
     TEST_ASSERT_TRUE(slot->used && slot->fresh_track);
     TEST_ASSERT_FALSE(slot->assessed || slot->in_view || slot->remembered || slot->suspect);
     TEST_ASSERT_EQUAL_HEX(0u, slot->valid);
-    CHECK_CLOSE(0.0, 0.0, slot->hazard.time_s);
-    CHECK_CLOSE(0.0, 0.0, slot->hazard.violation);
+    CHECK_CLOSE(0.0, 0.0, slot->hazard.tcpa_s);
+    CHECK_CLOSE(0.0, 0.0, slot->hazard.conflict_probability);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- boxes -- */
@@ -321,7 +321,7 @@ static void points_make_a_box(void) {
     for (int first = 0; first < 6; first++) {
         for (int i = 0; i < 6; i++) {
             goe_pixel_t *point = points[(first + i) % 6];
-            point->seen = i < 4;
+            point->visible = i < 4;
             point->u_px = i == 0 ? 300.0f : i == 1 ? 100.0f : i == 2 ? 200.0f : 150.0f;
             point->v_px = i == 0 ? 410.0f : i == 1 ? 450.0f : i == 2 ? 500.0f : 400.0f;
         }

@@ -22,8 +22,8 @@ static void put(int slot, float ahead_m, float right_m, float top_m) {
     s->center_ne_m[1] = right_m;
     s->width_m = 6.0f;
     s->top_m = top_m;
-    s->hazard.violation = fabsf(right_m) < 18.0f && ahead_m > own.ned_m[0] ? 1.0f : 0.0f;
-    s->hazard.time_s = (ahead_m - own.ned_m[0] - 3.0f) / SPEED_M_S;
+    s->hazard.conflict_probability = fabsf(right_m) < 18.0f && ahead_m > own.ned_m[0] ? 1.0f : 0.0f;
+    s->hazard.tcpa_s = (ahead_m - own.ned_m[0] - 3.0f) / SPEED_M_S;
 }
 
 static void start(float loiter_m) {
@@ -119,7 +119,7 @@ static void put_wall(float ahead_m) {
     for (int i = 0; i < 4; i++) {
         put(i, ahead_m, -88.0f + 60.0f * (float)i, 50.0f);
         flight.slot[i].width_m = 44.0f;
-        flight.slot[i].hazard.violation = i == 1 || i == 2 ? 1.0f : 0.0f;
+        flight.slot[i].hazard.conflict_probability = i == 1 || i == 2 ? 1.0f : 0.0f;
     }
 }
 
@@ -158,7 +158,7 @@ static void an_order_stays_active_while_another_one_is_on_its_line(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     put(1, 90.0f, -60.0f, 50.0f);
     flight.reaction.slot = flight.reaction.edge = 1; /* as if it had been given for that one since */
-    flight.slot[0].hazard.violation = 0.0f;
+    flight.slot[0].hazard.conflict_probability = 0.0f;
     TEST_ASSERT_TRUE(decide(4.0) != GOE_FLIGHT_NONE);
 }
 
@@ -270,7 +270,7 @@ static void phases_reach_the_rule(void) {
             }
             TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, flown_now_us(&flown), phase[k], &now));
             ordered = ordered || now.action != GOE_FLIGHT_NONE;
-            warned = warned || (now.hazard.violation > 0.9f && now.reason == GOE_FLIGHT_REASON_LANDING);
+            warned = warned || (now.hazard.conflict_probability > 0.9f && now.reason == GOE_FLIGHT_REASON_LANDING);
         }
         TEST_ASSERT_EQUAL(k == 2, ordered);
         TEST_ASSERT_EQUAL(k != 2, warned);
@@ -375,7 +375,7 @@ static void a_way_that_is_hardly_clear_is_left_after_a_while(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     const float target_m = flight.reaction.target_ned_m[1];
     put(1, 200.0f, target_m - 6.0f, 50.0f);
-    flight.slot[1].hazard.violation = 0.0f;
+    flight.slot[1].hazard.conflict_probability = 0.0f;
     (void)decide(0.2);
     CHECK_CLOSE(0.1, 3.0, flight.reaction.clear_m);
     CHECK_SAME(target_m, flight.reaction.target_ned_m[1]);
@@ -401,8 +401,8 @@ static void flying_back_is_given_time(void) {
         flight.velocity_ned_m_s[0] = 14.142136f;
         flight.velocity_ned_m_s[1] = -14.142136f;
         put(0, 125.0f + 71.0f, -20.0f - 71.0f, 50.0f);
-        flight.slot[0].hazard.violation = 1.0f;
-        flight.slot[0].hazard.time_s = 4.85f;
+        flight.slot[0].hazard.conflict_probability = 1.0f;
+        flight.slot[0].hazard.tcpa_s = 4.85f;
         flight.settings.confirm_s = 0.0f;
         TEST_ASSERT_EQUAL(late, decide(0.0) != GOE_FLIGHT_NONE);
     }
@@ -417,7 +417,7 @@ static void a_climb_is_left_when_it_comes_too_late(void) {
             start(0.0f);
             own.time_us = 5000000u;
             put(0, 3.0f + SPEED_M_S * needed_s, 0.5f, 20.0f); /* 10 m to climb, of which 5 are enough */
-            flight.slot[0].hazard.time_s = needed_s + (later ? 0.2f : -0.2f);
+            flight.slot[0].hazard.tcpa_s = needed_s + (later ? 0.2f : -0.2f);
             flight.reaction.action = GOE_FLIGHT_CLIMB;
             flight.reaction.slot = 0;
             flight.reaction.side = (int8_t)(since % 2);
@@ -436,7 +436,7 @@ static void a_slow_aircraft_has_a_course(void) {
         flight.settings.order_speed_m_s = 0.0f;
         flight.velocity_ned_m_s[0] = slow ? 0.9f : 1.5f;
         put(0, 12.0f, 0.5f, 80.0f);
-        flight.slot[0].hazard.time_s = 3.0f;
+        flight.slot[0].hazard.tcpa_s = 3.0f;
         TEST_ASSERT_EQUAL(slow, decide(0.5) == GOE_FLIGHT_NONE);
     }
 }
@@ -462,7 +462,7 @@ static void a_missing_obstacle_raises_no_climb(void) {
     flight.slot[1].used = false;
     put(2, 300.0f, 0.5f, 60.0f);
     flight.slot[2].valid = GOE_HAS_HEIGHT;
-    flight.slot[1].hazard.violation = flight.slot[2].hazard.violation = 0.0f;
+    flight.slot[1].hazard.conflict_probability = flight.slot[2].hazard.conflict_probability = 0.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.2));
     CHECK_CLOSE(0.01, -22.0, flight.reaction.target_ned_m[2]);
 }

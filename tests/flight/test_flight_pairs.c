@@ -72,9 +72,9 @@ static int look(const pair_t *pair, const double at_m[2], double course, uint32_
         s->covariance_ne_m2[0] = s->covariance_ne_m2[2] = (float)(pair->sd_m * pair->sd_m);
         s->top_m = 80.0f;
         s->taken_us = s->detected_us = now_us;
-        s->hazard.violation = meets ? 1.0f : 0.0f;
-        s->hazard.time_s = (float)fmax(ahead_m / SPEED_M_S, 0.0);
-        const double urgency = (double)s->hazard.violation / (1.0 + 0.1 * (double)s->hazard.time_s);
+        s->hazard.conflict_probability = meets ? 1.0f : 0.0f;
+        s->hazard.tcpa_s = (float)fmax(ahead_m / SPEED_M_S, 0.0);
+        const double urgency = (double)s->hazard.conflict_probability / (1.0 + 0.1 * (double)s->hazard.tcpa_s);
         worst = urgency > most ? i : worst;
         most = fmax(urgency, most);
     }

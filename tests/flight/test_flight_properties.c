@@ -24,9 +24,9 @@ static void start(flown_t *of, double aside_m) {
 }
 
 static void check_same_hazard(const goe_hazard_t *a, const goe_hazard_t *b, double tolerance) {
-    CHECK_CLOSE(tolerance, a->time_s, b->time_s);
-    CHECK_CLOSE(10.0 * tolerance, a->miss_m, b->miss_m);
-    CHECK_CLOSE(tolerance, a->violation, b->violation);
+    CHECK_CLOSE(tolerance, a->tcpa_s, b->tcpa_s);
+    CHECK_CLOSE(10.0 * tolerance, a->dcpa_m, b->dcpa_m);
+    CHECK_CLOSE(tolerance, a->conflict_probability, b->conflict_probability);
     CHECK_CLOSE(10.0 * tolerance, a->clearance_m, b->clearance_m);
 }
 
@@ -182,7 +182,7 @@ static void a_front_without_a_length_lies_where_it_is(void) {
 static void points_at_the_border_are_not_visible(void) {
     start(&flown, 1.0);
     flown.scene.boxes = flown.scene.upright_boxes = false;
-    flown.scene.camera.border_share = 0.012f;
+    flown.scene.camera.border_rel = 0.012f;
     const goe_settings_t estimator = scene_settings(&flown.scene);
     restart(&flown, &estimator);
     int taken = 0;

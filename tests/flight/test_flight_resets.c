@@ -42,8 +42,8 @@ static void a_known_jump_changes_nothing_but_the_place(void) {
     CHECK_CLOSE(0.02, still.center_ned_m[0] + 5.0f, moved.center_ned_m[0]);
     CHECK_CLOSE(0.02, still.center_ned_m[1] - 3.0f, moved.center_ned_m[1]);
     CHECK_CLOSE(0.01, still.width_m, moved.width_m);
-    CHECK_CLOSE(0.005, without.hazard.time_s, with.hazard.time_s);
-    CHECK_CLOSE(0.02, without.hazard.miss_m, with.hazard.miss_m);
+    CHECK_CLOSE(0.005, without.hazard.tcpa_s, with.hazard.tcpa_s);
+    CHECK_CLOSE(0.02, without.hazard.dcpa_m, with.hazard.dcpa_m);
     TEST_ASSERT_EQUAL(1, flown.flight.counters.resets);
     TEST_ASSERT_EQUAL(0, flown.flight.counters.lost);
 }
@@ -71,10 +71,10 @@ static void an_unknown_jump_takes_no_warning_back(void) {
     TEST_ASSERT_EQUAL(1, now.obstacles);
     TEST_ASSERT_EQUAL(0, now.worst);
     TEST_ASSERT_TRUE(now.suspect);
-    TEST_ASSERT_TRUE(now.hazard.violation >= before.hazard.violation);
+    TEST_ASSERT_TRUE(now.hazard.conflict_probability >= before.hazard.conflict_probability);
     const double due_s =
-        (double)before.hazard.time_s - 0.1; /* to the outline; now to the circle about it, which is entered sooner */
-    TEST_ASSERT_TRUE((double)now.hazard.time_s < due_s + 0.03 && (double)now.hazard.time_s > due_s - 0.3);
+        (double)before.hazard.tcpa_s - 0.1; /* to the outline; now to the circle about it, which is entered sooner */
+    TEST_ASSERT_TRUE((double)now.hazard.tcpa_s < due_s + 0.03 && (double)now.hazard.tcpa_s > due_s - 0.3);
     const goe_flight_obstacle_t kept = obstacle_of(&flown);
     CHECK_CLOSE(1.0, at.center_ned_m[0] + 50.0f, kept.center_ned_m[0]);
     CHECK_CLOSE(1.0, at.center_ned_m[1] - 30.0f, kept.center_ned_m[1]);
@@ -112,7 +112,7 @@ static void check_same_but_for_down(double down_m) {
     CHECK_CLOSE(0.01, still.height_m, moved.height_m);
     CHECK_CLOSE(0.01, still.width_m, moved.width_m);
     CHECK_CLOSE(0.01, still.hazard.clearance_m, moved.hazard.clearance_m);
-    CHECK_CLOSE(0.01, still.hazard.violation, moved.hazard.violation);
+    CHECK_CLOSE(0.01, still.hazard.conflict_probability, moved.hazard.conflict_probability);
 }
 
 /* GIVEN a descent, by boxes or by points WHEN down jumps by a known amount, the height that the autopilot gives with it or not

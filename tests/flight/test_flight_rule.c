@@ -340,7 +340,7 @@ typedef struct {
 static met_t meet(int i) {
     const goe_flight_slot_t *slot = &flight.slot[i];
     const goe_flight_settings_t *settings = &flight.settings;
-    const double doubt = slot->suspect ? (double)settings->doubt : 1.0;
+    const double doubt = slot->suspect ? (double)settings->suspect_factor : 1.0;
     const double top_m = (double)slot->top_m + 2.0 * (double)slot->top_sd_m + doubt * (double)settings->clearance_m;
     met_t met;
     met.counts = slots[i].counts;
@@ -380,11 +380,11 @@ static void prefer(choice_t *best, const choice_t *other) {
 }
 
 /* Over everything on the course, each in time; a top far behind only raises the height. */
-static void try_climb(double soonest_s, choice_t *best) {
+static void try_climb(double earliest_tcpa_s, choice_t *best) {
     const met_t about = meet(0);
     choice_t climb = {own.approach ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_CLIMB, 1.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
     double rise_m = about.rise_m;
-    bool possible = (about.has_top || own.approach) && is_more(soonest_s, climb_s(about.rise_m), NEAR_TIE);
+    bool possible = (about.has_top || own.approach) && is_more(earliest_tcpa_s, climb_s(about.rise_m), NEAR_TIE);
     for (int i = 1; i < GOE_FLIGHT_SLOTS; i++) {
         const met_t other = meet(i);
         if (!flight.slot[i].used || !other.counts || !other.is_on_course) {
@@ -477,17 +477,17 @@ static choice_t best_hold(void) {
     return best;
 }
 
-static choice_t choose(double soonest_s) {
+static choice_t choose(double earliest_tcpa_s) {
     choice_t best = {GOE_FLIGHT_NONE, -100.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
     if (own.approach) {
-        try_climb(soonest_s, &best);
+        try_climb(earliest_tcpa_s, &best);
     }
     if (best.action != GOE_FLIGHT_NONE) {
         return best;
     }
     try_side(1, &best);
     try_side(-1, &best);
-    try_climb(soonest_s, &best);
+    try_climb(earliest_tcpa_s, &best);
     if (best.action != GOE_FLIGHT_NONE && is_more(best.share, 0.75, NEAR_TIE)) {
         return best;
     }
@@ -519,8 +519,8 @@ static void any_hazard(void) {
     }
     flight.slot[0].valid = (uint8_t)(flight.slot[0].valid | GOE_HAS_POSITION | GOE_HAS_WIDTH);
     flight.slot[0].assessed = true;
-    flight.slot[0].hazard.violation = 1.0f;
-    flight.slot[0].hazard.time_s = (float)between(1.0, 9.0);
+    flight.slot[0].hazard.conflict_probability = 1.0f;
+    flight.slot[0].hazard.tcpa_s = (float)between(1.0, 9.0);
 }
 
 /* [flight.margin_m, flight.clearance_m, flight.bank_deg, flight.climb_m_s, goe_flight_assessment_t.needed_s]
@@ -531,10 +531,10 @@ static void the_way_that_is_taken_is_that_of_the_rule(void) {
         any_hazard();
         near_tie = false;
         begin_frame(0.0);
-        const double soonest_s = (double)flight.slot[0].hazard.time_s;
-        const choice_t choice = choose(soonest_s);
-        const bool due = is_more(choice.needed_s + (double)flight.settings.reserve_s, soonest_s, NEAR_TIE);
-        const bool late = is_more(choice.needed_s, soonest_s, NEAR_TIE);
+        const double earliest_tcpa_s = (double)flight.slot[0].hazard.tcpa_s;
+        const choice_t choice = choose(earliest_tcpa_s);
+        const bool due = is_more(choice.needed_s + (double)flight.settings.reserve_s, earliest_tcpa_s, NEAR_TIE);
+        const bool late = is_more(choice.needed_s, earliest_tcpa_s, NEAR_TIE);
         if (near_tie) {
             continue;
         }

@@ -70,12 +70,12 @@ static bool is_probability(const float *x) {
 
 static void check_status(goe_flight_status_t status) {
     TEST_ASSERT_TRUE((status <= GOE_FLIGHT_TOO_NEW && status >= GOE_FLIGHT_NOTHING) ||
-                     (status <= GOE_FLIGHT_BAD_SETTINGS && status >= GOE_FLIGHT_NOT_INITIALISED));
+                     (status <= GOE_FLIGHT_BAD_SETTINGS && status >= GOE_FLIGHT_NOT_INITIALIZED));
 }
 
 static void check_hazard(const goe_hazard_t *hazard) {
-    check_floats(&hazard->time_s, 7, "hazard");
-    TEST_ASSERT_TRUE(is_probability(&hazard->violation));
+    check_floats(&hazard->tcpa_s, 7, "hazard");
+    TEST_ASSERT_TRUE(is_probability(&hazard->conflict_probability));
 }
 
 static void check_slots(void) {
@@ -167,7 +167,7 @@ static void fuzz_position(void) {
 static void fuzz_pixel(goe_pixel_t *pixel) {
     pixel->u_px = some(0.0, 1280.0);
     pixel->v_px = some(0.0, 1280.0);
-    pixel->seen = one_in(8);
+    pixel->visible = one_in(8);
 }
 
 /* Mostly a mast 300 m ahead of where a flight begins. */
@@ -182,7 +182,7 @@ static void fuzz_detection(goe_flight_detection_t *d) {
     d->box.right_px = d->box.left_px + 6.0f * size_px * some(0.9, 1.1);
     d->box.top_px = some(639.0, 641.0) - 20.0f * size_px;
     d->box.bottom_px = some(639.0, 641.0) + 20.0f * size_px;
-    d->box.seen = one_in(20) ? (uint8_t)below(256) : GOE_SEES_BOX;
+    d->box.sides = one_in(20) ? (uint8_t)below(256) : GOE_SIDES_ALL;
     if (one_in(6)) {
         fuzz_pixel(&d->left);
         fuzz_pixel(&d->right);
@@ -335,7 +335,7 @@ static void settings_out_of_range_are_named(void) {
                           goe_flight_init(&memory.flight, sizeof memory.flight, &estimator, &settings, &bad));
         TEST_ASSERT_NOT_NULL(bad);
         goe_flight_assessment_t a;
-        TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALISED, goe_flight_assess(&memory.flight, 0u, false, &a));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALIZED, goe_flight_assess(&memory.flight, 0u, false, &a));
     }
     const char *bad = NULL;
     estimator.camera.width_px = 0.0f;
@@ -408,7 +408,7 @@ static void null_pointers_are_refused(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT, goe_flight_sectors(&memory.flight, 100u, NULL));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT, goe_flight_timesync(NULL, 0u, 0u));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT, goe_flight_restart(NULL));
-    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALISED, goe_flight_restart(&memory.flight));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALIZED, goe_flight_restart(&memory.flight));
 }
 
 int main(void) {

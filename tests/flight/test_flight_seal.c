@@ -24,7 +24,7 @@ static goe_flight_status_t assess(goe_flight_assessment_t *now) {
 /* GIVEN any one flipped bit of the sealed memory THEN frames and assessments report it, and nothing is "clear". */
 static void every_flip_of_the_settings_is_reported(void) {
     const size_t first = 8u * offsetof(goe_flight_t, seal);
-    const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_deg) + sizeof(float));
+    const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_sd_deg) + sizeof(float));
     goe_flight_assessment_t now;
     goe_flight_frame_t frame;
     (void)flown_fly(&flown, 3.0);
@@ -52,11 +52,12 @@ static void settings_change_in_flight_and_nothing_is_lost(void) {
     twin = flown.flight;
     settings.margin_m = 1.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(&flown.flight, &settings, NULL));
-    TEST_ASSERT_EQUAL_MEMORY(&twin.attitude_white_deg, &flown.flight.attitude_white_deg,
-                             sizeof twin - offsetof(goe_flight_t, attitude_white_deg));
+    TEST_ASSERT_EQUAL_MEMORY(&twin.attitude_white_sd_deg, &flown.flight.attitude_white_sd_deg,
+                             sizeof twin - offsetof(goe_flight_t, attitude_white_sd_deg));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(&after));
     TEST_ASSERT_EQUAL_INT(before.worst, after.worst);
-    TEST_ASSERT_TRUE(after.hazard.violation < before.hazard.violation); /* a smaller margin is violated less surely */
+    TEST_ASSERT_TRUE(after.hazard.conflict_probability <
+                     before.hazard.conflict_probability); /* a smaller margin is violated less surely */
     settings.margin_m = twin.settings.margin_m;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(&flown.flight, &settings, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&twin.settings, &flown.flight.settings, sizeof twin.settings);
@@ -80,7 +81,7 @@ static void refused_settings_change_nothing(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, goe_flight_change_settings(&flown.flight, NULL, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&twin, &flown.flight, sizeof twin);
     memset(&flown.flight, 0, sizeof flown.flight);
-    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALISED, goe_flight_change_settings(&flown.flight, NULL, NULL));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALIZED, goe_flight_change_settings(&flown.flight, NULL, NULL));
 }
 
 /* GIVEN changed settings WHEN none are passed THEN the defaults hold. */
@@ -148,8 +149,8 @@ static void a_bool_of_any_bits_counts_as_set(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
     TEST_ASSERT_TRUE(flown.flight.origin_known == 1);
     goe_flight_detection_t detection = flown_detection(&flown, flown.sample - 6);
-    memset(&detection.top.seen, 255, sizeof detection.top.seen);
-    memset(&detection.base_near.seen, 2, sizeof detection.base_near.seen);
+    memset(&detection.top.visible, 255, sizeof detection.top.visible);
+    memset(&detection.base_near.visible, 2, sizeof detection.base_near.visible);
     const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 6, &detection, 1);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
 }
@@ -199,13 +200,13 @@ static void warning_outlasts(size_t offset) {
     const int slot = known_slot();
     goe_flight_slot_t *s = &flown.flight.slot[slot];
     const goe_settings_t settings = s->estimator.settings;
-    TEST_ASSERT_TRUE(before.worst == slot && before.hazard.violation > 0.5f && !before.suspect);
+    TEST_ASSERT_TRUE(before.worst == slot && before.hazard.conflict_probability > 0.5f && !before.suspect);
     memset((unsigned char *)&s->estimator + offset, 0xFF, sizeof(float));
     bool remembered = false;
     for (int k = 0; k < 20; k++) {
         const goe_flight_assessment_t now = flown_fly(&flown, 0.2);
         TEST_ASSERT_EQUAL_INT(slot, now.worst);
-        TEST_ASSERT_TRUE(now.hazard.violation > 0.4f);
+        TEST_ASSERT_TRUE(now.hazard.conflict_probability > 0.4f);
         TEST_ASSERT_TRUE(now.suspect || !s->remembered);
         remembered = remembered || s->remembered;
     }

@@ -101,9 +101,9 @@ static void put(const world_t *world, goe_flight_t *to, int i, uint32_t time_us)
     slot->covariance_ne_m2[2] = (float)(s * s * v[0] + 2.0 * c * s * cross + c * c * v[2]);
     slot->width_m = slot->length_m = (float)now.width_m[i];
     slot->top_m = now.has_top[i] ? (float)now.top_m[i] : 0.0f;
-    slot->hazard.violation = fabs(right) < now.width_m[i] + 6.0 ? (ahead > 0.0 ? 0.9f : 0.0f) : 0.0f;
-    slot->hazard.time_s = (float)(ahead / now.speed_m_s);
-    slot->hazard.time_sd_s = 0.3f;
+    slot->hazard.conflict_probability = fabs(right) < now.width_m[i] + 6.0 ? (ahead > 0.0 ? 0.9f : 0.0f) : 0.0f;
+    slot->hazard.tcpa_s = (float)(ahead / now.speed_m_s);
+    slot->hazard.tcpa_sd_s = 0.3f;
 }
 
 /* Returns the time that the best action needs. */
@@ -120,8 +120,8 @@ static float decide(const world_t *world, goe_flight_t *to, uint32_t time_us) {
     int worst = -1;
     for (int i = 0; i < now.obstacles; i++) {
         put(world, to, i, time_us);
-        const bool is_hazard = to->slot[i].hazard.violation > 0.0f;
-        worst = is_hazard && (worst < 0 || to->slot[i].hazard.time_s < to->slot[worst].hazard.time_s) ? i : worst;
+        const bool is_hazard = to->slot[i].hazard.conflict_probability > 0.0f;
+        worst = is_hazard && (worst < 0 || to->slot[i].hazard.tcpa_s < to->slot[worst].hazard.tcpa_s) ? i : worst;
     }
     return goe_flight_reaction_decide(to, worst, &own);
 }

@@ -46,7 +46,7 @@ static void an_obstacle_is_found_where_it_is(void) {
     CHECK_CLOSE(2.0, center[1], obstacle.center_ned_m[1]);
     CHECK_CLOSE(1.5, 12.0, obstacle.height_m);
     CHECK_CLOSE(1e-3, flown.scene.ground_d_m, obstacle.center_ned_m[2]);
-    TEST_ASSERT_TRUE(obstacle.in_view && !obstacle.passed && obstacle.has_hazard);
+    TEST_ASSERT_TRUE(obstacle.in_view && !obstacle.receding && obstacle.has_hazard);
 }
 
 /* Of what the estimator knows, and the manual of the layer lists, and nothing else. */
@@ -135,24 +135,24 @@ static void unreadable_input_is_no_sign_of_life(void) {
     TEST_ASSERT_FALSE(lives_by(FRAME_PROMISED));
 }
 
-/* GIVEN an obstacle ahead on the course WHEN it is undetected for longer than forget_s THEN it is kept, and so is its warning, until it is
+/* GIVEN an obstacle ahead on the course WHEN it is undetected for longer than track_timeout_s THEN it is kept, and so is its warning, until it is
  * passed. */
 static void an_obstacle_ahead_is_not_forgotten(void) {
     goe_flight_settings_t settings;
     goe_flight_settings_default(&settings);
-    settings.forget_s = 1.0f;
+    settings.track_timeout_s = 1.0f;
     flown_start(&flown, &settings);
     flown.scene.x0_m = 0.0;
     flown.scene.z0_m = 200.0;
     flown.scene.height_m = 40.0;
     const goe_flight_assessment_t before = flown_fly(&flown, 4.0);
-    TEST_ASSERT_TRUE(before.hazard.violation > 0.5f && before.hazard.time_s > 3.0f);
+    TEST_ASSERT_TRUE(before.hazard.conflict_probability > 0.5f && before.hazard.tcpa_s > 3.0f);
     flown.detects = false;
-    const double left_s = (double)before.hazard.time_s;
+    const double left_s = (double)before.hazard.tcpa_s;
     for (int k = 1; k < (int)(5.0 * left_s) - 3; k++) {
         const goe_flight_assessment_t now = flown_fly(&flown, 0.2);
         TEST_ASSERT_EQUAL(1, now.obstacles);
-        TEST_ASSERT_TRUE(now.hazard.violation > 0.5f);
+        TEST_ASSERT_TRUE(now.hazard.conflict_probability > 0.5f);
     }
     for (int k = 0; k < 30; k++) {
         (void)flown_fly(&flown, 0.5);
@@ -193,12 +193,12 @@ static void the_hazard_counts_from_now(void) {
     const uint32_t now_us = flown_now_us(&flown);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us, false, &first));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us + 100000u, false, &later));
-    CHECK_CLOSE(1e-4, first.hazard.time_s - 0.1f, later.hazard.time_s);
-    goe_plan_t plan = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
+    CHECK_CLOSE(1e-4, first.hazard.tcpa_s - 0.1f, later.hazard.tcpa_s);
+    goe_intent_t intent = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
     goe_hazard_t hazard;
-    TEST_ASSERT_EQUAL(GOE_OK, goe_hazard(&flown.flight.slot[0].estimator, &plan, &hazard));
+    TEST_ASSERT_EQUAL(GOE_OK, goe_hazard(&flown.flight.slot[0].estimator, &intent, &hazard));
     /* the newest sample is number 149, the latest frame that has arrived shows number 140 */
-    CHECK_CLOSE(1e-3, (double)hazard.time_s - 0.18, first.hazard.time_s);
+    CHECK_CLOSE(1e-3, (double)hazard.tcpa_s - 0.18, first.hazard.tcpa_s);
 }
 
 /* [flight.confirm_images] */
@@ -320,7 +320,7 @@ static void an_order_does_not_pass_to_the_next_in_its_slot(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, now.action); /* for hold_s */
 }
 
-/* [flight.alive_s] */
+/* [flight.detector_timeout_s] */
 static void a_dead_detector_is_not_a_clear_sky(void) {
     flown.scene.width_m = flown.scene.length_m = 4.0;
     flown.scene.height_m = 12.0;
@@ -403,8 +403,8 @@ static void the_autopilots_clock_may_wrap(void) {
     other.start_us = 0xFFFFFFFFu - 2000000u;
     const goe_flight_assessment_t here = flown_fly(&flown, 4.0);
     const goe_flight_assessment_t there = flown_fly(&other, 4.0);
-    CHECK_SAME(here.hazard.time_s, there.hazard.time_s);
-    CHECK_SAME(here.hazard.violation, there.hazard.violation);
+    CHECK_SAME(here.hazard.tcpa_s, there.hazard.tcpa_s);
+    CHECK_SAME(here.hazard.conflict_probability, there.hazard.conflict_probability);
     TEST_ASSERT_EQUAL(1, there.obstacles);
     TEST_ASSERT_EQUAL(0, other.flight.counters.late);
 }

@@ -42,7 +42,7 @@ static goe_flight_detection_t good_detection(void) {
     d.box.top_px = 100.0f;
     d.box.right_px = 1040.0f;
     d.box.bottom_px = 160.0f;
-    d.box.seen = GOE_SEES_BOX;
+    d.box.sides = GOE_SIDES_ALL;
     return d;
 }
 
@@ -68,10 +68,10 @@ static void sides_count_by_their_visible_part(void) {
             for (int k = 0; k < 5; k++) {
                 goe_flight_detection_t d = good_detection();
                 float *const sides[4] = {&d.box.left_px, &d.box.top_px, &d.box.right_px, &d.box.bottom_px};
-                const unsigned bits[4] = {GOE_SEES_LEFT, GOE_SEES_TOP, GOE_SEES_RIGHT, GOE_SEES_BOTTOM};
+                const unsigned bits[4] = {GOE_SIDE_LEFT, GOE_SIDE_TOP, GOE_SIDE_RIGHT, GOE_SIDE_BOTTOM};
                 *sides[side] = bad[k];
-                d.box.seen = (uint8_t)seen;
-                TEST_ASSERT_EQUAL((seen & bits[side]) != 0u || seen > GOE_SEES_BOX, is_refused(&d));
+                d.box.sides = (uint8_t)seen;
+                TEST_ASSERT_EQUAL((seen & bits[side]) != 0u || seen > GOE_SIDES_ALL, is_refused(&d));
             }
         }
     }
@@ -80,16 +80,16 @@ static void sides_count_by_their_visible_part(void) {
 /* Left of right, and top above bottom, where both are visible. */
 static void a_box_has_an_inside(void) {
     flight->had_frame = 0u;
-    for (unsigned seen = 0u; seen <= GOE_SEES_BOX; seen++) {
+    for (unsigned seen = 0u; seen <= GOE_SIDES_ALL; seen++) {
         for (int k = 0; k < 4; k++) {
             goe_flight_detection_t d = good_detection();
-            d.box.seen = (uint8_t)seen;
+            d.box.sides = (uint8_t)seen;
             if (k < 2) {
                 d.box.right_px = d.box.left_px - (float)k;
             } else {
                 d.box.bottom_px = d.box.top_px - (float)(k - 2);
             }
-            const unsigned both = k < 2 ? GOE_SEES_LEFT | GOE_SEES_RIGHT : GOE_SEES_TOP | GOE_SEES_BOTTOM;
+            const unsigned both = k < 2 ? GOE_SIDE_LEFT | GOE_SIDE_RIGHT : GOE_SIDE_TOP | GOE_SIDE_BOTTOM;
             TEST_ASSERT_EQUAL((seen & both) == both, is_refused(&d));
         }
     }
@@ -102,7 +102,7 @@ static void points_and_numbers_have_their_ranges(void) {
         for (int k = 0; k < 16; k++) {
             goe_flight_detection_t d = good_detection();
             goe_pixel_t *const points[6] = {&d.left, &d.right, &d.top, &d.base_left, &d.base_near, &d.base_right};
-            points[point]->seen = k < 8;
+            points[point]->visible = k < 8;
             *(k % 2 == 0 ? &points[point]->u_px : &points[point]->v_px) = bad[(k / 2) % 4];
             TEST_ASSERT_EQUAL(k < 8, is_refused(&d));
         }
@@ -128,8 +128,8 @@ static void put_any(goe_flight_t *to, int i, uint32_t now_us) {
     slot->detected_us = slot->taken_us = now_us - (uint32_t)between(0.2e6, 4.0e6);
     slot->valid = (uint8_t)(one_in(3) ? 0 : GOE_HAS_POSITION);
     slot->assessed = slot->valid != 0u && !one_in(5);
-    slot->hazard.violation = (float)between(0.0, 0.7);
-    slot->hazard.time_s = one_in(3) ? 0.0f : (float)between(0.5, 40.0);
+    slot->hazard.conflict_probability = (float)between(0.0, 0.7);
+    slot->hazard.tcpa_s = one_in(3) ? 0.0f : (float)between(0.5, 40.0);
     slot->fresh_track = false;
 }
 
@@ -150,9 +150,9 @@ static double worth(const goe_flight_t *of, int i, uint32_t now_us) {
     if (!slot->assessed) {
         return 1.0;
     }
-    return undetected && !(slot->hazard.time_s > 0.0f)
+    return undetected && !(slot->hazard.tcpa_s > 0.0f)
                ? -1.0
-               : (double)slot->hazard.violation + 1.0 / (1.0 + (double)slot->hazard.time_s);
+               : (double)slot->hazard.conflict_probability + 1.0 / (1.0 + (double)slot->hazard.tcpa_s);
 }
 
 /* [goe_flight_counters_t.evicted, goe_flight_counters_t.full]
@@ -186,8 +186,8 @@ static void a_new_obstacle_takes_the_place_of_the_least_worth(void) {
     TEST_ASSERT_TRUE(ends[0] > 20 && ends[1] > 20 && ends[2] > 20);
 }
 
-/* [flight.forget_s]
- * GIVEN any table THEN a track undetected for forget_s is given up, or for 30 s while an order is active; but not an obstacle ahead. The
+/* [flight.track_timeout_s]
+ * GIVEN any table THEN a track undetected for track_timeout_s is given up, or for 30 s while an order is active; but not an obstacle ahead. The
  * order forgets a track that is given up. */
 static void an_old_track_is_given_up(void) {
     int given_up = 0;
@@ -196,7 +196,7 @@ static void an_old_track_is_given_up(void) {
         static goe_flight_t copy;
         const uint32_t now_us = 100000000u;
         copy = *flight;
-        copy.settings.forget_s = one_in(3) ? 40.0f : 10.0f;
+        copy.settings.track_timeout_s = one_in(3) ? 40.0f : 10.0f;
         copy.reaction.action = (uint8_t)(one_in(2) ? GOE_FLIGHT_NONE : GOE_FLIGHT_LEFT);
         copy.reaction.slot = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
         copy.reaction.edge = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
@@ -210,9 +210,10 @@ static void an_old_track_is_given_up(void) {
             const goe_flight_slot_t *slot = &before.slot[i];
             const double undetected_s = 1.0e-6 * (double)(now_us - slot->detected_us);
             const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.slot == i;
-            const double most_s = ordered ? fmax(30.0, (double)copy.settings.forget_s) : (double)copy.settings.forget_s;
-            const bool ahead =
-                slot->assessed && slot->hazard.time_s > 0.0f && slot->hazard.violation >= copy.settings.violation_max;
+            const double most_s =
+                ordered ? fmax(30.0, (double)copy.settings.track_timeout_s) : (double)copy.settings.track_timeout_s;
+            const bool ahead = slot->assessed && slot->hazard.tcpa_s > 0.0f &&
+                               slot->hazard.conflict_probability >= copy.settings.conflict_probability_max;
             const bool stays = slot->used && (ahead || undetected_s <= most_s);
             TEST_ASSERT_EQUAL(stays, copy.slot[i].used);
             TEST_ASSERT_EQUAL(stays && before.reaction.slot == i, copy.reaction.slot == i);
@@ -311,8 +312,8 @@ static void any_points_make_their_box(void) {
         for (int i = 0; i < 6; i++) {
             points[i]->u_px = (float)between(-size_px, size_px);
             points[i]->v_px = (float)between(-size_px, size_px);
-            points[i]->seen = one_in(2);
-            for (int axis = 0; axis < 2 && points[i]->seen; axis++) {
+            points[i]->visible = one_in(2);
+            for (int axis = 0; axis < 2 && points[i]->visible; axis++) {
                 low[axis] = fmin(low[axis], (double)(axis == 0 ? points[i]->u_px : points[i]->v_px));
                 high[axis] = fmax(high[axis], (double)(axis == 0 ? points[i]->u_px : points[i]->v_px));
             }

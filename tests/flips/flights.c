@@ -22,11 +22,11 @@ typedef struct {
 static const kind_t kinds[] = {
     {"window, disc", true, false, false, true, false, 0, 0.0, 0.0},
     {"window, line", true, true, false, false, false, 0, 0.0, 0.0},
-    {"refined, disc", false, false, false, true, false, 0, 0.0, 0.0},
-    {"refined, base corners", false, true, false, false, false, 0, 0.0, 0.0},
-    {"refined, upright boxes", false, false, true, true, false, 0, 0.0, 0.0},
-    {"refined, moves, late poses", false, true, false, false, false, 4, 0.0, 5.0},
-    {"refined, two cameras", false, true, false, false, true, 0, 0.0, 0.0},
+    {"filter, disc", false, false, false, true, false, 0, 0.0, 0.0},
+    {"filter, base corners", false, true, false, false, false, 0, 0.0, 0.0},
+    {"filter, upright boxes", false, false, true, true, false, 0, 0.0, 0.0},
+    {"filter, moves, late poses", false, true, false, false, false, 4, 0.0, 5.0},
+    {"filter, two cameras", false, true, false, false, true, 0, 0.0, 0.0},
 };
 
 static void set_scene(const kind_t *kind, scene_t *scene) {
@@ -49,7 +49,7 @@ static void add_box_noise(goe_box_t *box, check_random_t *random) {
 }
 
 static void take_out_corners(goe_image_t *image) {
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
 }
 
 static void set_settings(const kind_t *kind, const scene_t *scene, goe_settings_t *settings) {
@@ -83,7 +83,7 @@ bool flights_make(int which, flipped_flight_t *flight) {
     set_scene(kind, &scene);
     flight->name = kind->name;
     set_settings(kind, &scene, &flight->settings);
-    flight->plan = (goe_plan_t){{16.0f, 0.0f, 0.0f}, 15.0f, 10.0f, 0.1f, 0.0f};
+    flight->intent = (goe_intent_t){{16.0f, 0.0f, 0.0f}, 15.0f, 10.0f, 0.1f, 0.0f};
     for (int k = 0; k < FLIGHT_IMAGES; k++) {
         goe_image_t *image = &flight->image[k];
         scene_t displaced = scene;

@@ -111,16 +111,16 @@ static bool is_defined(const answer_t *a) {
     const goe_estimate_t *e = &a->estimate;
     const bool model = e->model == GOE_MODEL_NONE || (e->model >= GOE_MODEL_DISC && e->model <= GOE_MODEL_PRISM);
     return is_known(a->status) && is_known(a->covariance_status) && is_known(a->hazard_status) && model &&
-           (unsigned)e->method <= (unsigned)GOE_METHOD_REFINED && (unsigned)e->reason <= (unsigned)GOE_REASON_NOISE &&
-           e->valid <= 0x7Fu && byte_of(&e->fresh) <= 1u && byte_of(&e->suspect) <= 1u && e->points >= 0 &&
-           e->points <= INT16_MAX && e->nis_rows >= 0 && byte_of(&a->hazard.has_clearance) <= 1u;
+           (unsigned)e->method <= (unsigned)GOE_METHOD_FILTER && (unsigned)e->reason <= (unsigned)GOE_REASON_NOISE &&
+           e->valid <= 0x7Fu && byte_of(&e->fresh) <= 1u && byte_of(&e->suspect) <= 1u && e->images_used >= 0 &&
+           e->images_used <= INT16_MAX && e->nis_rows >= 0 && byte_of(&a->hazard.has_clearance) <= 1u;
 }
 
 static void take(goe_estimator_t *estimator, const goe_image_t *image, answer_t *answer) {
     memset(answer, 0, sizeof *answer);
     answer->status = goe_update(estimator, image, &answer->estimate);
     answer->covariance_status = goe_covariance(estimator, answer->covariance);
-    answer->hazard_status = goe_hazard(estimator, &flight.plan, &answer->hazard);
+    answer->hazard_status = goe_hazard(estimator, &flight.intent, &answer->hazard);
 }
 
 /* From the camera to the reference point, north and east: a restarted track has other axes. */

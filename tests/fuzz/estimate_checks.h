@@ -17,8 +17,9 @@ void check_estimate(const goe_settings_t *settings, goe_status_t status, const g
 /* Checks goe_covariance() of the estimator whose latest estimate this is. */
 void check_covariance(const goe_estimator_t *estimator, const goe_estimate_t *estimate);
 
-/* Checks its goe_hazard(); `legal`: the plan is within its ranges. */
-void check_hazard(const goe_estimator_t *estimator, const goe_estimate_t *estimate, const goe_plan_t *plan, bool legal);
+/* Checks its goe_hazard(); `legal`: the intent is within its ranges. */
+void check_hazard(const goe_estimator_t *estimator, const goe_estimate_t *estimate, const goe_intent_t *intent,
+                  bool legal);
 
 /* A hash of all fields of an estimate. */
 uint64_t check_hash(uint64_t hash, goe_status_t status, const goe_estimate_t *estimate);

@@ -206,7 +206,7 @@ static void on_line(void *user, const char *line, size_t length) {
     for (unsigned i = 0; i < image.detections; i++) {
         const goe_flight_detection_t *d = &image.detection[i];
         FUZZ_CHECK(d->score >= 0.0f && d->score <= 1.0f && d->pixel_px >= 0.0f);
-        FUZZ_CHECK((d->box.seen & ~GOE_SEES_BOX) == 0u);
+        FUZZ_CHECK((d->box.sides & ~GOE_SIDES_ALL) == 0u);
     }
     image_queue_add(&queue, &image);
     image_queue_run(&queue, &flight, 60000000u, on_frame, NULL);

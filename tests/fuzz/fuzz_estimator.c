@@ -45,7 +45,7 @@ enum {
     HAZARDS,
     COVARIANCES,
     TWICE,
-    STATUSES, /* from GOE_NOTHING_SEEN down */
+    STATUSES, /* from GOE_NO_DETECTION down */
     COUNTS = STATUSES + 18
 };
 
@@ -54,7 +54,7 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"updates_refined", 0},
                                         {"fresh_window", 0},
                                         {"fresh_refined", 0},
-                                        {"fresh_window_with_refined", 0},
+                                        {"fresh_window_with_filter", 0},
                                         {"fresh_disc", 0},
                                         {"fresh_line", 0},
                                         {"fresh_box", 0},
@@ -75,9 +75,9 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"hazards", 0},
                                         {"covariances", 0},
                                         {"inputs_run_twice", 0},
-                                        {"status_nothing_seen", 0},
-                                        {"status_held", 0},
-                                        {"status_collecting", 0},
+                                        {"status_no_detection", 0},
+                                        {"status_stale", 0},
+                                        {"status_converging", 0},
                                         {"status_partial", 0},
                                         {"status_ok", 0},
                                         {"status_behind_camera", 0},
@@ -88,7 +88,7 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"cause_bad_height", 0},
                                         {"status_no_baseline", 0},
                                         {"status_no_parallax", 0},
-                                        {"status_passed", 0},
+                                        {"status_abeam", 0},
                                         {"status_not_finite", 0},
                                         {"status_out_of_range", 0},
                                         {"status_bad_time", 0},
@@ -98,17 +98,17 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
 static void count(int what) { fuzz_count_once(what); }
 
 static void count_update(const goe_settings_t *settings, goe_status_t status, const goe_estimate_t *e) {
-    const bool refined = settings->method == GOE_METHOD_REFINED;
+    const bool filter = settings->method == GOE_METHOD_FILTER;
     count(UPDATES);
-    count(refined ? UPDATES_REFINED : UPDATES_WINDOW);
-    count(STATUSES + (int)GOE_NOTHING_SEEN - (int)status);
+    count(filter ? UPDATES_REFINED : UPDATES_WINDOW);
+    count(STATUSES + (int)GOE_NO_DETECTION - (int)status);
     if (e->reason != GOE_REASON_NONE) {
         count(REASONS + (int)e->reason - (int)GOE_REASON_CONVENTION);
     }
     if (!e->fresh) {
         return;
     }
-    count(!refined ? FRESH_WINDOW : (e->method == GOE_METHOD_REFINED ? FRESH_REFINED : FRESH_WINDOW_IN_REFINED));
+    count(!filter ? FRESH_WINDOW : (e->method == GOE_METHOD_FILTER ? FRESH_REFINED : FRESH_WINDOW_IN_REFINED));
     count(FRESH_DISC + (int)e->model - (int)GOE_MODEL_DISC);
     if ((e->valid & GOE_HAS_VELOCITY) != 0u) {
         count(MOVERS);
@@ -140,32 +140,32 @@ typedef struct {
 
 /* --------------------------------------------------------------------------------------------------------------- calls -- */
 
-static goe_plan_t usual_plan(run_t *run) {
-    goe_plan_t plan;
-    memset(&plan, 0, sizeof plan);
+static goe_intent_t usual_intent(run_t *run) {
+    goe_intent_t intent;
+    memset(&intent, 0, sizeof intent);
     fuzz_noise_t *noise = &run->view.noise;
     const float speed_m_s = run->view.path.speed_m_s;
-    plan.velocity_ned_m_s[0] = speed_m_s * cosf(run->view.path.course_rad) + fuzz_noise(noise);
-    plan.velocity_ned_m_s[1] = speed_m_s * sinf(run->view.path.course_rad) + 3.0f * fuzz_noise(noise);
-    plan.velocity_ned_m_s[2] = -run->view.path.climb_m_s;
-    plan.margin_m = 15.0f + 15.0f * fuzz_noise(noise);
-    plan.clearance_m = 10.0f + 10.0f * fuzz_noise(noise);
-    plan.since_image_s = fuzz_noise_bits(noise) % 4u == 0 ? 0.5f + 0.5f * fuzz_noise(noise) : 0.0f;
-    return plan;
+    intent.velocity_ned_m_s[0] = speed_m_s * cosf(run->view.path.course_rad) + fuzz_noise(noise);
+    intent.velocity_ned_m_s[1] = speed_m_s * sinf(run->view.path.course_rad) + 3.0f * fuzz_noise(noise);
+    intent.velocity_ned_m_s[2] = -run->view.path.climb_m_s;
+    intent.margin_m = 15.0f + 15.0f * fuzz_noise(noise);
+    intent.clearance_m = 10.0f + 10.0f * fuzz_noise(noise);
+    intent.since_image_s = fuzz_noise_bits(noise) % 4u == 0 ? 0.5f + 0.5f * fuzz_noise(noise) : 0.0f;
+    return intent;
 }
 
-static goe_plan_t any_plan(fuzz_input_t *in) {
-    goe_plan_t plan;
-    memset(&plan, 0, sizeof plan);
+static goe_intent_t any_intent(fuzz_input_t *in) {
+    goe_intent_t intent;
+    memset(&intent, 0, sizeof intent);
     for (int i = 0; i < 3; i++) {
-        plan.velocity_ned_m_s[i] = fuzz_any(in, -1.0e3f, 1.0e3f);
+        intent.velocity_ned_m_s[i] = fuzz_any(in, -1.0e3f, 1.0e3f);
     }
-    plan.margin_m = fuzz_any(in, 0.0f, 1.0e4f);
-    plan.clearance_m = fuzz_any(in, 0.0f, 1.0e4f);
-    plan.since_image_s = fuzz_any(in, 0.0f, 1.0e3f);
-    plan.velocity_sd_m_s =
-        plan.margin_m > 5.0e3f ? 1.0e-2f * plan.clearance_m : 0.0f; /* the corpus has no bytes for it */
-    return plan;
+    intent.margin_m = fuzz_any(in, 0.0f, 1.0e4f);
+    intent.clearance_m = fuzz_any(in, 0.0f, 1.0e4f);
+    intent.since_image_s = fuzz_any(in, 0.0f, 1.0e3f);
+    intent.velocity_sd_m_s =
+        intent.margin_m > 5.0e3f ? 1.0e-2f * intent.clearance_m : 0.0f; /* the corpus has no bytes for it */
+    return intent;
 }
 
 /* Both calls refer to the estimator's own latest answer. */
@@ -176,8 +176,8 @@ static void ask(run_t *run, bool covariance, bool hazard) {
         count(COVARIANCES);
     }
     if (hazard) {
-        const goe_plan_t plan = usual_plan(run);
-        check_hazard(&memory.estimator, latest, &plan, true);
+        const goe_intent_t intent = usual_intent(run);
+        check_hazard(&memory.estimator, latest, &intent, true);
         count(HAZARDS);
     }
 }
@@ -211,13 +211,13 @@ static goe_status_t update(run_t *run, const goe_image_t *image) {
     const goe_status_t status = goe_update(&memory.estimator, image, &memory.estimate);
     FUZZ_CHECK(check_is_image_status(status));
     if (check_is_refusal(status)) {
-        kept.causes[-(int)status]++;
+        kept.fault_counts[-(int)status]++;
         check_kept();
     }
     check_estimate(&run->settings, status, e);
     guard_check();
-    if (memory.estimator.causes[-(int)GOE_BAD_HEIGHT] != kept.causes[-(int)GOE_BAD_HEIGHT]) {
-        count(STATUSES + (int)GOE_NOTHING_SEEN - (int)GOE_BAD_HEIGHT); /* its counter alone reports it */
+    if (memory.estimator.fault_counts[-(int)GOE_BAD_HEIGHT] != kept.fault_counts[-(int)GOE_BAD_HEIGHT]) {
+        count(STATUSES + (int)GOE_NO_DETECTION - (int)GOE_BAD_HEIGHT); /* its counter alone reports it */
     }
     follow_age(run, image->pose.time_us, check_is_refusal(status), e);
     run->hash = check_hash(run->hash, status, e);
@@ -263,7 +263,7 @@ static void misuse(run_t *run) {
     goe_estimator_t *estimator = &memory.estimator;
     goe_image_t image;
     goe_hazard_t hazard;
-    const goe_plan_t plan = usual_plan(run);
+    const goe_intent_t intent = usual_intent(run);
     const char *bad = "";
     memset(&image, 0, sizeof image);
     keep();
@@ -275,7 +275,7 @@ static void misuse(run_t *run) {
     FUZZ_CHECK(goe_init(NULL, sizeof *estimator, &run->settings, NULL) == GOE_BAD_ARGUMENT);
     FUZZ_CHECK(goe_covariance(estimator, NULL) == GOE_BAD_ARGUMENT && goe_reset(NULL) == GOE_BAD_ARGUMENT);
     FUZZ_CHECK(goe_hazard(estimator, NULL, &hazard) == GOE_BAD_ARGUMENT && !hazard.has_clearance);
-    FUZZ_CHECK(goe_hazard(estimator, &plan, NULL) == GOE_BAD_ARGUMENT);
+    FUZZ_CHECK(goe_hazard(estimator, &intent, NULL) == GOE_BAD_ARGUMENT);
     goe_settings_default(NULL);
     check_kept();
     guard_check();
@@ -300,14 +300,14 @@ enum { CALL_RESET, CALL_HAZARD, CALL_COVARIANCE, CALL_MISUSE, CALL_TEXTS, CALL_B
 /* Another call between two images. */
 static void call(run_t *run) {
     goe_settings_t settings = run->settings;
-    goe_plan_t plan;
+    goe_intent_t intent;
     switch (fuzz_below(&run->in, CALLS)) {
         case CALL_RESET:
             forget(run);
             break;
         case CALL_HAZARD:
-            plan = any_plan(&run->in);
-            check_hazard(&memory.estimator, &memory.estimator.estimate, &plan, false);
+            intent = any_intent(&run->in);
+            check_hazard(&memory.estimator, &memory.estimator.estimate, &intent, false);
             break;
         case CALL_COVARIANCE:
             ask(run, true, true);
@@ -373,9 +373,9 @@ static void check_not_ready(void) {
     goe_image_t image;
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     memset(&image, 0, sizeof image);
-    FUZZ_CHECK(goe_update(&memory.estimator, &image, &memory.estimate) == GOE_NOT_INITIALISED);
-    FUZZ_CHECK(memory.estimate.valid == 0u && goe_reset(&memory.estimator) == GOE_NOT_INITIALISED);
-    FUZZ_CHECK(goe_covariance(&memory.estimator, covariance) == GOE_NOT_INITIALISED);
+    FUZZ_CHECK(goe_update(&memory.estimator, &image, &memory.estimate) == GOE_NOT_INITIALIZED);
+    FUZZ_CHECK(memory.estimate.valid == 0u && goe_reset(&memory.estimator) == GOE_NOT_INITIALIZED);
+    FUZZ_CHECK(goe_covariance(&memory.estimator, covariance) == GOE_NOT_INITIALIZED);
 }
 
 static uint64_t fly(const uint8_t *data, size_t size, int fill) {

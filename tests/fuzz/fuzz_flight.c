@@ -104,16 +104,17 @@ static void hash_bytes(run_t *run, const void *from, size_t size) {
 }
 
 static void check_hazard(const goe_hazard_t *h) {
-    check_floats(&h->time_s, 7);
-    FUZZ_CHECK(h->violation >= 0.0f && h->violation <= 1.0f && h->time_s >= 0.0f && h->miss_m >= 0.0f);
-    FUZZ_CHECK(h->time_sd_s >= 0.0f && h->miss_sd_m >= 0.0f && h->clearance_sd_m >= 0.0f);
+    check_floats(&h->tcpa_s, 7);
+    FUZZ_CHECK(h->conflict_probability >= 0.0f && h->conflict_probability <= 1.0f && h->tcpa_s >= 0.0f &&
+               h->dcpa_m >= 0.0f);
+    FUZZ_CHECK(h->tcpa_sd_s >= 0.0f && h->dcpa_sd_m >= 0.0f && h->clearance_sd_m >= 0.0f);
 }
 
 static void before_call(void) { memcpy(&kept, &memory.flight, sizeof kept); }
 
 static void after_call(run_t *run, goe_flight_status_t status) {
     FUZZ_CHECK(((int)status <= (int)GOE_FLIGHT_TOO_NEW && (int)status >= (int)GOE_FLIGHT_NOTHING) ||
-               ((int)status <= (int)GOE_FLIGHT_BAD_SETTINGS && (int)status >= (int)GOE_FLIGHT_NOT_INITIALISED));
+               ((int)status <= (int)GOE_FLIGHT_BAD_SETTINGS && (int)status >= (int)GOE_FLIGHT_NOT_INITIALIZED));
     FUZZ_CHECK(fuzz_same(memory.before, guard, GUARD_BYTES) && fuzz_same(memory.behind, guard, GUARD_BYTES));
     if (status != GOE_FLIGHT_OK && memory.flight.counters.lost == kept.counters.lost) {
         kept.counters = memory.flight.counters;
@@ -266,7 +267,7 @@ static void spoil_detection(run_t *run, goe_flight_detection_t *d) {
             d->id = fuzz_byte(&run->in);
             break;
         case 2:
-            d->box.seen = fuzz_byte(&run->in);
+            d->box.sides = fuzz_byte(&run->in);
             break;
         default:
             d->pixel_px = fuzz_any(&run->in, 0.0f, 100.0f);
@@ -369,7 +370,7 @@ static void assess(run_t *run) {
     FUZZ_CHECK(a.target_lon_e7 >= -1800000000 && a.target_lon_e7 <= 1800000000);
     FUZZ_CHECK(*goe_flight_action_text(a.action) != '\0');
     hash_bytes(run, a.target_ned_m, sizeof a.target_ned_m);
-    hash_bytes(run, &a.hazard.time_s, 7 * sizeof(float));
+    hash_bytes(run, &a.hazard.tcpa_s, 7 * sizeof(float));
     count(ASSESSED);
     if (a.worst >= 0) {
         count(HAZARDS);

@@ -15,12 +15,12 @@
 #define UPDATES_MAX 6000u
 #define VALID_BITS 0x7Fu
 
-enum { UPDATES, FLIPS, CORRUPTED, NOT_INITIALISED, RESET_HELPED, FRESH_AFTER, SUSPECT_AFTER, COUNTS };
+enum { UPDATES, FLIPS, CORRUPTED, NOT_INITIALIZED, RESET_HELPED, FRESH_AFTER, SUSPECT_AFTER, COUNTS };
 
 fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"flips", 0},
                                         {"answered_corrupted", 0},
-                                        {"answered_not_initialised", 0},
+                                        {"answered_not_initialized", 0},
                                         {"resets_that_helped", 0},
                                         {"fresh_after", 0},
                                         {"suspect_after", 0},
@@ -47,8 +47,8 @@ static void check_answer(goe_status_t status) {
     check_finite(&e->age_s, sizeof *e - offsetof(goe_estimate_t, age_s));
     check_truth(&e->fresh);
     check_truth(&e->suspect);
-    FUZZ_CHECK(check_is_image_status(status) || status == GOE_CORRUPTED || status == GOE_NOT_INITIALISED);
-    FUZZ_CHECK((int)e->method >= 0 && (int)e->method <= (int)GOE_METHOD_REFINED);
+    FUZZ_CHECK(check_is_image_status(status) || status == GOE_CORRUPTED || status == GOE_NOT_INITIALIZED);
+    FUZZ_CHECK((int)e->method >= 0 && (int)e->method <= (int)GOE_METHOD_FILTER);
     FUZZ_CHECK((int)e->model >= (int)GOE_MODEL_NONE && (int)e->model <= (int)GOE_MODEL_PRISM);
     FUZZ_CHECK((int)e->reason >= (int)GOE_REASON_NONE && (int)e->reason <= (int)GOE_REASON_NOISE);
     FUZZ_CHECK((e->valid & ~VALID_BITS) == 0u);
@@ -58,20 +58,20 @@ static void check_answer(goe_status_t status) {
 static void ask(const fuzz_view_t *view) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
-    goe_plan_t plan;
-    memset(&plan, 0, sizeof plan);
+    goe_intent_t intent;
+    memset(&intent, 0, sizeof intent);
     memset(&hazard, 0xFF, sizeof hazard);
     memset(covariance, 0xFF, sizeof covariance);
-    plan.velocity_ned_m_s[0] = view->path.speed_m_s * cosf(view->path.course_rad);
-    plan.velocity_ned_m_s[1] = view->path.speed_m_s * sinf(view->path.course_rad);
-    plan.margin_m = 15.0f;
-    plan.clearance_m = 10.0f;
+    intent.velocity_ned_m_s[0] = view->path.speed_m_s * cosf(view->path.course_rad);
+    intent.velocity_ned_m_s[1] = view->path.speed_m_s * sinf(view->path.course_rad);
+    intent.margin_m = 15.0f;
+    intent.clearance_m = 10.0f;
     (void)goe_covariance(&memory.estimator, covariance);
     check_finite(covariance, sizeof covariance);
-    (void)!goe_hazard(&memory.estimator, &plan, &hazard);
+    (void)!goe_hazard(&memory.estimator, &intent, &hazard);
     check_finite(&hazard, offsetof(goe_hazard_t, has_clearance));
     check_truth(&hazard.has_clearance);
-    FUZZ_CHECK(hazard.violation >= 0.0f && hazard.violation <= 1.0f);
+    FUZZ_CHECK(hazard.conflict_probability >= 0.0f && hazard.conflict_probability <= 1.0f);
     guard_check();
 }
 
@@ -87,7 +87,7 @@ static void count_answer(goe_status_t status, bool flipped) {
     fuzz_counts[UPDATES].times++;
     if (flipped) {
         fuzz_counts[CORRUPTED].times += status == GOE_CORRUPTED ? 1u : 0u;
-        fuzz_counts[NOT_INITIALISED].times += status == GOE_NOT_INITIALISED ? 1u : 0u;
+        fuzz_counts[NOT_INITIALIZED].times += status == GOE_NOT_INITIALIZED ? 1u : 0u;
         fuzz_counts[FRESH_AFTER].times += memory.estimate.fresh ? 1u : 0u;
         fuzz_counts[SUSPECT_AFTER].times += memory.estimate.suspect ? 1u : 0u;
     }

@@ -30,9 +30,9 @@ void fuzz_view_begin(fuzz_input_t *in, const goe_settings_t *settings, fuzz_view
     view->late_s = (kind & 12u) == 12u ? fuzz_between(in, -0.2f, 0.4f) : 0.0f;
     view->period_us = (kind & 48u) == 48u ? 1000u + 10u * fuzz_half(in) : PERIOD_US;
     if ((kind & 192u) == 192u) {
-        view->hint.attitude_deg = fuzz_between(in, 0.0f, 3.0f);
-        view->hint.height_m = fuzz_between(in, 0.0f, 10.0f);
-        view->hint.pixel_px = fuzz_between(in, 0.0f, 8.0f);
+        view->hint.attitude_sd_deg = fuzz_between(in, 0.0f, 3.0f);
+        view->hint.height_sd_m = fuzz_between(in, 0.0f, 10.0f);
+        view->hint.pixel_sd_px = fuzz_between(in, 0.0f, 8.0f);
     }
 }
 
@@ -61,7 +61,7 @@ static void show(fuzz_view_t *view, const goe_camera_t *camera, const goe_pose_t
     if ((view->shows & (FUZZ_SHOWS_POINTS | FUZZ_SHOWS_BASE)) != 0) {
         fuzz_points(camera, &sight, (view->shows & FUZZ_SHOWS_BASE) != 0, image);
     }
-    if (image->box.seen != 0 || image->left.seen || image->right.seen) {
+    if (image->box.sides != 0 || image->left.visible || image->right.visible) {
         view->invisible = 0;
     }
 }
@@ -138,9 +138,9 @@ static const size_t numbers[] = {NUMBER(left.u_px),
                                  NUMBER(pose.attitude[1]),
                                  NUMBER(pose.attitude[2]),
                                  NUMBER(pose.attitude[3]),
-                                 NUMBER(noise.attitude_deg),
-                                 NUMBER(noise.height_m),
-                                 NUMBER(noise.pixel_px),
+                                 NUMBER(noise.attitude_sd_deg),
+                                 NUMBER(noise.height_sd_m),
+                                 NUMBER(noise.pixel_sd_px),
                                  NUMBER(pose.reset_delta_ned_m),
                                  NUMBER(pose.reset_delta_ned_m[1]),
                                  NUMBER(pose.reset_delta_ned_m[2])};
@@ -166,15 +166,15 @@ static goe_pixel_t *point_of(goe_image_t *image, uint32_t i) {
 
 static void hide(goe_image_t *image) {
     for (uint32_t i = 0; i < 6u; i++) {
-        point_of(image, i)->seen = false;
+        point_of(image, i)->visible = false;
     }
-    image->box.seen = 0;
+    image->box.sides = 0;
 }
 
 static void hide_one(fuzz_input_t *in, goe_image_t *image) {
     const uint32_t which = fuzz_byte(in);
-    point_of(image, which)->seen = false;
-    image->box.seen = (uint8_t)(image->box.seen & ~(1u << (which >> 5) % 4u));
+    point_of(image, which)->visible = false;
+    image->box.sides = (uint8_t)(image->box.sides & ~(1u << (which >> 5) % 4u));
 }
 
 /* Bytes of bool that are neither 0 nor 1: they count as 1. Only the library may read them. */
@@ -183,7 +183,7 @@ static void put_truths(fuzz_input_t *in, goe_image_t *image) {
     const uint32_t which = fuzz_byte(in);
     for (uint32_t i = 0; i < 6u; i++) {
         if ((which >> i & 1u) != 0) {
-            memset(&point_of(image, i)->seen, truth, sizeof(bool));
+            memset(&point_of(image, i)->visible, truth, sizeof(bool));
         }
     }
     memset(&image->pose.reset_delta_known, truth >> 1, sizeof(bool));
@@ -210,9 +210,9 @@ static void all_bits(fuzz_input_t *in, goe_image_t *image) {
         }
     }
     for (uint32_t i = 0; i < 6u; i++) {
-        point_of(image, i)->seen = (visible >> i & 1u) != 0;
+        point_of(image, i)->visible = (visible >> i & 1u) != 0;
     }
-    image->box.seen = (uint8_t)(visible >> 8);
+    image->box.sides = (uint8_t)(visible >> 8);
 }
 
 static int64_t any_time(fuzz_input_t *in, int64_t now_us) {
@@ -340,7 +340,7 @@ static void spoil_features(fuzz_input_t *in, uint32_t what, fuzz_view_t *view, g
             swap_points(in, image);
             break;
         case SPOIL_SIDES:
-            image->box.seen = fuzz_byte(in);
+            image->box.sides = fuzz_byte(in);
             break;
         case SPOIL_TRUTH:
             put_truths(in, image);
@@ -367,9 +367,9 @@ static void spoil_pose(fuzz_input_t *in, uint32_t what, fuzz_view_t *view, goe_i
             image->camera = fuzz_byte(in);
             break;
         case SPOIL_HINT:
-            image->noise.attitude_deg = fuzz_any(in, 0.0f, 30.0f);
-            image->noise.height_m = fuzz_any(in, 0.0f, 1.0e3f);
-            image->noise.pixel_px = fuzz_any(in, 0.0f, 100.0f);
+            image->noise.attitude_sd_deg = fuzz_any(in, 0.0f, 30.0f);
+            image->noise.height_sd_m = fuzz_any(in, 0.0f, 1.0e3f);
+            image->noise.pixel_sd_px = fuzz_any(in, 0.0f, 100.0f);
             break;
         case SPOIL_BITS:
         default:

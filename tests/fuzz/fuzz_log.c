@@ -57,7 +57,7 @@ static void take_row(const frame_t *frame, track_table_t *tracks) {
     FUZZ_CHECK(estimator != NULL);
     frame_to_image(frame, &image);
     const goe_status_t status = goe_update(estimator, &image, &estimate);
-    FUZZ_CHECK((int)status >= (int)GOE_NO_HEIGHT && (int)status <= (int)GOE_NOTHING_SEEN);
+    FUZZ_CHECK((int)status >= (int)GOE_NO_HEIGHT && (int)status <= (int)GOE_NO_DETECTION);
     FUZZ_CHECK(estimate_write_row(sink, frame->time_text, frame->id, status, &estimate, true));
     fuzz_counts[ROWS].times++;
     fuzz_counts[FRESH].times += estimate.fresh ? 1u : 0u;

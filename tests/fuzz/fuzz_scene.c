@@ -239,7 +239,7 @@ goe_box_t fuzz_box(const goe_camera_t *camera, const fuzz_sight_t *sight) {
     box.right_px = clamped(sight->u_px[most(sight->u_px, 1.0f)], camera->width_px);
     box.top_px = clamped(sight->v_px[most(sight->v_px, -1.0f)], camera->height_px);
     box.bottom_px = clamped(sight->v_px[most(sight->v_px, 1.0f)], camera->height_px);
-    box.seen = box.left_px < box.right_px && box.top_px < box.bottom_px ? GOE_SEES_BOX : 0u;
+    box.sides = box.left_px < box.right_px && box.top_px < box.bottom_px ? GOE_SIDES_ALL : 0u;
     return box;
 }
 
@@ -248,8 +248,8 @@ static goe_pixel_t pixel_of(const goe_camera_t *camera, const fuzz_sight_t *sigh
     memset(&pixel, 0, sizeof pixel);
     pixel.u_px = sight->u_px[i];
     pixel.v_px = sight->v_px[i];
-    pixel.seen = !(camera->width_px > 0.0f) || (pixel.u_px >= 0.0f && pixel.u_px <= camera->width_px &&
-                                                pixel.v_px >= 0.0f && pixel.v_px <= camera->height_px);
+    pixel.visible = !(camera->width_px > 0.0f) || (pixel.u_px >= 0.0f && pixel.u_px <= camera->width_px &&
+                                                   pixel.v_px >= 0.0f && pixel.v_px <= camera->height_px);
     return pixel;
 }
 

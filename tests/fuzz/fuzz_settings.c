@@ -97,7 +97,7 @@ void fuzz_usual_settings(fuzz_input_t *in, goe_settings_t *settings) {
         usual_camera(in, &settings->more_cameras[0]);
     }
 #endif
-    settings->method = (kind & 12u) == 12u ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
+    settings->method = (kind & 12u) == 12u ? GOE_METHOD_WINDOW : GOE_METHOD_FILTER;
     settings->model = (goe_model_t)(GOE_MODEL_AUTO + (int)((kind >> 4) % 6u == 4u   ? 1
                                                            : (kind >> 4) % 6u == 5u ? 2
                                                                                     : 0));

@@ -72,7 +72,7 @@ static void try_words(void) {
 }
 
 static void try_name(size_t length) {
-    static const char *const names[] = {"camera.fx", "navigation.height_bias_m", "x", "", "detector.box_share"};
+    static const char *const names[] = {"camera.fx", "navigation.height_bias_sd_m", "x", "", "detector.box_noise_rel"};
     nearest_name_t nearest = nearest_name_of(text, length);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         nearest_name_try(&nearest, names[i]);

@@ -100,8 +100,8 @@ static outcome_t fly(bool (*detected)(int k)) {
             scene_add_noise(&image, &any, BOX_PX);
         }
         if (!detected(k)) {
-            image.box.seen = 0;
-            image.left.seen = image.right.seen = image.top.seen = false;
+            image.box.sides = 0;
+            image.left.visible = image.right.visible = image.top.visible = false;
         }
         (void)goe_update(&estimator, &image, &estimate);
         outcome.suspect += estimate.suspect ? 1 : 0;
@@ -163,7 +163,7 @@ static void the_order_comes_by_boxes(void) {
     }
 }
 
-/* [goe_decide] ... and the path that keeps twice the margin from the outline causes no order, 19 times of 20. */
+/* [goe_decide] ... and the path that keeps twice the margin from the outline fault_counts no order, 19 times of 20. */
 static void a_pass_at_twice_the_margin_by_boxes(void) {
     static const double roll_deg[] = {0.0, 25.0};
     for (int i = 0; i < 2; i++) {
@@ -256,7 +256,7 @@ static void no_failure_means_clear(void) {
     }
 }
 
-/* [goe_decide] ... and an obstacle passed at a distance causes no order. */
+/* [goe_decide] ... and an obstacle passed at a distance fault_counts no order. */
 static void a_wide_pass_is_no_reason(void) {
     int ordered = 0;
     for (int run = 0; run < RUNS; run++) {

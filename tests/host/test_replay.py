@@ -27,12 +27,12 @@ pytestmark = pytest.mark.skipif(
 )
 
 HEADER = (
-    "t_s,id,status,model,n_used,x0_m,x0_sd_m,z0_m,z0_sd_m,x_m,x_sd_m,z_m,z_sd_m,width_m,width_sd_m,"
+    "t_s,id,status,model,images_used,x0_m,x0_sd_m,z0_m,z0_sd_m,x_m,x_sd_m,z_m,z_sd_m,width_m,width_sd_m,"
     "length_m,length_sd_m,height_m,height_sd_m,orientation_deg,orientation_sd_deg,"
     "center_n_m,center_n_sd_m,center_e_m,center_e_sd_m,suspect,reason"
 )
 RESIDUALS = (
-    ",nis,nis_rows,misfit,velocity_n_m_s,velocity_n_sd_m_s,velocity_e_m_s,velocity_e_sd_m_s,latency_s,latency_sd_s"
+    ",nis,nis_rows,nis_ratio,velocity_n_m_s,velocity_n_sd_m_s,velocity_e_m_s,velocity_e_sd_m_s,latency_s,latency_sd_s"
 )
 PAPER = ("--method", "window")
 CORNER = ROOT / "tests" / "data" / "corner"
@@ -160,8 +160,8 @@ def test_one_row_per_row_with_time_as_it_was_read(tmp_path: Path) -> None:
 
 def test_chimney_is_found(log: Path) -> None:
     out = replay(log, *PAPER)
-    assert [row["status"] for row in out] == ["collecting"] * 7 + ["ok"] * 13
-    assert [row["n_used"] for row in out] == ["0"] * 7 + ["8"] * 13
+    assert [row["status"] for row in out] == ["converging"] * 7 + ["ok"] * 13
+    assert [row["images_used"] for row in out] == ["0"] * 7 + ["8"] * 13
     assert [row["model"] for row in out] == ["none"] * 7 + ["disc"] * 13
     last = out[-1]
     # (2) is exact for the position; its size row is off by r^2 X^2 / (Z^2 d^2) < 1e-5 here. Text has 9 digits.
@@ -195,7 +195,7 @@ def test_window(log: Path) -> None:
     for window in (3, 8, 13):
         out = replay(log, *PAPER, "--window", str(window))
         assert [row["status"] for row in out].index("ok") == window - 1
-        assert out[-1]["n_used"] == str(window)
+        assert out[-1]["images_used"] == str(window)
 
 
 def test_window_64(tmp_path: Path) -> None:
@@ -204,7 +204,7 @@ def test_window_64(tmp_path: Path) -> None:
     assert [row["status"] for row in out].index("ok") == 63
 
 
-@pytest.mark.parametrize("method", ["window", "refined"])
+@pytest.mark.parametrize("method", ["window", "filter"])
 def test_numbers_are_floats_with_nine_digits(tmp_path: Path, method: str) -> None:
     """Each number is the shortest %.9g text of one float, as a C library prints it."""
     numbers = 0
@@ -218,7 +218,7 @@ def test_numbers_are_floats_with_nine_digits(tmp_path: Path, method: str) -> Non
     assert numbers > 500
 
 
-@pytest.mark.parametrize("method", ["window", "refined"])
+@pytest.mark.parametrize("method", ["window", "filter"])
 def test_every_quantity_is_followed_by_its_sigma(log: Path, method: str) -> None:
     for row in replay(log, "--method", method):
         texts = list(row.values())[5:]
@@ -238,16 +238,16 @@ def test_interleaved_tracks_do_not_touch_each_other(tmp_path: Path) -> None:
 def test_many_tracks(tmp_path: Path) -> None:
     rows = [pose_row(0.1 * k, 1.0 * k, track=(7919 * i) % 5003 - 2500) for k in range(2) for i in range(5003)]
     out = replay(write_log(tmp_path, table(rows)), check=1)
-    assert [row["status"] for row in out] == ["nothing_seen"] * len(rows)
+    assert [row["status"] for row in out] == ["no_detection"] * len(rows)
 
 
-# ------------------------------------------------------------------------------------------- the refined method
+# ------------------------------------------------------------------------------------------- the filter method
 
 
 def test_refined_is_the_default(log: Path) -> None:
     for folder in (log, CORNER):
         refined = call(folder).stdout
-        assert call("--method", "refined", folder).stdout == refined
+        assert call("--method", "filter", folder).stdout == refined
         assert call(*PAPER, folder).stdout != refined
 
 
@@ -256,7 +256,7 @@ def test_refined_chimney(log: Path) -> None:
     out = replay(log)
     start = [row["status"] for row in out].index("ok")
     assert start <= 7
-    assert [row["status"] for row in out] == ["collecting"] * start + ["ok"] * (20 - start)
+    assert [row["status"] for row in out] == ["converging"] * start + ["ok"] * (20 - start)
     assert [row["model"] for row in out] == ["none"] * start + ["disc"] * (20 - start)
     for name, truth in {
         "x0": -30.0,
@@ -290,7 +290,7 @@ def test_refined_box() -> None:
 def test_refined_disc_for_a_stand_in_has_no_width() -> None:
     """Before its orientation is known, a box is estimated as a disc, whose width would equal neither of its sides."""
     alone, first = replay(CORNER)[:2]
-    assert (alone["status"], alone["model"]) == ("collecting", "none")
+    assert (alone["status"], alone["model"]) == ("converging", "none")
     assert (first["status"], first["model"]) == ("ok", "disc")
     assert first["z0_m"] != "" and first["width_m"] == first["width_sd_m"] == ""
 
@@ -300,7 +300,7 @@ def test_refined_forced_model() -> None:
     assert {row["model"] for row in replay(CORNER, "--model=line")} <= {"none", "line", "box"}
 
 
-@pytest.mark.parametrize("method", ["window", "refined"])
+@pytest.mark.parametrize("method", ["window", "filter"])
 def test_residuals_are_columns_at_the_end(method: str) -> None:
     plain = call("--method", method, CORNER).stdout.splitlines()
     wide = call("--method", method, "--residuals", CORNER).stdout.splitlines()
@@ -310,53 +310,53 @@ def test_residuals_are_columns_at_the_end(method: str) -> None:
     assert {row["suspect"] for row in rows} == {"0"} and {row["reason"] for row in rows} == {"none"}
     assert {row["velocity_n_m_s"] for row in rows} == {""}
     if method == "window":
-        assert {(row["nis"], row["nis_rows"], row["misfit"]) for row in rows} == {("", "0", "")}
+        assert {(row["nis"], row["nis_rows"], row["nis_ratio"]) for row in rows} == {("", "0", "")}
         return
     assert [row["nis"] == "" for row in rows] == [row["nis_rows"] == "0" for row in rows]
     judged = [row for row in rows if row["nis"] != ""]
     assert len(judged) > 0.9 * len(rows)
     assert all(0.0 <= number(row, "nis") < 5.0 * number(row, "nis_rows") for row in judged)
-    assert all(0.0 < number(row, "misfit") < 1.0 for row in judged[10:])
+    assert all(0.0 < number(row, "nis_ratio") < 1.0 for row in judged[10:])
 
 
 def test_suspect() -> None:
     """The configured pixel noise is ten times too small; then the limit is set."""
-    configured = ("--set", "detector.point_px=0.05", "--set", "navigation.attitude_white_deg=1e-4")
-    configured += ("--set", "refined.gate_sigma=100")
-    out = replay(CORNER, "--residuals", *configured, "--set", "refined.huber_sigma=100")
-    assert number(out[-1], "misfit") > 1.9
+    configured = ("--set", "detector.point_noise_px=0.05", "--set", "navigation.attitude_white_sd_deg=1e-4")
+    configured += ("--set", "filter.gate_sigma=100")
+    out = replay(CORNER, "--residuals", *configured, "--set", "filter.huber_sigma=100")
+    assert number(out[-1], "nis_ratio") > 1.9
     images = accumulate(int(row["nis_rows"]) > 0 for row in out)
     flagged = [row["suspect"] for row in out]
     assert {row["reason"] for row in out if row["suspect"] == "1"} <= {"noise", "base", "convention"}
-    assert [row["suspect"] for row in replay(CORNER, *configured, "--set", "refined.huber_sigma=100")] == flagged
-    assert flagged == [str(int(n >= 8 and float(row["misfit"] or 0.0) > 1.9)) for n, row in zip(images, out)]
-    bold = [row["suspect"] for row in replay(CORNER, "--residuals", *configured, "--set", "refined.misfit_max=1e3")]
+    assert [row["suspect"] for row in replay(CORNER, *configured, "--set", "filter.huber_sigma=100")] == flagged
+    assert flagged == [str(int(n >= 8 and float(row["nis_ratio"] or 0.0) > 1.9)) for n, row in zip(images, out)]
+    bold = [row["suspect"] for row in replay(CORNER, "--residuals", *configured, "--set", "filter.nis_ratio_max=1e3")]
     assert bold.count("1") < flagged.count("1")  # remaining causes: base corners that proved wrong
 
 
 SETTINGS = {  # by --set, and their defaults
-    "navigation.attitude_bias_deg": 0.5,
-    "navigation.attitude_white_deg": 0.1,
-    "navigation.attitude_drift_deg": 0,
-    "navigation.height_bias_m": 0.5,
-    "navigation.velocity_bias_m_s": 0.05,
-    "navigation.position_walk_m": 0.05,
-    "navigation.position_white_m": 0,
-    "navigation.ground_m": 2,
-    "detector.point_px": 0.5,
-    "detector.point_share": 0,
+    "navigation.attitude_bias_sd_deg": 0.5,
+    "navigation.attitude_white_sd_deg": 0.1,
+    "navigation.attitude_walk_sd_deg": 0,
+    "navigation.height_bias_sd_m": 0.5,
+    "navigation.velocity_bias_sd_m_s": 0.05,
+    "navigation.position_walk_sd_m": 0.05,
+    "navigation.position_white_sd_m": 0,
+    "navigation.terrain_height_sd_m": 2,
+    "detector.point_noise_px": 0.5,
+    "detector.point_noise_rel": 0,
     "detector.point_correlation": 0,
-    "detector.shape_share": 0,
-    "detector.box_px": 1,
-    "detector.box_share": 0.07,
-    "detector.correlation_s": 1.2,
-    "detector.cut_noise": 1,
-    "refined.typical_size_m": 6,
-    "refined.gate_sigma": 5,
-    "refined.huber_sigma": 2.5,
-    "refined.misfit_max": 1.9,
-    "refined.range_share": 0.25,
-    "refined.top_is_highest": 0,
+    "detector.shape_error_rel": 0,
+    "detector.box_noise_px": 1,
+    "detector.box_noise_rel": 0.07,
+    "detector.box_correlation_time_s": 1.2,
+    "detector.truncation_noise_rel": 1,
+    "filter.prior_width_m": 6,
+    "filter.gate_sigma": 5,
+    "filter.huber_sigma": 2.5,
+    "filter.nis_ratio_max": 1.9,
+    "filter.range_sd_rel_max": 0.25,
+    "filter.top_is_highest": 0,
     "window.points": 8,
     "window.line_points": 8,
     "window.edge_min_px": 10,
@@ -365,14 +365,14 @@ SETTINGS = {  # by --set, and their defaults
     "window.orientation_memory": 20,
     "window.min_baseline_m": 0.1,
 }
-OTHERWISE = {  # values that change the refined method's answers to a log, or those of the window method
-    "refined": {
+OTHERWISE = {  # values that change the filter method's answers to a log, or those of the window method
+    "filter": {
         **{name: 0.2 for name in SETTINGS if name.startswith(("detector.", "navigation."))},
-        "refined.typical_size_m": 30,
-        "refined.gate_sigma": 1,
-        "refined.huber_sigma": 0.5,
-        "refined.range_share": 0.01,
-        "refined.top_is_highest": 1,
+        "filter.prior_width_m": 30,
+        "filter.gate_sigma": 1,
+        "filter.huber_sigma": 0.5,
+        "filter.range_sd_rel_max": 0.01,
+        "filter.top_is_highest": 1,
     },
     "window": {
         "window.points": 5,
@@ -389,7 +389,7 @@ OTHERWISE = {  # values that change the refined method's answers to a log, or th
 def test_each_setting_is_set(log: Path, tmp_path: Path) -> None:
     cut = [{**row, "box_right_px": row["box_right_px"] if k < 30 else ""} for k, row in enumerate(boxes())]
     folders = (CORNER, log, write_log(tmp_path / "boxes", table(cut, COLUMNS + SIDES)))
-    assert {"refined.misfit_max"} | {name for configured in OTHERWISE.values() for name in configured} == set(SETTINGS)
+    assert {"filter.nis_ratio_max"} | {name for configured in OTHERWISE.values() for name in configured} == set(SETTINGS)
     for method, configured in OTHERWISE.items():
         usual = [call("--method", method, folder, check=None).stdout for folder in folders]
         for name, value in configured.items():
@@ -399,14 +399,14 @@ def test_each_setting_is_set(log: Path, tmp_path: Path) -> None:
 
 
 def test_set_to_the_default_changes_nothing() -> None:
-    for method in ("window", "refined"):
+    for method in ("window", "filter"):
         configured = [option for name, value in SETTINGS.items() for option in ("--set", f"{name}={value}")]
         assert call("--method", method, *configured, CORNER).stdout == call("--method", method, CORNER).stdout
 
 
 def test_the_last_of_two_counts() -> None:
-    both = call("--set", "detector.point_px=3", "--set=detector.point_px=0.7", CORNER).stdout
-    assert both == call("--set", "detector.point_px=0.7", CORNER).stdout != call(CORNER).stdout
+    both = call("--set", "detector.point_noise_px=3", "--set=detector.point_noise_px=0.7", CORNER).stdout
+    assert both == call("--set", "detector.point_noise_px=0.7", CORNER).stdout != call(CORNER).stdout
 
 
 # ------------------------------------------------------------------------------------------------------- file formats
@@ -509,7 +509,7 @@ def test_each_side_is_visible_if_it_is_given(tmp_path: Path, side: str) -> None:
     rows = [{**row, **{name: "" for name in SIDES if name != side}} for row in boxes(4)]
     rows[1][side], rows[2][side], rows[3][side] = "nan", "", "2e5"
     out = replay(write_log(tmp_path, table(rows, COLUMNS + SIDES)), check=1)
-    assert [row["status"] for row in out] == ["box_incomplete", "not_finite", "nothing_seen", "out_of_range"]
+    assert [row["status"] for row in out] == ["box_incomplete", "not_finite", "no_detection", "out_of_range"]
 
 
 @pytest.mark.parametrize(
@@ -545,7 +545,7 @@ def quantities(rows: Sequence[dict[str, str]]) -> list[dict[str, str]]:
     return [{name: text for name, text in row.items() if not name.startswith("center")} for row in rows]
 
 
-@pytest.mark.parametrize("method", ["window", "refined"])
+@pytest.mark.parametrize("method", ["window", "filter"])
 def test_a_known_jump_is_no_motion(tmp_path: Path, log: Path, method: str) -> None:
     plain = replay(log, "--method", method)
     folder = write_log(tmp_path / "jump", table(jumped([1]), COLUMNS + RESETS))
@@ -566,7 +566,7 @@ def test_an_unknown_jump_begins_a_new_track(tmp_path: Path, lacking: str) -> Non
     columns = COLUMNS + (RESETS[:1] if lacking == "columns" else RESETS)
     out = replay(write_log(tmp_path / "jump", table(rows, columns)), *PAPER)
     assert out[11]["status"] == "ok" and out[11]["z0_m"] != ""
-    assert [(row["status"], row["z0_m"]) for row in out[12:19]] == [("collecting", "")] * 7
+    assert [(row["status"], row["z0_m"]) for row in out[12:19]] == [("converging", "")] * 7
     assert number(out[19], "z0_m") == pytest.approx(200.0 - 1.5 * 12, rel=2e-3)  # of the new track's first image
 
 
@@ -594,7 +594,7 @@ def by_camera(rows: Sequence[Row], number: Any, first: int = 0) -> list[Row]:
     return [{**row, "camera": number if k >= first else ""} for k, row in enumerate(rows)]
 
 
-@pytest.mark.parametrize("method", ["window", "refined"])
+@pytest.mark.parametrize("method", ["window", "filter"])
 def test_a_second_camera_like_the_first_changes_nothing(tmp_path: Path, log: Path, method: str) -> None:
     rows = by_camera(chimney(), 1, first=12)
     folder = write_log(tmp_path / "two", table(rows, [*COLUMNS, "camera"]), CAMERA + SECOND_CAMERA)
@@ -649,7 +649,7 @@ def test_half_a_point_is_not_visible(tmp_path: Path, empty: str) -> None:
     rows = chimney()
     rows[15][empty] = ""
     out = replay(write_log(tmp_path, table(rows)), *PAPER)
-    assert (out[15]["status"], out[15]["z0_m"]) == ("held", out[14]["z0_m"])
+    assert (out[15]["status"], out[15]["z0_m"]) == ("stale", out[14]["z0_m"])
     assert out[16]["status"] == "ok"
 
 
@@ -897,37 +897,37 @@ BAD_USAGE = [
     (["--model", "box"], "box: --model must be auto, disc or line ("),
     (["--model", "dics"], "dics: --model must be auto, disc or line; did you mean disc?"),
     (["--model", ""], "--model must be auto, disc or line"),
-    (["--method", "magic"], "magic: --method must be refined or window ("),
-    (["--method", "widnow"], "widnow: --method must be refined or window; did you mean window?"),
+    (["--method", "magic"], "magic: --method must be filter or window ("),
+    (["--method", "widnow"], "widnow: --method must be filter or window; did you mean window?"),
     (["--set"], "--set: missing argument"),
-    (["--set", ""], "--set: '' is no setting; there are navigation.attitude_bias_deg, "),
-    (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are navigation.attitude_bias_deg, "),
-    (["--set", "detector.point_p=1"], "--set: 'detector.point_p' is no setting; did you mean detector.point_px?"),
-    (["--set", "detector.pixel_px=1"], "--set: 'detector.pixel_px' is no setting; did you mean detector.point_px?"),
+    (["--set", ""], "--set: '' is no setting; there are navigation.attitude_bias_sd_deg, "),
+    (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are navigation.attitude_bias_sd_deg, "),
+    (["--set", "detector.point_p=1"], "--set: 'detector.point_p' is no setting; did you mean detector.point_noise_px?"),
+    (["--set", "detector.pixel_px=1"], "--set: 'detector.pixel_px' is no setting; did you mean detector.point_noise_px?"),
     (["--metohd", "window"], "--metohd: unknown option; did you mean --method?"),
     (["--something-else"], "--something-else: unknown option ("),
     (["--set", "something.else=1"], "orientation_memory and window.min_baseline_m"),
     (["--set", "window=5"], "--set: 'window' is no setting"),
     (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting"),
     (["--set", "\x1b[31m=5"], "--set: '?[31m' is no setting"),
-    (["--set", "detector.point_px"], "--set: detector.point_px: no value; write detector.point_px=VALUE"),
-    (["--set", "detector.point_px="], "--set: detector.point_px: '' is not a number"),
-    (["--set", "detector.point_px=0.5px"], "--set: detector.point_px: '0.5px' is not a number"),
-    (["--set", "detector.point_px= 1"], "--set: detector.point_px: ' 1' is not a number"),
-    (["--set", "detector.point_px=1=1"], "--set: detector.point_px: '1=1' is not a number"),
-    (["--set", "detector.point_px=" + "9" * 400 + "x"], "9...' is not a number"),
-    (["--set", "detector.point_px=nan"], "--set: detector.point_px: out of range: 0.05 to 100"),
-    (["--set", "detector.point_px=1e99"], "--set: detector.point_px: out of range: 0.05 to 100"),
+    (["--set", "detector.point_noise_px"], "--set: detector.point_noise_px: no value; write detector.point_noise_px=VALUE"),
+    (["--set", "detector.point_noise_px="], "--set: detector.point_noise_px: '' is not a number"),
+    (["--set", "detector.point_noise_px=0.5px"], "--set: detector.point_noise_px: '0.5px' is not a number"),
+    (["--set", "detector.point_noise_px= 1"], "--set: detector.point_noise_px: ' 1' is not a number"),
+    (["--set", "detector.point_noise_px=1=1"], "--set: detector.point_noise_px: '1=1' is not a number"),
+    (["--set", "detector.point_noise_px=" + "9" * 400 + "x"], "9...' is not a number"),
+    (["--set", "detector.point_noise_px=nan"], "--set: detector.point_noise_px: out of range: 0.05 to 100"),
+    (["--set", "detector.point_noise_px=1e99"], "--set: detector.point_noise_px: out of range: 0.05 to 100"),
     (["--set", "detector.point_correlation=1"], "--set: detector.point_correlation: out of range: 0 to 0.95"),
     (
-        ["--set", "refined.gate_sigma=4", "--set", "refined.typical_size_m=-6"],
-        "--set: refined.typical_size_m: out of range: 0.1 to 1000",
+        ["--set", "filter.gate_sigma=4", "--set", "filter.prior_width_m=-6"],
+        "--set: filter.prior_width_m: out of range: 0.1 to 1000",
     ),
     (["--set", "window.line_points=2.5"], "--set: window.line_points: '2.5' is not a whole number"),
     (["--set", "window.line_points=nan"], "--set: window.line_points: 'nan' is not a whole number"),
     (["--set", "window.orientation_memory=0"], "--set: window.orientation_memory: out of range: 1 to 1000"),
-    (["--set", "refined.top_is_highest=2"], "--set: refined.top_is_highest: '2' is not 0 or 1"),
-    (["--set", "refined.top_is_highest=yes"], "--set: refined.top_is_highest: 'yes' is not a number"),
+    (["--set", "filter.top_is_highest=2"], "--set: filter.top_is_highest: '2' is not 0 or 1"),
+    (["--set", "filter.top_is_highest=yes"], "--set: filter.top_is_highest: 'yes' is not a number"),
     (["--wat"], "--wat: unknown option"),
     (["another"], "another: one folder at a time"),
 ]
@@ -970,10 +970,10 @@ def test_header_alone(tmp_path: Path) -> None:
 def test_no_row_gave_an_estimate(tmp_path: Path) -> None:
     done = call(*PAPER, write_log(tmp_path, table(chimney(7))), check=1)
     assert len(done.stdout.splitlines()) == 8
-    assert "no row gave an estimate (collecting: 7)" in done.stderr
+    assert "no row gave an estimate (converging: 7)" in done.stderr
     done = call(write_log(tmp_path, table([pose_row(0.1 * k, 1.5 * k) for k in range(7)])), check=1)
     assert len(done.stdout.splitlines()) == 8
-    assert "no row gave an estimate (nothing_seen: 7)" in done.stderr
+    assert "no row gave an estimate (no_detection: 7)" in done.stderr
 
 
 # ------------------------------------------------------------------------------------------------------------- output

@@ -28,7 +28,7 @@ static goe_mavlink_features_t some_features(void) {
                                              .time_sd = 1500u,
                                              .image_width = 1280u,
                                              .image_height = 960u,
-                                             .seen = 0x20Fu,
+                                             .visible = 0x20Fu,
                                              .camera_id = 1u,
                                              .time_base = 2u,
                                              .number = 3u,
@@ -92,7 +92,7 @@ static void features_are_read_field_by_field(void) {
     TEST_ASSERT_EQUAL_UINT16(expected.time_sd, features.time_sd);
     TEST_ASSERT_EQUAL_UINT16(expected.image_width, features.image_width);
     TEST_ASSERT_EQUAL_UINT16(expected.image_height, features.image_height);
-    TEST_ASSERT_EQUAL_HEX16(expected.seen, features.seen);
+    TEST_ASSERT_EQUAL_HEX16(expected.visible, features.visible);
     TEST_ASSERT_EQUAL_UINT8(expected.camera_id, features.camera_id);
     TEST_ASSERT_EQUAL_UINT8(expected.time_base, features.time_base);
     TEST_ASSERT_EQUAL_UINT8(expected.number, features.number);

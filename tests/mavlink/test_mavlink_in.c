@@ -23,7 +23,7 @@ void setUp(void) {
     features.obstacle_id = 70000u;
     features.image_width = 1281u; /* odd: its middle is at 640.5 */
     features.image_height = 960u;
-    features.seen = GOE_MAVLINK_SEES_BOX;
+    features.visible = GOE_MAVLINK_FEATURE_BOX;
     features.number = 2u;
     features.score = 85u;
     camera.width_px = 1000.0f;
@@ -53,7 +53,7 @@ static void check_box(double left, double top, double right, double bottom) {
     CHECK_CLOSE(2e-3, top, sighting.detection.box.top_px);
     CHECK_CLOSE(2e-3, right, sighting.detection.box.right_px);
     CHECK_CLOSE(2e-3, bottom, sighting.detection.box.bottom_px);
-    TEST_ASSERT_EQUAL_HEX8(GOE_SEES_BOX, sighting.detection.box.seen);
+    TEST_ASSERT_EQUAL_HEX8(GOE_SIDES_ALL, sighting.detection.box.sides);
     TEST_ASSERT_EQUAL_PTR(&sighting.detection, sighting.frame.detection);
     TEST_ASSERT_EQUAL_UINT8(1u, sighting.frame.count);
 }
@@ -70,26 +70,26 @@ static void features_are_tenths_from_the_middle(void) {
     CHECK_CLOSE(1e-6, 0.85, sighting.detection.score);
     CHECK_CLOSE(1e-6, 2.5, sighting.detection.pixel_px);
     TEST_ASSERT_EQUAL_UINT8(2u, sighting.frame.number);
-    TEST_ASSERT_FALSE(sighting.detection.left.seen || sighting.detection.base_right.seen);
+    TEST_ASSERT_FALSE(sighting.detection.left.visible || sighting.detection.base_right.visible);
 }
 
 static void points_keep_their_order(void) {
-    features.seen = 0;
+    features.visible = 0;
     for (int i = 0; i < GOE_MAVLINK_POINTS; i++) {
         features.u[i] = (int16_t)(100 * i);
         features.v[i] = (int16_t)(-10 * i);
     }
     for (int i = 0; i < GOE_MAVLINK_POINTS; i++) {
-        features.seen = (uint16_t)(GOE_MAVLINK_SEES_POINT << i);
+        features.visible = (uint16_t)(GOE_MAVLINK_FEATURE_POINT << i);
         TEST_ASSERT_TRUE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
         const goe_flight_detection_t *d = &sighting.detection;
         const goe_pixel_t points[] = {d->left, d->right, d->top, d->base_left, d->base_near, d->base_right};
         for (int k = 0; k < GOE_MAVLINK_POINTS; k++) {
-            TEST_ASSERT_EQUAL(k == i, points[k].seen);
+            TEST_ASSERT_EQUAL(k == i, points[k].visible);
             CHECK_CLOSE(1e-3, 640.5 + 10.0 * k, points[k].u_px);
             CHECK_CLOSE(1e-3, 480.0 - k, points[k].v_px);
         }
-        TEST_ASSERT_EQUAL_HEX8(0, d->box.seen);
+        TEST_ASSERT_EQUAL_HEX8(0, d->box.sides);
     }
 }
 
@@ -137,7 +137,7 @@ static void an_image_without_detections_shows_that_the_detector_is_alive(void) {
 
 /* One of several obstacles is not visible: this must not count as an image without detections. */
 static void a_message_that_sees_nothing_is_no_empty_image(void) {
-    features.seen = 0xFC00u; /* bits without a meaning yet */
+    features.visible = 0xFC00u; /* bits without a meaning yet */
     TEST_ASSERT_FALSE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
     check_empty(2u);
 }

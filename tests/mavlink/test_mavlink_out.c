@@ -44,14 +44,14 @@ void setUp(void) {
     set3(obstacle.nearest_body_m, 197.0f, -29.0f, 1.0f);
     obstacle.lat_e7 = 475000000;
     obstacle.lon_e7 = 190000000;
-    obstacle.hazard.time_s = 10.0f;
-    obstacle.hazard.time_sd_s = 1.0f;
-    obstacle.hazard.miss_m = 4.0f;
-    obstacle.hazard.miss_sd_m = 2.0f;
+    obstacle.hazard.tcpa_s = 10.0f;
+    obstacle.hazard.tcpa_sd_s = 1.0f;
+    obstacle.hazard.dcpa_m = 4.0f;
+    obstacle.hazard.dcpa_sd_m = 2.0f;
     obstacle.hazard.clearance_m = -22.0f;
     obstacle.hazard.clearance_sd_m = 3.0f;
     obstacle.hazard.has_clearance = true;
-    obstacle.hazard.violation = 0.3f;
+    obstacle.hazard.conflict_probability = 0.3f;
     assessment.worst = 2;
     assessment.avoided = -1;
     assessment.needed_s = 6.0f;
@@ -107,7 +107,7 @@ static void an_obstacle_is_reported_as_it_is(void) {
 static void what_is_not_known_is_nan(void) {
     goe_mavlink_obstacle_t m;
     obstacle.valid = GOE_HAS_POSITION;
-    obstacle.passed = true;
+    obstacle.receding = true;
     own.origin_known = false;
     goe_mavlink_to_obstacle(&obstacle, 0, &own, &m);
     CHECK_SAME(200.0f, m.north);
@@ -119,7 +119,7 @@ static void what_is_not_known_is_nan(void) {
     check_nan(m.heading);
     TEST_ASSERT_EQUAL_INT32(INT32_MAX, m.lat);
     TEST_ASSERT_EQUAL_INT32(INT32_MAX, m.lon);
-    TEST_ASSERT_EQUAL_HEX8(GOE_MAVLINK_PASSED, m.flags);
+    TEST_ASSERT_EQUAL_HEX8(GOE_MAVLINK_RECEDING, m.flags);
     obstacle.valid = 0u;
     own.origin_known = true;
     goe_mavlink_to_obstacle(&obstacle, 0, &own, &m);
@@ -134,13 +134,13 @@ static void what_is_not_known_is_nan(void) {
 static void a_hazard_without_an_order_has_no_target(void) {
     goe_mavlink_hazard_t m;
     TEST_ASSERT_TRUE(goe_mavlink_to_hazard(&obstacle, 2, &assessment, &own, &m));
-    CHECK_SAME(10.0f, m.time_to);
-    CHECK_SAME(1.0f, m.time_sd);
-    CHECK_SAME(4.0f, m.miss);
-    CHECK_SAME(2.0f, m.miss_sd);
+    CHECK_SAME(10.0f, m.tcpa);
+    CHECK_SAME(1.0f, m.tcpa_sd);
+    CHECK_SAME(4.0f, m.dcpa);
+    CHECK_SAME(2.0f, m.dcpa_sd);
     CHECK_SAME(-22.0f, m.clearance);
     CHECK_SAME(3.0f, m.clearance_sd);
-    CHECK_SAME(0.3f, m.violation);
+    CHECK_SAME(0.3f, m.conflict_probability);
     check_nan(m.needed);
     for (int i = 0; i < 3; i++) {
         check_nan(m.target[i]);
@@ -309,7 +309,7 @@ static void a_collision_threatens_by_its_violation(void) {
     const uint8_t threat[] = {0u, 1u, 1u, 2u, 2u};
     goe_mavlink_collision_t m;
     for (int i = 0; i < 5; i++) {
-        obstacle.hazard.violation = violation[i];
+        obstacle.hazard.conflict_probability = violation[i];
         TEST_ASSERT_TRUE(goe_mavlink_to_collision(&obstacle, 1, &assessment, 0.1f, &m));
         TEST_ASSERT_EQUAL_UINT8(threat[i], m.threat_level);
         TEST_ASSERT_EQUAL_UINT8(1u, m.action);
@@ -332,7 +332,7 @@ static void a_collision_threatens_by_its_violation(void) {
 static void a_collision_names_the_action(void) {
     const uint8_t expected[] = {1u, 3u, 3u, 2u, 2u, 6u};
     goe_mavlink_collision_t m;
-    obstacle.hazard.violation = 0.2f;
+    obstacle.hazard.conflict_probability = 0.2f;
     for (int action = GOE_FLIGHT_NONE; action <= GOE_FLIGHT_HOLD; action++) {
         order((goe_flight_action_t)action, 1);
         TEST_ASSERT_TRUE(goe_mavlink_to_collision(&obstacle, 1, &assessment, 0.1f, &m));

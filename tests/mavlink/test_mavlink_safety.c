@@ -148,7 +148,7 @@ static goe_flight_obstacle_t some_obstacle(void) {
     fill(obstacle.covariance_ne_m2, 3, 0.0, 1.0e3);
     fill(&obstacle.height_m, 1, 0.0, 200.0);
     fill(obstacle.nearest_body_m, 3, -1.0, 1.0);
-    fill(&obstacle.hazard.time_s, 7, 0.0, 1.0);
+    fill(&obstacle.hazard.tcpa_s, 7, 0.0, 1.0);
     obstacle.hazard.has_clearance = one_in(2);
     return obstacle;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every combination of the parts (GOE_WITH_WINDOW, _REFINED, _HAZARD; _MOVERS, a part of the refined method): compiles without a
+# Every combination of the parts (GOE_WITH_WINDOW, _FILTER, _HAZARD; _TARGET_MOTION, a part of the filter method): compiles without a
 # warning under the flags of the firmwares, passes the unit tests of its parts, and answers with the same bits as every other
 # combination with the same part.
 #
@@ -27,10 +27,10 @@ syntax() {
     done
 }
 
-# combination <window> <refined> <hazard> <movers>: 1 or 0 each
+# combination <window> <filter> <hazard> <target_motion>: 1 or 0 each
 combination() {
     local name="W$1 R$2 H$3 M$4" tree=$builds/$1$2$3$4
-    local definitions=("-DGOE_WITH_WINDOW=$1" "-DGOE_WITH_REFINED=$2" "-DGOE_WITH_HAZARD=$3" "-DGOE_WITH_MOVERS=$4")
+    local definitions=("-DGOE_WITH_WINDOW=$1" "-DGOE_WITH_FILTER=$2" "-DGOE_WITH_HAZARD=$3" "-DGOE_WITH_TARGET_MOTION=$4")
     syntax "${definitions[@]}"
     {
         cmake -S "$root" -B "$tree" -G Ninja -DCMAKE_BUILD_TYPE=Release "-DCMAKE_C_FLAGS_RELEASE=-O1" "${definitions[@]}" \
@@ -48,22 +48,22 @@ combination() {
     answers "$name" "$tree/tests/parts/parts" "$4"
 }
 
-# answers <name> <program> <movers>
+# answers <name> <program> <target_motion>
 answers() {
     local said
     said=$("$2") || fail "$1: a method that was left out is not refused"
     echo "$1: $(grep bytes <<<"$said")"
-    [ "$3" = 0 ] || grep -v bytes <<<"$said" >>"$builds/answers" # without movers the refined method says other things
+    [ "$3" = 0 ] || grep -v bytes <<<"$said" >>"$builds/answers" # without target_motion the filter method says other things
 }
 
 : >"$builds/answers"
 for window in 1 0; do
-    for refined in 1 0; do
+    for filter in 1 0; do
         for hazard in 1 0; do
-            case $window$refined$hazard in
+            case $window$filter$hazard in
                 00*) ;;
                 111) syntax && answers "the whole" "$whole" 1 ;;
-                *) combination $window $refined $hazard 1 ;;
+                *) combination $window $filter $hazard 1 ;;
             esac
         done
     done

@@ -38,18 +38,18 @@ static bool ignores(bool present, void (*spoil)(goe_settings_t *settings)) {
 }
 
 static void spoil_window(goe_settings_t *settings) { settings->window.points = -1; }
-static void spoil_refined(goe_settings_t *settings) { settings->refined.gate_sigma = -1.0f; }
+static void spoil_refined(goe_settings_t *settings) { settings->filter.gate_sigma = -1.0f; }
 
 int main(void) {
     replay_parts_t parts;
     replay_parts(&parts);
     print("window", &parts.window, GOE_WITH_WINDOW);
-    print("refined", &parts.refined, GOE_WITH_REFINED);
+    print("filter", &parts.filter, GOE_WITH_FILTER);
     print("window_hazard", &parts.window_hazard, GOE_WITH_WINDOW && GOE_WITH_HAZARD);
-    print("refined_hazard", &parts.refined_hazard, GOE_WITH_REFINED && GOE_WITH_HAZARD);
+    print("refined_hazard", &parts.refined_hazard, GOE_WITH_FILTER && GOE_WITH_HAZARD);
     printf("bytes %zu\n", sizeof(goe_estimator_t));
     const bool refused =
-        (GOE_WITH_WINDOW || refuses(GOE_METHOD_WINDOW)) && (GOE_WITH_REFINED || refuses(GOE_METHOD_REFINED));
-    const bool ignored = ignores(GOE_WITH_WINDOW, spoil_window) && ignores(GOE_WITH_REFINED, spoil_refined);
+        (GOE_WITH_WINDOW || refuses(GOE_METHOD_WINDOW)) && (GOE_WITH_FILTER || refuses(GOE_METHOD_FILTER));
+    const bool ignored = ignores(GOE_WITH_WINDOW, spoil_window) && ignores(GOE_WITH_FILTER, spoil_refined);
     return refused && ignored ? 0 : 1;
 }

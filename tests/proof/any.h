@@ -13,7 +13,7 @@
 /* Settings whose integers are within their ranges, and whose floats have any value. */
 void any_settings(goe_settings_t *settings);
 
-/* Any bits except in the settings, which are sealed: `method` GOE_METHOD_WINDOW, GOE_METHOD_REFINED or 0, which is either. */
+/* Any bits except in the settings, which are sealed: `method` GOE_METHOD_WINDOW, GOE_METHOD_FILTER or 0, which is either. */
 void any_estimator(goe_estimator_t *estimator, int method);
 
 #endif

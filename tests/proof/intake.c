@@ -49,16 +49,16 @@ static void refuses(float *field, float limit) {
 }
 
 static void refuses_pixel(goe_pixel_t *pixel) {
-    pixel->seen = true;
+    pixel->visible = true;
     refuses(&pixel->u_px, 1.0e5f);
     refuses(&pixel->v_px, 1.0e5f);
-    ANY_BITS(pixel->seen);
+    ANY_BITS(pixel->visible);
 }
 
 static void refuses_side(float *side, uint8_t bit) {
-    image.box.seen = bit;
+    image.box.sides = bit;
     refuses(side, 1.0e5f);
-    ANY_BITS(image.box.seen);
+    ANY_BITS(image.box.sides);
 }
 
 static void refuses_pixels(void) {
@@ -68,10 +68,10 @@ static void refuses_pixels(void) {
     refuses_pixel(&image.base_left);
     refuses_pixel(&image.base_near);
     refuses_pixel(&image.base_right);
-    refuses_side(&image.box.left_px, GOE_SEES_LEFT);
-    refuses_side(&image.box.top_px, GOE_SEES_TOP);
-    refuses_side(&image.box.right_px, GOE_SEES_RIGHT);
-    refuses_side(&image.box.bottom_px, GOE_SEES_BOTTOM);
+    refuses_side(&image.box.left_px, GOE_SIDE_LEFT);
+    refuses_side(&image.box.top_px, GOE_SIDE_TOP);
+    refuses_side(&image.box.right_px, GOE_SIDE_RIGHT);
+    refuses_side(&image.box.bottom_px, GOE_SIDE_BOTTOM);
 }
 
 static void refuses_reset(void) {
@@ -185,7 +185,7 @@ void proof_settings_general(void) {
 
 void proof_settings_refined(void) {
     ANY_BITS(settings);
-    GOE_SETTINGS_REFINED(REFUSES)
+    GOE_SETTINGS_FILTER(REFUSES)
 }
 
 /* ------------------------------------------------------------------------------------------------------------ answers -- */

@@ -81,11 +81,11 @@ goe_flight_status_t __wrap_goe_flight_frame(goe_flight_t *flight, const goe_flig
     topic.box[1] = detection.box.top_px;
     topic.box[2] = detection.box.right_px;
     topic.box[3] = detection.box.bottom_px;
-    topic.seen = detection.box.seen;
+    topic.sides = detection.box.sides;
     for (unsigned i = 0; i < sizeof point / sizeof point[0]; i++) {
         topic.u[i] = point[i].u_px;
         topic.v[i] = point[i].v_px;
-        topic.points = static_cast<uint8_t>(topic.points | (point[i].seen ? 1u << i : 0u));
+        topic.points = static_cast<uint8_t>(topic.points | (point[i].visible ? 1u << i : 0u));
     }
     goe_px4::sighting(topic, sighting);
     return __real_goe_flight_frame(flight, &sighting.frame);

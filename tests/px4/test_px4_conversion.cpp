@@ -150,7 +150,7 @@ static goe_mavlink_features_t features(uint32_t id) {
     message.time_usec = 900000u;
     message.obstacle_id = id;
     message.image_width = message.image_height = 1280;
-    message.seen = GOE_MAVLINK_SEES_BOX;
+    message.visible = GOE_MAVLINK_FEATURE_BOX;
     message.number = 3;
     message.score = 90;
     message.box[GOE_MAVLINK_LEFT] = -100;
@@ -391,7 +391,7 @@ static void an_obstacle_is_reported_in_px4s_units() {
         TEST_ASSERT_TRUE(topic.timestamp_sample == 0x1FFFFFF00u && topic.timestamp == 0x200000100u);
         TEST_ASSERT_TRUE(std::fabs(topic.lat - 47.4) < 1e-9 && std::fabs(topic.lon + 8.5) < 1e-9);
         CHECK_CLOSE(1e-6, 1.5707963, topic.length_heading);
-        TEST_ASSERT_TRUE(__builtin_isnan(topic.miss) && __builtin_isnan(topic.height) && __builtin_isnan(topic.width));
+        TEST_ASSERT_TRUE(__builtin_isnan(topic.dcpa) && __builtin_isnan(topic.height) && __builtin_isnan(topic.width));
     }
     flight.origin_known = false;
     TEST_ASSERT_TRUE(__builtin_isnan(goe_px4::obstacle(flight, from, 0, an_order(), 1000u).lat));
@@ -450,7 +450,7 @@ static void a_conflicts_level_follows_the_order() {
     from.nearest_ned_m[1] = 30.f;
     from.nearest_ned_m[2] = -40.f;
     from.has_hazard = true;
-    from.hazard.violation = 0.3f;
+    from.hazard.conflict_probability = 0.3f;
     const auto level = [&](int slot) {
         return goe_px4::detect_and_avoid(from, slot, assessment, own_ned_m, 0.2f, 1000u).conflict_level;
     };
@@ -458,7 +458,7 @@ static void a_conflicts_level_follows_the_order() {
     assessment.late = false;
     TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_HIGH, level(2));
     TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_LOW, level(0));
-    from.passed = true;
+    from.receding = true;
     TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_NONE, level(0));
     const detect_and_avoid_s topic = goe_px4::detect_and_avoid(from, 0, assessment, own_ned_m, 0.2f, 1000u);
     CHECK_CLOSE(1e-4, 50, topic.aircraft_dist_hor);
@@ -475,7 +475,7 @@ static void conflicts_are_reported_where_px4_has_the_topic() {
     TEST_ASSERT_TRUE(standin::latest(ORB_ID(detect_and_avoid), 0, &topic));
     TEST_ASSERT_TRUE(flight.obstacle(obstacle));
     TEST_ASSERT_EQUAL(7u, topic.unique_id);
-    CHECK_SAME(obstacle.time_to, topic.expected_min_dist_time);
+    CHECK_SAME(obstacle.tcpa, topic.expected_min_dist_time);
     const double distance_m = std::sqrt(std::pow(static_cast<double>(topic.aircraft_dist_hor), 2.0) +
                                         std::pow(static_cast<double>(topic.aircraft_dist_vert), 2.0));
     CHECK_CLOSE(1e-3, distance_m, topic.aircraft_dist);
@@ -500,9 +500,9 @@ static void the_defaults_are_the_layers_but_for_px4s_own() {
     memset(&expected, 0, sizeof expected);
     goe_settings_default(&expected.estimator);
     goe_flight_settings_default(&expected.flight);
-    expected.estimator.navigation.attitude_bias_deg = 1.f;
-    expected.estimator.navigation.attitude_drift_deg = 0.5f;
-    expected.estimator.navigation.attitude_white_deg = 0.3f;
+    expected.estimator.navigation.attitude_bias_sd_deg = 1.f;
+    expected.estimator.navigation.attitude_walk_sd_deg = 0.5f;
+    expected.estimator.navigation.attitude_white_sd_deg = 0.3f;
     standin::begin(1000000u);
     standin::set_other("NAV_LOITER_RAD", 80.f);
     goe_parameters_read(parameters, false);

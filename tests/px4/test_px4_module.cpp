@@ -197,7 +197,7 @@ static void a_full_table_is_reported() {
             topic.timestamp_sample = flight.time_of(flight.flown.sample - 1);
             topic.number = 6;
             topic.id = 100u + static_cast<uint32_t>(i);
-            topic.seen = goe_features_s::SEES_BOX;
+            topic.sides = goe_features_s::SIDES_ALL;
             topic.box[0] = 150.f * static_cast<float>(i + 1);
             topic.box[2] = topic.box[0] + 40.f;
             standin::publish(ORB_ID(goe_features), &topic);
@@ -497,7 +497,7 @@ static void the_words_are_those_of_the_numbers() {
     obstacle.east = 40.f;
     obstacle.nearest[1] = 50.f;
     obstacle.width = obstacle.height = NAN;
-    obstacle.miss = 3.f;
+    obstacle.dcpa = 3.f;
     obstacle.clearance = -5.f;
     overview.status.action = goe_status_s::ACTION_LEFT;
     overview.status.late = true;

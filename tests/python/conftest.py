@@ -42,7 +42,7 @@ for number, frame in enumerate(log.frames):
                 estimate.values[name] = bits.view(np.float32)
                 if change.get("drop"):
                     del estimate.values[name]
-    labels = [repr(frame.t_s), str(frame.id), estimate.status, estimate.model, str(estimate.n_used)]
+    labels = [repr(frame.t_s), str(frame.id), estimate.status, estimate.model, str(estimate.images_used)]
     numbers = ["%.9g" % estimate.values[name] if name in estimate.values else "" for name in NUMBERS]
     lines.append(",".join(labels + numbers))
 open(option["--out"], "w").write("\\n".join(lines) + "\\n")

@@ -33,7 +33,7 @@ class LoggedTrack:
     line_points: int
     orientation_memory: int
     heading_auto: bool
-    position_white_m: float
+    position_white_sd_m: float
     numbers: tuple[float, ...]  # 18
 
 

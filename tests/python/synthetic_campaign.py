@@ -124,28 +124,28 @@ def rows(seeds: int = 1, studies: bool = True) -> list[dict[str, Any]]:
 
 
 def refined_rows(seeds: int = 1, studies: bool = True) -> list[dict[str, Any]]:
-    """Rows of the refined method: the paper's study without and with the box as configured shape, and the field
+    """Rows of the filter method: the paper's study without and with the box as configured shape, and the field
     study."""
     rng = np.random.default_rng(20260102)
     found = []
     for seed, setup, fraction in product(range(1, seeds + 1), setups(), FRACTIONS):
         for model in ("auto",) if setup["obstacle"] == "cylinder" else ("auto", "box"):
-            found.append(_row(rng, setup, model, seed, fraction, REFINED_SHARE, method="refined"))
+            found.append(_row(rng, setup, model, seed, fraction, REFINED_SHARE, method="filter"))
     if studies:
         change, scale = STUDIES["field"]
         for setup, fraction in product(setups(), FRACTIONS):
             if abs(setup["alpha_deg"]) != 20.0 and setup["glide_deg"] == 0.0:
-                found.append(_row(rng, setup, "auto", 1, fraction, REFINED_SHARE * scale, method="refined",
+                found.append(_row(rng, setup, "auto", 1, fraction, REFINED_SHARE * scale, method="filter",
                                   study="field", **change))  # fmt: skip
     return found
 
 
 def box_rows() -> list[dict[str, Any]]:
-    """Rows of both methods for upright boxes. Roll improves refined, and its sigmas are right; window is far off."""
+    """Rows of both methods for upright boxes. Roll improves filter, and its sigmas are right; window is far off."""
     rng = np.random.default_rng(20260103)
     found = []
     for roll, setup, fraction in product(BOX_ROLLS, setups()[:20], FRACTIONS):
-        for method, scale, covered in (("refined", 1.0 / (1.0 + roll / 10.0), 0.94), ("window", 40.0, 0.55)):
+        for method, scale, covered in (("filter", 1.0 / (1.0 + roll / 10.0), 0.94), ("window", 40.0, 0.55)):
             shares = dict.fromkeys(("z0_covered", "x0_covered", "height_covered"), covered)
             found.append(_row(rng, setup, "auto", 1, fraction, scale, method=method, study="boxes", noise="field",
                               roll_deg=roll, **shares))  # fmt: skip
@@ -186,14 +186,14 @@ def goals() -> list[dict[str, Any]]:
               (0.97, 1.03), ("mean",)),
         _goal("gauss1", "NIS over rows, boxes", {"mean": 0.987}),
         *(_goal("early: Z0 known to 10%", f"field, {way}", {o: share * v for o, v in early.items()}, unit="s")
-          for way, share in (("refined, own 2 sigma", 1.0), ("refined, true error", 1.1), ("window, true error", 0.3))),
+          for way, share in (("filter, own 2 sigma", 1.0), ("filter, true error", 1.1), ("window, true error", 0.3))),
         _goal("kitti", "68 moving cars caught, at a share of false flags", {"0 %": 20.0, "5 %": 34.7, "20 %": 50.0},
               (60, 100), ("5 %",), "%"),
-        _goal("kitti", "misfit as a flag", {"area under the curve": 0.661}),
+        _goal("kitti", "NIS ratio as a flag", {"area under the curve": 0.661}),
         _goal("kitti", "flagged as suspect with the default threshold", {"parked": 1.0, "moving": 14.0}, unit="%"),
     ]  # fmt: skip
     for name, errors in (
-        ("refined", _six(0.7, 0.6, 0.15, 0.021, 0.06, 0.02)), ("window", _six(2.1, 5.0, 1.4, 0.37, 1.6, 0.9)),
+        ("filter", _six(0.7, 0.6, 0.15, 0.021, 0.06, 0.02)), ("window", _six(2.1, 5.0, 1.4, 0.37, 1.6, 0.9)),
         ("triangulation", _six(0.53, 5.3, 2.0, 0.27, 0.9, 0.3)),
         ("bearing_angle", _six(1.8, 6.5, None, 0.12, None, None)),
     ):  # fmt: skip
@@ -280,10 +280,10 @@ def _series(setup: dict[str, Any]) -> list[dict[str, Any]]:
         if raw is not None:
             mean = raw if mean is None else mean + (raw - mean) / min(k - 20, 20)
         found.append({
-            "t_s": k / 8.0, "status": "ok" if k > 28 else "collecting", "model": "line" if k > 28 else "disc",
+            "t_s": k / 8.0, "status": "ok" if k > 28 else "converging", "model": "line" if k > 28 else "disc",
             "x0_m": -75.0 + rng.normal(0, 2), "z0_m": 660.0 + rng.normal(0, 5), "width_m": 15 + rng.normal(0, 0.4),
             "orientation_deg": mean, "orientation_raw_deg": raw,
-            "other_side_deg": None if raw is None else 90.0 + setup["alpha_deg"] + rng.normal(0.0, noise),
+            "front_orientation_deg": None if raw is None else 90.0 + setup["alpha_deg"] + rng.normal(0.0, noise),
             "orientation_true_deg": setup["alpha_deg"],
         })  # fmt: skip
     return found

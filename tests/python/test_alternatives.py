@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "tools" / "bench" / "ALTERNATIVES.md"
 RECORD = ROOT / "tests" / "data" / "rivals.json"
 NAMES = {
-    "refined": "goe, `refined`",
+    "filter": "goe, `filter`",
     "window": "goe, `window` (the paper)",
     "triangulation": "GTSAM, triangulation of the corners",
     "inverse_depth": "inverse-depth Kalman filter",
@@ -52,7 +52,7 @@ def table(noise: str) -> list[str]:
 
 
 def test_all_rivals_are_recorded() -> None:
-    assert {*RIVALS, "refined", "window"} == set(NAMES)
+    assert {*RIVALS, "filter", "window"} == set(NAMES)
     found = recorded()
     assert {(noise, method) for noise, _, method in found} == {(noise, m) for noise in NOISES for m in NAMES}
     flights = re.findall(r"median error, (\d+) flights", RECORD.read_text(encoding="utf-8"))
@@ -80,10 +80,10 @@ def test_claims_of_the_page_follow_from_its_tables() -> None:
     for q in QUANTITIES:
         errors = {method: found["field", "median error", method][q] for method in NAMES}
         assert (
-            min(errors, key=lambda method: errors[method] if math.isfinite(errors[method]) else math.inf) == "refined"
+            min(errors, key=lambda method: errors[method] if math.isfinite(errors[method]) else math.inf) == "filter"
         )
     for q in ("orientation", "L"):
-        ours = found["field", "answers", "refined"][q]
+        ours = found["field", "answers", "filter"][q]
         assert any(found["field", "answers", method][q] > ours for method in RIVALS)
-    ratio = found["gauss1", "median error", "triangulation"]["X0"] / found["gauss1", "median error", "refined"]["X0"]
+    ratio = found["gauss1", "median error", "triangulation"]["X0"] / found["gauss1", "median error", "filter"]["X0"]
     assert 1.0 < ratio < 1.5

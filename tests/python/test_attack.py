@@ -26,8 +26,8 @@ from goe_tools.report import attack_lines
 
 NAN = math.nan
 EXACT = {
-    "point_px": 0.0, "box_px": 0.0, "box_share": 0.0, "attitude_bias_deg": 0.0, "attitude_white_deg": 0.0,
-    "velocity_bias_m_s": 0.0, "position_walk_m": 0.0, "height_bias_m": 0.0,
+    "point_noise_px": 0.0, "box_noise_px": 0.0, "box_noise_rel": 0.0, "attitude_bias_sd_deg": 0.0, "attitude_white_sd_deg": 0.0,
+    "velocity_bias_sd_m_s": 0.0, "position_walk_sd_m": 0.0, "height_bias_sd_m": 0.0,
 }  # fmt: skip
 BASE = Scenario(kind="box").by(**EXACT)
 AMOUNT = replace(QUICK, attack=3, hazard=3)
@@ -351,24 +351,24 @@ def test_closest_approach_to_a_disc_and_to_a_box() -> None:
 
     disc, box = Solid("cylinder", 0.0, 10.0, 10.0, 12.0), Solid("box", 0.0, 10.0, 40.0, 12.0)
     passed = flown(disc, 30.0)
-    assert [passed.time_s, passed.miss_m, passed.clearance_m] == pytest.approx([10.0, 25.0, 8.0], abs=0.01)
+    assert [passed.time_s, passed.dcpa_m, passed.clearance_m] == pytest.approx([10.0, 25.0, 8.0], abs=0.01)
     head_on = flown(disc, 0.0)
-    assert [head_on.time_s, head_on.miss_m] == pytest.approx([9.5, 0.0], abs=0.011) and head_on.violates
+    assert [head_on.time_s, head_on.dcpa_m] == pytest.approx([9.5, 0.0], abs=0.011) and head_on.violates
     assert flown(disc, 3.0).time_s == pytest.approx(10.0 - 0.4, abs=0.011)  # enters 4 m before the middle
     along = flown(box, 30.0)
-    assert [along.time_s, along.miss_m] == pytest.approx([8.0, 25.0], abs=0.011) and not along.violates
+    assert [along.time_s, along.dcpa_m] == pytest.approx([8.0, 25.0], abs=0.011) and not along.violates
     assert flown(box, 0.0, 0.5).clearance_m == pytest.approx(8.0 - 0.5 * 12.0, abs=0.02)  # leaves the outline here
 
 
-def run_of(inputs: float, violates: bool, soonest_s: float = 30.0, miss_m: float = 40.0) -> approach.Run:
+def run_of(inputs: float, violates: bool, earliest_tcpa_s: float = 30.0, dcpa_m: float = 40.0) -> approach.Run:
     time = np.arange(20.0)
     level, to_go = np.full(20, inputs), 25.0 - time
     there = np.ones(20)
     warnings = approach.Warnings(
         time, there > 0, to_go, there, np.full(20, 3.0), there, np.full(20, 1.0), there, level,
-        (level >= 0.1) & (soonest_s - time < 12.0),
+        (level >= 0.1) & (earliest_tcpa_s - time < 12.0),
     )  # fmt: skip
-    happened = approach.Approach(25.0, 0.0 if violates else miss_m, 0.0)
+    happened = approach.Approach(25.0, 0.0 if violates else dcpa_m, 0.0)
     return approach.Run(warnings, happened)
 
 
@@ -377,14 +377,14 @@ def test_probabilities_warnings_and_coverage_of_known_figures() -> None:
     inputs = approach.probabilities(runs)
     assert inputs["0.2 to 0.5"] == (pytest.approx(0.3), pytest.approx(0.4), 200)
     assert inputs["0.8 to 0.95"] == (pytest.approx(0.9), 1.0, 20)
-    covered = approach.coverage([run_of(0.3, violates=False, miss_m=2.0), run_of(0.3, violates=False)])
+    covered = approach.coverage([run_of(0.3, violates=False, dcpa_m=2.0), run_of(0.3, violates=False)])
     assert covered == {"time": 100.0, "miss": 50.0, "clearance": 100.0}
     in_time, too_late, never = run_of(0.3, True, 25.0), run_of(0.3, True, 35.0), run_of(0.05, True)
     assert [approach.first_warning_s(r.warnings) for r in (in_time, never)] == [14.0, math.inf]
     assert approach.first_warning_s(too_late.warnings) == math.inf  # the violation lasts 20 s
     assert approach.unwarned([in_time, too_late, never]) == pytest.approx(200 / 3)
     assert (
-        approach.false_warnings([run_of(0.3, False), run_of(0.05, False), run_of(0.9, False, miss_m=20.0)]) == 100 / 2
+        approach.false_warnings([run_of(0.3, False), run_of(0.05, False), run_of(0.9, False, dcpa_m=20.0)]) == 100 / 2
     )
 
 
@@ -408,7 +408,7 @@ def test_warnings_follow_the_library_s_decision_rule(built: None) -> None:
     )
     assert np.array_equal(flown.warnings.acts, by_rule.decision[:, 0] == goe.Decision.ACT)
     there = track.hazard["status"][:, 0] == 0
-    assert np.array_equal(flown.warnings.violation[there], track.hazard["violation"][there, 0]) and there.any()
+    assert np.array_equal(flown.warnings.violation[there], track.hazard["conflict_probability"][there, 0]) and there.any()
 
 
 # ------------------------------------------------------------------------------------------------------------ the goals
@@ -442,7 +442,7 @@ def good_track(inputs: Inputs, more: dict[str, np.ndarray] | None = None) -> Tra
     zeros, flags = np.zeros(count), np.zeros(count, bool)
     model = np.full(count, DISC if solid.kind == "cylinder" else BOX)
     return Track(
-        zeros, np.full(count, METHODS["refined"]), model, ~flags, flags, values, np.ones((count, 6)),
+        zeros, np.full(count, METHODS["filter"]), model, ~flags, flags, values, np.ones((count, 6)),
         np.zeros((count, 6, 6)), zeros, zeros, zeros, np.arange(count), {}, more or {},
     )  # fmt: skip
 

@@ -108,7 +108,7 @@ def test_a_flight_starts_and_ends_with_a_box() -> None:
 
 
 def test_the_detectors_error_has_its_size_and_its_memory() -> None:
-    noisy = replace(EXACT, box_share=0.04, correlation_s=1.0)
+    noisy = replace(EXACT, box_noise_rel=0.04, box_correlation_time_s=1.0)
     errors, after, white = [], [], []
     for seed in range(60):
         exact, flight = (box_flight(MAST, options, seed).box_px[:80] for options in (EXACT, noisy))
@@ -118,7 +118,7 @@ def test_the_detectors_error_has_its_size_and_its_memory() -> None:
         share = ((flight - exact) / size)[:count]
         errors.append(share)
         after.append(share[8:] * share[:-8])  # one second later
-        white.append((box_flight(MAST, replace(EXACT, box_px=0.5), seed).box_px[:80] - exact)[:count])
+        white.append((box_flight(MAST, replace(EXACT, box_noise_px=0.5), seed).box_px[:80] - exact)[:count])
     variance = float(np.mean(np.concatenate(errors) ** 2))
     assert math.sqrt(variance) == pytest.approx(0.04, rel=0.05)
     assert np.mean(np.concatenate(after)) / variance == pytest.approx(math.exp(-1.0), abs=0.07)
@@ -140,19 +140,19 @@ def test_reported_heights() -> None:
 
     assert np.all(reported() == 20.0)
     assert set(np.unique(reported(ground_off_m=3.0))) == {17.0, 23.0}
-    assert np.std(reported(height_white_m=3.0) - 20.0) == pytest.approx(3.0, rel=0.1)
+    assert np.std(reported(height_white_sd_m=3.0) - 20.0) == pytest.approx(3.0, rel=0.1)
     anything = reported(altimeter=False)
     assert np.ptp(anything, 1).max() == 0.0 and np.std(anything[:, 0]) > 20.0
 
 
 def test_pose_errors_are_as_configured() -> None:
     exact = [box_flight(MAST, EXACT, seed) for seed in range(40)]
-    biased = [box_flight(MAST, replace(EXACT, attitude_bias_deg=0.5), seed) for seed in range(40)]
+    biased = [box_flight(MAST, replace(EXACT, attitude_bias_sd_deg=0.5), seed) for seed in range(40)]
     cosines = [np.abs((a.attitude * b.attitude).sum(1)) for a, b in zip(exact, biased)]
     turned = np.array([np.degrees(2 * np.arccos(np.minimum(c, 1.0))) for c in (cosine[[0, -1]] for cosine in cosines)])
     assert np.allclose(turned[:, 0], turned[:, 1], atol=1e-4)  # the same in every image
     assert math.sqrt(np.mean(turned**2)) == pytest.approx(0.5 * math.sqrt(3.0), rel=0.2)
-    drifting = [box_flight(MAST, replace(EXACT, velocity_bias_m_s=0.05), seed) for seed in range(40)]
+    drifting = [box_flight(MAST, replace(EXACT, velocity_bias_sd_m_s=0.05), seed) for seed in range(40)]
     speeds = [(b.position_ned_m - a.position_ned_m)[-1] / a.time_s[-1] for a, b in zip(exact, drifting)]
     assert np.std(np.array(speeds)[:, :2]) == pytest.approx(0.05, rel=0.25)
     assert np.all(np.array(speeds)[:, 2] == 0.0)

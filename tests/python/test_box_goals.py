@@ -22,7 +22,7 @@ NAN = math.nan
 AMOUNT = replace(QUICK, boxes=1)
 
 
-def made_up(flight: Flight, error: float = 0.5, from_image: int = 2, method: str = "refined") -> Track:
+def made_up(flight: Flight, error: float = 0.5, from_image: int = 2, method: str = "filter") -> Track:
     """Answers with sigma 1 m and an error of ``error`` m, from an image on."""
     images = len(flight.time_s)
     values = np.full((images, 6), flight.truth.values + error)
@@ -102,18 +102,18 @@ def test_good_answers_meet_every_goal(
     assert all(goal.met for goal in goals if goal.asked)
     assert sum(bool(goal.asked) for goal in goals) == 22 + 8 + 5 + 8 + 8  # rolling, Gaussian, bound, fit, height
     assert all(goal.values["Z0"] == pytest.approx(0.5 / 0.4) for goal in goals if goal.name.endswith("RMSE / bound"))
-    ratios = [goal for goal in goals if goal.name.endswith("refined / offline fit")]
+    ratios = [goal for goal in goals if goal.name.endswith("filter / offline fit")]
     assert len(ratios) == 8
     assert all(list(goal.values.values()) == pytest.approx([0.5 / 0.4] * 3) for goal in ratios)
     (first,) = by_name(goals, "mast: first answer")
     assert set(first.values.values()) == {3.0}
     assert "left out: KITTI's boxes, ODMD's val_robot" in capsys.readouterr().out
     others = {name for settings in configured for name in settings if not name.startswith("camera.")}
-    of_bound = {"model": 2.0, "detector.box_px": 0.5, "detector.box_share": 0.0, "navigation.ground_m": 0.0}
-    assert others == {"heading_auto", "heading_deg", "navigation.height_bias_m", *of_bound}
+    of_bound = {"model": 2.0, "detector.box_noise_px": 0.5, "detector.box_noise_rel": 0.0, "navigation.terrain_height_sd_m": 0.0}
+    assert others == {"heading_auto", "heading_deg", "navigation.height_bias_sd_m", *of_bound}
     of_both = [settings for settings in configured if "model" in settings]
     assert len(of_both) == 5 + 4 and all(of_bound.items() <= settings.items() for settings in of_both)
-    assert sum("navigation.height_bias_m" in settings for settings in configured) == 2  # without an altimeter
+    assert sum("navigation.height_bias_sd_m" in settings for settings in configured) == 2  # without an altimeter
     assert {settings["camera.width_px"] for settings in configured} == {1280.0}
 
 
@@ -156,7 +156,7 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     settings_of: dict[str, dict[str, float]] = {}
 
     def estimate(flight: Flight, settings: dict[str, float]) -> Track:
-        every_track = "refined.range_share" in settings
+        every_track = "filter.range_sd_rel_max" in settings
         settings_of[f"{flight.name} every" if every_track else flight.name] = settings
         return made_up(flight, from_image=9 if flight.name == "val_robot/4" and not every_track else 0)
 
@@ -175,7 +175,7 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     assert default.values["mean"] == pytest.approx(0.5) and default.values["answered"] == 50.0
     assert default.met is None
     assert len(settings_of) == 6
-    assert settings_of["val_robot/1"]["navigation.position_white_m"] == 2.0
+    assert settings_of["val_robot/1"]["navigation.position_white_sd_m"] == 2.0
     assert not [name for name in settings_of["FEED/seq/1"] if name.startswith(("navigation.", "detector."))]
 
 

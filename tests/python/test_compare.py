@@ -44,7 +44,7 @@ def test_options_reach_all_three(options: tuple[str, ...], corner_folder: Path, 
         ({"columns": ["x0_sd_m"], "ulp": 3000000}, "float64: x0_sd_m: 99th percentile"),
         ({"columns": ["orientation_deg"], "ulp": 20000}, "float64: orientation_deg: 99th percentile"),
         ({"columns": ["height_m"], "drop": True, "rows": [30]}, "1 empty fields differ"),
-        ({"status": "held", "rows": [30]}, "float64: 1 statuses, models or numbers of points differ"),
+        ({"status": "stale", "rows": [30]}, "float64: 1 statuses, models or numbers of points differ"),
     ],
 )
 def test_differences_are_found(change: dict, message: str, corner_folder: Path, fake_replay, capsys) -> None:
@@ -111,8 +111,8 @@ def test_too_many_followed_decisions_and_any_disputed_one() -> None:
     assert result.failures() == []
     result.followed.append("rises")
     assert any("11 of 1000 decisions followed" in failure for failure in result.failures())
-    result = compare.Result(decisions=1000, disputed=["passed"])
-    assert any("disputed decisions: passed" in failure for failure in result.failures())
+    result = compare.Result(decisions=1000, disputed=["abeam"])
+    assert any("disputed decisions: abeam" in failure for failure in result.failures())
 
 
 def test_the_built_program_on_the_committed_logs(replay: Path) -> None:

@@ -1,4 +1,4 @@
-"""The theory of refined: its table lists every constant of the sources, and the equations that the sources name
+"""The theory of the filter: its table lists every constant of the sources, and the equations that the sources name
 exist."""
 
 from __future__ import annotations
@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-FOLDER = Path(__file__).resolve().parents[2] / "lib" / "refined"
+FOLDER = Path(__file__).resolve().parents[2] / "lib" / "filter"
 KINDS = set("dlsgbc")
 
 DEFINITION = re.compile(r"^#define (\w+) +\(?(-?[0-9][0-9.]*(?:e-?[0-9]+)?)[fu]*\)?(?:\s|$)", re.MULTILINE)

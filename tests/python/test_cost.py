@@ -148,11 +148,11 @@ def test_the_command_of_the_library_is_found_in_folders_too() -> None:
 # -------------------------------------------------------------------------------------------------------------- parts
 
 PARTS_HEADER = """
-#if GOE_WITH_HAZARD && !GOE_WITH_REFINED
-#error "the hazard needs the refined method"
+#if GOE_WITH_HAZARD && !GOE_WITH_FILTER
+#error "the hazard needs the filter method"
 #endif
 typedef struct {
-    char always[100], window[10 * GOE_WITH_WINDOW + 1], refined[1000 * GOE_WITH_REFINED + 1];
+    char always[100], window[10 * GOE_WITH_WINDOW + 1], filter[1000 * GOE_WITH_FILTER + 1];
 } goe_estimator_t;
 """
 
@@ -171,13 +171,13 @@ def test_parts_are_measured_once_the_header_knows_them(tmp_path: Path) -> None:
     library = library_with_parts(tmp_path / "lib", PARTS_HEADER)
     found = parts.measured_parts(host_build(tmp_path, library), tmp_path, library)
     assert [part.name for part in found] == [
-        "window", "refined", "window and refined", "refined and hazard", "everything",
+        "window", "filter", "window and filter", "filter and hazard", "everything",
     ]  # fmt: skip
     sizes = {part.name: part.state for part in found}
-    assert sizes == {"window": 112, "refined": 1102, "window and refined": 1112, "refined and hazard": 1102,
+    assert sizes == {"window": 112, "filter": 1102, "window and filter": 1112, "filter and hazard": 1102,
                      "everything": 1112}  # fmt: skip
     code = {part.name: part.code for part in found}
-    assert 0 < code["window"] < code["window and refined"] < code["everything"]
+    assert 0 < code["window"] < code["window and filter"] < code["everything"]
 
 
 def test_no_parts_without_the_macros(tmp_path: Path) -> None:

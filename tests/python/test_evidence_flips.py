@@ -17,7 +17,7 @@ def lines(*rows: str) -> str:
 GOOD = lines(
     'flips,"window, disc",3,settings,8,0,0,0,0,8,0,0,0,0,0',
     'flips,"window, disc",3,motion.dx_m,10,0,0,0,0,2,1,1,3,1,2',
-    'flips,"refined, disc",12,motion.dx_m,10,0,0,0,0,0,0,0,0,0,10',
+    'flips,"filter, disc",12,motion.dx_m,10,0,0,0,0,0,0,0,0,0,10',
 )
 
 
@@ -27,7 +27,7 @@ def met(text: str) -> list[bool | None]:
 
 def test_lines_are_counted_by_their_outcome() -> None:
     found = flips.counts(GOOD)
-    assert [count.flight for count in found] == ["window, disc", "window, disc", "refined, disc"]
+    assert [count.flight for count in found] == ["window, disc", "window, disc", "filter, disc"]
     assert found[1].of(["corrupted", "suspect", "reported"]) == 4
     by_field = flips.summed(found, "field")
     assert by_field["motion.dx_m"]["bits"] == 20 and by_field["motion.dx_m"]["wrong"] == 3

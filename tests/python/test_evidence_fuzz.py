@@ -87,7 +87,7 @@ def test_every_other_target_has_its_time(name: str) -> None:
 
 def test_the_rows_list_the_missing_counts() -> None:
     state = State("hash")
-    state.add("default/estimator", {"runs": 3, "updates": 900, "status_ok": 1, "status_held": 0, "movers_followed": 2})
+    state.add("default/estimator", {"runs": 3, "updates": 900, "status_ok": 1, "status_stale": 0, "movers_followed": 2})
     state.add("fuzz/estimator", {"runs": 1, "updates": 99, "latency_reported": 1})
     rows = {row.what: row for row in fuzz.rows_of(state, 1000)}
     assert rows["updates through goe_update, every answer judged"].met is False

@@ -199,7 +199,7 @@ def test_equivalent_mutants_are_not_counted() -> None:
     assert by_name["mutants of lib/ that compile"].figure == "23"
     assert by_name["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
     assert by_name["... of these, killed by the unit tests"].met is True
-    assert by_name["... ... without the hash over the refined method's bits"].figure == "85.0 % (17 of 20)"
+    assert by_name["... ... without the hash over the filter method's bits"].figure == "85.0 % (17 of 20)"
     assert by_name["mutants that survive: with a written reason, and without"].figure == "0 and 1"
     assert by_name["mutants that survive: with a written reason, and without"].met is False
 

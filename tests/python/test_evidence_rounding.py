@@ -114,13 +114,13 @@ def test_the_search_climbs() -> None:
 
 def test_near_the_origin_rounding_is_far_below_a_sigma() -> None:
     """[A15]"""
-    found = [search(case, NEAR, TRIES) for case in CASES if case.method == "refined"]
+    found = [search(case, NEAR, TRIES) for case in CASES if case.method == "filter"]
     assert sum(one.tracks for one in found) > 0.8 * TRIES * len(found)
     for name in QUANTITIES:
-        assert 0.0 < max(one.worst[name].sigmas for one in found) <= GOALS[(NEAR.name, "refined")]
+        assert 0.0 < max(one.worst[name].sigmas for one in found) <= GOALS[(NEAR.name, "filter")]
     table = list(rows([*found, search(CASES[-1], NEAR, 3)]))
     assert all(row.met is not False for row in table)
-    assert "x0_m, refined, near domain" in rounding.report(found) + table[0].what
+    assert "x0_m, filter, near domain" in rounding.report(found) + table[0].what
 
 
 def test_an_exceeded_bound_is_missed() -> None:

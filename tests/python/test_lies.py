@@ -206,11 +206,11 @@ def test_a_closest_approach_is_that_of_many_small_steps() -> None:
         moved.center = -(start[i] + velocity[i] * times[:, None])
         away = np.maximum(moved.distance(), 0.0)
         if found.time_s[i] < 29.0:
-            assert found.miss_m[i] == pytest.approx(away.min(), abs=0.02)
+            assert found.dcpa_m[i] == pytest.approx(away.min(), abs=0.02)
             first = times[np.argmax(away <= away.min() + 1e-6)]
             slow = np.hypot(*velocity[i]) < 1.0
             assert slow or away[np.searchsorted(times, found.time_s[i])] == pytest.approx(away.min(), abs=0.05)
-            assert found.miss_m[i] > 0.0 or found.time_s[i] == pytest.approx(first, abs=0.01)
+            assert found.dcpa_m[i] > 0.0 or found.time_s[i] == pytest.approx(first, abs=0.01)
             inside = times[away <= 0.0]
             if len(inside) and inside[-1] < 29.0:
                 assert found.leaves_s[i] == pytest.approx(inside[-1], abs=0.01)
@@ -258,7 +258,7 @@ def truthful(flown: world.World) -> answers.Answers:
         np.zeros((n, answers.RULES), goe.HAZARD),
     )  # fmt: skip
     e, own = found.estimates, flown.solid.take(flown.flight)
-    e["method"], e["model"], e["valid"], e["fresh"], e["points"] = 2, 4, 0x3F, True, np.arange(n) + 1
+    e["method"], e["model"], e["valid"], e["fresh"], e["images_used"] = 2, 4, 0x3F, True, np.arange(n) + 1
     heading = np.degrees(own.heading)
     e["trajectory_heading_deg"] = heading - 20.0
     side, ahead = np.radians(heading), np.radians(heading - 20.0)
@@ -276,9 +276,9 @@ def truthful(flown: world.World) -> answers.Answers:
         e["sigma"][name] = 0.5
     h, numbers = found.hazards, answers.rule_numbers(flown.p)[flown.flight]
     met = search.judge.meet(flown, np.arange(n), np.zeros((n, answers.RULES)))
-    h["miss_m"], h["clearance_m"], h["time_s"], h["has_clearance"] = met.miss_m, met.clearance_m, met.time_s, True
-    h["miss_sd_m"], h["clearance_sd_m"], h["time_sd_s"] = 0.5, 0.5, 0.1
-    h["violation"] = (met.miss_m < numbers[..., 0]) & (met.clearance_m < numbers[..., 1])
+    h["dcpa_m"], h["clearance_m"], h["tcpa_s"], h["has_clearance"] = met.dcpa_m, met.clearance_m, met.time_s, True
+    h["dcpa_sd_m"], h["clearance_sd_m"], h["tcpa_sd_s"] = 0.5, 0.5, 0.1
+    h["conflict_probability"] = (met.dcpa_m < numbers[..., 0]) & (met.clearance_m < numbers[..., 1])
     return found
 
 
@@ -330,7 +330,7 @@ def test_a_planted_error_is_found(honest: Flown, field: str, column: str) -> Non
     assert not shift(6.5, suspect=True).any() and not shift(6.5, method=1).any()
 
 
-@pytest.mark.parametrize(("field", "column", "sd"), [("miss_m", "miss", 0.5), ("clearance_m", "clearance", 0.5)])
+@pytest.mark.parametrize(("field", "column", "sd"), [("dcpa_m", "miss", 0.5), ("clearance_m", "clearance", 0.5)])
 def test_a_planted_error_of_a_hazard_is_found(honest: Flown, field: str, column: str, sd: float) -> None:
     def change(found: answers.Answers) -> None:
         found.hazards[field] += 7.0 * sd
@@ -341,7 +341,7 @@ def test_a_planted_error_of_a_hazard_is_found(honest: Flown, field: str, column:
 def test_false_safety_is_found_and_doubt_counted_apart(honest: Flown) -> None:
     def safe(**more: float) -> Flown:
         def change(found: answers.Answers) -> None:
-            found.hazards["violation"] = 0.009
+            found.hazards["conflict_probability"] = 0.009
             for name, value in more.items():
                 found.estimates[name] = value
 
@@ -356,14 +356,14 @@ def test_false_safety_is_found_and_doubt_counted_apart(honest: Flown) -> None:
 def one_image(honest: Flown, change: Callable[[answers.Answers, int], None]) -> tuple[Flown, int]:
     """The fifth image of a flight that warned before is changed."""
     flown = honest.world
-    warns = honest.judged.violated[:, 0] & (honest.found.hazards["violation"][:, 0] > 0.5)
+    warns = honest.judged.violated[:, 0] & (honest.found.hazards["conflict_probability"][:, 0] > 0.5)
     k = next(int(s) + 5 for s in flown.start[:-1] if warns[s + 4 : s + 6].all() and flown.detected[s + 4 : s + 6].all())
     return judged(honest, lambda found: change(found, k)), k
 
 
 def test_a_warning_that_vanishes_is_found_with_its_cause(honest: Flown) -> None:
     def quietly(found: answers.Answers, k: int) -> None:
-        found.hazards["violation"][k] = 0.04
+        found.hazards["conflict_probability"][k] = 0.04
 
     def held(found: answers.Answers, k: int) -> None:
         quietly(found, k)
@@ -374,7 +374,7 @@ def test_a_warning_that_vanishes_is_found_with_its_cause(honest: Flown) -> None:
 
     def restarted(found: answers.Answers, k: int) -> None:
         quietly(found, k)
-        found.estimates["points"][k] = 1
+        found.estimates["images_used"][k] = 1
 
     for change, cause in (
         (quietly, "other"),
@@ -505,7 +505,7 @@ def replayed(folder: Path, found: dict[str, Any]) -> list[tuple[goe.Estimate, go
     named = dict(word.split("=") for word in words if not word.startswith("--") and "=" in word)
     model = next((word.partition("=")[2] for word in words if word.startswith("--model=")), "auto")
     options = Options(model=model, settings={name: float(value) for name, value in named.items()})
-    estimator, plan = goe.Estimator(goe.Settings.from_names(settings_of(log, options))), goe.Plan(**found["plan"])
+    estimator, plan = goe.Estimator(goe.Settings.from_names(settings_of(log, options))), goe.Intent(**found["plan"])
     return [(estimator.update(image_of(frame)), estimator.decide(plan)[1]) for frame in log.frames]
 
 
@@ -515,13 +515,13 @@ def test_a_recorded_find_is_cured_or_listed(folder: Path) -> None:
     found = json.loads((folder / "find.json").read_text(encoding="utf-8"))
     answered, k = replayed(folder, found), found["image"]
     (estimate, now), (_, before) = answered[k], answered[k - 1]
-    figure = "no answer" if now is None else f"{now.violation:.3g}"
+    figure = "no answer" if now is None else f"{now.conflict_probability:.3g}"
     if found["kind"] == "vanished":
-        warned = before is not None and before.violation >= WARNS_LEAST
-        lie = warned and (now is None or now.violation < GONE_MOST)
+        warned = before is not None and before.conflict_probability >= WARNS_LEAST
+        lie = warned and (now is None or now.conflict_probability < GONE_MOST)
     else:
         trusted = not estimate.suspect and estimate.age_s <= FRESH_MOST_S
-        lie = now is not None and now.violation < SAFE_MOST and trusted
+        lie = now is not None and now.conflict_probability < SAFE_MOST and trusted
     assert lie == (folder.name in KNOWN), f"now {figure}"
     if lie:
         recorded = KNOWN[folder.name]["figure"]

@@ -54,7 +54,7 @@ RENAMED = {"ICAO_address": "icao_address"}
 
 # Enumerations of goe.xml with the same numbers in the headers: entries by their prefix in the XML, and the prefix in C.
 SAME_NUMBERS = {
-    "GOE_FEATURE_BOX_": ("GOE_MAVLINK_SEES_BOX_", ("LEFT", "TOP", "RIGHT", "BOTTOM")),
+    "GOE_FEATURE_BOX_": ("GOE_MAVLINK_FEATURE_BOX_", ("LEFT", "TOP", "RIGHT", "BOTTOM")),
     "GOE_TIME_BASE_": ("GOE_FLIGHT_", ("AUTOPILOT", "SENDER", "AGE")),
     "GOE_SHAPE_": ("GOE_MODEL_", ("NONE", "DISC", "LINE", "BOX", "PRISM")),
     "GOE_OBSTACLE_FLAG_": ("GOE_MAVLINK_", ("SUSPECT", "PASSED", "IN_VIEW", "WORST", "LATE", "ORDER")),
@@ -352,7 +352,7 @@ def numbers() -> str:
         for prefix, (own, names) in SAME_NUMBERS.items()
         for name in names
     ]
-    pairs += [(f"GOE_FEATURE_{name}", f"GOE_MAVLINK_SEES_POINT << {i}") for i, name in enumerate(POINTS)]
+    pairs += [(f"GOE_FEATURE_{name}", f"GOE_MAVLINK_FEATURE_POINT << {i}") for i, name in enumerate(POINTS)]
     return "".join(f"    NUMBER({xml}, {own})\n" for xml, own in pairs)
 
 

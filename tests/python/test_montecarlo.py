@@ -120,7 +120,7 @@ def test_on_a_cluster(scenario: Path, tmp_path: Path, monkeypatch: pytest.Monkey
 
 def test_options_of_the_replay_count(scenario: Path, tmp_path: Path) -> None:
     found = []
-    for words in ([], ["--set", "detector.box_px=30"], ["--margin", "90"]):
+    for words in ([], ["--set", "detector.box_noise_px=30"], ["--margin", "90"]):
         assert main(["montecarlo", str(scenario), "--runs", "2", "--jobs", "1", "--out", str(tmp_path), *words]) == 0
         found.append(rows_of(tmp_path))
     assert float(found[1][1]["z0_sd_m"]) > 1.5 * float(found[0][1]["z0_sd_m"])

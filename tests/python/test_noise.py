@@ -22,8 +22,8 @@ from goe_tools.noise.rows import Effect, Fading, Rows
 ROOT = Path(__file__).resolve().parents[2]
 SIM = ROOT / "build" / "sim_host" / "goe_sim"
 NOISE = {  # the simulator's noise, by the library's names
-    "detector.box_px": 0.8, "detector.box_share": 0.03, "navigation.attitude_white_deg": 0.15,
-    "navigation.attitude_bias_deg": 0.6,
+    "detector.box_noise_px": 0.8, "detector.box_noise_rel": 0.03, "navigation.attitude_white_sd_deg": 0.15,
+    "navigation.attitude_bias_sd_deg": 0.6,
 }  # fmt: skip
 CLOSE = 0.25
 FLIGHTS = 12
@@ -109,9 +109,9 @@ def boxes(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
         words = [
             SIM, "--obstacle", "cylinder", "--x0", -12 + 3 * (seed % 4), "--yaw-camera", 0, "--reach", 14, "--run", 11,
             "--speed", 17, "--altitude", 20, "--features", "boxes", "--roll-amplitude-deg", 10,
-            "--box-px", NOISE["detector.box_px"], "--box-share", NOISE["detector.box_share"], "--box-correlation", 1.2,
-            "--attitude-noise", NOISE["navigation.attitude_white_deg"],
-            "--attitude-bias", NOISE["navigation.attitude_bias_deg"], "--altimeter-bias", 0.5, "--velocity-bias", 0.05,
+            "--box-px", NOISE["detector.box_noise_px"], "--box-share", NOISE["detector.box_noise_rel"], "--box-correlation", 1.2,
+            "--attitude-noise", NOISE["navigation.attitude_white_sd_deg"],
+            "--attitude-bias", NOISE["navigation.attitude_bias_sd_deg"], "--altimeter-bias", 0.5, "--velocity-bias", 0.05,
             "--position-walk", 0.05, "--seed", seed, "--out", out,
         ]  # fmt: skip
         subprocess.run([str(word) for word in words], check=True, capture_output=True)
@@ -134,13 +134,13 @@ def test_the_noise_of_boxes_is_found(boxes: list[Path], capsys: pytest.CaptureFi
     assert main(["noise", *logs, "--without-truth"]) == 0
     text = capsys.readouterr().out
     assert "by the innovations" in text and "within 2 sigma" not in text
-    detector = ("detector.box_px", "detector.box_share", "navigation.attitude_white_deg")
+    detector = ("detector.box_noise_px", "detector.box_noise_rel", "navigation.attitude_white_sd_deg")
     assert_close(found(text), *detector)
     assert set(found(text)) == set(detector)
     assert main(["noise", *logs, "--all"]) == 0
     text = capsys.readouterr().out
     assert "from the errors, as the truth is known" in text
-    assert_close(found(text), *detector, "navigation.attitude_bias_deg")
+    assert_close(found(text), *detector, "navigation.attitude_bias_sd_deg")
     shares = re.search(r"the 12 tracks, as fitted: X0 (\S+) %, Z0 (\S+) %, H (\S+) %", text)
     assert shares is not None and all(float(share) > 80.0 for share in shares.groups())  # twelve tracks
 
@@ -166,7 +166,7 @@ def test_the_noise_of_points_is_found(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["noise", *logs]) == 0
     text = capsys.readouterr().out
     assert "4 tracks with points" in text
-    assert found(text)["detector.point_px"] == pytest.approx(0.8, rel=0.1)
+    assert found(text)["detector.point_noise_px"] == pytest.approx(0.8, rel=0.1)
     assert main(["noise", *logs, "--without-truth"]) == 2
     assert "points need the truth" in capsys.readouterr().err
 
@@ -207,9 +207,9 @@ def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
 def test_wrong_input(boxes: list[Path], tmp_path: Path, refused: Callable[..., str]) -> None:
     log = str(boxes[0])
     assert f"{tmp_path / 'none'}: no such folder" in refused(str(tmp_path / "none"))
-    assert "is not NAME=VALUE with one of detector.box_px" in refused(log, "--set", "box_px=1")
-    assert "detector.box_px: 'wide' is not a number" in refused(log, "--set", "detector.box_px=wide")
-    assert "detector.box_px: '-1' must be at least 0" in refused(log, "--set", "detector.box_px=-1")
+    assert "is not NAME=VALUE with one of detector.box_noise_px" in refused(log, "--set", "box_noise_px=1")
+    assert "detector.box_noise_px: 'wide' is not a number" in refused(log, "--set", "detector.box_noise_px=wide")
+    assert "detector.box_noise_px: '-1' must be at least 0" in refused(log, "--set", "detector.box_noise_px=-1")
     assert "'100' is no percentage" in refused(log, "--cover", "100")
     assert "--cover needs boxes and their truth" in refused(log, "--without-truth", "--cover", "95")
     short = replace(read_log(boxes[0]))

@@ -36,7 +36,7 @@ from goe_tools.models.judge import judge, renamed, renamed_sigma
 
 CORNER = Path(__file__).resolve().parents[1] / "data" / "corner"
 EXACT = Noise(pixel_px=0.0)
-SENSORS = replace(FIELD, outliers=0.0, position_walk_m=0.0)  # all errors that the model knows, and no other
+SENSORS = replace(FIELD, outliers=0.0, position_walk_sd_m=0.0)  # all errors that the model knows, and no other
 
 
 def box_scene(**change: object) -> Scene:
@@ -115,7 +115,7 @@ def test_the_bound_is_linear_in_the_pixel_noise() -> None:
 
 
 def test_twice_the_images_are_worth_the_square_root_of_two() -> None:
-    noise = Noise(pixel_px=0.5, attitude_white_deg=0.05)
+    noise = Noise(pixel_px=0.5, attitude_white_sd_deg=0.05)
     flight = measure(box_scene(), EXACT)
     names = ("time_s", "pixel_px", "seen", "position_ned_m", "attitude", "height_m")
     doubled = replace(flight, **{name: np.repeat(getattr(flight, name), 2, 0) for name in names})

@@ -56,7 +56,7 @@ def test_the_facts_are_those_of_the_sources() -> None:
     cmake = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     options = set(re.findall(r"^option\((GOE_WITH_\w+) ", cmake, re.MULTILINE))
     assert {part.define for part in FACTS.parts} == options
-    assert [part.name for part in FACTS.parts] == ["window", "refined", "hazard", "movers"]
+    assert [part.name for part in FACTS.parts] == ["window", "filter", "hazard", "target_motion"]
     assert set(FACTS.sources) == below(ROOT / "lib", ".c") and len(FACTS.sources) > 40
     limits = {limit.define: (limit.low, limit.high, limit.default) for limit in FACTS.limits}
     assert limits == {"GOE_WINDOW_MAX": (3, 64, 8), "GOE_CAMERAS_MAX": (1, 8, 1), "GOE_FLIGHT_SLOTS": (1, 16, 4)}
@@ -312,7 +312,7 @@ def test_conan_recipe(staged: Path) -> None:
     assert (recipe["author"], recipe["url"], recipe["topics"]) == (WORDS.maintainer, WORDS.url, FACTS.keywords)
     assert recipe["LIMITS"] == {"window_max": ("GOE_WINDOW_MAX", 3, 64), "cameras_max": ("GOE_CAMERAS_MAX", 1, 8)}
     assert recipe["required_conan_version"] == ">=2.4"
-    assert 'rm_safe("with_movers")' in text and '"cmake_target_name", "goe::all"' in text
+    assert 'rm_safe("with_target_motion")' in text and '"cmake_target_name", "goe::all"' in text
     assert f'    version = "{FACTS.version}"\n' in text and '    license = "MIT"\n' in text
     assert all(f'"with_{part.name}": [True, False]' in text for part in FACTS.parts)
 

@@ -112,7 +112,7 @@ def test_arduino_part_left_out_by_the_header(staged: Path, tmp_path: Path) -> No
     shutil.copytree(staged / "arduino" / "goe", tmp_path / "goe")
     config = tmp_path / "goe" / "src" / "goe_config.h"
     text = config.read_text()
-    for part in ("WINDOW", "MOVERS"):
+    for part in ("WINDOW", "TARGET_MOTION"):
         text = text.replace(f"#define GOE_WITH_{part} 1", f"#define GOE_WITH_{part} 0")
     config.write_text(text)
     compile_all(tmp_path / "goe", tmp_path / "objects", ("cc",))
@@ -180,7 +180,7 @@ def test_esp_idf_component_and_example(staged: Path, tmp_path: Path) -> None:
 
 def test_esp_idf_parts(staged: Path, tmp_path: Path) -> None:
     """Disabled options are not in sdkconfig at all."""
-    config = {"GOE_WITH_REFINED": "y", "GOE_WINDOW_MAX": "8", "GOE_CAMERAS_MAX": "1"}
+    config = {"GOE_WITH_FILTER": "y", "GOE_WINDOW_MAX": "8", "GOE_CAMERAS_MAX": "1"}
     build = build_component(tmp_path / "idf", staged / "esp-idf" / "goe", str(STARTS), config)
     assert ": ok, 2016 bytes," in passed(build / "consumer")
     names = passed("nm", build / "component" / "libcomponent.a")
@@ -195,10 +195,10 @@ def test_esp_idf_kconfig(staged: Path, tmp_path: Path) -> None:
     values = {name: symbols[name].str_value for name in all_on()}
     assert values == all_on()
     assert {s.name for s in config.unique_defined_syms} == set(values)
-    symbols["GOE_WITH_REFINED"].set_value("n")
+    symbols["GOE_WITH_FILTER"].set_value("n")
     symbols["GOE_WITH_WINDOW"].set_value("n")
     assert symbols["GOE_WITH_WINDOW"].str_value == "y", "no method is left"
-    assert symbols["GOE_WITH_MOVERS"].str_value == "n"
+    assert symbols["GOE_WITH_TARGET_MOTION"].str_value == "n"
     symbols["GOE_WITH_HAZARD"].set_value("n")
     assert symbols["GOE_FLIGHT"].str_value == "n"
     symbols["GOE_WINDOW_MAX"].set_value("65")
@@ -220,7 +220,7 @@ def built(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     more = ["-DCMAKE_BUILD_TYPE=Debug"]
     folder = ROOT
     if request.param == "parts":
-        more += ["-DGOE_WITH_MOVERS=OFF", "-DGOE_WITH_WINDOW=OFF"]
+        more += ["-DGOE_WITH_TARGET_MOTION=OFF", "-DGOE_WITH_WINDOW=OFF"]
         folder = staged / "conan" / "goe"
     passed(*shlex.split(configure.replace("build-deb", str(build))), *more, folder=folder)
     assert not (build / "debian").exists()  # made when it is packed, and only then
@@ -344,7 +344,7 @@ def test_conan_create(staged: Path, tmp_path: Path) -> None:
     need("conan")
     home = str(tmp_path / "home")
     passed("conan", "profile", "detect", CONAN_HOME=home)
-    for create, size in (("conan create .", 2936), ("conan create . -o '&:with_movers=False'", 2368)):
+    for create, size in (("conan create .", 2936), ("conan create . -o '&:with_target_motion=False'", 2368)):
         text = passed("sh", "-c", f"{create} 2>&1", folder=staged / "conan" / "goe", CONAN_HOME=home)
         assert f"goe {FACTS.version}: ok, {size} bytes, self check 0x00, GOE_STATUS" in text
     for wrong in ("window_max=65", "cameras_max=two"):

@@ -84,26 +84,26 @@ def test_only_the_network_is_an_excuse(target: Path, tmp_path: Path) -> None:
     assert done.returncode != 0 and not names_the_network(done.stderr), done.stderr
 
 
-@pytest.mark.parametrize("features", ["window", "refined", "window,refined", "movers", "window,flight"])
+@pytest.mark.parametrize("features", ["window", "filter", "window,filter", "target_motion", "window,flight"])
 def test_each_combination_of_parts_compiles(target: Path, features: str) -> None:
     words = ("--offline", "--no-default-features", "--features", features)
     assert "warning" not in passed("cargo", "check", "--all-targets", *words, target=target)
 
 
 def test_parts(target: Path) -> None:
-    words = ("--no-default-features", "--features", "refined,hazard", "--test", "estimator")
+    words = ("--no-default-features", "--features", "filter,hazard", "--test", "estimator")
     assert "test result: ok" in passed("cargo", "test", "--offline", *words, target=target)
 
 
 def test_no_method_is_refused(target: Path) -> None:
     done = run("cargo", "check", "--offline", "--no-default-features", target=target)
-    assert done.returncode != 0 and "one of the features `window` and `refined` is needed" in done.stderr
+    assert done.returncode != 0 and "one of the features `window` and `filter` is needed" in done.stderr
 
 
 def test_another_layout_does_not_compile(target: Path, tmp_path: Path) -> None:
     """A field that only C has; then offsets and constants that are wrong in Rust."""
     text = (CRATE / "src" / "layout.rs").read_text(encoding="utf-8")
-    assert "        misfit: 144," in text
+    assert "        nis_ratio: 144," in text
     header = (ROOT / "lib" / "goe.h").read_text(encoding="utf-8")
     for name in ("lib", "port/rust", "port/flight"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("target"))
@@ -111,10 +111,10 @@ def test_another_layout_does_not_compile(target: Path, tmp_path: Path) -> None:
     assert other != header
     (tmp_path / "lib" / "goe.h").write_text(other, encoding="utf-8")
     done = run("cargo", "check", "--offline", folder=tmp_path / "port" / "rust", target=target)
-    assert done.returncode != 0 and "goe_estimate_t_misfit" in done.stderr
+    assert done.returncode != 0 and "goe_estimate_t_nis_ratio" in done.stderr
     (tmp_path / "lib" / "goe.h").write_text(header, encoding="utf-8")
     changes = (
-        ("layout.rs", "misfit: 144", "misfit: 148", "goe_estimate_t_misfit"),
+        ("layout.rs", "nis_ratio: 144", "nis_ratio: 148", "goe_estimate_t_nis_ratio"),
         ("layout.rs", "sent_us: 8", "sent_us: 12", "goe_flight_frame_t_sent_us"),
         ("ffi.rs", "GOE_NO_EDGE = -5", "GOE_NO_EDGE = -50", "constant_GOE_NO_EDGE"),
         ("ffi.rs", "GOE_FLIGHT_HOLD = 5", "GOE_FLIGHT_HOLD = 4", "constant_GOE_FLIGHT_HOLD"),

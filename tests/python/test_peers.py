@@ -143,8 +143,8 @@ def test_throughput_is_printed(printed: str) -> None:
     assert [row["obstacles"] for row in rows] == ["1", "10"]
     for row in rows:
         window_hz, refined_hz, hazard_hz = (float(row[f"{kind}: updates per second"]) for kind in KINDS)
-        assert_ratio(row["time of refined over window"], window_hz, refined_hz)
-        assert_ratio(row["of refined and hazard over refined"], refined_hz, hazard_hz)
+        assert_ratio(row["time of filter over window"], window_hz, refined_hz)
+        assert_ratio(row["of filter and hazard over filter"], refined_hz, hazard_hz)
 
 
 def assert_ratio(ratio: str, dividend: float, divisor: float) -> None:

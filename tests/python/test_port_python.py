@@ -159,10 +159,10 @@ def test_a_bad_setting_is_named(change: object, words: str) -> None:
 
 
 def test_a_name_that_is_not_there_is_refused_at_once() -> None:
-    with pytest.raises(AttributeError, match=r"Detector has no setting point_pix; did you mean point_px\?"):
+    with pytest.raises(AttributeError, match=r"Detector has no setting point_pix; did you mean point_noise_px\?"):
         settings().detector.point_pix = 1.0
     with pytest.raises(
-        goe.SettingError, match=r"detector\.pont_px: no such setting; did you mean detector\.point_px\?"
+        goe.SettingError, match=r"detector\.pont_px: no such setting; did you mean detector\.point_noise_px\?"
     ):
         goe.Settings.from_names({"detector.pont_px": 1.0})
     for name in ("more_cameras[7].fx_px", "more_cameras[0].of_nothing", "camera[0].fx_px", "", "more_cameras[0]"):
@@ -170,7 +170,7 @@ def test_a_name_that_is_not_there_is_refused_at_once() -> None:
             goe.Settings.from_names({name: 1.0})
     with pytest.raises(goe.SettingError, match=r"heading_auto = 2: not 0 or 1"):
         goe.Settings.from_names({"heading_auto": 2})
-    with pytest.raises(goe.SettingError, match=r"method = 3: not one of 1 \(window\), 2 \(refined\)"):
+    with pytest.raises(goe.SettingError, match=r"method = 3: not one of 1 \(window\), 2 \(filter\)"):
         goe.Settings.from_names({"method": 3})
 
 
@@ -201,12 +201,12 @@ def test_objects_can_be_sent_to_other_processes() -> None:
 @pytest.mark.parametrize(
     ("kind", "prefix", "left_out", "file"),
     [
-        (goe.Status, "GOE_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALISED"}, "lib/goe.h"),
+        (goe.Status, "GOE_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALIZED"}, "lib/goe.h"),
         (goe.Method, "GOE_METHOD_", set(), "lib/goe.h"),
         (goe.Model, "GOE_MODEL_", {"NONE", "AUTO"}, "lib/goe.h"),
         (goe.Shape, "GOE_MODEL_", {"NONE", "BOX", "PRISM"}, "lib/goe.h"),
         (goe.Reason, "GOE_REASON_", {"NONE"}, "lib/goe.h"),
-        (flight.FlightStatus, "GOE_FLIGHT_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALISED"},
+        (flight.FlightStatus, "GOE_FLIGHT_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALIZED"},
          "port/flight/goe_flight.h"),
         (goe.Decision, "GOE_DECISION_", set(), "lib/goe.h"),
         (flight.Action, "GOE_FLIGHT_", set(), "port/flight/goe_flight.h"),
@@ -270,20 +270,20 @@ def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
     old."""
     images = approach()
     images.box_px[-20:] = NAN
-    rules = [goe.Rule(15.0, 10.0, doubt=2.0, drift_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)]
+    rules = [goe.Rule(15.0, 10.0, suspect_factor=2.0, stale_growth_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)]
     track = goe.run(settings(), images, rules=rules)
     estimator = goe.Estimator(settings())
     ages = set()
     for k in range(len(images)):
         estimate = estimator.update(image(k, images))
         for number, rule in enumerate(rules):
-            doubt = rule.doubt if estimate.suspect else 1.0
+            doubt = rule.suspect_factor if estimate.suspect else 1.0
             old_s = np.float32(estimate.age_s) + np.float32(rule.since_image_s)
             margin, clearance = (
-                float(np.float32(doubt * m) + np.float32(rule.drift_m_s) * old_s)
+                float(np.float32(doubt * m) + np.float32(rule.stale_growth_m_s) * old_s)
                 for m in (rule.margin_m, rule.clearance_m)
             )
-            plan = goe.Plan((16.0, 0.0, 0.0), margin, clearance, rule.since_image_s)
+            plan = goe.Intent((16.0, 0.0, 0.0), margin, clearance, rule.since_image_s)
             assert track.hazard(k, number) == estimator.hazard(plan)
         ages.add(estimate.age_s > 0.0)
     assert ages == {False, True}
@@ -300,14 +300,14 @@ def collision() -> goe.Images:
 
 def expected_decision(rule: goe.Rule, hazard: goe.Hazard, estimate: goe.Estimate) -> goe.Decision:
     """By the definition of goe_decide, from the hazard with the widened margins."""
-    old_m = rule.drift_m_s * estimate.age_s
-    doubt = rule.doubt if estimate.suspect else 1.0
-    if hazard.violation >= rule.violation_max:
-        if hazard.soonest_s <= rule.act_s:
+    old_m = rule.stale_growth_m_s * estimate.age_s
+    doubt = rule.suspect_factor if estimate.suspect else 1.0
+    if hazard.conflict_probability >= rule.conflict_probability_max:
+        if hazard.earliest_tcpa_s <= rule.act_within_s:
             return goe.Decision.ACT
-        later = hazard.time_s - 2.0 * hazard.time_sd_s > rule.act_s
+        later = hazard.tcpa_s - 2.0 * hazard.tcpa_sd_s > rule.act_within_s
         return goe.Decision.CLEAR if later else goe.Decision.UNKNOWN
-    aside = hazard.miss.m - hazard.miss.sd_m >= doubt * rule.margin_m + old_m
+    aside = hazard.dcpa.m - hazard.dcpa.sd_m >= doubt * rule.margin_m + old_m
     over = hazard.clearance
     above = over is not None and over.m - over.sd_m >= doubt * rule.clearance_m + old_m
     return goe.Decision.CLEAR if aside or above else goe.Decision.UNKNOWN
@@ -317,27 +317,27 @@ def test_decisions_are_those_of_the_rule() -> None:
     """Probability, distances and times of the hazard with the widened margins."""
     images = collision()
     images.box_px[30:40] = NAN
-    rules = [goe.Rule(15.0, 10.0), goe.Rule(15.0, 10.0, violation_max=0.9, act_s=6.0, doubt=3.0, drift_m_s=0.5)]
+    rules = [goe.Rule(15.0, 10.0), goe.Rule(15.0, 10.0, conflict_probability_max=0.9, act_within_s=6.0, suspect_factor=3.0, stale_growth_m_s=0.5)]
     track = goe.run(settings(), images, rules=rules)
     estimator = goe.Estimator(settings())
     for k in range(len(images)):
         estimate = estimator.update(image(k, images))
         for number, rule in enumerate(rules):
-            own = goe.DecisionRule(rule.violation_max, rule.act_s, rule.doubt, rule.drift_m_s)
-            decision, hazard = estimator.decide(goe.Plan((16.0, 0.0, 0.0), rule.margin_m, rule.clearance_m), own)
+            own = goe.DecisionRule(rule.conflict_probability_max, rule.act_within_s, rule.suspect_factor, rule.stale_growth_m_s)
+            decision, hazard = estimator.decide(goe.Intent((16.0, 0.0, 0.0), rule.margin_m, rule.clearance_m), own)
             assert (decision, hazard) == (track.decision[k, number], track.hazard(k, number))
             if hazard is None:
-                assert decision == goe.Decision.UNKNOWN and track.hazard_status[k, number] == goe.Status.COLLECTING
+                assert decision == goe.Decision.UNKNOWN and track.hazard_status[k, number] == goe.Status.CONVERGING
                 continue
-            soonest_s = hazard.time_s**2 / (hazard.time_s + 2.0 * hazard.time_sd_s)
-            assert hazard.soonest_s == pytest.approx(soonest_s, rel=1e-6)
+            earliest_tcpa_s = hazard.tcpa_s**2 / (hazard.tcpa_s + 2.0 * hazard.tcpa_sd_s)
+            assert hazard.earliest_tcpa_s == pytest.approx(earliest_tcpa_s, rel=1e-6)
             assert decision == expected_decision(rule, hazard, estimate)
     assert set(track.decision.flat) == {goe.Decision.UNKNOWN, goe.Decision.CLEAR, goe.Decision.ACT}
     assert str(goe.Decision.ACT) == "act"
-    last = estimator.decide(goe.Plan((16.0, 0.0, 0.0), 15.0, 10.0))
+    last = estimator.decide(goe.Intent((16.0, 0.0, 0.0), 15.0, 10.0))
     assert last == (track.decision[-1, 0], track.hazard(-1, 0))  # the defaults are those of C
     defaults = goe.DecisionRule()
-    assert (defaults.violation_max, defaults.act_s, defaults.doubt, defaults.drift_m_s) == (0.1, 12.0, 1.5, 1.0)
+    assert (defaults.conflict_probability_max, defaults.act_within_s, defaults.suspect_factor, defaults.stale_growth_m_s) == (0.1, 12.0, 1.5, 1.0)
     assert goe.Rule(1.0, 1.0)[2:4] == (1.5, 1.0) and goe.Rule(1.0, 1.0)[5:7] == (0.1, 12.0)
 
 
@@ -353,10 +353,10 @@ def test_a_velocity_that_is_no_number_keeps_the_decision() -> None:
 def test_an_uncertain_velocity_makes_the_hazard_uncertain() -> None:
     estimator = goe.Estimator(settings())
     estimator.run(approach())
-    sure, unsure = (estimator.hazard(goe.Plan((16.0, 0.0, 0.0), 15.0, 10.0, 0.0, sd)) for sd in (0.0, 3.0))
-    assert unsure.miss.sd_m > 2.0 * sure.miss.sd_m
+    sure, unsure = (estimator.hazard(goe.Intent((16.0, 0.0, 0.0), 15.0, 10.0, 0.0, sd)) for sd in (0.0, 3.0))
+    assert unsure.dcpa.sd_m > 2.0 * sure.dcpa.sd_m
     track = goe.run(settings(), approach(), rules=[goe.Rule(15.0, 10.0, velocity_sd_m_s=3.0)])
-    assert track.hazard(-1).miss.sd_m == unsure.miss.sd_m
+    assert track.hazard(-1).dcpa.sd_m == unsure.dcpa.sd_m
 
 
 def test_a_box_without_sides_and_one_without_a_height() -> None:
@@ -365,8 +365,8 @@ def test_a_box_without_sides_and_one_without_a_height() -> None:
     images.height_m[0] = 0.0
     estimator = goe.Estimator(settings())
     track = estimator.run(images)
-    assert estimator.causes[-int(goe.Status.BOX_INCOMPLETE)] == 1
-    assert estimator.causes[-int(goe.Status.NO_HEIGHT)] == 1 and len(estimator.causes) == 16
+    assert estimator.fault_counts[-int(goe.Status.BOX_INCOMPLETE)] == 1
+    assert estimator.fault_counts[-int(goe.Status.NO_HEIGHT)] == 1 and len(estimator.fault_counts) == 16
     alone = goe.run(settings(), approach(1, box_px=np.array([[500.0, NAN, NAN, NAN]])))
     assert goe.Status(alone.status[0]) == goe.Status.BOX_INCOMPLETE and track.status[-1] == goe.Status.OK
 
@@ -405,13 +405,13 @@ def test_bad_measurements_are_a_status() -> None:
     track = goe.run(settings(), images)
     reported = [goe.Status(number) for number in track.status[19:26]]
     assert reported == [goe.Status.OK, goe.Status.NOT_FINITE, goe.Status.NOT_FINITE, goe.Status.BAD_ATTITUDE,
-                    goe.Status.BAD_TIME, goe.Status.NOTHING_SEEN, goe.Status.OK]  # fmt: skip
+                    goe.Status.BAD_TIME, goe.Status.NO_DETECTION, goe.Status.OK]  # fmt: skip
     assert track[22].position is not None and not track[22].fresh and track[22].age_s > 0.0
     assert goe.Status.BAD_TIME.is_fault and not goe.Status.BAD_TIME.is_image_taken
     points = np.full((60, 6, 2), NAN)
-    seen = goe.run(settings(), approach(points_px=points, points_seen=np.ones((60, 6), bool), box_px=None))
+    seen = goe.run(settings(), approach(points_px=points, points_visible=np.ones((60, 6), bool), box_px=None))
     assert set(seen.status) == {goe.Status.NOT_FINITE}
-    assert set(goe.run(settings(), approach(points_px=points, box_px=None)).status) == {goe.Status.NOTHING_SEEN}
+    assert set(goe.run(settings(), approach(points_px=points, box_px=None)).status) == {goe.Status.NO_DETECTION}
 
 
 def test_vectors_and_plans_that_c_would_misread() -> None:
@@ -427,15 +427,15 @@ def test_vectors_and_plans_that_c_would_misread() -> None:
     ):  # fmt: skip
         for ask in (estimator.hazard, estimator.decide):
             with pytest.raises(ValueError, match=f"^{words} = .*: not within"):
-                ask(goe.Plan(*plan))
-    for change in ({"violation_max": 1.1}, {"act_s": NAN}, {"doubt": 0.5}, {"drift_m_s": 101.0}):
+                ask(goe.Intent(*plan))
+    for change in ({"conflict_probability_max": 1.1}, {"act_within_s": NAN}, {"suspect_factor": 0.5}, {"stale_growth_m_s": 101.0}):
         words = rf"^{next(iter(change))} = .*: not within"
         with pytest.raises(ValueError, match=words):
-            estimator.decide(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0), goe.DecisionRule(**change))
+            estimator.decide(goe.Intent((1.0, 0.0, 0.0), 1.0, 1.0), goe.DecisionRule(**change))
         with pytest.raises(ValueError, match=words):
             goe.run(settings(), approach(), rules=[goe.Rule(1.0, 1.0, **change)])
-    assert estimator.decide(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) == (goe.Decision.UNKNOWN, None)
-    assert estimator.hazard(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) is None  # no estimate is known
+    assert estimator.decide(goe.Intent((1.0, 0.0, 0.0), 1.0, 1.0)) == (goe.Decision.UNKNOWN, None)
+    assert estimator.hazard(goe.Intent((1.0, 0.0, 0.0), 1.0, 1.0)) is None  # no estimate is known
     assert estimator.covariance() is None
 
 
@@ -481,7 +481,7 @@ def test_threads_do_not_mix_tracks_up() -> None:
     tracks = [approach(40, height_m=np.full(40, 10.0 + i)) for i in range(24)]
     each = [settings() for _ in tracks]
     for i, own in enumerate(each):
-        own.detector.box_px = 1.0 + 0.1 * i
+        own.detector.box_noise_px = 1.0 + 0.1 * i
     rules = [goe.Rule(15.0, 10.0)]
     alone = [goe.run(own, images, rules=rules) for own, images in zip(each, tracks)]
     for threads in (1, 4, None):
@@ -500,7 +500,7 @@ def test_one_estimator_given_to_threads_serves_them_in_turn() -> None:
         thread.start()
     for thread in threads:
         thread.join()
-    assert estimator.causes[-int(goe.Status.BAD_ATTITUDE)] == 6 * 10 * 500
+    assert estimator.fault_counts[-int(goe.Status.BAD_ATTITUDE)] == 6 * 10 * 500
 
 
 def test_parallel_errors_are_those_of_the_track() -> None:

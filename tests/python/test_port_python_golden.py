@@ -11,7 +11,7 @@ from embedded_logs import Hash, LoggedImage, LoggedTrack, golden, read_tracks
 
 goe = pytest.importorskip("goe", reason="the Python package is not installed (tools/setup.sh)")
 NONE = goe.Length(0.0, 0.0)
-PLAN = goe.Plan((15.0, 1.0, -0.5), 10.0, 5.0)
+PLAN = goe.Intent((15.0, 1.0, -0.5), 10.0, 5.0)
 LATE = 2  # images
 IMAGE_PX = 1280.0
 MAX_CM = 20000
@@ -29,7 +29,7 @@ def settings_of(track: LoggedTrack, method: goe.Method) -> goe.Settings:
     settings.heading_deg = None if track.heading_auto else n[15]
     settings.window.points, settings.window.line_points = track.window, track.line_points
     settings.window.orientation_memory = track.orientation_memory
-    settings.navigation.position_white_m = track.position_white_m
+    settings.navigation.position_white_sd_m = track.position_white_sd_m
     return settings
 
 
@@ -80,11 +80,11 @@ def hash_estimate(h: Hash, e: goe.Estimate) -> None:
     h.flags(*(quantity is not None for quantity in known))
     h.word(e.fresh, e.suspect)
     h.text("none" if e.reason is None else str(e.reason))
-    h.word(e.nis_rows, e.images)
+    h.word(e.nis_rows, e.images_used)
     h.numbers(e.age_s, v.north_m_s, v.east_m_s, e.latency_s, p.x0.m, p.z0.m, p.x.m, p.z.m)
     h.numbers(width.m, length.m, height.m, o.side_deg, o.side_raw_deg, o.front_deg)
     h.numbers(*o.length_axis, *o.width_axis, *o.length_axis_ne, *o.width_axis_ne)
-    h.numbers(e.trajectory_heading_deg, c.north.m, c.east.m, c.covariance_m2, p.residual, p.baseline_m, e.nis, e.misfit)
+    h.numbers(e.trajectory_heading_deg, c.north.m, c.east.m, c.covariance_m2, p.residual, p.baseline_m, e.nis, e.nis_ratio)
     h.numbers(p.x0.sd_m, p.z0.sd_m, p.x.sd_m, p.z.sd_m, width.sd_m, length.sd_m, height.sd_m, o.side_sd_deg)
     h.numbers(c.north.sd_m, c.east.sd_m, v.north_sd_m_s, v.east_sd_m_s, e.latency_sd_s)
 
@@ -95,13 +95,13 @@ def hash_status(h: Hash, status: goe.Status) -> None:
 
 
 def hash_after(h: Hash, covariance: np.ndarray | None, hazard: goe.Hazard | None) -> None:
-    hash_status(h, goe.Status.OK if covariance is not None else goe.Status.COLLECTING)
+    hash_status(h, goe.Status.OK if covariance is not None else goe.Status.CONVERGING)
     h.numbers(*(np.zeros(36) if covariance is None else covariance.ravel()))
-    hash_status(h, goe.Status.OK if hazard is not None else goe.Status.COLLECTING)
+    hash_status(h, goe.Status.OK if hazard is not None else goe.Status.CONVERGING)
     shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
     clearance = shown.clearance or NONE
     h.numbers(
-        shown.time_s, shown.miss.m, clearance.m, shown.violation, shown.time_sd_s, shown.miss.sd_m, clearance.sd_m
+        shown.time_s, shown.miss.m, clearance.m, shown.violation, shown.tcpa_sd_s, shown.miss.sd_m, clearance.sd_m
     )
     h.word(shown.clearance is not None)
 
@@ -129,7 +129,7 @@ def test_estimates_have_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
             hash_estimate(h, estimate)
             hash_after(h, estimator.covariance(), estimator.hazard(PLAN))
             images += 1
-        h.word(*estimator.causes)
+        h.word(*estimator.fault_counts)
         estimator.reset()
         hash_status(h, goe.Status.OK)
     assert images > 1000
@@ -140,7 +140,7 @@ def test_estimates_have_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
 def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int) -> None:
     """[A11] In one call for all logs, and in more threads than there are processors."""
     runs = list(runs_of(tracks))
-    rules = [goe.Rule(PLAN.margin_m, PLAN.clearance_m, doubt=1.0, drift_m_s=0.0)]
+    rules = [goe.Rule(PLAN.margin_m, PLAN.clearance_m, suspect_factor=1.0, stale_growth_m_s=0.0)]
     jobs = {"rules": rules, "covariance": True, "threads": threads}
     answers = goe.run_parallel([settings for _, settings in runs], [images_of(track) for track, _ in runs], **jobs)
     h = Hash()
@@ -152,7 +152,7 @@ def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int
             hash_estimate(h, estimate)
             hash_after(h, answer.covariance[k] if estimate.position else None, answer.hazard(k))
         estimator.run(images_of(track))
-        h.word(*estimator.causes)
+        h.word(*estimator.fault_counts)
         hash_status(h, goe.Status.OK)
     assert str(h) == golden("golden_hash.txt")
 
@@ -164,7 +164,7 @@ def hash_hazard(h: Hash, hazard: goe.Hazard | None) -> None:
     shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
     clearance = shown.clearance or NONE
     h.numbers(
-        shown.time_s, shown.miss.m, clearance.m, shown.time_sd_s, shown.miss.sd_m, clearance.sd_m, shown.violation
+        shown.time_s, shown.miss.m, clearance.m, shown.tcpa_sd_s, shown.miss.sd_m, clearance.sd_m, shown.violation
     )
     h.word(shown.clearance is not None)
 
@@ -192,7 +192,7 @@ def hash_obstacle(h: Hash, o: goe.flight.Obstacle | None) -> None:
     known = (o.place, o.length_m, o.height, o.length_heading_deg, None, o.width_m)
     h.flags(*(quantity is not None for quantity in known), o.moves)
     h.word(o.model or 0)
-    h.flags(o.suspect, o.passed, o.in_view, o.hazard is not None)
+    h.flags(o.suspect, o.receding, o.in_view, o.hazard is not None)
     h.numbers(o.age_s, *place.center_ned_m, *place.covariance_ne_m2, place.radius_m, *height)
     h.numbers(*(quantity or 0.0 for quantity in (o.width_m, o.length_m, o.length_heading_deg)))
     h.numbers(*place.nearest_ned_m, *place.nearest_body_m)
@@ -231,7 +231,7 @@ def read_layer(h: Hash, flight: goe.Flight, now_us: int, approach: bool) -> None
 def test_the_flight_layer_has_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
     h, frames = Hash(), 0
     for track in tracks:
-        settings = settings_of(track, goe.Method.REFINED)
+        settings = settings_of(track, goe.Method.FILTER)
         if settings.camera.width_px <= 0.0:
             settings.camera.width_px = settings.camera.height_px = IMAGE_PX
         flight = goe.Flight(settings, goe.FlightSettings(confirm_images=1))

@@ -43,7 +43,7 @@ ESTIMATED = [X0, Z0, WIDTH, HEIGHT]
 # answers are float32, and 2e-7. In float32: 2e-4 (30 images/s, 13 s of white noise), otherwise 3e-5; sigmas 3e-5.
 VALUE_MOST = {True: 3e-5, False: 6e-4}
 SIGMA_MOST = {True: 5e-7, False: 6e-5}
-EVERY_IMAGE = {"refined.range_share": 10.0}
+EVERY_IMAGE = {"filter.range_sd_rel_max": 10.0}
 LENS = {"k1": -0.1, "k2": 0.02, "p1": 0.001, "p2": 0.0005, "k3": -0.003}
 LEVER = {"offset_x_m": 1.0, "offset_y_m": 0.5, "offset_z_m": 0.2}
 MOUNT = {"mount_pitch_deg": 2.0, "mount_yaw_deg": 1.0, "mount_roll_deg": 3.0, "fy": 900.0, "heading_deg": 20.0}
@@ -104,7 +104,7 @@ def assert_same(reference: PrismTrack, track: Track, double: bool) -> None:
 def test_the_references_defaults_are_the_librarys(built: None) -> None:
     flight = box_flight(BUILDING, BoxOptions(roll_deg=10.0), 2)
     usual, configured = (estimate(flight, camera_settings(flight) | more) for more in ({}, ErrorModel().settings()))
-    for name in ("values", "sigma", "nis", "misfit"):
+    for name in ("values", "sigma", "nis", "nis_ratio"):
         assert np.array_equal(getattr(usual, name), getattr(configured, name), equal_nan=True)
 
 
@@ -138,22 +138,22 @@ def test_sides_that_are_missing(
 
 
 USUAL = BoxOptions(roll_deg=5.0)
-WHITE = replace(USUAL, box_share=0.0, image_rate_hz=30.0)
+WHITE = replace(USUAL, box_noise_rel=0.0, image_rate_hz=30.0)
 
 
 @pytest.mark.parametrize("double", [True, False], ids=["float64", "float32"])
 @pytest.mark.parametrize(
     ("solid", "options", "configured"),
     [
-        (MAST, replace(USUAL, height_white_m=3.0), ErrorModel()),
-        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_m=1000.0)),
-        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_m=1000.0, disc=True)),
-        (BUILDING, USUAL, ErrorModel(position_white_m=0.5)),
-        (BUILDING, USUAL, ErrorModel(attitude_drift_deg=0.1)),
-        (BUILDING, USUAL, ErrorModel(correlation_s=0.0)),
-        (MAST, WHITE, ErrorModel(box_px=0.5, box_share=0.0, disc=True)),
+        (MAST, replace(USUAL, height_white_sd_m=3.0), ErrorModel()),
+        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_sd_m=1000.0)),
+        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_sd_m=1000.0, disc=True)),
+        (BUILDING, USUAL, ErrorModel(position_white_sd_m=0.5)),
+        (BUILDING, USUAL, ErrorModel(attitude_walk_sd_deg=0.1)),
+        (BUILDING, USUAL, ErrorModel(box_correlation_time_s=0.0)),
+        (MAST, WHITE, ErrorModel(box_noise_px=0.5, box_noise_rel=0.0, disc=True)),
         (MAST, replace(USUAL, aside_m=(-60.0, -50.0), ahead_m=(150.0, 180.0)), ErrorModel()),
-        (MAST, replace(USUAL, roll_deg=25.0, altitude_m=60.0), ErrorModel(border_share=0.03, cut_noise=0.3)),
+        (MAST, replace(USUAL, roll_deg=25.0, altitude_m=60.0), ErrorModel(border_rel=0.03, truncation_noise_rel=0.3)),
     ],
     ids=[
         "altimeter noise", "no altimeter", "disc without altimeter", "position noise", "drift", "no correlation",
@@ -163,7 +163,7 @@ WHITE = replace(USUAL, box_share=0.0, image_rate_hz=30.0)
 def test_other_flights_and_noise(
     built: None, solid: object, options: BoxOptions, configured: ErrorModel, double: bool
 ) -> None:
-    """[navigation.ground_m, navigation.position_white_m]"""
+    """[navigation.terrain_height_sd_m, navigation.position_white_sd_m]"""
     reference, track = both(box_flight(solid, options, 3), configured, double)
     assert_same(reference, track, double)
 
@@ -176,7 +176,7 @@ def test_other_cameras(built: None, change: dict[str, float], double: bool) -> N
     """No such camera recorded the boxes; both sides must interpret them equally."""
     flight = box_flight(MAST, BoxOptions(roll_deg=25.0), 3)
     reference, track = both(
-        replace(flight, camera=replace(flight.camera, **change)), ErrorModel(attitude_bias_deg=5.0), double
+        replace(flight, camera=replace(flight.camera, **change)), ErrorModel(attitude_bias_sd_deg=5.0), double
     )
     assert_same(reference, track, double)
 
@@ -186,7 +186,7 @@ def test_residuals_that_are_doubted(built: None, double: bool) -> None:
     """With too small noise settings, rows get a low weight or none, but not so often that the library restarts the
     track."""
     flight = box_flight(BUILDING, BoxOptions(roll_deg=10.0), 3)
-    reference, track = both(flight, ErrorModel(box_px=0.3, box_share=0.02), double)
+    reference, track = both(flight, ErrorModel(box_noise_px=0.3, box_noise_rel=0.02), double)
     assert reference.doubted.sum() >= 10 and reference.refused.sum() >= 3
     assert_same(reference, track, double)
 
@@ -195,7 +195,7 @@ def test_images_too_soon_are_not_used() -> None:
     flight = box_flight(MAST, WHITE, 3)
     every = np.diff(flight.time_s[follow(flight, ErrorModel()).fresh])
     assert np.allclose(every, 0.1, atol=1e-3)  # 0.08 * 1.2 s, in steps of 1/30 s
-    assert follow(flight, ErrorModel(correlation_s=0.0)).fresh.all()
+    assert follow(flight, ErrorModel(box_correlation_time_s=0.0)).fresh.all()
 
 
 # -------------------------------------------------------------------------------------------------- the measurement
@@ -290,14 +290,14 @@ def test_sides_that_are_measured() -> None:
 
 def noise(times: float, **change: float) -> ErrorModel:
     """Settings with only the noise that counts for the bound."""
-    usual = ErrorModel(box_share=0.0, ground_m=0.0, disc=True)
-    names = ("box_px", "attitude_bias_deg", "attitude_white_deg", "height_bias_m", "velocity_bias_m_s")
+    usual = ErrorModel(box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)
+    names = ("box_noise_px", "attitude_bias_sd_deg", "attitude_white_sd_deg", "height_bias_sd_m", "velocity_bias_sd_m_s")
     return replace(usual, **{name: times * getattr(usual, name) for name in names}, **change)
 
 
 def test_a_bound_grows_with_the_noise() -> None:
     flight = box_flight(MAST, replace(EXACT, roll_deg=10.0), 1)
-    once, twice = bound_of(flight, noise(1.0, cut_noise=0.5)), bound_of(flight, noise(2.0, cut_noise=1.0))
+    once, twice = bound_of(flight, noise(1.0, truncation_noise_rel=0.5)), bound_of(flight, noise(2.0, truncation_noise_rel=1.0))
     assert twice[ESTIMATED] == pytest.approx(2 * once[ESTIMATED], rel=1e-3) and np.isnan(once[[2, 4]]).all()
     shorter = bound_of(flight.first(len(flight.time_s) // 2), noise(1.0))
     assert (shorter[ESTIMATED] > 1.2 * once[ESTIMATED]).all()
@@ -308,10 +308,10 @@ def test_a_correlated_error_is_not_a_white_one() -> None:
     differences cancel the error.
     """
     flight = box_flight(MAST, replace(EXACT, roll_deg=10.0), 1)
-    still = {"attitude_bias_deg": 0.0, "attitude_white_deg": 0.0, "velocity_bias_m_s": 0.0, "height_bias_m": 0.0}
-    configured = replace(noise(1.0), box_px=0.1, box_share=0.05, **still)
-    white, usual, long = (bound_of(flight, replace(configured, correlation_s=tau)) for tau in (0.0, 1.2, 100.0))
-    equal = bound_of(flight, replace(configured, correlation_s=1e-3))
+    still = {"attitude_bias_sd_deg": 0.0, "attitude_white_sd_deg": 0.0, "velocity_bias_sd_m_s": 0.0, "height_bias_sd_m": 0.0}
+    configured = replace(noise(1.0), box_noise_px=0.1, box_noise_rel=0.05, **still)
+    white, usual, long = (bound_of(flight, replace(configured, box_correlation_time_s=tau)) for tau in (0.0, 1.2, 100.0))
+    equal = bound_of(flight, replace(configured, box_correlation_time_s=1e-3))
     assert equal[ESTIMATED] == pytest.approx(white[ESTIMATED], rel=1e-6)
     assert usual[Z0] > 1.5 * white[Z0] and long[Z0] < usual[Z0]
 
@@ -320,7 +320,7 @@ def test_a_correlated_error_is_not_a_white_one() -> None:
 def test_a_recursive_estimator_does_not_undercut_the_bound(monkeypatch: pytest.MonkeyPatch, roll: float) -> None:
     """With the error sources that both model: no path error, no white part of a side's error."""
     monkeypatch.setattr(prism_filter, "SCATTER_SHARE", 0.0)
-    configured = replace(noise(1.0), velocity_bias_m_s=0.0, position_walk_m=0.0, box_px=2.0)
+    configured = replace(noise(1.0), velocity_bias_sd_m_s=0.0, position_walk_sd_m=0.0, box_noise_px=2.0)
     flight = box_flight(MAST, replace(EXACT, roll_deg=roll), 1)
     ratio = (follow(flight, configured).sigma[-1] / bound_of(flight, configured))[ESTIMATED]
     assert (ratio > 0.99).all() and (ratio < 1.5).all(), ratio

@@ -29,8 +29,8 @@ from goe_tools.models.prism_offline import Track, fit
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
 ESTIMATED = [X0, Z0, WIDTH, HEIGHT]
-GAUSS = ErrorModel(box_px=0.5, box_share=0.0, ground_m=0.0, disc=True)
-WHITE = BoxOptions(box_px=0.5, box_share=0.0)
+GAUSS = ErrorModel(box_noise_px=0.5, box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)
+WHITE = BoxOptions(box_noise_px=0.5, box_noise_rel=0.0)
 LENS = {"k1": -0.1, "k2": 0.02, "p1": 0.001, "p2": 0.0005, "k3": -0.003}
 OTHER_CAMERA = {"offset_x_m": 1.0, "offset_z_m": 0.2, "mount_pitch_deg": 2.0, "mount_roll_deg": 3.0, "fy": 900.0}
 
@@ -95,7 +95,7 @@ def test_a_velocity_error_moves_the_camera() -> None:
 
 
 @pytest.mark.parametrize(
-    "configured", [GAUSS, ErrorModel(attitude_drift_deg=0.1, position_white_m=0.5)], ids=["disc", "any"]
+    "configured", [GAUSS, ErrorModel(attitude_walk_sd_deg=0.1, position_white_sd_m=0.5)], ids=["disc", "any"]
 )
 def test_derivatives_of_all_that_counts(configured: ErrorModel) -> None:
     """By central differences, for sides and prior rows."""
@@ -131,7 +131,7 @@ def test_exact_boxes_give_the_truth(roll: float, configured: ErrorModel) -> None
 
 def test_a_depth_that_roll_shows() -> None:
     """An ellipse three times as deep as wide; the initial guess is wrong by 3.7 sigma."""
-    configured = replace(GAUSS, disc=False, box_px=0.05)
+    configured = replace(GAUSS, disc=False, box_noise_px=0.05)
     flight = box_flight(MAST, replace(EXACT, roll_deg=25.0), 2)
     track = Track(flight, configured)
     state = true_place(flight, track)
@@ -154,8 +154,8 @@ def test_the_optimum_is_one_whatever_the_start(solid: Solid, configured: ErrorMo
 @pytest.mark.parametrize("roll", [0.0, 10.0])
 def test_errors_are_near_the_bound_and_the_cost_is_the_least(roll: float) -> None:
     """Without path errors, which the bound does not model. 40 flights determine an RMSE to 11 %."""
-    options = replace(WHITE, roll_deg=roll, position_walk_m=0.0, image_rate_hz=4.0)
-    configured = replace(GAUSS, position_walk_m=0.0)
+    options = replace(WHITE, roll_deg=roll, position_walk_sd_m=0.0, image_rate_hz=4.0)
+    configured = replace(GAUSS, position_walk_sd_m=0.0)
     ratio, cost_share, sigma_share = [], [], []
     for seed in range(1, 41):
         flight = box_flight(MAST, options, seed)

@@ -97,8 +97,8 @@ RUN_BY = {
         "tests/python/test_packages_hosts.py", 'passed("cc", source, *flags'
     ),
     "conan create .": By("tests/python/test_packages_hosts.py", "conan create ."),
-    'conan create . -o "&:with_movers=False"': By(
-        "tests/python/test_packages_hosts.py", "conan create . -o '&:with_movers=False'"
+    'conan create . -o "&:with_target_motion=False"': By(
+        "tests/python/test_packages_hosts.py", "conan create . -o '&:with_target_motion=False'"
     ),
     "python -m ci packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
     "python -m ci packages --sbom": By("tests/python/test_sbom.py", '"packages", "--sbom"'),
@@ -226,7 +226,7 @@ def few_flights(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_demo(built: Path, set_up: None) -> None:
     """[D1]"""
     text = output_of("tools/demo.sh")
-    assert "refined, the default method: better than the paper in" in text
+    assert "filter, the default method: better than the paper in" in text
     (page,) = re.findall(r"^The report: +(.*)$", text, re.MULTILINE)
     assert Path(page) == built / "report.html"
     written = Path(page).read_text(encoding="utf-8")
@@ -259,7 +259,7 @@ def test_sizes() -> None:
 def test_bench(built: Path, set_up: None) -> None:
     text = output_of("tools/bench.sh", "1000")
     rates = re.findall(r"^goe_replay --method (\w+): +(\d+) rows/s", text, re.MULTILINE)
-    assert [method for method, _ in rates] == ["refined", "window"]
+    assert [method for method, _ in rates] == ["filter", "window"]
     rates += re.findall(r"^goe_replay, (every column) filled.*: (\d+) rows/s", text, re.MULTILINE)
     assert len(rates) == 3 and all(int(rate) > 0 for _, rate in rates)
     if (built / "port" / "companion" / "goe_companion").exists():

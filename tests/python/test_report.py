@@ -199,17 +199,17 @@ def test_small_truth_is_found_as_the_reason() -> None:
     assert misses.likely_cause(cell) == misses.SMALL_TRUTH
 
 
-# ------------------------------------------------------------------------------------------------ the refined method
+# ------------------------------------------------------------------------------------------------ the filter method
 
 
 def refined_extent(folder: Path, obstacle: str, model: str, column: str) -> float:
-    """A refined number of Table 3 computed again from the file's text."""
+    """A filter number of Table 3 computed again from the file's text."""
     with (folder / "cases.csv").open(encoding="utf-8") as file:
         reach = sorted(
             abs(float(row[column.format("mean")])) + float(row[column.format("two_sigma")])
             for row in csv.DictReader(file)
             if (row["study"], row["obstacle"], row["model"], row["fraction"]) == ("paper", obstacle, model, "0.4")
-            and row["method"] == "refined"
+            and row["method"] == "filter"
         )
     return reach[math.ceil(0.75 * len(reach)) - 1]
 
@@ -235,7 +235,7 @@ def test_refined_sentences(campaign: Campaign) -> None:
     cells = rf.papers(campaign)
     fivefold = sum(cell.factor >= 5.0 for cell in cells)
     assert 0 < fivefold <= 27
-    assert f"Of the 27 numbers of the paper's Table 3, refined betters 27, {fivefold} of them" in said
+    assert f"Of the 27 numbers of the paper's Table 3, the filter betters 27, {fivefold} of them" in said
     assert ("Short of fivefold" in said) == (fivefold < 27)
     goals = campaign.goals
     assert goals is not None
@@ -259,7 +259,7 @@ def test_boxes_by_roll_follow_from_the_rows(campaign: Campaign) -> None:
     with (campaign.folder / "cases.csv").open(encoding="utf-8") as file:
         found = [
             row for row in csv.DictReader(file)
-            if (row["study"], row["method"], row["fraction"], row["roll_deg"]) == ("boxes", "refined", "0.4", "25")
+            if (row["study"], row["method"], row["fraction"], row["roll_deg"]) == ("boxes", "filter", "0.4", "25")
         ]  # fmt: skip
     for quantity in ("z0", "x0", "height"):
         errors_m = [float(row[f"{quantity}_rmse"]) for row in found if row[f"{quantity}_rmse"]]
@@ -278,8 +278,8 @@ def test_sentences_on_boxes_describe_the_effect_of_roll() -> None:
 
     for errors_m, effect in (((4.0, 3.0), "helps"), ((4.0, 4.4), "changes little for"), ((4.0, 5.0), "harms")):
         said = boxes.sentences(rows(*errors_m))
-        assert said[0].startswith(f"Roll {effect} refined: its error of Z₀ is 4.0 m at 0° of roll and {errors_m[1]} m")
-        assert "hold 90 to 95 % of refined's answers and 50 to 60 % of the window" in said[1] and "200 m off" in said[1]
+        assert said[0].startswith(f"Roll {effect} the filter: its error of Z₀ is 4.0 m at 0° of roll and {errors_m[1]} m")
+        assert "hold 90 to 95 % of the filter's answers and 50 to 60 % of the window" in said[1] and "200 m off" in said[1]
     assert boxes.sentences([]) == []
 
 
@@ -394,7 +394,7 @@ def test_terminal_table(campaign: Campaign) -> None:
     assert cell is not None and f"7 / {number(cell.bars)}" in row
     below = lines[lines.index(row) + 1]
     z0 = next(c for c in rf.papers(campaign) if (c.obstacle, c.model, c.quantity) == ("long-truck", "line", "z0"))
-    assert below.startswith("  refined") and f"{number(z0.refined)} ×{number(z0.factor)}" in below
+    assert below.startswith("  filter") and f"{number(z0.refined)} ×{number(z0.factor)}" in below
 
 
 @pytest.mark.parametrize(

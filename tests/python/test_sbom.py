@@ -136,7 +136,7 @@ def broken(bom: Json, how: str) -> Json:
         "a version", "another form",
     ],
 )  # fmt: skip
-def test_violations_of_the_rules_are_found(bom: Json, how: str) -> None:
+def test_conflicts_of_the_rules_are_found(bom: Json, how: str) -> None:
     assert len(faults(broken(bom, how))) >= 1
 
 

@@ -64,7 +64,7 @@ def flights(count: int) -> list[Task]:
 def assert_same(some: list[Outcome], others: list[Outcome]) -> None:
     assert len(some) == len(others) > 0
     for one, other in zip(some, others):
-        assert one.name == other.name and one.nis == other.nis and one.misfit == other.misfit
+        assert one.name == other.name and one.nis == other.nis and one.nis_ratio == other.nis_ratio
         assert np.array_equal(one.covariance, other.covariance, equal_nan=True)
         assert np.array_equal(one.refined.error, other.refined.error, equal_nan=True)
 

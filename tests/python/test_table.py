@@ -32,8 +32,8 @@ LINE = {
 
 @pytest.fixture
 def estimates(tmp_path: Path) -> Path:
-    lines = [HEADER, row(0.0, 1, "collecting", "none"), row(1.0, 1, "ok", "line", **LINE)]
-    lines += [row(1.0, 2, "collecting", "none"), row(2.0, 1, "held", "line", **LINE)]
+    lines = [HEADER, row(0.0, 1, "converging", "none"), row(1.0, 1, "ok", "line", **LINE)]
+    lines += [row(1.0, 2, "converging", "none"), row(2.0, 1, "stale", "line", **LINE)]
     path = tmp_path / "estimates.csv"
     path.write_text("\n".join(lines) + "\n")
     return path
@@ -49,10 +49,10 @@ def test_text_of_the_table(estimates: Path, tmp_path: Path, capsys) -> None:
     output = capsys.readouterr().out
     assert "120.0 ±2.0 m" in output
     assert "30.00 ±0.50 m left" in output
-    assert "* held" in output
+    assert "* stale" in output
     assert "12.10 ±0.21 m" in output and "12.00 m" in output and "+0.10 m" in output
     assert "20.20 ±0.25°" in output and "+1.20°" in output
-    assert "obstacle 2: no estimate in 1 images (last: collecting)" in output
+    assert "obstacle 2: no estimate in 1 images (last: converging)" in output
 
 
 @pytest.mark.parametrize(

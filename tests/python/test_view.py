@@ -21,7 +21,7 @@ from goe_tools.view.motion import motion_of
 from goe_tools.view.story import MOST_ROWS, Story, kept_moments, map_bounds, story_of
 
 COLUMNS = {  # goe_replay's columns that the page has
-    **{name: name for name in ("x_m", "z_m", "width_m", "length_m", "height_m", "orientation_deg", "misfit")},
+    **{name: name for name in ("x_m", "z_m", "width_m", "length_m", "height_m", "orientation_deg", "nis_ratio")},
     **{name: name for name in ("x_sd_m", "z_sd_m", "width_sd_m", "length_sd_m", "height_sd_m", "orientation_sd_deg")},
 }
 
@@ -56,8 +56,8 @@ CASES: dict[str, tuple[Callable[[], ObservationLog], tuple[str, ...], dict[str, 
     "corner": (lambda: read_log(view_logs.CORNER), (), {}),
     "window": (lambda: read_log(view_logs.CORNER), ("--method", "window", "--window", "5"),
                {"method": "window", "window": 5}),
-    "set": (view_logs.several, ("--model", "disc", "--set", "detector.point_px=2", "--set", "refined.misfit_max=0.3"),
-            {"model": "disc", "settings": {"detector.point_px": 2.0, "refined.misfit_max": 0.3}}),
+    "set": (view_logs.several, ("--model", "disc", "--set", "detector.point_noise_px=2", "--set", "filter.nis_ratio_max=0.3"),
+            {"model": "disc", "settings": {"detector.point_noise_px": 2.0, "filter.nis_ratio_max": 0.3}}),
     "boxes": (view_logs.boxes, (), {}),
     "several": (view_logs.several, (), {}),
     "spoiled": (view_logs.spoiled, (), {}),
@@ -96,12 +96,12 @@ def test_when_to_act_is_the_decision_rules() -> None:
         for track in story(make()).tracks:
             column = track.answers.column
             with np.errstate(invalid="ignore"):
-                soonest_s = column["time_s"] * np.divide(
-                    column["time_s"], column["time_s"] + 2.0 * column["time_sd_s"],
-                    out=np.zeros(len(track.answers)), where=column["time_s"] > 0.0,
+                earliest_tcpa_s = column["tcpa_s"] * np.divide(
+                    column["tcpa_s"], column["tcpa_s"] + 2.0 * column["tcpa_sd_s"],
+                    out=np.zeros(len(track.answers)), where=column["tcpa_s"] > 0.0,
                 )  # fmt: skip
-                sure = (np.abs(soonest_s - 12.0) > 1e-3) & (np.abs(column["violation"] - 0.1) > 1e-6)
-                acts = (column["violation"] >= 0.1) & (soonest_s <= 12.0)
+                sure = (np.abs(earliest_tcpa_s - 12.0) > 1e-3) & (np.abs(column["conflict_probability"] - 0.1) > 1e-6)
+                acts = (column["conflict_probability"] >= 0.1) & (earliest_tcpa_s <= 12.0)
             assert np.array_equal(track.answers.act[sure], acts[sure])
             seen |= set(track.answers.act[sure].tolist())
     assert seen == {False, True}
@@ -122,7 +122,7 @@ def test_two_cameras_with_lenses(replay: Path, tmp_path: Path, real_camera: Came
 def test_each_log_contains_its_case() -> None:
     spoiled, moving = story(view_logs.spoiled()), story(view_logs.moving())
     statuses = set(spoiled.tracks[0].answers.status)
-    assert {"ok", "not_finite", "bad_time", "bad_attitude", "nothing_seen"} <= statuses
+    assert {"ok", "not_finite", "bad_time", "bad_attitude", "no_detection"} <= statuses
     assert spoiled.reset.sum() == 2 and spoiled.broken.sum() == 1
     assert "moves" in moving.tracks[0].answers.reason
     assert set(story(view_logs.boxes()).tracks[0].answers.model) == {"none", "prism"}
@@ -187,7 +187,7 @@ def test_the_miss_is_that_of_goe_hazard() -> None:
     for make in (view_logs.several, view_logs.boxes, view_logs.moving, lambda: read_log(view_logs.CORNER)):
         for track in story(make()).tracks:
             drawn = np.linalg.norm(track.closest - track.nearest, axis=1)
-            said = track.answers.column["miss_m"]
+            said = track.answers.column["dcpa_m"]
             good = np.isfinite(said) & (said > 0.0)
             np.testing.assert_allclose(drawn[good], said[good], atol=0.05, rtol=2e-3)
             compared += good.sum()

@@ -149,7 +149,7 @@ def assert_is_row(texts: dict[str, str], row: Row) -> None:
     for name, sigma in QUANTITIES.items():
         if name in texts:
             assert_says(texts[name], row[name], row[sigma], f"{where}: {name}")
-    assert texts["misfit"] == (f"{float(row['misfit']):.2f}" if row["misfit"] else "–"), where
+    assert texts["nis_ratio"] == (f"{float(row['nis_ratio']):.2f}" if row["nis_ratio"] else "–"), where
     assert texts["model"] == ("–" if row["model"] == "none" else row["model"]), where
     assert texts["doubt"].startswith("Suspect") == (row["suspect"] == "1"), where
     if not row["z_m"]:

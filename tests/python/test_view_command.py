@@ -81,7 +81,7 @@ def test_truth_of_its_own_and_truth_that_is_not_there(tmp_path: Path) -> None:
         (["LOG", "--out", "LOG/frames.csv"], "the output would replace "),
         (["LOG", "--out", "LOG"], "is a folder"),
         (["LOG", "--set", "detector.nothing=1"], "detector.nothing: no such setting"),
-        (["LOG", "--set", "detector.point_px=-1"], "detector.point_px = -1: not within 0.05 to 100 px"),
+        (["LOG", "--set", "detector.point_noise_px=-1"], "detector.point_noise_px = -1: not within 0.05 to 100 px"),
         (["LOG", "--window", "999"], "window.points = 999: not within 3 to 64 images"),
     ],
 )  # fmt: skip
@@ -93,7 +93,7 @@ def test_bad_usage(change: list[str], said: str, tmp_path: Path, capsys: pytest.
 
 
 @pytest.mark.parametrize(
-    "words_", [["--set", "point_px=1"], ["--set", "detector.point_px=x"], ["--margin", "-1"], ["--theme", "red"]]
+    "words_", [["--set", "point_noise_px=1"], ["--set", "detector.point_noise_px=x"], ["--margin", "-1"], ["--theme", "red"]]
 )
 def test_bad_flags(words_: list[str], tmp_path: Path) -> None:
     with pytest.raises(SystemExit) as stopped:

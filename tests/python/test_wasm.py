@@ -83,12 +83,12 @@ def test_numbers_that_are_stated_twice_agree() -> None:
     assert plan in (ROOT / "README.md").read_text(encoding="utf-8")
     source = (ROOT / "lib" / "hazard" / "goe_decide.c").read_text(encoding="utf-8")
     (defaults,) = re.findall(r"by_default = \{(.*)f\};", source)
-    violation_max, act_s, doubt, drift_m_s = map(float, defaults.split("f, "))
+    conflict_probability_max, act_within_s, doubt, stale_growth_m_s = map(float, defaults.split("f, "))
     words = (
         f"{rule['MARGIN_M']:g} m to the side, {rule['CLEARANCE_M']:g} m over the top, "
-        f"from {100 * violation_max:g} % on, "
-        f"if it may be reached within {act_s:g} s; both distances count {doubt:g} times while the estimate is suspect, "
-        f"and grow by {drift_m_s:g} m"
+        f"from {100 * conflict_probability_max:g} % on, "
+        f"if it may be reached within {act_within_s:g} s; both distances count {doubt:g} times while the estimate is suspect, "
+        f"and grow by {stale_growth_m_s:g} m"
     )
     assert words in (port / "page" / "page.html.j2").read_text(encoding="utf-8")
     approach = numbers((port / "approach.h").read_text(encoding="utf-8"), define)
@@ -154,13 +154,13 @@ def order_after(before: float, r: dict[str, float]) -> float:
         return before
     uncertain = before if before == GO_AROUND else UNCERTAIN
     doubt = 1.5 if r["suspect"] else 1.0
-    if r["violation"] < 0.1:
-        aside = r["miss_m"] - r["miss_sd_m"] >= 15.0 * doubt + r["age_s"]
+    if r["conflict_probability"] < 0.1:
+        aside = r["dcpa_m"] - r["dcpa_sd_m"] >= 15.0 * doubt + r["age_s"]
         above = r["has_clearance"] and r["clearance_m"] - r["clearance_sd_m"] >= 10.0 * doubt + r["age_s"]
         return CLEAR if aside or above else uncertain
-    if r["hazard_s"] ** 2 <= 12.0 * (r["hazard_s"] + 2.0 * r["hazard_sd_s"]):
+    if r["tcpa_s"] ** 2 <= 12.0 * (r["tcpa_s"] + 2.0 * r["tcpa_sd_s"]):
         return GO_AROUND
-    return IN_DOUBT if r["hazard_s"] - 2.0 * r["hazard_sd_s"] > 12.0 else uncertain
+    return IN_DOUBT if r["tcpa_s"] - 2.0 * r["tcpa_sd_s"] > 12.0 else uncertain
 
 
 def test_orders_are_those_of_the_decision_rule(flown: dict[str, Any]) -> None:

@@ -87,7 +87,7 @@ def test_near_the_reference(rounding: str, model: str, real_camera: Camera) -> N
             result = answer.estimate
             report = double.update(frame, answer.gates.taken)
             exact = report.estimate
-            assert (result.status, result.model, result.n_used) == (exact.status, exact.model, exact.n_used)
+            assert (result.status, result.model, result.images_used) == (exact.status, exact.model, exact.images_used)
             assert result.values.keys() == exact.values.keys()
             assert not report.gates.disputed
             if report.conditioning["width_m"] < 0.5:
@@ -112,7 +112,7 @@ def test_decisions_are_noted_under_the_same_names(corner_log: ObservationLog) ->
             taken = double.update(frame, guide).gates.taken
             assert taken == guide
             names |= taken.keys()
-        assert {"baseline", "parallax", "passed"} <= names
+        assert {"baseline", "parallax", "abeam"} <= names
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e38, -1e38, 0.0, 1e-45])

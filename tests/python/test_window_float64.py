@@ -100,7 +100,7 @@ def test_a_system_without_a_solution_is_refused() -> None:
     assert solved([row(1.0, 20.0, 0.0, 0.0)] * 8)[0] == "no_baseline"
     assert solved([row(1.0, 20.0, 0.0, 2.0 * k) for k in range(8)])[0] == "no_parallax"
     assert solved([row(1.0, 20.0 + k, 0.0, 2.0 * k) for k in range(8)])[0] == "no_parallax"
-    assert solved([row(1.0, (5.0 - 2.0 * k) / 3.0, 0.0, 2.0 * k) for k in range(8)])[0] == "passed"
+    assert solved([row(1.0, (5.0 - 2.0 * k) / 3.0, 0.0, 2.0 * k) for k in range(8)])[0] == "abeam"
 
 
 @pytest.mark.parametrize("path", ["straight", "arc", "weave"])
@@ -187,20 +187,20 @@ def frame_at(t_s: float, **changes: object) -> Frame:
         (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 0.0)), "bad_attitude"),
         (replace(frame_at(1.0), attitude=(1.02, 0.0, 0.0, 0.0)), "bad_attitude"),
         (replace(frame_at(1.0), attitude=(5.0, 0.0, 0.0, 0.0)), "bad_attitude"),
-        (replace(frame_at(1.0), attitude=(1.005, 0.0, 0.0, 0.0)), "collecting"),
+        (replace(frame_at(1.0), attitude=(1.005, 0.0, 0.0, 0.0)), "converging"),
         (frame_at(1.0, left=(520.0, 600.0), right=(500.0, 600.0)), "swapped"),
         (frame_at(1.0, base_left=(520.0, 700.0), base_right=(500.0, 700.0)), "swapped"),
-        (frame_at(1.0, left=None, right=None), "nothing_seen"),
-        (frame_at(1.0, left=None), "collecting"),
-        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0)), "collecting"),
-        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0), left=None, right=None), "nothing_seen"),
+        (frame_at(1.0, left=None, right=None), "no_detection"),
+        (frame_at(1.0, left=None), "converging"),
+        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0)), "converging"),
+        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0), left=None, right=None), "no_detection"),
     ],
 )
 def test_statuses_of_one_image(frame: Frame, status: str) -> None:
     camera = Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0)
     double, single = WindowMethod(camera), WindowMethod(camera, dtype=np.float32)
     for method in (double, single):
-        assert method.update(frame_at(0.0)).estimate.status == "collecting"
+        assert method.update(frame_at(0.0)).estimate.status == "converging"
         assert method.update(frame).estimate.status == status
 
 
@@ -209,7 +209,7 @@ def test_a_turn_begins_no_track_where_the_heading_is_set() -> None:
     double, single = WindowMethod(camera), WindowMethod(camera, dtype=np.float32)
     behind = replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0))
     for method in (double, single):
-        assert method.update(frame_at(0.0)).estimate.status == "collecting"
+        assert method.update(frame_at(0.0)).estimate.status == "converging"
         assert method.update(behind).estimate.status == "behind_camera"
 
 

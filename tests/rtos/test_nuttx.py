@@ -79,14 +79,14 @@ def test_every_source_is_compiled(programs: Path) -> None:
 
 def test_make_leaves_out_parts(tmp_path: Path) -> None:
     apps = checkout(tmp_path)
-    off = ("GOE_WITH_REFINED", "GOE_WITH_HAZARD")
+    off = ("GOE_WITH_FILTER", "GOE_WITH_HAZARD")
     config(apps, "CONFIG_GOE=y", *(f"CONFIG_{name}=n" for name in off), "CONFIG_GOE_WINDOW_MAX=5")
     (tmp_path / "print.mk").write_text(
         "include $(APPDIR)/external/Makefile\nprint:\n\t@echo $(CSRCS)\n\t@echo $(CFLAGS)\n"
     )
     sources, flags = run("make", "-f", tmp_path / "print.mk", f"APPDIR={apps}", "print").splitlines()
     assert set(sources.split()) == {file.name for file in (ROOT / "lib").rglob("*.c")}
-    assert "-DGOE_WITH_WINDOW=1 -DGOE_WITH_REFINED=0 -DGOE_WITH_MOVERS=0 -DGOE_WITH_HAZARD=0" in flags
+    assert "-DGOE_WITH_WINDOW=1 -DGOE_WITH_FILTER=0 -DGOE_WITH_TARGET_MOTION=0 -DGOE_WITH_HAZARD=0" in flags
     assert "-DGOE_WINDOW_MAX=5" in flags and "GOE_FLIGHT_SLOTS" not in flags
 
 

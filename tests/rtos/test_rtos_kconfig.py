@@ -12,7 +12,7 @@ from kconfig_of import NUTTX, ROOT, ZEPHYR, apply, parse
 
 HEADERS = (ROOT / "lib" / "goe.h").read_text() + (ROOT / "port" / "flight" / "goe_flight.h").read_text()
 NUMBERS = ("GOE_WINDOW_MAX", "GOE_CAMERAS_MAX", "GOE_FLIGHT_SLOTS")
-PARTS = ("GOE_WITH_WINDOW", "GOE_WITH_REFINED", "GOE_WITH_HAZARD", "GOE_WITH_MOVERS")
+PARTS = ("GOE_WITH_WINDOW", "GOE_WITH_FILTER", "GOE_WITH_HAZARD", "GOE_WITH_TARGET_MOTION")
 
 ports = pytest.mark.parametrize("port", [ZEPHYR, NUTTX], ids=["zephyr", "nuttx"])
 
@@ -58,20 +58,20 @@ def test_ranges_are_those_of_the_headers(port: Path, tmp_path: Path, name: str) 
 
 @ports
 def test_every_choice_of_parts_compiles(port: Path, tmp_path: Path) -> None:
-    """goe.h needs a method, the flight layer the hazard, late poses the refined method."""
+    """goe.h needs a method, the flight layer the hazard, late poses the filter method."""
     parsed = parse(port, tmp_path)
     found = set()
     for chosen in product("yn", repeat=6):
         apply(parsed, ["CONFIG_GOE=y"])
         for name, wanted in zip((*PARTS, "GOE_FLIGHT", "GOE_MAVLINK"), chosen):
             parsed.syms[name].set_value(wanted)
-        window, refined, hazard, movers = (value(parsed, name) == "y" for name in PARTS)
+        window, filtered, hazard, target_motion = (value(parsed, name) == "y" for name in PARTS)
         flight, mavlink = (value(parsed, name) == "y" for name in ("GOE_FLIGHT", "GOE_MAVLINK"))
-        assert window or refined
-        assert refined or not movers
+        assert window or filtered
+        assert filtered or not target_motion
         assert hazard or not flight
         assert flight or not mavlink
-        found.add((window, refined, hazard, movers, flight, mavlink))
+        found.add((window, filtered, hazard, target_motion, flight, mavlink))
     assert len(found) == 5 * 4, "a combination that would compile cannot be chosen"
 
 
@@ -96,7 +96,7 @@ def test_programs_of_nuttx_are_built_only_if_enabled(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "other",
-    ["GOE_WITH_WINDOW=n", "GOE_WITH_REFINED=n", "GOE_WITH_MOVERS=n", "GOE_WITH_HAZARD=n", "GOE_WINDOW_MAX=9",
+    ["GOE_WITH_WINDOW=n", "GOE_WITH_FILTER=n", "GOE_WITH_TARGET_MOTION=n", "GOE_WITH_HAZARD=n", "GOE_WINDOW_MAX=9",
      "GOE_CAMERAS_MAX=2", "GOE_FLIGHT_SLOTS=3"],
 )  # fmt: skip
 def test_golden_bits_are_those_of_the_whole_with_its_defaults(other: str, tmp_path: Path) -> None:

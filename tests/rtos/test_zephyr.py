@@ -143,13 +143,13 @@ def test_floats_are_not_vectorised_where_helium_would_flush_them(tmp_path: Path)
 
 
 def test_parts_left_out(tmp_path: Path) -> None:
-    off = ("GOE_WITH_REFINED", "GOE_WITH_HAZARD", "GOE_SELF_CHECK")
+    off = ("GOE_WITH_FILTER", "GOE_WITH_HAZARD", "GOE_SELF_CHECK")
     found = compiled(configure(SAMPLE, tmp_path, *(f"CONFIG_{name}=n" for name in off), "CONFIG_GOE_WINDOW_MAX=5"))
     assert not any(file.startswith(("port/flight", "port/mavlink", "port/sqrtf")) for file in found)
     assert "port/zephyr/goe_start.c" not in found
     command = found["lib/goe_estimator.c"]
     assert "-DGOE_WINDOW_MAX=5" in command and "GOE_FLIGHT_SLOTS" not in command
-    parts = {"WINDOW": 1, "REFINED": 0, "MOVERS": 0, "HAZARD": 0}
+    parts = {"WINDOW": 1, "FILTER": 0, "TARGET_MOTION": 0, "HAZARD": 0}
     assert all(f"-DGOE_WITH_{part}={value} " in command for part, value in parts.items())
 
 

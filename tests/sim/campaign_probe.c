@@ -62,7 +62,7 @@ int main(int argc, char **argv) {
     if (fault != NULL) {
         return fail("fly", fault);
     }
-    const case_setting_t setting = {strcmp(argv[4], "refined") == 0 ? GOE_METHOD_REFINED : GOE_METHOD_WINDOW,
+    const case_setting_t setting = {strcmp(argv[4], "filter") == 0 ? GOE_METHOD_FILTER : GOE_METHOD_WINDOW,
                                     strcmp(argv[5], "disc") == 0 ? GOE_MODEL_DISC : GOE_MODEL_AUTO,
                                     (int)strtol(argv[6], NULL, 10)};
     const int status = run(&setup, &log, setting);

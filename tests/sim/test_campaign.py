@@ -42,17 +42,17 @@ BEYOND = {  # study: path, speed profile, wind, noise of each variant
     "position": (("straight", "constant", "none", "position"),),
     "field": (("straight", "constant", "none", "field"),),
 }
-# noise settings that goe_campaign gives the refined method, where they differ from goe_replay's defaults
-EXACT_POSE = {"navigation.attitude_bias_deg": 1e-3, "navigation.attitude_white_deg": 1e-3}
-EXACT_POSE |= {"navigation.height_bias_m": 1e-3}
-EXACT_POSE |= {"navigation.velocity_bias_m_s": 0, "navigation.position_walk_m": 0}
+# noise settings that goe_campaign gives the filter method, where they differ from goe_replay's defaults
+EXACT_POSE = {"navigation.attitude_bias_sd_deg": 1e-3, "navigation.attitude_white_sd_deg": 1e-3}
+EXACT_POSE |= {"navigation.height_bias_sd_m": 1e-3}
+EXACT_POSE |= {"navigation.velocity_bias_sd_m_s": 0, "navigation.position_walk_sd_m": 0}
 SETTINGS = {
-    "none": {"detector.point_px": 0.05, **EXACT_POSE},
-    "rounding": {"detector.point_px": 0.35, **EXACT_POSE},
+    "none": {"detector.point_noise_px": 0.05, **EXACT_POSE},
+    "rounding": {"detector.point_noise_px": 0.35, **EXACT_POSE},
     "field": {},
     "detector": {
-        "detector.point_px": 0.7,
-        "detector.point_share": 0.025,
+        "detector.point_noise_px": 0.7,
+        "detector.point_noise_rel": 0.025,
         "detector.point_correlation": 0.5,
         **EXACT_POSE,
     },
@@ -136,8 +136,8 @@ def setup_of(row: Row) -> tuple[str, float, float, float, float]:
 
 def test_the_papers_study_is_table_2(paper: Path) -> None:
     rows = read_rows(paper / "cases.csv")
-    runs = [("window", model) for model in ("auto", "disc", "line")] + [("refined", model) for model in ("auto", "box")]
-    cylinder = [("window", "disc"), ("refined", "auto")]
+    runs = [("window", model) for model in ("auto", "disc", "line")] + [("filter", model) for model in ("auto", "box")]
+    cylinder = [("window", "disc"), ("filter", "auto")]
     wanted = Counter(
         (setup, run, fraction)
         for setup in table2()
@@ -170,7 +170,7 @@ def test_the_other_studies_fly_the_same_cases(everything: Path, paper: Path) -> 
         for variant in variants:
             flown = [row for row in mine if (row["path"], row["speed_profile"], row["wind"], row["noise"]) == variant]
             models = Counter((int(row["case"]), row["model"]) for row in flown if row["method"] == "window")
-            refined = Counter((int(row["case"]), row["model"]) for row in flown if row["method"] == "refined")
+            refined = Counter((int(row["case"]), row["model"]) for row in flown if row["method"] == "filter")
             boxes = [case for case in part if same[case][0] != "cylinder"]
             wanted = [(case, "disc") for case in part if same[case][0] == "cylinder"]
             wanted += [(case, model) for case in boxes for model in ("auto", "line")]
@@ -187,7 +187,7 @@ def test_boxes_are_flown_level_low_and_rolling(everything: Path) -> None:
     low = {name: altitudes[0] for name, (_, altitudes, _) in TABLE2.items()}
     setups = [s for s in table2() if s[2] == low[s[0]] and s[3] in (-20, 0, 45) and s[4] == 0]
     assert len(setups) == 30
-    runs = itertools.product(setups, (0.0, 5.0, 10.0, 25.0), ("window", "refined"), FRACTIONS)
+    runs = itertools.product(setups, (0.0, 5.0, 10.0, 25.0), ("window", "filter"), FRACTIONS)
     assert Counter(
         (setup_of(row), float(row["roll_deg"]), row["method"], float(row["fraction"])) for row in rows
     ) == Counter(runs)
@@ -202,7 +202,7 @@ def test_refined_knows_how_far_off_it_is_by_boxes_at_any_roll(everything: Path) 
     for roll in ("0", "5", "10", "25"):
         refined, window = (
             [row for row in rows if (row["method"], row["roll_deg"]) == (method, roll)]
-            for method in ("refined", "window")
+            for method in ("filter", "window")
         )
         for quantity in ("z0", "x0", "height"):
             assert np.mean(column(refined, f"{quantity}_covered")) > 0.88
@@ -216,7 +216,7 @@ def test_conditioning_varies_one_thing_at_a_time(everything: Path) -> None:
         for row in read_rows(everything / "cases.csv")
         if row["study"] == "conditioning" and row["fraction"] == "1" and row["model"] not in ("line", "box")
     ]
-    assert Counter(row["case"] for row in rows if row["method"] == "refined") == Counter({row["case"] for row in rows})
+    assert Counter(row["case"] for row in rows if row["method"] == "filter") == Counter({row["case"] for row in rows})
     rows = [row for row in rows if row["method"] == "window"]
     for name in TABLE2:
         mine = [row for row in rows if row["obstacle"] == name]
@@ -266,7 +266,7 @@ def test_in_process_is_sim_and_replay(
     case = str(BITS_CASES[name])
     cylinder = "cloud" if noise == "rounding" else "tangent"
     fly(goe_sim, tmp_path / "log", "--case", case, "--noise", noise, "--cylinder", cylinder)
-    runs = (("window", "auto", 8), ("window", "disc", 8), ("window", "auto", 64), ("refined", "auto", 8))
+    runs = (("window", "auto", 8), ("window", "disc", 8), ("window", "auto", 64), ("filter", "auto", 8))
     for method, model, window in runs:
         probe = [str(programs["campaign_probe"]), case, noise, cylinder, method, model, str(window)]
         direct = subprocess.run(probe, capture_output=True, text=True, check=True).stdout
@@ -282,7 +282,7 @@ def test_in_process_is_sim_and_replay_with_boxes(
     case = str(BITS_CASES[name])
     boxes = ("--features", "boxes", "--roll-amplitude-deg", roll, "--noise", "field")
     fly(goe_sim, tmp_path / "log", "--case", case, *boxes)
-    for method, model in (("window", "disc"), ("refined", "prism")):
+    for method, model in (("window", "disc"), ("filter", "prism")):
         probe = [str(programs["campaign_probe"]), case, "field", "tangent", method, "auto", "8", roll]
         direct = subprocess.run(probe, capture_output=True, text=True, check=True).stdout
         assert direct == replay(programs, tmp_path / "log", "auto", 8, method)
@@ -296,9 +296,9 @@ def test_in_process_is_sim_and_replay_with_two_cameras(
     boxes = ("--features", "boxes", "--noise", "field", "--second-camera", f"{yaw},0")
     log = fly(goe_sim, tmp_path / "log", "--case", case, *boxes)
     assert set(log.frames["camera"]) == {0.0, 1.0}
-    probe = [str(programs["campaign_probe"]), case, "field", "tangent", "refined", "auto", "8", "0", yaw]
+    probe = [str(programs["campaign_probe"]), case, "field", "tangent", "filter", "auto", "8", "0", yaw]
     direct = subprocess.run(probe, capture_output=True, text=True, check=True).stdout
-    assert direct == replay(programs, tmp_path / "log", "auto", 8, "refined")
+    assert direct == replay(programs, tmp_path / "log", "auto", 8, "filter")
 
 
 @pytest.mark.parametrize("name", list(BITS_CASES))
@@ -311,7 +311,7 @@ def test_series_is_sim_and_replay(
     shared += [f"{q}_{part}" for q in ("x0", "z0", "width", "length", "height") for part in ("m", "sd_m")]
     log = tmp_path / "log"
     replays = {model: replay(programs, log, model) for model in (("disc",) if name == "cylinder" else ("auto", "disc"))}
-    replays["refined"] = replay(programs, log, "auto", method="refined", noise="rounding")
+    replays["filter"] = replay(programs, log, "auto", method="filter", noise="rounding")
     for run, text in replays.items():
         series = read_rows(paper / "series" / f"{case}_{run}.csv")
         replayed = list(csv.DictReader(text.splitlines()))
@@ -331,7 +331,7 @@ def test_statistics_by_numpy(paper: Path, case: int) -> None:
     assert len(found) in (8, 20)
     for row in found:
         source = "auto" if row["model"] == "line" else row["model"]
-        source = "refined" if row["method"] == "refined" else source
+        source = "filter" if row["method"] == "filter" else source
         series = read_rows(paper / "series" / f"{case}_{source}.csv")
         solved = solved_rows(series, row["model"] if row["model"] in ("line", "box") else "any")
         used = solved[len(solved) - math.ceil(float(row["fraction"]) * len(solved)) :]
@@ -375,7 +375,7 @@ def check_quantity(row: Row, used: list[Row], q: str, unit: str) -> None:
             assert row[f"{q}_{measure}_pct"] == ""
 
 
-@pytest.mark.parametrize("run", ["auto", "refined"])
+@pytest.mark.parametrize("run", ["auto", "filter"])
 @pytest.mark.parametrize("case", [7, 18, 56, 58, 107])
 def test_truth_refers_to_the_point_of_the_estimate(
     paper: Path, goe_sim: Path, tmp_path: Path, case: int, run: str
@@ -407,7 +407,7 @@ def test_truth_refers_to_the_point_of_the_estimate(
         counted[row["model"], row["swapped"]] += 1
     edge = "line" if run == "auto" else "box"
     assert counted[edge, "0"] + counted[edge, "1"] > 1
-    assert run == "refined" or case not in (7, 107) or counted["line", "1"] > 10
+    assert run == "filter" or case not in (7, 107) or counted["line", "1"] > 10
 
 
 @pytest.mark.parametrize("case", [3, 16])

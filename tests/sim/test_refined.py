@@ -1,4 +1,4 @@
-"""goe_replay's default, the refined method, on goe_sim's logs: smaller errors than the window method's, correct
+"""goe_replay's default, the filter method, on goe_sim's logs: smaller errors than the window method's, correct
 sigmas."""
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def test_answers_sooner_than_the_window(programs: dict[str, Path], goe_sim: Path
     """The range is known to 10 % (two sigma, and in truth) from an earlier image on."""
     log = fly(goe_sim, tmp_path / "log", "--case", CASES[name], "--noise", "field", "--seed", "1")
     since = {}
-    for method in ("refined", "window"):
+    for method in ("filter", "window"):
         rows = replay(programs, tmp_path / "log", "--method", method)
         good = []
         for row in rows:
@@ -104,15 +104,15 @@ def test_answers_sooner_than_the_window(programs: dict[str, Path], goe_sim: Path
             good.append(abs(error - z0_m) < 0.1 * z0_m and 2.0 * sigma < 0.1 * z0_m)
         bad = np.flatnonzero(~np.array(good))
         since[method] = int(bad[-1]) + 1 if len(bad) else 0
-    assert since["refined"] < since["window"]
-    assert since["refined"] < 0.7 * len(rows)
+    assert since["filter"] < since["window"]
+    assert since["filter"] < 0.7 * len(rows)
 
 
 def test_bounding_boxes_alone_are_a_disc(programs: dict[str, Path], goe_sim: Path, tmp_path: Path) -> None:
     """Boxes of a detector without base corners give a disc. With the noise configured, the truth is within three
     sigma of the range."""
     log = fly(goe_sim, tmp_path / "log", "--case", CASES["cylinder"], "--noise", "detector")
-    configured = {"detector.point_px": 0.7, "detector.point_share": 0.025, "detector.point_correlation": 0.5}
+    configured = {"detector.point_noise_px": 0.7, "detector.point_noise_rel": 0.025, "detector.point_correlation": 0.5}
     options = [f"--set={name}={value}" for name, value in configured.items()]
     rows = replay(programs, tmp_path / "log", *options)
     row = solved(rows)[-1]

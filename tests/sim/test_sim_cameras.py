@@ -134,7 +134,7 @@ def test_a_track_goes_on_from_one_camera_to_the_other(
         assert change > 40 and (number[change:] == 1).all() and len(rows) - change > 8
         solved = [row["status"] in SOLVED for row in rows]
         assert all(solved[change - 3 : change + 3]) and all(solved[change:])
-        used = [int(row["n_used"]) for row in rows[change - 1 :]]
+        used = [int(row["images_used"]) for row in rows[change - 1 :]]
         assert (np.diff(used) == 1).all()  # no track restarts
         assert len({row["model"] for row in rows[change - 1 : change + 1]}) == 1
         assert max(center_error(row, log.truth) for row in rows[change:]) < 3.0

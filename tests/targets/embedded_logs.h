@@ -10,7 +10,7 @@
 typedef struct {
     int64_t time_us;
     uint8_t seen; /* bit i: feature i */
-    uint8_t box;  /* goe_box_t.seen */
+    uint8_t box;  /* goe_box_t.sides */
     uint8_t reset_count;
     uint8_t reset_delta_known;
     uint32_t bits[23];
@@ -21,7 +21,7 @@ typedef struct {
     const char *name;
     int16_t first, count; /* in logged_images */
     uint8_t model, window, line_points, orientation_memory, heading_auto;
-    uint8_t position_white_m;
+    uint8_t position_white_sd_m;
     uint32_t bits[18];
 } logged_track_t;
 

@@ -23,7 +23,7 @@ void replay_all(replay_t *replay);
 
 /* The same for outputs that do not depend on other compiled parts; a part that is left out has no images. */
 typedef struct {
-    replay_t window, refined, window_hazard, refined_hazard;
+    replay_t window, filter, window_hazard, refined_hazard;
 } replay_parts_t;
 
 void replay_parts(replay_parts_t *parts);

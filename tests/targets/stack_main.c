@@ -74,10 +74,10 @@ __attribute__((noinline)) static size_t depth_of_covariance(void) {
 }
 
 __attribute__((noinline)) static size_t depth_of_hazard(void) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
+    static const goe_intent_t intent = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
     static goe_hazard_t hazard;
     port_stack_paint();
-    const goe_status_t status = goe_hazard(&estimator, &plan, &hazard);
+    const goe_status_t status = goe_hazard(&estimator, &intent, &hazard);
     return status == GOE_OK ? port_stack_used() : 0u;
 }
 
@@ -89,17 +89,17 @@ __attribute__((noinline)) static size_t depth_of_rule(void) {
 }
 
 __attribute__((noinline)) static size_t depth_of_decide(void) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
+    static const goe_intent_t intent = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
     static goe_hazard_t hazard;
     port_stack_paint();
-    const goe_decision_t decision = goe_decide(&estimator, &plan, NULL, &hazard);
+    const goe_decision_t decision = goe_decide(&estimator, &intent, NULL, &hazard);
     return decision != GOE_DECISION_KEEP ? port_stack_used() : 0u;
 }
 
 __attribute__((noinline)) static size_t depth_of_soonest(void) {
-    static const goe_hazard_t hazard = {.time_s = 10.0f, .time_sd_s = 1.0f};
+    static const goe_hazard_t hazard = {.time_s = 10.0f, .tcpa_sd_s = 1.0f};
     port_stack_paint();
-    (void)goe_soonest_s(&hazard);
+    (void)goe_earliest_tcpa_s(&hazard);
     return port_stack_used();
 }
 
@@ -139,7 +139,7 @@ int main(void) {
     report("goe_hazard", deepest.hazard);
     report("goe_rule_default", deepest.rule);
     report("goe_decide", deepest.decide);
-    report("goe_soonest_s", deepest.soonest);
+    report("goe_earliest_tcpa_s", deepest.soonest);
     report("goe_reset", deepest.reset);
     report("goe_status_text", depth_of_text());
     report("goe_reason_text", depth_of_reason());

@@ -200,7 +200,7 @@ void AP_GOE::report_changes()
         if (now.action == GOE_FLIGHT_NONE) {
             GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: no action any more");
         } else {
-            GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: obstacle in %.1f s (%s%s)", double(now.hazard.time_s),
+            GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: obstacle in %.1f s (%s%s)", double(now.hazard.tcpa_s),
                           goe_flight_action_text(now.action), now.late ? ", late" : "");
         }
     }

@@ -25,7 +25,7 @@ static void take_image(int k, goe_image_t *image) {
     image->box.right_px = 0.5f * WIDTH_PX + FOCAL_PX * 2.5f / ahead_m;
     image->box.top_px = 0.5f * HEIGHT_PX - FOCAL_PX * (35.0f - FLYING_HEIGHT_M) / ahead_m;
     image->box.bottom_px = 0.5f * HEIGHT_PX + FOCAL_PX * FLYING_HEIGHT_M / ahead_m;
-    image->box.seen = GOE_SEES_BOX;
+    image->box.sides = GOE_SIDES_ALL;
 }
 
 int main(void) {

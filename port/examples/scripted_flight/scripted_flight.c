@@ -62,7 +62,7 @@ static bool see_mast(uint32_t tick, goe_box_t *box) {
     box->right_px = drawn_px(0.5f * WIDTH_PX + FOCAL_PX * right_m / ahead_m, WIDTH_PX);
     box->top_px = drawn_px(0.5f * HEIGHT_PX + FOCAL_PX * (HEIGHT_M - MAST_HEIGHT_M) / ahead_m, HEIGHT_PX);
     box->bottom_px = drawn_px(0.5f * HEIGHT_PX + FOCAL_PX * HEIGHT_M / ahead_m, HEIGHT_PX);
-    box->seen = GOE_SEES_BOX;
+    box->sides = GOE_SIDES_ALL;
     return true;
 }
 
@@ -126,8 +126,8 @@ void scripted_line(const goe_flight_t *flight, uint32_t now_us, const goe_flight
     if (goe_flight_obstacle(flight, assessment->worst, &obstacle) == GOE_FLIGHT_OK) {
         add_obstacle(&line, &obstacle);
         add_text(&line, " in");
-        add_number(&line, assessment->hazard.time_s, "s");
-        add_number(&line, assessment->hazard.miss_m, "m aside;");
+        add_number(&line, assessment->hazard.tcpa_s, "s");
+        add_number(&line, assessment->hazard.dcpa_m, "m aside;");
     } else {
         add_text(&line, assessment->detector_alive ? ": clear;" : ": nothing known;");
     }

@@ -30,13 +30,13 @@ size_t goe_python_estimator_size(void);
 /* Bytes of goe_image_t, goe_estimate_t and goe_hazard_t, for callers that lay them out by themselves. */
 void goe_python_sizes(size_t sizes[3]);
 
-/* What goe_decide() gets after each image: of goe_plan_t all but the velocity, and goe_rule_t. */
+/* What goe_decide() gets after each image: of goe_intent_t all but the velocity, and goe_rule_t. */
 typedef struct {
     float margin_m, clearance_m;
-    float doubt;     /* 1: both as they are, also while the estimate is suspect */
-    float drift_m_s; /* 0: both as they are, also if it is old */
+    float suspect_factor;   /* 1: both as they are, also while the estimate is suspect */
+    float stale_growth_m_s; /* 0: both as they are, also if it is old */
     float since_image_s;
-    float violation_max, act_s;
+    float conflict_probability_max, act_within_s;
     float velocity_sd_m_s;
 } goe_python_rule_t;
 

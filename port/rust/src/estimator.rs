@@ -9,7 +9,7 @@ use crate::settings::bad_setting;
 #[cfg(not(feature = "hazard"))]
 use crate::Error;
 #[cfg(feature = "hazard")]
-use crate::{Decision, DecisionRule, Error, Hazard, Plan};
+use crate::{Decision, DecisionRule, Error, Hazard, Intent};
 use crate::{Estimate, Fault, Image, Settings};
 
 /// Follows one obstacle. It is all the memory there is (at most 2,936 bytes), may lie anywhere and be moved, copied or handed to
@@ -107,14 +107,14 @@ impl Estimator {
     ///
     /// # Errors
     /// [`Error::NoPosition`] and [`Error::Corrupted`], which do not mean that it is safe; [`Error::NotFinite`] and
-    /// [`Error::OutOfRange`] of the plan.
+    /// [`Error::OutOfRange`] of the intent.
     #[cfg(feature = "hazard")]
-    pub fn hazard(&self, plan: &Plan) -> Result<Hazard, Error> {
-        let plan = plan.to_c();
+    pub fn hazard(&self, intent: &Intent) -> Result<Hazard, Error> {
+        let intent = intent.to_c();
         let mut hazard = MaybeUninit::<ffi::goe_hazard_t>::zeroed();
         // SAFETY: zeros are a goe_hazard_t, which the call writes whole; the estimator is a started one.
         let (status, hazard) = unsafe {
-            let status = ffi::goe_hazard(&self.c, &plan, hazard.as_mut_ptr());
+            let status = ffi::goe_hazard(&self.c, &intent, hazard.as_mut_ptr());
             (status, hazard.assume_init())
         };
         match status {
@@ -126,29 +126,29 @@ impl Estimator {
         }
     }
 
-    /// The decision rule: whether to act now, and the hazard with the plan's margin and clearance widened by doubt and age. To be
+    /// The decision rule: whether to act now, and the hazard with the intent's margin and clearance widened by doubt and age. To be
     /// asked after each image, also after one without a detection. `None`: there is no hazard, which does not mean that it is safe.
     ///
     /// ```
-    /// # use goe::{DecisionRule, Estimator, Plan, Settings};
+    /// # use goe::{DecisionRule, Estimator, Intent, Settings};
     /// # let tower = Estimator::new(&Settings::for_camera(914.0, 914.0, 640.0, 640.0))?;
     /// # let mut go_around = false;
-    /// let plan = Plan { velocity_ned_m_s: [16.0, 0.0, 0.0], margin_m: 15.0, clearance_m: 10.0, ..Plan::default() };
-    /// let (decision, hazard) = tower.decide(&plan, &DecisionRule::default());
+    /// let intent = Intent { velocity_ned_m_s: [16.0, 0.0, 0.0], margin_m: 15.0, clearance_m: 10.0, ..Intent::default() };
+    /// let (decision, hazard) = tower.decide(&intent, &DecisionRule::default());
     /// go_around = decision.acts(go_around);
     /// # assert!(!go_around && hazard.is_none());
     /// # Ok::<(), goe::Error>(())
     /// ```
     #[cfg(feature = "hazard")]
-    pub fn decide(&self, plan: &Plan, rule: &DecisionRule) -> (Decision, Option<Hazard>) {
-        let (plan, rule) = (plan.to_c(), rule.to_c());
+    pub fn decide(&self, intent: &Intent, rule: &DecisionRule) -> (Decision, Option<Hazard>) {
+        let (intent, rule) = (intent.to_c(), rule.to_c());
         let mut hazard = MaybeUninit::<ffi::goe_hazard_t>::zeroed();
         // SAFETY: zeros are a goe_hazard_t, which the call writes whole; the estimator is a started one.
         let (decision, hazard) = unsafe {
-            let decision = ffi::goe_decide(&self.c, &plan, &rule, hazard.as_mut_ptr());
+            let decision = ffi::goe_decide(&self.c, &intent, &rule, hazard.as_mut_ptr());
             (Decision::of(decision), hazard.assume_init())
         };
-        let known = hazard.miss_sd_m > 0.0; // all zero without one
+        let known = hazard.dcpa_sd_m > 0.0; // all zero without one
         (decision, known.then(|| Hazard::of(&hazard)))
     }
 
@@ -161,16 +161,16 @@ impl Estimator {
     /// Faults so far, for the flight log: `[-code]` of each [`Status`](crate::Status) from -1 to -15, `[0]` the tracks that a filter
     /// reset of unknown size ended. They saturate.
     #[must_use]
-    pub fn causes(&self) -> [u32; ffi::GOE_CAUSES] {
+    pub fn fault_counts(&self) -> [u32; ffi::GOE_FAULT_COUNTS] {
         // SAFETY: the call returns the address of a field of the estimator.
-        unsafe { *ffi::goe_rust_causes(&self.c) }
+        unsafe { *ffi::goe_rust_fault_counts(&self.c) }
     }
 }
 
 impl fmt::Debug for Estimator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Estimator")
-            .field("causes", &self.causes())
+            .field("fault_counts", &self.fault_counts())
             .finish_non_exhaustive()
     }
 }

@@ -27,9 +27,9 @@ pub struct FlightSettings {
     /// Images with a detection of a new obstacle before it is followed; 1 to 20; default 3.
     pub confirm_images: f32,
     /// Without a frame for this long the detector counts as dead, s; 0.05 to 60; default 1.
-    pub alive_s: f32,
+    pub detector_timeout_s: f32,
     /// An obstacle undetected for this long is given up, s; 1 to 600; default 10.
-    pub forget_s: f32,
+    pub track_timeout_s: f32,
     /// Least time from sending to arrival, s; 0 to 0.5; default 0.005.
     pub delay_s: f32,
     /// Its one sigma, and that of any capture time whose sender gives none, s; 0 to 0.5; default 0.005.
@@ -51,11 +51,11 @@ pub struct FlightSettings {
     /// Wanted over the top, m; 0 to 1000; default 10.
     pub clearance_m: f32,
     /// Probability of violating both from which on there is a reaction; 0.001 to 1; default 0.1.
-    pub violation_max: f32,
+    pub conflict_probability_max: f32,
     /// Factor on margin and clearance while the estimate is suspect; 1 to 10; default 1.5.
-    pub doubt: f32,
+    pub suspect_factor: f32,
     /// By which both grow while the estimate is not renewed, m/s; 0 to 100; default 1.
-    pub drift_m_s: f32,
+    pub stale_growth_m_s: f32,
     /// Bank of an avoiding turn, degrees; 5 to 70; default 30.
     pub bank_deg: f32,
     /// From the order to that turn, s; 0 to 20; default 1.5.
@@ -596,7 +596,7 @@ pub struct Obstacle {
     /// Its sigmas may be too small.
     pub suspect: bool,
     /// On the present course its distance grows.
-    pub passed: bool,
+    pub receding: bool,
     /// Detected in the latest image.
     pub in_view: bool,
     /// It moves, and is followed.
@@ -624,7 +624,7 @@ impl Obstacle {
             id: c.id,
             model: Model::of(c.model),
             suspect: c.suspect,
-            passed: c.passed,
+            receding: c.receding,
             in_view: c.in_view,
             moves: has(ffi::GOE_HAS_VELOCITY),
             age_s: c.age_s,

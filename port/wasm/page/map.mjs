@@ -73,8 +73,8 @@ function obstacle(p, r) {
 
 /** Where the flight passes closest. */
 function closest(p, r, speed_m_s) {
-  if (!(r.order > ORDER.nothing) || r.hazard_s <= 0) return "";
-  const x = p.x(p.here_m + r.hazard_s * speed_m_s);
+  if (!(r.order > ORDER.nothing) || r.tcpa_s <= 0) return "";
+  const x = p.x(p.here_m + r.tcpa_s * speed_m_s);
   return el("path", { class: r.order === ORDER.goAround ? "closest hot" : "closest", d: `M${x} ${p.y(0) - 9}v18` });
 }
 

@@ -14,8 +14,8 @@ const REASONS = {
 };
 
 const STATUS = {
-  collecting: "collecting images",
-  nothing_seen: "no detection",
+  converging: "collecting images",
+  no_detection: "no detection",
   box_incomplete: "only a part of the box is visible",
   no_height: "the height above ground is not set",
 };
@@ -34,12 +34,12 @@ export function side(value_m) {
 
 /** How the flight will pass, after "in 8 s": "3.0 m past it". */
 function passing(r) {
-  if (r.has_clearance && r.clearance_m > 0 && r.miss_m < 15) return `${amount(r.clearance_m)} m over its top (± ${amount(r.clearance_sd_m)})`;
-  return r.miss_m > 0 ? `${amount(r.miss_m)} m past it (± ${amount(r.miss_sd_m)})` : "through it";
+  if (r.has_clearance && r.clearance_m > 0 && r.dcpa_m < 15) return `${amount(r.clearance_m)} m over its top (± ${amount(r.clearance_sd_m)})`;
+  return r.dcpa_m > 0 ? `${amount(r.dcpa_m)} m past it (± ${amount(r.dcpa_sd_m)})` : "through it";
 }
 
 function when(r) {
-  return r.hazard_s > 0 ? `in ${Math.round(r.hazard_s)} s` : "now";
+  return r.tcpa_s > 0 ? `in ${Math.round(r.tcpa_s)} s` : "now";
 }
 
 /** What the answer is worth: why it is suspect, how old it is; empty if neither. */

@@ -63,16 +63,16 @@ static double ground_distance(vec3_t a, const obstacle_t *o) { return hypot(a.x 
 static goe_settings_t settings_of(const camera_t *camera, bool wanders) {
     goe_settings_t settings;
     goe_settings_default(&settings);
-    settings.navigation.attitude_bias_deg = wanders ? 1.0f : 0.5f;
-    settings.navigation.attitude_white_deg = wanders ? 0.3f : 0.1f;
-    settings.navigation.attitude_drift_deg = wanders ? 0.5f : 0.0f;
+    settings.navigation.attitude_bias_sd_deg = wanders ? 1.0f : 0.5f;
+    settings.navigation.attitude_white_sd_deg = wanders ? 0.3f : 0.1f;
+    settings.navigation.attitude_walk_sd_deg = wanders ? 0.5f : 0.0f;
     settings.camera.fx_px = (float)camera->fx_px;
     settings.camera.fy_px = (float)camera->fy_px;
     settings.camera.cx_px = (float)camera->cx_px;
     settings.camera.cy_px = (float)camera->cy_px;
     settings.camera.width_px = (float)camera->width_px;
     settings.camera.height_px = (float)camera->height_px;
-    settings.detector.point_px = (float)PIXEL_PX;
+    settings.detector.point_noise_px = (float)PIXEL_PX;
     return settings;
 }
 
@@ -124,7 +124,7 @@ static goe_pixel_t pixel_of(const feature_t *feature, random_t *random) {
     const double du = PIXEL_PX * random_normal(random), dv = PIXEL_PX * random_normal(random);
     pixel.u_px = (float)(feature->u_px + du);
     pixel.v_px = (float)(feature->v_px + dv);
-    pixel.seen = feature->seen;
+    pixel.visible = feature->seen;
     return pixel;
 }
 
@@ -175,7 +175,7 @@ static void fly(const recorded_flight_t *recording, bool wanders, const way_t *w
         const pose_t truth = recorded_flight_at(recording, t_s).truth;
         const view_t view = camera_view(&camera, &truth);
         const features_t seen = features_project(&mast, CYLINDER_TANGENT, &camera, &view);
-        if (!find_pose(recording, way, t_s, &sampled_s, &image.pose, &image.noise.attitude_deg)) {
+        if (!find_pose(recording, way, t_s, &sampled_s, &image.pose, &image.noise.attitude_sd_deg)) {
             continue;
         }
         image.pose.height_m = (float)mast.ground_d_m - image.pose.position_ned_m[2];

@@ -290,7 +290,7 @@ def corner_header() -> str:
         bits = [_bits(number) for number in numbers]
         image = _image(frame)
         fresh = "true" if report.fresh else "false"
-        labels = f"GOE_{estimate.status.upper()}, GOE_MODEL_{estimate.model.upper()}, {estimate.n_used}, {fresh},"
+        labels = f"GOE_{estimate.status.upper()}, GOE_MODEL_{estimate.model.upper()}, {estimate.images_used}, {fresh},"
         lines = ["{" + image[0], *image[1:], f" {labels}", f" {' | '.join(valid) or '0u'},"]
         lines.append(f" {{{wrapped(bits, 8, '      ')}}}}}")
         rows.append("\n    ".join(lines))

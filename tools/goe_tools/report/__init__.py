@@ -5,7 +5,7 @@ columns     a CSV file by columns
 goals_file  what the goals command wrote
 avoid_file  what goe_avoid wrote
 statistics  ranges, verdicts, comparisons of studies
-refined     the same of the refined method
+refined     the same of the filter method
 rare        how often what must not happen does: on the page
 rare_record the events, their counts, the file that keeps them
 rare_command flies, in many processes, and goes on where a record ends

@@ -68,13 +68,13 @@ def sentences(rows: list[RollRow]) -> list[str]:
         ratio = after / before if before > 0.0 else float("nan")
         effect = "changes little for" if 1.0 / ALIKE <= ratio <= ALIKE else "helps" if ratio < 1.0 else "harms"
         said.append(
-            f"Roll {effect} refined: its error of Z₀ is {number(before)} m at {level.roll_deg:g}° of roll and "
+            f"Roll {effect} the filter: its error of Z₀ is {number(before)} m at {level.roll_deg:g}° of roll and "
             f"{number(after)} m at {most.roll_deg:g}°."
         )
     shares = [[share for row in rows for share in of(row).covered.values()] for of in (_refined, _window)]
     errors = [[of(row).error_m["z0"] for row in rows] for of in (_refined, _window)]
     said.append(
-        f"Two of its own sigmas hold {_span(shares[0])} % of refined's answers and {_span(shares[1])} % of the window "
+        f"Two of its own sigmas hold {_span(shares[0])} % of the filter's answers and {_span(shares[1])} % of the window "
         f"method's, whose Z₀ is {_span(errors[1])} m off."
     )
     return said

@@ -27,7 +27,7 @@ PROGRAM = ROOT / "build" / "sim_host" / "goe_campaign"
 CASES, FACTS, SERIES = "cases.csv", "campaign.json", "series"
 SUMS = ("flights", "flights_ended_early", "frames", "runs", "series")  # of campaign.json, over the parts
 PARTS = 64  # whatever the workers: enough that none waits long for the last one
-SERIES_ENDINGS = ("_auto.csv", "_disc.csv", "_refined.csv")
+SERIES_ENDINGS = ("_auto.csv", "_disc.csv", "_filter.csv")
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rare", type=Path, metavar="FILE.json", help="the record that the rare command wrote")
     parser.add_argument("--out", type=Path, metavar="FILE.html", help="page to write; figures go to FILE_figures/")
     parser.add_argument("--summary", action="store_true", help="print in a few lines what all of it shows")
-    parser.add_argument("--table", action="store_true", help="print Table 3: the paper's numbers, window, refined")
+    parser.add_argument("--table", action="store_true", help="print Table 3: the paper's numbers, window, filter")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -74,7 +74,7 @@ class Campaign:
     folder: Path
     cases: Cases
     facts: dict[str, Any]  # campaign.json
-    refined: Cases | None = None  # the refined method's rows, if the campaign has any
+    refined: Cases | None = None  # the filter method's rows, if the campaign has any
     goals: Goals | None = None
     avoid: Avoid | None = None  # what goe_avoid wrote
     rare: Record | None = None  # what the rare command wrote
@@ -115,7 +115,7 @@ def read_campaign(
         if len(missing):
             raise LogError(path, int(missing[0]) + 2, name, "empty")
     rows = Cases(columns)
-    refined = rows.select(method="refined")
+    refined = rows.select(method="filter")
     return Campaign(
         folder, rows.select(method=method), _read_facts(folder / "campaign.json"), refined if len(refined) else None,
         read_goals(goals) if goals else None, read_avoid(avoid) if avoid else None,

@@ -244,7 +244,7 @@ def _goal_rows(rows: Iterable[GoalRow]) -> list[dict[str, Any]]:
 def _rivals(goals: Goals) -> list[dict[str, Any]]:
     tables = []
     for noise, rows in rf.rivals(goals).items():
-        ours = next((row.errors for row in rows if row.name == "refined"), dict.fromkeys(QUANTITIES, math.nan))
+        ours = next((row.errors for row in rows if row.name == "filter"), dict.fromkeys(QUANTITIES, math.nan))
         told = []
         for row in rows:
             cells = []
@@ -255,7 +255,7 @@ def _rivals(goals: Goals) -> list[dict[str, Any]]:
                     "share": number(share) if 0.0 < share < 99.95 else "",
                 })  # fmt: skip
             told.append({
-                "name": rp.METHOD_NAMES.get(row.name, row.name), "own": row.name == "refined", "cells": cells,
+                "name": rp.METHOD_NAMES.get(row.name, row.name), "own": row.name == "filter", "cells": cells,
                 "strength": "" if tables else rp.STRENGTHS.get(row.name, ""),
             })  # fmt: skip
         tables.append({"noise": rp.NOISE_NAMES.get(noise, noise), "flights": rows[0].flights, "rows": told,
@@ -285,7 +285,7 @@ def _goals(goals: Goals) -> dict[str, Any] | None:
 
 
 def _refined(campaign: Campaign) -> dict[str, Any] | None:
-    """The section on the refined method; None if the campaign has none of its rows and there are no goals."""
+    """The section on the filter method; None if the campaign has none of its rows and there are no goals."""
     if campaign.refined is None and campaign.goals is None:
         return None
     return {

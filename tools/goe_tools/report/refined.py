@@ -1,4 +1,4 @@
-"""What the refined method's rows and the goals come to: Table 3 once more, studies, early warning, rivals."""
+"""What the filter method's rows and the goals come to: Table 3 once more, studies, early warning, rivals."""
 
 from __future__ import annotations
 
@@ -43,20 +43,20 @@ def group_title(group: str) -> str:
 
 @dataclass(frozen=True)
 class Trio:
-    """A number of Table 3: the paper's range, the window method's and the refined method's (percent; height m)."""
+    """A number of Table 3: the paper's range, the window method's and the filter method's (percent; height m)."""
 
     obstacle: str
-    model: str  # the paper's row; "box": refined alone, told that it is a box
+    model: str  # the paper's row; "box": filter alone, told that it is a box
     quantity: str
     paper: t3.PaperRange | None
     window: float
     refined: float
-    runs: int  # of the refined method, those that have the quantity
+    runs: int  # of the filter method, those that have the quantity
     without: int  # those that do not
 
     @property
     def factor(self) -> float:
-        """How many times refined is inside the paper's range, at least so where the paper's values lie beyond it."""
+        """How many times filter is inside the paper's range, at least so where the paper's values lie beyond it."""
         return self.paper.value / self.refined if self.paper and self.refined > 0.0 else math.nan
 
 
@@ -92,14 +92,14 @@ def papers(campaign: Campaign) -> list[Trio]:
 
 @dataclass(frozen=True)
 class StudyRow:
-    """Root mean square errors, medians over the runs, by quantity: window, refined."""
+    """Root mean square errors, medians over the runs, by quantity: window, filter."""
 
     label: str
     errors: dict[str, tuple[float, float]]
 
 
 def studies(campaign: Campaign) -> list[StudyRow]:
-    """Straight flight first; boxes and cylinder together, the switching window method against the refined one."""
+    """Straight flight first; boxes and cylinder together, the switching window method against the filter."""
     if campaign.refined is None:
         return []
     window, refined = (_of_auto(cases) for cases in (campaign.cases, campaign.refined))
@@ -121,7 +121,7 @@ def _of_auto(cases: Cases) -> Cases:
 
 
 def early_rows(goals: Goals) -> dict[str, dict[str, GoalRow]]:
-    """By noise: seconds before abeam by obstacle, for each way to tell ("refined, own 2 sigma", ...)."""
+    """By noise: seconds before abeam by obstacle, for each way to tell ("filter, own 2 sigma", ...)."""
     found: dict[str, dict[str, GoalRow]] = {}
     for row in goals.rows:
         if row.group.startswith("early"):
@@ -170,7 +170,7 @@ def flags(goals: Goals) -> Flags | None:
     if curve is None:
         return None
     points = sorted((float(name.rstrip("% ")), value) for name, value in curve.values.items())
-    area = goals.find(curve.group, "misfit as a flag")
+    area = goals.find(curve.group, "NIS ratio as a flag")
     default = goals.find(curve.group, "flagged as suspect with the default threshold")
     return Flags(
         tuple(x for x, _ in points), tuple(y for _, y in points),
@@ -190,7 +190,7 @@ class Rival:
 
 
 def rivals(goals: Goals) -> dict[str, list[Rival]]:
-    """By noise, refined and window first."""
+    """By noise, filter and window first."""
     found: dict[str, list[Rival]] = {}
     for row in goals.rows:
         noise, _, rest = row.name.partition(", median error, ")

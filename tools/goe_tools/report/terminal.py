@@ -33,9 +33,9 @@ def print_table3(campaign: Campaign, console: Console | None = None) -> None:
     for obstacle, model, cells in rows:
         table.add_row(f"{NAMES[obstacle]}/{SHORT.get(model, model)}", *(_cell_text(cell) for cell in cells))
         if (obstacle, model) in refined:
-            table.add_row("  refined", *(_refined_text(cell) for cell in refined[obstacle, model]), style="bold")
+            table.add_row("  filter", *(_refined_text(cell) for cell in refined[obstacle, model]), style="bold")
     title = "Table 3, errors within ±: paper / window (ours)"
-    console.print(f"{title}; refined ×times better" if refined else title, style="bold")
+    console.print(f"{title}; filter ×times better" if refined else title, style="bold")
     console.print(table)
     _print_verdicts(console, rows)
     if refined:
@@ -56,7 +56,7 @@ def _print_verdicts(console: Console, rows: list[tuple[str, str, list[st.Cell | 
 def _print_refined(console: Console, cells: list[rf.Trio]) -> None:
     fivefold, better = (sum(cell.factor >= least for cell in cells) for least in (rf.FIVEFOLD, 1.0))
     console.print(
-        f"refined, the default method: better than the paper in {better} of {len(cells)} numbers,\n"
+        f"filter, the default method: better than the paper in {better} of {len(cells)} numbers,\n"
         f"at least {rf.FIVEFOLD:g} times in {fivefold} (× how many times narrower than the paper's range)"
     )
 

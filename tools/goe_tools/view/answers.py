@@ -19,19 +19,19 @@ from .motion import Motion
 
 MODEL_NAMES = {0: "none", 2: "disc", 3: "line", 4: "box", 5: "prism"}
 MODEL_SETTINGS = {"auto": 1, "disc": 2, "line": 3}
-SETTING_GROUPS = ("navigation", "detector", "refined", "window")  # groups that --set accepts, as in goe_replay
+SETTING_GROUPS = ("navigation", "detector", "filter", "window")  # groups that --set accepts, as in goe_replay
 TIME_UNKNOWN_S = -(2.0**63) * 1e-6  # becomes GOE_TIME_UNKNOWN in microseconds
-MISFIT_MAX = 1.9  # default of refined.misfit_max
+MISFIT_MAX = 1.9  # default of filter.nis_ratio_max
 QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m")
 OF_POSITION = ("x_m", "z_m", "x_sd_m", "z_sd_m")
-HAZARD = ("time_s", "miss_m", "clearance_m", "time_sd_s", "miss_sd_m", "clearance_sd_m", "violation")
+HAZARD = ("tcpa_s", "dcpa_m", "clearance_m", "tcpa_sd_s", "dcpa_sd_m", "clearance_sd_m", "conflict_probability")
 
 
 @dataclass(frozen=True)
 class Options:
     """Options of the replay. ``settings``: by name, as for goe_replay's --set."""
 
-    method: str = "refined"
+    method: str = "filter"
     model: str = "auto"
     window: int | None = None
     settings: dict[str, float] = field(default_factory=dict)
@@ -138,7 +138,7 @@ def _columns(track: library.Track) -> dict[str, np.ndarray]:
         column[name], column[f"{stem}_sd_{unit}"] = scale * track.values[:, i], scale * track.sigma[:, i]
     located = np.isfinite(column["z0_m"])
     column |= {name: np.where(located, track.more[name], np.nan) for name in OF_POSITION}
-    column["misfit"] = np.where(track.misfit > 0.0, track.misfit, np.nan)
+    column["nis_ratio"] = np.where(track.nis_ratio > 0.0, track.nis_ratio, np.nan)
     column["latency_s"] = track.more["latency_s"]
     for axis in ("north", "east"):
         column[f"velocity_{axis}_m_s"] = track.more[f"velocity_{axis}_m_s"]

@@ -41,20 +41,20 @@ CHARTS = (
     Chart("length_m", "Length", "m", "of the side", "length_sd_m", least=0.0),
     Chart("orientation_deg", "Orientation", "°", "side from the direction of flight, clockwise",
           "orientation_sd_deg"),
-    Chart("time_s", "Closest approach in", "s", "at the present velocity", "time_sd_s", least=0.0),
-    Chart("miss_m", "Distance then", "m", "horizontal, to the outline; 0: over it", "miss_sd_m", least=0.0),
+    Chart("tcpa_s", "Closest approach in", "s", "at the present velocity", "tcpa_sd_s", least=0.0),
+    Chart("dcpa_m", "Distance then", "m", "horizontal, to the outline; 0: over it", "dcpa_sd_m", least=0.0),
     Chart("clearance_m", "Height over top then", "m", "negative: below the top", "clearance_sd_m"),
-    Chart("violation", "Too close, probability", "%", "of violating both margins", "", 100.0, floor=0.0,
+    Chart("conflict_probability", "Too close, probability", "%", "of violating both margins", "", 100.0, floor=0.0,
           ceiling=100.0),
-    Chart("misfit", "Misfit", "", "of the residuals; 1: as configured; line: suspect above it",
+    Chart("nis_ratio", "NIS ratio", "", "of the residuals; 1: as configured; line: suspect above it",
           limit=MISFIT_MAX, floor=0.0),
 )  # fmt: skip
 
 
 def charts_of(options: Options) -> tuple[Chart, ...]:
-    """The charts of a replay; the misfit's limit comes from its settings."""
-    limit = options.settings.get("refined.misfit_max", MISFIT_MAX)
-    return tuple(dataclasses.replace(c, limit=limit) if c.key == "misfit" else c for c in CHARTS)
+    """The charts of a replay; the NIS ratio's limit comes from its settings."""
+    limit = options.settings.get("filter.nis_ratio_max", MISFIT_MAX)
+    return tuple(dataclasses.replace(c, limit=limit) if c.key == "nis_ratio" else c for c in CHARTS)
 
 
 def text(chart: Chart, answers: Answers, k: int) -> str:

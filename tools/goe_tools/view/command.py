@@ -42,7 +42,7 @@ def _setting(text: str) -> tuple[str, float]:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Options of replay and decision rule, which ``options_of`` reads."""
     add = parser.add_argument
-    add("--method", choices=("refined", "window"), default="refined", help="as goe_replay's")
+    add("--method", choices=("filter", "window"), default="filter", help="as goe_replay's")
     add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
     add("--window", type=int, metavar="N", help="image points in the window, as in goe_replay")
     add(

@@ -89,7 +89,7 @@
     const c = track.columns, t = Array.from(c.time), traces = [];
     const quiet = { mode: "lines", hoverinfo: "skip" };
     const value = c[chart.key];
-    if (chart.key === "misfit") {
+    if (chart.key === "nis_ratio") {
       traces.push({ ...quiet, ...doubtful(track, own.range), fill: "toself", fillcolor: color("suspect-pale"), line: { width: 0 } });
     }
     if (chart.sigma) {

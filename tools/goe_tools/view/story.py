@@ -141,8 +141,8 @@ def _implied_radius(own: Answers, closest: np.ndarray, on_map: Callable[[np.ndar
     """(K,): radius of the circle that goe_hazard uses without a width or length, computed from the distance that it
     reports; 0: unknown."""
     reference = on_map(np.stack([own.column["x_m"], own.column["z_m"]], -1))
-    radius = np.linalg.norm(closest - reference, axis=1) - own.column["miss_m"]
-    return np.where(own.column["miss_m"] > 0.0, np.maximum(radius, 0.0), 0.0)
+    radius = np.linalg.norm(closest - reference, axis=1) - own.column["dcpa_m"]
+    return np.where(own.column["dcpa_m"] > 0.0, np.maximum(radius, 0.0), 0.0)
 
 
 def _anchor(own: Answers, middle: np.ndarray, moves: np.ndarray, truth_outline: np.ndarray) -> np.ndarray | None:
@@ -159,10 +159,10 @@ def _track(
     own = own.taken(rows)
     turn = own.heading_rad - course
     eye = turned((own.camera_ne_m - origin)[:, ::-1], -course)
-    closest = eye + turned(motion.velocity_m_s[own.moment][:, 1::-1], -course) * own.column["time_s"][:, None]
+    closest = eye + turned(motion.velocity_m_s[own.moment][:, 1::-1], -course) * own.column["tcpa_s"][:, None]
     drift = np.stack([own.column["velocity_east_m_s"], own.column["velocity_north_m_s"]], -1)
     moves = drift.any(1)
-    by = np.where(moves[:, None], turned(drift, -course) * own.column["time_s"][:, None], 0.0)
+    by = np.where(moves[:, None], turned(drift, -course) * own.column["tcpa_s"][:, None], 0.0)
 
     def on_map(points: np.ndarray) -> np.ndarray:
         extra = (1,) * (points.ndim - 2)

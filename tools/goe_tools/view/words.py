@@ -14,9 +14,9 @@ OLD_S = 0.05  # a younger answer is current
 HARD = "\u00a0"  # a non-breaking space
 MODELS = {"disc": "a disc", "line": "a front edge", "box": "a box", "prism": "an upright box, of unknown depth"}
 STATUS = {
-    "collecting": "collecting images",
-    "held": "no new information in this image",
-    "nothing_seen": "no detection",
+    "converging": "collecting images",
+    "stale": "no new information in this image",
+    "no_detection": "no detection",
     "behind_camera": "it is not ahead of the camera",
     "lens_failed": "the lens model fails at this point",
     "swapped": "left and right are swapped",
@@ -25,7 +25,7 @@ STATUS = {
     "bad_height": "the height above ground is not positive",
     "no_baseline": "the camera moved too little",
     "no_parallax": "the image does not grow",
-    "passed": "it is abeam or behind",
+    "abeam": "it is abeam or behind",
     "not_finite": "the image was refused: not a number",
     "out_of_range": "the image was refused: a number out of range",
     "bad_time": "the image was refused: its time",
@@ -82,7 +82,7 @@ def place(answers: Answers, k: int) -> str:
 
 def approach(answers: Answers, k: int) -> str:
     """The closest approach at the present velocity; empty if unknown."""
-    time_s, miss = _value(answers, k, "time_s"), _value(answers, k, "miss_m")
+    time_s, miss = _value(answers, k, "tcpa_s"), _value(answers, k, "dcpa_m")
     if not math.isfinite(time_s[0]):
         return ""
     clear_m, clear_sd_m = _value(answers, k, "clearance_m")

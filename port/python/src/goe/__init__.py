@@ -32,7 +32,7 @@ from ._layout import ESTIMATE, HAZARD, IMAGE
 from .estimate import Center, Estimate, Length, Orientation, Position, Velocity
 from .estimator import Estimator, run, run_parallel
 from .flight import Flight
-from .hazard import Decision, DecisionRule, Hazard, Plan, Rule
+from .hazard import Decision, DecisionRule, Hazard, Intent, Rule
 from .image import POINTS, SIDES, TIME_UNKNOWN, BoundingBox, Image, ImageNoise, Pixel, Pose
 from .settings import (
     CAMERAS_MAX,
@@ -40,7 +40,7 @@ from .settings import (
     Detector,
     FlightSettings,
     Navigation,
-    RefinedSettings,
+    FilterSettings,
     Settings,
     WindowSettings,
     setting_rows,
@@ -57,7 +57,7 @@ __all__ = [
     "CAMERAS_MAX", "ESTIMATE", "FINGERPRINT", "HAZARD", "IMAGE", "POINTS", "QUANTITIES", "SIDES", "TIME_UNKNOWN",
     "BoundingBox", "Camera", "Center", "Decision", "DecisionRule", "Detector", "Estimate", "Estimator", "Flight",
     "FlightSettings", "Hazard", "Image", "ImageNoise", "Images", "Length", "Method", "Model", "Navigation",
-    "Orientation", "Pixel", "Plan", "Pose", "Position", "Reason", "RefinedSettings", "Rule", "SettingError", "Settings",
+    "Orientation", "Pixel", "Intent", "Pose", "Position", "Reason", "FilterSettings", "Rule", "SettingError", "Settings",
     "Shape", "Status", "Track", "Velocity", "WindowSettings", "flight", "run", "run_parallel", "self_check",
     "setting_rows",
 ]  # fmt: skip

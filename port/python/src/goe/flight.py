@@ -279,7 +279,7 @@ class Obstacle:
     """The shape."""
     suspect: bool
     """Its sigmas may be too small."""
-    passed: bool
+    receding: bool
     """On the present course its distance grows."""
     in_view: bool
     """Detected in the latest image."""
@@ -349,7 +349,7 @@ def _obstacle_of(c: Any) -> Obstacle:
     center, covariance, nearest, body = (tuple(v) for v in vectors)
     place = Place(center, covariance, c.radius_m, nearest, body, _lat_lon(c.lat_e7, c.lon_e7))
     return Obstacle(
-        c.id, MODELS.get(c.model), c.suspect, c.passed, c.in_view, has["velocity"], c.age_s,
+        c.id, MODELS.get(c.model), c.suspect, c.receding, c.in_view, has["velocity"], c.age_s,
         place if has["position"] else None,
         Length(c.height_m, c.height_sd_m) if has["height"] else None,
         c.width_m if has["width"] else None,

@@ -84,75 +84,75 @@ class Camera(_Group):
     """Width of the image, px; 0: not known. The flight layer needs it."""
     height_px: float = real("camera.height_px")
     """Height of the image, px; 0: not known. The flight layer needs it."""
-    border_share: float = real("camera.border_share")
+    border_rel: float = real("camera.border_rel")
     """A box's side nearer to the border than this is not measured, fraction of the image's width."""
-    cut_share: float = real("camera.cut_share")
-    """While left or right is nearer to the border than this the other sides count less: ``Detector.cut_noise``."""
+    truncation_rel: float = real("camera.truncation_rel")
+    """While left or right is nearer to the border than this the other sides count less: ``Detector.truncation_noise_rel``."""
 
 
 @dataclass
 class Navigation(_Group):
-    """How wrong the pose is, one sigma each; for the refined method."""
+    """How wrong the pose is, one sigma each; for the filter method."""
 
-    attitude_bias_deg: float = real("navigation.attitude_bias_deg")
+    attitude_bias_sd_deg: float = real("navigation.attitude_bias_sd_deg")
     """Constant attitude error about each body axis, mounting included, degrees."""
-    attitude_white_deg: float = real("navigation.attitude_white_deg")
+    attitude_white_sd_deg: float = real("navigation.attitude_white_sd_deg")
     """Attitude error that is new in each image, degrees."""
-    attitude_drift_deg: float = real("navigation.attitude_drift_deg")
+    attitude_walk_sd_deg: float = real("navigation.attitude_walk_sd_deg")
     """Random walk of the attitude error, degrees per square root of a second."""
-    height_bias_m: float = real("navigation.height_bias_m")
+    height_bias_sd_m: float = real("navigation.height_bias_sd_m")
     """Constant error of the pose's ``height_m`` over the obstacle's ground, m."""
-    velocity_bias_m_s: float = real("navigation.velocity_bias_m_s")
+    velocity_bias_sd_m_s: float = real("navigation.velocity_bias_sd_m_s")
     """Constant error of the own horizontal velocity, each axis, m/s."""
-    position_walk_m: float = real("navigation.position_walk_m")
+    position_walk_sd_m: float = real("navigation.position_walk_sd_m")
     """Random walk of the own position, m per square root of a second."""
-    position_white_m: float = real("navigation.position_white_m")
+    position_white_sd_m: float = real("navigation.position_white_sd_m")
     """Error of the own position that is new in each image, each axis, m. Upright boxes only."""
-    height_white_m: float = real("navigation.height_white_m")
+    height_white_sd_m: float = real("navigation.height_white_sd_m")
     """Error of the height that is new in each image, m; 0: points take each image's height as it is."""
-    slope: float = real("navigation.slope")
+    terrain_slope_sd: float = real("navigation.terrain_slope_sd")
     """Slope of the ground that the height is above, m per m flown."""
-    ground_m: float = real("navigation.ground_m")
+    terrain_height_sd_m: float = real("navigation.terrain_height_sd_m")
     """How far the obstacle's ground may lie off that which the height is above, m. Upright boxes only."""
 
 
 @dataclass
 class Detector(_Group):
-    """How wrong the detector's features are, one sigma each; for the refined method."""
+    """How wrong the detector's features are, one sigma each; for the filter method."""
 
-    point_px: float = real("detector.point_px")
+    point_noise_px: float = real("detector.point_noise_px")
     """Error of an image point, new in each image, px."""
-    point_share: float = real("detector.point_share")
+    point_noise_rel: float = real("detector.point_noise_rel")
     """Error of left, right and top as points, added to it, fraction of the silhouette's width."""
     point_correlation: float = real("detector.point_correlation")
     """Correlation of a point's error from image to image."""
-    shape_share: float = real("detector.shape_share")
+    shape_error_rel: float = real("detector.shape_error_rel")
     """How far a real silhouette departs from a cylinder's, fraction of its width; cars as discs: about 0.12."""
-    box_px: float = real("detector.box_px")
+    box_noise_px: float = real("detector.box_noise_px")
     """Error of a box's side that is new in each image, px."""
-    box_share: float = real("detector.box_share")
+    box_noise_rel: float = real("detector.box_noise_rel")
     """Slowly varying (correlated) error of a side, fraction of the box's width or height."""
-    correlation_s: float = real("detector.correlation_s")
+    box_correlation_time_s: float = real("detector.box_correlation_time_s")
     """Correlation time of this error, s."""
-    cut_noise: float = real("detector.cut_noise")
+    truncation_noise_rel: float = real("detector.truncation_noise_rel")
     """Error of every side while the image's border cuts the box, fraction of the box."""
 
 
 @dataclass
-class RefinedSettings(_Group):
-    """The refined method: a square-root information filter over the whole track."""
+class FilterSettings(_Group):
+    """The filter method: a square-root information filter over the whole track."""
 
-    typical_size_m: float = real("refined.typical_size_m")
+    prior_width_m: float = real("filter.prior_width_m")
     """Width that the range is first guessed from, m."""
-    gate_sigma: float = real("refined.gate_sigma")
+    gate_sigma: float = real("filter.gate_sigma")
     """A point farther off is left out, sigmas."""
-    huber_sigma: float = real("refined.huber_sigma")
+    huber_sigma: float = real("filter.huber_sigma")
     """A point farther off counts less, sigmas."""
-    misfit_max: float = real("refined.misfit_max")
+    nis_ratio_max: float = real("filter.nis_ratio_max")
     """Misfit above which the obstacle is suspect."""
-    range_share: float = real("refined.range_share")
+    range_sd_rel_max: float = real("filter.range_sd_rel_max")
     """Sigma over range up to which a position is reported."""
-    top_is_highest: bool = bool(whole("refined.top_is_highest"))
+    top_is_highest: bool = bool(whole("filter.top_is_highest"))
     """``top`` is the highest point in the image, also from above the roof."""
 
 
@@ -181,7 +181,7 @@ class Settings(_Group):
     """All settings of an estimator.
 
     >>> settings = Settings.for_camera(914.0, 914.0, 640.0, 480.0)
-    >>> settings.navigation.attitude_bias_deg = 1.0
+    >>> settings.navigation.attitude_bias_sd_deg = 1.0
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -199,8 +199,8 @@ class Settings(_Group):
     """Errors of the pose."""
     detector: Detector = field(default_factory=Detector)
     """Errors of the features."""
-    refined: RefinedSettings = field(default_factory=RefinedSettings)
-    """The refined method."""
+    filter: FilterSettings = field(default_factory=FilterSettings)
+    """The filter method."""
     window: WindowSettings = field(default_factory=WindowSettings)
     """The window method."""
 
@@ -212,7 +212,7 @@ class Settings(_Group):
 
     @classmethod
     def from_names(cls, values: Mapping[str, float]) -> Settings:
-        """The defaults, changed by name as in C and in goe_replay's ``--set``: {"detector.point_px": 0.8, "method": 1,
+        """The defaults, changed by name as in C and in goe_replay's ``--set``: {"detector.point_noise_px": 0.8, "method": 1,
         "heading_auto": 0, "heading_deg": 90, "more_cameras[0].fx_px": 900, ...}.
 
         Raises SettingError for a name that is not there.
@@ -373,9 +373,9 @@ class FlightSettings(_Group):
     """A detection of less is not looked at."""
     confirm_images: float = flight("confirm_images")
     """Images with a detection of a new obstacle before it is followed."""
-    alive_s: float = flight("alive_s")
+    detector_timeout_s: float = flight("detector_timeout_s")
     """Without a frame for this long the detector counts as dead, s."""
-    forget_s: float = flight("forget_s")
+    track_timeout_s: float = flight("track_timeout_s")
     """An obstacle undetected for this long is given up, s."""
     delay_s: float = flight("delay_s")
     """Least time from sending to arrival, s."""
@@ -397,11 +397,11 @@ class FlightSettings(_Group):
     """Wanted to the outline, horizontally, m."""
     clearance_m: float = flight("clearance_m")
     """Wanted over the top, m."""
-    violation_max: float = flight("violation_max")
+    conflict_probability_max: float = flight("conflict_probability_max")
     """Probability of violating both from which on there is a reaction."""
-    doubt: float = flight("doubt")
+    suspect_factor: float = flight("suspect_factor")
     """Factor on margin and clearance while the estimate is suspect."""
-    drift_m_s: float = flight("drift_m_s")
+    stale_growth_m_s: float = flight("stale_growth_m_s")
     """By which both grow while the estimate is not renewed, m/s."""
     bank_deg: float = flight("bank_deg")
     """Bank of an avoiding turn, degrees."""

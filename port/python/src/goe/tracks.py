@@ -13,7 +13,7 @@ from ._goe import ffi
 from ._layout import ESTIMATE, HAZARD, IMAGE
 from .estimate import BITS, Estimate, estimate_of
 from .hazard import Hazard, hazard_of
-from .image import POINTS, SEES, SIDES
+from .image import POINTS, SIDE_BITS, SIDES
 
 Array = npt.NDArray[Any]
 
@@ -54,9 +54,9 @@ def _side_offsets() -> list[int]:
     return [IMAGE.fields["box"][1] + inner[f"{name}_px"][1] for name in SIDES]
 
 
-_U, _V, _SEEN, _SIDES = _point_offsets("u_px"), _point_offsets("v_px"), _point_offsets("seen"), _side_offsets()
+_U, _V, _VISIBLE, _SIDES = _point_offsets("u_px"), _point_offsets("v_px"), _point_offsets("visible"), _side_offsets()
 POINT_PLACES = _Places(np.float32, _U[0], (_step(_U), _step([_U[0], _V[0]])), (len(POINTS), 2))
-POINT_SEEN_PLACES = _Places(np.bool_, _SEEN[0], (_step(_SEEN),), (len(POINTS),))
+POINT_VISIBLE_PLACES = _Places(np.bool_, _VISIBLE[0], (_step(_VISIBLE),), (len(POINTS),))
 SIDE_PLACES = _Places(np.float32, _SIDES[0], (_step(_SIDES),), (len(SIDES),))
 
 
@@ -79,7 +79,7 @@ class Images:
     """(K, 4) left, top, right, bottom; NaN: that side is not visible. None: no boxes."""
     points_px: Any = None
     """(K, 6, 2) u and v of ``POINTS``; NaN: not visible. None: no points."""
-    points_seen: Any = None
+    points_visible: Any = None
     """(K, 6) bool, where a NaN must not mean "not visible": the library refuses a NaN in a visible feature."""
     reset_count: Any = None
     """(K,) of the autopilot's filter. None: no resets."""
@@ -116,24 +116,24 @@ class Images:
             self._put_resets(pose, count)
         if self.noise is not None:
             columns = _shaped(self.noise, (count, 3), "noise").T
-            noise["attitude_deg"], noise["height_m"], noise["pixel_px"] = columns
+            noise["attitude_sd_deg"], noise["height_sd_m"], noise["pixel_sd_px"] = columns
         if self.camera is not None:
             _put(c, "camera", self.camera, "camera")
 
     def _put_points(self, c: Array, count: int) -> None:
         pixels = _shaped(self.points_px, (count, len(POINTS), 2), "points_px")
-        if self.points_seen is None:
+        if self.points_visible is None:
             seen = np.isfinite(pixels).all(2)
         else:
-            seen = _shaped(self.points_seen, (count, len(POINTS)), "points_seen").astype(bool)
+            seen = _shaped(self.points_visible, (count, len(POINTS)), "points_visible").astype(bool)
         POINT_PLACES.of(c)[...] = np.where(seen[..., None], pixels, 0.0)
-        POINT_SEEN_PLACES.of(c)[...] = seen
+        POINT_VISIBLE_PLACES.of(c)[...] = seen
 
     def _put_boxes(self, c: Array, count: int) -> None:
         sides = _shaped(self.box_px, (count, len(SIDES)), "box_px")
         seen = np.isfinite(sides)
         SIDE_PLACES.of(c)[...] = np.where(seen, sides, 0.0)
-        c["box"]["seen"] = seen @ np.array(SEES, np.uint8)
+        c["box"]["sides"] = seen @ np.array(SIDE_BITS, np.uint8)
 
     def _put_resets(self, pose: Array, count: int) -> None:
         delta = _shaped(self.reset_delta_ned_m, (count, 3), "reset_delta_ned_m")
@@ -213,7 +213,7 @@ class Track:
         return np.where(self.valid, columns, np.float32(np.nan))
 
     def hazard(self, k: int, rule: int = 0) -> Hazard | None:
-        """After image k, by a rule; None: there is no position, or the plan was refused (``hazard_status``)."""
+        """After image k, by a rule; None: there is no position, or the intent was refused (``hazard_status``)."""
         row = np.ascontiguousarray(self.hazards[k, rule]).reshape(1)
         return hazard_of(ffi.from_buffer("goe_hazard_t[]", row)[0]) if self.hazard_status[k, rule] == 0 else None
 

@@ -24,7 +24,7 @@ def orientation_series(campaign: Campaign) -> tuple[Cases, Cases] | None:
     sides = runs.levels("side_m")
     run = runs.select(side_m=sides[len(sides) // 2])
     series = campaign.series(int(run["case"][0]), "auto")
-    if series is None or "orientation_raw_deg" not in series.columns or "other_side_deg" not in series.columns:
+    if series is None or "orientation_raw_deg" not in series.columns or "front_orientation_deg" not in series.columns:
         return None
     return run, series
 
@@ -49,7 +49,7 @@ def draw_orientation(campaign: Campaign, narrow: bool) -> Figure | None:
         hspace=0.26,
     )  # fmt: skip
     rows = (
-        (axes[0], _fold(raw + 90.0), series["other_side_deg"], other_truth, "other side", "#D55E00"),
+        (axes[0], _fold(raw + 90.0), series["front_orientation_deg"], other_truth, "other side", "#D55E00"),
         (axes[1], raw, mean, truth, "side edge: the orientation", "#0072B2"),
     )
     for one, points, line, true, title, colour in rows:

@@ -1,4 +1,4 @@
-"""Figures of the section on the refined method, from the goals' file."""
+"""Figures of the section on the filter method, from the goals' file."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def _quantity_axis(axes: Axes) -> None:
 
 EARLY_WAYS = (
     ("window, true error", "window: error below 10 %", WINDOW_COLOUR),
-    ("refined, own 2 sigma", "refined: own 2σ below 10 %", REFINED_COLOUR),
-    ("refined, true error", "refined: error below 10 %", REFINED_PALE),
+    ("filter, own 2 sigma", "filter: own 2σ below 10 %", REFINED_COLOUR),
+    ("filter, true error", "filter: error below 10 %", REFINED_PALE),
 )
 
 
@@ -260,7 +260,7 @@ def draw_flags(campaign: Campaign, narrow: bool) -> Figure | None:
     figure, axes = plt.subplots(figsize=(NARROW_IN, 3.4) if narrow else (WIDE_IN, 3.4))
     figure.subplots_adjust(left=0.14 if narrow else 0.068, right=0.97, top=0.96, bottom=0.15)
     axes.plot(found.false, found.caught, color=REFINED_COLOUR, marker="o", markersize=4, linewidth=1.6,
-              label="misfit, threshold varied")  # fmt: skip
+              label="NIS ratio, threshold varied")  # fmt: skip
     last = max(found.false)
     axes.plot([0.0, last], [0.0, last], color=SOFT, linewidth=0.9, linestyle=(0, (1, 1.5)), label="chance")
     for name in found.goal.asked:
@@ -284,7 +284,7 @@ def describe_flags(campaign: Campaign) -> tuple[str, str]:
     points = [f"{number(y)} % at {number(x)} %" for x, y in zip(found.false, found.caught)]
     caption = (
         "Cars of KITTI, parked and moving: the share of moving ones flagged as not static against the share of parked "
-        "ones flagged in error, as the threshold of the misfit is moved."
+        "ones flagged in error, as the threshold of the NIS ratio is moved."
     )
     return caption, f"Receiver operating curve: caught {', '.join(points)} false flags. " + " ".join(
         prose.flags(campaign.goals)

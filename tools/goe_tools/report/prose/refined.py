@@ -1,4 +1,4 @@
-"""Sentences of the section on the refined method; each follows from the numbers."""
+"""Sentences of the section on the filter method; each follows from the numbers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOISE_NAMES = {
     "field": "All errors of a small aircraft's sensors",
 }
 METHOD_NAMES = {
-    "refined": "refined (this library)",
+    "filter": "filter (this library)",
     "window": "window (the paper's)",
     "triangulation": "triangulation (GTSAM)",
     "inverse_depth": "inverse-depth Kalman filter",
@@ -41,14 +41,14 @@ def _cell_name(cell: rf.Trio) -> str:
 
 
 def table3(campaign: Campaign) -> list[str]:
-    """How far refined is inside the paper's ranges, and where it is not."""
+    """How far filter is inside the paper's ranges, and where it is not."""
     cells = [cell for cell in rf.papers(campaign) if math.isfinite(cell.factor)]
     if not cells:
         return []
     factors = np.array([cell.factor for cell in cells])
     fivefold, better = int(np.sum(factors >= rf.FIVEFOLD)), int(np.sum(factors > 1.0))
     said = [
-        f"Of the {len(cells)} numbers of the paper's Table 3, refined betters {better}, {fivefold} of them at least "
+        f"Of the {len(cells)} numbers of the paper's Table 3, the filter betters {better}, {fivefold} of them at least "
         f"fivefold; in the median its range is {number(float(np.median(factors)))} times narrower."
     ]
     short = sorted((cell for cell in cells if cell.factor < rf.FIVEFOLD), key=lambda cell: cell.factor)
@@ -72,7 +72,7 @@ def table3(campaign: Campaign) -> list[str]:
 
 
 def studies(campaign: Campaign) -> list[str]:
-    """What the refined method makes of curves, wind and sensor errors."""
+    """What the filter method makes of curves, wind and sensor errors."""
     ratios = {row.label: row.errors["z0"][1] / row.errors["z0"][0] for row in rf.studies(campaign)
               if row.errors["z0"][0] > 0.0}  # fmt: skip
     ratios = {label: ratio for label, ratio in ratios.items() if math.isfinite(ratio)}
@@ -81,7 +81,7 @@ def studies(campaign: Campaign) -> list[str]:
     best, worst = min(ratios, key=lambda label: ratios[label]), max(ratios, key=lambda label: ratios[label])
     count = sum(ratio < 1.0 for ratio in ratios.values())
     return [
-        f"The Z₀ error of refined is smaller than the window's in {count} of {len(ratios)} studies: "
+        f"The Z₀ error of the filter is smaller than the window's in {count} of {len(ratios)} studies: "
         f"{number(100.0 * ratios[best])} % of it in the best ({best}), {number(100.0 * ratios[worst])} % in the "
         f"worst ({worst})."
     ]
@@ -160,7 +160,7 @@ def missed(goals: Goals) -> list[str]:
 def early(goals: Goals) -> list[str]:
     said = []
     for noise, ways in rf.early_rows(goals).items():
-        ours, window = ways.get("refined, true error"), ways.get("window, true error")
+        ours, window = ways.get("filter, true error"), ways.get("window, true error")
         if ours is None or window is None:
             continue
         parts = [
@@ -172,10 +172,10 @@ def early(goals: Goals) -> list[str]:
             f"{NOISE_NAMES.get(noise, noise)}: the error of Z₀ is below 10 %, and stays there, from so long before the "
             f"obstacle is abeam: {listed(parts)} with the window method (medians over the paper's cases)."
         )
-        own = ways.get("refined, own 2 sigma")
+        own = ways.get("filter, own 2 sigma")
         if own is not None:
             parts = [f"{NAMES.get(o, o).lower()} {number(value, 3)} s" for o, value in own.values.items()]
-            said.append(f"Refined can tell so itself, by its two sigma, {listed(parts)} before.")
+            said.append(f"Filter can tell so itself, by its two sigma, {listed(parts)} before.")
     return said
 
 
@@ -244,7 +244,7 @@ def flags(goals: Goals) -> list[str]:
         return []
     row = found.goal
     parts = [f"{_with_goal_unit(row, row.values.get(name, math.nan))} at {name} false flags" for name in row.asked]
-    said = [f"The area under the curve of moving cars, flagged by their misfit, is {number(found.area)} (chance: 0.5)."]
+    said = [f"The area under the curve of moving cars, flagged by their NIS ratio, is {number(found.area)} (chance: 0.5)."]
     if parts:
         said.insert(
             0,
@@ -260,13 +260,13 @@ def flags(goals: Goals) -> list[str]:
 
 
 def rivals(goals: Goals) -> list[str]:
-    """Where another method is better than refined, and where refined is best."""
+    """Where another method is better than the filter, and where the filter is best."""
     said = []
     for noise, rows in rf.rivals(goals).items():
-        ours = next((row for row in rows if row.name == "refined"), None)
+        ours = next((row for row in rows if row.name == "filter"), None)
         if ours is None:
             continue
-        others = [row for row in rows if row.name not in ("refined", "window")]
+        others = [row for row in rows if row.name not in ("filter", "window")]
         better = [
             f"{value_name(q)} by {METHOD_NAMES.get(row.name, row.name)} "
             f"({_error_text(q, row.errors[q])} against {_error_text(q, ours.errors[q])}{_few(row, q)})"
@@ -277,8 +277,8 @@ def rivals(goals: Goals) -> list[str]:
         name = NOISE_NAMES.get(noise, noise)
         best = [value_name(q) for q in ours.errors if _is_best(ours, others, q)]
         said.append(
-            f"{name}: refined has the smallest median error of {listed(best) if best else 'no quantity'}"
-            + (f"; better than refined: {listed(better)}." if better else ".")
+            f"{name}: the filter has the smallest median error of {listed(best) if best else 'no quantity'}"
+            + (f"; better than filter: {listed(better)}." if better else ".")
         )
     return said
 
@@ -312,7 +312,7 @@ def lead(campaign: Campaign) -> str:
         return ""
     median = float(np.median([cell.factor for cell in cells]))
     return (
-        f"The library's own method, refined, answers with ranges {number(median)} times narrower than the paper's in "
+        f"The library's own method, filter, answers with ranges {number(median)} times narrower than the paper's in "
         f"the median of the {len(cells)} numbers of Table 3, over the last {t3.FRACTION * 100:.0f} % of the same "
         "flights."
     )

@@ -19,7 +19,7 @@ static void look(int k, goe_image_t *image) {
     image->box.right_px = CENTER_PX + FOCAL_PX * 3.0f / ahead_m;
     image->box.top_px = CENTER_PX - FOCAL_PX * 15.0f / ahead_m;
     image->box.bottom_px = CENTER_PX + FOCAL_PX * 15.0f / ahead_m;
-    image->box.seen = GOE_SEES_BOX;
+    image->box.sides = GOE_SIDES_ALL;
 }
 
 void app_main(void);

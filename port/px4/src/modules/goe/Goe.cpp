@@ -216,8 +216,8 @@ void Goe::publish_obstacles(const goe_flight_assessment_t &assessment, uint64_t 
 #ifdef GOE_HAS_DETECT_AND_AVOID
         if ((_parameters.outputs & GOE_OUT_DETECT_AND_AVOID) != 0) {
             const float own_ned_m[3] = {_position.x, _position.y, _position.z};
-            (void)_detect_and_avoid_pub.publish(
-                goe_px4::detect_and_avoid(found, slot, assessment, own_ned_m, _used.flight.violation_max, now_us));
+            (void)_detect_and_avoid_pub.publish(goe_px4::detect_and_avoid(
+                found, slot, assessment, own_ned_m, _used.flight.conflict_probability_max, now_us));
         }
 #endif
     }
@@ -295,7 +295,7 @@ void Goe::report_operator(const goe_flight_assessment_t &assessment) {
     } else {
         const char *const who = _orders.overruled() ? " (overruled)" : _orders.flown() ? "" : " (reported only)";
         mavlink_log_critical(&_mavlink_log_pub, "goe: obstacle in %.0f s, %s%s",
-                             static_cast<double>(assessment.hazard.time_s), goe_flight_action_text(assessment.action),
+                             static_cast<double>(assessment.hazard.tcpa_s), goe_flight_action_text(assessment.action),
                              who);
     }
 }

@@ -119,14 +119,14 @@ void report_hazard(const goe_obstacle_s &obstacle, char *line) {
         snprintf(over, sizeof over, ", %.0f m %s its top", number(fabsf(obstacle.clearance)),
                  obstacle.clearance < 0.f ? "below" : "over");
     }
-    if (!is_known(obstacle.miss)) {
+    if (!is_known(obstacle.dcpa)) {
         snprintf(line, GOE_TEXT_LINE, "     its hazard is not known");
-    } else if (obstacle.passed) {
+    } else if (obstacle.receding) {
         snprintf(line, GOE_TEXT_LINE, "     passed: its distance grows");
     } else {
         snprintf(line, GOE_TEXT_LINE, "     in %.1f +- %.1f s %.0f m past it%s; %.0f %% to violate the margins%s",
-                 number(obstacle.time_to), number(obstacle.time_to_sd), number(obstacle.miss), over,
-                 number(PER_CENT * obstacle.violation), obstacle.worst ? ", worst" : "");
+                 number(obstacle.tcpa), number(obstacle.tcpa_sd), number(obstacle.dcpa), over,
+                 number(PER_CENT * obstacle.conflict_probability), obstacle.worst ? ", worst" : "");
     }
 }
 
@@ -180,7 +180,7 @@ const char *goe_text_parameter(const char *setting) {
         {"camera.offset_m[0]", "GOE_CAM_X"},
         {"camera.offset_m[1]", "GOE_CAM_Y"},
         {"camera.offset_m[2]", "GOE_CAM_Z"},
-        {"navigation.ground_m", "GOE_GROUND_SD"},
+        {"navigation.terrain_height_sd_m", "GOE_GROUND_SD"},
         {"delay_s", "GOE_DELAY"},
         {"home_sd_m", "GOE_HOME_SD"},
         {"margin_m", "GOE_MARGIN"},
