@@ -99,7 +99,7 @@
 #include <stdint.h>
 
 #define GOE_VERSION_MAJOR 0
-#define GOE_VERSION_MINOR 3
+#define GOE_VERSION_MINOR 4
 #define GOE_VERSION_PATCH 0
 
 /* ------------------------------------------------------------------------------------------------- compile-time limits -- */

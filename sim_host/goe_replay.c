@@ -17,6 +17,7 @@
 #include "option_fault.h"
 #include "output_file.h"
 #include "read_progress.h"
+#include "renamed_names.h"
 #include "settings_text.h"
 #include "standard_output.h"
 #include "track_table.h"
@@ -65,11 +66,26 @@ static bool give_up(const char *subject, const char *reason) {
     return false;
 }
 
+/* Whether the word is an old value of the option, which is reported. */
+static bool refuses_renamed(const char *option, const char *word) {
+    char both[CHOICE_FAULT_MAX], reason[CHOICE_FAULT_MAX];
+    const int length = snprintf(both, sizeof both, "%s %s", option, word);
+    const char *now = length > 0 && length < (int)sizeof both ? renamed_name(both, (size_t)length) : NULL;
+    if (now != NULL) {
+        (void)snprintf(reason, sizeof reason, "unknown value: now %s", now);
+        (void)complain(both, reason);
+    }
+    return now != NULL;
+}
+
 /* Number of the name that equals a word; the first one's without a word. -1: unknown, which is reported. */
 static int choose(const char *option, const char *word, const char *const *names, int count) {
     char reason[CHOICE_FAULT_MAX];
     if (word == NULL) {
         return 0;
+    }
+    if (refuses_renamed(option, word)) {
+        return -1;
     }
     nearest_name_t nearest = nearest_name_of(word, strlen(word));
     int used = snprintf(reason, sizeof reason, "%s must be %s", option, names[0]);

@@ -13,6 +13,7 @@
 #include "link.h"
 #include "nearest_name.h"
 #include "number_text.h"
+#include "renamed_names.h"
 #include "settings_text.h"
 
 #define LINE_MAX_LENGTH 190 /* what the parser takes */
@@ -286,7 +287,14 @@ static void take_flight(config_reader_t *reader, const char *name, const char *t
         reader->flight_line[i] = reader->lines.number;
         return;
     }
-    FAIL(reader, name, "no setting of the flight layer");
+    char full[NAME_MAX];
+    (void)snprintf(full, sizeof full, "flight.%s", name);
+    const char *now = renamed_name(full, strlen(full));
+    if (now != NULL) {
+        FAIL(reader, NULL, "unknown setting %s: now %s", full, now);
+    } else {
+        FAIL(reader, name, "no setting of the flight layer");
+    }
 }
 
 static void report_unknown(config_reader_t *reader, const char *name, bool in_section) {

@@ -38,7 +38,8 @@ TYPES = {
 }  # fmt: skip
 FUNCTIONS = {
     "goe.h": (
-        "goe_update", "goe_covariance", "goe_hazard", "goe_rule_default", "goe_decide", "goe_earliest_tcpa_s", "goe_reset",
+        "goe_update", "goe_covariance", "goe_hazard", "goe_rule_default", "goe_decide", "goe_earliest_tcpa_s",
+        "goe_reset",
         "goe_status_text", "goe_reason_text", "goe_self_check",
     ),
     "goe_python.h": (

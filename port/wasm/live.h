@@ -38,7 +38,7 @@
     X(order) X(conflict_probability) X(tcpa_s) X(tcpa_sd_s) X(dcpa_m) X(dcpa_sd_m) X(clearance_m) X(clearance_sd_m) X(has_clearance)
 /* clang-format on */
 
-/* The version of the library, "0.3.0". */
+/* The version of the library, "0.4.0". */
 const char *live_version(void);
 
 /* Names one after the other, each with its ending zero; an empty one ends the list. */

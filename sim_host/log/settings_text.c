@@ -9,6 +9,7 @@
 #include "input_error.h"
 #include "nearest_name.h"
 #include "number_text.h"
+#include "renamed_names.h"
 
 #define WHOLE_MAX 1.0e6
 #define LINE_MAX_LENGTH 100
@@ -97,6 +98,11 @@ static void append(setting_fault_t *fault, const char *text) {
 
 static bool list_names(const char *name, size_t length, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(name, length);
+    const char *now = renamed_name(name, length);
+    if (now != NULL) {
+        (void)snprintf(fault->text, sizeof fault->text, "unknown setting %s: now %s", excerpt.text, now);
+        return false;
+    }
     nearest_name_t nearest = nearest_name_of(name, length);
     for (size_t i = 0; i < count_tuned(); i++) {
         nearest_name_try(&nearest, settings_by_name[i].name);

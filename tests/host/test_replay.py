@@ -389,7 +389,9 @@ OTHERWISE = {  # values that change the filter method's answers to a log, or tho
 def test_each_setting_is_set(log: Path, tmp_path: Path) -> None:
     cut = [{**row, "box_right_px": row["box_right_px"] if k < 30 else ""} for k, row in enumerate(boxes())]
     folders = (CORNER, log, write_log(tmp_path / "boxes", table(cut, COLUMNS + SIDES)))
-    assert {"filter.nis_ratio_max"} | {name for configured in OTHERWISE.values() for name in configured} == set(SETTINGS)
+    assert {"filter.nis_ratio_max"} | {name for configured in OTHERWISE.values() for name in configured} == set(
+        SETTINGS
+    )
     for method, configured in OTHERWISE.items():
         usual = [call("--method", method, folder, check=None).stdout for folder in folders]
         for name, value in configured.items():
@@ -903,14 +905,20 @@ BAD_USAGE = [
     (["--set", ""], "--set: '' is no setting; there are navigation.attitude_bias_sd_deg, "),
     (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are navigation.attitude_bias_sd_deg, "),
     (["--set", "detector.point_p=1"], "--set: 'detector.point_p' is no setting; did you mean detector.point_noise_px?"),
-    (["--set", "detector.pixel_px=1"], "--set: 'detector.pixel_px' is no setting; did you mean detector.point_noise_px?"),
+    (
+        ["--set", "detector.pixel_noise=1"],
+        "--set: 'detector.pixel_noise' is no setting; did you mean detector.point_noise_px?",
+    ),
     (["--metohd", "window"], "--metohd: unknown option; did you mean --method?"),
     (["--something-else"], "--something-else: unknown option ("),
     (["--set", "something.else=1"], "orientation_memory and window.min_baseline_m"),
     (["--set", "window=5"], "--set: 'window' is no setting"),
     (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting"),
     (["--set", "\x1b[31m=5"], "--set: '?[31m' is no setting"),
-    (["--set", "detector.point_noise_px"], "--set: detector.point_noise_px: no value; write detector.point_noise_px=VALUE"),
+    (
+        ["--set", "detector.point_noise_px"],
+        "--set: detector.point_noise_px: no value; write detector.point_noise_px=VALUE",
+    ),
     (["--set", "detector.point_noise_px="], "--set: detector.point_noise_px: '' is not a number"),
     (["--set", "detector.point_noise_px=0.5px"], "--set: detector.point_noise_px: '0.5px' is not a number"),
     (["--set", "detector.point_noise_px= 1"], "--set: detector.point_noise_px: ' 1' is not a number"),

@@ -26,7 +26,8 @@ from goe_tools.report import attack_lines
 
 NAN = math.nan
 EXACT = {
-    "point_noise_px": 0.0, "box_noise_px": 0.0, "box_noise_rel": 0.0, "attitude_bias_sd_deg": 0.0, "attitude_white_sd_deg": 0.0,
+    "point_noise_px": 0.0, "box_noise_px": 0.0, "box_noise_rel": 0.0, "attitude_bias_sd_deg": 0.0,
+    "attitude_white_sd_deg": 0.0,
     "velocity_bias_sd_m_s": 0.0, "position_walk_sd_m": 0.0, "height_bias_sd_m": 0.0,
 }  # fmt: skip
 BASE = Scenario(kind="box").by(**EXACT)
@@ -408,7 +409,8 @@ def test_warnings_follow_the_library_s_decision_rule(built: None) -> None:
     )
     assert np.array_equal(flown.warnings.acts, by_rule.decision[:, 0] == goe.Decision.ACT)
     there = track.hazard["status"][:, 0] == 0
-    assert np.array_equal(flown.warnings.violation[there], track.hazard["conflict_probability"][there, 0]) and there.any()
+    assert np.array_equal(flown.warnings.violation[there], track.hazard["conflict_probability"][there, 0])
+    assert there.any()
 
 
 # ------------------------------------------------------------------------------------------------------------ the goals

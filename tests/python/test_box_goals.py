@@ -109,7 +109,12 @@ def test_good_answers_meet_every_goal(
     assert set(first.values.values()) == {3.0}
     assert "left out: KITTI's boxes, ODMD's val_robot" in capsys.readouterr().out
     others = {name for settings in configured for name in settings if not name.startswith("camera.")}
-    of_bound = {"model": 2.0, "detector.box_noise_px": 0.5, "detector.box_noise_rel": 0.0, "navigation.terrain_height_sd_m": 0.0}
+    of_bound = {
+        "model": 2.0,
+        "detector.box_noise_px": 0.5,
+        "detector.box_noise_rel": 0.0,
+        "navigation.terrain_height_sd_m": 0.0,
+    }
     assert others == {"heading_auto", "heading_deg", "navigation.height_bias_sd_m", *of_bound}
     of_both = [settings for settings in configured if "model" in settings]
     assert len(of_both) == 5 + 4 and all(of_bound.items() <= settings.items() for settings in of_both)

@@ -109,9 +109,11 @@ def boxes(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
         words = [
             SIM, "--obstacle", "cylinder", "--x0", -12 + 3 * (seed % 4), "--yaw-camera", 0, "--reach", 14, "--run", 11,
             "--speed", 17, "--altitude", 20, "--features", "boxes", "--roll-amplitude-deg", 10,
-            "--box-px", NOISE["detector.box_noise_px"], "--box-share", NOISE["detector.box_noise_rel"], "--box-correlation", 1.2,
+            "--box-px", NOISE["detector.box_noise_px"], "--box-share", NOISE["detector.box_noise_rel"],
+            "--box-correlation", 1.2,
             "--attitude-noise", NOISE["navigation.attitude_white_sd_deg"],
-            "--attitude-bias", NOISE["navigation.attitude_bias_sd_deg"], "--altimeter-bias", 0.5, "--velocity-bias", 0.05,
+            "--attitude-bias", NOISE["navigation.attitude_bias_sd_deg"], "--altimeter-bias", 0.5,
+            "--velocity-bias", 0.05,
             "--position-walk", 0.05, "--seed", seed, "--out", out,
         ]  # fmt: skip
         subprocess.run([str(word) for word in words], check=True, capture_output=True)

@@ -270,7 +270,9 @@ def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
     old."""
     images = approach()
     images.box_px[-20:] = NAN
-    rules = [goe.Rule(15.0, 10.0, suspect_factor=2.0, stale_growth_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)]
+    rules = [
+        goe.Rule(15.0, 10.0, suspect_factor=2.0, stale_growth_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)
+    ]
     track = goe.run(settings(), images, rules=rules)
     estimator = goe.Estimator(settings())
     ages = set()
@@ -317,13 +319,18 @@ def test_decisions_are_those_of_the_rule() -> None:
     """Probability, distances and times of the hazard with the widened margins."""
     images = collision()
     images.box_px[30:40] = NAN
-    rules = [goe.Rule(15.0, 10.0), goe.Rule(15.0, 10.0, conflict_probability_max=0.9, act_within_s=6.0, suspect_factor=3.0, stale_growth_m_s=0.5)]
+    other = goe.Rule(
+        15.0, 10.0, conflict_probability_max=0.9, act_within_s=6.0, suspect_factor=3.0, stale_growth_m_s=0.5
+    )
+    rules = [goe.Rule(15.0, 10.0), other]
     track = goe.run(settings(), images, rules=rules)
     estimator = goe.Estimator(settings())
     for k in range(len(images)):
         estimate = estimator.update(image(k, images))
         for number, rule in enumerate(rules):
-            own = goe.DecisionRule(rule.conflict_probability_max, rule.act_within_s, rule.suspect_factor, rule.stale_growth_m_s)
+            own = goe.DecisionRule(
+                rule.conflict_probability_max, rule.act_within_s, rule.suspect_factor, rule.stale_growth_m_s
+            )
             decision, hazard = estimator.decide(goe.Intent((16.0, 0.0, 0.0), rule.margin_m, rule.clearance_m), own)
             assert (decision, hazard) == (track.decision[k, number], track.hazard(k, number))
             if hazard is None:
@@ -337,7 +344,12 @@ def test_decisions_are_those_of_the_rule() -> None:
     last = estimator.decide(goe.Intent((16.0, 0.0, 0.0), 15.0, 10.0))
     assert last == (track.decision[-1, 0], track.hazard(-1, 0))  # the defaults are those of C
     defaults = goe.DecisionRule()
-    assert (defaults.conflict_probability_max, defaults.act_within_s, defaults.suspect_factor, defaults.stale_growth_m_s) == (0.1, 12.0, 1.5, 1.0)
+    probability, act_within_s, factor = (
+        defaults.conflict_probability_max,
+        defaults.act_within_s,
+        defaults.suspect_factor,
+    )
+    assert (probability, act_within_s, factor, defaults.stale_growth_m_s) == (0.1, 12.0, 1.5, 1.0)
     assert goe.Rule(1.0, 1.0)[2:4] == (1.5, 1.0) and goe.Rule(1.0, 1.0)[5:7] == (0.1, 12.0)
 
 
@@ -428,7 +440,9 @@ def test_vectors_and_plans_that_c_would_misread() -> None:
         for ask in (estimator.hazard, estimator.decide):
             with pytest.raises(ValueError, match=f"^{words} = .*: not within"):
                 ask(goe.Intent(*plan))
-    for change in ({"conflict_probability_max": 1.1}, {"act_within_s": NAN}, {"suspect_factor": 0.5}, {"stale_growth_m_s": 101.0}):
+    for change in (
+        {"conflict_probability_max": 1.1}, {"act_within_s": NAN}, {"suspect_factor": 0.5}, {"stale_growth_m_s": 101.0}
+    ):  # fmt: skip
         words = rf"^{next(iter(change))} = .*: not within"
         with pytest.raises(ValueError, match=words):
             estimator.decide(goe.Intent((1.0, 0.0, 0.0), 1.0, 1.0), goe.DecisionRule(**change))

@@ -84,7 +84,9 @@ def hash_estimate(h: Hash, e: goe.Estimate) -> None:
     h.numbers(e.age_s, v.north_m_s, v.east_m_s, e.latency_s, p.x0.m, p.z0.m, p.x.m, p.z.m)
     h.numbers(width.m, length.m, height.m, o.side_deg, o.side_raw_deg, o.front_deg)
     h.numbers(*o.length_axis, *o.width_axis, *o.length_axis_ne, *o.width_axis_ne)
-    h.numbers(e.trajectory_heading_deg, c.north.m, c.east.m, c.covariance_m2, p.residual, p.baseline_m, e.nis, e.nis_ratio)
+    h.numbers(
+        e.trajectory_heading_deg, c.north.m, c.east.m, c.covariance_m2, p.residual, p.baseline_m, e.nis, e.nis_ratio
+    )
     h.numbers(p.x0.sd_m, p.z0.sd_m, p.x.sd_m, p.z.sd_m, width.sd_m, length.sd_m, height.sd_m, o.side_sd_deg)
     h.numbers(c.north.sd_m, c.east.sd_m, v.north_sd_m_s, v.east_sd_m_s, e.latency_sd_s)
 
@@ -101,7 +103,8 @@ def hash_after(h: Hash, covariance: np.ndarray | None, hazard: goe.Hazard | None
     shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
     clearance = shown.clearance or NONE
     h.numbers(
-        shown.time_s, shown.miss.m, clearance.m, shown.violation, shown.tcpa_sd_s, shown.miss.sd_m, clearance.sd_m
+        shown.tcpa_s, shown.dcpa.m, clearance.m, shown.conflict_probability, shown.tcpa_sd_s, shown.dcpa.sd_m,
+        clearance.sd_m,
     )
     h.word(shown.clearance is not None)
 
@@ -164,7 +167,8 @@ def hash_hazard(h: Hash, hazard: goe.Hazard | None) -> None:
     shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
     clearance = shown.clearance or NONE
     h.numbers(
-        shown.time_s, shown.miss.m, clearance.m, shown.tcpa_sd_s, shown.miss.sd_m, clearance.sd_m, shown.violation
+        shown.tcpa_s, shown.dcpa.m, clearance.m, shown.tcpa_sd_s, shown.dcpa.sd_m, clearance.sd_m,
+        shown.conflict_probability,
     )
     h.word(shown.clearance is not None)
 

@@ -291,13 +291,18 @@ def test_sides_that_are_measured() -> None:
 def noise(times: float, **change: float) -> ErrorModel:
     """Settings with only the noise that counts for the bound."""
     usual = ErrorModel(box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)
-    names = ("box_noise_px", "attitude_bias_sd_deg", "attitude_white_sd_deg", "height_bias_sd_m", "velocity_bias_sd_m_s")
+    names = (
+        "box_noise_px", "attitude_bias_sd_deg", "attitude_white_sd_deg", "height_bias_sd_m", "velocity_bias_sd_m_s",
+    )  # fmt: skip
     return replace(usual, **{name: times * getattr(usual, name) for name in names}, **change)
 
 
 def test_a_bound_grows_with_the_noise() -> None:
     flight = box_flight(MAST, replace(EXACT, roll_deg=10.0), 1)
-    once, twice = bound_of(flight, noise(1.0, truncation_noise_rel=0.5)), bound_of(flight, noise(2.0, truncation_noise_rel=1.0))
+    once, twice = (
+        bound_of(flight, noise(1.0, truncation_noise_rel=0.5)),
+        bound_of(flight, noise(2.0, truncation_noise_rel=1.0)),
+    )
     assert twice[ESTIMATED] == pytest.approx(2 * once[ESTIMATED], rel=1e-3) and np.isnan(once[[2, 4]]).all()
     shorter = bound_of(flight.first(len(flight.time_s) // 2), noise(1.0))
     assert (shorter[ESTIMATED] > 1.2 * once[ESTIMATED]).all()
@@ -308,9 +313,16 @@ def test_a_correlated_error_is_not_a_white_one() -> None:
     differences cancel the error.
     """
     flight = box_flight(MAST, replace(EXACT, roll_deg=10.0), 1)
-    still = {"attitude_bias_sd_deg": 0.0, "attitude_white_sd_deg": 0.0, "velocity_bias_sd_m_s": 0.0, "height_bias_sd_m": 0.0}
+    still = {
+        "attitude_bias_sd_deg": 0.0,
+        "attitude_white_sd_deg": 0.0,
+        "velocity_bias_sd_m_s": 0.0,
+        "height_bias_sd_m": 0.0,
+    }
     configured = replace(noise(1.0), box_noise_px=0.1, box_noise_rel=0.05, **still)
-    white, usual, long = (bound_of(flight, replace(configured, box_correlation_time_s=tau)) for tau in (0.0, 1.2, 100.0))
+    white, usual, long = (
+        bound_of(flight, replace(configured, box_correlation_time_s=tau)) for tau in (0.0, 1.2, 100.0)
+    )
     equal = bound_of(flight, replace(configured, box_correlation_time_s=1e-3))
     assert equal[ESTIMATED] == pytest.approx(white[ESTIMATED], rel=1e-6)
     assert usual[Z0] > 1.5 * white[Z0] and long[Z0] < usual[Z0]

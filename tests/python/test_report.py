@@ -278,8 +278,11 @@ def test_sentences_on_boxes_describe_the_effect_of_roll() -> None:
 
     for errors_m, effect in (((4.0, 3.0), "helps"), ((4.0, 4.4), "changes little for"), ((4.0, 5.0), "harms")):
         said = boxes.sentences(rows(*errors_m))
-        assert said[0].startswith(f"Roll {effect} the filter: its error of Z₀ is 4.0 m at 0° of roll and {errors_m[1]} m")
-        assert "hold 90 to 95 % of the filter's answers and 50 to 60 % of the window" in said[1] and "200 m off" in said[1]
+        assert said[0].startswith(
+            f"Roll {effect} the filter: its error of Z₀ is 4.0 m at 0° of roll and {errors_m[1]} m"
+        )
+        assert "hold 90 to 95 % of the filter's answers and 50 to 60 % of the window" in said[1]
+        assert "200 m off" in said[1]
     assert boxes.sentences([]) == []
 
 

@@ -87,7 +87,8 @@ def test_numbers_that_are_stated_twice_agree() -> None:
     words = (
         f"{rule['MARGIN_M']:g} m to the side, {rule['CLEARANCE_M']:g} m over the top, "
         f"from {100 * conflict_probability_max:g} % on, "
-        f"if it may be reached within {act_within_s:g} s; both distances count {doubt:g} times while the estimate is suspect, "
+        f"if it may be reached within {act_within_s:g} s; "
+        f"both distances count {doubt:g} times while the estimate is suspect, "
         f"and grow by {stale_growth_m_s:g} m"
     )
     assert words in (port / "page" / "page.html.j2").read_text(encoding="utf-8")

@@ -25,7 +25,8 @@ MODEL_AUTO, MODEL_DISC, MODEL_LINE, MODEL_BOX, MODEL_PRISM = 1, 2, 3, 4, 5
 QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m")
 NUMBERS = ("x_m", "z_m", "velocity_north_m_s", "velocity_east_m_s", "latency_s")  # of Track.more, with sigmas
 HAZARD = (
-    "tcpa_s", "dcpa_m", "clearance_m", "tcpa_sd_s", "dcpa_sd_m", "clearance_sd_m", "conflict_probability", "has_clearance",
+    "tcpa_s", "dcpa_m", "clearance_m", "tcpa_sd_s", "dcpa_sd_m", "clearance_sd_m", "conflict_probability",
+    "has_clearance",
 )  # fmt: skip
 TO_RADIANS = np.where(np.arange(6) == 2, np.pi / 180.0, 1.0)
 SETTING_OF = {  # noise figure: setting of the library

@@ -54,7 +54,7 @@ bool scripted_start(scripted_estimator_t *estimator, scripted_clock_t clock, cha
  * comes back. */
 bool scripted_take(scripted_estimator_t *estimator, const scripted_message_t *message, char line[SCRIPTED_LINE]);
 
-/* "goe 0.3.0, self-check 0x00": the version compiled, and what goe_self_check() finds. */
+/* "goe 0.4.0, self-check 0x00": the version compiled, and what goe_self_check() finds. */
 void scripted_first_line(char line[SCRIPTED_LINE]);
 
 /* Of scripted_cost_t: 0 without calls. */

@@ -24,7 +24,9 @@ class Wrong:
     """The defaults are the errors in the library's default settings."""
 
     point_noise_px: float = 0.5
-    point_noise_rel: float = 0.0  # of left, right, top: share of the width in the image, correlated over box_correlation_time_s
+    point_noise_rel: float = (
+        0.0  # of left, right, top: share of the width in the image, correlated over box_correlation_time_s
+    )
     box_noise_px: float = 0.5
     box_noise_rel: float = 0.04  # of a side: share of the box's width or height, correlated over box_correlation_time_s
     box_correlation_time_s: float = 1.0

@@ -8,7 +8,7 @@ import numpy as np
 
 from .answers import RULES, Answers
 from .genes import ORBIT, TURNING
-from .judge import BOX, DISC, FLIGHT_QUANTITIES, LENGTH, ORIENTATION, QUANTITIES, FILTER, REFUSED_STATUS, Judged
+from .judge import BOX, DISC, FILTER, FLIGHT_QUANTITIES, LENGTH, ORIENTATION, QUANTITIES, REFUSED_STATUS, Judged
 from .world import World
 
 CONFIDENT_SIGMA = 6.0

@@ -11,7 +11,7 @@ from . import finds
 from .answers import Answers
 from .finds import CAUSES, COLUMNS, JUDGED, KINDS, PROMISED, Finds
 from .genes import MIXES
-from .judge import MODELS, POSITION, FILTER, Judged
+from .judge import FILTER, MODELS, POSITION, Judged
 from .world import World
 
 COVER_SIGMA = 2.0

@@ -167,7 +167,8 @@ def settings_of(case: Case, f: dict[str, float]) -> dict[str, float]:
         "heading_auto": 0.0, "heading_deg": 0.0, "method": float(METHODS[case.method]),
         "navigation.attitude_bias_sd_deg": f["bias_deg"], "navigation.attitude_white_sd_deg": f["white_deg"],
         "navigation.height_bias_sd_m": f["height_m"], "navigation.velocity_bias_sd_m_s": f["velocity_m_s"],
-        "navigation.position_walk_sd_m": f["walk_m"], "detector.point_noise_px": f["point_px"], "detector.box_noise_px": f["point_px"],
+        "navigation.position_walk_sd_m": f["walk_m"], "detector.point_noise_px": f["point_px"],
+        "detector.box_noise_px": f["point_px"],
         "filter.prior_width_m": min(max(f["width"] * f["range_m"], 0.1), 1e3),
     }  # fmt: skip
     return settings | ({"model": float(MODEL_DISC)} if case.kind == "disc" else {})

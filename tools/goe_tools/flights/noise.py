@@ -35,7 +35,8 @@ class Noise:
 
 
 FIELD = Noise(
-    attitude_bias_sd_deg=0.5, attitude_white_sd_deg=0.1, height_m=0.5, velocity_bias_sd_m_s=0.05, position_walk_sd_m=0.05,
+    attitude_bias_sd_deg=0.5, attitude_white_sd_deg=0.1, height_m=0.5, velocity_bias_sd_m_s=0.05,
+    position_walk_sd_m=0.05,
     outliers=0.02,
 )  # fmt: skip
 NOISES = {

@@ -1,7 +1,8 @@
 """The Cramer-Rao bound: the smallest one-sigma of any unbiased estimator of the obstacle.
 
 The bound uses all images and the configured noise: pixels, attitude (constant and white), height, velocity. It leaves
-out the random walk of the position (``position_walk_sd_m``) and the drift of the attitude: they can only make an estimator
+out the random walk of the position (``position_walk_sd_m``) and the drift of the attitude: they can only make an
+estimator
 worse, so the figure stays a lower bound.
 
     python -m goe_tools bound DIR

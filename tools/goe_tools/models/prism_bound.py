@@ -82,9 +82,15 @@ def noise_of_rows(rows: list[tuple[Sight, Row]], state: np.ndarray, errors: Erro
     size = np.array([box_size(sight, state, row.side % 2) for sight, row in rows])
     cut = np.array([sight.cut for sight, _ in rows])
     between = np.abs(time_s[:, None] - time_s)
-    correlation = np.exp(-between / errors.box_correlation_time_s) if errors.box_correlation_time_s > 0 else (between == 0).astype(float)
+    correlation = (
+        np.exp(-between / errors.box_correlation_time_s)
+        if errors.box_correlation_time_s > 0
+        else (between == 0).astype(float)
+    )
     share = errors.box_noise_rel * size
-    white = (errors.box_px / focal_px(rows[0][0].camera)[side]) ** 2 + np.where(cut, errors.truncation_noise_rel * size, 0.0) ** 2
+    white = (errors.box_px / focal_px(rows[0][0].camera)[side]) ** 2 + np.where(
+        cut, errors.truncation_noise_rel * size, 0.0
+    ) ** 2
     moved = np.radians(errors.attitude_white_sd_deg) ** 2 * slope[:, :3] @ slope[:, :3].T
     moved += errors.position_white_sd_m**2 * slope[:, PX:] @ slope[:, PX:].T
     same_side, same_image = side[:, None] == side, between == 0

@@ -5,7 +5,8 @@ information instead of a covariance. One linearized update per image, at the pre
 
     r = measured - predicted(x)          J = d predicted / d state              (``prism.row_of``)
 
-A side's error has a white part and a correlated part: a first-order Gauss-Markov process with the sigma s = box_noise_rel *
+A side's error has a white part and a correlated part: a first-order Gauss-Markov process with the sigma
+s = box_noise_rel *
 size of the box, which decays by f = exp(-t/tau) from image to image. Given the state, the past residuals determine it:
 m - F (x' - x) if the state becomes x', with the remaining variance V.
 
@@ -413,7 +414,9 @@ class PrismFilter:
         way_m = float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]]))
         straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # no scaling for a path that leads back
         variance[:2] += (errors.velocity_bias_sd_m_s * span_s) ** 2 * (1 - straight**2)
-        variance[:2] += errors.position_walk_sd_m**2 * (span_s + before_s) + (errors.velocity_bias_sd_m_s * before_s) ** 2
+        variance[:2] += (
+            errors.position_walk_sd_m**2 * (span_s + before_s) + (errors.velocity_bias_sd_m_s * before_s) ** 2
+        )
         variance += self._no_ellipse(values, in_t)
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)

@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.table import Table
 from tqdm import tqdm
 
+from .. import renamed
 from ..flights.flight import Flight
 from ..models.prism import ErrorModel
 from .boxes import box_rows
@@ -24,19 +25,25 @@ from .rows import Rows
 from .tracks import box_tracks, point_tracks
 
 GIVEN = {  # the library's defaults
-    "detector.box_noise_px": 1.0, "detector.box_noise_rel": 0.07, "detector.box_correlation_time_s": 1.2, "detector.point_noise_px": 0.5,
+    "detector.box_noise_px": 1.0, "detector.box_noise_rel": 0.07, "detector.box_correlation_time_s": 1.2,
+    "detector.point_noise_px": 0.5,
     "detector.point_noise_rel": 0.0, "navigation.attitude_white_sd_deg": 0.1, "navigation.attitude_bias_sd_deg": 0.5,
-    "navigation.attitude_walk_sd_deg": 0.0, "navigation.velocity_bias_sd_m_s": 0.05, "navigation.position_walk_sd_m": 0.05,
+    "navigation.attitude_walk_sd_deg": 0.0, "navigation.velocity_bias_sd_m_s": 0.05,
+    "navigation.position_walk_sd_m": 0.05,
     "navigation.position_white_sd_m": 0.0, "navigation.height_bias_sd_m": 0.5, "navigation.terrain_height_sd_m": 2.0,
 }  # fmt: skip
 RANGES = {  # of the library
-    "detector.box_noise_px": (0.05, 100.0), "detector.box_noise_rel": (0.0, 1.0), "detector.point_noise_px": (0.05, 100.0),
+    "detector.box_noise_px": (0.05, 100.0), "detector.box_noise_rel": (0.0, 1.0),
+    "detector.point_noise_px": (0.05, 100.0),
     "detector.point_noise_rel": (0.0, 1.0), "navigation.attitude_white_sd_deg": (1e-4, 30.0),
     "navigation.attitude_bias_sd_deg": (1e-3, 30.0), "navigation.velocity_bias_sd_m_s": (0.0, 100.0),
     "navigation.height_bias_sd_m": (1e-3, 1e3),
 }  # fmt: skip
 WHITE = "navigation.attitude_white_sd_deg"
-FIRST = {"boxes": ("detector.box_noise_px", "detector.box_noise_rel", WHITE), "points": ("detector.point_noise_px", WHITE)}
+FIRST = {
+    "boxes": ("detector.box_noise_px", "detector.box_noise_rel", WHITE),
+    "points": ("detector.point_noise_px", WHITE),
+}
 WITH_TRUTH = ("navigation.attitude_bias_sd_deg", "navigation.height_bias_sd_m", "navigation.velocity_bias_sd_m_s")
 LEAST_JUDGED = 4  # tracks in each half
 COVER_LOW, COVER_HIGH, COVER_ROUNDS = -4.0, 1.0, 8  # logarithms of the factor, and halvings
@@ -168,6 +175,8 @@ def line_of(chosen: dict[str, float]) -> str:
 
 def _setting(text: str) -> tuple[str, float]:
     name, equals, value = text.partition("=")
+    if name in renamed.names():
+        raise argparse.ArgumentTypeError(f"unknown setting {name}: now {renamed.names()[name]}")
     if not equals or name not in GIVEN:
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE with one of {', '.join(GIVEN)}")
     try:

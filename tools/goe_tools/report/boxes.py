@@ -74,8 +74,8 @@ def sentences(rows: list[RollRow]) -> list[str]:
     shares = [[share for row in rows for share in of(row).covered.values()] for of in (_refined, _window)]
     errors = [[of(row).error_m["z0"] for row in rows] for of in (_refined, _window)]
     said.append(
-        f"Two of its own sigmas hold {_span(shares[0])} % of the filter's answers and {_span(shares[1])} % of the window "
-        f"method's, whose Z₀ is {_span(errors[1])} m off."
+        f"Two of its own sigmas hold {_span(shares[0])} % of the filter's answers and {_span(shares[1])} % of the "
+        f"window method's, whose Z₀ is {_span(errors[1])} m off."
     )
     return said
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from ._goe import lib
+from ._renamed import Renamed
 from .status import Method, Model, Reason, Status
 
 
@@ -75,7 +76,7 @@ class Velocity(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(Renamed):
     """The estimate after an image. A quantity that is not valid is None: "no position" does not mean "safe"."""
 
     status: Status
@@ -131,7 +132,9 @@ STATUSES = {int(status): status for status in Status}
 def _orientation(c: Any) -> Orientation:
     axes = (c.length_axis, c.width_axis, c.length_axis_ne, c.width_axis_ne)
     pairs = (tuple(axis) for axis in axes)
-    return Orientation(c.orientation_deg, c.sigma.orientation_deg, c.orientation_raw_deg, c.front_orientation_deg, *pairs)
+    return Orientation(
+        c.orientation_deg, c.sigma.orientation_deg, c.orientation_raw_deg, c.front_orientation_deg, *pairs
+    )
 
 
 def estimate_of(status: int, c: Any) -> Estimate:

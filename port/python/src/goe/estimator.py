@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._goe import ffi, lib
+from ._renamed import Renamed
 from .estimate import Estimate, estimate_of
 from .hazard import Decision, DecisionRule, Hazard, Intent, Rule, hazard_of
 from .image import Image, fill_image
@@ -20,7 +21,7 @@ from .status import SettingError, Status
 from .tracks import QUANTITIES, ImagesOrC, Track, empty_track, images_to_c, velocities
 
 
-class Estimator:
+class Estimator(Renamed):
     """Follows one obstacle.
 
     Several obstacles take several estimators, which share nothing. Two threads may work on two of them at once: calls

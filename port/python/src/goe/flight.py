@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._goe import ffi, lib
+from ._renamed import Renamed
 from .estimate import BITS, MODELS, Length
 from .hazard import Hazard, hazard_of
 from .image import BoundingBox, Pixel, Pose, fill_box, fill_points, vector
@@ -270,7 +271,7 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Obstacle:
+class Obstacle(Renamed):
     """One obstacle of the table. An unknown value is None."""
 
     id: int

@@ -9,6 +9,7 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 from ._goe import ffi, lib
+from ._renamed import Renamed, missing
 from ._table import shortest
 from .estimate import Length
 from .image import vector
@@ -24,7 +25,8 @@ STALE_GROWTH_MOST_M_S = 1e2
 _DEFAULT = ffi.new("goe_rule_t *")
 lib.goe_rule_default(_DEFAULT)
 CONFLICT_PROBABILITY_MAX, ACT_WITHIN_S, SUSPECT_FACTOR, STALE_GROWTH_M_S = (
-    shortest(number) for number in (_DEFAULT.conflict_probability_max, _DEFAULT.act_within_s, _DEFAULT.suspect_factor, _DEFAULT.stale_growth_m_s)
+    shortest(getattr(_DEFAULT, name))
+    for name in ("conflict_probability_max", "act_within_s", "suspect_factor", "stale_growth_m_s")
 )
 
 
@@ -90,7 +92,7 @@ class Decision(IntEnum):
 
 
 @dataclass(frozen=True)
-class DecisionRule:
+class DecisionRule(Renamed):
     """When to act; the defaults are those of the C library."""
 
     conflict_probability_max: float = CONFLICT_PROBABILITY_MAX
@@ -105,11 +107,12 @@ class DecisionRule:
     def _to_c(self) -> Any:
         """A goe_rule_t; ValueError names a number outside its range."""
         _check_rule(self)
-        return ffi.new("goe_rule_t *", (self.conflict_probability_max, self.act_within_s, self.suspect_factor, self.stale_growth_m_s))
+        numbers = (self.conflict_probability_max, self.act_within_s, self.suspect_factor, self.stale_growth_m_s)
+        return ffi.new("goe_rule_t *", numbers)
 
 
 class Rule(NamedTuple):
-    """The decision after each image of a whole track: a ``Intent`` and a ``DecisionRule`` in one. The velocity is that
+    """The decision after each image of a whole track: an ``Intent`` and a ``DecisionRule`` in one. The velocity is that
     of ``Images.velocity_ned_m_s``. For margins that never grow: ``suspect_factor=1, stale_growth_m_s=0``."""
 
     margin_m: float
@@ -154,6 +157,10 @@ class Hazard(NamedTuple):
         c = ffi.new("goe_hazard_t *")
         c.tcpa_s, c.tcpa_sd_s = self.tcpa_s, self.tcpa_sd_s
         return float(lib.goe_earliest_tcpa_s(c))
+
+
+for _kind in (Rule, Hazard):
+    setattr(_kind, "__getattr__", missing)  # noqa: B010 - a checker knows the names
 
 
 def hazard_of(c: Any) -> Hazard:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from ._goe import lib
+from ._renamed import Renamed
 
 POINTS = ("left", "right", "top", "base_left", "base_near", "base_right")
 """Points of an image, in the order of whole tracks."""
@@ -70,12 +71,12 @@ class Pose:
 
 
 @dataclass
-class ImageNoise:
+class ImageNoise(Renamed):
     """This image's own errors, one sigma each, instead of those of the settings; None: as there. Filter method."""
 
     attitude_sd_deg: float | None = None
-    """Instead of ``Navigation.attitude_white_sd_deg``, degrees; up to 30. A late pose belongs here: 20 ms at 24 degrees a
-    second are 0.5 degrees."""
+    """Instead of ``Navigation.attitude_white_sd_deg``, degrees; up to 30. A late pose belongs here: 20 ms at 24 degrees
+    a second are 0.5 degrees."""
     height_sd_m: float | None = None
     """Instead of ``Navigation.height_bias_sd_m``, m; up to 1e3."""
     pixel_sd_px: float | None = None

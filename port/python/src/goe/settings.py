@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from . import _table
+from . import _renamed, _table
 from ._goe import lib
 from ._table import CAMERA_ROWS, FLIGHT_ROWS, ROWS, Row, flight, real, whole
 from .status import Method, SettingError, Shape
@@ -34,13 +34,15 @@ def _meant(name: str, names: Sequence[str]) -> str:
     return f"; did you mean {close[0]}?" if close else ""
 
 
-class _Group:
+class _Group(_renamed.Renamed):
     """Takes no names but its own."""
 
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def __setattr__(self, name: str, value: Any) -> None:
         names = self.__dataclass_fields__
+        if name in _renamed.FIELDS.get(type(self).__name__, {}):
+            raise AttributeError(_renamed.unknown(type(self).__name__, name))
         if name not in names:
             raise AttributeError(f"{type(self).__name__} has no setting {name}{_meant(name, tuple(names))}")
         object.__setattr__(self, name, value)
@@ -87,7 +89,8 @@ class Camera(_Group):
     border_rel: float = real("camera.border_rel")
     """A box's side nearer to the border than this is not measured, fraction of the image's width."""
     truncation_rel: float = real("camera.truncation_rel")
-    """While left or right is nearer to the border than this the other sides count less: ``Detector.truncation_noise_rel``."""
+    """While left or right is nearer to the border than this the other sides count less:
+    ``Detector.truncation_noise_rel``."""
 
 
 @dataclass
@@ -212,8 +215,8 @@ class Settings(_Group):
 
     @classmethod
     def from_names(cls, values: Mapping[str, float]) -> Settings:
-        """The defaults, changed by name as in C and in goe_replay's ``--set``: {"detector.point_noise_px": 0.8, "method": 1,
-        "heading_auto": 0, "heading_deg": 90, "more_cameras[0].fx_px": 900, ...}.
+        """The defaults, changed by name as in C and in goe_replay's ``--set``: {"detector.point_noise_px": 0.8,
+        "method": 1, "heading_auto": 0, "heading_deg": 90, "more_cameras[0].fx_px": 900, ...}.
 
         Raises SettingError for a name that is not there.
         """
@@ -229,6 +232,8 @@ class Settings(_Group):
     def _assign(self, name: str, value: Any) -> None:
         parts = NAME.fullmatch(name)
         group, number, own, index = parts.groups() if parts else (None, None, name, None)
+        if name in _renamed.SETTINGS:
+            raise SettingError(name, f": unknown setting, now {_renamed.SETTINGS[name]}")
         known = name if number is None else f"camera.{own}" + (f"[{index}]" if index else "")
         row = _BY_NAME.get(known)
         if row is None or (number is not None and (group != "more_cameras" or int(number) + 1 >= CAMERAS_MAX)):

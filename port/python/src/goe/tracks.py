@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ._goe import ffi
 from ._layout import ESTIMATE, HAZARD, IMAGE
+from ._renamed import Renamed
 from .estimate import BITS, Estimate, estimate_of
 from .hazard import Hazard, hazard_of
 from .image import POINTS, SIDE_BITS, SIDES
@@ -61,7 +62,7 @@ SIDE_PLACES = _Places(np.float32, _SIDES[0], (_step(_SIDES),), (len(SIDES),))
 
 
 @dataclass
-class Images:
+class Images(Renamed):
     """K images of one obstacle, as columns; meaning, units and frames as in ``Image`` and ``Pose``.
 
     Boxes or points, or both; NaN in them means not visible. Anything that numpy can turn into an array of the shape.

@@ -244,7 +244,9 @@ def flags(goals: Goals) -> list[str]:
         return []
     row = found.goal
     parts = [f"{_with_goal_unit(row, row.values.get(name, math.nan))} at {name} false flags" for name in row.asked]
-    said = [f"The area under the curve of moving cars, flagged by their NIS ratio, is {number(found.area)} (chance: 0.5)."]
+    said = [
+        f"The area under the curve of moving cars, flagged by their NIS ratio, is {number(found.area)} (chance: 0.5)."
+    ]
     if parts:
         said.insert(
             0,
