@@ -128,8 +128,8 @@ def _facts(story: Story) -> list[str]:
     rule = package().DecisionRule()
     facts.append(
         f"Too close: within {options.margin_m:g} m horizontally and {options.clearance_m:g} m over the top. "
-        f"Both are multiplied by {rule.suspect_factor:g} while the answer is suspect and grow by {rule.stale_growth_m_s:g} m "
-        f"for each second of its age. Act now: the library's decision rule, "
+        f"Both are multiplied by {rule.suspect_factor:g} while the answer is suspect and grow by "
+        f"{rule.stale_growth_m_s:g} m for each second of its age. Act now: the library's decision rule, "
         f"from {100.0 * rule.conflict_probability_max:g} % on, "
         f"if the aircraft may reach the obstacle within {rule.act_within_s:g} s."
     )

@@ -28,7 +28,7 @@ def caught(static: np.ndarray, moving: np.ndarray, false_share: float) -> float:
 
 
 def flag_goals(group: str, static: Sequence[Outcome], moving: Sequence[Outcome]) -> list[Goal]:
-    """Share of moving obstacles that the NIS ratio detects at a share of false flags, by its largest and its last value."""
+    """Share of moving obstacles that the NIS ratio detects at a share of false flags, largest and last."""
     result = []
     kinds = (
         ("misfit_most", f"{len(moving)} moving cars caught, at a share of false flags", "NIS ratio as a flag", True),
