@@ -18,7 +18,7 @@ counts there; nor on a link on which anybody's signed HEARTBEAT comes.
 No target counts that is farther than GOEP_DIST, lower than GOEP_ALT_MIN, far below or above the aircraft, or outside the fence.
 ]]
 
-local HAZARD = { id = 42702, crc_extra = 114, length = 67 }
+local HAZARD = { id = 42702, crc_extra = 62, length = 67 }
 local STATUS = { id = 42703, crc_extra = 89, length = 32 }
 local HEARTBEAT = { id = 0, crc_extra = 50, length = 9 } -- the parser knows it: scripts get it only if the link accepts it
 local KINDS = { [HAZARD.id] = HAZARD, [STATUS.id] = STATUS, [HEARTBEAT.id] = HEARTBEAT }

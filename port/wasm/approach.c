@@ -294,8 +294,8 @@ static void give_attitude(approach_t *a, double roll_deg, float attitude[4]) {
 static void give_pose(approach_t *a, const approach_truth_t *truth, goe_pose_t *pose) {
     give_attitude(a, truth->roll_deg, pose->attitude);
     pose->time_us = (int64_t)a->image * (int64_t)(1.0e6 / APPROACH_RATE_HZ);
-    pose->position_ned_m[0] = (float)(truth->north_m + a->velocity_bias_m_s[0] * truth->tcpa_s);
-    pose->position_ned_m[1] = (float)(a->velocity_bias_m_s[1] * truth->tcpa_s);
+    pose->position_ned_m[0] = (float)(truth->north_m + a->velocity_bias_m_s[0] * truth->time_s);
+    pose->position_ned_m[1] = (float)(a->velocity_bias_m_s[1] * truth->time_s);
     pose->position_ned_m[2] = (float)-truth->height_m;
     pose->height_m = (float)(truth->height_m + a->plan.height_offset_m);
 }
@@ -320,11 +320,11 @@ bool approach_next(approach_t *approach, goe_image_t *image, approach_truth_t *t
     if (approach->image >= APPROACH_IMAGES) {
         return false;
     }
-    truth->tcpa_s = (double)approach->image / APPROACH_RATE_HZ;
-    truth->north_m = APPROACH_SPEED_M_S * truth->tcpa_s;
+    truth->time_s = (double)approach->image / APPROACH_RATE_HZ;
+    truth->north_m = APPROACH_SPEED_M_S * truth->time_s;
     truth->height_m =
-        APPROACH_HEIGHT_M + APPROACH_DESCENT_M_S * (APPROACH_FIRST_RANGE_M / APPROACH_SPEED_M_S - truth->tcpa_s);
-    truth->roll_deg = approach->plan.roll_deg * sine_deg(360.0 * truth->tcpa_s / APPROACH_ROLL_S);
+        APPROACH_HEIGHT_M + APPROACH_DESCENT_M_S * (APPROACH_FIRST_RANGE_M / APPROACH_SPEED_M_S - truth->time_s);
+    truth->roll_deg = approach->plan.roll_deg * sine_deg(360.0 * truth->time_s / APPROACH_ROLL_S);
     const camera_t camera = camera_at(truth);
     memset(image, 0, sizeof *image);
     give_pose(approach, truth, &image->pose);

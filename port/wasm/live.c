@@ -87,7 +87,7 @@ int live_start(void) {
 
 static void report_truth(const approach_truth_t *truth) {
     const approach_obstacle_t *o = &approach.obstacle;
-    fields[FIELD_time_s] = (float)truth->tcpa_s;
+    fields[FIELD_time_s] = (float)truth->time_s;
     fields[FIELD_true_north_m] = (float)truth->north_m;
     fields[FIELD_true_height_m] = (float)truth->height_m;
     fields[FIELD_true_roll_deg] = (float)truth->roll_deg;

@@ -104,6 +104,30 @@ def replay() -> Path:
 
 
 @pytest.fixture(scope="session")
+def report_pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report's first page, of synthetic data, with every section; the other pages are in the same folder. The
+    approach is the demo's, if the library can be called."""
+    from goe_tools.report import data, page  # here, because the import is slow
+    from synthetic_campaign import write_avoid, write_campaign, write_goals
+
+    folder = tmp_path_factory.mktemp("report")
+    try:
+        ready()
+        approach = ROOT / "tests" / "data" / "corner"
+    except FileNotFoundError:
+        approach = None
+    campaign = data.read_campaign(
+        write_campaign(folder / "campaign"), goals=write_goals(folder / "goals.json", hostile=True),
+        avoid=write_avoid(folder / "avoid.csv"), rare=ROOT / "tests" / "data" / "rare_events.json", approach=approach,
+    )  # fmt: skip
+    doors = page.Doors(folder / "live.html", folder / "view.html")
+    for name in ("live.html", "view.html"):
+        (folder / name).write_text("<title>elsewhere</title>", encoding="utf-8")
+    page.write_page(campaign, folder / "report.html", doors)
+    return folder / "report.html"
+
+
+@pytest.fixture(scope="session")
 def built() -> None:
     """Skips the test, with the reason, if the Python package cannot load the library."""
     try:

@@ -45,7 +45,7 @@ void loop() {
     image.box.right_px = CENTER_PX + FOCAL_PX * 3.0f / ahead_m;
     image.box.top_px = CENTER_PX - FOCAL_PX * 15.0f / ahead_m;
     image.box.bottom_px = CENTER_PX + FOCAL_PX * 15.0f / ahead_m;
-    image.box.seen = GOE_SIDES_ALL;
+    image.box.sides = GOE_SIDES_ALL;
     goe_estimate_t now;
     const goe_status_t status = goe_update(&mast, &image, &now);
     Serial.print(goe_status_text(status));
