@@ -59,7 +59,7 @@ find_missing() {
     want needed libinih-dev has_header ini.h
     want needed libjansson-dev has_header jansson.h
     want needed python3-venv python3 -c 'import ensurepip, venv'
-    # For the live page, 45 MB. It is built, not shipped: it contains the library, so that it would change with every change of
+    # For the live page, 45 MB. It is built, not shipped: it contains the library, and would therefore change with every change of
     # lib/, and nobody could review 250 KB of WebAssembly.
     want extra clang-19 has clang-19
     want extra lld-19 has wasm-ld-19

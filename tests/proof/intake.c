@@ -116,9 +116,9 @@ static void refuses_noise(float *field, float limit) {
 
 void proof_intake_noise(void) {
     ANY_BITS(noise);
-    refuses_noise(&noise.attitude_deg, 30.0f);
-    refuses_noise(&noise.height_m, 1.0e3f);
-    refuses_noise(&noise.pixel_px, 100.0f);
+    refuses_noise(&noise.attitude_sd_deg, 30.0f);
+    refuses_noise(&noise.height_sd_m, 1.0e3f);
+    refuses_noise(&noise.pixel_sd_px, 100.0f);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- settings -- */

@@ -1,4 +1,4 @@
-"""The report's statistics against hand-made numbers, its page against what it must hold, its reading of bad files."""
+"""The report: statistics against hand-made numbers, required content of the page, errors for bad files."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_verdict(paper: t3.PaperRange | None, means: list[float], two_sigma: flo
 
 
 def test_papers_table_is_the_papers() -> None:
-    """Row by row as printed in its Table 3."""
+    """Equal to its Table 3, row by row."""
     text = {
         f"{obstacle}/{model}": " ".join("N/A" if row[q] is None else str(row[q]) for q in t3.TABLE3_QUANTITIES)
         for (obstacle, model), row in t3.PAPER_TABLE3.items()
@@ -120,7 +120,7 @@ def test_cell_follows_from_the_rows(campaign: Campaign) -> None:
         )
     cell = st.make_cell(campaign.cases, "truck", "line", "width")
     assert cell is not None
-    assert len(cell.errors.mean) == len(reach) == 56  # 60 less 4 that never see an edge
+    assert len(cell.errors.mean) == len(reach) == 56  # 60 less 4 that never show an edge
     assert cell.bars == reach[math.ceil(0.75 * len(reach)) - 1]
     assert st.make_cell(campaign.cases, "truck", "disc", "length") is None
 
@@ -144,7 +144,7 @@ def test_line_solutions_with_statistics_of_their_own_are_preferred(campaign: Cam
 
 
 def test_one_setting_at_a_time() -> None:
-    """Window varied at side 5, side varied at window 8, and a stray run where both differ."""
+    """The window varies at side 5, the side varies at window 8, and one stray run has both changed."""
     window = np.array([4.0, 8.0, 16.0, 8.0, 8.0, 64.0])
     side = np.array([5.0, 5.0, 5.0, 0.0, 10.0, 99.0])
     runs = Cases({"case": np.arange(6.0), "obstacle": np.full(6, "truck"), "window": window, "side_m": side})
@@ -152,7 +152,7 @@ def test_one_setting_at_a_time() -> None:
     assert st.nominal_rows(runs, "side_m", ("window", "side_m"))["case"].tolist() == [1, 3, 4]
 
 
-def test_zero_truth_has_no_percentage_and_is_told(campaign: Campaign) -> None:
+def test_zero_truth_has_no_percentage_and_is_reported(campaign: Campaign) -> None:
     cell = st.make_cell(campaign.cases, "cylinder", "disc", "x0")
     assert cell is not None
     assert (len(cell.errors.mean), cell.errors.without_percent, cell.errors.without_estimate) == (4, 2, 0)
@@ -190,10 +190,10 @@ def test_studies_are_compared_with_the_same_cases(campaign: Campaign) -> None:
     straight = st.like_for_like(campaign.cases, runs)
     assert sorted(straight.keys()) == sorted(runs.keys())
     assert set(straight.levels("study")) == {"paper"}
-    assert st.median_rmse(runs, "z0") > 2.0 * st.median_rmse(straight, "z0")  # invented four times as large
+    assert st.median_rmse(runs, "z0") > 2.0 * st.median_rmse(straight, "z0")  # invented: four times as large
 
 
-def test_misses_are_told_with_a_reason(campaign: Campaign) -> None:
+def test_misses_are_reported_with_a_reason(campaign: Campaign) -> None:
     cells = [c for c in table3.paper_cells(campaign.cases) if c.verdict in (st.WORSE, st.MEANS_ONLY)]
     causes = misses.causes(campaign.cases)
     assert len(cells) > 3
@@ -202,7 +202,7 @@ def test_misses_are_told_with_a_reason(campaign: Campaign) -> None:
 
 
 def test_small_truth_is_found_as_the_reason() -> None:
-    """Errors of 1 m of truths of 2 m and of 50 m: outside +-20 % for no other reason than the small truth."""
+    """Errors of 1 m for truths of 2 m and of 50 m: only the small truth exceeds +-20 %."""
     truth = np.repeat([2.0, 50.0], 4)
     ones = np.ones(8)
     columns = {"case": ones, "x0_truth": truth, "x0_mean": ones, "x0_two_sigma": ones, "fresh_line_share": ones}
@@ -253,7 +253,7 @@ def test_refined_sentences(campaign: Campaign) -> None:
     assert goals is not None
     verdict = " ".join(refined_prose.verdict(goals))
     assert "4 of 6 goals are met, as recorded on 2026-11-01. 2 are missed" in verdict
-    assert "Recorded flights".lower() in verdict.lower()  # not in this run, and told so
+    assert "Recorded flights".lower() in verdict.lower()  # the page states that this run does not include them
     assert refined_prose.missed(goals) == [
         "Gaussian pixel noise, 1 px, within 2 sigma, boxes, all answers: W 81.7\u00a0% (required 90\u00a0…\u00a098).",
         "KITTI's cars, 68 moving cars caught, at a share of false flags: 5 %: 34.7\u00a0% (required ≥\u00a060).",
@@ -280,7 +280,7 @@ def test_boxes_by_roll_follow_from_the_rows(campaign: Campaign) -> None:
         assert rows[3].window.covered[quantity] == pytest.approx(55.0)
 
 
-def test_boxes_sentences_say_what_roll_does() -> None:
+def test_sentences_on_boxes_describe_the_effect_of_roll() -> None:
     def rows(*z0: float) -> list[boxes.RollRow]:
         window = boxes.Answers({"z0": 200.0}, {"z0": 50.0, "x0": 60.0})
         return [
@@ -586,7 +586,7 @@ def test_every_figure_has_a_legend_and_can_be_read_on_a_phone(campaign: Campaign
         plt.close(figure)
 
 
-def test_the_head_tells_the_counts_that_goe_campaign_printed(campaign: Campaign) -> None:
+def test_the_head_shows_the_counts_that_goe_campaign_printed(campaign: Campaign) -> None:
     counted = replace(campaign, facts={**campaign.facts, "flights": 1346, "runs": 2874, "frames": 229218})
     text = page.render_pages(counted, [])[page.PAPER]
     assert all(f"<b>{number}</b>" in text for number in ("1,346", "2,874", "229,218"))

@@ -38,7 +38,7 @@ def kept(course: str, *kinds: str) -> list[dict[str, Any]]:
 # ---------------------------------------------------------------------------------------------------------- the reader
 
 
-def test_what_was_written_is_read(tmp_path: Path) -> None:
+def test_written_runs_are_read(tmp_path: Path) -> None:
     avoid = runs_of(tmp_path, avoid_rows())
     assert len(avoid) == 120
     assert (len(avoid.flown("collision")), len(avoid.flown("pass", "truck"))) == (60, 20)
@@ -137,8 +137,8 @@ def test_the_table_follows_from_the_runs(campaign: Campaign) -> None:
     assert list(rows) == ["Mast", "Building", "Truck, on approach"]
     closest = sorted(row["closest_with_m"] for row in kept("collision", "mast"))
     ahead = sorted(row["ahead_s"] for row in kept("collision", "mast"))
-    told = [cell["text"] for cell in rows["Mast"]]  # type: ignore[attr-defined]
-    assert told == [
+    cells = [cell["text"] for cell in rows["Mast"]]  # type: ignore[attr-defined]
+    assert cells == [
         "20", "19", "0", f"{closest[0]:.1f} / {closest[1]:.1f} / {closest[10]:.1f}",
         f"{ahead[0]:.1f} / {ahead[10]:.1f}", "0", "0", "20", f"0 (0.0{NBSP}%)",
     ]  # fmt: skip

@@ -50,7 +50,7 @@ def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
 
 @pytest.fixture(scope="module")
 def shots(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where screenshots go: GOE_SCREENSHOTS, or a folder that pytest removes."""
+    """Folder for screenshots: GOE_SCREENSHOTS, or one that pytest removes."""
     given = os.environ.get("GOE_SCREENSHOTS")
     folder = Path(given) if given else tmp_path_factory.mktemp("shots")
     folder.mkdir(parents=True, exist_ok=True)
@@ -130,7 +130,7 @@ CONTRAST = (  # texts with little contrast, or on a bright ground
 
 
 def test_dark(browser: Any, report: Path, shots: Path) -> None:
-    """As its reader is: no white is left, and what is written keeps apart from what it stands on."""
+    """Follows the reader's color scheme: no white remains, and text contrasts with its background."""
     browser.execute_cdp_cmd(
         "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}
     )

@@ -1,4 +1,4 @@
-"""The command goe_tools view: pages and pictures of any log, and what it says of bad input."""
+"""The command goe_tools view: pages and pictures of any log, and errors for bad input."""
 
 from __future__ import annotations
 
@@ -93,7 +93,9 @@ def test_bad_usage(change: list[str], said: str, tmp_path: Path, capsys: pytest.
 
 
 @pytest.mark.parametrize(
-    "words_", [["--set", "point_noise_px=1"], ["--set", "detector.point_noise_px=x"], ["--margin", "-1"], ["--theme", "red"]]
+    "words_", [
+        ["--set", "point_noise_px=1"], ["--set", "detector.point_noise_px=x"], ["--margin", "-1"], ["--theme", "red"]
+    ]
 )
 def test_bad_flags(words_: list[str], tmp_path: Path) -> None:
     with pytest.raises(SystemExit) as stopped:
@@ -170,7 +172,7 @@ def test_svg_follows_its_reader(tmp_path: Path) -> None:
 
 
 def test_the_first_picture_of_the_readme_is_drawn_by_the_command(tmp_path: Path) -> None:
-    """Its words and numbers; another version of the drawing library may place strokes otherwise."""
+    """Words and numbers are compared; another version of the drawing library may place strokes differently."""
     picture = view_logs.ROOT / "tools" / "goe_tools" / "view" / "approach.svg"
     assert f"]({picture.relative_to(view_logs.ROOT)})" in (view_logs.ROOT / "README.md").read_text(encoding="utf-8")
     assert main(["view", str(view_logs.CORNER), "--svg", str(tmp_path / "now.svg")]) == 0

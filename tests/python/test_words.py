@@ -53,10 +53,12 @@ RULES = tuple((re.compile(rf"\b(?:{pattern})\b", re.IGNORECASE), instead) for pa
 EXCEPTIONS: tuple[tuple[str, str, str], ...] = (
     ("tests/python/test_words.py", "*", "The rules themselves and their samples."),
     ("lib/GLOSSARY.md", "*", "Names the words that it replaces."),
+    ("tools/bench/lies/__init__.py", "seen       the output of an ideal detector", "The name of a module."),
+    ("tools/bench/optimum/rivals/track.py", "seen (K,6)", "The name of a field."),
 )
 
 # Folders and files whose text is not rewritten yet.
-PENDING: tuple[str, ...] = ("tools/goe_tools/report/", "tools/goe_tools/live/", "tools/demo.sh")
+PENDING: tuple[str, ...] = ()
 
 C_LIKE = {".c", ".h", ".cpp", ".hpp", ".ino", ".mjs", ".js", ".rs", ".css"}
 HASH = {".sh", ".cmake", ".yml", ".yaml", ".toml", ".ini", ".conf", ".msg", ".defs", ".gitignore", ".txt"}

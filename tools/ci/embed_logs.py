@@ -374,7 +374,7 @@ def _row(numbers: list[float]) -> str:
 
 
 def _image_lines(image: Image) -> Iterator[str]:
-    seen = sum(1 << i for i, name in enumerate(FEATURES) if name in image.pixels)
+    visible = sum(1 << i for i, name in enumerate(FEATURES) if name in image.pixels)
     time = "INT64_MIN" if image.time_us == TIME_UNKNOWN_US else str(image.time_us)
     known = int(image.reset_delta_m is not None)
     delta = image.reset_delta_m or (0.0, 0.0, 0.0)
@@ -383,7 +383,7 @@ def _image_lines(image: Image) -> Iterator[str]:
     if box:
         pixels[:4] = [image.box_px.get(side, 0.0) for side in SIDES]
     numbers = [*image.position_m, image.height_m, *image.attitude, *delta]
-    yield f"    {{{time}, 0x{seen:02X}u, 0x{box:02X}u, {image.reset_count}u, {known}u,"
+    yield f"    {{{time}, 0x{visible:02X}u, 0x{box:02X}u, {image.reset_count}u, {known}u,"
     yield f"     {{{_row(numbers[:8])},"
     yield f"      {_row([*numbers[8:], *pixels[:5]])},"
     yield f"      {_row(pixels[5:])}}}}},"

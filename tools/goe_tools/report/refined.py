@@ -171,7 +171,7 @@ def flags(goals: Goals) -> Flags | None:
         return None
     points = sorted((float(name.rstrip("% ")), value) for name, value in curve.values.items())
     area = goals.find(curve.group, "NIS ratio as a flag")
-    default = goals.find(curve.group, "told as suspect with the default threshold")
+    default = goals.find(curve.group, "flagged as suspect with the default threshold")
     return Flags(
         tuple(x for x, _ in points), tuple(y for _, y in points),
         next(iter(area.values.values())) if area else math.nan,

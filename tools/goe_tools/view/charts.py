@@ -46,9 +46,9 @@ CHARTS = (
           least=0.0),
     Chart("clearance_m", "Height above the top then", "m", "at closest approach; negative: below the top",
           "clearance_sd_m"),
-    Chart("conflict_probability", "Conflict probability", "%", "that margin and clearance are both violated", "", 100.0, floor=0.0,
-          ceiling=100.0),
-    Chart("nis_ratio", "NIS ratio", "", "residuals relative to the settings' noise; 1: as expected; suspect above the line",
+    Chart("conflict_probability", "Conflict probability", "%", "that margin and clearance are both violated", "", 100.0,
+          floor=0.0, ceiling=100.0),
+    Chart("nis_ratio", "NIS ratio", "", "residuals over the settings' noise; 1: as expected; suspect above the line",
           limit=MISFIT_MAX, floor=0.0),
 )  # fmt: skip
 

@@ -256,8 +256,8 @@ def flags(goals: Goals) -> list[str]:
     if parts:
         said.insert(
             0,
-            "A car that moves does not fit a static obstacle. By this nis_ratio the following share of the moving cars is "
-            f"flagged: {listed(parts)}. Goal {wanted(row)} %: {'met' if row.met else 'missed'}.",
+            "A car that moves does not fit a static obstacle. By this NIS ratio the following share of the moving "
+            f"cars is flagged: {listed(parts)}. Goal {wanted(row)} %: {'met' if row.met else 'missed'}.",
         )
     if found.default is not None:
         said.append(

@@ -25,7 +25,7 @@ def summary(cases: Cases) -> list[str]:
     parts = [
         f"{count[st.REPRODUCED]} are reproduced",
         f"{count[st.BETTER]} are better",
-        f"{count[st.MEANS_ONLY]} hold for the means but not for the mean ± 2σ bars",
+        f"{count[st.MEANS_ONLY]} agree in the means but not in the mean ± 2σ bars",
         f"{count[st.WORSE]} are not reproduced",
     ]
     said = [f"Of the {len(cells)} numbers in the paper's Table 3, {', '.join(parts[:-1])} and {parts[-1]}."]
