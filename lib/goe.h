@@ -115,7 +115,7 @@
 #define GOE_WITH_WINDOW 1 /* the window method; without it the filter answers nothing until it has started */
 #endif
 #ifndef GOE_WITH_FILTER
-#define GOE_WITH_FILTER 1  /* the filter method */
+#define GOE_WITH_FILTER 1 /* the filter method */
 #endif
 #ifndef GOE_WITH_HAZARD
 #define GOE_WITH_HAZARD 1 /* goe_hazard() */

@@ -445,5 +445,5 @@ def test_c_reads_the_messages_of_the_readme_s_camera(newer: ModuleType, echo: Pa
     first, second, empty = (reader.parse_buffer(frame)[0] for frame in written)
     assert (first.number, second.number, empty.number) == (2, 2, 0)
     assert list(first.box) == [-400, -600, 600, 600]
-    assert (first.obstacle_id, first.score, first.time_base, first.seen) == (3, 90, 2, 15)
+    assert (first.obstacle_id, first.score, first.time_base, first.visible) == (3, 90, 2, 15)
     assert first.age_usec >= 35000

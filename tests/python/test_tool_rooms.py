@@ -22,6 +22,7 @@ COMMANDS_OF = {"goe_tools": COMMANDS, "bench": BENCH_COMMANDS, "ci": CI_COMMANDS
 FLOORS = {
     "goe_tools": (
         ("__init__", "places", "spread"),
+        ("renamed",),
         ("logs",),
         ("flights", "double_precision"),
         ("library",),

@@ -132,7 +132,8 @@ def _facts(story: Story) -> list[str]:
         f"Conflict: less than {options.margin_m:g} m to the side and {options.clearance_m:g} m above the top. Both "
         f"distances are {rule.suspect_factor:g} times as large while the estimate is suspect, and grow by "
         f"{rule.stale_growth_m_s:g} m for each second of its age. Act now: decision of goe_decide(), "
-        f"if the conflict probability is at least {100.0 * rule.conflict_probability_max:g} % and the obstacle may be reached within {rule.act_within_s:g} s."
+        f"if the conflict probability is at least {100.0 * rule.conflict_probability_max:g} % "
+        f"and the obstacle may be reached within {rule.act_within_s:g} s."
     )
     return facts
 

@@ -210,7 +210,9 @@ def _gauss_tasks(solid: Solid, roll_deg: float, amount: Amount) -> list[Simulate
     """White noise alone in the boxes."""
     usual = ErrorModel().settings()
     settings = {name: value for name, value in _gauss_errors(solid).settings().items() if value != usual[name]}
-    options = BoxOptions(roll_deg=roll_deg, box_px=BOUND_NOISE.box_px, box_noise_rel=BOUND_NOISE.box_noise_rel)
+    options = BoxOptions(
+        roll_deg=roll_deg, box_noise_px=BOUND_NOISE.box_noise_px, box_noise_rel=BOUND_NOISE.box_noise_rel
+    )
     return [Simulated(solid, options, seed, settings) for seed in range(1, amount.boxes + 1)]
 
 
