@@ -501,7 +501,7 @@ static void the_words_are_those_of_the_numbers() {
     obstacle.clearance = -5.f;
     overview.status.action = goe_status_s::ACTION_LEFT;
     overview.status.late = true;
-    TEST_ASSERT_EQUAL_STRING("order      left, told only, LATE, needs 0.0 s", line_of(overview, 5).c_str());
+    TEST_ASSERT_EQUAL_STRING("order      left, reported only, LATE, needs 0.0 s", line_of(overview, 5).c_str());
     TEST_ASSERT_TRUE(says(line_of(overview, 7), "50 m at 270 deg"));
     TEST_ASSERT_TRUE(says(line_of(overview, 8), "5 m below its top"));
     TEST_ASSERT_EQUAL_STRING("none", line_of(overview, 9).c_str());

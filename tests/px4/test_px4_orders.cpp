@@ -505,7 +505,7 @@ static void no_command_is_ever_given_by_default() {
     TEST_ASSERT_EQUAL(0, fly_towards_one(MISSION, false, 14.0, 0));
     TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action); /* it is told */
     TEST_ASSERT_FALSE(flight.status().flown);
-    TEST_ASSERT_TRUE(standin::mavlink_texts().find("(told only)") != std::string::npos);
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("(reported only)") != std::string::npos);
     flight.end();
 }
 

@@ -6,7 +6,7 @@ export const ORDER = { nothing: 0, clear: 1, doubt: 2, goAround: 3, uncertain: 4
 const REASONS = {
   convention: "the inputs contradict each other",
   moves: "the obstacle seems to move",
-  base: "the base corners are none",
+  base: "the base corners are wrong",
   shape: "its shape is not that of a disc",
   late: "the poses come late against the images",
   noise: "the errors are larger than configured, or the shape is another",
