@@ -83,7 +83,7 @@ def renamed(old: str, new: str) -> Callable[[list[Row]], list[Row]]:
 
 
 MILLISECONDS = "t_s: an image every 250 s of an aircraft that flies 0.017 m/s: milliseconds? t_s is in seconds"
-TOO_FAST = "n_m, e_m: the aircraft flies 1.7e+03 m/s: feet? positions are in metres, t_s in seconds"
+TOO_FAST = "n_m, e_m: the aircraft flies 1.7e+03 m/s: feet? positions are in meters, t_s in seconds"
 REAL_PART = "qw is its real part"
 ORDER = f"qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: {REAL_PART}"
 UPWARD = "d_m: it grows as agl_m does: is it up? d_m is down, negative above the origin"
@@ -94,8 +94,8 @@ WARNINGS = [
     (change(moved), ORDER),
     (lambda table: times(-1.0, "d_m")(descending(table)), UPWARD),
     (change(lambda row: {"d_m": 40, "agl_m": ""}), BELOW),
-    (lambda table: times(FOOT, "agl_m")(descending(table)), "agl_m: 3.28 times -d_m: feet? both are in metres"),
-    (lambda table: times(FOOT, *PLACE)(descending(table)), "d_m: 3.28 times -agl_m: feet? both are in metres"),
+    (lambda table: times(FOOT, "agl_m")(descending(table)), "agl_m: 3.28 times -d_m: feet? both are in meters"),
+    (lambda table: times(FOOT, *PLACE)(descending(table)), "d_m: 3.28 times -agl_m: feet? both are in meters"),
 ]
 
 

@@ -48,7 +48,7 @@ def _of_times(time_s: np.ndarray, place: np.ndarray) -> str:
         seen = f"an image every {step_s:.3g} s of an aircraft that flies {speed:.2g} m/s"
         return f"t_s: {seen}: milliseconds? t_s is in seconds"
     if speed > SPEED_MAX_M_S:
-        return f"n_m, e_m: the aircraft flies {speed:.3g} m/s: feet? positions are in metres, t_s in seconds"
+        return f"n_m, e_m: the aircraft flies {speed:.3g} m/s: feet? positions are in meters, t_s in seconds"
     return ""
 
 
@@ -90,7 +90,7 @@ def _of_heights(up: np.ndarray, agl: np.ndarray, given: np.ndarray) -> str:
         return f"d_m: the camera is below the ground, and agl_m is empty: {end}"
     if ratio:
         name, other = ("agl_m", "-d_m") if ratio > 1.0 else ("d_m", "-agl_m")
-        return f"{name}: {1.0 / FOOT_M:.3g} times {other}: feet? both are in metres"
+        return f"{name}: {1.0 / FOOT_M:.3g} times {other}: feet? both are in meters"
     return ""
 
 
