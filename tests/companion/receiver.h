@@ -42,7 +42,7 @@ static inline void receiver_open(receiver_t *receiver, wire_t *wire) {
     TEST_ASSERT_NOT_NULL_MESSAGE(wire->link, fault);
     wire->system = 1;
     wire->component = 196;
-    wire->heard = 1;
+    wire->autopilot_system = 1;
 }
 
 static inline void receiver_close(receiver_t *receiver, wire_t *wire) {

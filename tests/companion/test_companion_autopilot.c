@@ -500,11 +500,11 @@ static void each_kind_is_asked_for_its_own_messages(void) {
 /* The companion is a component of the autopilot's system. */
 static void the_companion_takes_the_autopilots_system(void) {
     TEST_ASSERT_EQUAL_UINT8(SYSTEM, wire.system);
-    TEST_ASSERT_EQUAL_UINT8(SYSTEM, wire.heard);
+    TEST_ASSERT_EQUAL_UINT8(SYSTEM, wire.autopilot_system);
     autopilot_init(&autopilot, &config, &flight, &wire);
     beat(OTHER_SYSTEM);
     TEST_ASSERT_EQUAL_UINT8(OTHER_SYSTEM, wire.system);
-    TEST_ASSERT_EQUAL_UINT8(OTHER_SYSTEM, wire.heard);
+    TEST_ASSERT_EQUAL_UINT8(OTHER_SYSTEM, wire.autopilot_system);
 }
 
 /* Each number of a position beyond its range, either way. */
