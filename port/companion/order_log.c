@@ -12,7 +12,7 @@
 #define NUMBER_MAX 9.0e15 /* what a double holds to the unit */
 
 /* Columns that a restarted companion reads. */
-enum { UNIX_US, BOOT_US, STANDS, ACTION, MODE_BEFORE, COURSE_N, COURSE_E, OBSTACLE_N, OBSTACLE_E, RADIUS, NUMBERS };
+enum { UNIX_US, BOOT_US, ACTIVE, ACTION, MODE_BEFORE, COURSE_N, COURSE_E, OBSTACLE_N, OBSTACLE_E, RADIUS, NUMBERS };
 
 static const char header[] =
     "unix_us,boot_us,stands,action,mode_before,course_n,course_e,obstacle_n_m,obstacle_e_m,radius_m,event,action_name,"
@@ -75,7 +75,7 @@ static bool parse(const char *line, order_left_t *left) {
     }
     left->unix_us = (int64_t)number[UNIX_US];
     left->boot_us = (int64_t)number[BOOT_US];
-    left->active = number[STANDS] > 0.5;
+    left->active = number[ACTIVE] > 0.5;
     left->action = (unsigned)number[ACTION];
     left->mode_before = (uint32_t)number[MODE_BEFORE];
     left->course_ne[0] = (float)number[COURSE_N];

@@ -246,7 +246,7 @@ static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *ca
     return goe_flight_geometry_project(camera, pose, point, pixel);
 }
 
-static bool is_similar(const int16_t a[4], const int16_t b[4]) {
+static bool matches(const int16_t a[4], const int16_t b[4]) {
     bool similar = true;
     for (int axis = 0; axis < 2; axis++) {
         const float one = (float)(a[axis + 2] - a[axis]);
@@ -264,8 +264,7 @@ float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_cam
         const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
         return comparable && overlap >= OVERLAP_MIN ? overlap : 0.0f;
     }
-    if ((comparable && !is_similar(slot->box_px, box_px)) ||
-        !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
+    if ((comparable && !matches(slot->box_px, box_px)) || !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
         return 0.0f;
     }
     float claim = 1.0f;

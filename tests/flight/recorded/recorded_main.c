@@ -225,9 +225,9 @@ static const way_t ways[] = {
     {0.04, 0.0, 1000u, "samples 40 ms apart"},
     {0.1, 0.0, 1000u, "samples 100 ms apart"},
     {0.2, 0.0, 1000u, "samples 200 ms apart"},
-    {0.04, 0.02, 1000u, "20 ms late, not known"},
-    {0.04, 0.02, 20000u, "20 ms late, known"},
-    {0.04, 0.1, 100000u, "100 ms late, known"},
+    {0.04, 0.02, 1000u, "20 ms late, not configured"},
+    {0.04, 0.02, 20000u, "20 ms late, configured"},
+    {0.04, 0.1, 100000u, "100 ms late, configured"},
 };
 
 static int judge(const char *path) {
