@@ -69,7 +69,7 @@ def test_logs_that_the_references_do_not_support(
     boxed = [replace(frame, box_px=(1.0, None, None, None)) for frame in corner_log.frames[-1:]]
     write_log(tmp_path / "boxes", replace(corner_log, frames=corner_log.frames[:-1] + boxed))
     assert run(fake_replay(), tmp_path / "boxes") == 2
-    assert "frames.csv: holds bounding boxes" in capsys.readouterr().err
+    assert "frames.csv: contains bounding boxes" in capsys.readouterr().err
     counted = [replace(frame, reset_count=7) for frame in corner_log.frames]
     write_log(tmp_path / "resets", replace(corner_log, frames=corner_log.frames[:9] + counted[9:]))
     assert run(fake_replay(), tmp_path / "resets") == 2

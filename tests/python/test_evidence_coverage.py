@@ -100,8 +100,8 @@ def test_a_reason_covers_its_outcome_and_the_independence_that_needs_it(tmp_path
     ("given", "fault"),
     [
         (reason("a > 0 && [b > 0]", "true"), "is covered now"),
-        (reason("a > 0 && [b > 1]", "false"), "fits nothing any more"),
-        (reason("a > 0 && [b > 0]", "false", "choose"), "fits nothing any more"),
+        (reason("a > 0 && [b > 1]", "false"), "no longer fits anything"),
+        (reason("a > 0 && [b > 0]", "false", "choose"), "no longer fits anything"),
     ],
 )
 def test_a_reason_that_is_none_is_a_fault(tmp_path: Path, given: Reason, fault: str) -> None:
@@ -115,7 +115,7 @@ def test_a_reason_that_is_none_is_a_fault(tmp_path: Path, given: Reason, fault: 
     ("row", "fault"),
     [
         ("lib/a.c,f,x > 0,maybe,because", "outcome"),
-        ("lib/a.c,f,x > 0,true,", "none of them empty"),
+        ("lib/a.c,f,x > 0,true,", "all with text"),
         ("lib/a.c,f,x > 0,true", "5 cells"),
     ],
 )

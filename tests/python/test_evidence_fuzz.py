@@ -90,7 +90,7 @@ def test_the_rows_list_the_missing_counts() -> None:
     state.add("default/estimator", {"runs": 3, "updates": 900, "status_ok": 1, "status_stale": 0, "movers_followed": 2})
     state.add("fuzz/estimator", {"runs": 1, "updates": 99, "latency_reported": 1})
     rows = {row.what: row for row in fuzz.rows_of(state, 1000)}
-    assert rows["updates through goe_update, every answer judged"].met is False
+    assert rows["updates through goe_update, every answer checked"].met is False
     assert rows["... of them under ASan and UBSan"].figure == "99"
     assert rows["... of them under ASan and UBSan"].met is False
     assert rows["statuses of images reached"].figure == "1 of 2"

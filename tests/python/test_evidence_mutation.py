@@ -206,8 +206,8 @@ def test_equivalent_mutants_are_not_counted() -> None:
 
 def test_mutants_that_the_probe_misses_are_counted() -> None:
     by_name = {row.what: row for row in mutation_counts.rows(outcomes(), {})}
-    assert by_name["mutants that neither a unit test nor the probe notices"].figure == "3"
-    assert by_name["killed, where those count as alive"].figure == "82.6 % (19 of 23)"
+    assert by_name["mutants that neither a unit test nor the probe detects"].figure == "3"
+    assert by_name["killed, if those count as alive"].figure == "82.6 % (19 of 23)"
 
 
 def test_in_a_layer_every_change_of_the_object_code_counts() -> None:

@@ -135,7 +135,7 @@ def test_the_noise_of_boxes_is_found(boxes: list[Path], capsys: pytest.CaptureFi
     logs = [str(log) for log in boxes]
     assert main(["noise", *logs, "--without-truth"]) == 0
     text = capsys.readouterr().out
-    assert "by the innovations" in text and "within 2 sigma" not in text
+    assert "from the innovations" in text and "within 2 sigma" not in text
     detector = ("detector.box_noise_px", "detector.box_noise_rel", "navigation.attitude_white_sd_deg")
     assert_close(found(text), *detector)
     assert set(found(text)) == set(detector)
@@ -212,7 +212,7 @@ def test_wrong_input(boxes: list[Path], tmp_path: Path, refused: Callable[..., s
     assert "is not NAME=VALUE with one of detector.box_noise_px" in refused(log, "--set", "box_noise_px=1")
     assert "detector.box_noise_px: 'wide' is not a number" in refused(log, "--set", "detector.box_noise_px=wide")
     assert "detector.box_noise_px: '-1' must be at least 0" in refused(log, "--set", "detector.box_noise_px=-1")
-    assert "'100' is no percentage" in refused(log, "--cover", "100")
+    assert "'100' is not a percentage" in refused(log, "--cover", "100")
     assert "--cover needs boxes and their truth" in refused(log, "--without-truth", "--cover", "95")
     short = replace(read_log(boxes[0]))
     short.frames = short.frames[:5]

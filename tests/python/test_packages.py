@@ -104,7 +104,7 @@ def test_another_version_is_noticed(small_tree: Path) -> None:
 def test_words_for_staging_alone(words: tuple[str, str], capsys: pytest.CaptureFixture[str]) -> None:
     for what in ("--check", "--write"):
         assert main(["packages", what, *words]) == 2
-        assert "go with --out" in capsys.readouterr().err
+        assert "require --out" in capsys.readouterr().err
 
 
 def test_a_header_without_parts_is_an_error(tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_a_header_without_parts_is_an_error(tmp_path: Path) -> None:
 
 def test_nothing_is_written_over(staged: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["packages", "--target", "conan", "--out", str(staged)]) == 2
-    assert "is there already" in capsys.readouterr().err
+    assert "exists already" in capsys.readouterr().err
 
 
 def test_all_or_none_is_staged(tmp_path: Path) -> None:

@@ -168,6 +168,6 @@ def test_lines_of_requirements() -> None:
     assert one is not None and (one.name, one.version, one.ref) == ("numpy", "2.0.2", "pkg:pypi/numpy@2.0.2")
     assert one.why == 'tests, where python_version < "3.13"'
     assert PINNED.match(">=1.15") is None
-    with pytest.raises(ValueError, match="is no requirement"):
+    with pytest.raises(ValueError, match="is not a requirement"):
         requirement("-e ./tools", "r.txt", "")
     assert array_of('[a]\nb = ["x>=1", "y"]\n[c]\nb = []\n', "a", "b") == ("x>=1", "y")
