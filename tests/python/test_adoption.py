@@ -143,7 +143,7 @@ def test_citation() -> None:
     assert {"cff-version", "message", "title", "authors"} <= cited.keys()  # required by the format
     assert (cited["version"], cited["date-released"]) == releases()[0]
     assert cited["authors"] == [{"name": "goe maintainers"}]
-    assert (cited["license"], cited["url"]) == (FACTS.licence, FACTS.url)
+    assert (cited["license"], cited["url"]) == (FACTS.license, FACTS.url)
     (paper,) = cited["references"]
     assert paper["title"] in " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
     assert paper["authors"][0]["family-names"] == "Bauer" and paper["year"] == 2019

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-FOLDER = Path(__file__).resolve().parents[2] / "lib" / "filter"
+FOLDER = Path(__file__).resolve().parents[2] / "lib" / "refined"
 KINDS = set("dlsgbc")
 
 DEFINITION = re.compile(r"^#define (\w+) +\(?(-?[0-9][0-9.]*(?:e-?[0-9]+)?)[fu]*\)?(?:\s|$)", re.MULTILINE)

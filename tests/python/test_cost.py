@@ -228,7 +228,7 @@ def test_growth_beyond_two_percent_is_reported() -> None:
     assert growth.grown(before, {**same, "code": 1, "data bytes: goe_x": 1}) == [
         "data bytes: goe_x: 1, not in the ledger"
     ]
-    assert growth.grown(before, same) == ["code: 1000 in the ledger, not measured any more"]
+    assert growth.grown(before, same) == ["code: 1000 in the ledger, no longer measured"]
 
 
 def test_targets_of_another_compiler_are_named_not_compared(capsys: pytest.CaptureFixture[str]) -> None:
@@ -363,7 +363,7 @@ def test_a_contradiction_of_the_proof_stops_the_ledger(monkeypatch: pytest.Monke
     for most, turned, lines, wrong in (
         (11, 1, [], ""),
         (10, 1, [], "goe_update: 11 instructions measured, 10 proved"),
-        (11, 2, [], "f at 100: counted 4, line 7 of the table says 3"),
+        (11, 2, [], "f at 100: counted 4, line 7 of the table has 3"),
         (11, 1, ["line 9: loop g: #1"], "m4f-gcc-o2: line 9: loop g: #1"),
     ):
         proof = Proof(most, Counter())

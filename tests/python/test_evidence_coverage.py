@@ -79,7 +79,7 @@ def test_copies_of_a_function_in_a_header_count_as_one(tmp_path: Path) -> None:
 
 def test_an_answer_of_another_shape_is_refused(tmp_path: Path) -> None:
     export = exported(tmp_path, (5, 5), (5, 5), [True, True, True])
-    with pytest.raises(CountError, match="3 conditions, of which 2 are found"):
+    with pytest.raises(CountError, match="3 conditions, but 2 found"):
         items(export, tmp_path)
 
 

@@ -123,7 +123,7 @@ def test_a_whole_tree_is_left_alone(tree: Path) -> None:
     [
         ("lib/goe.h", "at 0.", "at 0. [A2]", "lib/goe.h:3: A2: no test has this mark or name"),
         ("lib/goe.h", "[A1]", "", "tests/c/test_count.c:10: [A1] is the mark of no promise, name, equation or source"),
-        ("lib/goe.h", "at 0.", "at 0. [A1]", "lib/goe.h:3: [A1] is at lib/goe.h:3, too"),
+        ("lib/goe.h", "at 0.", "at 0. [A1]", "lib/goe.h:3: [A1] is also at lib/goe.h:3"),
         ("lib/goe.h", "int goe_count", "int goe_new(void);\nint goe_count", "lib/goe.h:13: goe_new: no test"),
         ("lib/goe.h", " = 3 };", " = 3, GOE_LEAST };", "lib/goe.h:5: GOE_LEAST: no test"),
         ("lib/goe.h", "x, y;", "x, y, z;", "lib/goe.h:8: goe_count_t.z: no test"),
@@ -221,6 +221,6 @@ def test_a_broken_line_is_noticed_or_reported(tmp_path: Path, monkeypatch: pytes
     outcomes, failing = breaks.try_all(tried, 2)
     assert failing == []
     assert [outcome.noticed for outcome in outcomes] == [True, False, False, True]
-    assert "does not compile" in outcomes[2].told
+    assert "does not compile" in outcomes[2].message
     _, failing = breaks.try_all([breaks.Break("", "lib/add.c", "a + b", "a - b", f"{test}_twice", 2)], 1)
     assert failing == [f"{test}_twice"]

@@ -88,7 +88,7 @@ def noise_of_rows(rows: list[tuple[Sight, Row]], state: np.ndarray, errors: Erro
         else (between == 0).astype(float)
     )
     share = errors.box_noise_rel * size
-    white = (errors.box_px / focal_px(rows[0][0].camera)[side]) ** 2 + np.where(
+    white = (errors.box_noise_px / focal_px(rows[0][0].camera)[side]) ** 2 + np.where(
         cut, errors.truncation_noise_rel * size, 0.0
     ) ** 2
     moved = np.radians(errors.attitude_white_sd_deg) ** 2 * slope[:, :3] @ slope[:, :3].T

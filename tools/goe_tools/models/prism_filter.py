@@ -188,7 +188,7 @@ class PrismFilter:
         """From flat ground, if the foot is clearly below the horizon, otherwise from the prior width."""
         errors = self.errors
         attitude = np.radians([errors.attitude_bias_sd_deg, errors.attitude_white_sd_deg])
-        own = [errors.box_px / sight.camera.fy, FOOT_SHARE * errors.box_noise_rel * size]
+        own = [errors.box_noise_px / sight.camera.fy, FOOT_SHARE * errors.box_noise_rel * size]
         clear = GROUND_SIGMAS * float(np.linalg.norm([*attitude, *own]))
         high = sight.height_m > GROUND_SIGMAS * errors.height_sd_m
         if foot is not None and foot[1] > clear and high:
@@ -278,7 +278,7 @@ class PrismFilter:
         side = np.array([row.side for row in rows])
         slope = np.array([row.slope for row in rows])
         size = np.array([box_size(sight, self.state, row.side % 2) for row in rows])
-        own = (errors.box_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
+        own = (errors.box_noise_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
         own += (errors.truncation_noise_rel * size) ** 2 if sight.cut else 0.0
         ahead = max(1 - sight.moved_m[2] * self.state[Q], AHEAD_MIN)
         own += (slope[:, Q] * sight.moved_m[2] * q_variance / ahead) ** 2
