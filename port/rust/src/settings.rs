@@ -125,7 +125,7 @@ pub struct FilterSettings {
     pub gate_sigma: f32,
     /// A point farther off counts less, sigmas; 0.5 to 100; default 2.5.
     pub huber_sigma: f32,
-    /// Misfit above which the obstacle is suspect; 0.01 to 1e3; default 1.9.
+    /// NIS ratio above which the obstacle is suspect; 0.01 to 1e3; default 1.9.
     pub nis_ratio_max: f32,
     /// Sigma over range up to which a position is reported; 0.01 to 10; default 0.25.
     pub range_sd_rel_max: f32,

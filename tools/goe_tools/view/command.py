@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
+from .. import renamed
 from ..logs.obslog import LogError, ObservationLog, read_log, read_truth
 from ..logs.whole_file import log_files, write_whole
 from .answers import SETTING_GROUPS, Options
@@ -30,6 +31,8 @@ def _number(low: float, high: float) -> Callable[[str], float]:
 
 def _setting(text: str) -> tuple[str, float]:
     name, equals, value = text.partition("=")
+    if name in renamed.names():
+        raise argparse.ArgumentTypeError(f"unknown setting {name}: now {renamed.names()[name]}")
     if not equals or name.split(".")[0] not in SETTING_GROUPS:
         groups = ", ".join(f"{group}.…" for group in SETTING_GROUPS)
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE of a setting in {groups}")
@@ -39,10 +42,17 @@ def _setting(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"{name}: '{value}' is not a number") from None
 
 
+def _method(text: str) -> str:
+    now = renamed.names().get(f"--method {text}")
+    if now:
+        raise argparse.ArgumentTypeError(f"unknown value {text}: now {now}")
+    return text
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Options of replay and decision, which ``options_of`` reads."""
     add = parser.add_argument
-    add("--method", choices=("filter", "window"), default="filter", help="as goe_replay's")
+    add("--method", type=_method, choices=("filter", "window"), default="filter", help="as goe_replay's")
     add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
     add("--window", type=int, metavar="N", help="as goe_replay's: images in the window")
     add(

@@ -152,7 +152,7 @@ class FilterSettings(_Group):
     huber_sigma: float = real("filter.huber_sigma")
     """A point farther off counts less, sigmas."""
     nis_ratio_max: float = real("filter.nis_ratio_max")
-    """Misfit above which the obstacle is suspect."""
+    """NIS ratio above which the obstacle is suspect."""
     range_sd_rel_max: float = real("filter.range_sd_rel_max")
     """Sigma over range up to which a position is reported."""
     top_is_highest: bool = bool(whole("filter.top_is_highest"))
